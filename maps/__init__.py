@@ -1,0 +1,36 @@
+"""Where things are: campus maps as data (TOML), their one reader, routes on them, and their check."""
+
+from .campus_map import (
+    CampusMap,
+    Corridor,
+    Dock,
+    Marker,
+    Post,
+    builtin_map,
+    corridor_name,
+    find_map,
+    read_map,
+)
+from .errors import MapError, CampusMapError, NoRoute, UnknownCorridor, UnknownPost
+from .geometry import Point
+from .routes import Route, shortest_route
+
+__all__ = [
+    "CampusMap",
+    "Corridor",
+    "Dock",
+    "MapError",
+    "CampusMapError",
+    "Marker",
+    "NoRoute",
+    "Point",
+    "Post",
+    "Route",
+    "UnknownCorridor",
+    "UnknownPost",
+    "builtin_map",
+    "corridor_name",
+    "find_map",
+    "read_map",
+    "shortest_route",
+]

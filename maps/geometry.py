@@ -1,0 +1,75 @@
+"""Plane geometry of a map: metres, x to the east, y to the north; headings in radians, counter-clockwise from east."""
+
+import math
+from itertools import pairwise
+from typing import NamedTuple
+
+
+class Point(NamedTuple):
+    x_m: float
+    y_m: float
+
+
+def distance_m(a: Point, b: Point) -> float:
+    return math.hypot(b.x_m - a.x_m, b.y_m - a.y_m)
+
+
+def heading_rad(a: Point, b: Point) -> float:
+    """The way from a to b, in (−π, π]."""
+    return math.atan2(b.y_m - a.y_m, b.x_m - a.x_m)
+
+
+def wrapped(angle_rad: float) -> float:
+    """The same angle in (−π, π]; positive is a turn to the left."""
+    return math.pi - (math.pi - angle_rad) % math.tau
+
+
+def moved(start: Point, heading_rad: float, ahead_m: float, left_m: float = 0.0) -> Point:
+    """Where one stands after going ahead and then sideways, still looking along `heading_rad`."""
+    along, across = math.cos(heading_rad), math.sin(heading_rad)
+    return Point(start.x_m + ahead_m * along - left_m * across, start.y_m + ahead_m * across + left_m * along)
+
+
+def seen_from(origin: Point, heading_rad: float, point: Point) -> tuple[float, float]:
+    """(ahead_m, left_m) of a point for somebody at `origin` who looks along `heading_rad`."""
+    dx, dy = point.x_m - origin.x_m, point.y_m - origin.y_m
+    along, across = math.cos(heading_rad), math.sin(heading_rad)
+    return dx * along + dy * across, dy * along - dx * across
+
+
+def path_length_m(path: tuple[Point, ...]) -> float:
+    return sum(distance_m(a, b) for a, b in pairwise(path))
+
+
+def distance_to_path_m(point: Point, path: tuple[Point, ...]) -> float:
+    return min(_distance_to_segment_m(point, a, b) for a, b in pairwise(path))
+
+
+def _distance_to_segment_m(point: Point, a: Point, b: Point) -> float:
+    length_m = distance_m(a, b)
+    ahead_m, left_m = seen_from(a, heading_rad(a, b), point)
+    beyond_m = ahead_m - min(max(ahead_m, 0.0), length_m)
+    return math.hypot(beyond_m, left_m)
+
+
+def rounded(path: tuple[Point, ...], radius_m: float, step_rad: float = math.radians(10)) -> tuple[Point, ...]:
+    """The path with every corner replaced by an arc, since a robot that follows tape cannot follow a kink.
+
+    An arc never takes more than half of a leg beside it, so its radius shrinks in a short one.
+    """
+    corners = (_arc(*corner, radius_m, step_rad) for corner in zip(path, path[1:], path[2:], strict=False))
+    return (path[0], *(point for arc in corners for point in arc), path[-1])
+
+
+def _arc(before: Point, corner: Point, after: Point, radius_m: float, step_rad: float) -> tuple[Point, ...]:
+    arriving, leaving = heading_rad(before, corner), heading_rad(corner, after)
+    turn_rad = wrapped(leaving - arriving)
+    if radius_m <= 0 or abs(turn_rad) < step_rad:
+        return (corner,)
+    room_m = min(distance_m(before, corner), distance_m(corner, after)) / 2
+    cut_m = min(radius_m * math.tan(abs(turn_rad) / 2), room_m)
+    radius_m = cut_m / math.tan(abs(turn_rad) / 2)
+    side = math.copysign(1.0, turn_rad)
+    centre = moved(corner, arriving, -cut_m, side * radius_m)
+    steps = math.ceil(abs(turn_rad) / step_rad)
+    return tuple(moved(centre, arriving + turn_rad * i / steps, 0.0, -side * radius_m) for i in range(steps + 1))

@@ -1,0 +1,100 @@
+"""The shape of a map file, before anybody has asked whether it makes sense.
+
+A file is TOML. Lengths are metres, x to the east and y to the north; headings are degrees counter-clockwise from
+east. An unknown key is an error: a mistyped `lenght_m` must not become a default.
+"""
+
+import re
+import tomllib
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from .errors import MapError
+
+Metres = Annotated[float, Field(allow_inf_nan=False)]
+Degrees = Annotated[float, Field(ge=-360, le=360)]
+Side = Literal["1", "2", "3", "4"]
+
+
+class Row(BaseModel):
+    """One table of the file."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class PoseRow(Row):
+    x_m: Metres
+    y_m: Metres
+    heading_deg: Degrees
+
+
+class PostRow(Row):
+    name: str
+    title: str = ""
+    x_m: Metres
+    y_m: Metres
+    bays: int = Field(default=1, ge=0)
+    mailroom: bool = False
+    dock: PoseRow | None = None
+    # Left out: the standard places, one beside every approach and one beside the dock.
+    markers: tuple[PoseRow, ...] | None = None
+    # Which neighbour lies on which side, 1 to 4 clockwise in the post's own frame. A survey may know this before
+    # anybody has measured anything; the map check compares it with the corridors and with the geometry.
+    sides: dict[Side, str] | None = None
+
+
+class CorridorRow(Row):
+    ends: tuple[str, str]
+    length_m: Annotated[float, Field(gt=0, allow_inf_nan=False)] | None = None
+    assumed: bool = False
+    via: tuple[tuple[Metres, Metres], ...] = ()
+    bend_radius_m: float = Field(default=1.0, ge=0)
+
+    @property
+    def name(self) -> str:
+        return "-".join(sorted(self.ends))
+
+
+class MapFile(Row):
+    name: str
+    title: str
+    note: str = ""
+    post: tuple[PostRow, ...] = Field(min_length=1)
+    corridor: tuple[CorridorRow, ...] = ()
+
+
+def load_map_file(path: Path) -> MapFile:
+    """Read the file's shape. Raises MapError with the line and column (broken TOML) or with the table and key."""
+    text = _read(path)
+    try:
+        return MapFile.model_validate(tomllib.loads(text))
+    except tomllib.TOMLDecodeError as error:
+        raise _broken_toml(path, text, str(error)) from error
+    except ValidationError as error:
+        raise _broken_shape(path, error) from error
+
+
+def _read(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise MapError(str(path), "file", error.strerror or "cannot be read", "Check the path.") from error
+    except UnicodeDecodeError as error:
+        raise MapError(str(path), f"byte {error.start}", "this is not UTF-8 text", "Save it as UTF-8.") from error
+
+
+def _broken_toml(path: Path, text: str, complaint: str) -> MapError:
+    """tomllib says where only inside its sentence: 'Expected … (at line 3, column 5)' or '(at end of document)'."""
+    message, _, where = complaint.partition(" (at ")
+    lines = text.splitlines() or [""]
+    line, column = map(int, re.findall(r"\d+", where) or (len(lines), len(lines[-1]) + 1))
+    return MapError(str(path), f"line {line}, column {column}", message, "The file must be valid TOML.")
+
+
+def _broken_shape(path: Path, error: ValidationError) -> MapError:
+    first, others = error.errors()[0], error.error_count() - 1
+    place = ".".join(str(part + 1) if isinstance(part, int) else part for part in first["loc"]) or "file"
+    more = f" (and {others} more like this)" if others else ""
+    return MapError(str(path), place, first["msg"] + more, "docs/maps.md describes the format.")
