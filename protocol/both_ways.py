@@ -1,0 +1,15 @@
+"""What either side says: that it has handled something, or that it could not."""
+
+from protocol.parts import Part, Sentence
+
+
+class Ack(Part):
+    """Carries nothing but the envelope's `ack`, for when there is nothing else to say."""
+
+
+class Error(Part):
+    """A message could not be handled: its stable `code`, a sentence, and the `seq` it had, if it could be read."""
+
+    code: str
+    message: Sentence
+    seq: int | None = None

@@ -1,0 +1,117 @@
+"""The envelope of every message, and how text becomes one.
+
+`seq` numbers the durable messages of a journal from 1 and never restarts within it; a journal is born with the outbox
+database of its side. `ack` is the highest contiguous `seq` that the sender has handled from the other side. `replay`
+marks what is sent from the backlog after a reconnect.
+"""
+
+import json
+from collections.abc import Mapping
+from typing import Any, Final
+
+from pydantic import AwareDatetime, Field, SerializeAsAny, ValidationError
+
+from protocol import both_ways, to_robot, to_server
+from protocol.errors import MalformedMessage, MessageTooLarge, NewerVersion, UnknownMessage
+from protocol.parts import Identifier, Part
+
+MAJOR_VERSION: Final = 1
+MAX_MESSAGE_BYTES: Final = 64 * 1024
+
+BOTH_WAYS: Final[Mapping[str, type[Part]]] = {"ack": both_ways.Ack, "error": both_ways.Error}
+TO_SERVER: Final[Mapping[str, type[Part]]] = {
+    "hello": to_server.Hello,
+    "snapshot": to_server.Snapshot,
+    "event": to_server.Event,
+    "claim": to_server.Claim,
+    "clear": to_server.Clear,
+    "why": to_server.Why,
+    **BOTH_WAYS,
+}
+TO_ROBOT: Final[Mapping[str, type[Part]]] = {
+    "welcome": to_robot.Welcome,
+    "mission": to_robot.Mission,
+    "verifiers": to_robot.Verifiers,
+    "grant": to_robot.Grant,
+    "deny": to_robot.Deny,
+    "cancel": to_robot.Cancel,
+    "pause": to_robot.Pause,
+    "resume": to_robot.Resume,
+    "recall": to_robot.Recall,
+    **BOTH_WAYS,
+}
+DURABLE: Final = frozenset(
+    {"event", "claim", "clear", "mission", "verifiers", "grant", "deny", "cancel", "pause", "resume", "recall"}
+)
+"""The types that are stored before they are sent, numbered, and sent again until they are acknowledged."""
+
+_TYPE_OF: Final = {message: name for name, message in {**TO_SERVER, **TO_ROBOT}.items()}
+
+
+class Envelope(Part):
+    """One message on the wire; `body` is one of the classes in `TO_SERVER` or `TO_ROBOT`."""
+
+    v: int = MAJOR_VERSION
+    type: str
+    robot: Identifier
+    journal: Identifier
+    seq: int | None = Field(default=None, ge=1)
+    ack: int = Field(default=0, ge=0)
+    at: AwareDatetime
+    replay: bool = False
+    body: SerializeAsAny[Part]
+
+    def to_text(self) -> str:
+        """The JSON text that is sent."""
+        return self.model_dump_json()
+
+
+def type_of(message: Part) -> str:
+    """The wire name of a message: `type_of(Hello(...)) == "hello"`."""
+    return _TYPE_OF[type(message)]
+
+
+def parse(text: str | bytes, accepted: Mapping[str, type[Part]]) -> Envelope:
+    """Read one message; `accepted` is `TO_SERVER` on the server and `TO_ROBOT` on the robot.
+
+    Raises MessageTooLarge, MalformedMessage, NewerVersion or UnknownMessage; no input raises anything else.
+    """
+    raw = _read_object(text)
+    _check_version(raw.get("v"))
+    name = raw.get("type")
+    if not isinstance(name, str) or name not in accepted:
+        raise UnknownMessage(f"message type {name!r} is not known here; known are {', '.join(sorted(accepted))}")
+    try:
+        body = accepted[name].model_validate_json(json.dumps(raw.get("body")))
+        envelope = Envelope.model_validate({**raw, "body": body})
+    except ValidationError as error:
+        raise MalformedMessage(f"{name}: {_first_problem(error)}") from None
+    if (envelope.seq is not None) != (name in DURABLE):
+        raise MalformedMessage(f"{name}: seq: durable messages carry a seq, others none")
+    return envelope
+
+
+def _read_object(text: str | bytes) -> dict[str, Any]:
+    size_bytes = len(text) if isinstance(text, bytes) else len(text.encode("utf-8", "surrogatepass"))
+    if size_bytes > MAX_MESSAGE_BYTES:
+        raise MessageTooLarge(f"message of {size_bytes} bytes; at most {MAX_MESSAGE_BYTES} are taken")
+    try:
+        raw = json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise MalformedMessage(f"not JSON: {error}") from None
+    if not isinstance(raw, dict):
+        raise MalformedMessage(f"an envelope is a JSON object, this is a {type(raw).__name__}")
+    return raw
+
+
+def _check_version(version: object) -> None:
+    if not isinstance(version, int) or isinstance(version, bool) or version < 1:
+        raise MalformedMessage(f"v: a whole number from 1, not {version!r}")
+    if version > MAJOR_VERSION:
+        raise NewerVersion(f"version {version} is newer than {MAJOR_VERSION}: update this side first")
+
+
+def _first_problem(error: ValidationError) -> str:
+    first = error.errors()[0]
+    place = ".".join(str(part) for part in first["loc"]) or "body"
+    return f"{place}: {first['msg']}"

@@ -1,0 +1,38 @@
+"""What can be wrong with a message.
+
+ProtocolError
+├── MalformedMessage   not JSON, not an envelope, or a body that does not fit its type
+├── UnknownMessage     a type that this side does not know
+├── NewerVersion       written for a later major version of the protocol
+└── MessageTooLarge    more bytes than a message may have
+"""
+
+
+class ProtocolError(ValueError):
+    """A message that cannot be handled. `code` travels in the `error` message that answers it."""
+
+    code = "protocol_error"
+
+
+class MalformedMessage(ProtocolError):
+    """The text is no envelope or its body does not fit; the sentence names the field."""
+
+    code = "malformed_message"
+
+
+class UnknownMessage(ProtocolError):
+    """The envelope is sound, its `type` is not one that this side accepts."""
+
+    code = "unknown_message"
+
+
+class NewerVersion(ProtocolError):
+    """The sender speaks a later major version: this side has to be updated first."""
+
+    code = "newer_version"
+
+
+class MessageTooLarge(ProtocolError):
+    """The text is longer than `MAX_MESSAGE_BYTES`."""
+
+    code = "message_too_large"

@@ -1,0 +1,94 @@
+"""The nouns that several messages share. Times are UTC, lengths are metres, charge is a ratio of 0 to 1."""
+
+from enum import StrEnum
+from typing import Annotated
+
+from pydantic import AwareDatetime, BaseModel, ConfigDict, Field, StringConstraints
+
+PostName = Annotated[str, StringConstraints(pattern=r"^[a-z][A-Za-z0-9_]*$", max_length=64)]
+"""A post as the map spells it: also an AgentSpeak atom, so that it can stand in a belief."""
+
+Identifier = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]*$", max_length=64)]
+Sentence = Annotated[str, StringConstraints(max_length=500)]
+Ratio = Annotated[float, Field(ge=0.0, le=1.0)]
+Sha256Hex = Annotated[str, StringConstraints(pattern=r"^[0-9a-f]{64}$")]
+
+
+class Part(BaseModel):
+    """Frozen and exact: a field that nobody declared is an error, never ignored."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class StopAction(StrEnum):
+    """What is done at a stop."""
+
+    LOAD = "load"
+    RECEIVE = "receive"
+    DOCK = "dock"
+    PARK = "park"
+
+
+class Purpose(StrEnum):
+    """What a hand-over code is good for: putting mail in, or taking it out."""
+
+    LOAD = "load"
+    RECEIVE = "receive"
+
+
+class Stop(Part):
+    """A post and what is done there. `order_id` is given for load and receive."""
+
+    id: Identifier
+    post: PostName
+    action: StopAction
+    order_id: Identifier | None = None
+    wait_limit_s: float = Field(default=600.0, gt=0)
+
+
+class Leg(Part):
+    """One corridor in one direction."""
+
+    from_post: PostName
+    to_post: PostName
+
+
+class MissionHeld(Part):
+    """Which mission the robot holds, and which of its stops comes next (0 = the first)."""
+
+    id: Identifier
+    update: int = Field(ge=1)
+    next_stop: int = Field(ge=0)
+
+
+class Position(Part):
+    """Robots are *seen* at posts: the last one, the one before, and when; `towards` is the post ahead, if known."""
+
+    post: PostName | None = None
+    previous: PostName | None = None
+    towards: PostName | None = None
+    seen_at: AwareDatetime | None = None
+
+
+class Battery(Part):
+    """Charge as a ratio of capacity, and whether the dock is charging it now."""
+
+    ratio: Ratio
+    charging: bool = False
+
+
+class Received(Part):
+    """The highest contiguous `seq` of the other side's journal that has been handled; nothing yet is journal None."""
+
+    journal: Identifier | None = None
+    seq: int = Field(default=0, ge=0)
+
+
+class Activity(StrEnum):
+    """What the robot is doing, in one word."""
+
+    IDLE = "idle"
+    DRIVING = "driving"
+    WAITING = "waiting"
+    CHARGING = "charging"
+    STOPPED = "stopped"

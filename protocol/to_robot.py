@@ -1,0 +1,78 @@
+"""What the server says to a robot: one frozen class per message."""
+
+from pydantic import AwareDatetime, Field
+
+from protocol.parts import Identifier, Leg, Part, Purpose, Received, Sentence, Sha256Hex, Stop
+
+
+class Welcome(Part):
+    """The answer to `hello`: what the server last had from this robot's journal; resume from there."""
+
+    received: Received
+    server: Sentence
+    at: AwareDatetime
+
+
+class Mission(Part):
+    """What to do now. The same update again is a no-op; different stops under the same number are an error."""
+
+    id: Identifier
+    update: int = Field(ge=1)
+    stops: tuple[Stop, ...]
+
+
+class Verifier(Part):
+    """The SHA-256 of one hand-over code: enough to check it offline, useless to a thief."""
+
+    order_id: Identifier
+    purpose: Purpose
+    sha256: Sha256Hex
+    expires_at: AwareDatetime
+
+
+class Verifiers(Part):
+    """What is needed to check the hand-over codes of a mission with no network."""
+
+    verifiers: tuple[Verifier, ...]
+
+
+class Grant(Part):
+    """Corridors that may be entered, in order; each holds until the robot reports it clear."""
+
+    claim_id: Identifier
+    legs: tuple[Leg, ...] = Field(min_length=1)
+
+
+class Deny(Part):
+    """The claim is refused; these corridors are to be avoided for now."""
+
+    claim_id: Identifier
+    avoid: tuple[Leg, ...]
+    reason: Sentence
+
+
+class Cancel(Part):
+    """Drop what concerns this order. With the mail aboard the robot refuses and says so."""
+
+    command_id: Identifier
+    order_id: Identifier
+
+
+class Pause(Part):
+    """Stand still at the next post until told to resume."""
+
+    command_id: Identifier
+    reason: Sentence
+
+
+class Resume(Part):
+    """Go on after a pause."""
+
+    command_id: Identifier
+
+
+class Recall(Part):
+    """Bring what is aboard back to where it came from, then go home."""
+
+    command_id: Identifier
+    reason: Sentence
