@@ -11,16 +11,16 @@ from .campus_map import (
     find_map,
     read_map,
 )
-from .errors import MapError, CampusMapError, NoRoute, UnknownCorridor, UnknownPost
+from .errors import CampusMapError, MapError, NoRoute, UnknownCorridor, UnknownPost
 from .geometry import Point
 from .routes import Route, shortest_route
 
 __all__ = [
     "CampusMap",
+    "CampusMapError",
     "Corridor",
     "Dock",
     "MapError",
-    "CampusMapError",
     "Marker",
     "NoRoute",
     "Point",

@@ -28,8 +28,8 @@ def check(where: MapArgument, as_json: AsJson = False) -> None:
 
     Exit status: 0 fit for robots (there may be warnings), 1 not fit, 2 not readable.
     """
-    path = map_path(where)
     try:
+        path = map_path(where)
         problems = check_file(path)
     except MapError as error:
         _unreadable(error, as_json)

@@ -151,10 +151,14 @@ def read_map(path: Path | str) -> CampusMap:
 
 def builtin_map(name: str) -> CampusMap:
     """A map that ships with the product: `test_track` (the paper's Figure 5) or `carleton`."""
+    return read_map(builtin_path(name))
+
+
+def builtin_path(name: str) -> Path:
     known = sorted(file.stem for file in FOLDER.glob("*.toml"))
     if name not in known:
         raise MapError(name, "name", "no map of this name ships with Campus Mail", f"There are: {', '.join(known)}.")
-    return read_map(FOLDER / f"{name}.toml")
+    return FOLDER / f"{name}.toml"
 
 
 def find_map(name_or_path: Path | str) -> CampusMap:
@@ -165,8 +169,8 @@ def find_map(name_or_path: Path | str) -> CampusMap:
 def map_path(name_or_path: Path | str) -> Path:
     """Where `find_map` looks: a bare word is a built-in map, everything else a file."""
     path = Path(name_or_path)
-    shipped = FOLDER / f"{path}.toml"
-    return shipped if path.name == str(path) and shipped.is_file() else path
+    is_bare_word = path.name == str(name_or_path) and not path.suffix
+    return builtin_path(str(path)) if is_bare_word else path
 
 
 def build_map(file: MapFile) -> CampusMap:

@@ -1,6 +1,5 @@
 """Marker sheets for the printer: one page for each post, its QR code at the exact size the robot expects."""
 
-import io
 from html import escape
 
 import segno
@@ -9,8 +8,6 @@ from .campus_map import MARKER_SIZE_M, Post
 
 PAGE_WIDTH_MM = 148
 PAGE_HEIGHT_MM = 210
-# A decoder needs four white modules around the code (ISO/IEC 18004, 5.3.8).
-QUIET_MODULES = 4
 
 
 def marker_code(post: str) -> segno.QRCode:
@@ -22,22 +19,21 @@ def marker_sheet(post: Post) -> str:
     """One page of SVG, 148 × 210 mm; print it at 100 %, the code itself is then 80 mm wide."""
     code = marker_code(post.name)
     size_mm = MARKER_SIZE_M * 1000
-    left_mm, top_mm = (PAGE_WIDTH_MM - size_mm) / 2, 50
+    middle_mm, left_mm, top_mm = PAGE_WIDTH_MM / 2, (PAGE_WIDTH_MM - size_mm) / 2, 50
+    scale = size_mm / len(code.matrix)
     return f"""<svg xmlns="http://www.w3.org/2000/svg" width="{PAGE_WIDTH_MM}mm" height="{PAGE_HEIGHT_MM}mm" \
 viewBox="0 0 {PAGE_WIDTH_MM} {PAGE_HEIGHT_MM}" font-family="sans-serif" text-anchor="middle">
 <rect width="{PAGE_WIDTH_MM}" height="{PAGE_HEIGHT_MM}" fill="#fff"/>
-<text x="{PAGE_WIDTH_MM / 2}" y="28" font-size="10">{escape(post.title)}</text>
-<g transform="translate({left_mm} {top_mm}) scale({size_mm / code.symbol_size(border=0)[0]:.6f})">{_modules(code)}</g>
+<text x="{middle_mm}" y="28" font-size="10">{escape(post.title)}</text>
+<g transform="translate({left_mm} {top_mm}) scale({scale:.6f})">{_modules(code)}</g>
 <path d="M{left_mm} 146h{size_mm}" stroke="#000" stroke-width=".3"/>
-<text x="{PAGE_WIDTH_MM / 2}" y="152" font-size="4">This line is {size_mm:g} mm long when printed at 100 %.</text>
-<text x="{PAGE_WIDTH_MM / 2}" y="160" font-size="4">Centre of the code 254 mm above the floor, left of the line, \
-facing it.</text>
-<text x="{PAGE_WIDTH_MM / 2}" y="168" font-size="4">{escape(post.name)} · {len(post.markers)} of these at this post</text>
+<text x="{middle_mm}" y="152" font-size="4">This line is {size_mm:g} mm long when printed at 100 %.</text>
+<text x="{middle_mm}" y="160" font-size="4">Middle of the code 254 mm above the floor, left of the line.</text>
+<text x="{middle_mm}" y="168" font-size="4">{escape(post.name)} · {len(post.markers)} of these at this post</text>
 </svg>
 """
 
 
 def _modules(code: segno.QRCode) -> str:
-    svg = io.BytesIO()
-    code.save(svg, kind="svg", border=0, xmldecl=False, svgns=False, nl=False, omitsize=True)
-    return svg.getvalue().decode()
+    squares = (f"M{x} {y}h1v1h-1z" for y, row in enumerate(code.matrix) for x, dark in enumerate(row) if dark)
+    return f'<path d="{"".join(squares)}" shape-rendering="crispEdges"/>'

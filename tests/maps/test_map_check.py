@@ -1,0 +1,98 @@
+"""The map check names what is wrong, where, and the way out."""
+
+import pytest
+
+from maps.campus_map import FOLDER
+from maps.check import check_file
+from maps.problem import Problem
+
+CARLETON = (FOLDER / "carleton.toml").read_text(encoding="utf-8")
+TRACK = (FOLDER / "test_track.toml").read_text(encoding="utf-8")
+
+
+def problems_of(write_map, text: str) -> dict[str, Problem]:
+    """By kind and place, so that a test says exactly what it expects and nothing more is found."""
+    return {f"{p.severity} {p.kind} {p.place}": p for p in check_file(write_map(text))}
+
+
+@pytest.mark.parametrize("name", ["test_track", "carleton"])
+def test_the_maps_that_ship_have_no_problem(name):
+    assert check_file(FOLDER / f"{name}.toml") == ()
+
+
+def test_a_neighbour_that_only_one_side_lists_is_a_one_way_corridor(write_map):
+    """The source of the Carleton map had exactly this defect: CTTC did not list Nicol."""
+    found = problems_of(
+        write_map, CARLETON.replace('sides = { 4 = "nicol", 3 = "robertson" }', "sides = { 3 = 'robertson' }")
+    )
+    assert list(found) == ["error one_way cttc-nicol"]
+    assert "from cttc to nicol, but cttc does not list nicol" in found["error one_way cttc-nicol"].sentence
+    assert found["error one_way cttc-nicol"].way_out == "Add nicol to the sides of cttc."
+
+
+def test_a_listed_neighbour_without_a_corridor_is_named(write_map):
+    found = problems_of(write_map, CARLETON.replace('sides = { 1 = "steacie" }', 'sides = { 1 = "steacie", 2 = "uc" }'))
+    assert list(found) == ["error no_corridor richcraft-uc"]
+
+
+def test_sides_that_contradict_the_drawing_are_a_warning(write_map):
+    swapped = CARLETON.replace('sides = { 1 = "southam", 2 = "steacie" }', 'sides = { 1 = "southam", 4 = "steacie" }')
+    assert list(problems_of(write_map, swapped)) == ["warning side_and_geometry loeb"]
+
+
+def test_an_unknown_post_in_a_corridor_is_named(write_map):
+    found = problems_of(write_map, TRACK.replace('["post3", "post5"]', '["post3", "post6"]'))
+    assert list(found) == ["error unknown_post post3-post6"]
+
+
+def test_a_post_that_no_corridor_reaches_is_named_and_has_no_dock_to_reach(write_map):
+    island = '\n[[post]]\nname = "island"\nx_m = 9.0\ny_m = 9.0\n'
+    found = problems_of(write_map, TRACK + island)
+    assert list(found) == ["error unreachable island", "error no_dock island"]
+
+
+def test_a_map_without_a_dock_is_not_fit_for_robots(write_map):
+    without = "".join(line for line in TRACK.splitlines(keepends=True) if not line.startswith("dock"))
+    assert list(problems_of(write_map, without)) == ["error no_dock test_track"]
+
+
+def test_an_approach_without_a_marker_on_the_left_is_named(write_map):
+    on_the_right = 'name = "post1"\nmarkers = [{ x_m = 0.35, y_m = 3.7, heading_deg = 180.0 }]'
+    found = problems_of(write_map, TRACK.replace('name = "post1"', on_the_right))
+    assert list(found) == ["error unseen_approach post1", "error unseen_marker post1, marker 1"]
+    assert "comes from post2" in found["error unseen_approach post1"].sentence
+
+
+@pytest.mark.parametrize("heading_deg", [90.0, 180.0, -90.0])
+def test_a_marker_that_looks_away_is_not_seen(write_map, heading_deg):
+    turned = f'name = "post1"\nmarkers = [{{ x_m = -0.35, y_m = 3.7, heading_deg = {heading_deg} }}]'
+    found = problems_of(write_map, TRACK.replace('name = "post1"', turned))
+    assert "error unseen_marker post1, marker 1" in found
+
+
+def test_one_marker_may_serve_two_approaches_but_must_not_stand_on_a_line(write_map):
+    in_the_way = """name = "post3"
+markers = [
+  { x_m = 2.0, y_m = 2.35, heading_deg = 270.0 },
+  { x_m = 1.65, y_m = 1.7, heading_deg = 0.0 },
+  { x_m = 2.35, y_m = 2.3, heading_deg = 180.0 },
+]"""
+    found = problems_of(write_map, TRACK.replace('name = "post3"', in_the_way))
+    assert list(found) == ["error marker_in_the_way post3, marker 1"]
+    assert "post3-post5" in found["error marker_in_the_way post3, marker 1"].sentence
+
+
+def test_a_dock_without_a_marker_is_a_warning(write_map):
+    only_approach = 'name = "post5"\nmarkers = [{ x_m = 1.65, y_m = 3.7, heading_deg = 0.0 }]'
+    found = problems_of(write_map, TRACK.replace('name = "post5"', only_approach))
+    assert list(found) == ["warning unseen_dock post5"]
+
+
+def test_a_name_that_makes_a_dense_marker_is_a_warning(write_map):
+    found = problems_of(write_map, CARLETON.replace('"commons"', '"residence_commons"'))
+    assert list(found) == ["warning dense_marker residence_commons"]
+
+
+def test_errors_come_before_warnings(write_map):
+    text = CARLETON.replace('"commons"', '"residence_commons"').replace(', 3 = "robertson" }', " }")
+    assert [p.severity for p in check_file(write_map(text))] == ["error", "warning"]
