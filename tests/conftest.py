@@ -1,0 +1,53 @@
+"""What all tests share: hypothesis without a stop-watch, and the browser, or a plain word that there is none."""
+
+import os
+import shutil
+from typing import Any
+
+import pytest
+from hypothesis import settings
+
+# A shared machine is slow at times; slowness is for the benchmarks to judge.
+settings.register_profile("campus_mail", deadline=None, print_blob=True)
+settings.load_profile("campus_mail")
+
+NAMES_OF_CHROMIUM = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+NOT_RUN = pytest.StashKey[int]()
+
+
+def find_chromium() -> str | None:
+    """$CHROMIUM, else the first known name on the PATH. A $CHROMIUM that is not there is an error, not an absence."""
+    named = os.environ.get("CHROMIUM")
+    if named:
+        if shutil.which(named) is None:
+            raise pytest.UsageError(f"CHROMIUM={named} is no program that can be run")
+        return named
+    return next(filter(None, map(shutil.which, NAMES_OF_CHROMIUM)), None)
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Without a browser its tests are taken out and counted; CAMPUS_MAIL_REQUIRE_BROWSER makes that a failure."""
+    browser_tests = [item for item in items if item.get_closest_marker("browser")]
+    if not browser_tests or find_chromium():
+        return
+    if os.environ.get("CAMPUS_MAIL_REQUIRE_BROWSER"):
+        raise pytest.UsageError(f"no Chromium found, and {len(browser_tests)} browser tests must run")
+    items[:] = [item for item in items if item not in browser_tests]
+    config.hook.pytest_deselected(items=browser_tests)
+    config.stash[NOT_RUN] = len(browser_tests)
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_unconfigure(config: pytest.Config) -> None:
+    """The last line of all: what did not run must not scroll away."""
+    count = config.stash.get(NOT_RUN, 0)
+    if count:
+        way_out = "no Chromium found: apt install chromium, or set CHROMIUM=/path"
+        config.get_terminal_writer().line(f"NOT RUN: {count} browser test{'s'[: count > 1]} ({way_out})", yellow=True)
+
+
+@pytest.fixture(scope="session")
+def browser_type_launch_args(browser_type_launch_args: dict[str, Any]) -> dict[str, Any]:
+    """Playwright drives the system's Chromium. Root (a container) has no sandbox to give."""
+    no_sandbox = ["--no-sandbox"] if os.geteuid() == 0 else []
+    return {**browser_type_launch_args, "executable_path": find_chromium(), "args": no_sandbox}
