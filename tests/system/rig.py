@@ -1,0 +1,203 @@
+"""The real processes of a delivery, and two simulated people who use the service as a browser would."""
+
+import contextlib
+import json
+import math
+import os
+import re
+import signal
+import socket
+import subprocess
+import sys
+import time
+import uuid
+from collections.abc import Callable
+from email import message_from_bytes, policy
+from pathlib import Path
+from typing import Any, TypeVar
+
+import httpx
+
+from protocol.clock import SharedClock
+from tests.system.proxy import CuttableWire
+
+T = TypeVar("T")
+ROOT = Path(__file__).parents[2]
+SENDER, RECIPIENT = "sender@campus.example", "recipient@campus.example"
+ENDED = {"delivered", "cancelled", "expired", "returned", "attention"}
+
+
+def free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
+
+
+def wait_for(what: str, look: Callable[[], T | None], limit_s: float = 60.0) -> T:
+    """Look until there is something to see; AssertionError naming `what` after `limit_s`."""
+    until_s = time.monotonic() + limit_s
+    while time.monotonic() < until_s:
+        if (seen := look()) is not None and seen is not False:
+            return seen
+        time.sleep(0.05)
+    raise AssertionError(f"waited {limit_s:.0f} s in vain: {what}")
+
+
+class Person:
+    """Somebody signed in with a code from their mail."""
+
+    def __init__(self, email: str, base_url: str, spool: Path) -> None:
+        self.email = email
+        self._http = httpx.Client(base_url=base_url, headers={"Sec-Fetch-Site": "same-origin"}, timeout=20)
+        self._spool = spool
+
+    def sign_in(self) -> None:
+        self._http.post("/api/v1/sign-in/codes", json={"email": self.email}).raise_for_status()
+        code = wait_for("the mailed code", self._mailed_code)
+        self._http.post("/api/v1/sign-in", json={"email": self.email, "code": code}).raise_for_status()
+
+    def _mailed_code(self) -> str | None:
+        for mail in self.mails():
+            if mail["To"] == self.email and (found := re.search(r"\b(\d{8})\b", mail.get_content())):
+                return found.group(1)
+        return None
+
+    def mails(self) -> list[Any]:
+        files = sorted(self._spool.glob("**/*.eml"), key=lambda file: file.stat().st_mtime, reverse=True)
+        mails = [message_from_bytes(file.read_bytes(), policy=policy.default) for file in files]
+        return [mail for mail in mails if mail["To"] == self.email]
+
+    def get(self, path: str) -> Any:
+        return self._http.get(f"/api/v1{path}").raise_for_status().json()
+
+    def order(self, from_post: str, to_post: str, recipient: str) -> str:
+        body = {"from_post": from_post, "to_post": to_post, "recipient": recipient, "description": "A letter"}
+        answer = self._http.post("/api/v1/orders", json=body, headers={"Idempotency-Key": str(uuid.uuid4())})
+        assert answer.status_code == httpx.codes.CREATED, answer.text
+        return str(answer.json()["id"])
+
+    def notices(self) -> list[str]:
+        return sorted(notice["kind"] for notice in self.get("/notices")["items"])
+
+
+class Rig:
+    """A service and a simulated robot in processes of their own, joined by a wire that can be cut."""
+
+    def __init__(self, folder: Path, speed: float) -> None:
+        self.folder = folder
+        self.clock_file = folder / "clock"
+        SharedClock.create(self.clock_file, speed)
+        self.port = free_port()
+        self.base_url = f"http://127.0.0.1:{self.port}"
+        self.wire = CuttableWire(self.port)
+        self.processes: dict[str, subprocess.Popen[bytes]] = {}
+        self.door = Path(f"/tmp/campus-mail-door-{uuid.uuid4().hex[:12]}")  # socket paths are short
+
+    def __enter__(self) -> "Rig":
+        self.wire.__enter__()
+        self.start_service()
+        token = subprocess.run(
+            [sys.executable, "-m", "app", "robots", "enrol", "r1"],
+            cwd=ROOT,
+            env=self._service_env(),
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout.strip()
+        self.token_file = self.folder / "r1.token"
+        self.token_file.touch(mode=0o600)
+        self.token_file.write_text(token)
+        self.start_robot()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        for name in list(self.processes):
+            self.stop(name)
+        self.wire.__exit__()
+        self.door.unlink(missing_ok=True)
+
+    def _service_env(self) -> dict[str, str]:
+        return {
+            **os.environ,
+            "CAMPUS_MAIL_DATA": str(self.folder / "service"),
+            "CAMPUS_MAIL_CLOCK_FILE": str(self.clock_file),
+            "CAMPUS_MAIL_ALLOWED_DOMAINS": '["campus.example"]',
+            "CAMPUS_MAIL_MAP": "test_track",
+        }
+
+    def _start(self, name: str, arguments: list[str], env: dict[str, str]) -> None:
+        with (self.folder / f"{name}.log").open("ab") as log:
+            command = [sys.executable, "-m", *arguments]
+            self.processes[name] = subprocess.Popen(command, cwd=ROOT, env=env, stdout=log, stderr=log)
+
+    def start_service(self) -> None:
+        self._start("service", ["app", "serve", "--port", str(self.port)], self._service_env())
+        wait_for("the service answers", self._service_is_ready)
+
+    def _service_is_ready(self) -> bool:
+        assert self.processes["service"].poll() is None, self.log("service")
+        with contextlib.suppress(httpx.HTTPError):
+            return httpx.get(f"{self.base_url}/readyz").status_code == httpx.codes.OK
+        return False
+
+    def start_robot(self) -> None:
+        server = f"ws://127.0.0.1:{self.wire.port}/api/v1/robots/link"
+        arguments = ["robot", "--simulated", "--map", "test_track", "--name", "r1", "--server", server]
+        arguments += ["--token-file", str(self.token_file), "--data", str(self.folder / "robot")]
+        arguments += ["--clock", str(self.clock_file), "--door", str(self.door)]
+        self._start("robot", arguments, dict(os.environ))
+
+    def stop(self, name: str) -> None:
+        process = self.processes.pop(name)
+        process.send_signal(signal.SIGTERM)
+        try:
+            process.wait(10)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+            raise AssertionError(f"{name} did not stop within 10 s of SIGTERM") from None
+
+    def kill(self, name: str) -> None:
+        """SIGKILL: no chance to tidy up."""
+        process = self.processes.pop(name)
+        process.kill()
+        process.wait()
+
+    def log(self, name: str) -> str:
+        return (self.folder / f"{name}.log").read_text(errors="replace")[-4000:]
+
+    def at_the_door(self, command: dict[str, Any]) -> dict[str, Any]:
+        with socket.socket(socket.AF_UNIX) as door:
+            door.settimeout(10)
+            door.connect(str(self.door))
+            door.sendall(json.dumps(command).encode() + b"\n")
+            answer: dict[str, Any] = json.loads(door.makefile().readline())
+        assert answer["ok"], answer
+        return answer
+
+    def stands_at(self, x_m: float, y_m: float, within_m: float = 0.4) -> bool:
+        """Whether the simulated robot stands still near a place."""
+        first = self.at_the_door({"do": "state"})["pose"]
+        time.sleep(0.2)
+        pose = self.at_the_door({"do": "state"})["pose"]
+        near = math.hypot(pose["x_m"] - x_m, pose["y_m"] - y_m) < within_m
+        return near and math.hypot(pose["x_m"] - first["x_m"], pose["y_m"] - first["y_m"]) < 0.005
+
+    def wait_for_state(self, person: Person, order_id: str, state: str, limit_s: float = 90.0) -> dict[str, Any]:
+        """Follow the order until it has been in `state`; an order that ended otherwise is told at once."""
+
+        def look() -> dict[str, Any] | None:
+            for name, process in self.processes.items():
+                assert process.poll() is None, f"{name} ended:\n{self.log(name)}"
+            with contextlib.suppress(httpx.TransportError):
+                order: dict[str, Any] = person.get(f"/orders/{order_id}")
+                if state in [event["state"] for event in order["events"]]:
+                    return order
+                assert order["state"] not in ENDED, f"ended {order['state']}\n{self.log('robot')}"
+            return None
+
+        return wait_for(f"{order_id} {state}\n{self.log('robot')}", look, limit_s)
+
+    def show_code(self, person: Person, order_id: str) -> None:
+        """The person holds their hand-over code to the robot's camera."""
+        self.at_the_door({"do": "show_code", "text": person.get(f"/orders/{order_id}/code")["text"]})

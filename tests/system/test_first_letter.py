@@ -1,0 +1,96 @@
+"""One letter through the real processes, whatever fails on the way. The robot and the people are simulated."""
+
+import time
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.system.rig import RECIPIENT, SENDER, Person, Rig, wait_for
+
+pytestmark = [pytest.mark.system, pytest.mark.timeout(280)]
+
+WAY = ["queued", "assigned", "to_sender", "at_sender", "carrying", "at_recipient", "delivered"]
+TOLD_SENDER = ["accepted", "delivered", "robot_here", "robot_near"]
+TOLD_RECIPIENT = ["delivered", "on_its_way", "robot_here_for_you"]
+
+
+class Letter:
+    """A rig with both people signed in and one order under way, post1 → post4."""
+
+    def __init__(self, rig: Rig) -> None:
+        spool = rig.folder / "service" / "spool"
+        self.rig = rig
+        self.sender = Person(SENDER, rig.base_url, spool)
+        self.recipient = Person(RECIPIENT, rig.base_url, spool)
+        self.sender.sign_in()
+        self.recipient.sign_in()
+        self.id = self.sender.order("post1", "post4", RECIPIENT)
+
+    def load(self) -> None:
+        self.rig.wait_for_state(self.sender, self.id, "at_sender")
+        self.rig.show_code(self.sender, self.id)
+        self.rig.wait_for_state(self.sender, self.id, "carrying")
+
+    def receive(self) -> dict[str, Any]:
+        self.rig.wait_for_state(self.recipient, self.id, "at_recipient", limit_s=150)
+        self.rig.show_code(self.recipient, self.id)
+        return self.rig.wait_for_state(self.sender, self.id, "delivered")
+
+    def assert_delivered_and_each_told_once(self, order: dict[str, Any]) -> None:
+        assert [event["state"] for event in order["events"]] == WAY
+        times = [event["robot_at"] for event in order["events"] if event["robot_at"]]
+        assert times == sorted(times), "replayed in the order in which it happened"
+        assert self.sender.notices() == TOLD_SENDER
+        assert self.recipient.notices() == TOLD_RECIPIENT
+        for person in (self.sender, self.recipient):
+            subjects = Counter(mail["Subject"] for mail in person.mails())
+            assert max(subjects.values()) == 1, f"told twice: {subjects}"
+
+
+@pytest.fixture
+def rig(tmp_path: Path) -> Iterator[Rig]:
+    with Rig(tmp_path, speed=12.0) as rig:
+        yield rig
+
+
+def test_a_letter_is_ordered_loaded_carried_and_received(rig: Rig) -> None:
+    letter = Letter(rig)
+    letter.load()
+    letter.assert_delivered_and_each_told_once(letter.receive())
+
+
+def test_half_a_minute_without_network_and_the_letter_is_delivered_all_the_same(tmp_path: Path) -> None:
+    with Rig(tmp_path, speed=4.0) as rig:
+        letter = Letter(rig)
+        letter.load()
+        code = letter.recipient.get(f"/orders/{letter.id}/code")["text"]  # a page loaded before the tunnel
+        rig.wire.cut()
+        cut_at_s = time.monotonic()
+        wait_for("the robot waits at post4", lambda: rig.stands_at(2.0, 0.0), limit_s=28.0)
+        rig.at_the_door({"do": "show_code", "text": code})
+        time.sleep(cut_at_s + 30.0 - time.monotonic())
+        assert letter.sender.get(f"/orders/{letter.id}")["state"] == "carrying", "nobody could be told yet"
+        rig.wire.mend()
+        order = rig.wait_for_state(letter.sender, letter.id, "delivered")
+        letter.assert_delivered_and_each_told_once(order)
+
+
+def test_a_robot_killed_while_carrying_knows_what_it_carries_and_delivers(rig: Rig) -> None:
+    letter = Letter(rig)
+    letter.load()
+    time.sleep(2.0)
+    rig.kill("robot")
+    rig.start_robot()
+    letter.assert_delivered_and_each_told_once(letter.receive())
+
+
+def test_a_service_killed_on_the_way_comes_back_and_nothing_is_lost(rig: Rig) -> None:
+    letter = Letter(rig)
+    letter.load()
+    rig.kill("service")
+    time.sleep(3.0)
+    rig.start_service()
+    letter.assert_delivered_and_each_told_once(letter.receive())
