@@ -1,0 +1,50 @@
+"""Every table of the service, one file per noun, in one folder so that features need not import each other.
+
+Rows are not validated at run time (SQLModel): build them only in services, from a checked request. Without
+relationships the unit of work does not order the rows of different tables: flush the one that is referred to first.
+"""
+
+from sqlmodel import SQLModel
+
+from app.tables.claims import ClaimRow, GrantRow
+from app.tables.handovers import Handover
+from app.tables.idempotency_keys import IdempotencyKey
+from app.tables.missions import MissionRow, MissionState, StopRow
+from app.tables.notices import Notice, NoticeKind
+from app.tables.order_events import OrderEvent
+from app.tables.orders import Order, OrderState
+from app.tables.outbox import OutgoingNotice
+from app.tables.people import Person, Role
+from app.tables.robot_messages import MessageToRobot, RobotJournal, RobotMessage
+from app.tables.robots import Alarm, RobotRow, RobotToken
+from app.tables.sessions import PersonSession
+from app.tables.sign_in_codes import SignInCode
+
+metadata = SQLModel.metadata
+
+__all__ = [
+    "Alarm",
+    "ClaimRow",
+    "GrantRow",
+    "Handover",
+    "IdempotencyKey",
+    "MessageToRobot",
+    "MissionRow",
+    "MissionState",
+    "Notice",
+    "NoticeKind",
+    "Order",
+    "OrderEvent",
+    "OrderState",
+    "OutgoingNotice",
+    "Person",
+    "PersonSession",
+    "RobotJournal",
+    "RobotMessage",
+    "RobotRow",
+    "RobotToken",
+    "Role",
+    "SignInCode",
+    "StopRow",
+    "metadata",
+]

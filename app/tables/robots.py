@@ -1,0 +1,56 @@
+"""The robots, what they last said of themselves, and the tokens they sign in with."""
+
+from datetime import datetime
+
+from sqlmodel import Field, SQLModel
+
+from app.tables.columns import UtcTime
+
+
+class RobotRow(SQLModel, table=True):
+    """`server_journal` is the journal of what the server sends to this robot, `last_seq` its highest number so far."""
+
+    __tablename__ = "robots"
+
+    name: str = Field(primary_key=True, max_length=64)
+    enrolled_at: datetime = Field(sa_type=UtcTime)
+    server_journal: str = Field(max_length=64)
+    last_seq: int = 0
+    heard_at: datetime | None = Field(default=None, sa_type=UtcTime)
+    software: str | None = Field(default=None, max_length=500)
+    map_version: str | None = Field(default=None, max_length=500)
+    post: str | None = Field(default=None, max_length=64)
+    previous: str | None = Field(default=None, max_length=64)
+    towards: str | None = Field(default=None, max_length=64)
+    seen_at: datetime | None = Field(default=None, sa_type=UtcTime)
+    activity: str = Field(default="idle", max_length=32)
+    battery_ratio: float | None = None
+    charging: bool = False
+    why: str | None = Field(default=None, max_length=500)
+
+
+class RobotToken(SQLModel, table=True):
+    """`cmr_<prefix>_<secret>`: the prefix finds the row, the secret is known by its hash alone."""
+
+    __tablename__ = "robot_tokens"
+
+    prefix: str = Field(primary_key=True, max_length=32)
+    secret_hash: str = Field(max_length=64)
+    robot: str = Field(foreign_key="robots.name", index=True)
+    created_at: datetime = Field(sa_type=UtcTime)
+    used_at: datetime | None = Field(default=None, sa_type=UtcTime)
+    revoked_at: datetime | None = Field(default=None, sa_type=UtcTime)
+
+
+class Alarm(SQLModel, table=True):
+    """Something about a robot that a dispatcher should look at, such as a second socket with the same token."""
+
+    __tablename__ = "alarms"
+
+    id: int | None = Field(default=None, primary_key=True)
+    robot: str = Field(foreign_key="robots.name", index=True)
+    name: str = Field(max_length=64)
+    reason: str = Field(max_length=500)
+    post: str | None = Field(default=None, max_length=64)
+    at: datetime = Field(sa_type=UtcTime)
+    cleared_at: datetime | None = Field(default=None, sa_type=UtcTime)

@@ -1,0 +1,20 @@
+"""Who is signed in where: the cookie's secret is known here by its hash alone."""
+
+from datetime import datetime
+
+from sqlmodel import Field, SQLModel
+
+from app.tables.columns import UtcTime
+
+
+class PersonSession(SQLModel, table=True):
+    """`token_hash` is the SHA-256 of the cookie; `revoked_at` ends it before its time."""
+
+    __tablename__ = "sessions"
+
+    id: int | None = Field(default=None, primary_key=True)
+    token_hash: str = Field(unique=True, max_length=64)
+    person_id: str = Field(foreign_key="people.id", index=True)
+    created_at: datetime = Field(sa_type=UtcTime)
+    expires_at: datetime = Field(sa_type=UtcTime)
+    revoked_at: datetime | None = Field(default=None, sa_type=UtcTime)
