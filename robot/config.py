@@ -1,0 +1,221 @@
+"""Every setting of a robot: one TOML file, checked key by key; what the command line says wins over the file.
+
+    name = "r1"
+    map = "carleton"
+    [battery]
+    low_ratio = 0.30
+
+The identity is a token in a file of its own, readable by its owner alone.
+"""
+
+import stat
+import tomllib
+from collections.abc import Mapping
+from difflib import get_close_matches
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated, Any, get_args
+
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
+
+Ratio = Annotated[float, Field(ge=0.0, le=1.0)]
+Positive = Annotated[float, Field(gt=0.0)]
+MAX_WHEEL_SPEED_MM_S = 200.0
+"""A dead computer leaves the base driving (the Open Interface has no dead-man timer): this caps what that can do."""
+
+
+class ConfigError(Exception):
+    """A setting that cannot be used: where it stands, what is wrong, and what to do about it."""
+
+    def __init__(self, source: str, key: str, message: str, way_out: str = "") -> None:
+        self.source, self.key, self.message, self.way_out = source, key, message, way_out
+        super().__init__(f"{source}: {key}: {message}. {way_out}".strip())
+
+
+class Section(BaseModel):
+    """Frozen and exact: a key that nobody declared is an error, never ignored."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class PerceptMode(StrEnum):
+    """How percepts reach the mind: the newest value of each, or only what arrived since the last cycle."""
+
+    LATEST = "latest"
+    DRAIN = "drain"
+
+
+class LineSettings(Section):
+    """The three diodes of the line sensor (BOARD pins of the paper's robot)."""
+
+    left_pin: str = Field(default="BOARD12", description="pin of the left diode, as gpiozero spells it")
+    centre_pin: str = Field(default="BOARD10", description="pin of the centre diode")
+    right_pin: str = Field(default="BOARD8", description="pin of the right diode")
+    line_is_low: bool = Field(default=True, description="whether a diode over the line reads low")
+    spacing_mm: Positive = Field(default=15.0, description="distance between neighbouring diodes, mm")
+    lead_mm: Annotated[float, Field(ge=0.0, le=200.0)] = Field(
+        default=60.0, description="how far the diodes are ahead of the wheel axle, mm (40 to 80 follows best)"
+    )
+    lost_after_mm: Positive = Field(default=30.0, description="travel without line until it counts as lost, mm")
+    off_track_after_mm: Positive = Field(
+        default=80.0, description="travel with all diodes dark until that is no crossing but off the track, mm"
+    )
+
+
+class CameraSettings(Section):
+    """The camera on the left side."""
+
+    device: int = Field(default=0, ge=0, description="number of the video device")
+    width_px: int = Field(default=640, gt=0, description="width of a frame, pixels")
+    height_px: int = Field(default=480, gt=0, description="height of a frame, pixels")
+    exposure_ms: Positive = Field(default=15.0, description="longest exposure, ms: more blurs a marker in passing")
+    field_of_view_deg: Annotated[float, Field(gt=10.0, lt=170.0)] = Field(
+        default=60.0, description="horizontal field of view, degrees"
+    )
+
+
+class DriveSettings(Section):
+    """How the base is driven."""
+
+    cruise_mm_s: Annotated[float, Field(ge=30.0, le=MAX_WHEEL_SPEED_MM_S)] = Field(
+        default=120.0, description="speed on a straight line, mm/s (never below 30: the base misbehaves there)"
+    )
+    turn_mm_s: Annotated[float, Field(ge=30.0, le=MAX_WHEEL_SPEED_MM_S)] = Field(
+        default=60.0, description="speed of each wheel when turning on the spot, mm/s"
+    )
+    velocity_deadline_s: Positive = Field(default=0.4, description="a speed that is not renewed for so long stops, s")
+    silence_s: Positive = Field(default=1.0, description="a mind that is silent for so long stops the wheels, s")
+
+
+class BatterySettings(Section):
+    """When a battery is low, and when it is full again."""
+
+    low_ratio: Ratio = Field(default=0.25, description="below this charge the battery is low")
+    hysteresis_ratio: Ratio = Field(default=0.03, description="it counts as low until this much above low_ratio")
+    full_ratio: Ratio = Field(default=0.99, description="from this charge on the battery is full")
+    full_after_s: Positive = Field(
+        default=60.0, description="on the dock in charging state 3 or 4 for so long is full too, s"
+    )
+    simulated_capacity_mah: Positive = Field(
+        default=2696.0, description="capacity of the simulated pack, mAh (NiMH pack of a Create 2)"
+    )
+
+
+class RateSettings(Section):
+    """How often each loop of the daemon runs, per second of its clock."""
+
+    base_hz: Positive = Field(default=50.0, description="simulated world and bytes of the base")
+    drive_hz: Positive = Field(default=50.0, description="reflexes and skills")
+    line_hz: Positive = Field(default=200.0, description="samples of the line sensor (majority vote per drive tick)")
+    camera_hz: Positive = Field(default=10.0, description="frames looked at")
+    mind_hz: Positive = Field(default=10.0, description="perception and reasoning (the paper's cycle is 100 ms)")
+    snapshot_hz: Positive = Field(default=1.0, description="state sent to the server; what survives a crash is saved")
+
+
+class MindSettings(Section):
+    """The agent program and how it perceives."""
+
+    program: Path | None = Field(default=None, description="agent program; without one, our own")
+    percepts: PerceptMode | None = Field(
+        default=None, description="latest or drain; without it: latest for our program, drain for any other"
+    )
+    steps_per_tick: int = Field(default=8, ge=1, le=100, description="reasoning cycles per tick in latest mode")
+    age_limit_s: Positive = Field(default=2.0, description="a percept that is not renewed for so long is forgotten, s")
+
+
+def _loopback_or_encrypted(url: str | None) -> str | None:
+    plain_elsewhere = url is not None and not url.startswith(
+        ("wss://", "ws://127.0.0.1", "ws://localhost", "ws://[::1]")
+    )
+    if plain_elsewhere:
+        raise ValueError("only wss:// is used outside this machine (ws:// to 127.0.0.1, localhost or [::1])")
+    return url
+
+
+class Settings(Section):
+    """One robot."""
+
+    name: Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]*$", max_length=64)] = Field(
+        default="r1", description="the robot's name, as the service knows it"
+    )
+    map: str = Field(default="test_track", description="a built-in map by name, or a map file")
+    home: str | None = Field(default=None, description="post of its own dock; without it, the first dock of the map")
+    server: Annotated[str | None, AfterValidator(_loopback_or_encrypted)] = Field(
+        default=None, description="address of the service's robot link (wss, or ws to this machine); none: alone"
+    )
+    token_file: Path | None = Field(default=None, description="file with the robot's token, mode 0600")
+    data: Path = Field(default=Path("var/robot"), description="folder of the robot's memory and outbox")
+    serial_port: str = Field(default="/dev/ttyUSB0", description="port of the base, any pyserial URL")
+    line: LineSettings = LineSettings()
+    camera: CameraSettings = CameraSettings()
+    drive: DriveSettings = DriveSettings()
+    battery: BatterySettings = BatterySettings()
+    rates: RateSettings = RateSettings()
+    mind: MindSettings = MindSettings()
+
+
+def load_settings(path: Path | None, overrides: Mapping[str, Any]) -> Settings:
+    """The settings of a file (defaults without one) under what the command line says; None there says nothing.
+
+    Raises ConfigError: the file cannot be read, a key is unknown (with the nearest one), a value is not possible.
+    """
+    source = str(path) if path else "command line"
+    raw = _read(path) if path else {}
+    for dotted, value in overrides.items():
+        if value is not None:
+            _put(raw, dotted.split("."), value)
+    try:
+        return Settings.model_validate(raw)
+    except ValidationError as error:
+        raise _named(source, error) from None
+
+
+def _read(path: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(path.read_text("utf-8"))
+    except OSError as error:
+        raise ConfigError(str(path), "file", f"cannot be read: {error.strerror}", "Give another --config.") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise ConfigError(str(path), "file", f"is not TOML: {error}") from None
+
+
+def _put(raw: dict[str, Any], path: list[str], value: object) -> None:
+    *sections, key = path
+    for section in sections:
+        raw = raw.setdefault(section, {})
+    raw[key] = value
+
+
+def _named(source: str, error: ValidationError) -> ConfigError:
+    first = error.errors()[0]
+    key = ".".join(str(part) for part in first["loc"])
+    if first["type"] != "extra_forbidden":
+        return ConfigError(source, key, first["msg"].removeprefix("Value error, "))
+    known = sorted(keys())
+    nearest = get_close_matches(key, known, n=1, cutoff=0.4)
+    return ConfigError(source, key, "there is no such setting", f"Did you mean {nearest[0]!r}?" if nearest else "")
+
+
+def keys(section: type[Section] = Settings, prefix: str = "") -> dict[str, str]:
+    """Every setting by its dotted key, with its description: what the manual has to name."""
+    found: dict[str, str] = {}
+    for name, field in section.model_fields.items():
+        kinds = [kind for kind in (field.annotation, *get_args(field.annotation)) if isinstance(kind, type)]
+        inner = next((kind for kind in kinds if issubclass(kind, Section)), None)
+        found |= keys(inner, f"{prefix}{name}.") if inner else {prefix + name: field.description or ""}
+    return found
+
+
+def read_token(path: Path) -> str:
+    """The robot's token. Raises ConfigError when the file is absent, empty, or open to others."""
+    try:
+        mode = stat.S_IMODE(path.stat().st_mode)
+        token = path.read_text("ascii").strip()
+    except (OSError, UnicodeDecodeError) as error:
+        way_out = "`python -m app robots enrol NAME` on the server prints a token to put there."
+        raise ConfigError(str(path), "token_file", f"cannot be read: {error}", way_out) from None
+    if mode & 0o077:
+        raise ConfigError(str(path), "token_file", f"others may read it (mode {mode:04o})", f"Run: chmod 600 {path}")
+    if not token:
+        raise ConfigError(str(path), "token_file", "is empty", "Put the token there that enrolment printed.")
+    return token
