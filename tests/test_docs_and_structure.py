@@ -1,0 +1,195 @@
+"""The project's own order: documents that lead somewhere, verbs that explain themselves, files one can read."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+CHECKOUT = Path(__file__).parent.parent
+LONGEST_FILE = 400
+# Longer files, each with the reason why it is one file.
+LONG_FILES: dict[str, str] = {}
+LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)|(?:src|srcset|href)=\"([^\"]+)\"")
+# Spelled with brackets so that this file does not find itself.
+MACHINE_PATH = re.compile(r"(^|[^\w.-])/([w]ork|[r]oot|[f]arm)/")
+REGISTRY = re.compile(r'"[r]esolved": *"https?://|[i]ndex-url *=|[r]egistry *= *.?https?://')
+LEAST_TOOLS = ("sh", "env", "awk", "cut", "git", "make")
+
+
+def tracked(*patterns: str) -> list[Path]:
+    listed = subprocess.run(["git", "ls-files", "-z", *patterns], cwd=CHECKOUT, capture_output=True, check=True).stdout
+    paths = [CHECKOUT / name for name in listed.decode().split("\0") if name]
+    return [path for path in paths if path.is_file()]
+
+
+def verbs() -> dict[str, str]:
+    """Every verb of the Makefile with its description ('' where it has none)."""
+    makefile = (CHECKOUT / "Makefile").read_text()
+    phony = re.search(r"^\.PHONY: (.*)$", makefile, re.MULTILINE)
+    assert phony
+    described = dict(re.findall(r"^([a-z]+):.*?## (.+)$", makefile, re.MULTILINE))
+    return {verb: described.get(verb, "") for verb in phony[1].split()}
+
+
+def test_every_verb_is_described_and_bare_make_lists_it():
+    listed = subprocess.run(["make"], cwd=CHECKOUT, capture_output=True, text=True, check=True).stdout
+    for verb, description in verbs().items():
+        assert description, verb
+        assert re.search(rf"^make {verb} +{re.escape(description)}$", listed, re.MULTILINE), verb
+
+
+@pytest.mark.parametrize("page", tracked("*.md"), ids=lambda page: str(page.relative_to(CHECKOUT)))
+def test_every_link_of_a_page_leads_somewhere(page):
+    for link in (first or second for first, second in LINK.findall(page.read_text(encoding="utf-8"))):
+        target = link.partition("#")[0]
+        if target and "://" not in link and not link.startswith("mailto:"):
+            assert (page.parent / target).exists(), link
+
+
+def test_every_decision_is_in_the_index():
+    index = (CHECKOUT / "docs/decisions/README.md").read_text(encoding="utf-8")
+    decisions = [path.name for path in (CHECKOUT / "docs/decisions").glob("[0-9]*.md")]
+    assert decisions
+    assert [name for name in decisions if f"({name})" not in index] == []
+
+
+def test_every_page_of_the_documentation_is_reached_from_the_readme():
+    reached, waiting = set(), [CHECKOUT / "README.md"]
+    while waiting:
+        page = waiting.pop()
+        if page in reached:
+            continue
+        reached.add(page)
+        for first, second in LINK.findall(page.read_text(encoding="utf-8")):
+            target = (page.parent / (first or second).partition("#")[0]).resolve()
+            waiting += [target] if target.suffix == ".md" and target.is_file() else []
+    assert {str(page.relative_to(CHECKOUT)) for page in tracked("docs/*.md")} <= {
+        str(page.relative_to(CHECKOUT)) for page in reached
+    }
+
+
+def test_no_file_names_a_machine_or_a_registry():
+    found = []
+    for path in tracked():
+        text = path.read_bytes().decode("utf-8", errors="ignore")
+        found += [f"{path.relative_to(CHECKOUT)}: {line.strip()}" for line in text.splitlines() if _names_a_place(line)]
+    assert found == []
+
+
+def _names_a_place(line: str) -> bool:
+    return bool(MACHINE_PATH.search(line) or REGISTRY.search(line))
+
+
+def test_a_file_can_be_read_in_one_sitting():
+    lengths = {str(p.relative_to(CHECKOUT)): len(p.read_text(encoding="utf-8").splitlines()) for p in tracked("*.py")}
+    assert {name for name, lines in lengths.items() if lines > LONGEST_FILE} == set(LONG_FILES)
+
+
+def test_every_package_has_its_layers_written_down():
+    """A module that nobody placed in the order of its package must fail `make check`."""
+    config = tomllib.loads((CHECKOUT / "pyproject.toml").read_text())["tool"]["importlinter"]
+    layered = {c["containers"][0] for c in config["contracts"] if c.get("exhaustive") and len(c["containers"]) == 1}
+    assert set(config["root_packages"]) <= layered
+
+
+# Set-up and tests on machines that lack something
+
+
+@pytest.fixture
+def bare_machine(tmp_path: Path) -> Path:
+    """A folder to be the whole PATH: a shell, make, git, and neither Python, node nor browser."""
+    tools = tmp_path / "bin"
+    tools.mkdir()
+    for name in LEAST_TOOLS:
+        found = shutil.which(name)
+        assert found, name
+        (tools / name).symlink_to(found)
+    return tools
+
+
+def setup_on(tools: Path, python: str) -> subprocess.CompletedProcess[str]:
+    """`make setup` in a checkout of its own, with a python3 that is this shell script."""
+    checkout = tools.parent / "checkout"
+    checkout.mkdir()
+    for name in ("Makefile", "pyproject.toml", "constraints.txt"):
+        shutil.copy(CHECKOUT / name, checkout)
+    if python:
+        (tools / "python3").write_text(f"#!{tools}/sh\n{python}\n")
+        (tools / "python3").chmod(0o755)
+    environment = {"PATH": str(tools), "HOME": str(tools.parent)}
+    return subprocess.run(
+        ["make", "setup"], cwd=checkout, env=environment, capture_output=True, text=True, check=False, timeout=60
+    )
+
+
+def test_setup_names_a_missing_python(bare_machine):
+    finished = setup_on(bare_machine, "")
+    assert finished.returncode != 0
+    assert "There is no python3. Install Python 3.11 or newer" in finished.stderr
+
+
+def test_setup_names_a_python_that_is_too_old(bare_machine):
+    finished = setup_on(bare_machine, 'test "$1" = --version && echo "Python 3.9.2"; exit 1')
+    assert finished.returncode != 0
+    assert "Python 3.11 or newer is needed; this is Python 3.9.2" in finished.stderr
+
+
+def test_setup_names_a_missing_python3_venv(bare_machine):
+    """Debian ships Python without ensurepip; its own message comes late and speaks of a broken folder."""
+    finished = setup_on(bare_machine, 'case "$2" in *ensurepip*) exit 1;; esac; exit 0')
+    assert finished.returncode != 0
+    assert "apt install python3-venv" in finished.stderr
+
+
+BROWSER_TESTS = """
+import pytest
+
+@pytest.mark.browser
+@pytest.mark.parametrize("page", range(3))
+def test_in_a_browser(page): ...
+
+def test_without_one(): ...
+"""
+
+
+def run_browser_tests(tmp_path: Path, **environment: str) -> subprocess.CompletedProcess[str]:
+    shutil.copy(CHECKOUT / "tests/conftest.py", tmp_path)
+    shutil.copy(CHECKOUT / "pyproject.toml", tmp_path)
+    (tmp_path / "test_pages.py").write_text(BROWSER_TESTS)
+    command = [sys.executable, "-m", "pytest", "-q", "-o", "testpaths=.", "-p", "no:cacheprovider"]
+    environment = {"PATH": os.defpath, "HOME": str(tmp_path), **environment}
+    return subprocess.run(
+        command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False, timeout=60
+    )
+
+
+def test_without_a_browser_the_last_line_counts_what_did_not_run(tmp_path, bare_machine):
+    finished = run_browser_tests(tmp_path, PATH=str(bare_machine))
+    assert finished.returncode == 0
+    assert "1 passed, 3 deselected" in finished.stdout
+    last = finished.stdout.splitlines()[-1]
+    assert last == "NOT RUN: 3 browser tests (no Chromium found: apt install chromium, or set CHROMIUM=/path)"
+
+
+def test_where_a_browser_is_required_its_absence_is_a_failure(tmp_path, bare_machine):
+    finished = run_browser_tests(tmp_path, PATH=str(bare_machine), CAMPUS_MAIL_REQUIRE_BROWSER="1")
+    assert finished.returncode != 0
+    assert "no Chromium found, and 3 browser tests must run" in finished.stderr
+
+
+def test_a_named_browser_that_is_not_there_is_an_error(tmp_path, bare_machine):
+    finished = run_browser_tests(tmp_path, PATH=str(bare_machine), CHROMIUM="/nowhere/chromium")
+    assert finished.returncode != 0
+    assert "CHROMIUM=/nowhere/chromium is no program" in finished.stderr
+
+
+def test_with_a_browser_all_tests_run_and_nothing_is_counted(tmp_path, bare_machine):
+    (bare_machine / "chromium").symlink_to(bare_machine / "sh")
+    finished = run_browser_tests(tmp_path, PATH=str(bare_machine))
+    assert "4 passed" in finished.stdout
+    assert "NOT RUN" not in finished.stdout
