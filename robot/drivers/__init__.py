@@ -1,0 +1,1 @@
+"""The devices of the robot, each behind one door (interfaces.py)."""

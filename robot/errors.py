@@ -1,0 +1,48 @@
+"""What can go wrong in the body, each by its name; a message says what, where and the way out.
+
+RobotError
+├── PortAbsent       no such serial port, or nobody may open it
+├── PortBusy         another program holds the port
+├── CameraAbsent     no such video device
+└── UnknownSkill     somebody asked for a long action that the body does not have
+"""
+
+
+class RobotError(Exception):
+    """Everything the body raises on purpose."""
+
+
+class PortAbsent(RobotError):
+    """The drive base cannot be reached at all: no such port, or no permission to open it."""
+
+    def __init__(self, port: str, reason: str) -> None:
+        self.port = port
+        super().__init__(
+            f"The drive base does not answer at {port}: {reason}. "
+            "Plug in its USB cable, name another serial_port, or join the group dialout; "
+            "to try without a robot: --simulated."
+        )
+
+
+class PortBusy(RobotError):
+    """Another program holds the port; two masters on one robot would be dangerous."""
+
+    def __init__(self, port: str) -> None:
+        self.port = port
+        super().__init__(f"Another program holds {port}. Stop it first: only one may drive the base.")
+
+
+class CameraAbsent(RobotError):
+    """The video device cannot be opened."""
+
+    def __init__(self, device: int | str) -> None:
+        self.device = device
+        super().__init__(f"No camera opens as video device {device}. Check its cable, or set camera.device.")
+
+
+class UnknownSkill(RobotError):
+    """An action names a way of doing it that the body does not have."""
+
+    def __init__(self, name: str, known: tuple[str, ...]) -> None:
+        self.name = name
+        super().__init__(f"There is no {name!r}. There are: {', '.join(known)}.")
