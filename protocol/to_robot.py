@@ -6,9 +6,13 @@ from protocol.parts import Identifier, Leg, Part, Purpose, Received, Sentence, S
 
 
 class Welcome(Part):
-    """The answer to `hello`: what the server last had from this robot's journal; resume from there."""
+    """The answer to `hello`: what the server last had from this robot's journal; resume from there.
+
+    `resume_from` is the lowest `seq` of the server's own journal that can still come. `at` is the server's time.
+    """
 
     received: Received
+    resume_from: int = Field(default=1, ge=1)
     server: Sentence
     at: AwareDatetime
 

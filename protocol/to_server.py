@@ -22,9 +22,14 @@ from protocol.parts import (
 
 
 class Hello(Part):
-    """The first message on every connection: where to resume from, and what the robot knows of itself."""
+    """The first message on every connection: where to resume from, and what the robot knows of itself.
 
-    received: Received
+    `received` is what it last had from the server, `resume_from` the lowest `seq` of its own journal that can still
+    come.
+    """
+
+    received: Received = Received()
+    resume_from: int = Field(default=1, ge=1)
     position: Position
     cargo: tuple[Identifier, ...] = ()
     mission: MissionHeld | None = None

@@ -1,0 +1,267 @@
+"""What the robot knows after a power cut: its mission, what it carries, how to check codes, where it may drive.
+
+Everything is in the database of `robot/store.py`. What belongs together is one transaction:
+
+    with store.transaction():
+        memory.load(order_id)
+        memory.reach(next_stop=1)
+        outbox.put(Event(happened=receipt))
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from typing import Any, Final, TypeVar
+
+from pydantic import TypeAdapter
+
+from protocol import sequence
+from protocol.envelope import TO_ROBOT, Envelope, type_of
+from protocol.parts import Leg, MissionHeld, Part, Position, Received
+from protocol.sequence import Reception
+from protocol.to_robot import Grant, Mission, Verifier, Verifiers
+from robot.store import Store
+
+T = TypeVar("T")
+
+_MISSION: Final = TypeAdapter[Mission | None](Mission | None)
+_NUMBER: Final = TypeAdapter(int)
+_CARGO: Final = TypeAdapter(tuple[str, ...])
+_VERIFIERS: Final = TypeAdapter(tuple[Verifier, ...])
+_LEGS: Final = TypeAdapter(tuple[Leg, ...])
+_POSITION: Final = TypeAdapter(Position)
+_RECEIVED: Final = TypeAdapter(Received)
+
+
+class MissionConflict(ValueError):
+    """Other stops under the number of the mission that is held: one of the two sides is wrong. Nothing is changed."""
+
+    code = "mission_conflict"
+
+
+@dataclass(frozen=True)
+class Incoming:
+    """A message from the server for the daemon to act on. `seq` is None for one that is not durable (an error)."""
+
+    message: Part
+    journal: str
+    seq: int | None = None
+
+
+@dataclass(frozen=True)
+class Taken:
+    """What became of a durable message: was it new, and if the robot could not do as told, why."""
+
+    reception: Reception
+    refusal: MissionConflict | None = None
+
+
+class Memory:
+    """Facts that survive a kill at any moment. Any thread may use it. Raises StorageFull or StorageFailed."""
+
+    def __init__(self, store: Store) -> None:
+        self._store = store
+
+    # The mission and how far it has come.
+
+    def mission(self) -> Mission | None:
+        """The mission held, or None."""
+        return self._read("mission", _MISSION, None)
+
+    def next_stop(self) -> int:
+        """Which stop of the mission comes next: 0 is the first, `len(stops)` means that all are done."""
+        return self._read("next_stop", _NUMBER, 0)
+
+    def mission_held(self) -> MissionHeld | None:
+        """The mission as `hello` and `snapshot` tell it."""
+        with self._store.transaction():
+            mission = self.mission()
+            if mission is None:
+                return None
+            return MissionHeld(id=mission.id, update=mission.update, next_stop=self.next_stop())
+
+    def hold(self, mission: Mission) -> bool:
+        """Take a mission or an update of it; False if it is the one held, or older than that. Raises MissionConflict.
+
+        Stops that were done stay done: the next stop is the first whose id has not been passed yet.
+        """
+        with self._store.transaction() as database:
+            held = self.mission()
+            if not _is_news(held, mission):
+                return False
+            self._write("next_stop", _NUMBER, next_stop_after(held, self.next_stop(), mission))
+            self._write("mission", _MISSION, mission)
+            database.execute("DELETE FROM reported WHERE mission_id != ?", (mission.id,))
+            return True
+
+    def reach(self, next_stop: int) -> None:
+        """The stops before `next_stop` are done."""
+        self._write("next_stop", _NUMBER, next_stop)
+
+    def drop_mission(self) -> None:
+        """Nothing is to be done any more. Cargo, grants and verifiers stay what they are."""
+        with self._store.transaction():
+            self._write("mission", _MISSION, None)
+            self._write("next_stop", _NUMBER, 0)
+
+    def first_time(self, mission_id: str, key: str) -> bool:
+        """True once for each key of a mission, for ever: what was reported is not reported again after a restart.
+
+        Call it in the transaction that puts the report into the outbox.
+        """
+        with self._store.transaction() as database:
+            cursor = database.execute("INSERT OR IGNORE INTO reported VALUES (?, ?)", (mission_id, key))
+            return cursor.rowcount == 1
+
+    # What is aboard, and who may take it.
+
+    def cargo(self) -> tuple[str, ...]:
+        """The ids of the orders whose mail is aboard."""
+        return self._read("cargo", _CARGO, ())
+
+    def load(self, order_id: str) -> None:
+        """The mail of this order came aboard."""
+        with self._store.transaction():
+            self._write("cargo", _CARGO, (*_without(self.cargo(), order_id), order_id))
+
+    def unload(self, order_id: str) -> None:
+        """The mail of this order was taken out."""
+        with self._store.transaction():
+            self._write("cargo", _CARGO, _without(self.cargo(), order_id))
+
+    def verifiers(self) -> tuple[Verifier, ...]:
+        """What hand-over codes are checked against."""
+        return self._read("verifiers", _VERIFIERS, ())
+
+    def keep_verifiers(self, verifiers: Verifiers) -> None:
+        """Add these; one for the same order and purpose takes the place of the older one."""
+        with self._store.transaction():
+            kept = {(one.order_id, one.purpose): one for one in (*self.verifiers(), *verifiers.verifiers)}
+            self._write("verifiers", _VERIFIERS, tuple(kept.values()))
+
+    def forget_verifiers(self, order_id: str) -> None:
+        """The codes of this order are used up."""
+        with self._store.transaction():
+            kept = tuple(one for one in self.verifiers() if one.order_id != order_id)
+            self._write("verifiers", _VERIFIERS, kept)
+
+    # Where it may drive and where it was seen.
+
+    def grants(self) -> tuple[Leg, ...]:
+        """The corridors that may be entered, in the order in which they were granted."""
+        return self._read("grants", _LEGS, ())
+
+    def grant(self, legs: Sequence[Leg]) -> None:
+        """These may be entered from now on, until they are reported clear."""
+        with self._store.transaction():
+            self._write("grants", _LEGS, (*self.grants(), *(leg for leg in legs if leg not in self.grants())))
+
+    def clear(self, leg: Leg) -> None:
+        """The robot is out of this corridor. Put the `clear` message into the outbox in the same transaction."""
+        with self._store.transaction():
+            self._write("grants", _LEGS, tuple(one for one in self.grants() if one != leg))
+
+    def position(self) -> Position:
+        """Where the robot was last seen."""
+        return self._read("position", _POSITION, Position())
+
+    def see(self, post: str, at: datetime, towards: str | None = None) -> Position:
+        """The robot was seen at `post`; the post it was seen at before becomes `previous`."""
+        with self._store.transaction():
+            before = self.position()
+            previous = before.previous if before.post == post else before.post
+            position = Position(post=post, previous=previous, towards=towards, seen_at=at)
+            self._write("position", _POSITION, position)
+            return position
+
+    def head(self, towards: str | None) -> Position:
+        """The robot is on its way to this post next, or to none."""
+        with self._store.transaction():
+            position = self.position().model_copy(update={"towards": towards})
+            self._write("position", _POSITION, position)
+            return position
+
+    # What came from the server.
+
+    def received(self) -> Received:
+        """The highest contiguous number that was taken from the server's journal."""
+        return self._read("received", _RECEIVED, Received())
+
+    def resume(self, journal: str, resume_from: int) -> int:
+        """Take up the server's journal as its `welcome` says; returns how many of its messages are lost for ever."""
+        with self._store.transaction():
+            resumption = sequence.resume(self.received(), journal, resume_from)
+            self._write("received", _RECEIVED, resumption.received)
+            return resumption.lost
+
+    def receive(self, envelope: Envelope) -> Taken:
+        """Store a durable message and what follows from it; acknowledge it when this has returned.
+
+        Missions, verifiers and grants take effect here and now; every new message also waits in `unhandled`.
+        """
+        assert envelope.seq is not None, "only durable messages are stored"  # noqa: S101
+        with self._store.transaction() as database:
+            judged = sequence.reception(self.received(), envelope.journal, envelope.seq)
+            if judged is not Reception.NEW:
+                return Taken(judged)
+            self._write("received", _RECEIVED, Received(journal=envelope.journal, seq=envelope.seq))
+            try:
+                self._apply(envelope.body)
+            except MissionConflict as refusal:
+                return Taken(judged, refusal)
+            row = (envelope.journal, envelope.seq, type_of(envelope.body), envelope.body.model_dump_json())
+            database.execute("INSERT INTO inbox VALUES (?, ?, ?, ?)", row)
+            return Taken(judged)
+
+    def _apply(self, message: Part) -> None:
+        match message:
+            case Mission():
+                self.hold(message)
+            case Verifiers():
+                self.keep_verifiers(message)
+            case Grant():
+                self.grant(message.legs)
+            case _:  # commands are for the daemon to carry out
+                pass
+
+    def unhandled(self) -> list[Incoming]:
+        """Messages that were stored and that nobody has acted on yet, in order: after a restart, they come again."""
+        with self._store.transaction() as database:
+            rows = database.execute("SELECT journal, seq, type, body FROM inbox ORDER BY rowid").fetchall()
+        return [Incoming(TO_ROBOT[name].model_validate_json(body), journal, seq) for journal, seq, name, body in rows]
+
+    def handled(self, incoming: Incoming) -> None:
+        """The daemon has acted on it. Call it in the transaction that keeps the result."""
+        with self._store.transaction() as database:
+            database.execute("DELETE FROM inbox WHERE journal = ? AND seq = ?", (incoming.journal, incoming.seq))
+
+    def _read(self, name: str, kind: TypeAdapter[T], default: T) -> T:
+        with self._store.transaction() as database:
+            row = database.execute("SELECT value FROM facts WHERE name = ?", (name,)).fetchone()
+        return kind.validate_json(row[0]) if row else default
+
+    def _write(self, name: str, kind: TypeAdapter[Any], value: object) -> None:
+        with self._store.transaction() as database:
+            text = kind.dump_json(value).decode()
+            database.execute("INSERT OR REPLACE INTO facts (name, value) VALUES (?, ?)", (name, text))
+
+
+def next_stop_after(held: Mission | None, next_stop: int, update: Mission) -> int:
+    """Where an updated mission is taken up: at its first stop that was not done under the mission held before."""
+    if held is None or held.id != update.id:
+        return 0
+    done = {stop.id for stop in held.stops[:next_stop]}
+    undone = [number for number, stop in enumerate(update.stops) if stop.id not in done]
+    return undone[0] if undone else len(update.stops)
+
+
+def _is_news(held: Mission | None, offered: Mission) -> bool:
+    if held is None or held.id != offered.id:
+        return True
+    if held.update == offered.update and held.stops != offered.stops:
+        raise MissionConflict(f"mission {held.id} update {held.update} came again with other stops; the first is kept")
+    return offered.update > held.update
+
+
+def _without(order_ids: Sequence[str], order_id: str) -> tuple[str, ...]:
+    return tuple(one for one in order_ids if one != order_id)
