@@ -8,7 +8,10 @@ from app.tables.columns import UtcTime
 
 
 class RobotRow(SQLModel, table=True):
-    """`server_journal` is the journal of what the server sends to this robot, `last_seq` its highest number so far."""
+    """`server_journal` is the journal of what the server sends to this robot, `last_seq` its highest number so far.
+
+    `online` says that its socket is open now; every start of the service begins with nobody online.
+    """
 
     __tablename__ = "robots"
 
@@ -16,6 +19,7 @@ class RobotRow(SQLModel, table=True):
     enrolled_at: datetime = Field(sa_type=UtcTime)
     server_journal: str = Field(max_length=64)
     last_seq: int = 0
+    online: bool = False
     heard_at: datetime | None = Field(default=None, sa_type=UtcTime)
     software: str | None = Field(default=None, max_length=500)
     map_version: str | None = Field(default=None, max_length=500)
