@@ -1,6 +1,6 @@
 """Where things are: campus maps as data (TOML), their one reader, routes on them, and their check."""
 
-from .campus_map import (
+from maps.campus_map import (
     CampusMap,
     Corridor,
     Dock,
@@ -11,9 +11,9 @@ from .campus_map import (
     find_map,
     read_map,
 )
-from .errors import CampusMapError, MapError, NoRoute, UnknownCorridor, UnknownPost
-from .geometry import Point
-from .routes import Route, shortest_route
+from maps.errors import CampusMapError, MapError, NoRoute, UnknownCorridor, UnknownPost
+from maps.geometry import Point
+from maps.routes import Route, shortest_route
 
 __all__ = [
     "CampusMap",

@@ -9,12 +9,12 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
-from .campus_map import CampusMap, Post, find_map, map_path
-from .check import check_file
-from .errors import CampusMapError, MapError
-from .problem import Problem
-from .routes import shortest_route
-from .sheets import marker_sheet
+from maps.campus_map import CampusMap, Post, find_map, map_path
+from maps.check import check_file
+from maps.errors import CampusMapError, MapError
+from maps.problem import Problem
+from maps.routes import shortest_route
+from maps.sheets import marker_sheet
 
 cli = typer.Typer(help=__doc__, no_args_is_help=True, add_completion=False)
 MapArgument = Annotated[Path, typer.Argument(metavar="MAP", help="A map file, or the name of one that ships.")]

@@ -12,10 +12,10 @@ from itertools import pairwise
 from json import dumps, loads
 from pathlib import Path
 
-from .errors import MapError, UnknownCorridor, UnknownPost
-from .geometry import Point, heading_rad, moved, path_length_m, rounded
-from .map_file import CorridorRow, MapFile, PoseRow, PostRow, load_map_file
-from .structure import structure_problems
+from maps.errors import MapError, UnknownCorridor, UnknownPost
+from maps.geometry import Point, heading_rad, moved, path_length_m, rounded
+from maps.map_file import CorridorRow, MapFile, PoseRow, PostRow, load_map_file
+from maps.structure import structure_problems
 
 MARKER_SIZE_M = 0.08
 # Where a marker stands unless the file says otherwise, as somebody arriving at the post sees it: on the left, where

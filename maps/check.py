@@ -4,11 +4,11 @@ import math
 from collections.abc import Iterator
 from pathlib import Path
 
-from .campus_map import CampusMap, Corridor, Marker, Post, build_map, corridor_name
-from .geometry import Point, distance_to_path_m, seen_from, wrapped
-from .map_file import MapFile, PostRow, load_map_file
-from .problem import Problem, error, warning
-from .structure import structure_problems
+from maps.campus_map import CampusMap, Corridor, Marker, Post, build_map, corridor_name
+from maps.geometry import Point, distance_to_path_m, seen_from, wrapped
+from maps.map_file import MapFile, PostRow, load_map_file
+from maps.problem import Problem, error, warning
+from maps.structure import structure_problems
 
 # Where the left-hand camera can make out a marker of 80 mm, for somebody who rolls towards a post, and for somebody
 # who stands in a dock and sees only what is abreast. 0.8 m leave 2.5 pixels per module at 640 × 480 and 60°.

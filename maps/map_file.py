@@ -11,7 +11,7 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from .errors import MapError
+from maps.errors import MapError
 
 Metres = Annotated[float, Field(allow_inf_nan=False)]
 Degrees = Annotated[float, Field(ge=-360, le=360)]

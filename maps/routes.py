@@ -8,9 +8,9 @@ from collections.abc import Set
 from dataclasses import dataclass
 from heapq import heappop, heappush
 
-from .campus_map import CampusMap
-from .errors import NoRoute
-from .geometry import distance_m
+from maps.campus_map import CampusMap
+from maps.errors import NoRoute
+from maps.geometry import distance_m
 
 
 @dataclass(frozen=True)

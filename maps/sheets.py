@@ -4,7 +4,7 @@ from html import escape
 
 import segno
 
-from .campus_map import MARKER_SIZE_M, Post
+from maps.campus_map import MARKER_SIZE_M, Post
 
 PAGE_WIDTH_MM = 148
 PAGE_HEIGHT_MM = 210

@@ -4,9 +4,9 @@ import re
 from collections import Counter
 from collections.abc import Iterator
 
-from .geometry import Point, distance_m
-from .map_file import CorridorRow, MapFile
-from .problem import Problem, error
+from maps.geometry import Point, distance_m
+from maps.map_file import CorridorRow, MapFile
+from maps.problem import Problem, error
 
 # A post's name becomes an atom of the robot's AgentSpeak program, the content of its markers and part of URLs.
 NAME = re.compile(r"[a-z][A-Za-z0-9_]*")

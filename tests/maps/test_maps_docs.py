@@ -1,0 +1,42 @@
+"""docs/maps.md says what is so."""
+
+import re
+
+from maps import find_map
+from maps.campus_map import FOLDER, MARKER_BEFORE_POST_M, MARKER_BESIDE_LINE_M
+from maps.map_file import CorridorRow, MapFile, PostRow, load_map_file
+
+PAGE = (FOLDER.parent / "docs/maps.md").read_text(encoding="utf-8")
+
+
+def block(language: str) -> str:
+    found = re.search(rf"```{language}\n(.*?)```", PAGE, re.DOTALL)
+    assert found
+    return found[1]
+
+
+def test_the_format_on_the_page_is_a_map_file_that_uses_every_key(tmp_path):
+    path = tmp_path / "campus.toml"
+    path.write_text(block("toml"), encoding="utf-8")
+    file = load_map_file(path)
+    for row, table in ((file, MapFile), (file.post[0], PostRow), (file.corridor[0], CorridorRow)):
+        assert row.model_fields_set == set(table.model_fields)
+
+
+def test_every_kind_of_problem_is_explained():
+    source = "".join((FOLDER / name).read_text(encoding="utf-8") for name in ("check.py", "structure.py"))
+    kinds = set(re.findall(r'(?:error|warning)\(\s*"(\w+)"', source))
+    assert len(kinds) > 10
+    table = PAGE[PAGE.index("| kind |") :]
+    assert kinds == set(re.findall(r"`(\w+)`", "".join(re.findall(r"^\| (`.*?) \|", table, re.MULTILINE))))
+
+
+def test_the_code_on_the_page_runs():
+    names: dict[str, object] = {}
+    exec(block("python"), names)  # noqa: S102  our own page
+    assert names["campus"] == find_map("test_track")
+    assert str(names["route"]) in block("python").replace('"', "'")
+
+
+def test_the_standard_places_are_the_ones_on_the_page():
+    assert f"**{MARKER_BEFORE_POST_M:.2f} m before the post, {MARKER_BESIDE_LINE_M:.2f} m beside the line" in PAGE
