@@ -1,12 +1,14 @@
-"""docs/maps.md says what is so."""
+"""docs/maps.md and examples/maps say what is so."""
 
 import re
 
 from maps import find_map
 from maps.campus_map import FOLDER, MARKER_BEFORE_POST_M, MARKER_BESIDE_LINE_M
+from maps.check import check_file
 from maps.map_file import CorridorRow, MapFile, PostRow, load_map_file
 
 PAGE = (FOLDER.parent / "docs/maps.md").read_text(encoding="utf-8")
+EXAMPLES = FOLDER.parent / "examples/maps"
 
 
 def block(language: str) -> str:
@@ -40,3 +42,12 @@ def test_the_code_on_the_page_runs():
 
 def test_the_standard_places_are_the_ones_on_the_page():
     assert f"**{MARKER_BEFORE_POST_M:.2f} m before the post, {MARKER_BESIDE_LINE_M:.2f} m beside the line" in PAGE
+
+
+def test_the_example_of_an_own_campus_is_fit_for_robots():
+    assert check_file(EXAMPLES / "two_buildings.toml") == ()
+
+
+def test_the_example_of_a_one_way_corridor_is_refused_in_the_words_it_quotes():
+    (problem,) = check_file(EXAMPLES / "one_way.toml")
+    assert f"# {problem}\n" in (EXAMPLES / "one_way.toml").read_text(encoding="utf-8")
