@@ -1,0 +1,87 @@
+"""The database: one transaction per request, and what is to be said aloud only after its commit.
+
+SQLite by default (write-ahead log, full sync: what was acknowledged survives a power cut), PostgreSQL by URL.
+"""
+
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
+from typing import Annotated, Any
+
+from fastapi import Depends
+from sqlalchemy import Connection, event
+from sqlalchemy.ext.asyncio import AsyncEngine, create_async_engine
+from sqlmodel.ext.asyncio.session import AsyncSession
+from starlette.requests import HTTPConnection
+
+PRAGMAS = ("journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON", "busy_timeout=10000")
+_AFTER_COMMIT = "after_commit"
+
+
+class Database:
+    """Opens sessions. Writers take SQLite's write lock at once, because a reader that becomes one can be refused."""
+
+    def __init__(self, url: str) -> None:
+        self.engine: AsyncEngine = create_async_engine(url)
+        self.writing = self.engine.execution_options(begin="BEGIN IMMEDIATE")
+        if self.engine.dialect.name == "sqlite":
+            event.listen(self.engine.sync_engine, "connect", _prepare_sqlite)
+            event.listen(self.engine.sync_engine, "begin", _begin_sqlite)
+
+    @asynccontextmanager
+    async def transaction(self) -> AsyncIterator[AsyncSession]:
+        """One transaction: committed at the end, or rolled back by an exception; then what waits for it is said."""
+        async with AsyncSession(self.writing, expire_on_commit=False) as session:
+            async with session.begin():
+                yield session
+            for say in session.info.pop(_AFTER_COMMIT, []):
+                say()
+
+    @asynccontextmanager
+    async def reading(self) -> AsyncIterator[AsyncSession]:
+        """A consistent view for reading, which holds up no writer."""
+        async with AsyncSession(self.engine, expire_on_commit=False) as session:
+            yield session
+
+    async def close(self) -> None:
+        await self.engine.dispose()
+
+
+def after_commit(session: AsyncSession, say: Callable[[], None]) -> None:
+    """Run `say` once the transaction is committed, in order of asking; never if it is rolled back."""
+    session.info.setdefault(_AFTER_COMMIT, []).append(say)
+
+
+def _prepare_sqlite(connection: Any, record: Any) -> None:
+    # The driver must not begin transactions of its own: `_begin_sqlite` says which kind is wanted.
+    connection.isolation_level = None
+    cursor = connection.cursor()
+    for pragma in PRAGMAS:
+        cursor.execute(f"PRAGMA {pragma}")
+    cursor.close()
+
+
+def _begin_sqlite(connection: Connection) -> None:
+    connection.exec_driver_sql(connection.get_execution_options().get("begin", "BEGIN"))
+
+
+def _database_of(connection: HTTPConnection) -> Database:
+    database: Database = connection.app.state.database
+    return database
+
+
+DatabaseDep = Annotated[Database, Depends(_database_of)]
+
+
+async def _transaction(database: DatabaseDep) -> AsyncIterator[AsyncSession]:
+    async with database.transaction() as session:
+        yield session
+
+
+async def _reading(database: DatabaseDep) -> AsyncIterator[AsyncSession]:
+    async with database.reading() as session:
+        yield session
+
+
+# Scope "function": committed (or refused) before the answer goes out, and long before an event stream begins.
+SessionDep = Annotated[AsyncSession, Depends(_transaction, scope="function")]
+ReadingDep = Annotated[AsyncSession, Depends(_reading, scope="function")]

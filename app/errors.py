@@ -1,0 +1,191 @@
+"""What can go wrong, by name, and how it is said: RFC 9457 problem documents with a stable `code`.
+
+ServiceError                 a request that cannot be met: status, code, a sentence
+├── BadRequest (400)         the request contradicts itself
+├── NotSignedIn (401)        nobody is signed in, or the session has ended
+├── Forbidden (403)          signed in, but not allowed to
+├── NotFound (404)           not there, or not for this person to see
+├── Conflict (409)           the state does not allow it now
+├── PreconditionFailed (412) changed since it was read
+├── Unprocessable (422)      well formed, yet not to be fulfilled
+└── TooManyRequests (429)    slower, please
+StartError                   the service cannot start; a person at a terminal reads it
+
+Features derive their own from these: `app.orders.errors`, `app.people.errors`.
+"""
+
+from collections.abc import Mapping
+from http import HTTPStatus
+from typing import Any, ClassVar
+
+import structlog
+from fastapi import FastAPI, Request
+from fastapi.exceptions import RequestValidationError
+from fastapi.responses import JSONResponse
+from pydantic import BaseModel
+from starlette.exceptions import HTTPException
+
+PROBLEM_JSON = "application/problem+json"
+log = structlog.get_logger(__name__)
+
+
+class ServiceError(Exception):
+    """Answers the request with `status`; `code` never changes, the sentence may."""
+
+    status: ClassVar[int] = 500
+    code: ClassVar[str] = "service_error"
+
+    def __init__(self, sentence: str, headers: Mapping[str, str] | None = None) -> None:
+        super().__init__(sentence)
+        self.sentence = sentence
+        self.headers = dict(headers or {})
+
+
+class BadRequest(ServiceError):
+    """The request contradicts itself."""
+
+    status = 400
+    code = "bad_request"
+
+
+class NotSignedIn(ServiceError):
+    """No session, or one that has ended or was revoked."""
+
+    status = 401
+    code = "not_signed_in"
+
+
+class Forbidden(ServiceError):
+    """Known who asks; they may not."""
+
+    status = 403
+    code = "forbidden"
+
+
+class NotFound(ServiceError):
+    """Not there; also what is there but not for this person to see, so that nobody can probe for it."""
+
+    status = 404
+    code = "not_found"
+
+
+class Conflict(ServiceError):
+    """The present state does not allow it."""
+
+    status = 409
+    code = "conflict"
+
+
+class PreconditionFailed(ServiceError):
+    """If-Match names an older version: read it again first."""
+
+    status = 412
+    code = "precondition_failed"
+
+
+class Unprocessable(ServiceError):
+    """Well formed, yet it cannot be fulfilled."""
+
+    status = 422
+    code = "unprocessable"
+
+
+class TooManyRequests(ServiceError):
+    """More often than is allowed; Retry-After says when to come back."""
+
+    status = 429
+    code = "too_many_requests"
+
+
+class StartError(Exception):
+    """The service cannot start. Says what is wrong and the way out; the command ends with exit code 2."""
+
+
+class FieldProblem(BaseModel):
+    """One field that does not fit; its value is not repeated, since it may be a secret."""
+
+    field: str
+    message: str
+
+
+class Problem(BaseModel):
+    """Every error answer (RFC 9457). `code` is for programs, `detail` for people."""
+
+    type: str
+    title: str
+    status: int
+    detail: str
+    code: str
+    errors: list[FieldProblem] | None = None
+
+
+CODES_OF_STATUS = {404: "not_found", 405: "method_not_allowed", 413: "too_large", 415: "unsupported_media_type"}
+
+PROBLEM_ANSWERS: dict[int | str, dict[str, Any]] = {
+    status: {
+        "description": HTTPStatus(status).phrase,
+        "content": {PROBLEM_JSON: {"schema": Problem.model_json_schema()}},
+    }
+    for status in (400, 401, 403, 404, 409, 412, 422, 429)
+}
+"""For the OpenAPI document: what any route may answer besides its own."""
+
+
+def problems(*statuses: int) -> dict[int | str, dict[str, Any]]:
+    """The error answers of one route, for `responses=`."""
+    return {status: PROBLEM_ANSWERS[status] for status in statuses}
+
+
+def problem_answer(
+    status: int,
+    code: str,
+    detail: str,
+    headers: Mapping[str, str] | None = None,
+    errors: list[FieldProblem] | None = None,
+) -> JSONResponse:
+    """A problem document as an answer."""
+    problem = Problem(
+        type=f"urn:campus-mail:problem:{code}",
+        title=HTTPStatus(status).phrase,
+        status=status,
+        detail=detail,
+        code=code,
+        errors=errors,
+    )
+    content = problem.model_dump(exclude_none=True)
+    return JSONResponse(content, status, dict(headers or {}), media_type=PROBLEM_JSON)
+
+
+def add_error_answers(app: FastAPI) -> None:
+    """Make every error of `app` a problem document: ours, FastAPI's, Starlette's and the unforeseen."""
+    app.add_exception_handler(ServiceError, _answer_service_error)
+    app.add_exception_handler(RequestValidationError, _answer_invalid)
+    app.add_exception_handler(HTTPException, _answer_http)
+    app.add_exception_handler(Exception, _answer_unforeseen)
+
+
+async def _answer_service_error(request: Request, error: Exception) -> JSONResponse:
+    assert isinstance(error, ServiceError)  # noqa: S101  # registered for this class alone
+    return problem_answer(error.status, error.code, error.sentence, error.headers)
+
+
+async def _answer_invalid(request: Request, error: Exception) -> JSONResponse:
+    assert isinstance(error, RequestValidationError)  # noqa: S101  # registered for this class alone
+    fields = [FieldProblem(field=_place(one["loc"]), message=str(one["msg"])) for one in error.errors()]
+    detail = "; ".join(f"{one.field}: {one.message}" for one in fields)
+    return problem_answer(422, "invalid_request", detail, errors=fields)
+
+
+def _place(loc: tuple[Any, ...]) -> str:
+    return ".".join(str(part) for part in loc if part != "body") or "body"
+
+
+async def _answer_http(request: Request, error: Exception) -> JSONResponse:
+    assert isinstance(error, HTTPException)  # noqa: S101  # registered for this class alone
+    code = CODES_OF_STATUS.get(error.status_code, "http_error")
+    return problem_answer(error.status_code, code, str(error.detail), error.headers)
+
+
+async def _answer_unforeseen(request: Request, error: Exception) -> JSONResponse:
+    log.error("unforeseen", path=request.url.path, error=type(error).__name__, exc_info=error)
+    return problem_answer(500, "unforeseen", "Something went wrong here. It is in the log; please try again.")

@@ -1,0 +1,61 @@
+"""Brings the database to the schema of this code, and refuses one that is newer."""
+
+from pathlib import Path
+
+from alembic import command
+from alembic.config import Config
+from alembic.migration import MigrationContext
+from alembic.script import ScriptDirectory
+from alembic.util import CommandError
+from sqlalchemy import Connection
+
+from app.database import Database
+from app.errors import StartError
+
+INI = Path(__file__).parents[1] / "alembic.ini"
+
+
+class NewerDatabase(StartError):
+    """The database was written by a later version of Campus Mail, whose migrations this code does not have."""
+
+    def __init__(self, revision: str) -> None:
+        super().__init__(
+            f"The database is at schema {revision}, which this version of Campus Mail does not know: it was written by "
+            "a newer one. Start that version, or give this one a data folder of its own (CAMPUS_MAIL_DATA)."
+        )
+
+
+async def bring_to_head(database: Database) -> None:
+    """Run the migrations that are missing, in one transaction. Raises NewerDatabase, having changed nothing."""
+    async with database.writing.begin() as connection:
+        await connection.run_sync(_bring_to_head)
+
+
+async def is_at_head(database: Database) -> bool:
+    """Whether the schema is the one of this code."""
+    async with database.engine.connect() as connection:
+        return await connection.run_sync(_revision) == _scripts().get_current_head()
+
+
+def _bring_to_head(connection: Connection) -> None:
+    revision = _revision(connection)
+    if revision is not None:
+        _refuse_unknown(revision)
+    config = Config(INI)
+    config.attributes["connection"] = connection
+    command.upgrade(config, "head")
+
+
+def _refuse_unknown(revision: str) -> None:
+    try:
+        _scripts().get_revision(revision)
+    except CommandError:
+        raise NewerDatabase(revision) from None
+
+
+def _revision(connection: Connection) -> str | None:
+    return MigrationContext.configure(connection).get_current_revision()
+
+
+def _scripts() -> ScriptDirectory:
+    return ScriptDirectory.from_config(Config(INI))

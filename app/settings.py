@@ -1,0 +1,129 @@
+"""Everything that can be set, each with a default that works. Environment: CAMPUS_MAIL_<NAME in capitals>.
+
+Secrets come from files: the server key lives in its own file, and any setting may be given as a file
+`campus_mail_<name>` in the folder that CAMPUS_MAIL_SECRETS_DIR names (a database URL with a password, say).
+"""
+
+import os
+from pathlib import Path
+from typing import Annotated
+
+from fastapi import Depends
+from pydantic import Field, field_validator
+from pydantic_settings import BaseSettings, SettingsConfigDict
+from starlette.requests import HTTPConnection
+
+from app.errors import StartError
+from maps import CampusMap, CampusMapError, find_map
+from protocol.clock import Clock, RealClock, SharedClock
+
+ROOT = Path(__file__).parents[1]
+
+
+class Settings(BaseSettings):
+    """The service's settings; `docs/service.md` lists them for people."""
+
+    model_config = SettingsConfigDict(env_prefix="CAMPUS_MAIL_", frozen=True, extra="forbid", validate_default=True)
+
+    host: str = Field("127.0.0.1", description="Address to listen on.")
+    port: int = Field(8000, ge=0, le=65535, description="TCP port to listen on; 0 takes a free one.")
+    data: Path = Field(Path("var/service"), description="Folder for database, keys and spool; made with mode 0700.")
+    database_url: str = Field("", description="SQLAlchemy URL; empty means SQLite in the data folder.")
+    spool: Path | None = Field(None, description="Folder for .eml files; default: `spool` in the data folder.")
+    server_key_file: Path | None = Field(
+        None,
+        description="File with the key that hand-over codes derive from; default: `server.key` in the data folder.",
+    )
+    pages: Path = Field(ROOT / "web", description="Folder of the pages.")
+    map: str = Field("test_track", description="Campus map: the name of a built-in one, or a file.")
+    public_url: str = Field("", description="Address of the pages in mails, such as https://mail.campus.example.")
+    allowed_domains: tuple[str, ...] = Field(
+        ("campus.example",), description="Mail domains whose people may sign in and be sent mail (JSON list)."
+    )
+    mail_from: str = Field("mail@campus.example", description="Sender of the service's mails.")
+    default_language: str = Field("en", description="Language of people who have not chosen one: en or fr.")
+    sign_in_code_lifetime_s: float = Field(600, gt=0, description="How long a mailed sign-in code is good for.")
+    session_lifetime_s: float = Field(30 * 86400, gt=0, description="How long a browser stays signed in.")
+    handover_code_lifetime_s: float = Field(7 * 86400, gt=0, description="How long the codes of an order are good for.")
+    sign_in_codes_per_address: str = Field("10 per 15 minutes", description="Sign-in codes mailed to one mail address.")
+    sign_in_tries_per_host: str = Field("200 per 15 minutes", description="Sign-in requests from one network address.")
+    assumed_speed_m_s: float = Field(0.15, gt=0, description="Assumed mean speed of a robot, for arrival windows.")
+    assumed_handover_s: float = Field(120, ge=0, description="Assumed time of one hand-over, for arrival windows.")
+    clock_file: Path | None = Field(None, description="Shared scaled clock of a demonstration; default: real time.")
+    demo_door: Path | None = Field(None, description="Door of a simulated robot; set by the demonstration alone.")
+    log_level: str = Field("INFO", description="DEBUG, INFO, WARNING or ERROR.")
+
+    @field_validator("allowed_domains")
+    @classmethod
+    def _lower_case(cls, domains: tuple[str, ...]) -> tuple[str, ...]:
+        return tuple(domain.lower().removeprefix("@") for domain in domains)
+
+    @property
+    def url_of_database(self) -> str:
+        return self.database_url or f"sqlite+aiosqlite:///{(self.data / 'campus-mail.sqlite').resolve()}"
+
+    @property
+    def spool_folder(self) -> Path:
+        return self.spool or self.data / "spool"
+
+    @property
+    def server_key_path(self) -> Path:
+        return self.server_key_file or self.data / "server.key"
+
+
+def load_settings() -> Settings:
+    """Settings from the environment and the folder of secrets. Raises StartError."""
+    secrets_dir = os.environ.get("CAMPUS_MAIL_SECRETS_DIR")
+    if secrets_dir and not Path(secrets_dir).is_dir():
+        raise StartError(f"CAMPUS_MAIL_SECRETS_DIR={secrets_dir} is no folder. Make it, or unset the variable.")
+    try:
+        return Settings(_secrets_dir=secrets_dir)
+    except ValueError as error:
+        raise StartError(f"The settings cannot be used. {error}") from error
+
+
+def open_clock(settings: Settings) -> Clock:
+    """The machine's clock, or the shared one of a demonstration. Raises StartError."""
+    if settings.clock_file is None:
+        return RealClock()
+    try:
+        return SharedClock(settings.clock_file)
+    except OSError as error:
+        raise StartError(f"The clock file {settings.clock_file} cannot be opened: {error}.") from error
+
+
+def open_map(settings: Settings) -> CampusMap:
+    """The campus. Raises StartError."""
+    try:
+        return find_map(settings.map)
+    except CampusMapError as error:
+        raise StartError(f"The map cannot be used. {error}") from error
+
+
+def make_data_folder(settings: Settings) -> None:
+    """The data folder holds keys and names: nobody else on the machine may look in. Raises StartError."""
+    try:
+        settings.data.mkdir(parents=True, exist_ok=True)
+        settings.data.chmod(0o700)
+    except OSError as error:
+        raise StartError(f"The data folder {settings.data} cannot be made: {error}. Set CAMPUS_MAIL_DATA.") from error
+
+
+def _settings_of(connection: HTTPConnection) -> Settings:
+    settings: Settings = connection.app.state.settings
+    return settings
+
+
+def _clock_of(connection: HTTPConnection) -> Clock:
+    clock: Clock = connection.app.state.clock
+    return clock
+
+
+def _campus_of(connection: HTTPConnection) -> CampusMap:
+    campus: CampusMap = connection.app.state.campus
+    return campus
+
+
+SettingsDep = Annotated[Settings, Depends(_settings_of)]
+ClockDep = Annotated[Clock, Depends(_clock_of)]
+CampusDep = Annotated[CampusMap, Depends(_campus_of)]
