@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from itertools import pairwise
 
 import pytest
 
@@ -94,6 +95,15 @@ def test_a_length_left_out_is_the_length_of_the_tape(write_map):
     assert length_m == pytest.approx(7 - (2 - math.pi / 2), abs=0.01)
 
 
+def test_a_bend_between_close_corners_stays_between_them(write_map):
+    zigzag = CORRIDOR + "via = [[1.0, 0.0], [1.0, 0.0], [1.0, 1.0], [3.0, 1.0]]\nbend_radius_m = 5.0\n"
+    tape = read_map(write_map(TWO_POSTS + zigzag)).corridor("a", "b").tape
+    assert tape[0] == (0, 0)
+    assert tape[-1] == (3, 4)
+    assert all(-1e-9 <= x <= 3 + 1e-9 and -1e-9 <= y <= 4 + 1e-9 for x, y in tape)
+    assert all(before != after for before, after in pairwise(tape))
+
+
 def test_a_bend_is_taped_so_that_a_robot_can_follow_it():
     for corridor in builtin_map("carleton").corridors:
         legs = zip(corridor.tape, corridor.tape[1:], corridor.tape[2:], strict=False)
@@ -146,6 +156,7 @@ def test_the_version_changes_with_a_fact_and_with_nothing_else(write_map):
     assert read_map(write_map("# a remark\n" + TWO_POSTS + CORRIDOR)).version == version
     assert read_map(write_map(TWO_POSTS + CORRIDOR + "length_m = 5.0\n")).version == version
     assert read_map(write_map(TWO_POSTS + CORRIDOR + "length_m = 5.5\n")).version != version
+    assert read_map(write_map(TWO_POSTS.replace("x_m = 0.0", "x_m = -0.0") + CORRIDOR)).version == version
     campus = builtin_map("test_track")
     assert replace(campus, note="another remark").version == campus.version
 
@@ -173,6 +184,7 @@ def test_a_map_is_found_by_name_or_by_file(write_map):
         (TWO_POSTS + CORRIDOR.replace('"b"', '"a"'), "a-a", "both ends are the same"),
         (TWO_POSTS + CORRIDOR + CORRIDOR, "a-b", "2 corridors join"),
         (TWO_POSTS + CORRIDOR + "length_m = 4.9\n", "a-b", "shorter than the straight line of 5.00 m"),
+        (TWO_POSTS.replace("3.0", "0.0").replace("4.0", "0.0") + CORRIDOR, "a-b", "stand in the same place"),
         (TWO_POSTS.replace('"b"', '"a"'), "a", "2 posts have this name"),
         (TWO_POSTS.replace('"b"', '"Post 1"'), "Post 1", "not a name"),
         (TWO_POSTS.replace('"b"', '"CM1:abc"'), "CM1:abc", "looks like a hand-over code"),

@@ -63,9 +63,13 @@ def test_an_approach_without_a_marker_on_the_left_is_named(write_map):
     assert "comes from post2" in found["error unseen_approach post1"].sentence
 
 
-@pytest.mark.parametrize("heading_deg", [90.0, 180.0, -90.0])
-def test_a_marker_that_looks_away_is_not_seen(write_map, heading_deg):
-    turned = f'name = "post1"\nmarkers = [{{ x_m = -0.35, y_m = 3.7, heading_deg = {heading_deg} }}]'
+@pytest.mark.parametrize(
+    ("x_m", "heading_deg"),
+    [(-0.35, 90.0), (-0.35, 180.0), (-0.35, -90.0), (0.35, 0.0), (-0.1, 0.0), (-1.0, 0.0)],
+    ids=["ahead", "away", "back", "other side of the line", "too near", "too far"],
+)
+def test_a_marker_that_the_camera_cannot_see_is_named(write_map, x_m, heading_deg):
+    turned = f'name = "post1"\nmarkers = [{{ x_m = {x_m}, y_m = 3.7, heading_deg = {heading_deg} }}]'
     found = problems_of(write_map, TRACK.replace('name = "post1"', turned))
     assert "error unseen_marker post1, marker 1" in found
 
@@ -88,9 +92,10 @@ def test_a_dock_without_a_marker_is_a_warning(write_map):
     assert list(found) == ["warning unseen_dock post5"]
 
 
-def test_a_name_that_makes_a_dense_marker_is_a_warning(write_map):
-    found = problems_of(write_map, CARLETON.replace('"commons"', '"residence_commons"'))
-    assert list(found) == ["warning dense_marker residence_commons"]
+def test_a_name_beyond_14_characters_makes_a_dense_marker(write_map):
+    assert problems_of(write_map, CARLETON.replace('"commons"', '"dormitories_14"')) == {}
+    found = problems_of(write_map, CARLETON.replace('"commons"', '"residences_of15"'))
+    assert list(found) == ["warning dense_marker residences_of15"]
 
 
 def test_errors_come_before_warnings(write_map):
