@@ -87,7 +87,9 @@ class Memory:
         """
         with self._store.transaction() as database:
             held = self.mission()
-            if not _is_news(held, mission):
+            if refusal := conflict(held, mission):
+                raise refusal
+            if held is not None and held.id == mission.id and mission.update <= held.update:
                 return False
             self._write("next_stop", _NUMBER, next_stop_after(held, self.next_stop(), mission))
             self._write("mission", _MISSION, mission)
@@ -205,10 +207,9 @@ class Memory:
             if judged is not Reception.NEW:
                 return Taken(judged)
             self._write("received", _RECEIVED, Received(journal=envelope.journal, seq=envelope.seq))
-            try:
-                self._apply(envelope.body)
-            except MissionConflict as refusal:
+            if isinstance(envelope.body, Mission) and (refusal := conflict(self.mission(), envelope.body)):
                 return Taken(judged, refusal)
+            self._apply(envelope.body)
             row = (envelope.journal, envelope.seq, type_of(envelope.body), envelope.body.model_dump_json())
             database.execute("INSERT INTO inbox VALUES (?, ?, ?, ?)", row)
             return Taken(judged)
@@ -255,12 +256,11 @@ def next_stop_after(held: Mission | None, next_stop: int, update: Mission) -> in
     return undone[0] if undone else len(update.stops)
 
 
-def _is_news(held: Mission | None, offered: Mission) -> bool:
-    if held is None or held.id != offered.id:
-        return True
-    if held.update == offered.update and held.stops != offered.stops:
-        raise MissionConflict(f"mission {held.id} update {held.update} came again with other stops; the first is kept")
-    return offered.update > held.update
+def conflict(held: Mission | None, offered: Mission) -> MissionConflict | None:
+    """The contradiction between two missions, if they are the same one under the same number with other stops."""
+    if held is None or (held.id, held.update) != (offered.id, offered.update) or held.stops == offered.stops:
+        return None
+    return MissionConflict(f"mission {held.id} update {held.update} came again with other stops; the first is kept")
 
 
 def _without(order_ids: Sequence[str], order_id: str) -> tuple[str, ...]:

@@ -18,6 +18,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Final, Self, TextIO
 
+from robot.errors import RobotError
+
 LAYOUT_VERSION: Final = 1
 MAX_BYTES: Final = 64 * 1024 * 1024
 """Some 100,000 events: months without a server. A bound, so that a full outbox is an error here and not a full disk."""
@@ -31,7 +33,7 @@ CREATE TABLE reported (mission_id TEXT NOT NULL, key TEXT NOT NULL, PRIMARY KEY 
 """
 
 
-class StoreError(RuntimeError):
+class StoreError(RobotError):
     """What the robot must remember cannot be kept or read back."""
 
 
