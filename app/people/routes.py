@@ -1,0 +1,108 @@
+"""Signing in and out, and who one is."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, Depends, Header, Request, Response
+
+from app.database import DatabaseDep, SessionDep
+from app.errors import problems
+from app.people.current_user import CurrentUser, cookie_name
+from app.people.rate_limits import RateLimits
+from app.people.same_origin import refuse_other_sites, require_https_or_loopback
+from app.people.schemas import CodeMailed, CodeRequest, PersonView, SignIn
+from app.people.service import SignInDesk, close_session, language_from
+from app.settings import ClockDep, SettingsDep
+
+router = APIRouter(tags=["people"])
+
+Language = Annotated[str, Header(alias="Accept-Language", max_length=200)]
+
+
+def _desk(request: Request) -> SignInDesk:
+    desk: SignInDesk = request.app.state.sign_in_desk
+    return desk
+
+
+def _limits(request: Request) -> RateLimits:
+    limits: RateLimits = request.app.state.rate_limits
+    return limits
+
+
+async def _door(request: Request, limits: Annotated[RateLimits, Depends(_limits)]) -> None:
+    require_https_or_loopback(request)
+    refuse_other_sites(request)
+    await limits.count_try(request.client.host if request.client else "unknown")
+
+
+DeskDep = Annotated[SignInDesk, Depends(_desk)]
+LimitsDep = Annotated[RateLimits, Depends(_limits)]
+
+
+@router.post("/sign-in/codes", status_code=202, dependencies=[Depends(_door)], responses=problems(403, 422, 429))
+async def mail_code(
+    *,
+    wish: CodeRequest,
+    desk: DeskDep,
+    limits: LimitsDep,
+    session: SessionDep,
+    clock: ClockDep,
+    settings: SettingsDep,
+    accept_language: Language = "",
+) -> CodeMailed:
+    """Mail an 8-digit code to an address of the campus."""
+    await limits.count_code(wish.email)
+    language = language_from(accept_language, settings.default_language)
+    row = await desk.mail_code(session, wish.email, language, clock.utc())
+    return CodeMailed(expires_at=row.expires_at)
+
+
+@router.post("/sign-in", dependencies=[Depends(_door)], responses=problems(401, 403, 422, 429))
+async def sign_in(
+    *,
+    wish: SignIn,
+    request: Request,
+    response: Response,
+    desk: DeskDep,
+    database: DatabaseDep,
+    clock: ClockDep,
+    settings: SettingsDep,
+    accept_language: Language = "",
+) -> PersonView:
+    """Exchange the mailed code for a session cookie."""
+    async with database.transaction() as session:
+        refusal = await desk.check_code(session, wish.email, wish.code, clock.utc())
+    if refusal:
+        raise refusal
+    async with database.transaction() as session:
+        language = language_from(accept_language, settings.default_language)
+        person, token = await desk.open_session(session, wish.email, language, clock.utc())
+    # Browsers count real seconds; a session that ends sooner is refused here.
+    _set_cookie(request, response, token, round(settings.session_lifetime_s))
+    return PersonView.of(person)
+
+
+@router.delete("/session", status_code=204, responses=problems(401, 403))
+async def sign_out(
+    user: CurrentUser, request: Request, response: Response, session: SessionDep, clock: ClockDep
+) -> None:
+    """End this session."""
+    await close_session(session, request.cookies[cookie_name(request)], clock.utc())
+    _set_cookie(request, response, "", 0)
+
+
+@router.get("/me", responses=problems(401, 403))
+async def who_am_i(user: CurrentUser) -> PersonView:
+    """The signed-in person."""
+    return PersonView.of(user)
+
+
+def _set_cookie(request: Request, response: Response, token: str, max_age_s: int) -> None:
+    response.set_cookie(
+        cookie_name(request),
+        token,
+        max_age=max_age_s,
+        path="/",
+        httponly=True,
+        samesite="lax",
+        secure=request.url.scheme == "https",
+    )

@@ -1,0 +1,148 @@
+"""Signing in and out. Codes and sessions are known here by their hashes alone."""
+
+import hmac
+import re
+import secrets
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+from hashlib import sha256
+
+from sqlmodel import col, select
+from sqlmodel.ext.asyncio.session import AsyncSession
+
+from app.mail import Mail, Spool
+from app.people.errors import AddressNotAllowed, CodeExpired, WrongCode
+from app.server_key import ServerKey
+from app.settings import Settings
+from app.tables import Person, PersonSession, Role, SignInCode
+from app.texts import LANGUAGES, text
+
+
+def new_id() -> str:
+    """64 random bits: enough to be unique, short enough to read out."""
+    return secrets.token_hex(8)
+
+
+def is_allowed(email: str, settings: Settings) -> bool:
+    """Whether somebody with this address may have an account."""
+    return email.rpartition("@")[2] in settings.allowed_domains
+
+
+def name_from(email: str) -> str:
+    """`ada.king@…` is presumably Ada King."""
+    words = re.split(r"[._+-]+", email.partition("@")[0])
+    return " ".join(word.capitalize() for word in words if word) or email
+
+
+@dataclass(frozen=True)
+class SignInDesk:
+    """Mails codes and opens sessions."""
+
+    settings: Settings
+    key: ServerKey
+    spool: Spool
+
+    async def mail_code(self, session: AsyncSession, email: str, language: str, now: datetime) -> SignInCode:
+        """Make a code and mail it; only its hash is kept. Raises AddressNotAllowed."""
+        if not is_allowed(email, self.settings):
+            domains = ", ".join(self.settings.allowed_domains)
+            raise AddressNotAllowed(f"Sign in with an address of {domains}.")
+        code = f"{secrets.randbelow(10**8):08d}"
+        lifetime = timedelta(seconds=self.settings.sign_in_code_lifetime_s)
+        row = SignInCode(email=email, code_hash=self._hash(email, code), created_at=now, expires_at=now + lifetime)
+        session.add(row)
+        await session.flush()
+        self.spool.send(self._mail(row, code, language, now))
+        return row
+
+    def _mail(self, row: SignInCode, code: str, language: str, now: datetime) -> Mail:
+        facts = {"code": code, "minutes": str(round(self.settings.sign_in_code_lifetime_s / 60))}
+        subject, body = text(language, "sign_in.title"), text(language, "sign_in.body", facts)
+        return Mail(f"sign-in.{row.id}.{new_id()}", row.email, subject, body, now)
+
+    async def check_code(
+        self, session: AsyncSession, email: str, code: str, now: datetime
+    ) -> WrongCode | CodeExpired | None:
+        """Use up the code, or one of its tries. Errors are returned, not raised: the try must be committed."""
+        newest = select(SignInCode).where(SignInCode.email == email).order_by(col(SignInCode.id).desc()).limit(1)
+        row = (await session.exec(newest.with_for_update())).first()
+        if row is None or row.used_at or row.expires_at <= now or row.tries_left <= 0:
+            return CodeExpired("There is no code for this address that is still good. Ask for a new one.")
+        if not hmac.compare_digest(row.code_hash, self._hash(email, code)):
+            row.tries_left -= 1
+            return WrongCode(f"That is not the code. {row.tries_left} tries are left.")
+        row.used_at = now
+        return None
+
+    async def open_session(self, session: AsyncSession, email: str, language: str, now: datetime) -> tuple[Person, str]:
+        """The person, made at their first sign-in, and the secret of a new session (for the cookie alone)."""
+        person = await self.person(session, email, now, language)
+        token = secrets.token_urlsafe(32)
+        lifetime = timedelta(seconds=self.settings.session_lifetime_s)
+        row = PersonSession(token_hash=hash_of(token), person_id=person.id, created_at=now, expires_at=now + lifetime)
+        session.add(row)
+        return person, token
+
+    async def person(self, session: AsyncSession, email: str, now: datetime, language: str | None = None) -> Person:
+        """Whoever has this address; a new row if nobody yet."""
+        person = await find_person(session, email)
+        if person is None:
+            person = Person(
+                id=new_id(),
+                email=email,
+                name=name_from(email),
+                language=language or self.settings.default_language,
+                roles=[str(Role.MEMBER)],
+                created_at=now,
+            )
+            session.add(person)
+            await session.flush()
+        return person
+
+    def _hash(self, email: str, code: str) -> str:
+        # Keyed: eight digits alone are found by trying them all.
+        return self.key.derive("sign-in", email, code).hex()
+
+
+async def find_person(session: AsyncSession, email: str) -> Person | None:
+    """Whoever has this address (lower case), if anybody."""
+    return (await session.exec(select(Person).where(Person.email == email))).first()
+
+
+async def person_of_session(session: AsyncSession, token: str, now: datetime) -> Person | None:
+    """Whose session this is, if it is still open."""
+    row = await _open_session_row(session, token)
+    if row is None or row.revoked_at or row.expires_at <= now:
+        return None
+    return await session.get(Person, row.person_id)
+
+
+async def close_session(session: AsyncSession, token: str, now: datetime) -> None:
+    """Sign out: the cookie is worthless from now on."""
+    row = await _open_session_row(session, token)
+    if row and row.revoked_at is None:
+        row.revoked_at = now
+
+
+async def _open_session_row(session: AsyncSession, token: str) -> PersonSession | None:
+    return (await session.exec(select(PersonSession).where(PersonSession.token_hash == hash_of(token)))).first()
+
+
+async def set_roles(session: AsyncSession, person: Person, add: set[Role], remove: set[Role]) -> None:
+    """Give and take roles; everybody stays a member."""
+    roles = ({Role(role) for role in person.roles} | add) - remove | {Role.MEMBER}
+    person.roles = sorted(str(role) for role in roles)
+    session.add(person)
+
+
+def hash_of(token: str) -> str:
+    """Tokens are long and random: a plain SHA-256 gives nothing away."""
+    return sha256(token.encode()).hexdigest()
+
+
+def language_from(accept_language: str, default: str) -> str:
+    """The first language of the browser that we speak."""
+    for wish in accept_language.split(","):
+        if (language := wish.strip()[:2].lower()) in LANGUAGES:
+            return language
+    return default
