@@ -1,0 +1,60 @@
+"""The camera as OpenCV's `VideoCapture` would offer it, with the hand-over codes that people hold up to it."""
+
+from collections.abc import Callable
+
+import cv2
+
+from .faults import Faults
+from .frames import HEIGHT, WIDTH, Frame, Renderer, View
+
+SHOWN_FOR_S = 20.0
+
+
+class SimulatedCamera:
+    """`read` draws what the camera sees at this moment; it never waits for the next frame as a real one does."""
+
+    def __init__(
+        self, renderer: Renderer, view: Callable[[], View], clock: Callable[[], float], faults: Faults
+    ) -> None:
+        self._renderer = renderer
+        self._view = view
+        self._clock = clock
+        self._faults = faults
+        self._open = True
+        self._shown: tuple[str, float] | None = None
+        self.frames_read = 0
+
+    def show(self, text: str, for_s: float = SHOWN_FOR_S) -> None:
+        """Somebody holds this text up as a QR code, for so long or until `hide`."""
+        self._shown = (text, self._clock() + for_s)
+
+    def hide(self) -> None:
+        self._shown = None
+
+    @property
+    def shown(self) -> str | None:
+        """The text held up now."""
+        if self._shown and self._clock() >= self._shown[1]:
+            self._shown = None
+        return self._shown[0] if self._shown else None
+
+    def read(self) -> tuple[bool, Frame | None]:
+        """(True, 480 × 640 frame), or (False, None) after `release` and while the camera is dead."""
+        if not self._open or self._faults.camera_dead:
+            return False, None
+        self.frames_read += 1
+        return True, self._renderer.frame(self._view(), self.shown)
+
+    def isOpened(self) -> bool:  # noqa: N802  # OpenCV's own name
+        return self._open
+
+    def get(self, prop: int) -> float:
+        """Width and height; 0.0 for everything else, as OpenCV says for what a camera does not know."""
+        return {cv2.CAP_PROP_FRAME_WIDTH: float(WIDTH), cv2.CAP_PROP_FRAME_HEIGHT: float(HEIGHT)}.get(prop, 0.0)
+
+    def set(self, prop: int, value: float) -> bool:
+        """Only the size it has can be set, and one frame of buffer, which is all there is."""
+        return self.get(prop) == value or (prop == cv2.CAP_PROP_BUFFERSIZE and value == 1)
+
+    def release(self) -> None:
+        self._open = False

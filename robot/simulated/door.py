@@ -1,0 +1,205 @@
+"""The door into the simulated world: a Unix socket for its owner only, one JSON object a line, each answered by one.
+
+It exists in simulation alone: a demo or a test plays the people in the tunnel through it. A command waits until the
+world comes to the gap between two steps, so it never meets half a step.
+"""
+
+import json
+import os
+import socketserver
+import threading
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from queue import Empty, SimpleQueue
+from typing import Any
+
+from .camera import SHOWN_FOR_S
+from .errors import SimulatedWorldError, UnknownSwitch, WrongValue
+from .faults import SWITCHES
+from .obstacles import Person
+from .robot import BUMP_S, SimulatedRobot
+
+ANSWER_WITHIN_S = 5.0
+LONGEST_LINE = 65536
+Request = Mapping[str, Any]
+Tell = Callable[[], dict[str, Any]]
+
+
+@dataclass
+class _Waiting:
+    request: Any
+    answer: SimpleQueue[dict[str, Any]] = field(default_factory=SimpleQueue)
+
+
+class Door:
+    """Listens in a thread of its own; `serve` answers in the thread that steps the world."""
+
+    def __init__(self, robot: SimulatedRobot, path: Path, tell: Tell | None = None) -> None:
+        self._robot = robot
+        self._path = path
+        self._tell = tell or dict
+        self._waiting: SimpleQueue[_Waiting] = SimpleQueue()
+        path.unlink(missing_ok=True)
+        old_mask = os.umask(0o177)  # the socket must never be open to others, not even for a moment
+        try:
+            self._server = _Server(str(path), _Visitor)
+        finally:
+            os.umask(old_mask)
+        self._server.ask = self._ask
+        self._thread = threading.Thread(target=self._server.serve_forever, args=(0.1,), name="door", daemon=True)
+        self._thread.start()
+        robot.before_steps.append(self.serve)
+
+    def serve(self) -> None:
+        """Obey everything that waits."""
+        while True:
+            try:
+                waiting = self._waiting.get_nowait()
+            except Empty:
+                return
+            waiting.answer.put(obey(self._robot, waiting.request, self._tell))
+
+    def _ask(self, line: bytes) -> dict[str, Any]:
+        try:
+            request = json.loads(line)
+        except ValueError as error:
+            return {"ok": False, "error": f"not JSON: {error}"}
+        waiting = _Waiting(request)
+        self._waiting.put(waiting)
+        try:
+            return waiting.answer.get(timeout=ANSWER_WITHIN_S)
+        except Empty:
+            return {"ok": False, "error": f"the world has not moved for {ANSWER_WITHIN_S:g} s; is the robot running?"}
+
+    def close(self) -> None:
+        self._robot.before_steps.remove(self.serve)
+        self._server.shutdown()
+        self._server.server_close()
+        self._thread.join()
+        self._path.unlink(missing_ok=True)
+
+
+class _Server(socketserver.ThreadingUnixStreamServer):
+    daemon_threads = True
+    block_on_close = False
+    ask: Callable[[bytes], dict[str, Any]]
+
+
+class _Visitor(socketserver.StreamRequestHandler):
+    server: _Server
+
+    def handle(self) -> None:
+        while line := self.rfile.readline(LONGEST_LINE):
+            self.wfile.write(json.dumps(self.server.ask(line)).encode() + b"\n")
+
+
+def obey(robot: SimulatedRobot, request: Any, tell: Tell = dict) -> dict[str, Any]:
+    """One command's answer: `{"ok": true, …}`, or `{"ok": false, "error": sentence}`."""
+    try:
+        if not isinstance(request, dict):
+            raise WrongValue("request", request, 'an object such as {"do": "state"}')
+        name = request.get("do")
+        if name not in COMMANDS:
+            raise UnknownSwitch("door command", name, COMMANDS)
+        told = COMMANDS[name](robot, request)
+        extra = tell() if name == "state" else {}
+    except SimulatedWorldError as error:
+        return {"ok": False, "error": str(error)}
+    return {"ok": True, **told, **extra}
+
+
+def _text(request: Request, name: str) -> str:
+    value = request.get(name)
+    if not isinstance(value, str) or not value:
+        raise WrongValue(name, value, "a text")
+    return value
+
+
+def _flag(request: Request, name: str) -> bool:
+    value = request.get(name)
+    if not isinstance(value, bool):
+        raise WrongValue(name, value, "true or false")
+    return value
+
+
+def _number(request: Request, name: str, low: float, high: float, default: float | None = None) -> float:
+    value = request.get(name, default)
+    if isinstance(value, bool) or not isinstance(value, int | float) or not low <= value <= high:
+        raise WrongValue(name, value, f"a number from {low:g} to {high:g}")
+    return float(value)
+
+
+def _show_code(robot: SimulatedRobot, request: Request) -> dict[str, Any]:
+    robot.show_code(_text(request, "text"), _number(request, "for_s", 0, 3600, SHOWN_FOR_S))
+    return {}
+
+
+def _hide_code(robot: SimulatedRobot, _: Request) -> dict[str, Any]:
+    robot.hide_code()
+    return {}
+
+
+def _battery(robot: SimulatedRobot, request: Request) -> dict[str, Any]:
+    robot.sag(_number(request, "ratio", 0, 1))
+    return {}
+
+
+def _bump(robot: SimulatedRobot, request: Request) -> dict[str, Any]:
+    robot.bump(_text(request, "side"), _number(request, "for_s", 0, 3600, BUMP_S))
+    return {}
+
+
+def _cliff(robot: SimulatedRobot, request: Request) -> dict[str, Any]:
+    robot.cliff(_flag(request, "on"))
+    return {}
+
+
+def _wheel_drop(robot: SimulatedRobot, request: Request) -> dict[str, Any]:
+    robot.lift(_flag(request, "on"))
+    return {}
+
+
+def _fault(robot: SimulatedRobot, request: Request) -> dict[str, Any]:
+    robot.set_fault(request.get("name"), request.get("value"))
+    return {"faults": robot.faults.on()}
+
+
+def _faults(_: SimulatedRobot, __: Request) -> dict[str, Any]:
+    return {"switches": SWITCHES}
+
+
+def _person(robot: SimulatedRobot, request: Request) -> dict[str, Any]:
+    x_m, y_m = (_number(request, name, -1e5, 1e5) for name in ("x_m", "y_m"))
+    robot.world.obstacles.append(Person(x_m, y_m, _number(request, "radius_m", 0.01, 5, 0.2)))
+    return {}
+
+
+def _clear_people(robot: SimulatedRobot, _: Request) -> dict[str, Any]:
+    robot.world.obstacles[:] = [one for one in robot.world.obstacles if not isinstance(one, Person)]
+    return {}
+
+
+def _unplug(robot: SimulatedRobot, _: Request) -> dict[str, Any]:
+    robot.unplug()
+    return {}
+
+
+def _state(robot: SimulatedRobot, _: Request) -> dict[str, Any]:
+    return robot.state()
+
+
+COMMANDS: dict[str, Callable[[SimulatedRobot, Request], dict[str, Any]]] = {
+    "show_code": _show_code,  # {"text": …, "for_s"?: 20}
+    "hide_code": _hide_code,
+    "battery": _battery,  # {"ratio": 0…1}
+    "bump": _bump,  # {"side": "left" | "right" | "both", "for_s"?: 0.5}
+    "cliff": _cliff,  # {"on": true | false}
+    "wheel_drop": _wheel_drop,  # {"on": true | false}
+    "fault": _fault,  # {"name": one of SWITCHES, "value": …}
+    "faults": _faults,
+    "person": _person,  # {"x_m": …, "y_m": …, "radius_m"?: 0.2}
+    "clear_people": _clear_people,
+    "unplug": _unplug,
+    "state": _state,
+}

@@ -1,0 +1,34 @@
+"""What can be asked of the simulated world in a wrong way.
+
+SimulatedWorldError
+├── UnknownSwitch   no fault or door command has this name
+├── WrongValue      the name is right, the value is not
+└── UnknownStart    the robot cannot begin there
+"""
+
+from collections.abc import Iterable
+
+
+class SimulatedWorldError(Exception):
+    """Something was asked of the simulated world that it does not have."""
+
+
+class UnknownSwitch(SimulatedWorldError):
+    """The sentence lists the names there are."""
+
+    def __init__(self, kind: str, name: object, known: Iterable[str]) -> None:
+        super().__init__(f"There is no {kind} {name!r}. There are: {', '.join(sorted(known))}.")
+
+
+class WrongValue(SimulatedWorldError):
+    """The sentence says which value was expected."""
+
+    def __init__(self, name: str, value: object, expected: str) -> None:
+        super().__init__(f"{name}: {value!r} does not fit; expected {expected}.")
+
+
+class UnknownStart(SimulatedWorldError):
+    """The map has no such post, dock or corridor to start at."""
+
+    def __init__(self, start: str, why: str) -> None:
+        super().__init__(f"A robot cannot start at {start!r}: {why}. Say 'dock', a post, or POST:TOWARDS.")

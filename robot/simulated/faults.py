@@ -1,0 +1,96 @@
+"""What can go wrong, as switches. Everything is off at first; `python -m robot.simulated` and the door list them."""
+
+from dataclasses import dataclass, fields
+from typing import Any
+
+from .errors import UnknownSwitch, WrongValue
+
+
+@dataclass
+class Faults:
+    """The present position of every switch. The table SWITCHES says what each does."""
+
+    drop_byte: float = 0.0
+    flip_byte: float = 0.0
+    frozen: bool = False
+    mode_offset: int = 0
+    mode_silent: bool = False
+    brc_dead: bool = False
+    never_sleeps: bool = False
+    bump_left: bool = False
+    bump_right: bool = False
+    cliff_left: bool = False
+    cliff_front_left: bool = False
+    cliff_front_right: bool = False
+    cliff_right: bool = False
+    wheel_drop_left: bool = False
+    wheel_drop_right: bool = False
+    over_current: bool = False
+    stuck: bool = False
+    virtual_wall: bool = False
+    dock_beams_off: bool = False
+    dock_unpowered: bool = False
+    contact_bounce: bool = False
+    charge_fault: bool = False
+    floor_flip: float = 0.0
+    floor_edge_mm: float = 0.0
+    pins_stuck: bool = False
+    camera_dead: bool = False
+    darkness: float = 0.0
+    dirt: float = 0.0
+
+    def set(self, name: object, value: Any) -> None:
+        """Raises UnknownSwitch or WrongValue; a switch never takes a value that it cannot mean."""
+        if name not in SWITCHES:
+            raise UnknownSwitch("fault", name, SWITCHES)
+        kind = type(getattr(Faults, str(name)))
+        setattr(self, str(name), _checked(str(name), kind, value))
+
+    def on(self) -> dict[str, float | bool]:
+        """The switches that are not in their resting position."""
+        present = {row.name: getattr(self, row.name) for row in fields(self)}
+        return {name: value for name, value in present.items() if value != getattr(Faults, name)}
+
+
+def _checked(name: str, kind: type, value: Any) -> Any:
+    is_number = isinstance(value, int | float) and not isinstance(value, bool)
+    if kind is bool and isinstance(value, bool):
+        return value
+    if kind is int and isinstance(value, int) and not isinstance(value, bool):
+        return value
+    if kind is float and is_number and 0 <= value <= (10 if name.endswith("_mm") else 1):
+        return float(value)
+    expected = {bool: "true or false", int: "a whole number", float: "a number, a chance or share from 0 to 1"}
+    raise WrongValue(name, value, expected[kind])
+
+
+SWITCHES: dict[str, str] = {
+    "drop_byte": "chance that a byte from the robot is lost",
+    "flip_byte": "chance that one bit of a byte from the robot is turned over",
+    "frozen": "the robot neither hears nor says anything; its wheels go on",
+    "mode_offset": "added to the mode that packet 35 tells (some report one more, one was seen at 32)",
+    "mode_silent": "the robot never answers a query that holds packet 35 (old firmware)",
+    "brc_dead": "pulses on the BRC pin have no effect",
+    "never_sleeps": "Passive mode does not fall asleep after five minutes",
+    "bump_left": "the left half of the bumper is pressed",
+    "bump_right": "the right half of the bumper is pressed",
+    "cliff_left": "the left cliff sensor sees no floor",
+    "cliff_front_left": "the front left cliff sensor sees no floor",
+    "cliff_front_right": "the front right cliff sensor sees no floor",
+    "cliff_right": "the right cliff sensor sees no floor",
+    "wheel_drop_left": "the left wheel hangs down",
+    "wheel_drop_right": "the right wheel hangs down",
+    "over_current": "both wheel motors report over-current",
+    "stuck": "the wheels turn and count, the robot does not move (stasis reads 0)",
+    "virtual_wall": "the virtual wall beam is seen",
+    "dock_beams_off": "the docks send no infrared",
+    "dock_unpowered": "the docks have no mains",
+    "contact_bounce": "the charging contacts lose touch again and again",
+    "charge_fault": "the charger reports a fault (state 5) and does not charge",
+    "floor_flip": "chance that a line diode reads the opposite of what is under it",
+    "floor_edge_mm": "width of the reflecting tape edge in which a diode reads by chance, in mm",
+    "pins_stuck": "the line pins keep their last value",
+    "camera_dead": "the camera gives no frame",
+    "darkness": "share of the light that is missing",
+    "dirt": "share of every marker that is covered by dirt",
+}

@@ -1,0 +1,238 @@
+"""What the camera sees: 640 × 480 frames from the robot's left side, 254 mm above the floor, looking left.
+
+The marker sheets are those that `python -m maps markers` prints, seen in true perspective; a person may hold a
+hand-over code in front of the camera. What is not worth drawing is a dim wall with noise, drawn once.
+"""
+
+import math
+from dataclasses import dataclass
+from random import Random
+
+import cv2
+import numpy as np
+import segno
+from numpy.typing import NDArray
+
+from maps import Marker
+from maps.sheets import PAGE_HEIGHT_MM, PAGE_WIDTH_MM, marker_code
+
+from .faults import Faults
+
+WIDTH, HEIGHT = 640, 480
+BACKGROUNDS = 4
+Frame = NDArray[np.uint8]
+
+CODE_LEFT_MM, CODE_TOP_MM = 34, 50  # of the marker sheet
+PX_PER_MODULE = (4, 8, 16)  # textures of a sheet: the renderer takes the nearest that is not finer than twice the view
+SEEN_FROM_M, SEEN_TO_M = 0.08, 1.5
+QUIET_MODULES = 4
+SHOWN_PX_PER_MODULE = 8
+WALL, PAPER = 96, 225
+
+
+@dataclass(frozen=True)
+class CameraMount:
+    """Where the lens is, from the middle of the axle, and what it sees; `exposure_s` blurs what moves."""
+
+    ahead_m: float = 0.0
+    left_m: float = 0.10
+    height_m: float = 0.254
+    across_rad: float = math.radians(60)
+    exposure_s: float = 0.008
+    noise: float = 4.0
+    colour: bool = True
+
+    @property
+    def focal_px(self) -> float:
+        return WIDTH / 2 / math.tan(self.across_rad / 2)
+
+
+@dataclass(frozen=True)
+class View:
+    """Where the robot is and how it moves while the shutter is open."""
+
+    x_m: float
+    y_m: float
+    heading_rad: float
+    speed_m_s: float = 0.0
+    turning_rad_s: float = 0.0
+
+
+class Renderer:
+    """Frames of one robot's camera."""
+
+    def __init__(self, markers: tuple[Marker, ...], mount: CameraMount, faults: Faults, seed: int) -> None:
+        self._markers = markers
+        self._mount = mount
+        self._faults = faults
+        self._random = Random(f"{seed}/camera")
+        self._walls = _walls(mount.noise, seed)
+        self._noise = _noise(mount.noise, seed)
+        self._sheets: dict[tuple[str, int], Frame] = {}
+        self._shown: dict[str, tuple[Frame, ...]] = {}
+
+    def frame(self, view: View, shown: str | None = None) -> Frame:
+        """640 × 480, BGR as OpenCV's cameras give it, or grey. `shown` is a text held up as a QR code."""
+        grey = self._marker_frame(view) if shown is None else self._random.choice(self._held_up(shown))
+        if self._faults.darkness:
+            grey = _darker(grey, self._faults.darkness)
+        if self._mount.colour:
+            return np.asarray(cv2.cvtColor(grey, cv2.COLOR_GRAY2BGR), np.uint8)
+        return grey.copy()
+
+    def _marker_frame(self, view: View) -> Frame:
+        frame = self._random.choice(self._walls)
+        drawn = False
+        for marker in self._markers:
+            corners = sheet_corners(marker, view, self._mount)
+            if corners is not None:
+                frame = frame if drawn else frame.copy()
+                drawn = True
+                self._draw(frame, marker, corners, view)
+        return frame
+
+    def _draw(self, frame: Frame, marker: Marker, corners: NDArray[np.float32], view: View) -> None:
+        left, top = np.maximum(np.floor(corners.min(axis=0)).astype(int) - 8, 0)
+        right, bottom = np.minimum(np.ceil(corners.max(axis=0)).astype(int) + 8, (WIDTH, HEIGHT))
+        if right - left < 2 or bottom - top < 2:
+            return
+        sheet = self._sheet(marker.post, float(np.linalg.norm(corners[1] - corners[0])))
+        height, width = sheet.shape
+        texture = np.array(((0, 0), (width, 0), (width, height), (0, height)), np.float32) - 0.5
+        seen = corners - np.array((left, top), np.float32) - 0.5
+        warp = cv2.getPerspectiveTransform(texture, seen.astype(np.float32))
+        part = frame[top:bottom, left:right]
+        size = (int(right - left), int(bottom - top))
+        cv2.warpPerspective(sheet, warp, size, dst=part, flags=cv2.INTER_LINEAR, borderMode=cv2.BORDER_TRANSPARENT)
+        self._soften(part, corners, marker, view)
+        row, column = self._random.randrange(64), self._random.randrange(64)
+        noise = self._noise[row : row + size[1], column : column + size[0]]
+        part[:] = cv2.add(part, noise, dtype=cv2.CV_8U)
+
+    def _soften(self, part: Frame, corners: NDArray[np.float32], marker: Marker, view: View) -> None:
+        """What moves while the shutter is open is smeared along the picture's rows."""
+        distance_m = max(_seen(marker.x_m, marker.y_m, view, self._mount)[0], 0.05)
+        px_per_s = self._mount.focal_px * (abs(view.speed_m_s) / distance_m + abs(view.turning_rad_s))
+        smear = round(px_per_s * self._mount.exposure_s)
+        if smear > 1:
+            cv2.blur(part, (smear, 1), dst=part)
+
+    def _sheet(self, post: str, width_px: float) -> Frame:
+        """The printed page as a texture, coarse enough that drawing it smaller does not alias."""
+        fitting = [size for size in PX_PER_MODULE if _page_px(post, size) <= 2 * width_px]
+        key = (post, max(fitting, default=PX_PER_MODULE[0]))
+        if key not in self._sheets:
+            self._sheets[key] = _page(post, key[1], self._faults.dirt, self._random)
+        return self._sheets[key]
+
+    def forget_sheets(self) -> None:
+        """Draw the pages anew: they got dirty, or were wiped."""
+        self._sheets.clear()
+
+    def _held_up(self, text: str) -> tuple[Frame, ...]:
+        if text not in self._shown:
+            self._shown = {text: tuple(_held_up(text, wall, self._random) for wall in self._walls)}
+        return self._shown[text]
+
+
+def _seen(x_m: float, y_m: float, view: View, mount: CameraMount) -> tuple[float, float]:
+    """(distance along the camera's axis, right of it), in metres. The camera looks to the robot's left."""
+    along, across = math.cos(view.heading_rad), math.sin(view.heading_rad)
+    dx, dy = x_m - view.x_m, y_m - view.y_m
+    ahead, left = dx * along + dy * across - mount.ahead_m, dy * along - dx * across - mount.left_m
+    return left, ahead
+
+
+def sheet_corners(marker: Marker, view: View, mount: CameraMount) -> NDArray[np.float32] | None:
+    """Where the page's corners (top left, top right, bottom right, bottom left) are in the picture; None if unseen."""
+    away_m, right_m = _seen(marker.x_m, marker.y_m, view, mount)
+    if not SEEN_FROM_M < away_m < SEEN_TO_M or abs(right_m) > away_m + marker.size_m:
+        return None
+    # Facing it, the printed left edge is on the left of somebody who looks at it: along the face, turned right.
+    face = marker.heading_rad
+    if math.cos(face - (view.heading_rad + math.pi / 2)) > -0.1:
+        return None
+    per_mm = marker.size_m / 80
+    rightward_x, rightward_y = -math.sin(face) * per_mm, math.cos(face) * per_mm
+    edges_mm = (-CODE_LEFT_MM - 40, PAGE_WIDTH_MM - CODE_LEFT_MM - 40)
+    heights_mm = (CODE_TOP_MM + 40, CODE_TOP_MM + 40 - PAGE_HEIGHT_MM)
+    columns = []
+    for edge in edges_mm:
+        away, right = _seen(marker.x_m + rightward_x * edge, marker.y_m + rightward_y * edge, view, mount)
+        if away < SEEN_FROM_M / 2:
+            return None
+        columns.append((away, right))
+    return _projected(columns, [height * per_mm + 0.254 - mount.height_m for height in heights_mm], mount.focal_px)
+
+
+def _projected(columns: list[tuple[float, float]], heights_m: list[float], focal_px: float) -> NDArray[np.float32]:
+    order = ((0, 0), (1, 0), (1, 1), (0, 1))
+    return np.array(
+        [
+            (WIDTH / 2 + focal_px * columns[c][1] / columns[c][0], HEIGHT / 2 - focal_px * heights_m[r] / columns[c][0])
+            for c, r in order
+        ],
+        np.float32,
+    )
+
+
+def _page_px(post: str, px_per_module: int) -> float:
+    return len(marker_code(post).matrix) * px_per_module * PAGE_WIDTH_MM / 80
+
+
+def _page(post: str, px_per_module: int, dirt: float, random: Random) -> Frame:
+    code = _code_picture(marker_code(post), px_per_module, quiet=0)
+    px_per_mm = code.shape[0] / 80
+    page = np.full((round(PAGE_HEIGHT_MM * px_per_mm), round(PAGE_WIDTH_MM * px_per_mm)), PAPER, np.uint8)
+    left, top = round(CODE_LEFT_MM * px_per_mm), round(CODE_TOP_MM * px_per_mm)
+    page[top : top + code.shape[0], left : left + code.shape[1]] = code
+    return _dirtied(page, (left, top, code.shape[0]), dirt, random) if dirt else page
+
+
+def _dirtied(page: Frame, place: tuple[int, int, int], share: float, random: Random) -> Frame:
+    """Grey spots on the code until about this share of it is covered."""
+    left, top, size = place
+    radius = max(2, round(size * 0.05))
+    for _ in range(round(share * size * size / (math.pi * radius * radius))):
+        centre = (left + random.randrange(size), top + random.randrange(size))
+        cv2.circle(page, centre, radius, random.randrange(40, 200), -1)
+    return page
+
+
+def _code_picture(code: segno.QRCode, px_per_module: int, quiet: int) -> Frame:
+    modules = np.pad(np.array([list(row) for row in code.matrix], np.uint8), quiet)
+    ink = np.where(modules > 0, 25, PAPER).astype(np.uint8)
+    return np.kron(ink, np.ones((px_per_module, px_per_module), np.uint8))
+
+
+def _held_up(text: str, wall: Frame, random: Random) -> Frame:
+    """A phone's screen with the code, a little turned and never twice in the same place."""
+    code = _code_picture(segno.make(text, error="m", micro=False), SHOWN_PX_PER_MODULE, QUIET_MODULES)
+    size = code.shape[0]
+    scale = min(1.0, 440 / size)
+    turn = cv2.getRotationMatrix2D((size / 2, size / 2), random.uniform(-6, 6), scale)
+    turn[0, 2] += WIDTH / 2 - size / 2 + random.uniform(-20, 20)
+    turn[1, 2] += HEIGHT / 2 - size / 2 + random.uniform(-8, 8)
+    frame = wall.copy()
+    cv2.warpAffine(code, turn, (WIDTH, HEIGHT), dst=frame, flags=cv2.INTER_LINEAR, borderMode=cv2.BORDER_TRANSPARENT)
+    return frame
+
+
+def _walls(noise: float, seed: int) -> tuple[Frame, ...]:
+    """A dim wall above a darker floor, with the sensor's noise."""
+    random = np.random.default_rng(seed)
+    rows = np.linspace(WALL + 20, WALL - 20, HEIGHT)[:, None] * np.ones((1, WIDTH))
+    rows[int(HEIGHT * 0.8) :] -= 30
+    return tuple(
+        np.clip(rows + random.normal(0, noise, (HEIGHT, WIDTH)), 0, 255).astype(np.uint8) for _ in range(BACKGROUNDS)
+    )
+
+
+def _noise(noise: float, seed: int) -> NDArray[np.int16]:
+    """A little larger than a frame, so that a random part of it is always new."""
+    random = np.random.default_rng(seed + 1)
+    return random.normal(0, noise, (HEIGHT + 64, WIDTH + 64)).astype(np.int16)
+
+
+def _darker(frame: Frame, share: float) -> Frame:
+    return np.asarray(cv2.convertScaleAbs(frame, alpha=1.0 - share), np.uint8)

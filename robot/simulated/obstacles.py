@@ -1,0 +1,80 @@
+"""What a robot can run into: people as circles, walls as lines. Contact is where the bumper's circle overlaps one."""
+
+import math
+from dataclasses import dataclass
+
+BUMPER_RADIUS_M = 0.3485 / 2
+# The bumper is the front half; a touch within this angle of straight ahead presses both ends [A].
+BOTH_ENDS_RAD = math.radians(12)
+BUMPER_RAD = math.radians(95)
+LIGHT_RANGE_M = 0.12
+# Bearing of each light bumper from straight ahead, left positive, in the order of packets 46 to 51 [A].
+LIGHTS_RAD = tuple(math.radians(angle) for angle in (65, 38, 13, -13, -38, -65))
+LIGHT_WIDTH_RAD = math.radians(20)
+
+
+@dataclass(frozen=True)
+class Person:
+    """Somebody who stands in the way."""
+
+    x_m: float
+    y_m: float
+    radius_m: float = 0.2
+
+    def nearest(self, x_m: float, y_m: float) -> tuple[float, float, float]:
+        """(x, y) of the nearest point to measure from, and how far the surface stands out from it."""
+        return self.x_m, self.y_m, self.radius_m
+
+
+@dataclass(frozen=True)
+class Wall:
+    """A straight wall between two points."""
+
+    ax_m: float
+    ay_m: float
+    bx_m: float
+    by_m: float
+
+    def nearest(self, x_m: float, y_m: float) -> tuple[float, float, float]:
+        """(x, y) of the nearest point of the wall; it has no thickness."""
+        dx, dy = self.bx_m - self.ax_m, self.by_m - self.ay_m
+        share = ((x_m - self.ax_m) * dx + (y_m - self.ay_m) * dy) / (dx * dx + dy * dy or 1.0)
+        share = min(max(share, 0.0), 1.0)
+        return self.ax_m + share * dx, self.ay_m + share * dy, 0.0
+
+
+Obstacle = Person | Wall
+
+
+@dataclass(frozen=True)
+class Contact:
+    """`gap_m` between bumper and obstacle (negative: overlapping), `bearing_rad` to it, left positive."""
+
+    gap_m: float
+    bearing_rad: float
+
+    @property
+    def pressed(self) -> tuple[bool, bool]:
+        """(left, right) of the bumper."""
+        if abs(self.bearing_rad) > BUMPER_RAD:
+            return False, False
+        return self.bearing_rad > -BOTH_ENDS_RAD, self.bearing_rad < BOTH_ENDS_RAD
+
+
+def contact(obstacle: Obstacle, x_m: float, y_m: float, heading_rad: float) -> Contact:
+    """How a robot at this pose stands to the obstacle."""
+    near_x, near_y, radius = obstacle.nearest(x_m, y_m)
+    bearing = math.atan2(near_y - y_m, near_x - x_m) - heading_rad
+    gap = math.hypot(near_x - x_m, near_y - y_m) - radius - BUMPER_RADIUS_M
+    return Contact(gap, (bearing + math.pi) % math.tau - math.pi)
+
+
+def light_signals(contacts: list[Contact]) -> tuple[int, ...]:
+    """Packets 46 to 51: brighter the nearer, 0 to 4095 [A]."""
+    return tuple(max((_signal(one, at_rad) for one in contacts), default=0) for at_rad in LIGHTS_RAD)
+
+
+def _signal(one: Contact, at_rad: float) -> int:
+    if one.gap_m > LIGHT_RANGE_M or abs(one.bearing_rad - at_rad) > LIGHT_WIDTH_RAD:
+        return 0
+    return min(4095, round(2000 * (1 - max(one.gap_m, 0.0) / LIGHT_RANGE_M)))

@@ -1,0 +1,37 @@
+"""What surrounds the robots: floor with tape, docks, markers, obstacles. Several robots can share one."""
+
+from collections.abc import Iterable, Iterator
+from random import Random
+
+from maps import CampusMap, Dock, Marker
+
+from .docking import Beside, beside
+from .floor import Floor
+from .obstacles import Contact, Obstacle, contact
+
+# Farther away nothing touches and nothing is seen by the light bumpers.
+NEAR_M = 2.0
+
+
+class World:
+    """`obstacles` may be changed at any time between steps; `gap_m` > 0 wears holes into the tape."""
+
+    def __init__(
+        self, campus: CampusMap, obstacles: Iterable[Obstacle] = (), gap_m: float = 0.0, seed: int = 0
+    ) -> None:
+        self.campus = campus
+        self.floor = Floor(campus, gap_m, Random(f"{seed}/gaps"))
+        self.obstacles = list(obstacles)
+        self.docks: tuple[Dock, ...] = tuple(post.dock for post in campus.docks() if post.dock)
+        self.markers: tuple[Marker, ...] = tuple(marker for post in campus.posts.values() for marker in post.markers)
+
+    def dock_beside(self, x_m: float, y_m: float, heading_rad: float) -> Beside | None:
+        """How a robot at this pose stands to the nearest dock, if one is within sight of its beams."""
+        nearest = min(self.docks, key=lambda dock: abs(dock.x_m - x_m) + abs(dock.y_m - y_m), default=None)
+        if nearest is None or max(abs(nearest.x_m - x_m), abs(nearest.y_m - y_m)) > NEAR_M:
+            return None
+        return beside(nearest, x_m, y_m, heading_rad)
+
+    def contacts(self, x_m: float, y_m: float, heading_rad: float) -> Iterator[Contact]:
+        """Every obstacle as a robot at this pose meets it."""
+        return (contact(obstacle, x_m, y_m, heading_rad) for obstacle in self.obstacles)
