@@ -229,6 +229,8 @@ class Odometry:
     heading_rad: float = 0.0
     travelled_mm: float = 0.0
     """Sum of all movement of the axle's centre, forwards and backwards."""
+    ahead_mm: float = 0.0
+    """Movement of the axle's centre along its own heading, backwards taken off."""
     spot_turn_rad: float = 0.0
     """Net rotation on the spot alone: turns, not bends of the line."""
 

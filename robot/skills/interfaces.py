@@ -79,6 +79,8 @@ class Running:
 
     wheels: WheelSpeeds | None = None
     requests: tuple[BaseRequest, ...] = ()
+    searching: bool = False
+    """The line is lost and looked for: the loop counts these episodes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,8 +119,11 @@ class Skill(Protocol):
 
     @property
     def limit_s(self) -> float:
-        """After this the loop ends it with Failed("timeout"), or with what `on_timeout` says."""
+        """After so long the loop ends it with Failed(on_timeout)."""
         ...
+
+    @property
+    def on_timeout(self) -> str: ...
 
     def start(self, view: View, now: float) -> None: ...
 
