@@ -6,6 +6,7 @@ hand-over code in front of the camera. What is not worth drawing is a dim wall w
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from random import Random
 
 import cv2
@@ -27,7 +28,7 @@ PX_PER_MODULE = (4, 8, 16)  # textures of a sheet: the renderer takes the neares
 SEEN_FROM_M, SEEN_TO_M = 0.08, 1.5
 QUIET_MODULES = 4
 SHOWN_PX_PER_MODULE = 8
-WALL, PAPER = 96, 225
+WALL, PAPER, INK = 96, 225, 25
 
 
 @dataclass(frozen=True)
@@ -176,12 +177,19 @@ def _projected(columns: list[tuple[float, float]], heights_m: list[float], focal
     )
 
 
+@lru_cache
+def _modules(code: str, error: str) -> NDArray[np.uint8]:
+    """1 for every dark module. Making a code costs milliseconds, so it is kept."""
+    made = marker_code(code) if error == "h" else segno.make(code, error=error, micro=False)
+    return np.array([list(row) for row in made.matrix], np.uint8)
+
+
 def _page_px(post: str, px_per_module: int) -> float:
-    return len(marker_code(post).matrix) * px_per_module * PAGE_WIDTH_MM / 80
+    return len(_modules(post, "h")) * px_per_module * PAGE_WIDTH_MM / 80
 
 
 def _page(post: str, px_per_module: int, dirt: float, random: Random) -> Frame:
-    code = _code_picture(marker_code(post), px_per_module, quiet=0)
+    code = _code_picture(_modules(post, "h"), px_per_module, quiet=0)
     px_per_mm = code.shape[0] / 80
     page = np.full((round(PAGE_HEIGHT_MM * px_per_mm), round(PAGE_WIDTH_MM * px_per_mm)), PAPER, np.uint8)
     left, top = round(CODE_LEFT_MM * px_per_mm), round(CODE_TOP_MM * px_per_mm)
@@ -199,15 +207,14 @@ def _dirtied(page: Frame, place: tuple[int, int, int], share: float, random: Ran
     return page
 
 
-def _code_picture(code: segno.QRCode, px_per_module: int, quiet: int) -> Frame:
-    modules = np.pad(np.array([list(row) for row in code.matrix], np.uint8), quiet)
-    ink = np.where(modules > 0, 25, PAPER).astype(np.uint8)
+def _code_picture(modules: NDArray[np.uint8], px_per_module: int, quiet: int) -> Frame:
+    ink = np.where(np.pad(modules, quiet) > 0, INK, PAPER).astype(np.uint8)
     return np.kron(ink, np.ones((px_per_module, px_per_module), np.uint8))
 
 
 def _held_up(text: str, wall: Frame, random: Random) -> Frame:
     """A phone's screen with the code, a little turned and never twice in the same place."""
-    code = _code_picture(segno.make(text, error="m", micro=False), SHOWN_PX_PER_MODULE, QUIET_MODULES)
+    code = _code_picture(_modules(text, "m"), SHOWN_PX_PER_MODULE, QUIET_MODULES)
     size = code.shape[0]
     scale = min(1.0, 440 / size)
     turn = cv2.getRotationMatrix2D((size / 2, size / 2), random.uniform(-6, 6), scale)
