@@ -1,7 +1,7 @@
 """What the server must hear of, kept on the robot's disk until the server has committed it.
 
-The journal is born with the database. Numbers begin at 1 and never restart within it, not even after everything has
-been acknowledged; that is how the server knows a repeated message from a new one.
+The journal is born with the database. Numbers begin at 1 and never go back, not even after everything has been
+acknowledged; that is how the server knows a repeated message from a new one.
 """
 
 import sqlite3
@@ -54,7 +54,10 @@ class Outbox:
         if name not in DURABLE or name not in TO_SERVER:
             raise NotDurable(f"{name} is not kept; durable are {', '.join(sorted(DURABLE & TO_SERVER.keys()))}")
         with self._store.transaction() as database:
-            return _insert(database, name, message.model_dump_json())
+            values = (name, message.model_dump_json())
+            cursor = database.execute("INSERT INTO outbox (type, body) VALUES (?, ?)", values)
+            assert cursor.lastrowid is not None  # noqa: S101  # sqlite3 gives one for every INSERT
+            return cursor.lastrowid
 
     def pending(self, after: int = 0, limit: int = 100) -> Sequence[Kept]:
         """The messages with a `seq` above `after` that nobody has acknowledged yet, oldest first, at most `limit`."""
@@ -86,19 +89,13 @@ class Outbox:
             return int(lowest) if lowest is not None else _last_seq(database) + 1
 
     def renew_journal(self) -> None:
-        """Begin another journal; what waits is numbered anew from 1.
+        """Begin another journal; the numbers go on, and what waits belongs to the new one.
 
         For a database that was put back from an older copy: its next numbers would be ones that the server has already
         seen, and new messages would be taken for repeated ones.
         """
         with self._store.transaction() as database:
-            rows = database.execute("SELECT type, body FROM outbox ORDER BY seq").fetchall()
-            database.execute("DELETE FROM outbox")
-            database.execute("DELETE FROM sqlite_sequence WHERE name = 'outbox'")
-            journal = _begin_journal(database)
-            for name, body in rows:
-                _insert(database, name, body)
-        self._journal = journal
+            self._journal = _begin_journal(database)
 
 
 def _journal(database: sqlite3.Connection) -> str | None:
@@ -110,12 +107,6 @@ def _begin_journal(database: sqlite3.Connection) -> str:
     journal = str(uuid.uuid4())
     database.execute("INSERT OR REPLACE INTO facts (name, value) VALUES (?, ?)", (_JOURNAL, journal))
     return journal
-
-
-def _insert(database: sqlite3.Connection, name: str, body: str) -> int:
-    cursor = database.execute("INSERT INTO outbox (type, body) VALUES (?, ?)", (name, body))
-    assert cursor.lastrowid is not None  # noqa: S101  # sqlite3 gives one for every INSERT
-    return cursor.lastrowid
 
 
 def _last_seq(database: sqlite3.Connection) -> int:
