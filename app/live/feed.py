@@ -1,0 +1,110 @@
+"""The feed: whoever changes something publishes it after the commit; every open page hears what concerns it.
+
+One process with everything in memory (thin: a broker behind the same `Feed` when there are several processes).
+"""
+
+import asyncio
+import secrets
+from collections import deque
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any, Final, Protocol
+
+from app.tables import Person, Role
+
+REPLAYED: Final = 1000
+QUEUED: Final = 200
+
+
+@dataclass(frozen=True)
+class Happening:
+    """One event of the stream: its name, its JSON, and for whom it is.
+
+    `person_id` is the one person it is for; `role` all who have that role; with neither it is for everybody signed in.
+    """
+
+    event: str
+    data: Mapping[str, Any]
+    person_id: str | None = None
+    role: Role | None = None
+
+    def is_for(self, person: Person) -> bool:
+        if self.person_id is not None:
+            return self.person_id == person.id
+        return self.role is None or person.has_role(self.role)
+
+
+@dataclass(frozen=True)
+class Numbered:
+    """A happening and its place in the stream (`id` of the event)."""
+
+    id: str
+    happening: Happening
+
+
+class Feed(Protocol):
+    """What features see of the feed."""
+
+    def publish(self, happening: Happening) -> None:
+        """Tell whoever listens; never waits. Call it after the commit (`app.database.after_commit`)."""
+        ...
+
+
+class LocalFeed:
+    """The feed of one process. Not for other threads."""
+
+    def __init__(self) -> None:
+        # Numbers begin anew with every start of the service; an id of an earlier run is recognised by this.
+        self._run = secrets.token_hex(4)
+        self._count = 0
+        self._recent: deque[Numbered] = deque(maxlen=REPLAYED)
+        self._listeners: dict[asyncio.Queue[Numbered | None], Person] = {}
+        self._closed = False
+
+    def publish(self, happening: Happening) -> None:
+        self._count += 1
+        numbered = Numbered(f"{self._run}-{self._count}", happening)
+        self._recent.append(numbered)
+        for queue, person in list(self._listeners.items()):
+            if happening.is_for(person):
+                self._offer(queue, numbered)
+
+    def _offer(self, queue: asyncio.Queue[Numbered | None], numbered: Numbered) -> None:
+        if queue.qsize() < QUEUED:
+            queue.put_nowait(numbered)
+        else:  # Too slow: the stream ends, the browser comes back with Last-Event-ID and is given what it missed.
+            del self._listeners[queue]
+            queue.put_nowait(None)
+
+    @property
+    def last_id(self) -> str:
+        return f"{self._run}-{self._count}"
+
+    def missed(self, person: Person, last_id: str) -> list[Numbered] | None:
+        """What `person` has not had since `last_id`; None if that cannot be told any more."""
+        run, _, number = last_id.partition("-")
+        if run != self._run or not number.isdecimal() or int(number) > self._count:
+            return None
+        gap = self._count - int(number)
+        if gap > len(self._recent):
+            return None
+        return [one for one in list(self._recent)[len(self._recent) - gap :] if one.happening.is_for(person)]
+
+    @contextmanager
+    def listening(self, person: Person) -> Iterator[asyncio.Queue[Numbered | None]]:
+        """Everything for `person` from now on; None says that the feed is closed or the listener too slow."""
+        queue: asyncio.Queue[Numbered | None] = asyncio.Queue()
+        if self._closed:
+            queue.put_nowait(None)
+        self._listeners[queue] = person
+        try:
+            yield queue
+        finally:
+            self._listeners.pop(queue, None)
+
+    def close(self) -> None:
+        """End every stream: an open one would otherwise hold up the service's end."""
+        self._closed = True
+        for queue in list(self._listeners):
+            queue.put_nowait(None)

@@ -1,0 +1,24 @@
+"""The inbox."""
+
+from fastapi import APIRouter
+
+from app.database import ReadingDep, SessionDep
+from app.errors import problems
+from app.notify.schemas import Inbox, NoticesRead
+from app.notify.service import inbox, mark_read
+from app.people.current_user import CurrentUser
+from app.settings import ClockDep
+
+router = APIRouter(tags=["notices"])
+
+
+@router.get("/notices", responses=problems(401, 403))
+async def my_notices(user: CurrentUser, session: ReadingDep) -> Inbox:
+    """What this person was told, newest first."""
+    return await inbox(session, user)
+
+
+@router.post("/notices/read", status_code=204, responses=problems(401, 403, 422))
+async def notices_read(read: NoticesRead, user: CurrentUser, session: SessionDep, clock: ClockDep) -> None:
+    """Mark notices as read."""
+    await mark_read(session, user, read.ids, clock.utc())

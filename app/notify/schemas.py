@@ -1,0 +1,47 @@
+"""Notices over HTTP and in the event stream."""
+
+from datetime import datetime
+from typing import Annotated
+
+from pydantic import BaseModel, Field
+
+from app.tables import Notice
+from app.texts import text
+
+
+class NoticeView(BaseModel):
+    """One notice in the reader's language. Never holds a hand-over code."""
+
+    id: int
+    order_id: str
+    kind: str
+    title: str
+    body: str
+    at: datetime
+    read: bool
+
+    @classmethod
+    def of(cls, notice: Notice, language: str) -> "NoticeView":
+        assert notice.id is not None  # noqa: S101  # flushed rows have one
+        return cls(
+            id=notice.id,
+            order_id=notice.order_id,
+            kind=str(notice.kind),
+            title=text(language, f"notice.{notice.kind}.title", notice.facts),
+            body=text(language, f"notice.{notice.kind}.body", notice.facts),
+            at=notice.at,
+            read=notice.read_at is not None,
+        )
+
+
+class Inbox(BaseModel):
+    """The newest notices first; `unread` counts all, not only those shown."""
+
+    items: list[NoticeView]
+    unread: int
+
+
+class NoticesRead(BaseModel):
+    """Which notices the person has read."""
+
+    ids: list[Annotated[int, Field(ge=1, le=2**53)]] = Field(max_length=500)

@@ -1,0 +1,70 @@
+"""Writes notices, and what is to be sent of them, in the transaction of whatever they tell of."""
+
+from collections.abc import Mapping
+from datetime import datetime
+
+from sqlalchemy import func, update
+from sqlmodel import col, select
+from sqlmodel.ext.asyncio.session import AsyncSession
+
+from app.database import after_commit
+from app.live.feed import Feed, Happening
+from app.notify.schemas import Inbox, NoticeView
+from app.tables import Notice, NoticeKind, OutgoingNotice, Person
+
+CHANNELS = ("mail",)
+"""Besides the inbox, which is the table of notices itself."""
+INBOX_SIZE = 50
+
+
+async def tell(
+    session: AsyncSession,
+    feed: Feed,
+    *,
+    person: Person,
+    order_id: str,
+    kind: NoticeKind,
+    facts: Mapping[str, str],
+    now: datetime,
+) -> bool:
+    """Tell one person one thing of an order; False if they were told before."""
+    if await _told(session, person, order_id, kind):
+        return False
+    notice = Notice(order_id=order_id, kind=kind, person_id=person.id, at=now, facts=dict(facts))
+    session.add(notice)
+    await session.flush()
+    for channel in CHANNELS:
+        session.add(_outgoing(notice, channel))
+    view = NoticeView.of(notice, person.language).model_dump(mode="json")
+    after_commit(session, lambda: feed.publish(Happening("notice", view, person_id=person.id)))
+    return True
+
+
+async def _told(session: AsyncSession, person: Person, order_id: str, kind: NoticeKind) -> bool:
+    wanted = select(Notice.id).where(Notice.order_id == order_id, Notice.kind == kind, Notice.person_id == person.id)
+    return (await session.exec(wanted)).first() is not None
+
+
+def _outgoing(notice: Notice, channel: str) -> OutgoingNotice:
+    key = f"{channel}.{notice.order_id}.{notice.kind}.{notice.person_id}"
+    assert notice.id is not None  # noqa: S101  # flushed rows have one
+    return OutgoingNotice(key=key, channel=channel, notice_id=notice.id, created_at=notice.at, next_try_at=notice.at)
+
+
+async def inbox(session: AsyncSession, person: Person) -> Inbox:
+    """What a person was told, newest first."""
+    mine = select(Notice).where(Notice.person_id == person.id).order_by(col(Notice.id).desc()).limit(INBOX_SIZE)
+    unread = select(func.count()).where(Notice.person_id == person.id, col(Notice.read_at).is_(None))
+    notices = (await session.exec(mine)).all()
+    return Inbox(
+        items=[NoticeView.of(notice, person.language) for notice in notices],
+        unread=(await session.exec(unread)).one(),
+    )
+
+
+async def mark_read(session: AsyncSession, person: Person, ids: list[int], now: datetime) -> None:
+    """Mark notices of this person as read; others' stay as they are."""
+    theirs = update(Notice).where(
+        col(Notice.id).in_(ids), col(Notice.person_id) == person.id, col(Notice.read_at).is_(None)
+    )
+    await session.exec(theirs.values(read_at=now))
