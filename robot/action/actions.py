@@ -1,0 +1,84 @@
+"""The actions that are under way: begun, looked after, cancelled, and ended by name."""
+
+from collections.abc import Iterable, Sequence
+from typing import Final, Protocol
+
+from ..config import PerceptMode
+from .arguments import WrongArguments, checked
+from .hands import Hands
+from .runs import AtOnce, Ended, Run
+from .table import ACTIONS, PAPER_ACTIONS, Action
+
+UNKNOWN: Final = "unknown_action"
+
+
+class Term(Protocol):
+    """What is needed of a term: `turn(left)` has the functor turn and one argument."""
+
+    @property
+    def functor(self) -> str: ...
+
+    @property
+    def args(self) -> Sequence[object]: ...
+
+
+class Actions:
+    """By the id that the mind gave each of them."""
+
+    def __init__(self, hands: Hands, table: Iterable[Action]) -> None:
+        self._hands = hands
+        self._table = {(action.name, len(action.takes)): action for action in table}
+        self._runs: dict[int, Run] = {}
+        self._terms: dict[int, str] = {}
+
+    @property
+    def under_way(self) -> tuple[str, ...]:
+        """The actions that have not ended, as the program wrote them, oldest first."""
+        return tuple(self._terms.values())
+
+    def begin(self, action_id: int, term: Term, now: float) -> None:
+        """Start what the agent asks for. What cannot be started ends at once, failed by name."""
+        self._terms[action_id] = str(term)
+        self._runs[action_id] = self._run(term, now)
+
+    def _run(self, term: Term, now: float) -> Run:
+        try:
+            action = self._action(term)
+            return action.begin(
+                self._hands, checked(term.functor, action.takes, term.args, self._hands.navigator.campus), now
+            )
+        except WrongArguments as error:
+            self._hands.noted(f"cannot do {term}: {error}")
+            return AtOnce(Ended(error.reason))
+
+    def _action(self, term: Term) -> Action:
+        action = self._table.get((term.functor, len(term.args)))
+        if action:
+            return action
+        forms = [action for (name, _), action in self._table.items() if name == term.functor]
+        if forms:
+            checked(term.functor, forms[0].takes, term.args, self._hands.navigator.campus)
+        raise WrongArguments(UNKNOWN, f"this robot knows no action {term.functor}")
+
+    def finished(self, now: float) -> list[tuple[int, str | None]]:
+        """Those that have ended since the last call, with the atom that says why if they failed."""
+        ends = {end.job: end for end in self._hands.body.finished()}
+        ended = [(id_, run.poll(ends, now)) for id_, run in self._runs.items()]
+        done = [(id_, end.failure) for id_, end in ended if end]
+        for id_, failure in done:
+            if failure:
+                self._hands.noted(f"{self._terms[id_]} failed: {failure}")
+            del self._runs[id_], self._terms[id_]
+        return done
+
+    def cancel(self, action_ids: Iterable[int]) -> None:
+        """Their intentions were dropped: the body stops them before it starts anything new."""
+        for id_ in action_ids:
+            if id_ in self._runs:
+                self._runs.pop(id_).cancel()
+                del self._terms[id_]
+
+
+def table_for(mode: PerceptMode) -> tuple[Action, ...]:
+    """Ours first; a program that drains its percepts speaks the paper's words, so there these come last and win."""
+    return (*PAPER_ACTIONS, *ACTIONS) if mode is PerceptMode.LATEST else (*ACTIONS, *PAPER_ACTIONS)

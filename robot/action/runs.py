@@ -1,0 +1,108 @@
+"""What an action becomes while it lasts: polled by the mind until it ends, cancelled when its intention is dropped."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+from ..skills.interfaces import Body, Done, Failed, JobEnd, Skill
+
+
+@dataclass(frozen=True)
+class Ended:
+    """`failure` is None for success, else an atom that says why not."""
+
+    failure: str | None = None
+
+
+DONE = Ended()
+Ends = Mapping[int, JobEnd]
+
+
+class Run(Protocol):
+    """An action under way."""
+
+    def poll(self, ends: Ends, now: float) -> Ended | None:
+        """None while it goes on. `ends` are the skills that have ended since the last look, by job."""
+        ...
+
+    def cancel(self) -> None:
+        """Its intention was dropped: stop what it has begun."""
+        ...
+
+
+class AtOnce:
+    """Had ended when it began."""
+
+    def __init__(self, ended: Ended = DONE) -> None:
+        self._ended = ended
+
+    def poll(self, ends: Ends, now: float) -> Ended:
+        return self._ended
+
+    def cancel(self) -> None:
+        pass
+
+
+class Rest:
+    """Nothing, until a time."""
+
+    def __init__(self, until_s: float) -> None:
+        self._until_s = until_s
+
+    def poll(self, ends: Ends, now: float) -> Ended | None:
+        return DONE if now >= self._until_s else None
+
+    def cancel(self) -> None:
+        pass
+
+
+class Wait:
+    """Until a question has an answer."""
+
+    def __init__(self, ask: Callable[[], Ended | None]) -> None:
+        self._ask = ask
+
+    def poll(self, ends: Ends, now: float) -> Ended | None:
+        return self._ask()
+
+    def cancel(self) -> None:
+        pass
+
+
+SkillMaker = Callable[[], Skill | None]
+"""Makes the skill when its turn comes; None: there is nothing to do."""
+
+
+class Skills:
+    """One skill after another; the first that fails ends the action. `then` hears what the last one gave."""
+
+    def __init__(
+        self, body: Body, makers: Sequence[SkillMaker], now: float, then: Callable[[Done], None] | None = None
+    ) -> None:
+        self._body, self._waiting, self._then = body, list(makers), then
+        self._job: int | None = None
+        self._last = Done()
+        self._begin_next(now)
+
+    def _begin_next(self, now: float) -> None:
+        self._job = None
+        while self._waiting and self._job is None:
+            skill = self._waiting.pop(0)()
+            self._job = self._body.start(skill, now) if skill else None
+
+    def poll(self, ends: Ends, now: float) -> Ended | None:
+        end = ends.get(self._job) if self._job is not None else None
+        if end is not None:
+            if isinstance(end.outcome, Failed):
+                return Ended(end.outcome.reason)
+            self._last = end.outcome
+            self._begin_next(now)
+        if self._job is not None:
+            return None
+        if self._then:
+            self._then(self._last)
+        return DONE
+
+    def cancel(self) -> None:
+        if self._job is not None:
+            self._body.cancel(self._job)

@@ -1,0 +1,233 @@
+"""Every action that a program may ask for: what it takes, what it means, and what it starts.
+
+To give the agent something new to do, add a row. An action ends done or failed(reason); nothing is ever ignored.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Final, get_args
+
+from maps import NoRoute
+from protocol.parts import Purpose
+from protocol.to_server import Step
+
+from ..duties import ChargeStep
+from ..skills import (
+    TUNES,
+    Dock,
+    DrivePulse,
+    FindLine,
+    FollowLine,
+    PaperTurn,
+    Say,
+    Turn,
+    Undock,
+    WaitHandover,
+)
+from ..skills.interfaces import Done, Skill
+from .arguments import Argument, Kind, Value, word
+from .hands import Hands
+from .runs import DONE, AtOnce, Ended, Rest, Run, Skills, Wait
+
+
+@dataclass(frozen=True)
+class Action:
+    """One row. `begin` is called with checked arguments and returns at once."""
+
+    name: str
+    takes: tuple[Argument, ...]
+    about: str
+    begin: Callable[[Hands, Sequence[Value], float], Run]
+
+
+def _one(hands: Hands, skill: Skill, now: float, then: Callable[[Done], None] | None = None) -> Run:
+    return Skills(hands.body, [lambda: skill], now, then)
+
+
+# Moving.
+
+
+def _follow_line(hands: Hands, _: Sequence[Value], now: float) -> Run:
+    leaving = hands.navigator.at
+    hands.navigator.leave()
+    return _one(hands, FollowLine(hands.navigator.campus, leaving, hands.cruise_mm_s, hands.shape), now)
+
+
+def _turn(hands: Hands, arguments: Sequence[Value], now: float) -> Run:
+    angle_rad = hands.navigator.turn_rad(str(arguments[0]))
+    before = hands.view.odometry
+    hands.navigator.begin_turn()
+    turn = Turn(angle_rad, hands.shape)
+    return _one(hands, turn, now, lambda _: hands.navigator.turned(angle_rad, before))
+
+
+def _paper_turn(hands: Hands, arguments: Sequence[Value], now: float) -> Run:
+    angle_rad = hands.navigator.turn_rad(str(arguments[0]))
+    before = hands.view.odometry
+    return _one(hands, PaperTurn(angle_rad), now, lambda _: hands.navigator.turned(angle_rad, before))
+
+
+def _drive(hands: Hands, arguments: Sequence[Value], now: float) -> Run:
+    return _one(hands, DrivePulse(str(arguments[0])), now)
+
+
+def _find_line(hands: Hands, _: Sequence[Value], now: float) -> Run:
+    return _one(hands, FindLine(hands.shape), now)
+
+
+def _dock(hands: Hands, _: Sequence[Value], now: float) -> Run:
+    return _one(hands, Dock(), now)
+
+
+def _undock(hands: Hands, _: Sequence[Value], now: float) -> Run:
+    return _one(hands, Undock(hands.shape), now, lambda _: hands.navigator.undocked())
+
+
+def _station(hands: Hands, arguments: Sequence[Value], now: float) -> Run:
+    return {"dock": _dock, "undock": _undock}[str(arguments[0])](hands, (), now)
+
+
+# Knowing the way.
+
+
+def _set_destination(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
+    destination = str(arguments[0])
+    try:
+        hands.navigator.legs_to(destination)
+    except NoRoute:
+        return AtOnce(Ended("no_route"))
+    hands.navigator.destination = destination
+    return AtOnce()
+
+
+def _claim(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
+    """Ask for the whole rest of the mission as well: a robot without network finishes what it is permitted."""
+    goal, duties = str(arguments[0]), hands.duties
+    mission = duties.held.mission
+    later = [stop.post for stop in (mission.stops if mission else ())[duties.held.next_stop :]]
+    if later[:1] != [goal]:
+        later = []
+    try:
+        now_needed = hands.navigator.legs_to(goal)
+        wanted = hands.navigator.legs_to(goal, *later)
+    except NoRoute:
+        return AtOnce(Ended("no_route"))
+    claim_id = duties.claim(wanted)
+
+    def ask() -> Ended | None:
+        if duties.may_enter(now_needed):
+            return DONE
+        return Ended("denied") if claim_id and duties.denial(claim_id) else None
+
+    return Wait(ask)
+
+
+def _release(hands: Hands, _: Sequence[Value], __: float) -> Run:
+    hands.duties.clear(hands.duties.held.grants)
+    return AtOnce()
+
+
+# The mission.
+
+
+def _report(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
+    hands.report(Step(str(arguments[0])), str(arguments[1]), str(arguments[2]) if len(arguments) > 2 else None)
+    return AtOnce()
+
+
+def _finish_stop(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
+    hands.duties.finish_stop(str(arguments[0]))
+    return AtOnce()
+
+
+def _finish_mission(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
+    hands.duties.finish_mission(str(arguments[0]), hands.place)
+    return AtOnce()
+
+
+def _wait_handover(hands: Hands, arguments: Sequence[Value], now: float) -> Run:
+    purpose, order_id, stop_id, limit_s = Purpose(str(arguments[0])), str(arguments[1]), str(arguments[2]), arguments[3]
+    codes = frozenset(verifier.sha256 for verifier in hands.duties.verifiers(order_id, purpose))
+
+    def custody(done: Done) -> None:
+        hands.duties.handed_over(purpose, stop_id, hands.place or "", done.result)
+
+    return _one(hands, WaitHandover(codes, float(limit_s)), now, custody)
+
+
+def _report_charge(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
+    step: ChargeStep = next(step for step in get_args(ChargeStep) if step == arguments[0])
+    base = hands.view.base
+    hands.duties.report_charge(step, hands.place, (base and base.battery_ratio) or 0.0)
+    return AtOnce()
+
+
+def _raise_fault(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
+    hands.duties.report_fault(str(arguments[0]), f"The agent met {arguments[1]}.", hands.place)
+    return AtOnce()
+
+
+def _clear_fault(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
+    hands.duties.report_fault(str(arguments[0]), "It is over.", hands.place, cleared=True)
+    return AtOnce()
+
+
+# People.
+
+
+def _say(hands: Hands, arguments: Sequence[Value], now: float) -> Run:
+    return _one(hands, Say(TUNES[str(arguments[0])]), now)
+
+
+def _rest(_: Hands, arguments: Sequence[Value], now: float) -> Run:
+    return Rest(now + float(arguments[0]))
+
+
+_POST = Argument("Post", Kind.POST)
+_STOP = Argument("Stop", Kind.NAME)
+_ORDER = Argument("Order", Kind.NAME)
+_NAME = Argument("Name", Kind.NAME)
+_REASON = Argument("Reason", Kind.TERM)
+_STEP = word("Step", *(step.value for step in Step))
+
+ACTIONS: Final = (
+    Action("follow_line", (), "follow the line to the next marker", _follow_line),
+    Action("turn", (word("Way", "left", "right", "behind"),), "turn on the spot, by the map's angle", _turn),
+    Action("find_line", (), "look for the line nearby", _find_line),
+    Action("dock", (), "drive into the dock ahead, until it charges", _dock),
+    Action("undock", (), "back out of the dock, onto the line", _undock),
+    Action("set_destination", (_POST,), "where `direction` leads; fails with unknown_post, no_route", _set_destination),
+    Action("claim", (_POST,), "ask to enter the corridors to a post; done when granted", _claim),
+    Action("release", (), "give back every corridor that was granted", _release),
+    Action("report", (_STEP, _STOP), "tell the server how far the mission is; once for each step", _report),
+    Action("report", (_STEP, _STOP, _REASON), "the same, with a reason", _report),
+    Action("finish_stop", (_STOP,), "the stop is done or given up", _finish_stop),
+    Action("finish_mission", (Argument("Mission", Kind.NAME),), "all stops are done", _finish_mission),
+    Action(
+        "wait_handover",
+        (word("Purpose", "load", "receive"), _ORDER, _STOP, Argument("Limit_s", Kind.NUMBER)),
+        "wait for a person's code; done when mail has changed hands, fails with no_one_came",
+        _wait_handover,
+    ),
+    Action("report_charge", (word("Step", *get_args(ChargeStep)),), "tell how charging goes", _report_charge),
+    Action("raise_fault", (_NAME, _REASON), "tell people of a trouble, once until it is cleared", _raise_fault),
+    Action("clear_fault", (_NAME,), "it is over", _clear_fault),
+    Action("say", (word("Tune", *TUNES),), "a tune and a light", _say),
+    Action("rest", (Argument("Seconds", Kind.NUMBER),), "do nothing for a while", _rest),
+)
+"""What our own program uses."""
+
+PAPER_ACTIONS: Final = (
+    Action(
+        "drive",
+        (word("Direction", "forward", "left", "right", "stop", "spiral"),),
+        "a pulse of 0.2 s; done at once",
+        _drive,
+    ),
+    Action(
+        "turn", (word("Direction", "left", "right"),), "turn until the line is centred; fails after 10 s", _paper_turn
+    ),
+    Action("setDestination", (_POST,), "where `direction` leads", _set_destination),
+    Action("station", (word("What", "dock", "undock"),), "the same as dock and undock", _station),
+)
+"""The vocabulary of the paper's prototype; where a name is in both tables, a foreign program means this one."""

@@ -1,0 +1,30 @@
+// When and where to charge. A percept triggers it, whatever else is going on (the paper's section 5.7.2).
+
+// "Low" is a percept with hysteresis, but low is not over until the battery is full: hence the note.
++battery(low) : not recharging
+  <- +recharging;
+     report_charge(low);
+     !decide.
+
++battery(full) : recharging
+  <- report_charge(charged);
+     -recharging;
+     !decide.
+
++!charge : docked <- report_charge(charging).
++!charge : nearest_dock(Post)
+  <- !go_to(Post);
+     !dock;
+     report_charge(charging).
+
++!dock : docked.
++!dock <- dock; clear_fault(no_dock).
+-!dock[error(Error)] <- raise_fault(no_dock, Error); .fail.
+
+// Somebody pulled the robot out of its dock.
+-docked : pursuing(charge) | pursuing(idle) <- .abolish(pursuing(_)); !decide.
+
++!fulfil(go_home) : home(Post)
+  <- !go_to(Post);
+     !dock;
+     release.

@@ -1,0 +1,64 @@
+// The program of a Campus Mail robot: what it does next, and who comes first.
+//
+// The paper's idea stays (Onyedinda, Gavigan, Esfandiari 2020, section 5.7): a mission that can be interrupted, a battery
+// plan that a percept triggers, a watchdog. What is new: a mission is an ordered list of stops, how far it has come is
+// perceived (the body remembers it through a power cut) instead of noted here, and mail changes hands by confirmation.
+//
+// So any purpose below may be dropped at any moment and taken up again later: everything it needs is perceived.
+//
+//   safety.asl   when to stand still           battery.asl  when and where to charge
+//   mission.asl  stops, one after another      travel.asl   from post to post
+
+{ include("safety.asl") }
+{ include("battery.asl") }
+{ include("mission.asl") }
+{ include("travel.asl") }
+
+// What to do now: the first that holds. Safety before health before work before rest.
+purpose(stand_still)            :- halted.
+purpose(charge)                 :- battery(low) | recharging.
+purpose(hold)                   :- paused.
+purpose(mission(Id, Update))    :- mission(Id, Update).
+purpose(visit(Post))            :- errand(Post).
+purpose(go_home)                :- home(_) & not docked.
+purpose(idle).
+
+!decide.
+
+// Called by every percept that may change the purpose. Atomic: two such percepts must not both adopt one.
+@decide[atomic]
++!decide <- ?purpose(Purpose); !adopt(Purpose).
+
++!adopt(Purpose) : pursuing(Purpose).
++!adopt(Purpose)
+  <- .drop_desire(pursue(_));
+     .abolish(pursuing(_));
+     +pursuing(Purpose);
+     !!pursue(Purpose).
+
+// Some purposes last until a percept ends them.
++!pursue(idle).
++!pursue(stand_still).
++!pursue(charge) <- !charge.
++!pursue(hold) <- !reach_a_post.
+// The others end by being fulfilled.
++!pursue(Purpose)
+  <- !fulfil(Purpose);
+     .abolish(pursuing(_));
+     !!decide.
+
+// Nothing a purpose runs into may leave the robot without one.
+-!pursue(Purpose)[error(Error)]
+  <- raise_fault(trouble, Error);
+     .abolish(pursuing(_));
+     rest(10);
+     !!decide.
+
+// The watchdog: `watch` changes every half minute. A purpose that nobody pursues any more is taken up again.
++watch(_) : pursuing(Purpose) & lasting(Purpose).
++watch(_) : not .desire(pursue(_)) <- .abolish(pursuing(_)); !decide.
+
+lasting(idle).
+lasting(stand_still).
+lasting(charge) :- docked.
+lasting(hold) :- at(_).

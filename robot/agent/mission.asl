@@ -1,0 +1,42 @@
+// A mission is an ordered list of stops with one id. `next_stop(N)` is perceived: the body remembers how far it has come.
+// Every report is made once however often a plan makes it, so a stop may be begun again after charging or a restart.
+
++mission(_, _) <- !decide.
+-mission(_, _) <- !decide.
++paused <- !decide.
+-paused <- !decide.
++cancelled(_) <- .abolish(pursuing(_)); !decide.
+
++!fulfil(mission(Id, Update)) : next_stop(N) & stop(N, Stop, Post, Do, Order, Limit_s)
+  <- !serve(Stop, Post, Do, Order, Limit_s);
+     finish_stop(Stop);
+     !fulfil(mission(Id, Update)).
+
++!fulfil(mission(Id, _)) <- finish_mission(Id).
+
++!serve(_, _, _, Order, _) : cancelled(Order).
++!serve(_, _, receive, Order, _) : not carrying(Order).   // nobody came to load it
++!serve(_, _, load, Order, _) : carrying(Order).          // loaded just before a power cut
++!serve(Stop, Post, Do, Order, Limit_s)
+  <- report(departed, Stop);
+     !go_to(Post);
+     report(arrived, Stop);
+     !attend(Do, Stop, Order, Limit_s).
+
+// A stop that can never be reached is told by name, and the mission goes on with the next one.
+-!serve(Stop, _, _, _, _)[error(unknown_post)] <- report(gave_up, Stop, unknown_post).
+-!serve(Stop, _, _, _, _)[error(no_route)] <- report(gave_up, Stop, no_route).
+
+// Loaded and received are confirmed by a code shown to the camera, never assumed.
++!attend(load, Stop, Order, Limit_s) <- wait_handover(load, Order, Stop, Limit_s).
++!attend(receive, Stop, Order, Limit_s) <- wait_handover(receive, Order, Stop, Limit_s).
++!attend(dock, _, _, _) <- !dock.
++!attend(park, _, _, _).
+
+// Nobody came: the robot says so and does not block.
+-!attend(_, Stop, _, _)[error(no_one_came)] <- report(gave_up, Stop, no_one_came).
+
+// An errand given by hand: `--achieve 'visit(post4)'`.
++!visit(Post) <- +errand(Post); !decide.
++!fulfil(visit(Post)) <- !go_to(Post); say(arrived); -errand(Post).
+-!fulfil(visit(Post))[error(Error)] <- raise_fault(errand, Error); -errand(Post).

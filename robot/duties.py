@@ -1,0 +1,312 @@
+"""What the robot owes: its mission, the mail aboard, the corridors it holds, and the reports on all that.
+
+Every change is one transaction on the disk: what was done, what is remembered and what is told to the server either all
+happened or not at all. A report is made once for each step of a stop, however often the agent asks for it: a mission
+may be interrupted and begun again at its present stop at any time.
+"""
+
+import uuid
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+from datetime import datetime
+from typing import Final, Literal, Protocol
+
+from protocol.parts import Leg, MissionHeld, Part, Position, Purpose, Stop, StopAction
+from protocol.to_robot import Cancel, Deny, Grant, Mission, Pause, Recall, Resume, Verifier, Verifiers
+from protocol.to_server import Charge, Claim, Clear, CommandAnswer, Event, Fault, HandoverReceipt, Progress, Step
+from robot.errors import RobotError
+from robot.memory import Incoming, Memory
+from robot.outbox import Outbox
+from robot.store import Store
+
+ChargeStep = Literal["low", "charging", "charged"]
+
+
+class NoSuchStop(RobotError):
+    """A report names a stop that the mission held does not have."""
+
+
+@dataclass(frozen=True)
+class Held:
+    """Everything that is remembered through a power cut, read once and read again after a change."""
+
+    mission: Mission | None = None
+    next_stop: int = 0
+    cargo: tuple[str, ...] = ()
+    grants: tuple[Leg, ...] = ()
+    position: Position = field(default_factory=Position)
+
+    @property
+    def stop(self) -> Stop | None:
+        """The stop that comes next."""
+        stops = self.mission.stops if self.mission else ()
+        return stops[self.next_stop] if self.next_stop < len(stops) else None
+
+    @property
+    def mission_held(self) -> MissionHeld | None:
+        if self.mission is None:
+            return None
+        return MissionHeld(id=self.mission.id, update=self.mission.update, next_stop=self.next_stop)
+
+
+class Server(Protocol):
+    """The link, as far as it concerns duties."""
+
+    def incoming(self) -> Sequence[Incoming]: ...
+
+    def wake(self) -> None: ...
+
+
+class Duties:
+    """The mind's side of memory and outbox. `server` None: the robot works alone and grants itself everything."""
+
+    def __init__(
+        self,
+        store: Store,
+        memory: Memory,
+        outbox: Outbox,
+        utc: Callable[[], datetime],
+        server: Server | None = None,
+    ) -> None:
+        self._store, self._memory, self._outbox, self._utc = store, memory, outbox, utc
+        self._server = server
+        self._denied: dict[str, Deny] = {}
+        self._claimed: dict[tuple[Leg, ...], str] = {}
+        self._faults: set[str] = set()
+        self.paused = False
+        self.cancelled: frozenset[str] = frozenset()
+        self.avoid: frozenset[Leg] = frozenset()
+        self.revision = 0
+        """Goes up with every change of what is held."""
+        self.held = Held()
+        self._changed()
+
+    def join(self, server: Server) -> None:
+        """The link is made after this, since it asks for what is held: from now on there is a server."""
+        self._server = server
+
+    def _changed(self) -> None:
+        with self._store.transaction():
+            self.held = Held(
+                self._memory.mission(),
+                self._memory.next_stop(),
+                self._memory.cargo(),
+                self._memory.grants(),
+                self._memory.position(),
+            )
+        self.revision += 1
+
+    def _told(self) -> None:
+        self._changed()
+        if self._server:
+            self._server.wake()
+
+    # From the server.
+
+    def take_messages(self) -> None:
+        """Act on everything that came from the server since the last call; each message is done with on the disk."""
+        messages = self._server.incoming() if self._server else ()
+        for incoming in messages:
+            with self._store.transaction():
+                self._take(incoming.message)
+                if incoming.seq is not None:
+                    self._memory.handled(incoming)
+        if messages:
+            self._told()
+
+    def give(self, mission: Mission) -> None:
+        """A mission given on the spot, without a server. Raises MissionConflict."""
+        with self._store.transaction():
+            self._memory.hold(mission)
+            self._accepted(mission)
+        self._told()
+
+    def _take(self, message: Part) -> None:
+        match message:
+            case Mission():
+                self._accepted(message)
+            case Deny():
+                self._denied[message.claim_id] = message
+                self.avoid = frozenset(message.avoid)
+            case Grant():
+                self.avoid -= frozenset(message.legs)
+            case Cancel():
+                self._answer(message.command_id, self._cancel(message.order_id))
+            case Pause():
+                self.paused = True
+                self._answer(message.command_id, None)
+            case Resume():
+                self.paused = False
+                self._answer(message.command_id, None)
+            case Recall():
+                self._answer(message.command_id, self._recall())
+            case Verifiers():
+                pass  # memory has taken them already
+
+    def _accepted(self, mission: Mission) -> None:
+        if self._memory.first_time(mission.id, "accepted"):
+            self._tell(Progress(step=Step.ACCEPTED, happened_at=self._utc(), mission_id=mission.id))
+
+    def _answer(self, command_id: str, refusal: str | None) -> None:
+        accepted = refusal is None
+        answer = CommandAnswer(command_id=command_id, accepted=accepted, happened_at=self._utc(), reason=refusal)
+        self._tell(answer)
+
+    def _cancel(self, order_id: str) -> str | None:
+        """Why not, or None."""
+        if order_id in self._memory.cargo():
+            return "the mail is aboard"
+        mission = self._memory.mission()
+        ahead = mission.stops[self._memory.next_stop() :] if mission else ()
+        if all(stop.order_id in (order_id, None) for stop in ahead):
+            self._memory.drop_mission()
+        self.cancelled |= {order_id}
+        self._memory.forget_verifiers(order_id)
+        return None
+
+    def _recall(self) -> str | None:
+        if self._memory.cargo():
+            return "mail is aboard, and bringing it back is not built yet"
+        self._memory.drop_mission()
+        return None
+
+    def _tell(self, happened: Progress | HandoverReceipt | Charge | Fault | CommandAnswer) -> None:
+        self._outbox.put(Event(happened=happened))
+
+    # From the agent.
+
+    def report(self, step: Step, stop_id: str, post: str | None, reason: str | None = None) -> None:
+        """Tell how far the mission has come; once for each step of a stop (`passed`: once for each post on the way)."""
+        mission, stop = self._stop(stop_id)
+        key = f"{step}:{stop_id}:{post}" if step is Step.PASSED else f"{step}:{stop_id}"
+        with self._store.transaction():
+            if self._memory.first_time(mission.id, key):
+                self._tell(self._progress(step, mission, stop, post, reason))
+        self._told()
+
+    def _progress(
+        self, step: Step, mission: Mission, stop: Stop | None, post: str | None, reason: str | None = None
+    ) -> Progress:
+        return Progress(
+            step=step,
+            happened_at=self._utc(),
+            mission_id=mission.id,
+            stop_id=stop and stop.id,
+            order_id=stop and stop.order_id,
+            post=post,
+            reason=reason,
+        )
+
+    def _stop(self, stop_id: str) -> tuple[Mission, Stop]:
+        mission = self.held.mission
+        for stop in mission.stops if mission else ():
+            if mission and stop.id == stop_id:
+                return mission, stop
+        raise NoSuchStop(f"stop {stop_id} is not one of mission {mission.id if mission else '(none)'}")
+
+    def finish_stop(self, stop_id: str) -> None:
+        """The stop is done, or given up: the next one comes."""
+        mission, stop = self._stop(stop_id)
+        with self._store.transaction():
+            self._memory.reach(max(self._memory.next_stop(), mission.stops.index(stop) + 1))
+        self._changed()
+
+    def finish_mission(self, mission_id: str, post: str | None) -> None:
+        """All stops are done: say so once, and be free for the next mission."""
+        mission = self.held.mission
+        if mission is None or mission.id != mission_id:
+            return
+        with self._store.transaction():
+            if self._memory.first_time(mission.id, Step.DONE):
+                self._tell(self._progress(Step.DONE, mission, None, post))
+            self._memory.drop_mission()
+        self._told()
+
+    def verifiers(self, order_id: str, purpose: Purpose) -> tuple[Verifier, ...]:
+        """What opens this hand-over."""
+        return tuple(v for v in self._memory.verifiers() if (v.order_id, v.purpose) == (order_id, purpose))
+
+    def handed_over(self, purpose: Purpose, stop_id: str, post: str, code_sha256: str | None) -> None:
+        """Mail changed hands at a stop. What is aboard, how far the mission is and the receipt: all or nothing."""
+        mission, stop = self._stop(stop_id)
+        order_id = stop.order_id or ""
+        with self._store.transaction():
+            if not self._memory.first_time(mission.id, f"handover:{stop_id}"):
+                return
+            (self._memory.load if purpose is Purpose.LOAD else self._memory.unload)(order_id)
+            self._memory.reach(max(self._memory.next_stop(), mission.stops.index(stop) + 1))
+            receipt = HandoverReceipt(
+                purpose=purpose,
+                order_id=order_id,
+                stop_id=stop_id,
+                post=post,
+                happened_at=self._utc(),
+                code_sha256=code_sha256,
+            )
+            self._tell(receipt)
+            if purpose is Purpose.RECEIVE:
+                self._memory.forget_verifiers(order_id)
+        self._told()
+
+    def report_charge(self, step: ChargeStep, post: str | None, ratio: float) -> None:
+        """The battery plan took over, charges, or has ended."""
+        self._tell(Charge(step=step, happened_at=self._utc(), post=post, ratio=ratio))
+        self._told()
+
+    def report_fault(self, name: str, reason: str, post: str | None, cleared: bool = False) -> None:
+        """A fault begins or is over; said once until it changes."""
+        if cleared != (name in self._faults):
+            return
+        (self._faults.discard if cleared else self._faults.add)(name)
+        self._tell(Fault(name=name, cleared=cleared, happened_at=self._utc(), post=post, reason=reason))
+        self._told()
+
+    # Corridors.
+
+    def may_enter(self, legs: Sequence[Leg]) -> bool:
+        return self._server is None or all(leg in self.held.grants for leg in legs)
+
+    def claim(self, legs: Sequence[Leg]) -> str | None:
+        """Ask for those of `legs` that are not granted yet, once; returns the claim's id, or None if none is needed."""
+        wanted = tuple(leg for leg in dict.fromkeys(legs) if leg not in self.held.grants)
+        if self._server is None or not wanted:
+            return None
+        if wanted not in self._claimed:
+            claim_id = str(uuid.uuid4())
+            self._outbox.put(Claim(claim_id=claim_id, legs=wanted))
+            self._claimed = {wanted: claim_id}
+            self._told()
+        return self._claimed[wanted]
+
+    def denial(self, claim_id: str) -> Deny | None:
+        """The server's refusal of a claim, taken once: the next claim is a new one."""
+        denied = self._denied.pop(claim_id, None)
+        if denied:
+            self._claimed = {}
+        return denied
+
+    def clear(self, legs: Iterable[Leg]) -> None:
+        """The robot is out of these corridors, or will not enter them after all."""
+        granted = [leg for leg in legs if leg in self.held.grants]
+        if not granted:
+            return
+        with self._store.transaction():
+            for leg in granted:
+                self._memory.clear(leg)
+                self._outbox.put(Clear(leg=leg))
+        self._claimed = {}
+        self._told()
+
+    # Where it was seen.
+
+    def seen(self, post: str) -> None:
+        """The robot stands at a marker: remembered at once, since after a power cut nothing else tells where it is."""
+        self._memory.see(post, self._utc())
+        self._changed()
+
+    def heading_for(self, towards: str | None) -> None:
+        self._memory.head(towards)
+        self._changed()
+
+
+HANDOVERS: Final = {StopAction.LOAD: Purpose.LOAD, StopAction.RECEIVE: Purpose.RECEIVE}

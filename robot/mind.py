@@ -1,0 +1,139 @@
+"""The loop around the agent: what is seen becomes percepts, what it decides actions, and the body hears a heartbeat.
+
+A tick of the mind is one reasoning cycle in drain mode (the paper's 100 ms) and several in latest mode, so that a plan
+of short steps does not take a second. It knows no thread and no clock: `tick(now)` is all there is.
+"""
+
+from collections import deque
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from typing import Final
+
+from bdi import Agent, Finished, Message
+from protocol.parts import Activity, Battery
+from protocol.to_server import Snapshot, Why
+
+from .action.actions import Actions
+from .action.hands import Hands
+from .config import PerceptMode, Settings
+from .perception.battery import BatterySense
+from .perception.percepts import perceive
+from .perception.seen import Seen, Whereabouts
+from .reasons import reason
+from .reflexes import FAULTS
+
+HALTING: Final = frozenset({"emergency_stop", "wheel_drop", "cliff", "over_current"})
+"""Faults that a plan cannot drive out of: somebody has to see to them."""
+WATCH_S: Final = 30.0
+_TOLD: Final = {fault.name: fault.told for fault in FAULTS}
+
+
+@dataclass
+class Mind:
+    """Perceives, reasons and acts. `said` is told what the agent does and waits for, when that changes."""
+
+    agent: Agent
+    actions: Actions
+    hands: Hands
+    settings: Settings
+    mode: PerceptMode
+    said: Callable[[Why], None] = lambda _: None
+    inbox: deque[Message] = field(default_factory=deque)
+    """Messages to the agent: one is read in each cycle."""
+    battery: BatterySense = field(default_factory=BatterySense)
+    cycles: int = 0
+    quiet_since_s: float | None = None
+    """Since when the agent has had nothing at all to do; None while it has."""
+    _why: Why | None = None
+    _faults: frozenset[str] = frozenset()
+
+    def tick(self, now: float) -> None:
+        """Once every 100 ms or so."""
+        view = self.hands.view = self.hands.body.view
+        self.hands.navigator.look(view)
+        self.hands.duties.take_messages()
+        if view.base:
+            self.battery = self.battery.seen(view.base, self.settings.battery, now)
+        self._tell_faults(view.faults)
+        for _ in range(1 if self.mode is PerceptMode.DRAIN else self.settings.mind.steps_per_tick):
+            self._cycle(now)
+        self.hands.body.heartbeat(now)
+        self._tell_why()
+
+    def _cycle(self, now: float) -> None:
+        percepts = perceive(self.seen(now), self.mode, self.settings.mind.age_limit_s)
+        messages = [self.inbox.popleft()] if self.inbox else []
+        finished = [Finished(id_, failure) for id_, failure in self.actions.finished(now)]
+        outcome = self.agent.cycle(percepts, messages, finished, now)
+        self.actions.cancel(outcome.cancelled)
+        for action in outcome.actions:
+            self.actions.begin(action.id, action.term, now)
+        self.cycles += 1
+
+    def seen(self, now: float) -> Seen:
+        """The moment as perception is shown it."""
+        hands, navigator = self.hands, self.hands.navigator
+        where = Whereabouts(
+            navigator.at, navigator.pose.previous, navigator.destination, navigator.way(), navigator.sighted
+        )
+        return Seen(
+            at_s=now,
+            view=hands.view,
+            battery=self.battery,
+            where=where,
+            held=hands.duties.held,
+            paused=hands.duties.paused,
+            cancelled=hands.duties.cancelled,
+            halting=hands.view.faults & HALTING,
+            home=navigator.home,
+            nearest_dock=navigator.nearest_dock(),
+            watch=int(now // WATCH_S),
+        )
+
+    def _tell_faults(self, faults: frozenset[str]) -> None:
+        for name in faults ^ self._faults:
+            cleared = name not in faults
+            self.hands.duties.report_fault(name, _TOLD.get(name, name), self.hands.place, cleared)
+        self._faults = faults
+
+    def _tell_why(self) -> None:
+        why = reason(self.actions.under_way, self.hands.view, self.hands.navigator, self.hands.duties)
+        if why != self._why:
+            self._why = why
+            self.said(why)
+
+    @property
+    def why(self) -> Why | None:
+        """What the robot is doing and waiting for."""
+        return self._why
+
+    def snapshot(self) -> Snapshot:
+        """The state as the server is told it."""
+        held = self.hands.duties.held
+        return Snapshot(
+            position=held.position,
+            activity=self.activity(),
+            battery=battery_now(self.hands.view.base and self.hands.view.base.charging, self.battery),
+            cargo=held.cargo,
+            mission=held.mission_held,
+        )
+
+    def activity(self) -> Activity:
+        """In one word."""
+        view = self.hands.view
+        if view.faults & HALTING:
+            return Activity.STOPPED
+        if view.base and view.base.docked and view.motion is None:
+            return Activity.CHARGING if view.base.charging else Activity.IDLE
+        if view.motion:
+            return Activity.DRIVING
+        return Activity.WAITING if self.actions.under_way else Activity.IDLE
+
+
+def battery_now(charging: bool | None, battery: BatterySense) -> Battery:
+    return Battery(ratio=battery.ratio or 0.0, charging=bool(charging))
+
+
+def messages_from_person(tell: Iterable[str], achieve: Iterable[str]) -> list[Message]:
+    """What the command line wants the agent to know and to do."""
+    return [*(Message("user", "tell", text) for text in tell), *(Message("user", "achieve", text) for text in achieve)]

@@ -1,0 +1,1 @@
+"""What the mind believes of the world: signals become symbols, each on its own and with its own age."""

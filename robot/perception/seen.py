@@ -1,0 +1,38 @@
+"""Everything perception decides by, at one moment."""
+
+from dataclasses import dataclass, field
+
+from ..duties import Held
+from ..skills.interfaces import View
+from .battery import BatterySense
+
+
+@dataclass(frozen=True)
+class Whereabouts:
+    """Where the robot is, in words of the map. `at` is the post it stands at; between posts it is None."""
+
+    at: str | None = None
+    previous: str | None = None
+    destination: str | None = None
+    way: str | None = None
+    """forward, left, right, behind or arrived; None while it cannot be known."""
+    sighted: str | None = None
+    """The post whose marker was in the newest frame."""
+
+
+@dataclass(frozen=True)
+class Seen:
+    """A moment. Ages are told by the parts' own times: nothing waits for another sensor."""
+
+    at_s: float
+    view: View = field(default_factory=View)
+    battery: BatterySense = field(default_factory=BatterySense)
+    where: Whereabouts = Whereabouts()
+    held: Held = field(default_factory=Held)
+    paused: bool = False
+    cancelled: frozenset[str] = frozenset()
+    halting: frozenset[str] = field(default_factory=frozenset)
+    """Those of the active faults that keep the wheels still until a person has seen to them."""
+    home: str | None = None
+    nearest_dock: str | None = None
+    watch: int = 0

@@ -1,0 +1,66 @@
+"""What the robot is doing and waiting for, in words for people: from the actions its intentions wait for.
+
+The goal is the stop that comes next; what is waited for is the last action that has not ended.
+"""
+
+from collections.abc import Callable, Sequence
+from typing import Final
+
+from protocol.parts import StopAction
+from protocol.to_server import Why
+
+from .duties import Duties
+from .navigator import Navigator
+from .reflexes import FAULTS
+from .skills.interfaces import View
+
+_TOLD: Final = {fault.name: fault.told for fault in FAULTS}
+_PURPOSES: Final = {
+    StopAction.LOAD: "to collect mail at {post}",
+    StopAction.RECEIVE: "to deliver mail at {post}",
+    StopAction.DOCK: "to the dock at {post}",
+    StopAction.PARK: "to park at {post}",
+}
+
+
+def _driving(navigator: Navigator) -> str:
+    towards = navigator.pose.towards
+    return f"Driving towards {towards}" if towards else "Following the line to the next post"
+
+
+_WAITS: Final[dict[str, Callable[[Navigator], tuple[str, str | None]]]] = {
+    "follow_line": lambda n: (_driving(n), None),
+    "turn": lambda n: (f"Turning at {n.pose.post}", None),
+    "find_line": lambda _: ("Looking for the line", None),
+    "dock": lambda n: (f"Docking at {n.pose.post}", None),
+    "undock": lambda n: (f"Leaving the dock at {n.pose.post}", None),
+    "claim": lambda n: (f"Waiting at {n.pose.post} for permission to drive on", "permission from the server"),
+    "wait_handover(load": lambda n: (f"Waiting for the sender at {n.pose.post}", "the sender's code"),
+    "wait_handover(receive": lambda n: (f"Waiting for the recipient at {n.pose.post}", "the recipient's code"),
+    "rest": lambda _: ("Waiting a moment before trying again", None),
+    "drive": lambda n: (_driving(n), None),
+}
+
+
+def reason(under_way: Sequence[str], view: View, navigator: Navigator, duties: Duties) -> Why:
+    """One sentence, the goal behind it, and what it waits for."""
+    stop = duties.held.stop
+    goal = _PURPOSES[stop.action].format(post=stop.post) if stop else None
+    for fault in sorted(view.faults):
+        if fault in _TOLD:
+            return Why(sentence=_TOLD[fault], goal=goal, waiting_for="a person" if fault != "bump" else "a free way")
+    if under_way:
+        sentence, waiting_for = _of_action(under_way[-1], navigator)
+        return Why(sentence=sentence, goal=goal, waiting_for=waiting_for)
+    if view.base and view.base.docked:
+        doing = "Charging" if view.base.charging else "In its dock"
+        waiting_for = "a full battery" if stop else None
+        return Why(sentence=f"{doing} at {navigator.pose.post}", goal=goal, waiting_for=waiting_for)
+    return Why(sentence="Paused" if duties.paused else "Nothing to do", goal=goal)
+
+
+def _of_action(action: str, navigator: Navigator) -> tuple[str, str | None]:
+    for beginning, words in _WAITS.items():
+        if action.startswith(beginning):
+            return words(navigator)
+    return f"Doing {action}", None

@@ -1,0 +1,183 @@
+"""Two ways to run the same table of loops.
+
+`ThreadedRunner` is for hardware: a thread for each loop, on the machine's own time. `LockstepRunner` is for a simulated
+world: one thread, every tick at exactly its simulated time and in the order of the table, chasing a clock that may run
+faster than the machine can follow; then it is this runner that slows the clock down.
+"""
+
+import threading
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from heapq import heapify, heapreplace
+from typing import Protocol
+
+import structlog
+
+from protocol.clock import Clock, SharedClock, SteppedClock
+
+log = structlog.get_logger("robot.runner")
+
+SLOWEST = 0.25
+LOOK_REAL_S = 0.2
+LAG_REAL_S = 0.08
+"""A clock that is ahead by more than the machine does in this time is slowed down."""
+LONGEST_NAP_S = 0.02
+STOP_WITHIN_S = 1.0
+
+
+@dataclass(frozen=True)
+class Loop:
+    """Something that is done `rate_hz` times a second. `feeds` says who lives on it."""
+
+    name: str
+    rate_hz: float
+    feeds: str
+    tick: Callable[[float], None]
+
+
+@dataclass
+class Lag:
+    """How punctual a loop is: seconds of the daemon's clock."""
+
+    ticks: int = 0
+    worst_s: float = 0.0
+    total_s: float = 0.0
+
+    def note(self, late_s: float) -> None:
+        self.ticks += 1
+        self.worst_s = max(self.worst_s, late_s)
+        self.total_s += late_s
+
+    @property
+    def mean_s(self) -> float:
+        return self.total_s / self.ticks if self.ticks else 0.0
+
+
+class Runner(Protocol):
+    """Runs until told to stop, or until a loop raises: then it stops all of them and raises that."""
+
+    lags: dict[str, Lag]
+
+    def run(self) -> None: ...
+
+    def stop(self) -> None: ...
+
+
+class LockstepRunner:
+    """One thread. The clock decides what time it is; a SteppedClock is moved along, as fast as it goes."""
+
+    def __init__(self, loops: Sequence[Loop], clock: Clock, max_speed: float = 1.0) -> None:
+        self.lags = {loop.name: Lag() for loop in loops}
+        self._loops = tuple(loops)
+        self._clock, self._max_speed = clock, max_speed
+        self._stopping = threading.Event()
+        self.now_s = clock.now()
+        self._due = [(self.now_s, number) for number in range(len(loops))]
+        heapify(self._due)
+        self._governor = Governor(max_speed)
+
+    def stop(self) -> None:
+        self._stopping.set()
+
+    def run(self) -> None:
+        while not self._stopping.is_set():
+            if isinstance(self._clock, SteppedClock):
+                self._step_free(self._clock)
+            else:
+                self._chase()
+
+    def _step_free(self, clock: SteppedClock) -> None:
+        clock.now_s = max(clock.now_s, self._due[0][0])
+        self._tick_next()
+
+    def _chase(self) -> None:
+        began_s = time.perf_counter()
+        until_s = self._clock.now()
+        while self._due[0][0] <= until_s and not self._stopping.is_set():
+            self._tick_next()
+            if time.perf_counter() - began_s > LOOK_REAL_S:
+                break
+        self._govern(time.perf_counter() - began_s)
+        ahead_s = self._due[0][0] - self._clock.now()
+        if ahead_s > 0:
+            time.sleep(min(self._clock.real_s(ahead_s), LONGEST_NAP_S))
+
+    def _tick_next(self) -> None:
+        due_s, number = self._due[0]
+        loop = self._loops[number]
+        self.now_s = due_s
+        loop.tick(due_s)
+        self.lags[loop.name].note(max(0.0, self._clock.now() - due_s))
+        heapreplace(self._due, (due_s + 1.0 / loop.rate_hz, number))
+
+    def _govern(self, worked_s: float) -> None:
+        if not isinstance(self._clock, SharedClock):
+            return
+        lag_s = self._clock.now() - self._due[0][0]
+        speed = self._governor.speed(self._clock.speed, lag_s, worked_s, time.perf_counter())
+        if speed != self._clock.speed:
+            self._clock.set_speed(speed)
+
+
+@dataclass
+class Governor:
+    """How fast a shared clock may run, so that the world keeps up with it: a little idle time, never far behind."""
+
+    max_speed: float
+    _worked_s: float = 0.0
+    _since_s: float = field(default_factory=time.perf_counter)
+
+    def speed(self, speed: float, lag_s: float, worked_s: float, real_s: float) -> float:
+        """The speed from now on. `lag_s` is of the scaled clock, the other two are the machine's."""
+        self._worked_s += worked_s
+        if lag_s > speed * LAG_REAL_S and worked_s > LAG_REAL_S:
+            self._begin(real_s)
+            return max(SLOWEST, speed * 0.7)
+        elapsed_s = real_s - self._since_s
+        if elapsed_s < LOOK_REAL_S:
+            return speed
+        busy = self._worked_s / elapsed_s
+        self._begin(real_s)
+        return min(self.max_speed, speed * 1.2) if busy < 0.75 else speed
+
+    def _begin(self, real_s: float) -> None:
+        self._worked_s, self._since_s = 0.0, real_s
+
+
+class ThreadedRunner:
+    """A thread for each loop. A late loop never runs twice to catch up: the wheels need the present, not the past."""
+
+    def __init__(self, loops: Sequence[Loop], clock: Clock) -> None:
+        self.lags = {loop.name: Lag() for loop in loops}
+        self._clock = clock
+        self._stopping = threading.Event()
+        self._failure: BaseException | None = None
+        self._threads = [
+            threading.Thread(target=self._run_loop, args=(loop,), name=loop.name, daemon=True) for loop in loops
+        ]
+
+    def stop(self) -> None:
+        self._stopping.set()
+
+    def run(self) -> None:
+        for thread in self._threads:
+            thread.start()
+        self._stopping.wait()
+        for thread in self._threads:
+            thread.join(STOP_WITHIN_S)
+        if self._failure:
+            raise self._failure
+
+    def _run_loop(self, loop: Loop) -> None:
+        period_s, due_s = 1.0 / loop.rate_hz, self._clock.now()
+        try:
+            while not self._stopping.wait(max(0.0, due_s - self._clock.now())):
+                now = self._clock.now()
+                self.lags[loop.name].note(max(0.0, now - due_s))
+                loop.tick(now)
+                due_s = max(due_s + period_s, self._clock.now())
+        except BaseException as failure:
+            log.exception("loop_failed", loop=loop.name)
+            self._failure = failure
+            self._stopping.set()
