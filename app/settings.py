@@ -7,6 +7,7 @@ Secrets come from files: the server key lives in its own file, and any setting m
 import os
 from pathlib import Path
 from typing import Annotated
+from zoneinfo import ZoneInfo
 
 from fastapi import Depends
 from pydantic import Field, field_validator
@@ -42,6 +43,7 @@ class Settings(BaseSettings):
     )
     mail_from: str = Field("mail@campus.example", description="Sender of the service's mails.")
     default_language: str = Field("en", description="Language of people who have not chosen one: en or fr.")
+    time_zone: str = Field("", description="Zone of times in mails, such as America/Toronto; empty: the machine's own.")
     sign_in_code_lifetime_s: float = Field(600, gt=0, description="How long a mailed sign-in code is good for.")
     session_lifetime_s: float = Field(30 * 86400, gt=0, description="How long a browser stays signed in.")
     handover_code_lifetime_s: float = Field(7 * 86400, gt=0, description="How long the codes of an order are good for.")
@@ -58,9 +60,20 @@ class Settings(BaseSettings):
     def _lower_case(cls, domains: tuple[str, ...]) -> tuple[str, ...]:
         return tuple(domain.lower().removeprefix("@") for domain in domains)
 
+    @field_validator("time_zone")
+    @classmethod
+    def _zone_is_known(cls, name: str) -> str:
+        if name:
+            ZoneInfo(name)
+        return name
+
     @property
     def url_of_database(self) -> str:
         return self.database_url or f"sqlite+aiosqlite:///{(self.data / 'campus-mail.sqlite').resolve()}"
+
+    @property
+    def zone(self) -> ZoneInfo | None:
+        return ZoneInfo(self.time_zone) if self.time_zone else None
 
     @property
     def spool_folder(self) -> Path:
@@ -78,7 +91,7 @@ def load_settings() -> Settings:
         raise StartError(f"CAMPUS_MAIL_SECRETS_DIR={secrets_dir} is no folder. Make it, or unset the variable.")
     try:
         return Settings(_secrets_dir=secrets_dir)
-    except ValueError as error:
+    except (ValueError, KeyError) as error:
         raise StartError(f"The settings cannot be used. {error}") from error
 
 

@@ -10,7 +10,7 @@ from sqlmodel import AutoString
 from app.database import Database
 from app.settings import load_settings, make_data_folder
 from app.tables import metadata
-from app.tables.columns import UtcTime, Word
+from app.tables.columns import UtcTime, WordOf
 
 
 def plain_type(kind: str, item: Any, autogen_context: Any) -> str | Literal[False]:
@@ -19,7 +19,7 @@ def plain_type(kind: str, item: Any, autogen_context: Any) -> str | Literal[Fals
         return False
     if isinstance(item, UtcTime):
         return "sa.DateTime()"
-    if isinstance(item, Word):
+    if isinstance(item, WordOf):
         return f"sa.String({item.impl.length})"
     return f"sa.String({item.length})" if isinstance(item, AutoString) else False
 

@@ -21,17 +21,21 @@ QUEUED: Final = 200
 class Happening:
     """One event of the stream: its name, its JSON, and for whom it is.
 
-    `person_id` is the one person it is for; `role` all who have that role; with neither it is for everybody signed in.
+    `person_id` is the one person it is for; `role` all who have that role, but not those in `except_for` (who are told
+    in another way); with neither it is for everybody signed in.
     """
 
     event: str
     data: Mapping[str, Any]
     person_id: str | None = None
     role: Role | None = None
+    except_for: frozenset[str] = frozenset()
 
     def is_for(self, person: Person) -> bool:
         if self.person_id is not None:
             return self.person_id == person.id
+        if person.id in self.except_for:
+            return False
         return self.role is None or person.has_role(self.role)
 
 

@@ -5,7 +5,7 @@ from enum import StrEnum
 
 from sqlmodel import Field, SQLModel
 
-from app.tables.columns import UtcTime, Word
+from app.tables.columns import UtcTime, WordOf
 
 
 class MissionState(StrEnum):
@@ -25,7 +25,7 @@ class MissionRow(SQLModel, table=True):
     id: str = Field(primary_key=True, max_length=64)
     robot: str = Field(foreign_key="robots.name", index=True)
     update_number: int = 1
-    state: MissionState = Field(default=MissionState.ACTIVE, sa_type=Word(MissionState), index=True)
+    state: MissionState = Field(default=MissionState.ACTIVE, sa_type=WordOf(MissionState), index=True)
     created_at: datetime = Field(sa_type=UtcTime)
     accepted_at: datetime | None = Field(default=None, sa_type=UtcTime)
     finished_at: datetime | None = Field(default=None, sa_type=UtcTime)

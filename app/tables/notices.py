@@ -6,7 +6,7 @@ from enum import StrEnum
 from sqlalchemy import JSON, UniqueConstraint
 from sqlmodel import Field, SQLModel
 
-from app.tables.columns import UtcTime, Word
+from app.tables.columns import UtcTime, WordOf
 
 
 class NoticeKind(StrEnum):
@@ -30,7 +30,7 @@ class Notice(SQLModel, table=True):
 
     id: int | None = Field(default=None, primary_key=True)
     order_id: str = Field(foreign_key="orders.id")
-    kind: NoticeKind = Field(sa_type=Word(NoticeKind))
+    kind: NoticeKind = Field(sa_type=WordOf(NoticeKind))
     person_id: str = Field(foreign_key="people.id", index=True)
     at: datetime = Field(sa_type=UtcTime)
     facts: dict[str, str] = Field(sa_type=JSON)

@@ -6,7 +6,7 @@ from typing import Any, NoReturn
 from sqlalchemy import event
 from sqlmodel import Field, SQLModel
 
-from app.tables.columns import UtcTime, Word
+from app.tables.columns import UtcTime, WordOf
 from app.tables.orders import OrderState
 
 
@@ -21,7 +21,7 @@ class OrderEvent(SQLModel, table=True):
 
     order_id: str = Field(primary_key=True, foreign_key="orders.id")
     seq: int = Field(primary_key=True)
-    state: OrderState = Field(sa_type=Word(OrderState))
+    state: OrderState = Field(sa_type=WordOf(OrderState))
     at: datetime = Field(sa_type=UtcTime)
     robot_at: datetime | None = Field(default=None, sa_type=UtcTime)
     by: str = Field(max_length=32)

@@ -5,7 +5,7 @@ from enum import StrEnum
 
 from sqlmodel import Field, SQLModel
 
-from app.tables.columns import UtcTime, Word
+from app.tables.columns import UtcTime, WordOf
 
 
 class OrderState(StrEnum):
@@ -33,7 +33,7 @@ class Order(SQLModel, table=True):
     __tablename__ = "orders"
 
     id: str = Field(primary_key=True, max_length=64)
-    state: OrderState = Field(default=OrderState.QUEUED, sa_type=Word(OrderState), index=True)
+    state: OrderState = Field(default=OrderState.QUEUED, sa_type=WordOf(OrderState), index=True)
     version: int = 1
     sender_id: str = Field(foreign_key="people.id", index=True)
     recipient_id: str = Field(foreign_key="people.id", index=True)
@@ -48,6 +48,6 @@ class Order(SQLModel, table=True):
     window_assumed: bool = True
     robot: str | None = Field(default=None, foreign_key="robots.name", index=True)
     why: str | None = Field(default=None, max_length=500)
-    state_before_attention: OrderState | None = Field(default=None, sa_type=Word(OrderState))
+    state_before_attention: OrderState | None = Field(default=None, sa_type=WordOf(OrderState))
     cancel_requested_at: datetime | None = Field(default=None, sa_type=UtcTime)
     cancel_requested_by: str | None = Field(default=None, max_length=32)

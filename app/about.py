@@ -1,0 +1,152 @@
+"""What the service says of itself: to pages, to people, to whoever watches over it."""
+
+import tomllib
+from datetime import datetime
+from functools import cache
+
+from fastapi import APIRouter
+from fastapi.responses import JSONResponse
+from pydantic import BaseModel
+from sqlalchemy.exc import SQLAlchemyError
+from sqlmodel import col, func, select
+
+from app.database import Database, DatabaseDep
+from app.errors import problem_answer
+from app.schema_version import is_at_head
+from app.settings import ROOT, CampusDep, ClockDep, SettingsDep
+from app.tables import OutgoingNotice
+from app.texts import LANGUAGES
+from protocol.clock import Clock
+
+api_router = APIRouter(tags=["about"])
+root_router = APIRouter(tags=["health"])
+
+OUTBOX_LAG_LIMIT_S = 600.0
+
+
+@cache
+def version() -> str:
+    """The version in pyproject.toml: everything runs from the checkout."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    return str(project["version"])
+
+
+class About(BaseModel):
+    """What pages need to know before anybody is signed in."""
+
+    name: str
+    version: str
+    simulated: bool
+    demo: bool
+    now: datetime
+    languages: list[str]
+    allowed_domains: list[str]
+    map: str
+
+
+class PostView(BaseModel):
+    """A post of the map; metres, x to the right, y up."""
+
+    name: str
+    title: str
+    x_m: float
+    y_m: float
+    dock: bool
+    mailroom: bool
+
+
+class CorridorView(BaseModel):
+    """The line between two posts; `tape` is where it lies, from a to b."""
+
+    name: str
+    a: str
+    b: str
+    length_m: float
+    assumed: bool
+    tape: list[tuple[float, float]]
+
+
+class MapView(BaseModel):
+    """The campus map that the robots use too."""
+
+    name: str
+    title: str
+    version: str
+    note: str
+    posts: list[PostView]
+    corridors: list[CorridorView]
+
+
+@api_router.get("/about")
+async def about(settings: SettingsDep, clock: ClockDep, campus: CampusDep) -> About:
+    """Name, version, time, languages; `demo` and `simulated` while a demonstration runs."""
+    demo = settings.demo_door is not None
+    return About(
+        name="Campus Mail",
+        version=version(),
+        simulated=demo,
+        demo=demo,
+        now=clock.utc(),
+        languages=list(LANGUAGES),
+        allowed_domains=list(settings.allowed_domains),
+        map=campus.name,
+    )
+
+
+@api_router.get("/map")
+async def campus_map(campus: CampusDep) -> MapView:
+    """Posts and corridors."""
+    posts = [
+        PostView(name=p.name, title=p.title, x_m=p.x_m, y_m=p.y_m, dock=p.dock is not None, mailroom=p.mailroom)
+        for p in campus.posts.values()
+    ]
+    corridors = [
+        CorridorView(
+            name=c.name, a=c.a, b=c.b, length_m=c.length_m, assumed=c.assumed, tape=[(x, y) for x, y in c.tape]
+        )
+        for c in campus.corridors
+    ]
+    return MapView(
+        name=campus.name,
+        title=campus.title,
+        version=campus.version,
+        note=campus.note,
+        posts=posts,
+        corridors=corridors,
+    )
+
+
+@root_router.get("/healthz")
+async def healthz() -> dict[str, str]:
+    """The process answers."""
+    return {"status": "ok"}
+
+
+@root_router.get("/version")
+async def what_version() -> dict[str, str]:
+    """The version of the code."""
+    return {"version": version()}
+
+
+@root_router.get("/readyz", response_model=None)
+async def readyz(database: DatabaseDep, clock: ClockDep) -> dict[str, str] | JSONResponse:
+    """Database reachable, schema at head, mail not piling up."""
+    problem = await _what_is_not_ready(database, clock)
+    return {"status": "ready"} if problem is None else problem_answer(503, "not_ready", problem)
+
+
+async def _what_is_not_ready(database: Database, clock: Clock) -> str | None:
+    try:
+        async with database.reading() as session:
+            await session.exec(select(1))
+            oldest = (
+                await session.exec(
+                    select(func.min(col(OutgoingNotice.created_at))).where(col(OutgoingNotice.sent_at).is_(None))
+                )
+            ).one()
+        if not await is_at_head(database):
+            return "The schema is not the one of this version: run `python -m app migrate`."
+    except SQLAlchemyError as error:
+        return f"The database does not answer: {type(error).__name__}."
+    lag_s = (clock.utc() - oldest).total_seconds() if oldest else 0.0
+    return f"The oldest unsent notice is {lag_s:.0f} s old." if lag_s > OUTBOX_LAG_LIMIT_S else None

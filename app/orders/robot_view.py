@@ -1,0 +1,88 @@
+"""A robot as people see it: *seen* at posts, not tracked; expected at the next one in an interval."""
+
+from datetime import datetime, timedelta
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from app.settings import Settings
+from app.tables import RobotRow
+from maps import CampusMap, CampusMapError
+
+SPREAD = 2.0
+
+
+class LastSeen(BaseModel):
+    """The post it was last seen at, the one before, and when."""
+
+    post: str
+    previous: str | None
+    at: datetime
+
+
+class Expected(BaseModel):
+    """Where it should be seen next, and between which times."""
+
+    post: str
+    from_: datetime = Field(alias="from")
+    to: datetime
+
+    model_config = ConfigDict(validate_by_name=True, validate_by_alias=True, serialize_by_alias=True)
+
+
+class BatteryView(BaseModel):
+    """Charge as a ratio of capacity."""
+
+    ratio: float
+    charging: bool
+
+
+class RobotView(BaseModel):
+    """One robot. `online` is its own axis: an offline robot goes on with what it is doing."""
+
+    name: str
+    online: bool
+    last_seen: LastSeen | None
+    towards: str | None
+    expected: Expected | None
+    activity: str
+    battery: BatteryView | None
+    why: str | None
+    heard_at: datetime | None
+
+
+def robot_view(robot: RobotRow, campus: CampusMap, settings: Settings) -> RobotView:
+    """What is said of a robot to whoever may see it."""
+    return RobotView(
+        name=robot.name,
+        online=robot.online,
+        last_seen=_last_seen(robot),
+        towards=robot.towards,
+        expected=_expected(robot, campus, settings),
+        activity=robot.activity,
+        battery=_battery(robot),
+        why=robot.why,
+        heard_at=robot.heard_at,
+    )
+
+
+def _last_seen(robot: RobotRow) -> LastSeen | None:
+    if robot.post is None or robot.seen_at is None:
+        return None
+    return LastSeen(post=robot.post, previous=robot.previous, at=robot.seen_at)
+
+
+def _battery(robot: RobotRow) -> BatteryView | None:
+    return None if robot.battery_ratio is None else BatteryView(ratio=robot.battery_ratio, charging=robot.charging)
+
+
+def _expected(robot: RobotRow, campus: CampusMap, settings: Settings) -> Expected | None:
+    """From the length of the corridor it is in; the speed is assumed."""
+    if robot.post is None or robot.towards is None or robot.seen_at is None:
+        return None
+    try:
+        length_m = campus.corridor(robot.post, robot.towards).length_m
+    except CampusMapError:  # a robot with another map than ours: say nothing rather than something wrong
+        return None
+    drive_s = length_m / settings.assumed_speed_m_s
+    first, last = (robot.seen_at + timedelta(seconds=drive_s * factor) for factor in (1.0, SPREAD))
+    return Expected(post=robot.towards, from_=first, to=last)

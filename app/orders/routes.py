@@ -1,0 +1,183 @@
+"""Ordering, following, cancelling, and the codes that go with it."""
+
+import base64
+import binascii
+from datetime import datetime
+from typing import Annotated, Literal
+
+from fastapi import APIRouter, Depends, Header, Path, Query, Request, Response
+from sqlalchemy import or_, tuple_
+from sqlmodel import col, select
+from sqlmodel.sql.expression import SelectOfScalar
+
+from app.database import ReadingDep, SessionDep
+from app.errors import problems
+from app.orders.codes import code_svg
+from app.orders.errors import BadCursor
+from app.orders.idempotency import Running, body_hash, earlier_answer
+from app.orders.schemas import CodeView, Estimate, NewOrder, OrderPage, OrderView, PostName, WindowView
+from app.orders.service import Orders
+from app.orders.views import load_facts, view_for
+from app.people.current_user import CurrentUser
+from app.settings import CampusDep, ClockDep
+from app.tables import IdempotencyKey, Order, Person, Role
+from maps import shortest_route
+
+router = APIRouter(tags=["orders"])
+
+OrderId = Annotated[str, Path(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]*$", max_length=64)]
+REPLAYED = "Idempotency-Replayed"
+
+
+def _orders(request: Request) -> Orders:
+    orders: Orders = request.app.state.orders
+    return orders
+
+
+def _running(request: Request) -> Running:
+    running: Running = request.app.state.running
+    return running
+
+
+OrdersDep = Annotated[Orders, Depends(_orders)]
+
+
+@router.get("/estimate", responses=problems(401, 403, 422))
+async def estimate(
+    user: CurrentUser, orders: OrdersDep, campus: CampusDep, from_post: PostName, to_post: PostName
+) -> Estimate:
+    """When mail would arrive if it were ordered now."""
+    window = orders.window(from_post, to_post)
+    length_m = shortest_route(campus, from_post, to_post).length_m
+    return Estimate(window=WindowView.of(window), length_m=round(length_m, 2))
+
+
+@router.post("/orders", status_code=201, responses=problems(401, 403, 409, 422))
+async def place_order(
+    *,
+    wish: NewOrder,
+    idempotency_key: Annotated[str, Header(pattern=r"^[!-~]+$", max_length=255)],
+    user: CurrentUser,
+    orders: OrdersDep,
+    session: SessionDep,
+    clock: ClockDep,
+    running: Annotated[Running, Depends(_running)],
+    response: Response,
+) -> OrderView:
+    """Place an order. The same key and body again give the first answer again, with `Idempotency-Replayed: true`."""
+    with running.only_once(user.id, idempotency_key):
+        wanted = body_hash(wish)
+        earlier = await earlier_answer(session, user.id, idempotency_key, wanted, clock.utc())
+        if earlier is not None:
+            response.headers.update({**earlier.headers, REPLAYED: "true"})
+            return OrderView.model_validate(earlier.answer)
+        view = await orders.create(session, user, wish)
+        headers = {"Location": f"/api/v1/orders/{view.id}", "ETag": _etag(view)}
+        kept = IdempotencyKey(
+            person_id=user.id,
+            key=idempotency_key,
+            body_hash=wanted,
+            status=201,
+            headers=headers,
+            answer=view.model_dump(mode="json"),
+            created_at=clock.utc(),
+        )
+        session.add(kept)
+        response.headers.update(headers)
+        return view
+
+
+@router.get("/orders", responses=problems(400, 401, 403, 422))
+async def list_orders(
+    *,
+    user: CurrentUser,
+    orders: OrdersDep,
+    session: ReadingDep,
+    role: Literal["sent", "coming", "all"] = "all",
+    limit: Annotated[int, Query(ge=1, le=100)] = 20,
+    cursor: Annotated[str, Query(max_length=200)] = "",
+) -> OrderPage:
+    """This person's orders, newest first; a dispatcher's `all` is everybody's."""
+    wanted = _theirs(user, role)
+    if cursor:
+        wanted = wanted.where(tuple_(col(Order.created_at), col(Order.id)) < _place(cursor))
+    wanted = wanted.order_by(col(Order.created_at).desc(), col(Order.id).desc()).limit(limit + 1)
+    rows = list((await session.exec(wanted)).all())
+    facts = await load_facts(session, rows[:limit])
+    views = [view_for(user, one, orders.campus, orders.settings) for one in facts]
+    following = _cursor(rows[limit - 1]) if len(rows) > limit else None
+    return OrderPage(items=[view for view in views if view], next=following)
+
+
+def _theirs(user: Person, role: str) -> SelectOfScalar[Order]:
+    sent, coming = col(Order.sender_id) == user.id, col(Order.recipient_id) == user.id
+    if role == "all" and user.has_role(Role.DISPATCHER):
+        return select(Order)
+    return select(Order).where({"sent": sent, "coming": coming, "all": or_(sent, coming)}[role])
+
+
+def _cursor(order: Order) -> str:
+    return base64.urlsafe_b64encode(f"{order.created_at.isoformat()} {order.id}".encode()).decode()
+
+
+def _place(cursor: str) -> tuple[datetime, str]:
+    try:
+        at, order_id = base64.urlsafe_b64decode(cursor.encode()).decode().split(" ")
+        place = datetime.fromisoformat(at)
+    except (ValueError, binascii.Error):
+        raise BadCursor("This cursor did not come from `next` of an earlier answer.") from None
+    if place.tzinfo is None:
+        raise BadCursor("This cursor did not come from `next` of an earlier answer.")
+    return place, order_id
+
+
+@router.get("/orders/{order_id}", responses=problems(401, 403, 404, 422))
+async def one_order(
+    order_id: OrderId, user: CurrentUser, orders: OrdersDep, session: ReadingDep, response: Response
+) -> OrderView:
+    """One order with its timeline."""
+    view = await orders.view(session, user, order_id)
+    response.headers["ETag"] = _etag(view)
+    return view
+
+
+@router.post("/orders/{order_id}/cancel", responses=problems(401, 403, 404, 409, 412, 422))
+async def cancel_order(
+    *,
+    order_id: OrderId,
+    user: CurrentUser,
+    orders: OrdersDep,
+    session: SessionDep,
+    response: Response,
+    if_match: Annotated[str, Header(max_length=200)] = "",
+) -> OrderView:
+    """Cancel, at once or (with a robot on its way) as soon as the robot answers."""
+    view = await orders.cancel(session, user, order_id, if_match)
+    response.headers["ETag"] = _etag(view)
+    return view
+
+
+@router.get("/orders/{order_id}/code", responses=problems(401, 403, 404, 422))
+async def my_code(
+    order_id: OrderId, user: CurrentUser, orders: OrdersDep, session: ReadingDep, response: Response
+) -> CodeView:
+    """The hand-over code, for the one person whose turn it is to show it."""
+    order, purpose, text = await orders.code(session, user, order_id)
+    response.headers["Cache-Control"] = "no-store"
+    svg_url = f"/api/v1/orders/{order.id}/code.svg"
+    return CodeView(purpose=purpose.value, text=text, svg_url=svg_url, expires_at=order.codes_expire_at)
+
+
+@router.get(
+    "/orders/{order_id}/code.svg",
+    response_class=Response,
+    responses={200: {"content": {"image/svg+xml": {"schema": {"type": "string"}}}}, **problems(401, 403, 404, 422)},
+)
+async def my_code_picture(order_id: OrderId, user: CurrentUser, orders: OrdersDep, session: ReadingDep) -> Response:
+    """The same code as a picture."""
+    _, _, text = await orders.code(session, user, order_id)
+    return Response(code_svg(text), media_type="image/svg+xml", headers={"Cache-Control": "no-store"})
+
+
+def _etag(view: OrderView) -> str:
+    return f'"{view.version}"'
