@@ -1,0 +1,102 @@
+// What the service sends and takes, field by field. Types only: no browser ever loads this file.
+// Times are ISO 8601 in UTC, lengths are metres, charge is a ratio of 0 to 1.
+
+export type OrderState =
+  | "queued" | "assigned" | "to_sender" | "at_sender" | "carrying" | "at_recipient" | "delivered"
+  | "returning" | "at_return" | "returned" | "held"
+  | "expired" | "cancelled" | "attention";
+
+export type Role = "sender" | "recipient" | "dispatcher";
+export type Purpose = "load" | "receive";
+
+export interface Person { id: string | number; email: string; name: string; language: string; roles: string[] }
+export interface Party { email: string; name: string }
+
+export interface About {
+  name: string;
+  version: string;
+  simulated: boolean;
+  demo: boolean;
+  now: string;
+  languages: string[];
+  allowed_domains: string[];
+  map: string;
+}
+
+export interface MapPost { name: string; title: string; x_m: number; y_m: number; dock: unknown; mailroom: boolean }
+export interface MapCorridor {
+  name: string;
+  a: string;
+  b: string;
+  length_m: number;
+  assumed: boolean;
+  tape: [number, number][];
+}
+export interface CampusMap {
+  name: string;
+  title: string;
+  version: string;
+  note: string;
+  posts: MapPost[];
+  corridors: MapCorridor[];
+}
+
+export interface ArrivalWindow { from: string; to: string; assumed?: boolean }
+export interface Estimate { window: ArrivalWindow; length_m: number; assumed: boolean }
+
+export interface Robot {
+  name: string;
+  online: boolean;
+  last_seen: { post: string; previous: string | null; at: string } | null;
+  towards: string | null;
+  expected: { post: string; from: string; to: string } | null;
+  activity: string;
+  battery: { ratio: number; charging: boolean } | null;
+  why: string | null;
+  heard_at: string | null;
+}
+
+export interface OrderEvent {
+  seq: number;
+  state: OrderState;
+  at: string;
+  robot_at: string | null;
+  by: string;
+  robot: string | null;
+  post: string | null;
+  reason: string | null;
+}
+
+export interface Order {
+  id: string;
+  state: OrderState;
+  version: number;
+  from_post: string;
+  to_post: string;
+  sender: Party;
+  recipient: Party;
+  description: string | null;
+  created_at: string;
+  updated_at: string;
+  window: ArrivalWindow | null;
+  robot: Robot | null;
+  why: string | null;
+  my_role: Role;
+  my_code: Purpose | null;
+  can_cancel: boolean;
+  events: OrderEvent[];
+}
+
+export interface WantedOrder { from_post: string; to_post: string; recipient: string; description: string }
+export interface HandoverCode { purpose: Purpose; text: string; svg_url: string; expires_at: string | null }
+export interface Notice {
+  id: string | number;
+  order_id: string;
+  kind: string;
+  title: string;
+  body: string;
+  at: string;
+  read: boolean;
+}
+export interface Page<Item> { items: Item[]; next: string | null }
+export interface Inbox { items: Notice[]; unread: number }

@@ -1,0 +1,146 @@
+/** One order, followed: where it stands, when it arrives, what to do, where the robot was seen, what has happened. */
+import { html, nothing } from "lit";
+import * as api from "../api.js";
+import { repeatPage, PAGES } from "../links.js";
+import { OnLive } from "../live.js";
+import { hasEnded, nextSentence, stages, stateSentence } from "../order_words.js";
+import { loadMap, titleOf } from "../posts.js";
+import { inWords } from "../problems.js";
+import { t } from "../texts.js";
+import "./campus_map.js";
+import "./cancel_order.js";
+import { orderDetails } from "./order_details.js";
+import { orderTimeline } from "./order_timeline.js";
+import { arrivalWindow } from "./arrival_window.js";
+import { problemLine } from "./field.js";
+import "./handover_code.js";
+import { icon } from "./icon.js";
+import { PageElement } from "./page_element.js";
+/** @import { CampusMap, Order, Robot } from "../api_types.ts" */
+
+const AT_ME = { load: "at_sender", receive: "at_recipient" };
+
+export class FollowPage extends PageElement {
+  static properties = {
+    order_id: { attribute: false },
+    demo: { type: Boolean },
+    order: { state: true },
+    map: { state: true },
+    robot: { state: true },
+    problem: { state: true },
+  };
+
+  constructor() {
+    super();
+    this.order_id = "";
+    this.demo = false;
+    /** @type {Order | null} */
+    this.order = null;
+    /** @type {CampusMap | null} */
+    this.map = null;
+    /** @type {Robot | null} */
+    this.robot = null;
+    this.problem = "";
+    new OnLive(this, {
+      order: (order) => order.id === this.order_id && this.#show(order),
+      robot: (robot) => robot.name === this.order?.robot?.name && (this.robot = robot),
+      connected: (connected) => connected && this.#fetch(),
+    });
+  }
+
+  firstUpdated() {
+    this.#fetch();
+  }
+
+  render() {
+    if (this.problem) return this.#notHere();
+    if (!this.order || !this.map) return html`<p class="waiting" role="status">${t("app.loading")}</p>`;
+    const { order, map } = this;
+    return html`<div class="follow">
+      <div class="column">
+        ${this.#standing(order, map)} ${this.#why(order)}
+        <handover-code .order_id=${order.id} .purpose=${order.my_code} .demo=${this.demo}
+          .needed=${order.my_code !== null && AT_ME[order.my_code] === order.state}></handover-code>
+        <section class="card" aria-labelledby="timeline-title">
+          <h2 id="timeline-title">${t("follow.timeline")}</h2>
+          ${orderTimeline(order, map)}
+        </section>
+      </div>
+      <div class="column">
+        <section class="card" aria-labelledby="map-title">
+          <h2 id="map-title">${t("follow.map")}</h2>
+          <campus-map .map=${map} .robot=${hasEnded(order) ? null : this.robot} .from=${order.from_post} .to=${order.to_post}
+            following></campus-map>
+        </section>
+        ${orderDetails(order)}
+        <div class="choices">
+          ${order.my_role === "sender" && hasEnded(order)
+            ? html`<a class="button" href=${repeatPage(order)}>${icon("repeat")}${t("follow.again")}</a>`
+            : nothing}
+          ${order.can_cancel
+            ? html`<cancel-order .order_id=${order.id} @changed=${(/** @type {CustomEvent<Order>} */ event) => this.#show(event.detail)}></cancel-order>`
+            : nothing}
+        </div>
+      </div>
+    </div>`;
+  }
+
+  /** @param {Order} order @param {CampusMap} map */
+  #standing(order, map) {
+    return html`<section class="standing ${order.state}">
+      <p class="ends">${titleOf(map, order.from_post)}${icon("arrow")}<span class="unseen">→</span>${titleOf(map, order.to_post)}</p>
+      <h1 aria-live="polite">${stateSentence(order, map)}</h1>
+      <p class="next">${nextSentence(order, map)}</p>
+      ${hasEnded(order) ? nothing : arrivalWindow(order, map)} ${this.#stages(order)}
+    </section>`;
+  }
+
+  /** @param {Order} order */
+  #stages(order) {
+    const all = stages(order);
+    const step = all.findIndex(({ now }) => now) + 1;
+    const label = step ? t("follow.steps", { step, steps: all.length, name: t(`stage.${all[step - 1].name}`) }) : nothing;
+    if (!all.length) return nothing;
+    return html`<ol class="stages" aria-label=${label}>
+      ${all.map(({ name, done, now }) => html`<li class=${done ? "done" : now ? "now" : ""}><span>${t(`stage.${name}`)}</span></li>`)}
+    </ol>`;
+  }
+
+  /** @param {Order} order */
+  #why(order) {
+    const why = order.why ?? this.robot?.why;
+    if (!why || hasEnded(order)) return nothing;
+    return html`<section class="card why" aria-labelledby="why-title">
+      <h2 id="why-title">${t("follow.why")}</h2>
+      <p>${why}</p>
+    </section>`;
+  }
+
+  #notHere() {
+    return html`<section class="blank">
+      <h1>${t("follow.unknown.title")}</h1>
+      ${problemLine(this.problem)}
+      <a class="button" href=${PAGES.mail}>${t("follow.unknown.back")}</a>
+    </section>`;
+  }
+
+  /** @param {Order} order */
+  #show(order) {
+    if (this.order && order.version < this.order.version) return;
+    this.order = order;
+    this.robot = order.robot;
+  }
+
+  async #fetch() {
+    try {
+      const [map, order] = await Promise.all([loadMap(), api.order(this.order_id)]);
+      this.map = map;
+      this.#show(order);
+    } catch (failure) {
+      // What is known stays on the page when the network goes.
+      if (!this.order) this.problem = failure instanceof api.ApiProblem ? t("follow.unknown.body") : inWords(failure);
+    }
+  }
+}
+
+customElements.define("follow-page", FollowPage);

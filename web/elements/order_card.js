@@ -1,0 +1,28 @@
+/** One order in a list: what, between where, how it stands; the whole card leads to its page. */
+import { html, nothing } from "lit";
+import { followPage } from "../links.js";
+import { hasEnded } from "../order_words.js";
+import { titleOf } from "../posts.js";
+import { serverNow } from "../server_clock.js";
+import { t } from "../texts.js";
+import { dayAndTime, windowText } from "../times.js";
+import { icon } from "./icon.js";
+/** @import { CampusMap, Order } from "../api_types.ts" */
+
+/** @param {Order} order @param {CampusMap} map @param {unknown} [action] something to press beside it */
+export function orderCard(order, map, action = nothing) {
+  const other = order.my_role === "recipient" ? t("mail.from", { name: order.sender.name }) : t("mail.to", { name: order.recipient.name });
+  return html`<li class="order">
+    <a class="row" href=${followPage(order.id)}>
+      <span class="badge ${order.state}">${t(`badge.${order.state}`)}</span>
+      <span class="who">${order.description || other}</span>
+      <span class="ends">${titleOf(map, order.from_post)}${icon("arrow")}<span class="unseen">→</span>${titleOf(map, order.to_post)}</span>
+      <span class="when">${order.description ? html`${other} · ` : nothing}${when(order)}</span>
+    </a>
+    ${action}
+  </li>`;
+}
+
+/** The window while it is under way, the day afterwards. @param {Order} order */
+const when = (order) =>
+  order.window && !hasEnded(order) ? windowText(order.window) : dayAndTime(order.updated_at, serverNow());

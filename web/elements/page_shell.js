@@ -1,0 +1,114 @@
+/** What stands around every page: name, pages, unread notices, account; and the sign-in where nobody is signed in. */
+import { html, nothing } from "lit";
+import * as api from "../api.js";
+import { PAGES } from "../links.js";
+import { OnLive } from "../live.js";
+import { counted, t } from "../texts.js";
+import { icon } from "./icon.js";
+import { PageElement } from "./page_element.js";
+import "./sign_in.js";
+/** @import { About, Person } from "../api_types.ts" */
+
+const ENTRIES = /** @type {const} */ ([
+  ["order", "send"],
+  ["mail", "letter"],
+  ["notices", "bell"],
+]);
+
+export class PageShell extends PageElement {
+  static properties = {
+    page: {},
+    about: { attribute: false },
+    person: { attribute: false },
+    content: { attribute: false },
+    unread: { state: true },
+    connected: { state: true },
+  };
+
+  constructor() {
+    super();
+    this.page = "order";
+    /** @type {About | null} */
+    this.about = null;
+    /** @type {Person | null} */
+    this.person = null;
+    /** @type {() => unknown} */
+    this.content = () => nothing;
+    this.unread = 0;
+    this.connected = true;
+    new OnLive(this, {
+      notice: () => this.#count(),
+      connected: (connected) => this.#nowConnected(connected),
+    });
+    this.addEventListener("notices-read", () => this.#count());
+  }
+
+  firstUpdated() {
+    this.#count();
+  }
+
+  render() {
+    return html`
+      <a class="skip" href="#content">${t("app.skip")}</a>
+      <header class="top">
+        <a class="brand" href=${PAGES.order}><img src="/icons/icon.svg" alt="" width="32" height="32" />${t("app.name")}</a>
+        ${this.person ? [this.#navigation(), this.#account(this.person)] : nothing}
+      </header>
+      ${this.connected ? nothing : html`<p class="banner" role="status">${icon("network")}${t("app.reconnecting")}</p>`}
+      <main id="content" tabindex="-1">
+        ${this.person ? this.content() : html`<sign-in .about=${this.about}></sign-in>`}
+      </main>
+      ${this.about?.simulated ? html`<footer class="foot">${t("app.demo")}</footer>` : nothing}
+    `;
+  }
+
+  #navigation() {
+    return html`<nav class="pages" aria-label=${t("nav.pages")}>
+      ${ENTRIES.map(
+        ([page, drawing]) => html`<a href=${PAGES[page]} aria-current=${this.page === page ? "page" : nothing}>
+          <span class="glyph">${icon(drawing)}${page === "notices" ? this.#unreadMark() : nothing}</span>
+          <span>${t(`nav.${page}`)}</span>
+        </a>`,
+      )}
+    </nav>`;
+  }
+
+  #unreadMark() {
+    if (!this.unread) return nothing;
+    return html`<span class="unread"><span aria-hidden="true">${this.unread}</span
+      ><span class="unseen">${counted("nav.unread", this.unread)}</span></span>`;
+  }
+
+  /** @param {Person} person */
+  #account(person) {
+    return html`<details class="account">
+      <summary aria-label="${t("account.open")}: ${person.name}">${initials(person.name)}</summary>
+      <div class="sheet">
+        <strong>${person.name}</strong><span>${person.email}</span>
+        <button class="quiet" @click=${this.#signOut}>${t("account.sign_out")}</button>
+      </div>
+    </details>`;
+  }
+
+  async #signOut() {
+    await api.signOut();
+    location.assign(PAGES.order);
+  }
+
+  async #count() {
+    if (this.person) this.unread = (await api.notices()).unread;
+  }
+
+  /** @param {boolean} connected */
+  async #nowConnected(connected) {
+    this.connected = connected;
+    if (connected) await this.#count();
+    else if ((await api.me().catch(() => this.person)) === null) location.reload();
+  }
+}
+
+/** "Ada Lovelace" → "AL" @param {string} name */
+const initials = (name) =>
+  name.split(/[\s.]+/).map((word) => word[0] ?? "").slice(0, 2).join("").toUpperCase();
+
+customElements.define("page-shell", PageShell);

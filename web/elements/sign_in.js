@@ -1,0 +1,131 @@
+/** Signing in: an address, then the code that was mailed to it. */
+import { html, nothing } from "lit";
+import * as api from "../api.js";
+import { atFields } from "../problems.js";
+import { t } from "../texts.js";
+import { field, problemLine } from "./field.js";
+import { PageElement } from "./page_element.js";
+/** @import { About } from "../api_types.ts" */
+
+const FIELD_OF_CODE = { address_not_allowed: "email", wrong_code: "code", code_expired: "code" };
+
+export class SignIn extends PageElement {
+  static properties = {
+    about: { attribute: false },
+    email: { state: true },
+    codeSent: { state: true },
+    busy: { state: true },
+    problems: { state: true },
+  };
+
+  constructor() {
+    super();
+    /** @type {About | null} */
+    this.about = null;
+    this.email = "";
+    this.codeSent = false;
+    this.busy = false;
+    /** @type {Record<string, string>} */
+    this.problems = {};
+  }
+
+  render() {
+    return html`<section class="welcome">
+      <img src="/icons/welcome.svg" alt="" class="picture" width="360" height="200" />
+      <div class="card">
+        <h1>${t("sign_in.title")}</h1>
+        <p class="lead">${t("sign_in.lead")}</p>
+        ${this.codeSent ? this.#codeForm() : this.#emailForm()}
+      </div>
+    </section>`;
+  }
+
+  #emailForm() {
+    const domains = this.about?.allowed_domains.join(", ");
+    return html`<form novalidate @submit=${this.#askForCode}>
+      ${field(
+        {
+          name: "email",
+          label: t("sign_in.email"),
+          hint: domains ? t("sign_in.domains", { domains }) : undefined,
+          problem: this.problems.email,
+        },
+        ({ id, describedBy, invalid }) => html`<input id=${id} name="email" type="email" autocomplete="email"
+          required .value=${this.email} aria-describedby=${describedBy} aria-invalid=${invalid} />`,
+      )}
+      ${this.#formProblem()}
+      <button class="main" ?disabled=${this.busy}>${t("sign_in.send")}</button>
+    </form>`;
+  }
+
+  #codeForm() {
+    return html`<form novalidate @submit=${this.#enter}>
+      ${field(
+        { name: "code", label: t("sign_in.code"), hint: t("sign_in.code_hint", { email: this.email }), problem: this.problems.code },
+        ({ id, describedBy, invalid }) => html`<input id=${id} name="code" class="digits" inputmode="numeric" required
+          autocomplete="one-time-code" maxlength="12" aria-describedby=${describedBy} aria-invalid=${invalid} />`,
+      )}
+      ${this.about?.demo ? html`<p class="hint">${t("sign_in.code_demo")}</p>` : nothing}
+      ${this.#formProblem()}
+      <button class="main" ?disabled=${this.busy}>${t("sign_in.enter")}</button>
+      <button class="quiet" type="button" @click=${this.#startAgain}>${t("sign_in.other")}</button>
+    </form>`;
+  }
+
+  #formProblem() {
+    return this.problems.form ? problemLine(this.problems.form) : nothing;
+  }
+
+  /** @param {SubmitEvent} event */
+  async #askForCode(event) {
+    event.preventDefault();
+    const input = /** @type {HTMLInputElement} */ (this.querySelector("[name=email]"));
+    this.email = input.value.trim();
+    if (!this.email || input.validity.typeMismatch) return this.#refuse({ email: t("error.not_an_email") });
+    await this.#attempt(async () => {
+      await api.requestCode(this.email);
+      this.codeSent = true;
+      this.focusOn("[name=code]");
+    });
+  }
+
+  /** @param {SubmitEvent} event */
+  async #enter(event) {
+    event.preventDefault();
+    const input = /** @type {HTMLInputElement} */ (this.querySelector("[name=code]"));
+    const code = input.value.replace(/\D/g, "");
+    if (code.length !== 8) return this.#refuse({ code: t("error.missing_code") });
+    await this.#attempt(async () => {
+      await api.signIn(this.email, code);
+      location.reload();
+    });
+  }
+
+  #startAgain() {
+    this.codeSent = false;
+    this.problems = {};
+    this.focusOn("[name=email]");
+  }
+
+  /** @param {() => Promise<void>} attempt */
+  async #attempt(attempt) {
+    if (this.busy) return;
+    this.busy = true;
+    this.problems = {};
+    try {
+      await attempt();
+    } catch (failure) {
+      this.#refuse(atFields(failure, FIELD_OF_CODE));
+    } finally {
+      this.busy = false;
+    }
+  }
+
+  /** @param {Record<string, string>} problems */
+  #refuse(problems) {
+    this.problems = problems;
+    this.focusOn("[aria-invalid]");
+  }
+}
+
+customElements.define("sign-in", SignIn);

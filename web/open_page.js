@@ -1,0 +1,43 @@
+/** Opens a page: who is there, in which language, what time it is; then draws the page inside the shell. */
+import { html, render } from "lit";
+import * as api from "./api.js";
+import "./elements/page_shell.js";
+import { startLive } from "./live.js";
+import { keepServerTime } from "./server_clock.js";
+import { chooseLanguage, loadTexts, t } from "./texts.js";
+/** @import { About, Person } from "./api_types.ts" */
+
+const LANGUAGES_WITHOUT_SERVICE = ["en", "fr"];
+
+/**
+ * @param {"order" | "follow" | "mail" | "notices"} page
+ * @param {(session: {about: About, person: Person}) => unknown} content what the page draws for a person who is signed in
+ */
+export async function openPage(page, content) {
+  const root = /** @type {HTMLElement} */ (document.querySelector("#page"));
+  try {
+    const [about, person] = await Promise.all([api.about(), api.me()]);
+    await loadTexts(chooseLanguage(person ? [person.language] : navigator.languages, about.languages));
+    document.title = `${t(person ? `title.${page}` : "title.sign_in")} · ${t("app.name")}`;
+    keepServerTime(about);
+    const draw = () => person && content({ about, person });
+    render(html`<page-shell .page=${page} .about=${about} .person=${person} .content=${draw}></page-shell>`, root);
+    if (person) startLive();
+  } catch (failure) {
+    if (!(failure instanceof api.NoAnswer || failure instanceof api.ApiProblem)) throw failure;
+    await sayThatNobodyAnswers(root);
+  }
+}
+
+/** @param {HTMLElement} root */
+async function sayThatNobodyAnswers(root) {
+  await loadTexts(chooseLanguage(navigator.languages, LANGUAGES_WITHOUT_SERVICE));
+  render(
+    html`<main class="blank">
+      <h1>${t("app.failed.title")}</h1>
+      <p>${t("app.failed.body")}</p>
+      <button class="main" @click=${() => location.reload()}>${t("app.failed.again")}</button>
+    </main>`,
+    root,
+  );
+}

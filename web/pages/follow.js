@@ -1,0 +1,6 @@
+import { html } from "lit";
+import "../elements/follow_page.js";
+import { orderFrom } from "../links.js";
+import { openPage } from "../open_page.js";
+
+await openPage("follow", ({ about }) => html`<follow-page .order_id=${orderFrom(location.search)} .demo=${about.demo}></follow-page>`);

@@ -1,0 +1,42 @@
+/** The words of the pages: one catalogue per language, chosen once per page. */
+
+/** @type {Record<string, string>} */
+let catalogue = {};
+
+/** The language of the catalogue, "en" before any is loaded. */
+let language = "en";
+
+/**
+ * The first wanted language that there is, "fr-CA" counting as "fr"; else the first there is.
+ * @param {readonly string[]} wanted @param {readonly string[]} known
+ */
+export function chooseLanguage(wanted, known) {
+  const plain = wanted.map((tag) => tag.toLowerCase().split("-")[0]);
+  return plain.find((tag) => known.includes(tag)) ?? known[0] ?? "en";
+}
+
+/** @param {string} wanted */
+export async function loadTexts(wanted) {
+  const answer = await fetch(`/texts/${wanted}.json`);
+  if (!answer.ok) throw new Error(`no texts for ${wanted}`);
+  catalogue = await answer.json();
+  language = wanted;
+  document.documentElement.lang = wanted;
+}
+
+/** The locale for dates: the browser's own variant of the page's language, so that an en-GB reader sees 14:05. */
+export const locale = () => navigator.languages.find((tag) => tag.startsWith(language)) ?? language;
+
+/** @param {string} key */
+export const hasText = (key) => key in catalogue;
+
+/**
+ * The text of a key, with {names} replaced. A missing key shows itself: it is a mistake to be seen.
+ * @param {string} key @param {Record<string, string | number>} [values]
+ */
+export const t = (key, values = {}) =>
+  (catalogue[key] ?? key).replace(/\{(\w+)\}/g, (whole, name) => `${values[name] ?? whole}`);
+
+/** A text that has ".one" and ".other" forms. @param {string} key @param {number} count */
+export const counted = (key, count) =>
+  t(`${key}.${new Intl.PluralRules(language).select(count) === "one" ? "one" : "other"}`, { count });

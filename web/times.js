@@ -1,0 +1,43 @@
+/** Times as people read them, in their own locale. Times go in as the service writes them. */
+import { locale, t } from "./texts.js";
+/** @import { ArrivalWindow } from "./api_types.ts" */
+
+const HOUR_MS = 3_600_000;
+const DAY_MS = 24 * HOUR_MS;
+const JUST_NOW_MS = 5_000;
+
+/** @param {Intl.DateTimeFormatOptions} options */
+const format = (options) => new Intl.DateTimeFormat(locale(), options);
+const CLOCK = /** @type {const} */ ({ hour: "numeric", minute: "2-digit" });
+
+/** "14:05" @param {string} at */
+export const clockTime = (at) => format(CLOCK).format(new Date(at));
+
+/** "12:40 – 12:44" @param {ArrivalWindow} window */
+export const windowText = ({ from, to }) => format(CLOCK).formatRange(new Date(from), new Date(to));
+
+/** A day and a time; today needs no day. @param {string} at @param {number} now_ms */
+export function dayAndTime(at, now_ms) {
+  const sameDay = format({ dateStyle: "short" }).format(new Date(at)) === format({ dateStyle: "short" }).format(now_ms);
+  return sameDay ? clockTime(at) : format({ day: "numeric", month: "short", ...CLOCK }).format(new Date(at));
+}
+
+/** "2 min ago", from a day on the date. @param {string} at @param {number} now_ms the service's time, not the machine's */
+export function ago(at, now_ms) {
+  const age_ms = now_ms - Date.parse(at);
+  if (age_ms < JUST_NOW_MS) return t("time.just_now");
+  if (age_ms >= DAY_MS) return dayAndTime(at, now_ms);
+  const relative = new Intl.RelativeTimeFormat(locale(), { style: "short" });
+  if (age_ms < 60_000) return relative.format(-Math.floor(age_ms / 1000), "second");
+  if (age_ms < HOUR_MS) return relative.format(-Math.floor(age_ms / 60_000), "minute");
+  return relative.format(-Math.floor(age_ms / HOUR_MS), "hour");
+}
+
+/** "85 %" @param {number} ratio */
+export const percent = (ratio) => new Intl.NumberFormat(locale(), { style: "percent" }).format(ratio);
+
+/** "2 m", "1.2 km" @param {number} length_m */
+export const length = (length_m) =>
+  length_m < 1000
+    ? new Intl.NumberFormat(locale(), { style: "unit", unit: "meter", maximumFractionDigits: 0 }).format(length_m)
+    : new Intl.NumberFormat(locale(), { style: "unit", unit: "kilometer", maximumFractionDigits: 1 }).format(length_m / 1000);
