@@ -165,7 +165,9 @@ def decide(state: ReflexState, senses: Senses, wanted: WheelSpeeds, now: float) 
     memories = tuple(
         _remember(fault, memory, senses, now) for fault, memory in zip(FAULTS, state.memories, strict=True)
     )
-    active = [(fault, memory) for fault, memory in zip(FAULTS, memories, strict=True) if memory.active_since_s is not None]
+    active = [
+        (fault, memory) for fault, memory in zip(FAULTS, memories, strict=True) if memory.active_since_s is not None
+    ]
     if not active:
         return Decision(wanted, _NO_FAULT, ReflexState(memories))
     faults = frozenset(fault.name for fault, _ in active)

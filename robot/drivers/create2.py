@@ -27,6 +27,8 @@ SILENT_S = 1.0
 RETRY_S = 1.0
 MODE_RETRY_S = 0.5
 READ_AT_ONCE = 4096
+WAKE_UP_LOW_S = 0.5
+WAKE_UP_EVERY_S = 60.0
 STILL_FRAMES = 3
 """So many frames with equal counts are a standstill: at 30 mm/s single frames show none either."""
 MODE_KNOWN_AFTER_S = 0.06
@@ -76,6 +78,7 @@ class Create2:
         self._drive_until_s: float | None = None
         self._still_frames = STILL_FRAMES
         self._started_s = -SILENT_S
+        self._wake_up_low, self._wake_up_s = False, 0.0
         self.state: BaseState | None = None
         self.health = LinkHealth()
 
@@ -93,6 +96,7 @@ class Create2:
         if newest:
             self._keep_mode(newest, now)
         self._restart_if_silent(now)
+        self._keep_awake(now)
         self._stop_past_deadline(now)
         self._flush(now)
         return newest
@@ -268,10 +272,21 @@ class Create2:
         self._started_s, self._mode_sent_s = now, now - MODE_RETRY_S
         self._sent = STOP
         self.health.starts += 1
-        self._wake_up_line.pulse()
+        self._pull_wake_up_line(True, now)
         self._outgoing.clear()
         self._queue(bytes((oi.Opcode.START,)) * LONGEST_COMMAND, now, MODE_GAP_S)
         self._queue(oi.start_stream(), now)
+
+    def _keep_awake(self, now: float) -> None:
+        """Left alone in Passive the base sleeps after five minutes; a pulse on BRC every minute prevents it."""
+        if self._wake_up_low and now - self._wake_up_s >= WAKE_UP_LOW_S:
+            self._pull_wake_up_line(False, now)
+        elif self._wanted_mode is Mode.PASSIVE and now - self._wake_up_s >= WAKE_UP_EVERY_S:
+            self._pull_wake_up_line(True, now)
+
+    def _pull_wake_up_line(self, low: bool, now: float) -> None:
+        self._wake_up_low, self._wake_up_s = low, now
+        self._wake_up_line.low(low)
 
     def _reopened(self, now: float) -> bool:
         if now < self._next_try_s:

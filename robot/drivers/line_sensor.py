@@ -1,4 +1,4 @@
-"""Three photo-diodes on digital pins, sampled often and read by majority: one flipped read in a hundred must not count."""
+"""Three photo-diodes on digital pins, sampled often and read by majority: single flipped reads must not count."""
 
 from gpiozero import DigitalInputDevice
 

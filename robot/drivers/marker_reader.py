@@ -45,7 +45,7 @@ class MarkerReader:
     def look(self, frame: Frame, now: float) -> tuple[Sighting, ...]:
         """What is in this frame; `text` is a post's name or begins with `CM1:`."""
         known = (code for code in self._decode(frame) if self._is_known(code.text))
-        height_px, width_px = frame.shape[:2]
+        width_px = frame.shape[1]
         return tuple(self._sighting(code, width_px, now) for code in known)
 
     def _is_known(self, text: str) -> bool:
@@ -92,5 +92,3 @@ class MarkerWatch:
 
     def _agreed(self, text: str) -> bool:
         return sum(text in look for look in self._looks) >= AGREE
-
-

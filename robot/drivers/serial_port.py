@@ -1,5 +1,6 @@
-"""The cable to the base: any pyserial URL, opened so that no write can block for long and no second program joins in."""
+"""The cable to the base: any pyserial URL, opened so that no write blocks for long and no second program joins in."""
 
+from contextlib import suppress
 from typing import Protocol
 
 import serial
@@ -21,33 +22,28 @@ class SerialPort(Protocol):
 
 
 class WakeUpLine(Protocol):
-    """The BRC pin: a low pulse wakes the base and resets its five minutes to sleep."""
+    """The BRC pin: the end of a low pulse of 50 ms or more wakes the base and resets its five minutes to sleep."""
 
-    def pulse(self) -> None: ...
+    def low(self, on: bool) -> None: ...
 
 
 class NoWakeUpLine:
     """Nothing is wired to BRC (or the port has no RTS, as a pseudo-terminal)."""
 
-    def pulse(self) -> None:
+    def low(self, on: bool) -> None:
         """Nothing happens, and that is known."""
 
 
 class RtsWakeUpLine:
-    """BRC on RTS, as in the official USB cable. Low for as long as a tick takes is enough: the base samples it."""
+    """BRC on RTS, as in the official USB cable."""
 
     def __init__(self, port: serial.SerialBase) -> None:
         self._port = port
-        self._low = False
 
-    def pulse(self) -> None:
-        """One half of a pulse: called every second while the base is silent, it alternates low and high."""
-        try:
-            self._low = not self._low
-            self._port.rts = self._low
-        except OSError:
-            # ENOTTY: this port has no such line.
-            self._low = False
+    def low(self, on: bool) -> None:
+        """Pull the line low, or let it go. A port without RTS (ENOTTY on a pseudo-terminal) wakes nobody."""
+        with suppress(OSError):
+            self._port.rts = on
 
 
 def open_serial(url: str) -> serial.SerialBase:

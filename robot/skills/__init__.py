@@ -1,14 +1,60 @@
-"""The long actions of the body. What they are: interfaces.py. Reasons of failure beside each.
+"""The long actions of the body. What they are, and how they end: interfaces.py.
 
-FollowLine(campus, leaving=None, cruise_mm_s=150.0, shape=BodyShape())
-                                Done(post reached) | line_lost, blocked, timeout
-Turn(angle_rad, shape=…)        left is positive; by encoders, then settles on the line. Done() | timeout
-FindLine(shape=…)               Done() | line_lost
-Dock(tries=3)                   Done() | no_dock
-Undock(shape=…)                 Done() | not_docked, timeout; ends on the line, looking along it
-WaitHandover(verifiers: frozenset[str], limit_s)
-                                Done(sha256 that matched) | Done(None) after Spot twice | no_one_came
-Say(notes=TUNES["arrived"], colour=0.0, brightness=1.0)    Done()
-DrivePulse(forward|left|right|stop|spiral)                 Done() at once; the wheels go on for 0.2 s
-PaperTurn(angle_rad)            done when the line is centred. Done() | timeout after 10 s
+FollowLine(campus, leaving=None, cruise_mm_s=150.0, shape=None)  Done(post) | line_lost, blocked, docked, timeout
+Turn(angle_rad, shape=None)          left is positive; ends on the line. Done() | line_lost, timeout
+FindLine(shape=None)                 Done() | line_lost
+Dock(tries=3)                        Done() | no_dock
+Undock(shape=None)                   Done(), on the line and looking along it | not_docked, line_lost, timeout
+WaitHandover(verifiers, limit_s)     Done(sha256 that matched) | Done(None) after Spot twice | no_one_came
+Say(tune)                            Done()
+DrivePulse(forward|left|right|stop|spiral)   Done() at once; the wheels go on for 0.2 s
+PaperTurn(angle_rad)                 Done() | line_lost, timeout after 10 s
 """
+
+from .dock import Dock, Undock
+from .find_line import FindLine
+from .follow_line import FollowLine
+from .handover import WaitHandover
+from .interfaces import (
+    Body,
+    Done,
+    Failed,
+    JobEnd,
+    Outcome,
+    Play,
+    Running,
+    SeekDock,
+    SetMode,
+    ShowLights,
+    Skill,
+    Step,
+    View,
+)
+from .paper import DrivePulse, PaperTurn
+from .say import Say
+from .turn import Turn
+
+__all__ = [
+    "Body",
+    "Dock",
+    "Done",
+    "DrivePulse",
+    "Failed",
+    "FindLine",
+    "FollowLine",
+    "JobEnd",
+    "Outcome",
+    "PaperTurn",
+    "Play",
+    "Running",
+    "Say",
+    "SeekDock",
+    "SetMode",
+    "ShowLights",
+    "Skill",
+    "Step",
+    "Turn",
+    "Undock",
+    "View",
+    "WaitHandover",
+]

@@ -10,8 +10,11 @@ Failed("cancelled").
 from dataclasses import dataclass
 from typing import Protocol
 
-from ..drivers.interfaces import BaseState, LineReading, Mode, Note, Odometry, Sighting, WheelSpeeds
+from ..drivers.interfaces import STOP, BaseState, LineReading, Mode, Note, Odometry, Sighting, WheelSpeeds
 from ..navigation.line_symbol import LineSymbol
+
+NOTHING_SEEN = LineReading(False, False, False)
+START = Odometry()
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,18 +24,18 @@ class View:
     at_s: float = 0.0
     base: BaseState | None = None
     """Newest frame of the base; None before the first."""
-    reading: LineReading = LineReading(False, False, False)
+    reading: LineReading = NOTHING_SEEN
     line: LineSymbol = LineSymbol.LOST
-    odometry: Odometry = Odometry()
+    odometry: Odometry = START
     post: Sighting | None = None
     """The newest accepted marker of a post of the map (two equal reads of three)."""
-    post_odometry: Odometry = Odometry()
+    post_odometry: Odometry = START
     """Where the robot was when the frame with `post` was taken."""
     code: Sighting | None = None
     """The newest hand-over code (`CM1:…`) shown to the camera."""
     camera_age_s: float = 0.0
     """Age of the newest frame; above 1 s perception is degraded."""
-    sent: WheelSpeeds = WheelSpeeds(0, 0)
+    sent: WheelSpeeds = STOP
     """The speeds really sent last."""
     motion: str | None = None
     """Name of the skill that has the wheels now."""

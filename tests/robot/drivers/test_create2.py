@@ -82,7 +82,12 @@ def test_a_frame_becomes_a_state_with_units():
     port.arriving += frame(bumps_and_drops=0b0110, left_count=-5, charging_state=2, chargers=2, buttons=2, mode=1)
     state = base.poll(now)
     assert state is not None
-    assert (state.bump_left, state.bump_right, state.wheel_drop_right, state.wheel_drop_left) == (True, False, True, False)
+    assert (state.bump_left, state.bump_right, state.wheel_drop_right, state.wheel_drop_left) == (
+        True,
+        False,
+        True,
+        False,
+    )
     assert state.left_count == -5
     assert state.charging and state.docked and state.spot_pressed
     assert state.battery_ratio == pytest.approx(2000 / 2600)

@@ -1,0 +1,122 @@
+"""Finding the line again: coast, arc, back along the way driven, sweep wider and wider, spiral; then stuck."""
+
+import math
+
+from ..drivers.interfaces import BodyShape, WheelSpeeds
+from .interfaces import Done, Failed, Running, View
+from .script import Part, Script, Scripted, roll, stand, turn_by
+
+COAST_MM = 40.0
+ARC_MM = 120.0
+ARC = (45.0, 90.0)
+"""Slow and fast wheel of the arc towards the side where the line was seen last, mm/s."""
+SWEEPS_RAD = tuple(math.radians(degrees) for degrees in (25, 55, 100))
+SEARCH_MM_S = 50.0
+SPIRAL_MM_S = 90.0
+SPIRAL_FROM, SPIRAL_TO, SPIRAL_MM = -0.4, 0.72, 3200.0
+"""Inner wheel as a share of the outer one: circles of 50 to 720 mm radius, over so much way."""
+ALIGN_RAD = math.radians(60)
+
+
+def over_line(view: View) -> bool:
+    """Some diode, but not all of them: everything dark is a dark floor."""
+    return any(view.reading) and not all(view.reading)
+
+
+class FindLine(Scripted):
+    """Done when the line is under the sensor, along the way the robot looked before; else line_lost."""
+
+    name = "find_line"
+    on_timeout = "line_lost"
+
+    def __init__(
+        self,
+        shape: BodyShape | None = None,
+        side: float = 0.0,
+        heading_rad: float | None = None,
+        limit_s: float = 120.0,
+    ) -> None:
+        """`side`: where the line was seen last (left positive); `heading_rad`: its heading then, by odometry."""
+        self._shape = shape or BodyShape()
+        self._side = math.copysign(1.0, side) if side else 1.0
+        self._heading_rad = heading_rad
+        self.limit_s = limit_s
+
+    def script(self, view: View) -> Script:
+        """The ladder, rung by rung; the line is straightened up to on whichever rung it is found."""
+        along_rad = view.odometry.heading_rad if self._heading_rad is None else self._heading_rad
+        for rung in (self._coast, self._arc, self._back, self._sweep, self._spiral):
+            if over_line(view):
+                break
+            view = yield from searching(rung(view))
+        if over_line(view):
+            view = yield from searching(self._align(view, along_rad))
+        return Done() if over_line(view) else Failed("line_lost")
+
+    def _coast(self, view: View) -> Part:
+        return roll(view, COAST_MM, WheelSpeeds(SEARCH_MM_S, SEARCH_MM_S), over_line)
+
+    def _arc(self, view: View) -> Part:
+        return roll(view, ARC_MM, self._bent(1), over_line)
+
+    def _back(self, view: View) -> Part:
+        """The arc and the way coasted, backwards: the same wheels with the other sign retrace the same path."""
+        forward = self._bent(1)
+        view = yield from roll(view, ARC_MM, WheelSpeeds(-forward.left_mm_s, -forward.right_mm_s), over_line)
+        if not over_line(view):
+            view = yield from roll(view, COAST_MM + 40, WheelSpeeds(-SEARCH_MM_S, -SEARCH_MM_S), over_line)
+        return view
+
+    def _sweep(self, view: View) -> Part:
+        """Left and right by growing angles, the side where the line was seen first."""
+        for angle in SWEEPS_RAD:
+            for turn in (self._side * angle, -2 * self._side * angle, self._side * angle):
+                if not over_line(view):
+                    view = yield from turn_by(view, turn, SEARCH_MM_S, self._shape, over_line)
+        return view
+
+    def _spiral(self, view: View) -> Part:
+        from_mm = view.odometry.travelled_mm
+        while (driven_mm := view.odometry.travelled_mm - from_mm) < SPIRAL_MM and not over_line(view):
+            share = SPIRAL_FROM + (SPIRAL_TO - SPIRAL_FROM) * driven_mm / SPIRAL_MM
+            inner, outer = SPIRAL_MM_S * share, SPIRAL_MM_S
+            view = yield Running(WheelSpeeds(inner, outer) if self._side > 0 else WheelSpeeds(outer, inner))
+        return (yield from stand(view))
+
+    def _align(self, view: View, along_rad: float) -> Part:
+        """Look along the line the way it was driven before; the axle comes over the tape first.
+
+        Without that, a robot that met the tape across would follow it back to where it came from.
+        """
+        off_rad = math.remainder(along_rad - view.odometry.heading_rad, math.tau)
+        if abs(off_rad) > math.radians(20):
+            view = yield from roll(view, self._shape.sensor_lead_mm, WheelSpeeds(SEARCH_MM_S, SEARCH_MM_S))
+            view = yield from turn_by(view, off_rad, SEARCH_MM_S, self._shape)
+        return (yield from settle(view, self._shape))
+
+    def _bent(self, sign: int) -> WheelSpeeds:
+        slow, fast = (sign * speed for speed in ARC)
+        return WheelSpeeds(slow, fast) if self._side > 0 else WheelSpeeds(fast, slow)
+
+
+def searching(part: Part) -> Part:
+    """The same, marked as a search so that the loop counts it."""
+    try:
+        item = next(part)
+        while True:
+            item = part.send((yield Running(item.wheels, item.requests, searching=True)))
+    except StopIteration as end:
+        view: View = end.value
+        return view
+
+
+def settle(view: View, shape: BodyShape, reach_rad: float = ALIGN_RAD) -> Part:
+    """Turn on the spot until the centre diode is over the line, looking a little to both sides for it."""
+    if not over_line(view):
+        for turn in (0.4 * reach_rad, -0.8 * reach_rad, 1.4 * reach_rad, -2 * reach_rad):
+            if not over_line(view):
+                view = yield from turn_by(view, turn, SEARCH_MM_S, shape, over_line)
+    if over_line(view) and not view.reading.centre:
+        side = 1.0 if view.reading.left else -1.0
+        view = yield from turn_by(view, side * 0.5, SEARCH_MM_S, shape, lambda seen: seen.reading.centre)
+    return view

@@ -1,0 +1,64 @@
+"""Waiting for mail to change hands: a code held up to the camera, or the Spot button pressed twice."""
+
+from collections.abc import Set
+from hashlib import sha256
+from typing import ClassVar
+
+from .interfaces import Done, Play, Running, Step, View
+from .tunes import ACCEPTED, REFUSED
+
+TWICE_WITHIN_S = 2.0
+FORGET_WRONG_S = 3.0
+"""A wrong code that is still held up is refused again only after so long without it."""
+
+
+class WaitHandover:
+    """Done(sha256 of the code) when it matches, Done(None) when Spot was pressed twice; else no_one_came."""
+
+    name: ClassVar[str] = "wait_handover"
+    moves: ClassVar[bool] = False
+    on_timeout: ClassVar[str] = "no_one_came"
+
+    def __init__(self, verifiers: Set[str], limit_s: float = 600.0, spot_counts: bool = True) -> None:
+        """`verifiers`: SHA-256 (lower-case hex) of each text that opens; `spot_counts`: whether the button does too."""
+        self._verifiers, self._spot_counts = frozenset(verifiers), spot_counts
+        self.limit_s = limit_s
+        self.refused = 0
+
+    def start(self, view: View, now: float) -> None:
+        """See `interfaces.Skill.start`."""
+        self._seen_s = now
+        self._wrong: tuple[str, float] | None = None
+        self._spot_down = bool(view.base and view.base.spot_pressed)
+        self._pressed_s: float | None = None
+
+    def step(self, view: View, now: float) -> Step:
+        """See `interfaces.Skill.step`."""
+        code = view.code
+        if code is not None and code.at_s > self._seen_s:
+            self._seen_s = code.at_s
+            verifier = sha256(code.text.encode("ascii", "replace")).hexdigest()
+            if verifier in self._verifiers:
+                return Done(verifier, (Play(ACCEPTED),))
+            return self._refuse(code.text, now)
+        if self._spot_counts and self._pressed_twice(view, now):
+            return Done(None, (Play(ACCEPTED),))
+        return Running()
+
+    def _refuse(self, text: str, now: float) -> Step:
+        """Told once by sound, however long it is held up."""
+        known = self._wrong is not None and self._wrong[0] == text and now - self._wrong[1] < FORGET_WRONG_S
+        self._wrong = (text, now)
+        if known:
+            return Running()
+        self.refused += 1
+        return Running(requests=(Play(REFUSED),))
+
+    def _pressed_twice(self, view: View, now: float) -> bool:
+        down = bool(view.base and view.base.spot_pressed)
+        pressed, self._spot_down = down and not self._spot_down, down
+        if not pressed:
+            return False
+        twice = self._pressed_s is not None and now - self._pressed_s <= TWICE_WITHIN_S
+        self._pressed_s = now
+        return twice

@@ -1,0 +1,116 @@
+"""Where the line is under the robot: offset, heading and curvature, from encoders and the edges of the tape.
+
+Three diodes on the axle would see the offset but not the heading; the wheels tell how both change as the robot moves.
+The estimate is a Kalman filter of three states: between edges it only predicts, and an edge that passes under a diode
+is a measurement good to two millimetres.
+"""
+
+from dataclasses import dataclass, field
+
+from ..drivers.interfaces import BodyShape, LineReading
+
+EDGE_SIGMA_MM = 2.0
+OFFSET_NOISE_MM2_PER_MM = 0.01
+HEADING_NOISE_PER_MM = 4e-6
+CURVATURE_NOISE_PER_MM = 4e-10
+START_OFFSET_MM2, START_HEADING, START_CURVATURE = 15.0**2, 0.25**2, 0.0005**2
+STEEPEST = 0.9
+"""Headings beyond this are no longer a line that is followed."""
+MAX_CURVATURE_PER_MM = 1 / 180
+
+Interval = tuple[float, float]
+
+
+def line_intervals(shape: BodyShape) -> dict[LineReading, Interval]:
+    """Where the middle of the tape can be (mm to the left of the centre diode) for each reading that tells."""
+    apart, half = shape.diode_spacing_mm, shape.tape_width_mm / 2
+    inner = abs(apart - half)
+    readings = {
+        LineReading(False, True, False): (-inner, inner),
+        LineReading(True, True, False): (apart - half, half),
+        LineReading(True, False, False): (max(half, apart - half), apart + half),
+        LineReading(False, True, True): (-half, half - apart),
+        LineReading(False, False, True): (-apart - half, min(-half, half - apart)),
+    }
+    return {reading: ends for reading, ends in readings.items() if ends[0] < ends[1]}
+
+
+@dataclass
+class LineEstimate:
+    """Offset of the line from the axle's centre (mm, left positive), its heading (rad) and curvature (1/mm)."""
+
+    shape: BodyShape
+    offset_mm: float = 0.0
+    heading: float = 0.0
+    curvature: float = 0.0
+    _p: list[float] = field(default_factory=lambda: [START_OFFSET_MM2, 0.0, 0.0, START_HEADING, 0.0, START_CURVATURE])
+    """Upper triangle of the covariance: oo, oh, oc, hh, hc, cc."""
+
+    def __post_init__(self) -> None:
+        self._intervals = line_intervals(self.shape)
+        self._before: Interval | None = None
+
+    def move(self, ahead_mm: float, turned_rad: float) -> None:
+        """The robot went on: the line moves under it."""
+        middle = self.heading - turned_rad / 2 + self.curvature * ahead_mm / 2
+        self.offset_mm += ahead_mm * middle
+        self.heading += self.curvature * ahead_mm - turned_rad
+        d, size = ahead_mm, abs(ahead_mm)
+        oo, oh, oc, hh, hc, cc = self._p
+        # F = [[1, d, d²/2], [0, 1, d], [0, 0, 1]]
+        half = d * d / 2
+        new_oo = oo + 2 * d * oh + 2 * half * oc + d * d * hh + 2 * d * half * hc + half * half * cc
+        new_oh = oh + d * oc + d * hh + d * d * hc + half * hc + half * d * cc
+        new_oc = oc + d * hc + half * cc
+        self._p = [
+            new_oo + OFFSET_NOISE_MM2_PER_MM * size,
+            new_oh,
+            new_oc,
+            hh + 2 * d * hc + d * d * cc + HEADING_NOISE_PER_MM * size,
+            hc + d * cc,
+            cc + CURVATURE_NOISE_PER_MM * size,
+        ]
+
+    def see(self, reading: LineReading) -> None:
+        """What the diodes say: an edge that has just passed, or a side on which the estimate must not be."""
+        interval = self._intervals.get(reading)
+        if interval is None:
+            self._before = None
+            return
+        before, self._before = self._before, interval
+        at = self.at(self.shape.sensor_lead_mm)
+        low, high = interval
+        if before is not None and before != interval:
+            edge = high if before[0] >= high - 0.1 else low if before[1] <= low + 0.1 else None
+            if edge is not None:
+                self._correct(edge, EDGE_SIGMA_MM)
+                return
+        if not low <= at <= high:
+            self._correct(min(max(at, low), high), EDGE_SIGMA_MM)
+        elif before is None:
+            self._correct((low + high) / 2, (high - low) / 3.5)
+
+    def at(self, ahead_mm: float) -> float:
+        """Where the line is so far ahead of the axle, mm to the left."""
+        return self.offset_mm + ahead_mm * (self.heading + self.curvature * ahead_mm / 2)
+
+    def _correct(self, measured_mm: float, sigma_mm: float) -> None:
+        """One scalar measurement of the line under the diodes: H = [1, lead, lead²/2]."""
+        lead = self.shape.sensor_lead_mm
+        half = lead * lead / 2
+        oo, oh, oc, hh, hc, cc = self._p
+        to_o, to_h, to_c = oo + lead * oh + half * oc, oh + lead * hh + half * hc, oc + lead * hc + half * cc
+        spread = to_o + lead * to_h + half * to_c + sigma_mm * sigma_mm
+        error = measured_mm - self.at(lead)
+        self.offset_mm += to_o / spread * error
+        self.heading = min(max(self.heading + to_h / spread * error, -STEEPEST), STEEPEST)
+        curvature = self.curvature + to_c / spread * error
+        self.curvature = min(max(curvature, -MAX_CURVATURE_PER_MM), MAX_CURVATURE_PER_MM)
+        self._p = [
+            oo - to_o * to_o / spread,
+            oh - to_o * to_h / spread,
+            oc - to_o * to_c / spread,
+            hh - to_h * to_h / spread,
+            hc - to_h * to_c / spread,
+            cc - to_c * to_c / spread,
+        ]
