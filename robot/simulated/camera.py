@@ -58,3 +58,7 @@ class SimulatedCamera:
 
     def release(self) -> None:
         self._open = False
+
+    def close(self) -> None:
+        """The same, as the robot's own camera door calls it."""
+        self.release()

@@ -36,7 +36,7 @@ class CameraMount:
     """Where the lens is, from the middle of the axle, and what it sees; `exposure_s` blurs what moves."""
 
     ahead_m: float = 0.0
-    left_m: float = 0.10
+    left_m: float = 0.0
     height_m: float = 0.254
     across_rad: float = math.radians(60)
     exposure_s: float = 0.008
@@ -225,6 +225,7 @@ def _held_up(text: str, wall: Frame, random: Random) -> Frame:
     return frame
 
 
+@lru_cache(maxsize=4)
 def _walls(noise: float, seed: int) -> tuple[Frame, ...]:
     """A dim wall above a darker floor, with the sensor's noise."""
     random = np.random.default_rng(seed)
@@ -235,6 +236,7 @@ def _walls(noise: float, seed: int) -> tuple[Frame, ...]:
     )
 
 
+@lru_cache(maxsize=4)
 def _noise(noise: float, seed: int) -> NDArray[np.int16]:
     """A little larger than a frame, so that a random part of it is always new."""
     random = np.random.default_rng(seed + 1)

@@ -1,0 +1,38 @@
+"""A thread that lets a simulated robot live by a clock, for clients that know no stepping (`pycreate2`, a terminal)."""
+
+import threading
+from types import TracebackType
+
+from protocol.clock import Clock
+
+from .robot import SimulatedRobot
+
+PAUSE_S = 0.005
+
+
+class Live:
+    """`with Live(robot, RealClock()): …`; the robot must have been made at the clock's present time."""
+
+    def __init__(self, robot: SimulatedRobot, clock: Clock) -> None:
+        self._robot = robot
+        self._clock = clock
+        self._stop = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="simulated world", daemon=True)
+
+    def _run(self) -> None:
+        while not self._stop.wait(PAUSE_S):
+            self._robot.step_until(self._clock.now())
+
+    def wait(self) -> None:
+        """Until the thread ends, which it does when this block is left."""
+        self._thread.join()
+
+    def __enter__(self) -> "Live":
+        self._thread.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._stop.set()
+        self._thread.join()

@@ -1,0 +1,420 @@
+"""Wheels, bumper, battery, dock and line pins: what happens to the body, seen through packets and pins."""
+
+import math
+from itertools import pairwise
+
+import pytest
+from gpiozero import DigitalInputDevice
+
+from maps import builtin_map
+from robot.simulated import DiodeMount, Motion, Options, Pack, Person, Pose, UnknownStart, Wall
+from robot.simulated.body import Build
+from robot.simulated.drive_base import MM_PER_COUNT
+
+PASSIVE, SAFE, FULL = 1, 2, 3
+NOT, RECONDITION, CHARGING, TRICKLE, WAITING, FAULT = range(6)
+STILL = Motion(ripple_mm_s=0.0, wheel_error=0.0)
+
+
+def wrapped(delta):
+    return (delta + 32768) % 65536 - 32768
+
+
+# Starting --------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("start", "pose"),
+    [
+        ("dock", (2.0, 4.5, math.pi / 2)),
+        ("dock:post5", (2.0, 4.5, math.pi / 2)),
+        ("post1:post2", (0.0, 4.0, -math.pi / 2)),
+        ("post1", (0.0, 3.7, math.pi / 2)),
+    ],
+)
+def test_a_robot_starts_where_it_is_told(make, start, pose):
+    found = make(start).robot.pose
+    assert (found.x_m, found.y_m, found.heading_rad) == pytest.approx(pose)
+
+
+@pytest.mark.parametrize("start", ["post9", "post1:post3", "dock:post1", "post1:nowhere", ""])
+def test_a_start_that_is_not_on_the_map_is_named(make, start):
+    with pytest.raises(UnknownStart, match="cannot start at"):
+        make(start)
+
+
+# Wheels ----------------------------------------------------------------------------------------------------------
+
+
+def test_one_second_at_200_mm_s_covers_185_to_190_mm(awake):
+    awake.drive(200, 200)
+    awake.run(1.0 - 0.02)
+    assert 185 <= awake.robot.driven_mm <= 190
+
+
+def test_encoders_count_what_the_wheels_rolled_and_wrap_at_65536(make):
+    bench = make(options=Options(build=Build(motion=Motion(0.06, 0.0, 0.0, encoder_start=65000))))
+    bench.send(128, 131)
+    before = bench.ask(43)
+    bench.drive(300, 300)
+    bench.run(2)
+    bench.drive(0, 0)
+    bench.run(1)
+    after = bench.ask(43)
+    assert after < before, "it wrapped"
+    assert wrapped(after - before) * MM_PER_COUNT == pytest.approx(bench.robot.driven_mm, abs=1)
+
+
+def test_backing_counts_down_and_comes_back_to_where_it_was(awake):
+    before = awake.ask(44)
+    for speed in (-100, 0, 100, 0):
+        awake.drive(speed, speed)
+        awake.run(2)
+    assert abs(wrapped(awake.ask(44) - before)) <= 1
+    assert awake.robot.pose.y_m == pytest.approx(4.0, abs=0.001)
+
+
+def test_while_a_command_turns_round_the_count_has_already_the_new_sign(awake):
+    awake.drive(300, 300)
+    awake.run(1)
+    awake.drive(-300, -300)
+    base = awake.robot.body.base
+    counted, south_m = base.left.encoder, base.y_m
+    awake.run(0.015)
+    assert base.y_m < south_m, "it still rolls on"
+    assert wrapped(base.left.encoder - counted) < 0
+
+
+def test_a_spin_turns_on_the_spot(awake):
+    awake.drive(-100, 100)
+    awake.run(math.pi / 2 * 117.5 / 100)
+    awake.drive(0, 0)
+    awake.run(1)
+    pose = awake.robot.pose
+    assert (pose.x_m, pose.y_m) == pytest.approx((0, 4.0), abs=1e-6)
+    assert pose.heading_rad == pytest.approx(0.0, abs=0.05)
+
+
+def test_wheels_of_another_seed_have_other_errors(make):
+    def end(seed) -> Pose:
+        bench = make(options=Options(), seed=seed)
+        bench.send(128, 131)
+        bench.drive(200, 200)
+        bench.run(5)
+        return bench.robot.pose
+
+    assert end(1) == end(1)
+    assert end(1) != end(2)
+    assert end(1).y_m == pytest.approx(3.0, abs=0.1)
+
+
+# Bumper ----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("x_m", "bits"), [(0.0, 0b11), (0.15, 0b10), (-0.15, 0b01)])
+def test_a_person_in_the_way_presses_the_bumper_on_his_side_and_holds_the_robot(make, x_m, bits):
+    """The robot drives south, so east is on its left."""
+    bench = make(options=Options(build=Build(motion=STILL), obstacles=(Person(x_m, 3.4, 0.2),)))
+    bench.send(128, 131)
+    bench.drive(200, 200)
+    bench.run(3)
+    assert bench.ask(7) == bits
+    held_at = bench.robot.pose.y_m
+    assert math.dist((0, held_at), (x_m, 3.4)) == pytest.approx(0.2 + 0.17425, abs=0.003)
+    counts = bench.ask(43)
+    bench.run(1.5)
+    assert bench.robot.pose.y_m == held_at
+    assert wrapped(bench.ask(43) - counts) > 300, "the wheels slip and count"
+    assert (bench.ask(14), bench.ask(58)) == (0b11000, 0)
+    assert bench.ask(54) == 1200
+
+
+def test_a_robot_can_back_off_from_what_it_ran_into(make):
+    bench = make(options=Options(build=Build(motion=STILL), obstacles=(Wall(-1, 3.5, 1, 3.5),)))
+    bench.send(128, 131)
+    bench.drive(200, 200)
+    bench.run(3)
+    assert bench.ask(7) == 0b11
+    bench.drive(-200, -200)
+    bench.run(1)
+    assert bench.ask(7) == 0
+    assert bench.robot.pose.y_m == pytest.approx(3.5 + 0.174 + 0.19, abs=0.01)
+
+
+def test_a_robot_that_backs_into_somebody_stands_still_and_feels_no_bump(make):
+    bench = make(options=Options(build=Build(motion=STILL), obstacles=(Person(0, 4.6, 0.2),)))
+    bench.send(128, 131)
+    bench.drive(-200, -200)
+    bench.run(3)
+    assert bench.ask(7) == 0
+    assert bench.robot.pose.y_m == pytest.approx(4.6 - 0.374, abs=0.003)
+
+
+def test_the_light_bumper_sees_somebody_before_the_touch(make):
+    bench = make(options=Options(build=Build(motion=STILL), obstacles=(Person(0, 3.57, 0.2),)))
+    bench.send(128)
+    assert bench.ask(45) & 0b001100
+    assert bench.ask(48) > 0
+    assert bench.ask(7) == 0
+
+
+def test_somebody_who_steps_aside_lets_the_robot_go_on(make):
+    bench = make(options=Options(build=Build(motion=STILL), obstacles=(Person(0, 3.4),)))
+    bench.send(128, 131)
+    bench.drive(100, 100)
+    bench.run(4)
+    bench.robot.world.obstacles.clear()
+    bench.run(1)
+    assert bench.ask(7) == 0
+    assert bench.robot.pose.y_m < 3.7
+
+
+# Battery and dock ------------------------------------------------------------------------------------------------
+
+
+def test_driving_empties_the_battery_faster_than_standing(make):
+    def used_mah(speed) -> float:
+        bench = make(battery_ratio=0.9)
+        bench.send(128, 131)
+        bench.drive(speed, -speed)
+        bench.run(600)
+        return 0.9 * 2696 - bench.robot.battery.charge_mah
+
+    assert used_mah(0) == pytest.approx(250 * 600 / 3600, rel=0.01)
+    assert used_mah(100) == pytest.approx(850 * 600 / 3600, rel=0.02)
+
+
+def test_voltage_falls_with_the_charge(make):
+    bench = make()
+    bench.send(128, 131)
+    volts = []
+    for ratio in (1.0, 0.5, 0.25, 0.1, 0.0):
+        bench.robot.sag(ratio)
+        bench.run(0.1)
+        volts.append(bench.ask(22))
+    assert all(high > low for high, low in pairwise(volts))
+    assert volts[0] > 15500
+    assert volts[2] > 13200 > volts[3]
+
+
+def test_a_docked_robot_charges_in_off_and_passive_until_it_is_full(make):
+    bench = make("dock", battery_ratio=0.5, capacity_mah=60)
+    bench.send(128)
+    bench.run(2)
+    assert (bench.ask(21), bench.ask(34), bench.ask(23)) == (CHARGING, 2, 1250)
+    bench.run(30 / 1250 * 3600)
+    assert bench.ask(21) == TRICKLE
+    assert bench.ask(25) == bench.ask(26) == 60
+
+
+def test_an_empty_battery_is_reconditioned_first(make):
+    bench = make("dock", battery_ratio=0.0)
+    bench.send(128)
+    bench.run(2)
+    assert bench.ask(21) in (RECONDITION, CHARGING)
+
+
+def test_trickle_charge_does_not_feed_a_computer_on_the_battery(make):
+    options = Options(build=Build(pack=Pack(capacity_mah=60, ratio=1.0, host_ma=600)))
+    bench = make("dock", options=options)
+    bench.send(128)
+    bench.run(120)
+    assert bench.ask(21) == TRICKLE
+    assert bench.robot.battery.ratio < 0.75
+
+
+def test_safe_on_the_dock_bounces_back_to_passive(make):
+    bench = make("dock")
+    bench.send(128, 131)
+    bench.run(0.1)
+    assert bench.ask(35) == PASSIVE
+
+
+def test_full_on_the_dock_ends_the_charge_and_can_back_off(make):
+    bench = make("dock", battery_ratio=0.5)
+    bench.send(128)
+    bench.run(3)
+    bench.send(132)
+    bench.run(0.1)
+    assert (bench.ask(35), bench.ask(21)) == (FULL, NOT)
+    bench.drive(-100, -100)
+    bench.run(3)
+    bench.drive(0, 0)
+    bench.send(131)
+    bench.run(1)
+    assert (bench.ask(35), bench.ask(34)) == (SAFE, 0)
+    assert bench.robot.pose.y_m == pytest.approx(4.2, abs=0.02)
+
+
+def test_a_robot_cannot_drive_through_the_dock(make):
+    bench = make("dock")
+    bench.send(128, 132)
+    bench.drive(200, 200)
+    bench.run(3)
+    assert bench.robot.pose.y_m == pytest.approx(4.5, abs=0.02)
+
+
+@pytest.mark.parametrize("left_m", [-0.15, 0.0, 0.15])
+@pytest.mark.parametrize("turned_deg", [-25, 0, 25])
+@pytest.mark.parametrize("before_m", [0.4, 0.8, 1.4])
+def test_seek_dock_finds_a_dock_in_front_of_it(make, left_m, turned_deg, before_m):
+    bench = make("dock", options=Options(), battery_ratio=0.5)
+    heading = math.pi / 2 + math.radians(turned_deg)
+    bench.robot.place(Pose(2.0 - left_m, 4.5 - before_m, heading))
+    bench.send(128, 143)
+    bench.run(40)
+    assert bench.robot.docked
+    assert (bench.ask(21), bench.ask(34), bench.ask(35)) == (CHARGING, 2, PASSIVE)
+
+
+def test_seek_dock_far_from_any_dock_gives_up_after_a_minute(make):
+    bench = make("post4:post3")
+    bench.send(128, 143)
+    bench.run(30)
+    assert bench.robot.driven_mm > 500
+    bench.run(40)
+    driven = bench.robot.driven_mm
+    bench.run(10)
+    assert bench.robot.driven_mm == driven
+    assert not bench.robot.docked
+
+
+def test_a_wheel_drop_aborts_the_search_for_the_dock(make):
+    bench = make("post5")
+    bench.send(128, 143)
+    bench.run(0.5)
+    bench.robot.lift(True)
+    bench.run(1)
+    driven = bench.robot.driven_mm
+    bench.run(2)
+    assert bench.robot.driven_mm == driven
+
+
+def test_the_beams_say_on_which_side_of_the_dock_a_robot_is(make):
+    """Green is on the left of somebody who comes, red on the right, both on the middle line."""
+    bench = make("dock")
+    bench.send(128)
+    seen = []
+    for left_m in (0.3, 0.0, -0.3):
+        bench.robot.place(Pose(2.0 - left_m, 3.5, math.pi / 2))
+        seen.append(bench.ask(17))
+    assert seen == [164, 172, 168]
+    bench.robot.place(Pose(2.0, 4.2, math.pi / 2))
+    assert bench.ask(17) == 173
+    bench.robot.place(Pose(2.0, 4.2, 0.0))
+    assert (bench.ask(52), bench.ask(53)) == (173, 0), "the dock is on the left"
+
+
+# Line pins -------------------------------------------------------------------------------------------------------
+
+
+def read_pins(robot):
+    """Left, centre, right, through real gpiozero devices."""
+    devices = [
+        DigitalInputDevice(pin, pull_up=None, active_state=True, pin_factory=robot.pin_factory) for pin in (18, 15, 14)
+    ]
+    values = "".join(str(device.value) for device in devices)
+    for device in devices:
+        device.close()
+    return values
+
+
+@pytest.mark.parametrize(
+    ("left_mm", "pattern"),
+    [(0, "101"), (15, "110"), (-15, "011"), (9, "100"), (-9, "001"), (50, "111"), (-50, "111")],
+)
+def test_the_pins_say_where_the_line_is(make, left_mm, pattern):
+    """The robot looks south along the line and stands so far to the left of it."""
+    bench = make()
+    bench.robot.place(Pose(left_mm / 1000, 3.5, -math.pi / 2))
+    assert read_pins(bench.robot) == pattern
+
+
+def test_all_pins_are_low_where_a_line_crosses(make):
+    bench = make()
+    bench.robot.place(Pose(2.0 - 0.06, 2.5, 0.0))
+    assert read_pins(bench.robot) == "000"
+
+
+def test_the_diodes_are_mounted_where_the_settings_say(make):
+    bench = make(options=Options(build=Build(diodes=DiodeMount(lead_mm=0.0, spacing_mm=10.0))))
+    bench.robot.place(Pose(2.0, 2.5, 0.0))
+    assert read_pins(bench.robot) == "000"
+    bench.robot.place(Pose(0.0, 3.5, -math.pi / 2))
+    assert read_pins(bench.robot) == "000", "10 mm beside the middle is still tape"
+
+
+def test_pins_change_while_the_robot_rolls(make):
+    bench = make()
+    device = DigitalInputDevice(15, pull_up=None, active_state=True, pin_factory=bench.robot.pin_factory)
+    bench.robot.place(Pose(-0.3, 3.5, 0.0))
+    bench.send(128, 131)
+    bench.drive(200, 200)
+    seen = []
+    for _ in range(400):
+        bench.run(0.005)
+        seen.append(device.value)
+    device.close()
+    assert 20 <= seen.count(0) <= 28, "24 mm of tape at 200 mm/s are 24 steps"
+
+
+def test_a_gap_in_the_tape_looks_like_no_line(make):
+    worn = make(options=Options(build=Build(motion=STILL), gap_m=0.02))
+    whole = make()
+    lost = [0, 0]
+    for step in range(1900):
+        for index, bench in enumerate((worn, whole)):
+            pose = Pose(0.0, 3.95 - step / 1000, -math.pi / 2)
+            lost[index] += bench.robot.body.pins.readings(pose.x_m, pose.y_m, pose.heading_rad)[1]
+    assert lost[1] == 0
+    assert 15 <= lost[0] <= 70
+
+
+def test_one_robots_pins_are_not_anothers(make):
+    one, other = make(), make()
+    one.robot.place(Pose(0.0, 3.5, -math.pi / 2))
+    other.robot.place(Pose(1.0, 3.5, -math.pi / 2))
+    assert (read_pins(one.robot), read_pins(other.robot)) == ("101", "111")
+
+
+# Sameness --------------------------------------------------------------------------------------------------------
+
+
+def test_the_same_seed_and_inputs_give_the_same_bytes_frames_and_way(make):
+    def life(seed) -> tuple[bytes, list[int], Pose]:
+        bench = make(options=Options(), seed=seed)
+        bench.robot.set_fault("floor_flip", 0.01)
+        bench.robot.set_fault("flip_byte", 0.001)
+        bench.send(128, 131, 148, 4, 7, 43, 44, 25)
+        heard, frames = b"", []
+        for turn in range(60):
+            bench.drive(150 + turn, 150 - turn)
+            bench.run(0.1)
+            heard += bench.heard()
+            frames.append(bench.robot.camera.read()[1].sum())
+        return heard, frames, bench.robot.pose
+
+    assert life(5) == life(5)
+    assert life(5)[0] != life(6)[0]
+
+
+def test_steps_do_not_depend_on_how_often_the_world_is_asked(make):
+    def end(pause_s) -> Pose:
+        bench = make(options=Options(), seed=4)
+        bench.send(128, 131)
+        bench.drive(200, 180)
+        while bench.robot.now < 3 - 1e-9:
+            bench.robot.step_until(min(bench.robot.now + pause_s, 3.0))
+        return bench.robot.pose
+
+    assert end(0.005) == end(0.1) == end(1.0)
+
+
+def test_the_tunnels_have_their_floor_and_docks_too(make):
+    campus = builtin_map("carleton")
+    for post in campus.docks():
+        bench = make(f"dock:{post.name}", campus="carleton")
+        bench.run(2)
+        assert bench.robot.docked
+    bench = make("loeb:southam", campus="carleton")
+    assert read_pins(bench.robot) == "101"

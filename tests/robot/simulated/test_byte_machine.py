@@ -1,0 +1,442 @@
+"""The byte machine: the manual's examples, the modes and what they refuse, streams, text, sleep."""
+
+import re
+
+import pytest
+
+from robot.simulated.commands import COMMANDS, SF
+from robot.simulated.open_interface import HANDLERS
+from robot.simulated.packets import GROUPS, PACKETS, Layout, Readings, stream_frame
+
+OFF, PASSIVE, SAFE, FULL = range(4)
+SIZES = {0: 26, 1: 10, 2: 6, 3: 10, 4: 14, 5: 12, 6: 52, 100: 80, 101: 28, 106: 12, 107: 9}
+
+
+# The manual's own examples ---------------------------------------------------------------------------------------
+
+
+def test_the_manuals_drive_example_backs_in_an_arc(awake):
+    """137 255 56 1 244: −200 mm/s, radius 500 mm."""
+    awake.send(137, 255, 56, 1, 244)
+    assert (awake.ask(39), awake.ask(40)) == (-200, 500)
+    assert (awake.ask(42), awake.ask(41)) == (-153, -247)
+
+
+def test_the_manuals_query_example_answers_without_a_frame(awake):
+    """149 2 7 13: bumps, then virtual wall."""
+    awake.send(149, 2, 7, 13)
+    assert awake.heard() == b"\x00\x00"
+
+
+def test_the_manuals_stream_example_comes_out_byte_by_byte():
+    """148 2 29 13 with 549 and 0: 19 5 29 2 37 13 0 and a checksum that makes the sum 0."""
+    told = Readings(cliff_front_left_signal=549, virtual_wall=0)
+    assert stream_frame(Layout((29, 13), tagged=True).encode(told)) == bytes((19, 5, 29, 2, 37, 13, 0, 151))
+    told.cliff_front_left_signal = 2 * 256 + 25
+    assert stream_frame(Layout((29, 13), tagged=True).encode(told)) == bytes((19, 5, 29, 2, 25, 13, 0, 163))
+
+
+def test_the_manuals_led_example_lights_dock_only_in_safe_or_full(make):
+    bench = make()
+    bench.send(128, 139, 4, 0, 128)
+    assert bench.robot.body.interface.leds == (0, 0, 0)
+    bench.send(131, 139, 4, 0, 128)
+    assert bench.robot.body.interface.leds == (4, 0, 128)
+
+
+def test_the_manuals_schedule_example_is_eaten_whole(awake):
+    awake.send(167, 40, 0, 0, 0, 0, 0, 0, 15, 0, 0, 0, 10, 36, 0, 0)
+    assert awake.ask(35) == SAFE
+
+
+# The table of commands -------------------------------------------------------------------------------------------
+
+
+def test_every_command_of_the_table_has_a_handler_and_no_other():
+    assert set(HANDLERS) == set(COMMANDS)
+
+
+@pytest.mark.parametrize("opcode", sorted(COMMANDS))
+def test_every_command_eats_exactly_its_data(make, opcode):
+    """After the data the next command is understood, whatever the mode allows."""
+    bench = make()
+    bench.send(128)
+    command = COMMANDS[opcode]
+    counted = command.each if command.counted_in is not None else 0
+    # A count of 1 where the command counts; else bytes that are no dangerous speed.
+    bench.send(opcode, *([1] * command.size), *([0] * counted))
+    bench.run(5.0)
+    if bench.robot.body.interface.asleep:
+        bench.robot.brc.low(True)
+        bench.run(0.1)
+        bench.robot.brc.low(False)
+    bench.port.baudrate = bench.robot.body.interface.baud
+    bench.send(128)
+    assert bench.robot.body.interface.mode == PASSIVE
+
+
+@pytest.mark.parametrize("opcode", [147, *range(151, 159), 0, 6, 8, 127, 174, 255])
+def test_an_unknown_opcode_is_one_lost_byte(awake, opcode):
+    awake.send(opcode)
+    assert awake.ask(35) == SAFE
+
+
+@pytest.mark.parametrize("opcode", sorted(opcode for opcode, command in COMMANDS.items() if command.modes == SF))
+def test_an_actuator_command_in_passive_is_taken_and_does_nothing(make, opcode):
+    bench = make()
+    bench.send(128, opcode, *([100] * COMMANDS[opcode].size))
+    bench.run(1.0)
+    interface = bench.robot.body.interface
+    assert interface.ignored_commands == 1
+    assert (interface.left_mm_s, interface.brushes, interface.leds) == (0, (0, 0, 0), (0, 0, 0))
+    assert bench.robot.driven_mm == 0
+    assert bench.ask(35) == PASSIVE
+
+
+def test_a_half_command_waits_for_ever_and_eats_the_next_one(awake):
+    awake.send(145, 0, 100)
+    awake.run(60)
+    awake.send(131, 131)
+    assert (awake.ask(41), awake.ask(42)) == (100, -500)  # 0x8383 is far beyond the range and is cut to it
+
+
+def test_off_hears_only_start_and_reset(make):
+    bench = make()
+    bench.send(131, 132, 142, 35, 145, 0, 100, 0, 100)
+    assert bench.heard() == b""
+    assert bench.robot.body.interface.mode == OFF
+    bench.send(128)
+    assert bench.ask(35) == PASSIVE
+
+
+def test_stop_ends_the_stream_and_the_interface(awake):
+    awake.send(148, 1, 35)
+    awake.send(173)
+    awake.heard()
+    awake.run(1.0)
+    assert awake.heard() == b""
+    awake.send(142, 35)
+    assert awake.heard() == b""
+
+
+def test_full_stays_full_until_told_otherwise(awake):
+    awake.send(132)
+    assert awake.ask(35) == FULL
+    awake.send(131)
+    assert awake.ask(35) == SAFE
+    awake.send(128)
+    assert awake.ask(35) == PASSIVE
+
+
+# Driving ---------------------------------------------------------------------------------------------------------
+
+
+def test_a_drive_command_latches_for_ever(awake):
+    awake.drive(100, 100)
+    awake.run(10)
+    assert awake.robot.driven_mm == pytest.approx(1000, abs=10)
+
+
+def test_leaving_safe_stops_the_wheels(awake):
+    awake.drive(100, 100)
+    awake.send(128)
+    awake.run(1)
+    before = awake.robot.driven_mm
+    awake.run(5)
+    assert awake.robot.driven_mm == before
+
+
+@pytest.mark.parametrize(
+    ("radius", "left", "right"),
+    [(0x8000, 200, 200), (0x7FFF, 200, 200), (1, -200, 200), (0xFFFF, 200, -200), (1000, 176, 224), (0xFC18, 224, 176)],
+)
+def test_the_radius_says_which_wheel_is_faster(awake, radius, left, right):
+    """0xFC18 is −1000: a turn to the right."""
+    awake.send(137, 0, 200, *radius.to_bytes(2, "big"))
+    assert awake.ask(42) == pytest.approx(left, abs=1)
+    assert awake.ask(41) == pytest.approx(right, abs=1)
+
+
+def test_speeds_beyond_500_are_cut(awake):
+    awake.drive(2000, -2000)
+    assert (awake.ask(42), awake.ask(41)) == (500, -500)
+
+
+def test_drive_pwm_is_a_share_of_the_top_speed(awake):
+    awake.send(146, 0, 255, 0, 51)
+    assert (awake.ask(41), awake.ask(42)) == (500, 100)
+
+
+# What the firmware does by itself --------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("mode", [131, 132])
+def test_a_wheel_drop_ends_safe_but_not_full(make, mode):
+    bench = make()
+    bench.send(128, mode)
+    bench.drive(100, 100)
+    bench.robot.lift(True)
+    bench.run(0.1)
+    expected = (PASSIVE, 0) if mode == 131 else (FULL, 100)
+    assert (bench.ask(35), bench.ask(41)) == expected
+    assert bench.ask(7) == 0b1100
+
+
+def test_a_cliff_stops_a_robot_that_drives_forward_in_safe(awake):
+    awake.drive(100, 100)
+    awake.robot.cliff(True)
+    awake.run(0.1)
+    assert (awake.ask(35), awake.ask(10), awake.ask(11), awake.ask(9)) == (PASSIVE, 1, 1, 0)
+
+
+def test_a_cliff_lets_a_robot_back_off_straight(awake):
+    awake.robot.cliff(True)
+    awake.send(131)
+    awake.drive(-100, -100)
+    awake.run(1)
+    assert awake.ask(35) == SAFE
+    assert awake.robot.driven_mm > 80
+
+
+def test_a_cliff_stops_a_tight_turn_backward(awake):
+    awake.robot.cliff(True)
+    awake.drive(-100, 0)
+    awake.run(0.1)
+    assert awake.ask(35) == PASSIVE
+
+
+def test_a_bump_is_no_reason_for_the_firmware_to_stop(awake):
+    awake.drive(100, 100)
+    awake.robot.bump("both", 1.0)
+    awake.run(0.5)
+    assert (awake.ask(35), awake.ask(7), awake.ask(41)) == (SAFE, 0b11, 100)
+
+
+@pytest.mark.parametrize(("side", "bits"), [("left", 0b10), ("right", 0b01), ("both", 0b11)])
+def test_a_bump_has_a_side_and_an_end(awake, side, bits):
+    awake.robot.bump(side)
+    awake.run(0.1)
+    assert awake.ask(7) == bits
+    awake.run(0.6)
+    assert awake.ask(7) == 0
+
+
+# Streams ---------------------------------------------------------------------------------------------------------
+
+
+def test_the_sizes_of_all_groups_are_the_manuals():
+    assert {group: Layout((group,), tagged=False).size for group in GROUPS} == SIZES
+
+
+def test_a_stream_sends_a_sound_frame_every_15_ms(awake):
+    awake.send(148, 3, 7, 43, 100)
+    awake.heard()
+    awake.run(0.6)
+    data = awake.heard()
+    size = 2 + 1 + 1 + 1 + 2 + 1 + 80 + 1
+    assert len(data) == 40 * size
+    for frame in (data[i : i + size] for i in range(0, len(data), size)):
+        assert (frame[0], frame[1], frame[2], frame[4], frame[7]) == (19, size - 3, 7, 43, 100)
+        assert sum(frame) % 256 == 0
+
+
+def test_a_stream_pauses_and_goes_on_with_its_last_list(awake):
+    awake.send(148, 1, 35, 150, 0)
+    awake.heard()
+    awake.run(1)
+    assert awake.heard() == b""
+    awake.send(150, 1)
+    assert awake.heard().startswith(bytes((19, 2, 35, SAFE)))
+
+
+def test_a_stream_longer_than_its_slot_gives_only_broken_frames(awake):
+    awake.send(148, 3, 100, 100, 100)
+    awake.heard()
+    awake.run(0.15)
+    data = awake.heard()
+    assert len(data) == 172 * 10
+
+
+def test_packet_38_counts_the_streamed_packets(awake):
+    awake.send(148, 3, 7, 8, 9, 150, 0)
+    assert awake.ask(38) == 3
+
+
+def test_reading_distance_and_angle_clears_them(awake):
+    awake.drive(100, 100)
+    awake.run(2)
+    awake.drive(0, 0)
+    awake.run(1)
+    assert awake.ask(19) == pytest.approx(200, abs=4)
+    assert awake.ask(19) == 0
+    awake.drive(-50, 50)
+    awake.run(2)
+    awake.drive(0, 0)
+    awake.run(1)
+    assert awake.ask(20) == pytest.approx(49, abs=2)
+    assert awake.ask(20) == 0
+
+
+def test_an_unknown_packet_is_no_answer(awake):
+    awake.send(142, 59)
+    assert awake.heard() == b""
+    awake.send(149, 3, 59, 35, 200)
+    assert awake.heard() == bytes((SAFE,))
+
+
+def test_every_packet_has_a_place_in_the_big_group():
+    assert list(PACKETS) == list(GROUPS[100])
+
+
+# Text, reset, sleep ----------------------------------------------------------------------------------------------
+
+
+def test_reset_prints_the_boot_text_and_hears_nothing_meanwhile(awake):
+    awake.send(7)
+    awake.run(2)
+    assert awake.heard() == b"Soft reset!\n\xfe"
+    awake.send(128)
+    awake.run(2.5)
+    text = awake.heard().decode("ascii")
+    assert text.startswith("Roomba by iRobot!\r\n")
+    assert re.search(r"release-(?:stm32-)?(\d+)\.(\d+)\.(\d+)", text)
+    assert awake.robot.body.interface.mode == OFF
+    awake.send(128)
+    assert awake.ask(35) == PASSIVE
+
+
+def test_a_charging_robot_prints_a_battery_line_a_second_until_it_is_started(make):
+    bench = make("dock", battery_ratio=0.5)
+    bench.run(10)
+    lines = bench.heard().decode("ascii").splitlines()
+    assert len(lines) == 10
+    assert re.fullmatch(
+        r"bat:   min \d+  sec \d+  mV \d+  mA 1250  tenths-deg-C \d+  mAH \d+  state 8  mode 7", lines[-1]
+    )
+    bench.send(128)
+    bench.heard()
+    bench.run(5)
+    assert bench.heard() == b""
+
+
+def test_five_idle_minutes_in_passive_send_the_robot_to_sleep_even_while_it_is_polled(make):
+    bench = make()
+    bench.send(128)
+    for _ in range(299):
+        bench.run(0.98)
+        bench.send(142, 35)
+    assert len(bench.heard()) == 299
+    bench.run(10)
+    assert bench.heard() == b"processor-sleep\r\n"
+    bench.send(128, 142, 35)
+    assert bench.heard() == b""
+
+
+def test_a_low_pulse_on_brc_wakes_the_robot_into_off(make):
+    bench = make()
+    bench.send(128)
+    bench.run(301)
+    bench.heard()
+    bench.robot.brc.low(True)
+    bench.run(0.03)
+    bench.robot.brc.low(False)
+    assert bench.robot.body.interface.asleep, "30 ms are too short"
+    bench.robot.brc.low(True)
+    bench.run(0.5)
+    bench.robot.brc.low(False)
+    bench.run(0.02)
+    assert bench.heard().startswith(b"key-wakeup\r\nslept for 0 minutes 1")
+    bench.send(128)
+    assert bench.ask(35) == PASSIVE
+
+
+def test_pulses_on_brc_keep_a_passive_robot_awake(make):
+    bench = make()
+    bench.send(128)
+    for _ in range(8):
+        bench.run(60)
+        bench.robot.brc.low(True)
+        bench.run(1)
+        bench.robot.brc.low(False)
+    assert bench.ask(35) == PASSIVE
+
+
+def test_a_dead_brc_wakes_nobody(make):
+    bench = make()
+    bench.robot.set_fault("brc_dead", True)
+    bench.send(128)
+    bench.run(301)
+    bench.robot.brc.low(True)
+    bench.run(1)
+    bench.robot.brc.low(False)
+    assert bench.robot.body.interface.asleep
+
+
+@pytest.mark.parametrize("mode", [131, 132])
+def test_safe_and_full_never_sleep(make, mode):
+    bench = make()
+    bench.send(128, mode)
+    bench.run(400)
+    assert bench.ask(35) == mode - 129
+
+
+def test_power_sleeps_at_once(awake):
+    awake.send(133)
+    assert awake.robot.body.interface.asleep
+
+
+# Songs and buttons -----------------------------------------------------------------------------------------------
+
+
+def test_a_song_plays_for_its_length_and_is_not_interrupted(awake):
+    awake.send(140, 3, 2, 60, 32, 64, 32, 140, 1, 1, 70, 16)
+    awake.send(141, 3)
+    awake.run(0.5)
+    awake.send(141, 1)
+    assert (awake.ask(36), awake.ask(37)) == (3, 1)
+    awake.run(0.6)
+    assert awake.ask(37) == 0
+    assert awake.robot.body.interface.songs.played == [3]
+
+
+def test_a_song_is_written_in_passive_but_plays_only_in_safe(make):
+    bench = make()
+    bench.send(128, 140, 0, 1, 60, 64, 141, 0)
+    assert bench.ask(37) == 0
+    bench.send(131, 141, 0)
+    assert bench.ask(37) == 1
+
+
+def test_the_dock_button_starts_the_search_in_passive_and_is_only_reported_in_safe(make):
+    bench = make()
+    bench.send(128, 131, 165, 4)
+    assert (bench.ask(18), bench.ask(35)) == (4, SAFE)
+    bench.run(0.2)
+    assert bench.ask(18) == 0
+    bench.send(128, 165, 4)
+    bench.run(1)
+    assert bench.robot.driven_mm > 50
+
+
+def test_a_cleaning_cycle_drives_and_a_second_press_pauses_it(make):
+    bench = make()
+    bench.send(128, 135)
+    bench.run(2)
+    driven = bench.robot.driven_mm
+    assert driven > 200
+    bench.send(143)
+    bench.run(1)
+    driven = bench.robot.driven_mm
+    bench.run(2)
+    assert bench.robot.driven_mm == driven
+
+
+def test_the_wrong_baud_gives_garbage_both_ways(awake):
+    awake.send(129, 7)
+    awake.run(0.1)
+    awake.send(142, 35)
+    assert awake.heard() != bytes((SAFE,))
+    awake.port.baudrate = 19200
+    awake.port.reset_input_buffer()
+    awake.send(142, 35)
+    assert awake.heard() == bytes((SAFE,))
