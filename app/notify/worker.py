@@ -93,7 +93,7 @@ class OutboxWorker:
         )
 
     def _body(self, notice: Notice, person: Person, has_code: bool) -> str:
-        url = f"{self.settings.public_url.rstrip('/')}/?order={notice.order_id}"
+        url = f"{self.settings.public_url.rstrip('/')}/follow.html?order={notice.order_id}"
         parts = [text(person.language, f"notice.{notice.kind}.body", notice.facts)]
         parts += [text(person.language, "mail.code")] if has_code else []
         parts += [text(person.language, "mail.link", {"url": url})] if self.settings.public_url else []

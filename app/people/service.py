@@ -128,11 +128,10 @@ async def _open_session_row(session: AsyncSession, token: str) -> PersonSession 
     return (await session.exec(select(PersonSession).where(PersonSession.token_hash == hash_of(token)))).first()
 
 
-async def set_roles(session: AsyncSession, person: Person, add: set[Role], remove: set[Role]) -> None:
+def set_roles(person: Person, add: set[Role], remove: set[Role]) -> None:
     """Give and take roles; everybody stays a member."""
     roles = ({Role(role) for role in person.roles} | add) - remove | {Role.MEMBER}
     person.roles = sorted(str(role) for role in roles)
-    session.add(person)
 
 
 def hash_of(token: str) -> str:

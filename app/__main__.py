@@ -1,0 +1,80 @@
+"""The service's commands: `python -m app --help`."""
+
+import asyncio
+import contextlib
+from collections.abc import Iterator
+from typing import Annotated
+
+import typer
+
+from app.errors import ServiceError, StartError
+from app.logs import set_up_logs
+from app.settings import Settings, load_settings
+
+app = typer.Typer(no_args_is_help=True, add_completion=False, help="Campus Mail: the service.")
+people_app = typer.Typer(no_args_is_help=True, help="People and their roles.")
+robots_app = typer.Typer(no_args_is_help=True, help="Robots that may sign in.")
+app.add_typer(people_app, name="people")
+app.add_typer(robots_app, name="robots")
+
+EXIT_CANNOT_START = 2
+
+
+@contextlib.contextmanager
+def errors_in_words() -> Iterator[None]:
+    """A named error is a sentence on stderr and exit code 2, never a traceback."""
+    try:
+        yield
+    except (StartError, ServiceError) as error:
+        typer.echo(f"campus-mail: {error}", err=True)
+        raise typer.Exit(EXIT_CANNOT_START) from None
+
+
+def _settings(**given: object) -> Settings:
+    """The settings of the environment, and what was given as an option."""
+    settings = load_settings()
+    wanted = {name: value for name, value in given.items() if value is not None}
+    return Settings.model_validate({**settings.model_dump(), **wanted})
+
+
+@app.command()
+def serve(
+    host: Annotated[str | None, typer.Option(help="Address to listen on.")] = None,
+    port: Annotated[int | None, typer.Option(help="TCP port to listen on; 0 takes a free one.")] = None,
+) -> None:
+    """Serve pages and API until Ctrl-C. The database is made or brought up to date first."""
+    from app.serving import serve as serve_until_stopped
+
+    with errors_in_words(), contextlib.suppress(KeyboardInterrupt):
+        settings = _settings(host=host, port=port)
+        set_up_logs(settings.log_level)
+        serve_until_stopped(settings)
+
+
+@app.command()
+def migrate() -> None:
+    """Bring the database to the schema of this version."""
+    from app.serving import migrate as bring_up_to_date
+
+    with errors_in_words():
+        settings = load_settings()
+        set_up_logs(settings.log_level)
+        bring_up_to_date(settings)
+
+
+@people_app.command("role")
+def role(
+    email: Annotated[str, typer.Argument(help="Mail address of the person.")],
+    add: Annotated[list[str] | None, typer.Option(help="Role to give: dispatcher or maintainer.")] = None,
+    remove: Annotated[list[str] | None, typer.Option(help="Role to take.")] = None,
+) -> None:
+    """Give or take roles; somebody new is made. This is how the first maintainer comes to be."""
+    from app.people.commands import change_roles
+
+    with errors_in_words():
+        roles = asyncio.run(change_roles(load_settings(), email, add or [], remove or []))
+        typer.echo(f"{email}: {', '.join(roles)}")
+
+
+if __name__ == "__main__":
+    app()

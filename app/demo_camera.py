@@ -1,0 +1,72 @@
+"""Demonstration only: somebody at the page holds their code to the simulated robot's camera."""
+
+import asyncio
+import json
+from pathlib import Path
+from typing import Annotated, Any
+
+from fastapi import APIRouter
+from pydantic import BaseModel, StringConstraints
+
+from app.database import ReadingDep
+from app.errors import Conflict, NotFound, problems
+from app.orders.routes import OrdersDep
+from app.people.current_user import CurrentUser
+from app.settings import SettingsDep
+
+router = APIRouter(tags=["demo"])
+
+ANSWER_LIMIT_S = 5.0
+
+
+class NotADemonstration(NotFound):
+    """There is no simulated robot to show anything to."""
+
+    code = "not_a_demonstration"
+
+
+class DoorClosed(Conflict):
+    """The simulated robot does not answer, or said no."""
+
+    code = "door_closed"
+
+
+class ShowCode(BaseModel):
+    """Which order's code to show; it must be this person's turn."""
+
+    order_id: Annotated[str, StringConstraints(max_length=64)]
+
+
+class Shown(BaseModel):
+    """The code is before the camera for the next seconds."""
+
+    purpose: str
+
+
+@router.post("/demo/camera", status_code=202, responses=problems(401, 403, 404, 409, 422))
+async def show_code(
+    wish: ShowCode, user: CurrentUser, orders: OrdersDep, session: ReadingDep, settings: SettingsDep
+) -> Shown:
+    """Hold this person's own code of an order to the camera of the simulated robot."""
+    if settings.demo_door is None:
+        raise NotADemonstration("This is no demonstration: hold your code to the robot's camera yourself.")
+    _, purpose, text = await orders.code(session, user, wish.order_id)
+    await knock(settings.demo_door, {"do": "show_code", "text": text})
+    return Shown(purpose=purpose)
+
+
+async def knock(door: Path, wish: dict[str, Any]) -> dict[str, Any]:
+    """One wish to the simulated world (a Unix socket, JSON lines), and its answer. Raises DoorClosed."""
+    try:
+        async with asyncio.timeout(ANSWER_LIMIT_S):
+            reader, writer = await asyncio.open_unix_connection(door)
+            writer.write(json.dumps(wish).encode() + b"\n")
+            await writer.drain()
+            answer: dict[str, Any] = json.loads(await reader.readline())
+            writer.close()
+            await writer.wait_closed()
+    except (OSError, TimeoutError, ValueError) as error:
+        raise DoorClosed(f"The simulated robot does not answer ({type(error).__name__}).") from None
+    if not answer.get("ok"):
+        raise DoorClosed(f"The simulated robot says: {answer.get('error')}.")
+    return answer

@@ -1,0 +1,116 @@
+"""Puts the service together: the parts of the features, their routes, and what runs in the background."""
+
+import asyncio
+from collections.abc import AsyncIterator, Awaitable, Callable
+from contextlib import asynccontextmanager
+
+import structlog
+from fastapi import FastAPI
+
+from app import about, demo_camera
+from app.database import Database
+from app.errors import add_error_answers
+from app.live import routes as live_routes
+from app.live.feed import LocalFeed
+from app.mail import Spool
+from app.notify import routes as notify_routes
+from app.notify.worker import OutboxWorker
+from app.orders import routes as orders_routes
+from app.orders.codes import PURPOSE_OF_NOTICE, code_png, code_text
+from app.orders.idempotency import Running
+from app.orders.service import Orders
+from app.pages import SafeHeaders, add_pages, content_security_policy
+from app.people import routes as people_routes
+from app.people.rate_limits import RateLimits
+from app.people.service import SignInDesk
+from app.schema_version import bring_to_head
+from app.server_key import ServerKey, open_server_key
+from app.settings import Settings, make_data_folder, open_map
+from app.tables import NoticeKind
+from protocol.clock import Clock
+
+log = structlog.get_logger(__name__)
+
+API = "/api/v1"
+ROUTERS = (
+    about.api_router,
+    people_routes.router,
+    orders_routes.router,
+    notify_routes.router,
+    live_routes.router,
+    demo_camera.router,
+)
+RESTART_PAUSE_S = 1.0
+
+
+def create_app(settings: Settings, clock: Clock) -> FastAPI:
+    """The service, ready to be served. Raises StartError."""
+    app = FastAPI(
+        title="Campus Mail",
+        summary="Orders, robots and people of a campus.",
+        version=about.version(),
+        lifespan=_lifespan,
+        openapi_url=f"{API}/openapi.json",
+        docs_url=None,  # their scripts come from elsewhere, which the pages' policy forbids
+        redoc_url=None,
+    )
+    app.openapi_version = "3.2.0"  # the first that can describe an event stream
+    _add_parts(app, settings, clock)
+    add_error_answers(app)
+    for router in ROUTERS:
+        app.include_router(router, prefix=API)
+    app.include_router(about.root_router)
+    add_pages(app, settings.pages)
+    app.add_middleware(SafeHeaders, policy=content_security_policy(settings.pages))
+    return app
+
+
+def _add_parts(app: FastAPI, settings: Settings, clock: Clock) -> None:
+    """What dependencies find in `app.state`, lowest layer first."""
+    make_data_folder(settings)
+    state = app.state
+    state.settings, state.clock, state.campus = settings, clock, open_map(settings)
+    state.server_key = open_server_key(settings.server_key_path)
+    state.database = Database(settings.url_of_database)
+    state.feed = LocalFeed()
+    state.rate_limits = RateLimits(settings)
+    spool = Spool(settings.spool_folder, settings.mail_from)
+    state.sign_in_desk = SignInDesk(settings, state.server_key, spool)
+    state.orders = Orders(state.campus, settings, clock, state.feed, state.server_key, state.sign_in_desk)
+    state.running = Running()
+    state.outbox_worker = OutboxWorker(state.database, spool, settings, clock, _code_picture(state.server_key))
+    state.orders.on_change.append(lambda order_id: state.outbox_worker.wake())
+
+
+def _code_picture(key: ServerKey) -> Callable[[str, NoticeKind], tuple[str, bytes] | None]:
+    """The code that goes with a mail, so that it is at hand where there is no network."""
+
+    def picture(order_id: str, kind: NoticeKind) -> tuple[str, bytes] | None:
+        purpose = PURPOSE_OF_NOTICE.get(kind)
+        return None if purpose is None else (f"{purpose}-code.png", code_png(code_text(key, order_id, purpose)))
+
+    return picture
+
+
+@asynccontextmanager
+async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
+    await bring_to_head(app.state.database)
+    background = [asyncio.create_task(_keep_running("outbox", app.state.outbox_worker.run))]
+    try:
+        yield
+    finally:
+        app.state.feed.close()
+        for task in background:
+            task.cancel()
+        await asyncio.gather(*background, return_exceptions=True)
+        await app.state.database.close()
+
+
+async def _keep_running(name: str, run: Callable[[], Awaitable[None]]) -> None:
+    """What runs in the background goes on after a failure, which is logged: notices and robots wait for nobody."""
+    while True:
+        try:
+            await run()
+        except Exception:
+            log.exception("background work failed and starts again", name=name)
+            await asyncio.sleep(RESTART_PAUSE_S)

@@ -1,0 +1,89 @@
+"""Serves the pages of `web/` and what they use from npm, with the headers that keep them safe and fresh."""
+
+import base64
+import re
+from collections.abc import Iterable
+from hashlib import sha256
+from pathlib import Path
+from typing import Final
+
+import structlog
+from fastapi import FastAPI
+from starlette.datastructures import MutableHeaders
+from starlette.staticfiles import StaticFiles
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from app.errors import NotFound
+
+log = structlog.get_logger(__name__)
+
+NPM_PACKAGES: Final = ("lit", "lit-html", "lit-element", "@lit/reactive-element")
+"""What browsers may fetch of node_modules."""
+NOT_PAGES: Final = ("/node_modules/{rest:path}", "/package.json", "/package-lock.json", "/tsconfig.json")
+IMPORT_MAP = re.compile(rb'<script type="importmap">(.*?)</script>', re.DOTALL)
+
+
+def add_pages(app: FastAPI, folder: Path) -> None:
+    """Serve `folder` at `/` and the packages at `/npm/`; routes of the API come first."""
+    for path in NOT_PAGES:
+        app.add_api_route(path, _not_a_page, include_in_schema=False)
+    for package in NPM_PACKAGES:
+        package_folder = folder / "node_modules" / package
+        if package_folder.is_dir():
+            app.mount(f"/npm/{package}", StaticFiles(directory=package_folder))
+        else:
+            log.warning("the pages lack a package: run `make setup`", package=package)
+    if folder.is_dir():
+        app.frontend("/", directory=folder, fallback=None)
+    else:
+        log.warning("there are no pages", folder=str(folder))
+
+
+async def _not_a_page() -> None:
+    raise NotFound("This is not a page.")
+
+
+def import_map_hashes(pages: Iterable[Path]) -> list[str]:
+    """The inline import maps, the only scripts that may stand in a page, as CSP sources."""
+    maps = {found for page in pages for found in IMPORT_MAP.findall(page.read_bytes())}
+    return sorted(f"'sha256-{base64.b64encode(sha256(one).digest()).decode()}'" for one in maps)
+
+
+def content_security_policy(folder: Path) -> str:
+    """Everything from here, nothing inline but the import maps, framed by nobody."""
+    hashes = " ".join(import_map_hashes(folder.glob("*.html")))
+    return (
+        f"default-src 'self'; script-src 'self' {hashes}; img-src 'self' data:; object-src 'none'; "
+        "base-uri 'none'; form-action 'self'; frame-ancestors 'none'"
+    )
+
+
+class SafeHeaders:
+    """Adds to every answer what browsers are to be strict about. Nothing is used again without asking first."""
+
+    def __init__(self, app: ASGIApp, policy: str) -> None:
+        self._app = app
+        self._headers = {
+            "Content-Security-Policy": policy,
+            "X-Content-Type-Options": "nosniff",
+            "Referrer-Policy": "same-origin",
+            "Cross-Origin-Opener-Policy": "same-origin",
+            "Permissions-Policy": "camera=(), microphone=(), geolocation=()",
+            "Cache-Control": "no-cache",
+        }
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] != "http":
+            await self._app(scope, receive, send)
+            return
+
+        async def send_safely(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                headers = MutableHeaders(scope=message)
+                for name, value in self._headers.items():
+                    headers.setdefault(name, value)
+                if scope["scheme"] == "https":
+                    headers.setdefault("Strict-Transport-Security", "max-age=31536000")
+            await send(message)
+
+        await self._app(scope, receive, send_safely)

@@ -1,0 +1,92 @@
+"""Listens and serves until told to stop; then lets go of open event streams at once."""
+
+import asyncio
+import errno
+import socket
+
+import uvicorn
+from fastapi import FastAPI
+
+from app.database import Database
+from app.errors import StartError
+from app.main import create_app
+from app.schema_version import bring_to_head
+from app.settings import Settings, make_data_folder, open_clock
+
+# Without this an open event stream holds the server for ever. Streams end by themselves sooner (see `shutdown`).
+GRACEFUL_S = 2
+
+
+class PortTaken(StartError):
+    """Another program listens on this port."""
+
+    def __init__(self, host: str, port: int) -> None:
+        super().__init__(
+            f"Port {port} on {host} is taken by another program, perhaps another Campus Mail. "
+            f"Stop that one, or choose another port: --port {port + 1}."
+        )
+
+
+class Server(uvicorn.Server):
+    """Ends the event streams before it waits for connections to end."""
+
+    def __init__(self, app: FastAPI, config: uvicorn.Config) -> None:
+        super().__init__(config)
+        self._app = app
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        self._app.state.feed.close()
+        await super().shutdown(sockets)
+
+
+def listen(host: str, port: int) -> socket.socket:
+    """A bound socket. Raises PortTaken, or StartError for an address that is not this machine's."""
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    listening = socket.socket(family, socket.SOCK_STREAM)
+    listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    try:
+        listening.bind((host, port))
+        listening.listen(128)
+    except OSError as error:
+        listening.close()
+        if error.errno == errno.EADDRINUSE:
+            raise PortTaken(host, port) from None
+        raise StartError(f"Cannot listen on {host} port {port}: {error.strerror}.") from error
+    return listening
+
+
+def migrate(settings: Settings) -> None:
+    """Bring the database to the schema of this code. Raises NewerDatabase."""
+    make_data_folder(settings)
+
+    async def run() -> None:
+        database = Database(settings.url_of_database)
+        try:
+            await bring_to_head(database)
+        finally:
+            await database.close()
+
+    asyncio.run(run())
+
+
+def serve(settings: Settings) -> None:
+    """Serve until SIGINT or SIGTERM. Raises StartError before anything has been changed or answered."""
+    with listen(settings.host, settings.port) as listening:
+        migrate(settings)
+        app = create_app(settings, open_clock(settings))
+        Server(app, _config(app)).run(sockets=[listening])
+
+
+def _config(app: FastAPI) -> uvicorn.Config:
+    return uvicorn.Config(
+        app,
+        log_config=None,
+        access_log=False,
+        timeout_graceful_shutdown=GRACEFUL_S,
+        ws="websockets-sansio",
+        ws_max_size=128 * 1024,
+        server_header=False,
+        # A proxy on this machine ends TLS and says so in X-Forwarded-Proto; nobody else is believed.
+        proxy_headers=True,
+        forwarded_allow_ips="127.0.0.1",
+    )
