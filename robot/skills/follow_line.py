@@ -26,7 +26,7 @@ LOST_AFTER_MM = 70.0
 BLIND_BEFORE_POST_MM = 40.0
 """So near to a post (and the sensor's lead) branches and corners pass under the diodes: the robot holds its way."""
 OWN_POST_MM = 600.0
-"""A marker of the post it set out from does not count on so much way."""
+"""A marker of the post it set out from does not count so near to it."""
 STANDS_S = 0.2
 MOST_BUMPS = 3
 INNER_WHEEL_MM_S = 30.0
@@ -71,10 +71,10 @@ class FollowLine:
             return Failed("docked")
         if view.bumps - self._bumps_before >= MOST_BUMPS:
             return Failed("blocked")
-        self._look_for_post(view)
-        to_go_mm = self._post_at_mm - view.odometry.ahead_mm if self._post else None
         if self._search is not None:
             return self._searched(self._search, view, now)
+        self._look_for_post(view)
+        to_go_mm = self._post_at_mm - view.odometry.ahead_mm if self._post else None
         self._look_at_line(view, to_go_mm)
         if to_go_mm is not None and to_go_mm <= CRAWL_MM_S * WHEEL_LAG_S:
             return self._stop(view)
@@ -91,11 +91,18 @@ class FollowLine:
         if seen is None or seen.at_s <= self._sighted_s or seen.text not in self._campus.posts:
             return
         self._sighted_s = seen.at_s
-        own = seen.text == self._leaving and view.odometry.travelled_mm - self._begin.travelled_mm < OWN_POST_MM
+        if self._still_leaving(seen.text, view.odometry):
+            return
         heading = arrival_heading_rad(self._campus, self._leaving, seen.text)
-        ahead_mm = None if own else post_ahead_mm(self._campus, seen, heading)
+        ahead_mm = post_ahead_mm(self._campus, seen, heading)
         if ahead_mm is not None and (self._post in (None, seen.text) or ahead_mm > 0):
             self._post, self._post_at_mm = seen.text, view.post_odometry.ahead_mm + ahead_mm
+
+    def _still_leaving(self, post: str, here: Odometry) -> bool:
+        """Near the post it set out from, and not on the way back to it."""
+        begin = self._begin
+        near = math.hypot(here.x_mm - begin.x_mm, here.y_mm - begin.y_mm) < OWN_POST_MM
+        return post == self._leaving and near and math.cos(here.heading_rad - begin.heading_rad) > 0
 
     def _stop(self, view: View) -> Step:
         if self._standing_since_s is None:
@@ -132,12 +139,14 @@ class FollowLine:
         if isinstance(step, Failed):
             return step
         if isinstance(step, Done):
-            self._resume(view.odometry)
+            self._resume(view.odometry, now)
             return Running(STOP)
         return step
 
-    def _resume(self, here: Odometry) -> None:
-        self._search = None
+    def _resume(self, here: Odometry, now: float) -> None:
+        """As at the beginning: the way searched tells nothing about the post ahead."""
+        self._search = self._post = None
+        self._sighted_s = now
         self._line = LineEstimate(self._shape)
         self._last = here
         self._lit_mm = here.travelled_mm
