@@ -9,7 +9,7 @@ from ..errors import CameraAbsent
 from .interfaces import Frame
 
 
-class VideoCamera:
+class GrabbingCamera:
     """See `interfaces.Camera`. Raises CameraAbsent when the device does not open."""
 
     def __init__(self, device: int | str, width_px: int = 640, height_px: int = 480, exposure_ms: float = 15.0) -> None:

@@ -5,7 +5,7 @@ from gpiozero import DigitalInputDevice
 from .interfaces import LineReading
 
 
-class GpioLineSensor:
+class ThreeDiodes:
     """See `interfaces.LineSensor`. Pins as gpiozero spells them (`BOARD8`); always with an explicit pin factory."""
 
     def __init__(self, left: str, centre: str, right: str, pin_factory: object, line_is_low: bool = True) -> None:

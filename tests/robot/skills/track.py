@@ -12,7 +12,7 @@ from maps import CampusMap, builtin_map
 from robot.drive_loop import DriveLoop
 from robot.drivers.create2 import Create2
 from robot.drivers.interfaces import BodyShape
-from robot.drivers.line_sensor import GpioLineSensor
+from robot.drivers.line_sensor import ThreeDiodes
 from robot.drivers.marker_reader import MarkerReader, MarkerWatch
 from robot.simulated import Options, SimulatedRobot
 from robot.skills.interfaces import JobEnd, Outcome, Skill
@@ -47,7 +47,7 @@ class Drive:
         self.shape = BodyShape(sensor_lead_mm=mount.lead_mm, diode_spacing_mm=mount.spacing_mm)
         self.base = Create2(self.robot.memory_port, self.robot.brc)
         pins = (f"GPIO{pin}" for pin in (mount.left_pin, mount.centre_pin, mount.right_pin))
-        self.sensor = GpioLineSensor(*pins, pin_factory=self.robot.pin_factory)
+        self.sensor = ThreeDiodes(*pins, pin_factory=self.robot.pin_factory)
         self.loop = DriveLoop(self.base, self.sensor, self.shape, self.now)
         self.watch = MarkerWatch(self.robot.camera, MarkerReader(self.campus.posts), self.now)
         self.path: list[tuple[float, float]] = []
