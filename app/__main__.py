@@ -54,12 +54,12 @@ def serve(
 @app.command()
 def migrate() -> None:
     """Bring the database to the schema of this version."""
-    from app.serving import migrate as bring_up_to_date
+    from app.commands import migrate as bring_up_to_date
 
     with errors_in_words():
         settings = load_settings()
         set_up_logs(settings.log_level)
-        bring_up_to_date(settings)
+        asyncio.run(bring_up_to_date(settings))
 
 
 @people_app.command("role")
@@ -69,11 +69,23 @@ def role(
     remove: Annotated[list[str] | None, typer.Option(help="Role to take.")] = None,
 ) -> None:
     """Give or take roles; somebody new is made. This is how the first maintainer comes to be."""
-    from app.people.commands import change_roles
+    from app.commands import change_roles
 
     with errors_in_words():
         roles = asyncio.run(change_roles(load_settings(), email, add or [], remove or []))
         typer.echo(f"{email}: {', '.join(roles)}")
+
+
+@robots_app.command("enrol")
+def enrol(
+    name: Annotated[str, typer.Argument(help="Name of the robot, such as r1.")],
+    again: Annotated[bool, typer.Option("--again", help="A new token for a robot that is enrolled already.")] = False,
+) -> None:
+    """Make a robot known and print its token, once. Keep it in a file that only the robot's account can read."""
+    from app.commands import enrol as enrol_robot
+
+    with errors_in_words():
+        typer.echo(asyncio.run(enrol_robot(load_settings(), name, again=again)))
 
 
 if __name__ == "__main__":

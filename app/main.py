@@ -10,6 +10,7 @@ from fastapi import FastAPI
 from app import about, demo_camera
 from app.database import Database
 from app.errors import add_error_answers
+from app.fleet.service import Fleet
 from app.live import routes as live_routes
 from app.live.feed import LocalFeed
 from app.mail import Spool
@@ -78,6 +79,7 @@ def _add_parts(app: FastAPI, settings: Settings, clock: Clock) -> None:
     state.sign_in_desk = SignInDesk(settings, state.server_key, spool)
     state.orders = Orders(state.campus, settings, clock, state.feed, state.server_key, state.sign_in_desk)
     state.running = Running()
+    state.fleet = Fleet(state.database, state.campus, settings, clock, state.feed, state.orders)
     state.outbox_worker = OutboxWorker(state.database, spool, settings, clock, _code_picture(state.server_key))
     state.orders.on_change.append(lambda order_id: state.outbox_worker.wake())
 
@@ -95,6 +97,7 @@ def _code_picture(key: ServerKey) -> Callable[[str, NoticeKind], tuple[str, byte
 @asynccontextmanager
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     await bring_to_head(app.state.database)
+    await app.state.fleet.begin()
     background = [asyncio.create_task(_keep_running("outbox", app.state.outbox_worker.run))]
     try:
         yield

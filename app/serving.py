@@ -7,11 +7,10 @@ import socket
 import uvicorn
 from fastapi import FastAPI
 
-from app.database import Database
+from app.commands import migrate
 from app.errors import StartError
 from app.main import create_app
-from app.schema_version import bring_to_head
-from app.settings import Settings, make_data_folder, open_clock
+from app.settings import Settings, open_clock
 
 # Without this an open event stream holds the server for ever. Streams end by themselves sooner (see `shutdown`).
 GRACEFUL_S = 2
@@ -55,24 +54,10 @@ def listen(host: str, port: int) -> socket.socket:
     return listening
 
 
-def migrate(settings: Settings) -> None:
-    """Bring the database to the schema of this code. Raises NewerDatabase."""
-    make_data_folder(settings)
-
-    async def run() -> None:
-        database = Database(settings.url_of_database)
-        try:
-            await bring_to_head(database)
-        finally:
-            await database.close()
-
-    asyncio.run(run())
-
-
 def serve(settings: Settings) -> None:
     """Serve until SIGINT or SIGTERM. Raises StartError before anything has been changed or answered."""
     with listen(settings.host, settings.port) as listening:
-        migrate(settings)
+        asyncio.run(migrate(settings))
         app = create_app(settings, open_clock(settings))
         Server(app, _config(app)).run(sockets=[listening])
 

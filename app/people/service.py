@@ -87,14 +87,7 @@ class SignInDesk:
         """Whoever has this address; a new row if nobody yet."""
         person = await find_person(session, email)
         if person is None:
-            person = Person(
-                id=new_id(),
-                email=email,
-                name=name_from(email),
-                language=language or self.settings.default_language,
-                roles=[str(Role.MEMBER)],
-                created_at=now,
-            )
+            person = make_person(email, language or self.settings.default_language, now)
             session.add(person)
             await session.flush()
         return person
@@ -102,6 +95,11 @@ class SignInDesk:
     def _hash(self, email: str, code: str) -> str:
         # Keyed: eight digits alone are found by trying them all.
         return self.key.derive("sign-in", email, code).hex()
+
+
+def make_person(email: str, language: str, now: datetime) -> Person:
+    """Somebody new, as a member."""
+    return Person(id=new_id(), email=email, name=name_from(email), language=language, created_at=now)
 
 
 async def find_person(session: AsyncSession, email: str) -> Person | None:

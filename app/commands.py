@@ -1,0 +1,62 @@
+"""What is done from the command line: each one transaction on the database, running service or not."""
+
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+
+from sqlmodel.ext.asyncio.session import AsyncSession
+
+from app.database import Database
+from app.errors import StartError
+from app.fleet import service as fleet
+from app.people.service import find_person, make_person, set_roles
+from app.schema_version import bring_to_head
+from app.settings import Settings, make_data_folder, open_clock
+from app.tables import Role
+
+
+class UnknownRole(StartError):
+    """Somebody asked for a role that there is not."""
+
+
+@asynccontextmanager
+async def database_at_head(settings: Settings) -> AsyncIterator[AsyncSession]:
+    """A transaction on the database, whose schema is brought up to date first. Raises NewerDatabase."""
+    make_data_folder(settings)
+    database = Database(settings.url_of_database)
+    try:
+        await bring_to_head(database)
+        async with database.transaction() as session:
+            yield session
+    finally:
+        await database.close()
+
+
+async def migrate(settings: Settings) -> None:
+    """Bring the schema up to date and do nothing else."""
+    async with database_at_head(settings):
+        pass
+
+
+async def change_roles(settings: Settings, email: str, add: list[str], remove: list[str]) -> list[str]:
+    """Give and take roles; the roles afterwards. Somebody new is made. Raises UnknownRole."""
+    given, taken = _roles(add), _roles(remove)
+    async with database_at_head(settings) as session:
+        person = await find_person(session, email.lower())
+        person = person or make_person(email.lower(), settings.default_language, open_clock(settings).utc())
+        set_roles(person, given, taken)
+        session.add(person)
+        return person.roles
+
+
+def _roles(names: list[str]) -> set[Role]:
+    try:
+        return {Role(name) for name in names}
+    except ValueError as error:
+        raise UnknownRole(f"{error}. There are: {', '.join(Role)}.") from None
+
+
+async def enrol(settings: Settings, name: str, again: bool) -> str:
+    """Make a robot known, or give it a new token; the token, which is shown once."""
+    clock = open_clock(settings)
+    async with database_at_head(settings) as session:
+        return await (fleet.new_token if again else fleet.enrol)(session, clock, name)
