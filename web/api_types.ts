@@ -9,7 +9,7 @@ export type OrderState =
 export type Role = "sender" | "recipient" | "dispatcher";
 export type Purpose = "load" | "receive";
 
-export interface Person { id: string | number; email: string; name: string; language: string; roles: string[] }
+export interface Person { id: string; email: string; name: string; language: string; roles: string[] }
 export interface Party { email: string; name: string }
 
 export interface About {
@@ -84,13 +84,15 @@ export interface Order {
   my_role: Role;
   my_code: Purpose | null;
   can_cancel: boolean;
+  /** Asked for, and not yet answered by the robot. */
+  cancel_requested: boolean;
   events: OrderEvent[];
 }
 
 export interface WantedOrder { from_post: string; to_post: string; recipient: string; description: string }
 export interface HandoverCode { purpose: Purpose; text: string; svg_url: string; expires_at: string | null }
 export interface Notice {
-  id: string | number;
+  id: number;
   order_id: string;
   kind: string;
   title: string;

@@ -9,7 +9,8 @@ import * as api from "./api.js";
 const OPEN_AGAIN_MS = 3_000;
 const KINDS = /** @type {const} */ (["order", "robot", "notice"]);
 
-/** Tells `order`, `robot` and `notice` as they come, and `connected` when the stream opens or breaks. */
+/** Tells `order`, `robot` and `notice` as they come, and `connected` when the stream breaks (false) or has changes
+ * to be fetched anew (true). */
 export class LiveFeed extends EventTarget {
   #open = /** @type {() => EventSource} */ (api.openLive);
   /** @type {EventSource | null} */
@@ -19,6 +20,7 @@ export class LiveFeed extends EventTarget {
     this.stop();
     const source = (this.#source = this.#open());
     for (const kind of KINDS) source.addEventListener(kind, (event) => this.#tell(kind, JSON.parse(event.data)));
+    source.addEventListener("resync", () => this.#tell("connected", true));
     source.onopen = () => this.#tell("connected", true);
     source.onerror = () => this.#broken(source);
   }

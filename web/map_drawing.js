@@ -38,11 +38,10 @@ const ends = (values) => [Math.min(...values), Math.max(...values)];
 /** A title in lines that are short enough to stand beside a post. @param {string} title */
 export function inLines(title) {
   if (title.length <= 11) return [title];
-  const words = title.split(" ");
-  const middle = title.length / 2;
-  let [head, length] = [1, words[0].length];
-  while (head < words.length - 1 && length + words[head].length / 2 < middle) length += 1 + words[head++].length;
-  return [words.slice(0, head).join(" "), words.slice(head).join(" ")].filter(Boolean);
+  const spaces = [...title.matchAll(/ (?![/&–-])/g)].map(({ index }) => index);
+  if (!spaces.length) return [title];
+  const [middlemost] = spaces.sort((a, b) => Math.abs(a - title.length / 2) - Math.abs(b - title.length / 2));
+  return [title.slice(0, middlemost), title.slice(middlemost + 1)];
 }
 
 /**

@@ -58,9 +58,10 @@ export class FollowPage extends PageElement {
     const { order, map } = this;
     return html`<div class="follow">
       <div class="column">
-        ${this.#standing(order, map)} ${this.#why(order)}
+        ${this.#standing(order, map)}
         <handover-code .order_id=${order.id} .purpose=${order.my_code} .demo=${this.demo}
           .needed=${order.my_code !== null && AT_ME[order.my_code] === order.state}></handover-code>
+        ${this.#why(order)}
         <section class="card" aria-labelledby="timeline-title">
           <h2 id="timeline-title">${t("follow.timeline")}</h2>
           ${orderTimeline(order, map)}
@@ -90,7 +91,7 @@ export class FollowPage extends PageElement {
     return html`<section class="standing ${order.state}">
       <p class="ends">${titleOf(map, order.from_post)}${icon("arrow")}<span class="unseen">→</span>${titleOf(map, order.to_post)}</p>
       <h1 aria-live="polite">${stateSentence(order, map)}</h1>
-      <p class="next">${nextSentence(order, map)}</p>
+      <p class="next">${order.cancel_requested ? t("cancel.requested") : nextSentence(order, map)}</p>
       ${hasEnded(order) ? nothing : arrivalWindow(order, map)} ${this.#stages(order)}
     </section>`;
   }

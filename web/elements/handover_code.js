@@ -60,7 +60,8 @@ export class HandoverCodeElement extends PageElement {
           <li>${t(`code.how.${purpose}.1`)}</li>
           <li>${t(`code.how.${purpose}.2`)}</li>
         </ol>
-        <p class="hint">${t("code.offline")} ${this.#validity()}</p>
+        <p class="hint">${t("code.offline")}</p>
+        ${this.#validity()}
         ${this.demo && this.needed
           ? html`<button class="main" @click=${this.#showToCamera}>${icon("camera")}${t("code.camera")}</button>`
           : nothing}
@@ -71,7 +72,8 @@ export class HandoverCodeElement extends PageElement {
   }
 
   #validity() {
-    return this.code?.expires_at ? t("code.expires", { time: dayAndTime(this.code.expires_at, serverNow()) }) : nothing;
+    const until = this.code?.expires_at;
+    return until ? html`<p class="hint">${t("code.expires", { time: dayAndTime(until, serverNow()) })}</p>` : nothing;
   }
 
   async #fetch() {
