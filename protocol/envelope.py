@@ -1,7 +1,9 @@
 """The envelope of every message, and how text becomes one.
 
 `seq` numbers the durable messages of a journal without gaps and never goes back; a journal is born with the outbox
-database of its side, and a new one begins if that was put back from an older copy. `ack` is the highest contiguous `seq` that the sender has handled from the other side. `replay`
+database of its side, and a new one begins if that was put back from an older copy.
+
+`ack` is the highest contiguous `seq` that the sender has handled from the other side. `replay`
 marks what is sent from the backlog after a reconnect.
 """
 
@@ -12,7 +14,7 @@ from typing import Any, Final
 from pydantic import AwareDatetime, Field, SerializeAsAny, ValidationError
 
 from protocol import both_ways, to_robot, to_server
-from protocol.errors import MalformedMessage, MessageTooLarge, NewerVersion, UnknownMessage
+from protocol.errors import MalformedMessage, MessageTooLarge, NewerVersion, ProtocolError, UnknownMessage
 from protocol.parts import Identifier, Part
 
 MAJOR_VERSION: Final = 1
@@ -77,6 +79,15 @@ def parse(text: str | bytes, accepted: Mapping[str, type[Part]]) -> Envelope:
     Raises MessageTooLarge, MalformedMessage, NewerVersion or UnknownMessage; no input raises anything else.
     """
     raw = _read_object(text)
+    try:
+        return _read_envelope(raw, accepted)
+    except ProtocolError as error:
+        seq = raw.get("seq")
+        error.seq = seq if isinstance(seq, int) and not isinstance(seq, bool) else None
+        raise
+
+
+def _read_envelope(raw: dict[str, Any], accepted: Mapping[str, type[Part]]) -> Envelope:
     _check_version(raw.get("v"))
     name = raw.get("type")
     if not isinstance(name, str) or name not in accepted:

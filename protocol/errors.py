@@ -9,9 +9,13 @@ ProtocolError
 
 
 class ProtocolError(ValueError):
-    """A message that cannot be handled. `code` travels in the `error` message that answers it."""
+    """A message that cannot be handled. `code` and `seq`, if it was legible, travel in the `error` that answers it."""
 
     code = "protocol_error"
+
+    def __init__(self, sentence: str, seq: int | None = None) -> None:
+        super().__init__(sentence)
+        self.seq = seq
 
 
 class MalformedMessage(ProtocolError):

@@ -154,7 +154,7 @@ class Connection:
             return parse(text, TO_ROBOT)
         except ProtocolError as error:
             # A message that we cannot read must be known to those who can update one side or the other.
-            await self._send(Error(code=error.code, message=str(error)[:500]))
+            await self._send(Error(code=error.code, message=str(error)[:500], seq=error.seq))
             await self._socket.close(4400, error.code)
             raise
 

@@ -1,0 +1,1 @@
+"""Which robot carries what: a pure choice, and the loop that acts on it."""

@@ -1,0 +1,27 @@
+"""Something about a robot that a person should look at. Kept until it is over; logged at once."""
+
+from datetime import datetime
+
+import structlog
+from sqlmodel import col, select, update
+from sqlmodel.ext.asyncio.session import AsyncSession
+
+from app.tables import Alarm
+
+log = structlog.get_logger(__name__)
+
+
+async def raise_alarm(
+    session: AsyncSession, robot: str, name: str, reason: str, *, now: datetime, post: str | None = None
+) -> None:
+    """Ring once for as long as it lasts: the same alarm again changes nothing."""
+    log.warning("alarm", robot=robot, name=name, reason=reason, post=post)
+    same = select(Alarm.id).where(Alarm.robot == robot, Alarm.name == name, Alarm.reason == reason[:500])
+    if (await session.exec(same.where(col(Alarm.cleared_at).is_(None)))).first() is None:
+        session.add(Alarm(robot=robot, name=name[:64], reason=reason[:500], post=post, at=now))
+
+
+async def clear_alarms(session: AsyncSession, robot: str, name: str, now: datetime) -> None:
+    """It is over."""
+    over = update(Alarm).where(col(Alarm.robot) == robot, col(Alarm.name) == name, col(Alarm.cleared_at).is_(None))
+    await session.exec(over.values(cleared_at=now))

@@ -1,0 +1,48 @@
+"""Who is connected now: one robot, one socket. In memory, since a socket does not outlive its process either."""
+
+from typing import Protocol
+
+
+class Seat(Protocol):
+    """A robot's open connection, as others see it. Neither call waits."""
+
+    journal: str
+
+    def wake(self) -> None:
+        """Something new is in the outbox."""
+        ...
+
+    def give_way(self) -> None:
+        """Another connection has taken this one's place: say so and close."""
+        ...
+
+
+class Connections:
+    """The seats by the names of the robots."""
+
+    def __init__(self) -> None:
+        self._seats: dict[str, Seat] = {}
+
+    def take(self, robot: str, seat: Seat) -> Seat | None:
+        """Seat a new connection; returns the one that has to give way, which is told so."""
+        before = self._seats.get(robot)
+        self._seats[robot] = seat
+        if before is not None:
+            before.give_way()
+        return before
+
+    def leave(self, robot: str, seat: Seat) -> bool:
+        """A connection has ended; False if another one had its seat already, so that the robot is not gone."""
+        if self._seats.get(robot) is not seat:
+            return False
+        del self._seats[robot]
+        return True
+
+    def is_seated(self, robot: str) -> bool:
+        """Whether this robot is connected now."""
+        return robot in self._seats
+
+    def wake(self, robot: str) -> None:
+        """Something new is in the outbox of this robot; nobody minds if it is not connected."""
+        if seat := self._seats.get(robot):
+            seat.wake()

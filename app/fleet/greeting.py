@@ -1,0 +1,119 @@
+"""The beginning of a connection: both sides learn where the other stands, and nothing is lost or done twice."""
+
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+from typing import Final
+
+from sqlmodel import col, select
+from sqlmodel.ext.asyncio.session import AsyncSession
+
+from app.fleet import inbox, outbox
+from app.fleet.alarms import raise_alarm
+from app.fleet.progress import active_mission
+from app.fleet.service import Fleet, note_state
+from app.tables import MissionRow, Order, RobotRow, StopRow
+from protocol.envelope import Envelope
+from protocol.parts import Received, Stop, StopAction
+from protocol.to_robot import Mission, Verifiers, Welcome
+from protocol.to_server import Hello
+
+CLOCK_TOLERANCE: Final = timedelta(minutes=5)
+
+
+@dataclass(frozen=True)
+class Greeted:
+    """Where both sides stand when the conversation begins."""
+
+    welcome: Welcome
+    server_journal: str
+    received_seq: int
+    acknowledged_seq: int
+
+
+async def greet(session: AsyncSession, fleet: Fleet, robot: RobotRow, envelope: Envelope, hello: Hello) -> Greeted:
+    """Note what the robot says of itself, settle both journals, and give it its mission again if it has lost it."""
+    now = fleet.clock.utc()
+    is_new_memory = await inbox.knows_another_journal(session, robot.name, envelope.journal)
+    received_seq, lost = await inbox.resume(session, robot.name, envelope.journal, hello.resume_from, now)
+    if lost:
+        await raise_alarm(session, robot.name, "messages_lost", f"{lost} messages of this robot are lost", now=now)
+    await _settle_outbox(session, robot, hello.received, now)
+    if is_new_memory:
+        await restate_mission(session, fleet, robot)
+    await _compare_clocks(session, robot, envelope.at, now)
+    await _compare_maps(session, fleet, robot, hello, now)
+    note_state(robot, hello.position, hello.battery)
+    robot.software, robot.map_version, robot.online, robot.heard_at = hello.software, hello.map_version, True, now
+    fleet.announce(session, robot)
+    resume_from = await outbox.resume_from(session, robot)
+    welcome = Welcome(
+        received=Received(journal=envelope.journal, seq=received_seq),
+        resume_from=resume_from,
+        server=f"Campus Mail, {fleet.campus.title}",
+        at=now,
+    )
+    return Greeted(welcome, robot.server_journal, received_seq, resume_from - 1)
+
+
+async def _settle_outbox(session: AsyncSession, robot: RobotRow, received: Received, now: datetime) -> None:
+    if outbox.went_back_in_time(robot, received):
+        outbox.renew_journal(robot)
+        sentence = "the robot knows later messages of this service than the service does: was the database put back?"
+        await raise_alarm(session, robot.name, "service_went_back", sentence, now=now)
+    elif received.journal == robot.server_journal:
+        await outbox.acknowledged(session, robot.name, received.seq, now)
+
+
+async def restate_mission(session: AsyncSession, fleet: Fleet, robot: RobotRow) -> None:
+    """The robot's memory is new: what is left of its mission comes again, under the next number."""
+    mission = await active_mission(session, robot.name)
+    if mission is None:
+        return
+    now = fleet.clock.utc()
+    await raise_alarm(
+        session, robot.name, "memory_lost", "the robot came back without its memory in a mission", now=now
+    )
+    mission.update_number += 1
+    stops = await undone_stops(session, mission)
+    if verifiers := await _verifiers(session, fleet, stops):
+        await fleet.tell(session, robot, verifiers)
+    await fleet.tell(session, robot, Mission(id=mission.id, update=mission.update_number, stops=stops))
+
+
+async def undone_stops(session: AsyncSession, mission: MissionRow) -> tuple[Stop, ...]:
+    """What is left to do."""
+    left = select(StopRow).where(StopRow.mission_id == mission.id, col(StopRow.done_at).is_(None))
+    rows = (await session.exec(left.order_by(col(StopRow.position)))).all()
+    return tuple(stop_of(row) for row in rows)
+
+
+def stop_of(row: StopRow) -> Stop:
+    """A stop as the robot is told it."""
+    return Stop(
+        id=row.id,
+        post=row.post,
+        action=StopAction(row.action),
+        order_id=row.order_id,
+        wait_limit_s=row.wait_limit_s,
+    )
+
+
+async def _verifiers(session: AsyncSession, fleet: Fleet, stops: tuple[Stop, ...]) -> Verifiers | None:
+    order_ids = {stop.order_id for stop in stops if stop.order_id}
+    orders = [await session.get(Order, order_id) for order_id in sorted(order_ids)]
+    verifiers = tuple(one for order in orders if order for one in fleet.orders.verifiers(order))
+    return Verifiers(verifiers=verifiers) if verifiers else None
+
+
+async def _compare_clocks(session: AsyncSession, robot: RobotRow, at: datetime, now: datetime) -> None:
+    """Order never depends on a robot's clock, but what people read does."""
+    off = at - now
+    if abs(off) > CLOCK_TOLERANCE:
+        sentence = f"the robot's clock is off by {off.total_seconds():+.0f} s"
+        await raise_alarm(session, robot.name, "clock_off", sentence, now=now)
+
+
+async def _compare_maps(session: AsyncSession, fleet: Fleet, robot: RobotRow, hello: Hello, now: datetime) -> None:
+    if hello.map_version != fleet.campus.version:
+        sentence = f"the robot has map {hello.map_version}, the service {fleet.campus.version}: give it the same file"
+        await raise_alarm(session, robot.name, "other_map", sentence, now=now)

@@ -1,0 +1,143 @@
+"""What can be done with robots: enrol one, tell one something, take in what one says, show them all."""
+
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from uuid import uuid4
+
+from sqlmodel import col, select, update
+from sqlmodel.ext.asyncio.session import AsyncSession
+
+from app.database import Database, after_commit, savepoint
+from app.errors import ServiceError
+from app.fleet import inbox, outbox, traffic
+from app.fleet.alarms import raise_alarm
+from app.fleet.connections import Connections
+from app.fleet.errors import FleetError, RobotExists, RobotNameInvalid, UnknownRobot
+from app.fleet.progress import Report, follow
+from app.fleet.tokens import make_token
+from app.live.feed import Feed, Happening
+from app.orders.robot_view import RobotView, robot_view
+from app.orders.service import Orders
+from app.settings import Settings
+from app.tables import RobotRow, RobotToken
+from maps import CampusMap
+from protocol.both_ways import Error
+from protocol.clock import Clock
+from protocol.envelope import Envelope
+from protocol.parts import Activity, Battery, Part, Position
+from protocol.to_server import Claim, Clear, Event, Snapshot, Why
+
+_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,63}")
+
+
+async def enrol(session: AsyncSession, clock: Clock, name: str) -> str:
+    """Make a robot known; returns its token, which is shown once. Raises RobotNameInvalid, RobotExists."""
+    if not _NAME.fullmatch(name):
+        raise RobotNameInvalid(f"{name!r} is no name for a robot: letters, digits, - and _, at most 64.")
+    if await session.get(RobotRow, name) is not None:
+        raise RobotExists(f"A robot named {name!r} is enrolled already. Revoke its token for a new one.")
+    session.add(RobotRow(name=name, enrolled_at=clock.utc(), server_journal=str(uuid4())))
+    await session.flush()
+    return await new_token(session, clock, name)
+
+
+async def new_token(session: AsyncSession, clock: Clock, name: str) -> str:
+    """Another token for an enrolled robot; the ones it had are revoked. Raises UnknownRobot."""
+    if await session.get(RobotRow, name) is None:
+        raise UnknownRobot(f"No robot named {name!r} is enrolled.")
+    theirs = update(RobotToken).where(col(RobotToken.robot) == name, col(RobotToken.revoked_at).is_(None))
+    await session.exec(theirs.values(revoked_at=clock.utc()))
+    token = make_token()
+    session.add(RobotToken(prefix=token.prefix, secret_hash=token.secret_hash, robot=name, created_at=clock.utc()))
+    return token.text
+
+
+@dataclass(frozen=True)
+class Fleet:
+    """The robots of one campus. `on_change` is called with a robot's name after the commit of each change."""
+
+    database: Database
+    campus: CampusMap
+    settings: Settings
+    clock: Clock
+    feed: Feed
+    orders: Orders
+    connections: Connections = field(default_factory=Connections)
+    on_change: list[Callable[[str], None]] = field(default_factory=list)
+
+    async def begin(self) -> None:
+        """At the start of the service nobody is connected yet, whatever the last run has left behind."""
+        async with self.database.transaction() as session:
+            await session.exec(update(RobotRow).values(online=False))
+
+    async def tell(self, session: AsyncSession, robot: RobotRow, message: Part) -> int:
+        """Keep a durable message for a robot; it goes out after the commit, now or when the robot comes back."""
+        seq = await outbox.keep(session, robot, message, self.clock.utc())
+        after_commit(session, lambda: self.connections.wake(robot.name))
+        return seq
+
+    async def take(self, session: AsyncSession, robot: RobotRow, envelope: Envelope) -> Error | None:
+        """Write down a durable message from a robot and do what follows from it, once. Raises MessageGap.
+
+        What cannot be followed is written down all the same, so that it does not come again for ever: people get an
+        alarm, the robot the returned error.
+        """
+        if not await inbox.take(session, robot.name, envelope, self.clock.utc()):
+            return None
+        try:
+            async with savepoint(session):
+                await self._follow(session, robot, envelope.body)
+        except (FleetError, ServiceError) as problem:
+            sentence = str(problem)[:500]
+            await raise_alarm(session, robot.name, problem.code, sentence, now=self.clock.utc())
+            return Error(code=problem.code, message=sentence, seq=envelope.seq)
+        self.announce(session, robot)
+        return None
+
+    async def _follow(self, session: AsyncSession, robot: RobotRow, message: Part) -> None:
+        now = self.clock.utc()
+        match message:
+            case Event():
+                await follow(Report(session, self.orders, robot.name, now), message)
+            case Claim():
+                reply = await traffic.answer(session, self.campus, robot.name, message, now)
+                if reply is not None:
+                    await self.tell(session, robot, reply)
+            case Clear():
+                await traffic.clear(session, self.campus, robot.name, message, now)
+
+    def note(self, session: AsyncSession, robot: RobotRow, message: Snapshot | Why) -> None:
+        """Take over what a robot says of its present state."""
+        robot.heard_at = self.clock.utc()
+        if isinstance(message, Why):
+            robot.why = message.waiting_for or message.sentence
+        else:
+            note_state(robot, message.position, message.battery)
+            robot.activity = message.activity
+        self.announce(session, robot)
+
+    def announce(self, session: AsyncSession, robot: RobotRow) -> None:
+        """After the commit: pages see the robot as it is now, and whoever waits for robots looks again."""
+        view = robot_view(robot, self.campus, self.settings).model_dump(mode="json")
+
+        def say() -> None:
+            self.feed.publish(Happening("robot", view))
+            for call in self.on_change:
+                call(robot.name)
+
+        after_commit(session, say)
+
+    async def views(self, session: AsyncSession) -> Sequence[RobotView]:
+        """All robots, by name."""
+        robots = (await session.exec(select(RobotRow).order_by(col(RobotRow.name)))).all()
+        return [robot_view(robot, self.campus, self.settings) for robot in robots]
+
+
+def note_state(robot: RobotRow, position: Position, battery: Battery) -> None:
+    """What `hello` and `snapshot` share."""
+    robot.post, robot.previous, robot.towards = position.post, position.previous, position.towards
+    robot.seen_at = position.seen_at
+    robot.battery_ratio, robot.charging = battery.ratio, battery.charging
+    if battery.charging:
+        robot.activity = Activity.CHARGING
