@@ -31,6 +31,7 @@ VIRTUAL_WALL_IR = 162
 # The directional receivers see this far to their own side and a little across [A].
 IR_SIDE_RAD, IR_ACROSS_RAD = math.radians(100), math.radians(15)
 BOUNCE_SLOTS = 8
+ANGLE_BUG = 0.324056  # firmware up to 3.4.0 tells angles too small by this factor [F]
 
 
 @dataclass(frozen=True)
@@ -56,7 +57,6 @@ class Body:
         self.line = line
         self.bumped_until_s = {"left": now, "right": now}
         self.docked = False
-        self.stopped_by: Contact | None = None
         self._seek: SeekDock | None = None
         self._line_random = Random(f"{seed}/line")
         self._slot_random = Random(f"{seed}/contacts")
@@ -145,10 +145,11 @@ class Body:
         dock = self._dock
         if dock and dock.held and ahead_mm * math.cos(dock.turned_rad) > 0:
             return True
-        if not self._contacts:
+        if not self.world.obstacles:
             return False
+        here = self.world.contacts(self.base.x_m, self.base.y_m, heading)
         there = self.world.contacts(x_m, y_m, heading)
-        return any(new.gap_m < 0 and new.gap_m < old.gap_m for old, new in zip(self._contacts, there, strict=False))
+        return any(new.gap_m < 0 and new.gap_m < old.gap_m for old, new in zip(here, there, strict=True))
 
     def _look_around(self) -> None:
         pose = (self.base.x_m, self.base.y_m, self.base.heading_rad)
@@ -159,7 +160,7 @@ class Body:
 
     def _slot(self) -> None:
         now = self.now
-        if self.world.obstacles:
+        if self.world.obstacles or self._contacts:
             self._look_around()
         self.docked = self._touches_charger()
         self._tell_touch(now)
@@ -213,7 +214,9 @@ class Body:
         left, right = base.left.speed_mm_s, base.right.speed_mm_s
         told.stasis = int(left > 5 and right > 5 and not self._blocked_s)
         told.distance_mm, base.untold_mm = _told(told.distance_mm, base.untold_mm)
-        told.angle_deg, base.untold_deg = _told(told.angle_deg, base.untold_deg)
+        turned_deg = base.untold_deg * (ANGLE_BUG if self.faults.angle_bug else 1.0)
+        told.angle_deg, rest_deg = _told(told.angle_deg, turned_deg)
+        base.untold_deg = rest_deg / (ANGLE_BUG if self.faults.angle_bug else 1.0)
 
     def _motor_ma(self, speed_mm_s: float) -> int:
         if not speed_mm_s:
@@ -238,6 +241,8 @@ class Body:
         told.charging_state, told.voltage_mv = int(battery.state), battery.voltage_mv
         told.current_ma, told.temperature_c = round(battery.current_ma), round(battery.temperature_c)
         told.charge_mah, told.capacity_mah = round(battery.charge_mah), round(battery.pack.capacity_mah)
+        if not battery.charge_mah and not self.docked:
+            self.interface.lose_power()
 
 
 def _told(so_far: int, more: float) -> tuple[int, float]:

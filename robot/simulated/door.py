@@ -19,6 +19,7 @@ from .errors import SimulatedWorldError, UnknownSwitch, WrongValue
 from .faults import SWITCHES
 from .obstacles import Person
 from .robot import BUMP_S, SimulatedRobot
+from .start import Pose
 
 ANSWER_WITHIN_S = 5.0
 LONGEST_LINE = 65536
@@ -35,10 +36,17 @@ class _Waiting:
 class Door:
     """Listens in a thread of its own; `serve` answers in the thread that steps the world."""
 
-    def __init__(self, robot: SimulatedRobot, path: Path, tell: Tell | None = None) -> None:
+    def __init__(
+        self,
+        robot: SimulatedRobot,
+        path: Path,
+        tell: Tell | None = None,
+        answer_within_s: float = ANSWER_WITHIN_S,
+    ) -> None:
         self._robot = robot
         self._path = path
         self._tell = tell or dict
+        self._answer_within_s = answer_within_s
         self._waiting: SimpleQueue[_Waiting] = SimpleQueue()
         path.unlink(missing_ok=True)
         old_mask = os.umask(0o177)  # the socket must never be open to others, not even for a moment
@@ -68,9 +76,12 @@ class Door:
         waiting = _Waiting(request)
         self._waiting.put(waiting)
         try:
-            return waiting.answer.get(timeout=ANSWER_WITHIN_S)
+            return waiting.answer.get(timeout=self._answer_within_s)
         except Empty:
-            return {"ok": False, "error": f"the world has not moved for {ANSWER_WITHIN_S:g} s; is the robot running?"}
+            return {
+                "ok": False,
+                "error": f"the world has not moved for {self._answer_within_s:g} s; is the robot running?",
+            }
 
     def close(self) -> None:
         self._robot.before_steps.remove(self.serve)
@@ -100,7 +111,7 @@ def obey(robot: SimulatedRobot, request: Any, tell: Tell = dict) -> dict[str, An
         if not isinstance(request, dict):
             raise WrongValue("request", request, 'an object such as {"do": "state"}')
         name = request.get("do")
-        if name not in COMMANDS:
+        if not isinstance(name, str) or name not in COMMANDS:
             raise UnknownSwitch("door command", name, COMMANDS)
         told = COMMANDS[name](robot, request)
         extra = tell() if name == "state" else {}
@@ -180,6 +191,22 @@ def _clear_people(robot: SimulatedRobot, _: Request) -> dict[str, Any]:
     return {}
 
 
+def _push(robot: SimulatedRobot, request: Request) -> dict[str, Any]:
+    robot.push(_number(request, "ahead_mm", -5000, 5000))
+    return {}
+
+
+def _place(robot: SimulatedRobot, request: Request) -> dict[str, Any]:
+    x_m, y_m = (_number(request, name, -1e5, 1e5) for name in ("x_m", "y_m"))
+    robot.place(Pose(x_m, y_m, _number(request, "heading_rad", -7, 7)))
+    return {}
+
+
+def _print_text(robot: SimulatedRobot, request: Request) -> dict[str, Any]:
+    robot.print_text(_text(request, "text"))
+    return {}
+
+
 def _unplug(robot: SimulatedRobot, _: Request) -> dict[str, Any]:
     robot.unplug()
     return {}
@@ -200,6 +227,9 @@ COMMANDS: dict[str, Callable[[SimulatedRobot, Request], dict[str, Any]]] = {
     "faults": _faults,
     "person": _person,  # {"x_m": …, "y_m": …, "radius_m"?: 0.2}
     "clear_people": _clear_people,
+    "push": _push,  # {"ahead_mm": …}
+    "place": _place,  # {"x_m": …, "y_m": …, "heading_rad": …}
+    "print_text": _print_text,  # {"text": …}
     "unplug": _unplug,
     "state": _state,
 }

@@ -71,8 +71,8 @@ class Wheel:
             self._ripple_mm_s = (2 * self._random.random() - 1) * self._ripple
         return self._ripple_mm_s
 
-    def pushed(self, distance_mm: float) -> None:
-        """Moved by hand: the encoder counts up, or in the direction of the command if there is one."""
+    def push(self, distance_mm: float) -> None:
+        """Turned by hand: whichever way, it counts in the direction of the last command, at rest up."""
         self.counts += self._direction * abs(distance_mm) / MM_PER_COUNT
 
     @property
@@ -114,6 +114,12 @@ class DriveBase:
         self.driven_mm += abs(ahead_mm)
         self.untold_mm += ahead_mm
         self.untold_deg += math.degrees(turn_rad)
+
+    def push(self, ahead_mm: float) -> None:
+        """Somebody shoves the robot along its heading."""
+        self.left.push(ahead_mm)
+        self.right.push(ahead_mm)
+        self.move(*self.ahead(ahead_mm, 0.0), ahead_mm, 0.0)
 
     @property
     def moving(self) -> bool:

@@ -15,6 +15,7 @@ class Faults:
     frozen: bool = False
     mode_offset: int = 0
     mode_silent: bool = False
+    angle_bug: bool = False
     brc_dead: bool = False
     never_sleeps: bool = False
     bump_left: bool = False
@@ -41,10 +42,10 @@ class Faults:
 
     def set(self, name: object, value: Any) -> None:
         """Raises UnknownSwitch or WrongValue; a switch never takes a value that it cannot mean."""
-        if name not in SWITCHES:
+        if not isinstance(name, str) or name not in SWITCHES:
             raise UnknownSwitch("fault", name, SWITCHES)
-        kind = type(getattr(Faults, str(name)))
-        setattr(self, str(name), _checked(str(name), kind, value))
+        kind = type(getattr(Faults, name))
+        setattr(self, name, _checked(name, kind, value))
 
     def on(self) -> dict[str, float | bool]:
         """The switches that are not in their resting position."""
@@ -70,6 +71,7 @@ SWITCHES: dict[str, str] = {
     "frozen": "the robot neither hears nor says anything; its wheels go on",
     "mode_offset": "added to the mode that packet 35 tells (some report one more, one was seen at 32)",
     "mode_silent": "the robot never answers a query that holds packet 35 (old firmware)",
+    "angle_bug": "packet 20 is too small by the factor of firmware up to 3.4.0",
     "brc_dead": "pulses on the BRC pin have no effect",
     "never_sleeps": "Passive mode does not fall asleep after five minutes",
     "bump_left": "the left half of the bumper is pressed",

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from typing import Protocol
 
 BUMPER_RADIUS_M = 0.3485 / 2
 # The bumper is the front half; a touch within this angle of straight ahead presses both ends [A].
@@ -43,7 +44,12 @@ class Wall:
         return self.ax_m + share * dx, self.ay_m + share * dy, 0.0
 
 
-Obstacle = Person | Wall
+class Obstacle(Protocol):
+    """Whatever a bumper can touch."""
+
+    def nearest(self, x_m: float, y_m: float) -> tuple[float, float, float]:
+        """(x, y) of the point nearest to here, and how far the surface stands out from it."""
+        ...
 
 
 @dataclass(frozen=True)

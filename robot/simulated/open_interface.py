@@ -23,6 +23,7 @@ SLOT_BYTES = 172  # what 115200 baud carries in one slot
 SLEEP_AFTER_S = 300.0
 BUTTON_S = 1 / 6
 BRC_PULSE_S = 0.05
+BAUD_CHANGE_S = 0.1
 STRAIGHT = (0x7FFF, -0x8000)
 TURN_RADIUS_OF_CLIFF_MM = 165
 PWM_TOP = 255
@@ -138,23 +139,23 @@ class OpenInterface:
         radius_mm = WHEEL_BASE_MM / 2 * abs((right + left) / (right - left))
         return radius_mm < TURN_RADIUS_OF_CLIFF_MM
 
-    def tick(self, now: float, charging: bool) -> None:
+    def tick(self, now: float, on_charger: bool) -> None:
         """One slot of 15 ms: text that is due, a frame of the stream, the five minutes to sleep."""
         self._now = now
         while self._printing and self._printing[0][0] <= now:
             self.out += self._printing.popleft()[1]
         if self._streaming and self._stream and not self.asleep and not self._faults.frozen:
             self.out += self._frame(self._stream)
-        self._fall_asleep_when_idle(now, charging)
-        if charging and self.mode is Mode.OFF and not self.asleep:
+        self._fall_asleep_when_idle(now, on_charger)
+        if on_charger and self.mode is Mode.OFF and not self.asleep:
             self._print_battery(now)
 
     def _frame(self, layout: Layout) -> bytes:
         # What does not fit into its slot is lost, so that too long a list gives only broken frames.
         return stream_frame(self._encode(layout))[:SLOT_BYTES]
 
-    def _fall_asleep_when_idle(self, now: float, charging: bool) -> None:
-        if self.mode is not Mode.PASSIVE or self.activity is not Activity.NONE or charging:
+    def _fall_asleep_when_idle(self, now: float, on_charger: bool) -> None:
+        if self.mode is not Mode.PASSIVE or self.activity is not Activity.NONE or on_charger:
             self._idle_since_s = now
         elif now - self._idle_since_s >= SLEEP_AFTER_S and not self._faults.never_sleeps:
             self._sleep()
@@ -163,6 +164,11 @@ class OpenInterface:
         self.out += firmware_text.SLEEP
         self.asleep, self._slept_at_s = True, self._now
         self._shut()
+
+    def lose_power(self) -> None:
+        """The battery is empty: silent until the charger wakes it."""
+        if not self.asleep:
+            self._sleep()
 
     def _wake(self, cause: str, now: float) -> None:
         """Awake, with the interface Off."""
@@ -327,6 +333,7 @@ class OpenInterface:
     def set_baud(self, data: bytes) -> None:
         if data[0] < len(BAUD_CODES):
             self.baud = BAUD_CODES[data[0]]
+            self._deaf_until_s = self._now + BAUD_CHANGE_S
 
     def keep(self, _: bytes) -> None:
         """Schedule, clock and scheduling lights: taken, without an effect that this interface shows."""
@@ -345,6 +352,10 @@ class OpenInterface:
 
     def pause_resume(self, data: bytes) -> None:
         self._streaming = bool(data[0]) and self._stream is not None
+
+    def print_text(self, text: bytes) -> None:
+        """Something of the firmware's own, in the middle of the packets."""
+        self.out += text
 
     def take(self) -> bytes:
         """The bytes that are on the wire since last asked."""

@@ -10,7 +10,8 @@ from gpiozero.pins.mock import MockFactory
 
 from maps import CampusMap
 
-from .battery import Battery
+from . import firmware_text
+from .battery import CURRENT_MA, Battery
 from .body import Body, Build
 from .camera import SHOWN_FOR_S, SimulatedCamera
 from .errors import WrongValue
@@ -22,6 +23,7 @@ from .start import Pose, start_pose
 from .world import World
 
 BUMP_S = 0.5
+FAULT_TEXT = firmware_text.FAULT.decode()
 SIDES = {"left": ("left",), "right": ("right",), "both": ("left", "right")}
 
 
@@ -155,6 +157,15 @@ class SimulatedRobot:
         """Carry the robot somewhere else."""
         self._body.place(pose.x_m, pose.y_m, pose.heading_rad)
 
+    def push(self, ahead_mm: float) -> None:
+        """Shove the robot along its heading; its encoders count up, whichever way."""
+        self._body.base.push(ahead_mm)
+        self._body.place(self._body.base.x_m, self._body.base.y_m, self._body.base.heading_rad)
+
+    def print_text(self, text: str = FAULT_TEXT) -> None:
+        """The firmware prints a line of its own between two packets."""
+        self._body.interface.print_text(text.encode())
+
     def show_code(self, text: str, for_s: float = SHOWN_FOR_S) -> None:
         """A person holds the text up to the camera as a QR code."""
         self.camera.show(text, for_s)
@@ -187,7 +198,8 @@ class SimulatedRobot:
             "distance_m": self.driven_mm / 1000,
             "battery": {
                 "ratio": self.battery.ratio,
-                "charging": self.battery.state.name.lower(),
+                "charging": self.battery.state in CURRENT_MA,
+                "charging_state": int(self.battery.state),
                 "voltage_mv": self.battery.voltage_mv,
             },
             "docked": body.docked,
