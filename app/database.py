@@ -46,18 +46,6 @@ class Database:
         await self.engine.dispose()
 
 
-@asynccontextmanager
-async def part(session: AsyncSession) -> AsyncIterator[None]:
-    """A part of a transaction that can fail alone: what it changed and what it would have said is undone."""
-    said = len(session.info.get(_AFTER_COMMIT, []))
-    try:
-        async with session.begin_nested():
-            yield
-    except BaseException:
-        del session.info.get(_AFTER_COMMIT, [])[said:]
-        raise
-
-
 def after_commit(session: AsyncSession, say: Callable[[], None]) -> None:
     """Run `say` once the transaction is committed, in order of asking; never if it is rolled back."""
     session.info.setdefault(_AFTER_COMMIT, []).append(say)

@@ -9,7 +9,9 @@ from fastapi import FastAPI
 
 from app import about, demo_camera
 from app.database import Database
+from app.dispatch.service import Dispatcher
 from app.errors import add_error_answers
+from app.fleet import routes as fleet_routes
 from app.fleet.service import Fleet
 from app.live import routes as live_routes
 from app.live.feed import LocalFeed
@@ -39,6 +41,7 @@ ROUTERS = (
     orders_routes.router,
     notify_routes.router,
     live_routes.router,
+    fleet_routes.router,
     demo_camera.router,
 )
 RESTART_PAUSE_S = 1.0
@@ -82,6 +85,7 @@ def _add_parts(app: FastAPI, settings: Settings, clock: Clock) -> None:
     state.fleet = Fleet(state.database, state.campus, settings, clock, state.feed, state.orders)
     state.outbox_worker = OutboxWorker(state.database, spool, settings, clock, _code_picture(state.server_key))
     state.orders.on_change.append(lambda order_id: state.outbox_worker.wake())
+    state.dispatcher = Dispatcher(state.fleet)
 
 
 def _code_picture(key: ServerKey) -> Callable[[str, NoticeKind], tuple[str, bytes] | None]:
@@ -98,7 +102,10 @@ def _code_picture(key: ServerKey) -> Callable[[str, NoticeKind], tuple[str, byte
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     await bring_to_head(app.state.database)
     await app.state.fleet.begin()
-    background = [asyncio.create_task(_keep_running("outbox", app.state.outbox_worker.run))]
+    background = [
+        asyncio.create_task(_keep_running("outbox", app.state.outbox_worker.run)),
+        asyncio.create_task(_keep_running("dispatch", app.state.dispatcher.run)),
+    ]
     try:
         yield
     finally:

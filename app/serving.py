@@ -70,6 +70,9 @@ def _config(app: FastAPI) -> uvicorn.Config:
         timeout_graceful_shutdown=GRACEFUL_S,
         ws="websockets-sansio",
         ws_max_size=128 * 1024,
+        # A robot that has driven out of the network's reach is shown as offline within 10 s.
+        ws_ping_interval=4.0,
+        ws_ping_timeout=6.0,
         server_header=False,
         # A proxy on this machine ends TLS and says so in X-Forwarded-Proto; nobody else is believed.
         proxy_headers=True,
