@@ -24,7 +24,7 @@ class Charging(IntEnum):
 VOLTAGE_MV = ((0.0, 11000), (0.05, 12600), (0.10, 13100), (0.25, 13900), (0.50, 14500), (0.90, 15400), (1.0, 16000))
 RESISTANCE_OHM = 0.3
 CHARGING_MV = 17400
-CURRENT_MA = {Charging.RECONDITION: 300, Charging.FULL: 1250, Charging.TRICKLE: 50}
+CURRENT_MA = {Charging.RECONDITION: 300.0, Charging.FULL: 1250.0, Charging.TRICKLE: 50.0}
 RECONDITION_BELOW_MV = 10800
 CONTACT_BEFORE_CHARGE_S = 1.0
 
@@ -34,7 +34,7 @@ class Pack:
     """Settings of one battery. A demo may take a small pack so that it runs low soon.
 
     `idle_ma` is what the base draws awake, `host_ma` a computer fed from it (trickle charge ignores that load),
-    `full_at` the ratio at which the charger ends: a worn pack stops short of 1.0.
+    `full_at` the ratio at which the charger ends: a worn pack stops short of 1.0. `charger_ma` is the full charge.
     """
 
     capacity_mah: float = 2696.0
@@ -42,6 +42,7 @@ class Pack:
     idle_ma: float = 250.0
     host_ma: float = 0.0
     full_at: float = 1.0
+    charger_ma: float = 1250.0
 
 
 class Battery:
@@ -78,7 +79,8 @@ class Battery:
         self.state = self._next_state(powered and may_charge, fault)
         self.charging_s = self.charging_s + duration_s if self.state in CURRENT_MA else 0.0
         load_ma = self.pack.host_ma + (0.0 if powered else self.pack.idle_ma + motors_ma)
-        self.current_ma = CURRENT_MA.get(self.state, 0) - load_ma
+        charge_ma = self.pack.charger_ma if self.state is Charging.FULL else CURRENT_MA.get(self.state, 0.0)
+        self.current_ma = charge_ma - load_ma
         self.charge_mah += self.current_ma * duration_s / 3600
         self.charge_mah = min(max(self.charge_mah, 0.0), self.pack.capacity_mah)
 

@@ -239,8 +239,9 @@ class Body:
             SLOT_S, told.left_motor_ma + told.right_motor_ma, self.docked, may_charge, self.faults.charge_fault
         )
         told.charging_state, told.voltage_mv = int(battery.state), battery.voltage_mv
-        told.current_ma, told.temperature_c = round(battery.current_ma), round(battery.temperature_c)
-        told.charge_mah, told.capacity_mah = round(battery.charge_mah), round(battery.pack.capacity_mah)
+        told.current_ma, told.temperature_c = clipped(battery.current_ma, -32768, 32767), round(battery.temperature_c)
+        told.charge_mah = clipped(battery.charge_mah, 0, 65535)
+        told.capacity_mah = clipped(battery.pack.capacity_mah, 0, 65535)
         if not battery.charge_mah and not self.docked:
             self.interface.lose_power()
 
@@ -248,4 +249,9 @@ class Body:
 def _told(so_far: int, more: float) -> tuple[int, float]:
     """Packets 19 and 20 are whole numbers, clipped; the fraction waits for the next time."""
     whole = int(more)
-    return min(max(so_far + whole, -32768), 32767), more - whole
+    return clipped(so_far + whole, -32768, 32767), more - whole
+
+
+def clipped(value: float, low: int, high: int) -> int:
+    """What does not fit into the packet stays at its end."""
+    return min(max(round(value), low), high)

@@ -207,6 +207,16 @@ def test_a_docked_robot_charges_in_off_and_passive_until_it_is_full(make):
     assert bench.ask(25) == bench.ask(26) == 60
 
 
+def test_a_stronger_charger_fills_the_battery_sooner(make):
+    options = Options(build=Build(pack=Pack(ratio=0.5, charger_ma=10_000.0)))
+    bench = make("dock", options=options)
+    bench.send(128)
+    bench.run(2)
+    assert bench.ask(23) == 10_000
+    bench.run(0.5 * 2696 / 10_000 * 3600)
+    assert bench.ask(21) == TRICKLE
+
+
 def test_an_empty_battery_is_reconditioned_first(make):
     bench = make("dock", battery_ratio=0.0)
     bench.send(128)
