@@ -1,0 +1,212 @@
+"""Closed loop on the simulated track: bytes, pins and frames on one side, posts reached on the other."""
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import pytest
+
+from robot.drivers.interfaces import STOP, Mode
+from robot.simulated import Build, DiodeMount, Options, Person, Pose
+from robot.skills import Dock, Done, Failed, FindLine, FollowLine, Turn, Undock
+from tests.robot.skills.track import TICK_S, Drive
+
+Make = Callable[..., Drive]
+NEAR_M = 0.03
+
+
+def follow(drive: Drive, leaving: str | None) -> FollowLine:
+    return FollowLine(drive.campus, leaving, shape=drive.shape)
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_it_drives_from_post1_to_post4_and_stops_at_every_post(drive: Make, seed: int):
+    robot = drive("post1:post2", seed=seed)
+    way = [("post1", "post2", math.pi / 2), ("post2", "post3", -math.pi / 2), ("post3", "post4", math.pi)]
+    for leaving, post, turn_rad in way:
+        began, line_began = robot.now, len(robot.readings)
+        assert robot.do(follow(robot, leaving)) == Done(post)
+        assert robot.distance_to_m(post) < NEAR_M
+        assert 1.95 / (robot.now - began) > 0.125, "mean speed in m/s with start, braking and standing still at the end"
+        on_the_way = robot.readings[line_began:-60]
+        assert on_the_way.count("111") / len(on_the_way) < 0.01
+        assert robot.do(Turn(turn_rad, robot.shape)).__class__ is Done
+    assert robot.loop.view.find_line_episodes == 0
+    assert not [speeds for speeds in robot.sent if any(0 < abs(wheel) < 30 for wheel in speeds)]
+
+
+def test_it_leaves_the_dock_and_docks_again(drive: Make):
+    robot = drive("dock", battery_ratio=0.5)
+    assert robot.do(Undock(robot.shape)) == Done()
+    assert not robot.robot.docked
+    assert robot.robot.pose.heading_rad == pytest.approx(-math.pi / 2, abs=0.3)
+    assert robot.do(follow(robot, "post5")) == Done("post3")
+    assert robot.do(Turn(math.pi, robot.shape)) == Done()
+    assert robot.do(follow(robot, "post3")) == Done("post5")
+    assert robot.do(Dock()) == Done()
+    assert robot.robot.docked
+    assert robot.loop.view.base is not None and robot.loop.view.base.charging
+    robot.steps(10)
+    assert robot.robot.docked, "and it stays in the dock"
+
+
+def test_a_dock_without_power_is_given_up_after_three_tries(drive: Make):
+    robot = drive("post5:post3")
+    robot.robot.place(Pose(2.0, 4.0, math.pi / 2))
+    robot.robot.set_fault("dock_unpowered", True)
+    assert robot.do(Dock(), limit_s=310) == Failed("no_dock")
+    robot.steps(1)
+    assert robot.loop.view.sent == STOP
+
+
+def test_bouncing_contacts_are_not_a_failed_dock(drive: Make):
+    robot = drive("post5:post3", battery_ratio=0.4)
+    robot.robot.place(Pose(2.0, 4.0, math.pi / 2))
+    robot.robot.set_fault("contact_bounce", True)
+    job = robot.loop.start(Dock(), robot.now)
+    robot.until(lambda: robot.robot.docked)
+    robot.steps(2)
+    robot.robot.set_fault("contact_bounce", False)
+    assert robot.end_of(job) == Done()
+
+
+@pytest.mark.parametrize("sideways_m", [0.05, -0.12, 0.25])
+def test_carried_off_the_line_it_finds_it_again_and_goes_on_the_same_way(drive: Make, sideways_m: float):
+    robot = drive("post1:post2")
+    job = robot.loop.start(follow(robot, "post1"), robot.now)
+    robot.steps(4)
+    pose = robot.robot.pose
+    robot.robot.place(replace(pose, x_m=pose.x_m + sideways_m, heading_rad=pose.heading_rad + 0.2))
+    assert robot.end_of(job, limit_s=200) == Done("post2")
+    assert robot.distance_to_m("post2") < NEAR_M
+    assert robot.loop.view.find_line_episodes >= 1
+
+
+def test_where_there_is_no_line_at_all_it_says_so_and_stands(drive: Make):
+    robot = drive("post1:post2")
+    robot.robot.place(Pose(-3.0, -3.0, 0.0))
+    assert robot.do(FindLine(robot.shape), limit_s=130) == Failed("line_lost")
+    robot.steps(0.2)
+    assert robot.loop.view.sent == STOP
+
+
+def test_worn_tape_does_not_make_it_search(drive: Make):
+    robot = drive("post1:post2", options=Options(gap_m=0.02))
+    assert robot.do(follow(robot, "post1")) == Done("post2")
+    assert robot.loop.view.find_line_episodes == 0
+
+
+def test_on_a_dock_it_does_not_try_to_follow_a_line(drive: Make):
+    assert drive("dock").do(FollowLine(drive("dock").campus)) == Failed("docked")
+
+
+def test_a_bump_stops_the_wheels_before_any_agent_thinks(drive: Make):
+    robot = drive("post1:post2")
+    robot.loop.start(follow(robot, "post1"), robot.now)
+    robot.steps(3)
+    assert robot.loop.view.sent != STOP
+    robot.robot.bump("left")
+    waited_s = robot.until(lambda: robot.loop.view.sent == STOP, 1.0)
+    assert waited_s <= 3 * TICK_S, "a frame of 15 ms and the next tick"
+    assert "bump" in robot.loop.view.faults or robot.until(lambda: "bump" in robot.loop.view.faults, 0.1)
+
+
+def test_after_a_bump_it_backs_off_waits_and_goes_on_to_the_post(drive: Make):
+    robot = drive("post1:post2")
+    job = robot.loop.start(follow(robot, "post1"), robot.now)
+    robot.steps(4)
+    robot.robot.bump("both")
+    at_bump = robot.robot.pose.y_m
+    robot.steps(2.5)
+    assert robot.robot.pose.y_m > at_bump + 0.03
+    assert robot.loop.view.bumps == 1
+    assert robot.end_of(job) == Done("post2")
+    assert robot.distance_to_m("post2") < NEAR_M
+
+
+def test_somebody_who_does_not_move_blocks_the_way(drive: Make):
+    robot = drive("post1:post2", options=Options(obstacles=(Person(0.0, 3.0),)))
+    assert robot.do(follow(robot, "post1")) == Failed("blocked")
+    assert robot.loop.view.bumps == 3
+
+
+def test_before_a_drop_it_stands_until_it_is_gone_and_goes_on(drive: Make):
+    robot = drive("post1:post2")
+    job = robot.loop.start(follow(robot, "post1"), robot.now)
+    robot.steps(3)
+    robot.robot.cliff(True)
+    robot.steps(5)
+    here = robot.robot.pose
+    robot.steps(5)
+    assert robot.robot.pose == here
+    assert robot.loop.view.faults == {"cliff"}
+    assert robot.loop.view.base is not None and robot.loop.view.base.mode is Mode.PASSIVE
+    robot.robot.cliff(False)
+    assert robot.end_of(job) == Done("post2")
+
+
+def test_without_a_mind_it_stops_within_a_second_and_a_bit(drive: Make):
+    robot = drive("post1:post2")
+    robot.loop.start(follow(robot, "post1"), robot.now)
+    robot.steps(3)
+    robot.mind_lives = False
+    robot.steps(1.5)
+    assert robot.loop.view.faults == {"agent_silent"}
+    assert robot.loop.view.sent == STOP
+    robot.mind_lives = True
+    robot.steps(1)
+    assert robot.loop.view.sent != STOP
+
+
+def test_a_loop_that_hangs_leaves_no_robot_driving_as_long_as_the_driver_is_polled(drive: Make):
+    robot = drive("post1:post2")
+    robot.loop.start(follow(robot, "post1"), robot.now)
+    robot.steps(3)
+    for _ in range(100):
+        robot.now += 0.01
+        robot.robot.step_until(robot.now)
+        robot.base.poll(robot.now)
+    here = robot.robot.pose
+    robot.robot.step_until(robot.now + 1)
+    assert robot.robot.pose == here
+
+
+def test_a_frozen_base_is_noticed_and_the_way_goes_on_when_it_answers_again(drive: Make):
+    robot = drive("post1:post2")
+    job = robot.loop.start(follow(robot, "post1"), robot.now)
+    robot.steps(3)
+    robot.robot.set_fault("freeze", True)
+    robot.steps(1)
+    assert robot.loop.view.faults == {"base_silent"}
+    robot.robot.set_fault("freeze", False)
+    assert robot.end_of(job) == Done("post2")
+
+
+def test_the_emergency_stop_ends_even_a_docking_that_the_firmware_drives(drive: Make):
+    robot = drive("post5:post3")
+    robot.robot.place(Pose(2.0, 3.8, math.pi / 2))
+    job = robot.loop.start(Dock(), robot.now)
+    robot.steps(2)
+    robot.loop.emergency_stop()
+    assert robot.end_of(job, 1.0) == Failed("emergency_stop")
+    robot.steps(1)
+    here = robot.robot.pose
+    robot.steps(2)
+    assert robot.robot.pose == here
+    robot.loop.rearm()
+    robot.steps(0.1)
+    assert robot.loop.view.faults == frozenset()
+
+
+def test_with_the_sensor_near_the_axle_it_follows_too(drive: Make):
+    build = Build(diodes=DiodeMount(lead_mm=20.0))
+    robot = drive("post1:post2", options=Options(build=build))
+    assert robot.do(follow(robot, "post1")) == Done("post2")
+
+
+def test_a_dead_camera_is_told_and_the_robot_drives_past_the_post_to_the_end_of_the_line(drive: Make):
+    robot = drive("post3:post4")
+    robot.robot.set_fault("camera_dead", True)
+    robot.steps(1.5)
+    assert robot.loop.view.faults == {"camera_stale"}
+    assert robot.do(follow(robot, "post3"), limit_s=200).__class__ is Failed
