@@ -99,6 +99,7 @@ class BatterySettings(Section):
     simulated_capacity_mah: Positive = Field(
         default=2696.0, description="capacity of the simulated pack, mAh (NiMH pack of a Create 2)"
     )
+    simulated_charger_ma: Positive = Field(default=1250.0, description="current of the simulated dock, mA")
 
 
 class RateSettings(Section):

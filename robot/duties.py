@@ -68,7 +68,7 @@ class Duties:
         utc: Callable[[], datetime],
         server: Server | None = None,
     ) -> None:
-        self._store, self._memory, self._outbox, self._utc = store, memory, outbox, utc
+        self._store, self.memory, self.outbox, self._utc = store, memory, outbox, utc
         self._server = server
         self._denied: dict[str, Deny] = {}
         self._claimed: dict[tuple[Leg, ...], str] = {}
@@ -88,11 +88,11 @@ class Duties:
     def _changed(self) -> None:
         with self._store.transaction():
             self.held = Held(
-                self._memory.mission(),
-                self._memory.next_stop(),
-                self._memory.cargo(),
-                self._memory.grants(),
-                self._memory.position(),
+                self.memory.mission(),
+                self.memory.next_stop(),
+                self.memory.cargo(),
+                self.memory.grants(),
+                self.memory.position(),
             )
         self.revision += 1
 
@@ -110,14 +110,14 @@ class Duties:
             with self._store.transaction():
                 self._take(incoming.message)
                 if incoming.seq is not None:
-                    self._memory.handled(incoming)
+                    self.memory.handled(incoming)
         if messages:
             self._told()
 
     def give(self, mission: Mission) -> None:
         """A mission given on the spot, without a server. Raises MissionConflict."""
         with self._store.transaction():
-            self._memory.hold(mission)
+            self.memory.hold(mission)
             self._accepted(mission)
         self._told()
 
@@ -144,7 +144,7 @@ class Duties:
                 pass  # memory has taken them already
 
     def _accepted(self, mission: Mission) -> None:
-        if self._memory.first_time(mission.id, "accepted"):
+        if self.memory.first_time(mission.id, "accepted"):
             self._tell(Progress(step=Step.ACCEPTED, happened_at=self._utc(), mission_id=mission.id))
 
     def _answer(self, command_id: str, refusal: str | None) -> None:
@@ -154,24 +154,24 @@ class Duties:
 
     def _cancel(self, order_id: str) -> str | None:
         """Why not, or None."""
-        if order_id in self._memory.cargo():
+        if order_id in self.memory.cargo():
             return "the mail is aboard"
-        mission = self._memory.mission()
-        ahead = mission.stops[self._memory.next_stop() :] if mission else ()
+        mission = self.memory.mission()
+        ahead = mission.stops[self.memory.next_stop() :] if mission else ()
         if all(stop.order_id in (order_id, None) for stop in ahead):
-            self._memory.drop_mission()
+            self.memory.drop_mission()
         self.cancelled |= {order_id}
-        self._memory.forget_verifiers(order_id)
+        self.memory.forget_verifiers(order_id)
         return None
 
     def _recall(self) -> str | None:
-        if self._memory.cargo():
+        if self.memory.cargo():
             return "mail is aboard, and bringing it back is not built yet"
-        self._memory.drop_mission()
+        self.memory.drop_mission()
         return None
 
     def _tell(self, happened: Progress | HandoverReceipt | Charge | Fault | CommandAnswer) -> None:
-        self._outbox.put(Event(happened=happened))
+        self.outbox.put(Event(happened=happened))
 
     # From the agent.
 
@@ -180,7 +180,7 @@ class Duties:
         mission, stop = self._stop(stop_id)
         key = f"{step}:{stop_id}:{post}" if step is Step.PASSED else f"{step}:{stop_id}"
         with self._store.transaction():
-            if self._memory.first_time(mission.id, key):
+            if self.memory.first_time(mission.id, key):
                 self._tell(self._progress(step, mission, stop, post, reason))
         self._told()
 
@@ -208,7 +208,7 @@ class Duties:
         """The stop is done, or given up: the next one comes."""
         mission, stop = self._stop(stop_id)
         with self._store.transaction():
-            self._memory.reach(max(self._memory.next_stop(), mission.stops.index(stop) + 1))
+            self.memory.reach(max(self.memory.next_stop(), mission.stops.index(stop) + 1))
         self._changed()
 
     def finish_mission(self, mission_id: str, post: str | None) -> None:
@@ -217,24 +217,24 @@ class Duties:
         if mission is None or mission.id != mission_id:
             return
         with self._store.transaction():
-            if self._memory.first_time(mission.id, Step.DONE):
+            if self.memory.first_time(mission.id, Step.DONE):
                 self._tell(self._progress(Step.DONE, mission, None, post))
-            self._memory.drop_mission()
+            self.memory.drop_mission()
         self._told()
 
     def verifiers(self, order_id: str, purpose: Purpose) -> tuple[Verifier, ...]:
         """What opens this hand-over."""
-        return tuple(v for v in self._memory.verifiers() if (v.order_id, v.purpose) == (order_id, purpose))
+        return tuple(v for v in self.memory.verifiers() if (v.order_id, v.purpose) == (order_id, purpose))
 
     def handed_over(self, purpose: Purpose, stop_id: str, post: str, code_sha256: str | None) -> None:
         """Mail changed hands at a stop. What is aboard, how far the mission is and the receipt: all or nothing."""
         mission, stop = self._stop(stop_id)
         order_id = stop.order_id or ""
         with self._store.transaction():
-            if not self._memory.first_time(mission.id, f"handover:{stop_id}"):
+            if not self.memory.first_time(mission.id, f"handover:{stop_id}"):
                 return
-            (self._memory.load if purpose is Purpose.LOAD else self._memory.unload)(order_id)
-            self._memory.reach(max(self._memory.next_stop(), mission.stops.index(stop) + 1))
+            (self.memory.load if purpose is Purpose.LOAD else self.memory.unload)(order_id)
+            self.memory.reach(max(self.memory.next_stop(), mission.stops.index(stop) + 1))
             receipt = HandoverReceipt(
                 purpose=purpose,
                 order_id=order_id,
@@ -245,7 +245,7 @@ class Duties:
             )
             self._tell(receipt)
             if purpose is Purpose.RECEIVE:
-                self._memory.forget_verifiers(order_id)
+                self.memory.forget_verifiers(order_id)
         self._told()
 
     def report_charge(self, step: ChargeStep, post: str | None, ratio: float) -> None:
@@ -273,7 +273,7 @@ class Duties:
             return None
         if wanted not in self._claimed:
             claim_id = str(uuid.uuid4())
-            self._outbox.put(Claim(claim_id=claim_id, legs=wanted))
+            self.outbox.put(Claim(claim_id=claim_id, legs=wanted))
             self._claimed = {wanted: claim_id}
             self._told()
         return self._claimed[wanted]
@@ -292,8 +292,8 @@ class Duties:
             return
         with self._store.transaction():
             for leg in granted:
-                self._memory.clear(leg)
-                self._outbox.put(Clear(leg=leg))
+                self.memory.clear(leg)
+                self.outbox.put(Clear(leg=leg))
         self._claimed = {}
         self._told()
 
@@ -301,11 +301,11 @@ class Duties:
 
     def seen(self, post: str) -> None:
         """The robot stands at a marker: remembered at once, since after a power cut nothing else tells where it is."""
-        self._memory.see(post, self._utc())
+        self.memory.see(post, self._utc())
         self._changed()
 
     def heading_for(self, towards: str | None) -> None:
-        self._memory.head(towards)
+        self.memory.head(towards)
         self._changed()
 
 

@@ -42,8 +42,8 @@ class Mind:
     """Messages to the agent: one is read in each cycle."""
     battery: BatterySense = field(default_factory=BatterySense)
     cycles: int = 0
-    quiet_since_s: float | None = None
-    """Since when the agent has had nothing at all to do; None while it has."""
+    failures: list[str] = field(default_factory=list)
+    """Goals that nobody could help, in words."""
     _why: Why | None = None
     _faults: frozenset[str] = frozenset()
 
@@ -68,14 +68,18 @@ class Mind:
         self.actions.cancel(outcome.cancelled)
         for action in outcome.actions:
             self.actions.begin(action.id, action.term, now)
+        self.failures += map(str, outcome.failures)
         self.cycles += 1
+
+    @property
+    def is_quiet(self) -> bool:
+        """The agent has nothing at all to do."""
+        return not self.inbox and self.agent.idle
 
     def seen(self, now: float) -> Seen:
         """The moment as perception is shown it."""
         hands, navigator = self.hands, self.hands.navigator
-        where = Whereabouts(
-            navigator.at, navigator.pose.previous, navigator.destination, navigator.way(), navigator.sighted
-        )
+        where = Whereabouts(navigator.at, navigator.position.previous, navigator.destination, navigator.way())
         return Seen(
             at_s=now,
             view=hands.view,
@@ -113,7 +117,7 @@ class Mind:
         return Snapshot(
             position=held.position,
             activity=self.activity(),
-            battery=battery_now(self.hands.view.base and self.hands.view.base.charging, self.battery),
+            battery=battery_now(bool(self.hands.view.base and self.hands.view.base.charging), self.battery),
             cargo=held.cargo,
             mission=held.mission_held,
         )
@@ -130,8 +134,8 @@ class Mind:
         return Activity.WAITING if self.actions.under_way else Activity.IDLE
 
 
-def battery_now(charging: bool | None, battery: BatterySense) -> Battery:
-    return Battery(ratio=battery.ratio or 0.0, charging=bool(charging))
+def battery_now(charging: bool, battery: BatterySense) -> Battery:
+    return Battery(ratio=battery.ratio or 0.0, charging=charging)
 
 
 def messages_from_person(tell: Iterable[str], achieve: Iterable[str]) -> list[Message]:

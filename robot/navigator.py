@@ -1,145 +1,207 @@
-"""The robot's idea of where it is, kept up with what the body sees, and written down for after a power cut."""
+"""The robot's idea of where it is and where it goes: kept up with what the body sees, written down for a power cut."""
 
 import math
 from dataclasses import replace
+from itertools import pairwise
 
-from maps import CampusMap, NoRoute
-from protocol.parts import Leg, Position
-from robot import pilot
+from maps import CampusMap, NoRoute, corridor_name, shortest_route
+from protocol import parts
+from protocol.parts import Leg
 from robot.drivers.interfaces import Odometry
 from robot.duties import Duties
-from robot.pilot import Pose
+from robot.navigation.directions import Way, next_post
+from robot.navigation.position import Position
 from robot.skills.interfaces import View
+
+SAME_WAY_RAD = math.radians(60)
+"""A robot that looks along a corridor to within this is taken to be going there."""
+TURNING = frozenset({"turn", "undock", "find_line"})
+"""Skills during which a marker is seen from aslant: it says nothing about the way that is left to its post."""
+PLAIN_TURNS = {"left": math.pi / 2, "right": -math.pi / 2, "behind": math.pi}
 
 
 class Navigator:
-    """Pose and destination. Told by actions what they are about to do, and by the body what it sees."""
+    """Position and destination. Told by actions what they are about to do, and by the body what it sees."""
 
     def __init__(self, campus: CampusMap, home: str | None, duties: Duties) -> None:
         self.campus, self.home = campus, home
         self.destination: str | None = None
-        self.sighted: str | None = None
-        """The post whose marker was in a frame since the last look."""
-        self.passed: list[str] = []
-        """Every post seen, in order; the same one twice only after another."""
+        self.visited: list[str] = []
+        """Every post reached, in order; the same one twice only after another."""
+        self.position = remembered(campus, duties.held.position)
+        self.towards = duties.held.position.towards
+        """The post ahead, once the robot has set out."""
         self._duties = duties
         self._odometry = Odometry()
         self._docked = False
-        self.pose = remembered(campus, duties.held.position)
+        self._leaving = self.position.has_left
+        self._ignored_until_s = -math.inf
 
     def look(self, view: View) -> None:
         """Take in what the body sees now."""
-        self._odometry = view.odometry
-        self._look_at_dock(view)
-        self.sighted = None
-        if view.post and view.post.at_s > self.pose.seen_at_s and view.post.text in self.campus.posts:
-            self.sighted = view.post.text
-            self._become(pilot.arrived(self.pose, self.campus, view.post, view.odometry))
-        else:
-            self._become(pilot.rolled(self.pose, self.campus, view.odometry))
-
-    def _look_at_dock(self, view: View) -> None:
+        before, self._odometry = self.position, view.odometry
         docked = bool(view.base and view.base.docked)
+        if view.post and view.motion in TURNING:
+            self._ignored_until_s = view.post.at_s
+        post = view.post if view.post and view.post.at_s > self._ignored_until_s else None
+        after = before.after(self.campus, view.odometry, post, view.post_odometry, docked)
         if docked and not self._docked:
-            post = self._dock_post()
-            if post:
-                self._become(pilot.docked_at(self.pose, self.campus, post, view.odometry))
+            after = self._in_dock(after)
         self._docked = docked
+        self.position = after
+        reached = after.current != before.current or (before.approaching is not None and after.approaching is None)
+        if after.current and (reached or (docked and self._leaving)):
+            self._note_arrival(after.current, before.current)
+        elif after.has_left and not self._leaving:
+            self._set_out()
 
-    def _dock_post(self) -> str | None:
-        """The dock at hand: of the last post seen, if it has one."""
-        here = self.campus.posts.get(self.pose.post or "")
-        return here.name if here and here.dock else self.home
+    def _in_dock(self, position: Position) -> Position:
+        """In a dock the robot knows its place, whatever it believed before: the last post seen, if it has a dock."""
+        here = self.campus.posts.get(position.current or "")
+        post = here if here and here.dock else self.campus.posts.get(self.home or "")
+        if post is None or post.dock is None:
+            return position
+        previous = position.previous if position.current == post.name else position.current
+        return Position(
+            current=post.name,
+            previous=previous,
+            facing_rad=post.dock.heading_rad,
+            spot_turn_rad=self._odometry.spot_turn_rad,
+            post_at_mm=self._odometry.ahead_mm,
+        )
 
-    def _become(self, pose: Pose) -> None:
-        before, self.pose = self.pose, pose
-        if pose.post and pose.standing and (pose.post != before.post or not before.standing):
-            self._note_arrival(pose.post, before)
-        elif pose.towards != before.towards:
-            self._duties.heading_for(pose.towards)
-
-    def _note_arrival(self, post: str, before: Pose) -> None:
+    def _note_arrival(self, post: str, before: str | None) -> None:
+        self._leaving, self.towards = False, None
         self._duties.seen(post)
-        if before.post and before.post != post:
-            self._duties.clear([Leg(from_post=before.post, to_post=post)])
-        if self.passed[-1:] != [post]:
-            self.passed.append(post)
+        if before and before != post:
+            self._duties.clear([Leg(from_post=before, to_post=post)])
+        if self.visited[-1:] != [post]:
+            self.visited.append(post)
+
+    def _set_out(self) -> None:
+        self._leaving = True
+        self._head_for(self._post_ahead())
+
+    def _head_for(self, towards: str | None) -> None:
+        self.towards = towards
+        self._duties.heading_for(towards)
+
+    def _post_ahead(self) -> str | None:
+        """The neighbour that the robot looks towards."""
+        here = self.position.current
+        turns = {post.name: self._turn_to(post.name) for post, _ in self.campus.neighbours(here)} if here else {}
+        known = {abs(turn): name for name, turn in turns.items() if turn is not None}
+        return known[min(known)] if known and min(known) < SAME_WAY_RAD else None
+
+    def _turn_to(self, neighbour: str) -> float | None:
+        return self.position.turn_rad(self.campus, neighbour, self._odometry)
 
     def place(self, post: str, towards: str | None) -> None:
-        """A person has put the robot down at a post, looking along a corridor (or into the dock)."""
-        heading_rad = None
-        if towards:
-            heading_rad = self.campus.corridor(post, towards).heading_leaving(post)
-        self._become(Pose(post, None, True, None, heading_rad, self._odometry.heading_rad, -math.inf, 0.0))
+        """A person has put the robot down at a post, looking along a corridor. Raises UnknownPost."""
+        self.position = Position.placed(self.campus, post, towards, self._odometry)
+        self._note_arrival(post, None)
 
-    # What actions ask.
+    # What actions and percepts ask.
 
     @property
     def at(self) -> str | None:
-        return self.pose.post if self.pose.standing else None
+        """The post where the robot stands; None once it follows the line away from there."""
+        return None if self._leaving else self.position.at
 
-    def way(self) -> str | None:
-        """The way to the destination, as the percept `direction` has it."""
-        if self.destination is None:
+    @property
+    def here(self) -> str | None:
+        """The last post reached: the place to name in a report."""
+        return self.position.current
+
+    def way(self) -> Way | None:
+        """The way from here to the destination; None between posts, and where no way leads."""
+        if self.destination is None or self.at is None:
             return None
-        return pilot.way_to(self.pose, self.campus, self._odometry, self.destination, self._duties.avoid)
+        try:
+            return self.position.way_to(self.campus, self.destination, self._odometry, self._avoided())
+        except NoRoute:
+            return None
+
+    def _avoided(self) -> frozenset[str]:
+        return frozenset(corridor_name(leg.from_post, leg.to_post) for leg in self._duties.avoid)
 
     def legs_to(self, *posts: str) -> tuple[Leg, ...]:
         """The corridors from here to each of these posts in turn. Raises NoRoute."""
-        here = self.pose.post
-        found: list[Leg] = []
-        for post in posts if here else ():
-            found += pilot.legs(self.campus, here or post, post, self._duties.avoid)
-            here = post
-        return tuple(found)
-
-    def next_post(self) -> str | None:
-        """The first post on the way to the destination."""
-        try:
-            way = self.legs_to(self.destination) if self.destination else ()
-        except NoRoute:
-            return None
-        return way[0].to_post if way else None
+        way: list[str] = [self.here] if self.here else []
+        for post in posts if way else ():
+            way += shortest_route(self.campus, way[-1], post, self._avoided()).posts[1:]
+        return tuple(Leg(from_post=a, to_post=b) for a, b in pairwise(way))
 
     def turn_rad(self, way: str) -> float:
-        """How far to turn for `way`, left is positive: to the corridor of the destination if that lies there."""
-        wanted = self.next_post() if self.way() == way or way == "behind" else None
-        if self.way() == "behind" and way in ("left", "right"):
-            wanted = self.next_post()  # the paper's program turns left for what lies behind
-        return pilot.turn_rad(self.pose, self.campus, self._odometry, way, wanted)
+        """How far to turn, left is positive: to the corridor of the destination if that lies there, else a quarter.
+
+        The paper's program turns left for what lies behind.
+        """
+        plain_rad = PLAIN_TURNS[way]
+        towards = self._next_post()
+        by_map_rad = self._turn_to(towards) if towards else None
+        if by_map_rad is None or self.way() not in (way, Way.BEHIND):
+            return plain_rad
+        # A hair beyond 180 degrees must not turn the other way round than asked.
+        return by_map_rad if abs(by_map_rad) < math.radians(170) else math.copysign(by_map_rad, plain_rad)
+
+    def _next_post(self) -> str | None:
+        if self.destination is None or self.at is None:
+            return None
+        try:
+            return next_post(self.campus, self.at, self.destination, self._avoided())
+        except NoRoute:
+            return None
+
+    def nearest_dock(self) -> str | None:
+        """The dock with the shortest way from here; the robot's own while the place is unknown."""
+        reachable: list[tuple[float, str]] = []
+        for dock in self.campus.docks() if self.here else ():
+            try:
+                route = shortest_route(self.campus, self.here or "", dock.name, self._avoided())
+            except NoRoute:
+                continue
+            reachable.append((route.length_m, dock.name))
+        return min(reachable)[1] if reachable else self.home
 
     # What actions tell.
 
     def leave(self) -> None:
         """The robot is about to follow the line away from its post."""
-        self._become(pilot.left(self.pose, self.campus, self._odometry))
+        if not self._leaving:
+            self._set_out()
 
     def begin_turn(self) -> None:
         """After a power cut in the middle of a turn, going on along the line is the way to find out."""
-        self._duties.heading_for(self.next_post())
+        self._duties.heading_for(self._next_post())
 
-    def turned(self, by_rad: float, odometry_before: Odometry) -> None:
-        """A turn has ended on the line: what is left of odometry's error is forgotten."""
-        heading_rad = self.pose.heading_now(odometry_before)
-        if heading_rad is not None:
-            self.pose = pilot.looking(self.pose, heading_rad + by_rad, self._odometry)
+    def turned(self) -> None:
+        """A turn has ended on the line: what was left of odometry's error is forgotten."""
+        ahead = self._post_ahead()
+        if ahead and self.here:
+            heading_rad = self.campus.corridor(self.here, ahead).heading_leaving(self.here)
+            self._looks(heading_rad)
 
     def undocked(self) -> None:
         """The robot stands on the line at the dock's post and looks away from the dock."""
-        dock = self.campus.post(self.pose.post).dock if self.pose.post else None
+        dock = self.campus.post(self.here).dock if self.here else None
         if dock:
-            self.pose = pilot.looking(self.pose, dock.heading_rad + math.pi, self._odometry)
+            self._looks(dock.heading_rad + math.pi)
+            self.position = replace(self.position, post_at_mm=self._odometry.ahead_mm, has_left=False)
+            self._leaving, self.towards = False, None
 
-    def nearest_dock(self) -> str | None:
-        return pilot.nearest_dock(self.campus, self.pose.post, self.home, self._duties.avoid)
+    def _looks(self, heading_rad: float) -> None:
+        self.position = replace(self.position, facing_rad=heading_rad, spot_turn_rad=self._odometry.spot_turn_rad)
 
 
-def remembered(campus: CampusMap, position: Position) -> Pose:
+def remembered(campus: CampusMap, position: parts.Position) -> Position:
     """Where the robot was when it was switched off. `towards` was written down before it left or turned."""
-    post, previous = position.post, position.previous
+    post, previous, towards = position.post, position.previous, position.towards
     if post is None or post not in campus.posts:
-        return Pose()
-    pose = Pose(post, previous, standing=position.towards is None, towards=position.towards)
-    if previous and previous in {neighbour.name for neighbour, _ in campus.neighbours(post)}:
-        pose = replace(pose, heading_rad=campus.corridor(previous, post).heading_arriving(post))
-    return pose
+        return Position()
+    beside = {neighbour.name: corridor for neighbour, corridor in campus.neighbours(post)}
+    if towards:
+        facing_rad = beside[towards].heading_leaving(post) if towards in beside else None
+        return Position(post, previous, facing_rad, has_left=True)
+    facing_rad = beside[previous].heading_arriving(post) if previous in beside else None
+    return Position(post, previous, facing_rad, post_at_mm=0.0)

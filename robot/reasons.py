@@ -24,19 +24,19 @@ _PURPOSES: Final = {
 
 
 def _driving(navigator: Navigator) -> str:
-    towards = navigator.pose.towards
+    towards = navigator.towards
     return f"Driving towards {towards}" if towards else "Following the line to the next post"
 
 
 _WAITS: Final[dict[str, Callable[[Navigator], tuple[str, str | None]]]] = {
     "follow_line": lambda n: (_driving(n), None),
-    "turn": lambda n: (f"Turning at {n.pose.post}", None),
+    "turn": lambda n: (f"Turning at {n.here}", None),
     "find_line": lambda _: ("Looking for the line", None),
-    "dock": lambda n: (f"Docking at {n.pose.post}", None),
-    "undock": lambda n: (f"Leaving the dock at {n.pose.post}", None),
-    "claim": lambda n: (f"Waiting at {n.pose.post} for permission to drive on", "permission from the server"),
-    "wait_handover(load": lambda n: (f"Waiting for the sender at {n.pose.post}", "the sender's code"),
-    "wait_handover(receive": lambda n: (f"Waiting for the recipient at {n.pose.post}", "the recipient's code"),
+    "dock": lambda n: (f"Docking at {n.here}", None),
+    "undock": lambda n: (f"Leaving the dock at {n.here}", None),
+    "claim": lambda n: (f"Waiting at {n.here} for permission to drive on", "permission from the server"),
+    "wait_handover(load": lambda n: (f"Waiting for the sender at {n.here}", "the sender's code"),
+    "wait_handover(receive": lambda n: (f"Waiting for the recipient at {n.here}", "the recipient's code"),
     "rest": lambda _: ("Waiting a moment before trying again", None),
     "drive": lambda n: (_driving(n), None),
 }
@@ -55,7 +55,7 @@ def reason(under_way: Sequence[str], view: View, navigator: Navigator, duties: D
     if view.base and view.base.docked:
         doing = "Charging" if view.base.charging else "In its dock"
         waiting_for = "a full battery" if stop else None
-        return Why(sentence=f"{doing} at {navigator.pose.post}", goal=goal, waiting_for=waiting_for)
+        return Why(sentence=f"{doing} at {navigator.here}", goal=goal, waiting_for=waiting_for)
     return Why(sentence="Paused" if duties.paused else "Nothing to do", goal=goal)
 
 

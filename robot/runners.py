@@ -58,6 +58,8 @@ class Runner(Protocol):
     """Runs until told to stop, or until a loop raises: then it stops all of them and raises that."""
 
     lags: dict[str, Lag]
+    now_s: float
+    """The daemon's time that the loops have reached."""
 
     def run(self) -> None: ...
 
@@ -150,6 +152,7 @@ class ThreadedRunner:
 
     def __init__(self, loops: Sequence[Loop], clock: Clock) -> None:
         self.lags = {loop.name: Lag() for loop in loops}
+        self.now_s = clock.now()
         self._clock = clock
         self._stopping = threading.Event()
         self._failure: BaseException | None = None
@@ -173,7 +176,7 @@ class ThreadedRunner:
         period_s, due_s = 1.0 / loop.rate_hz, self._clock.now()
         try:
             while not self._stopping.wait(max(0.0, due_s - self._clock.now())):
-                now = self._clock.now()
+                now = self.now_s = self._clock.now()
                 self.lags[loop.name].note(max(0.0, now - due_s))
                 loop.tick(now)
                 due_s = max(due_s + period_s, self._clock.now())

@@ -27,7 +27,7 @@ class Hands:
     @property
     def place(self) -> str | None:
         """The post to name in a report: where the robot stands, or the last one it has seen."""
-        return self.navigator.pose.post
+        return self.navigator.here
 
     def report(self, step: Step, stop_id: str, reason: str | None = None) -> None:
         self.duties.report(step, stop_id, self.place, reason)

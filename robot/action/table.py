@@ -13,7 +13,6 @@ from protocol.to_server import Step
 
 from ..duties import ChargeStep
 from ..skills import (
-    TUNES,
     Dock,
     DrivePulse,
     FindLine,
@@ -25,6 +24,7 @@ from ..skills import (
     WaitHandover,
 )
 from ..skills.interfaces import Done, Skill
+from ..skills.tunes import TUNES
 from .arguments import Argument, Kind, Value, word
 from .hands import Hands
 from .runs import DONE, AtOnce, Ended, Rest, Run, Skills, Wait
@@ -55,16 +55,13 @@ def _follow_line(hands: Hands, _: Sequence[Value], now: float) -> Run:
 
 def _turn(hands: Hands, arguments: Sequence[Value], now: float) -> Run:
     angle_rad = hands.navigator.turn_rad(str(arguments[0]))
-    before = hands.view.odometry
     hands.navigator.begin_turn()
-    turn = Turn(angle_rad, hands.shape)
-    return _one(hands, turn, now, lambda _: hands.navigator.turned(angle_rad, before))
+    return _one(hands, Turn(angle_rad, hands.shape), now, lambda _: hands.navigator.turned())
 
 
 def _paper_turn(hands: Hands, arguments: Sequence[Value], now: float) -> Run:
     angle_rad = hands.navigator.turn_rad(str(arguments[0]))
-    before = hands.view.odometry
-    return _one(hands, PaperTurn(angle_rad), now, lambda _: hands.navigator.turned(angle_rad, before))
+    return _one(hands, PaperTurn(angle_rad), now, lambda _: hands.navigator.turned())
 
 
 def _drive(hands: Hands, arguments: Sequence[Value], now: float) -> Run:
@@ -152,7 +149,9 @@ def _wait_handover(hands: Hands, arguments: Sequence[Value], now: float) -> Run:
     def custody(done: Done) -> None:
         hands.duties.handed_over(purpose, stop_id, hands.place or "", done.result)
 
-    return _one(hands, WaitHandover(codes, float(limit_s)), now, custody)
+    # Only loading may be confirmed by the Spot button: it identifies nobody.
+    waiting = WaitHandover(codes, float(limit_s), spot_counts=purpose is Purpose.LOAD)
+    return _one(hands, waiting, now, custody)
 
 
 def _report_charge(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
@@ -176,7 +175,7 @@ def _clear_fault(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
 
 
 def _say(hands: Hands, arguments: Sequence[Value], now: float) -> Run:
-    return _one(hands, Say(TUNES[str(arguments[0])]), now)
+    return _one(hands, Say(str(arguments[0])), now)
 
 
 def _rest(_: Hands, arguments: Sequence[Value], now: float) -> Run:

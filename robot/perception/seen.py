@@ -16,8 +16,6 @@ class Whereabouts:
     destination: str | None = None
     way: str | None = None
     """forward, left, right, behind or arrived; None while it cannot be known."""
-    sighted: str | None = None
-    """The post whose marker was in the newest frame."""
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,209 @@
+"""Puts a robot together from settings; for `__main__` alone. Problems are raised by name, before any wheel turns."""
+
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from bdi import Agent, Program, parse_program
+from maps import CampusMap, find_map
+from protocol.clock import Clock
+
+from .action.actions import Actions, table_for
+from .action.hands import Hands
+from .config import ConfigError, PerceptMode, Settings, read_token
+from .daemon import Daemon
+from .drive_loop import DriveLoop
+from .drivers.create2 import Create2
+from .drivers.interfaces import BodyShape, Camera, LineSensor
+from .drivers.line_sensor import ThreeDiodes
+from .drivers.marker_reader import MarkerReader, MarkerWatch, Optics
+from .drivers.serial_port import open_serial
+from .duties import Duties
+from .link import Link
+from .memory import Memory
+from .mind import Mind
+from .navigator import Navigator
+from .outbox import Outbox
+from .simulated import Build, CameraMount, DiodeMount, Options, Pack, SimulatedRobot
+from .simulated_world import SavedWorld
+from .store import Store
+
+OUR_PROGRAM = Path(__file__).parent / "agent" / "main.asl"
+
+
+@dataclass(frozen=True)
+class Simulation:
+    """What is asked of a simulated world. `start` as in `robot.simulated.start`; None: the dock."""
+
+    start: str | None = None
+    battery_ratio: float | None = None
+    seed: int = 0
+    persistent: bool = True
+
+
+@dataclass
+class Devices:
+    """What the daemon drives, simulated or real."""
+
+    base: Create2
+    line_sensor: LineSensor
+    camera: Camera
+    robot: SimulatedRobot | None = None
+    world: SavedWorld | None = None
+
+
+@dataclass
+class Parts:
+    """A robot in one piece, and what the command line wants to know of it."""
+
+    daemon: Daemon
+    mind: Mind
+    navigator: Navigator
+    robot: SimulatedRobot | None
+    link: Link | None = None
+
+
+def shape_of(settings: Settings) -> BodyShape:
+    return BodyShape(sensor_lead_mm=settings.line.lead_mm, diode_spacing_mm=settings.line.spacing_mm)
+
+
+def load_program(settings: Settings) -> Program:
+    """Our agent program, or the one that is named. Raises ConfigError, and the parser's errors with line and column."""
+    path = settings.mind.program or OUR_PROGRAM
+    try:
+        text = path.read_text("utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise ConfigError(str(path), "mind.program", f"cannot be read: {error}") from None
+    return parse_program(text, source=str(path))
+
+
+def percept_mode(settings: Settings) -> PerceptMode:
+    """Drain for a foreign program, as the paper's bridge did, unless the settings say otherwise."""
+    return settings.mind.percepts or (PerceptMode.DRAIN if settings.mind.program else PerceptMode.LATEST)
+
+
+def assemble(settings: Settings, clock: Clock, simulation: Simulation | None) -> Parts:
+    """The whole robot. What was opened before something failed is closed again."""
+    with ExitStack() as closing:
+        campus = find_map(settings.map)
+        token = read_token(_token_file(settings)) if settings.server else None
+        program = load_program(settings)
+        settings.data.mkdir(parents=True, exist_ok=True)
+        store = Store(settings.data / "robot.db")
+        closing.callback(store.close)
+        devices = _devices(settings, campus, clock, simulation, closing)
+        parts = _join(settings, campus, clock, store, devices, program=program)
+        _put_down(parts, devices, simulation)
+        if settings.server and token:
+            parts.link = _link(settings, settings.server, token, clock, parts)
+        parts.daemon.close_devices = closing.pop_all().close
+        return parts
+
+
+def _home(settings: Settings, campus: CampusMap) -> str | None:
+    if settings.home is None:
+        return next((post.name for post in campus.docks()), None)
+    if campus.post(settings.home).dock is None:
+        docks = ", ".join(post.name for post in campus.docks()) or "none"
+        raise ConfigError("settings", "home", f"{settings.home} has no dock on map {campus.name}", f"Docks: {docks}.")
+    return settings.home
+
+
+def _token_file(settings: Settings) -> Path:
+    if settings.token_file is None:
+        raise ConfigError("settings", "token_file", "a server needs a token", "Give --token-file FILE.")
+    return settings.token_file
+
+
+def _devices(
+    settings: Settings, campus: CampusMap, clock: Clock, simulation: Simulation | None, closing: ExitStack
+) -> Devices:
+    if simulation is None:
+        return _real_devices(settings)
+    robot = _simulated_robot(settings, campus, clock, simulation)
+    closing.callback(robot.close)
+    saved = SavedWorld(robot, settings.data / "world.json" if simulation.persistent else None)
+    base = Create2(lambda: open_serial(robot.port_path), robot.brc)
+    sensor = _line_sensor(settings, robot.pin_factory)
+    return Devices(base, sensor, robot.camera, robot, saved)
+
+
+def _simulated_robot(settings: Settings, campus: CampusMap, clock: Clock, simulation: Simulation) -> SimulatedRobot:
+    options = Options(
+        build=Build(
+            diodes=DiodeMount(lead_mm=settings.line.lead_mm, spacing_mm=settings.line.spacing_mm),
+            pack=Pack(charger_ma=settings.battery.simulated_charger_ma),
+        ),
+        camera=CameraMount(),
+    )
+    return SimulatedRobot(
+        campus,
+        clock.now(),
+        simulation.start or "dock",
+        simulation.seed,
+        options=options,
+        battery_ratio=simulation.battery_ratio,
+        capacity_mah=settings.battery.simulated_capacity_mah,
+    )
+
+
+def _line_sensor(settings: Settings, pin_factory: Any) -> ThreeDiodes:
+    line = settings.line
+    return ThreeDiodes(line.left_pin, line.centre_pin, line.right_pin, pin_factory, line.line_is_low)
+
+
+def _real_devices(settings: Settings) -> Devices:
+    from gpiozero.pins.lgpio import LGPIOFactory
+
+    from .drivers.camera import GrabbingCamera
+
+    base = Create2(lambda: open_serial(settings.serial_port))
+    camera = settings.camera
+    return Devices(
+        base,
+        _line_sensor(settings, LGPIOFactory()),
+        GrabbingCamera(camera.device, camera.width_px, camera.height_px, camera.exposure_ms),
+    )
+
+
+def _join(
+    settings: Settings, campus: CampusMap, clock: Clock, store: Store, devices: Devices, *, program: Program
+) -> Parts:
+    """Devices, body, duties, navigator, agent: each knows only those before it."""
+    shape, now = shape_of(settings), clock.now()
+    drive = DriveLoop(devices.base, devices.line_sensor, shape, now)
+    duties = Duties(store, Memory(store), Outbox(store), clock.utc)
+    navigator = Navigator(campus, _home(settings, campus), duties)
+    hands = Hands(drive, navigator, duties, settings.drive.cruise_mm_s, shape)
+    mode = percept_mode(settings)
+    mind = Mind(Agent(program, name=settings.name), Actions(hands, table_for(mode)), hands, settings, mode)
+    reader = MarkerReader(campus.posts, Optics(settings.camera.field_of_view_deg), shape)
+    watch = MarkerWatch(devices.camera, reader, now)
+    daemon = Daemon(devices.base, drive, watch, mind, settings.rates, devices.world)
+    return Parts(daemon, mind, navigator, devices.robot)
+
+
+def _put_down(parts: Parts, devices: Devices, simulation: Simulation | None) -> None:
+    """Whoever puts a robot down at POST:TOWARDS tells it so; one that goes on from a saved world knows by itself."""
+    if simulation and simulation.start and devices.world and not devices.world.restored:
+        post, _, towards = simulation.start.partition(":")
+        if towards and post != "dock":
+            parts.navigator.place(post, towards)
+
+
+def _link(settings: Settings, url: str, token: str, clock: Clock, parts: Parts) -> Link:
+    duties = parts.mind.hands.duties
+    link = Link(
+        url=url,
+        token=token,
+        robot=settings.name,
+        clock=clock,
+        outbox=duties.outbox,
+        memory=duties.memory,
+        hello_source=parts.daemon.hello,
+    )
+    duties.join(link)
+    parts.mind.said = link.say
+    parts.daemon.server = link
+    return link
