@@ -81,7 +81,7 @@ class Conversation:
         except TimeoutError:
             raise OutOfTurn(f"no hello within {GREETING_LIMIT_S:.0f} s") from None
         if not isinstance(envelope.body, Hello):
-            raise OutOfTurn(f"a connection begins with hello, not with {envelope.type}")
+            raise OutOfTurn(f"a connection begins with hello, not with {envelope.type}", envelope.seq)
         self.journal = envelope.journal
         await self._take_seat(envelope, envelope.body)
 

@@ -38,7 +38,8 @@ async def take(session: AsyncSession, robot: str, envelope: Envelope, now: datet
     received = Received(journal=row.journal, seq=row.received_seq) if row else Received()
     judged = sequence.reception(received, envelope.journal, envelope.seq)
     if judged is Reception.GAP or row is None:
-        raise MessageGap(f"message {envelope.seq} came, {received.seq + 1} was next: connect again and resume")
+        sentence = f"message {envelope.seq} came, {received.seq + 1} was next: connect again and resume"
+        raise MessageGap(sentence, envelope.seq)
     if judged is Reception.REPEATED:
         return False
     row.received_seq = envelope.seq

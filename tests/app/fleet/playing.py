@@ -1,0 +1,209 @@
+"""The real service on a real port, and a robot that the test plays over a real WebSocket."""
+
+import asyncio
+import socket
+import time
+from collections.abc import AsyncIterator, Awaitable, Callable
+from contextlib import asynccontextmanager
+from dataclasses import dataclass, field
+from typing import Any
+
+import pytest
+import uvicorn
+from fastapi import FastAPI
+from sqlmodel import SQLModel, select
+from websockets.asyncio.client import ClientConnection, connect
+from websockets.exceptions import ConnectionClosed
+
+from app.fleet.service import enrol
+from app.main import create_app
+from app.orders.schemas import NewOrder
+from app.settings import Settings
+from app.tables import Order, OrderEvent
+from protocol.clock import Clock
+from protocol.envelope import DURABLE, TO_ROBOT, Envelope, parse, type_of
+from protocol.parts import Battery, Part, Position, Received, Stop
+from protocol.to_robot import Mission, Welcome
+from protocol.to_server import Event, HandoverReceipt, Hello, Progress, Step
+
+
+async def until(what: Callable[[], Awaitable[object]], limit_s: float = 5.0) -> Any:
+    """Look until there is something to see."""
+    end_s = time.monotonic() + limit_s
+    while not (seen := await what()):
+        assert time.monotonic() < end_s, "waited in vain"
+        await asyncio.sleep(0.01)
+    return seen
+
+
+@dataclass
+class Service:
+    """A service that listens."""
+
+    app: FastAPI
+    port: int
+
+    @property
+    def url(self) -> str:
+        return f"ws://127.0.0.1:{self.port}/api/v1/robots/link"
+
+    async def enrol(self, name: str) -> str:
+        async with self.app.state.database.transaction() as session:
+            return await enrol(session, self.app.state.clock, name)
+
+    async def order(self, from_post: str = "post1", to_post: str = "post4") -> str:
+        """An order of somebody to somebody."""
+        state = self.app.state
+        async with state.database.transaction() as session:
+            sender = await state.sign_in_desk.person(session, "sender@campus.example", state.clock.utc())
+            wish = NewOrder(from_post=from_post, to_post=to_post, recipient="recipient@campus.example")
+            return str((await state.orders.create(session, sender, wish)).id)
+
+    async def cancel(self, order_id: str) -> None:
+        state = self.app.state
+        async with state.database.transaction() as session:
+            sender = await state.sign_in_desk.person(session, "sender@campus.example", state.clock.utc())
+            await state.orders.cancel(session, sender, order_id, "")
+
+    async def rows(self, table: type[SQLModel], **wanted: object) -> list[Any]:
+        async with self.app.state.database.reading() as session:
+            return list((await session.exec(select(table).filter_by(**wanted))).all())
+
+    async def row(self, table: type[SQLModel], **wanted: object) -> Any:
+        (row,) = await self.rows(table, **wanted)
+        return row
+
+    async def states(self, order_id: str) -> list[str]:
+        """What the order has been through."""
+        events = await self.rows(OrderEvent, order_id=order_id)
+        return [str(event.state) for event in sorted(events, key=lambda event: event.seq)]
+
+    async def reaches(self, order_id: str, state: str) -> None:
+        async def there() -> bool:
+            return str((await self.row(Order, id=order_id)).state) == state
+
+        await until(there)
+
+
+@asynccontextmanager
+async def serving(settings: Settings, clock: Clock) -> AsyncIterator[Service]:
+    """The service from start to stop; again with the same settings, it is a restart."""
+    listening = socket.create_server(("127.0.0.1", 0))
+    app = create_app(settings, clock)
+    config = uvicorn.Config(
+        app,
+        log_config=None,
+        ws="websockets-sansio",
+        ws_ping_interval=0.2,
+        ws_ping_timeout=0.3,
+        timeout_graceful_shutdown=1,
+    )
+    server = uvicorn.Server(config)
+    task = asyncio.create_task(server.serve(sockets=[listening]))
+    while not server.started:
+        assert not task.done(), task.result()
+        await asyncio.sleep(0.01)
+    try:
+        yield Service(app, listening.getsockname()[1])
+    finally:
+        server.should_exit = True
+        await task
+
+
+def at_post(post: str | None) -> Position:
+    return Position(post=post)
+
+
+@dataclass
+class PlayedRobot:
+    """Speaks the protocol as a robot does; acknowledges only when told to."""
+
+    clock: Clock
+    name: str = "r1"
+    journal: str = "journal-1"
+    received: Received = field(default_factory=Received)
+    seq: int = 0
+    heard: list[Envelope] = field(default_factory=list)
+    socket: ClientConnection | None = None
+
+    @asynccontextmanager
+    async def connected(self, url: str, token: str) -> AsyncIterator["PlayedRobot"]:
+        headers = {"Authorization": f"Bearer {token}"}
+        async with connect(url, additional_headers=headers, proxy=None, close_timeout=0.5) as self.socket:
+            yield self
+
+    async def say(self, message: Part, seq: int | None = None, **envelope: Any) -> int:
+        """Send; a durable message gets the next number unless one is given."""
+        if type_of(message) in DURABLE and seq is None:
+            self.seq += 1
+            seq = self.seq
+        facts: dict[str, Any] = {"type": type_of(message), "robot": self.name, "journal": self.journal, "seq": seq}
+        facts |= {"ack": self.received.seq, "at": self.clock.utc(), "body": message}
+        await self.say_text(Envelope(**{**facts, **envelope}).to_text())
+        return seq or 0
+
+    async def say_text(self, text: str) -> None:
+        assert self.socket is not None
+        await self.socket.send(text)
+
+    async def hear(self, kind: str, limit_s: float = 5.0) -> Envelope:
+        """The next message of this type; what else comes is remembered in `heard`."""
+        assert self.socket is not None
+        async with asyncio.timeout(limit_s):
+            while True:
+                envelope = parse(await self.socket.recv(), TO_ROBOT)
+                self.heard.append(envelope)
+                if envelope.seq is not None:
+                    self.received = Received(journal=envelope.journal, seq=envelope.seq)
+                if envelope.type == kind:
+                    return envelope
+
+    async def close_code(self) -> int | None:
+        """Wait until the other side closes; what it said before is in `heard`."""
+        with pytest.raises(ConnectionClosed):
+            await self.hear("nothing of the kind")
+        assert self.socket is not None
+        return self.socket.close_code
+
+    async def greet(self, post: str | None = "post5", **facts: Any) -> Welcome:
+        hello: dict[str, Any] = {
+            "received": self.received,
+            "position": at_post(post),
+            "battery": Battery(ratio=0.9),
+            "software": "0.1.0",
+            "map_version": "m",
+        }
+        await self.say(Hello(**{**hello, **facts}))
+        welcome = (await self.hear("welcome")).body
+        assert isinstance(welcome, Welcome)
+        return welcome
+
+    async def mission(self) -> Mission:
+        mission = (await self.hear("mission")).body
+        assert isinstance(mission, Mission)
+        return mission
+
+    async def report(self, mission: Mission, step: Step, stop: Stop | None = None, **facts: Any) -> int:
+        return await self.say(self.progress(mission, step, stop, **facts))
+
+    def progress(self, mission: Mission, step: Step, stop: Stop | None = None, **facts: Any) -> Event:
+        place = {"stop_id": stop.id, "order_id": stop.order_id, "post": stop.post} if stop else {}
+        happened = Progress(step=step, happened_at=self.clock.utc(), mission_id=mission.id, **{**place, **facts})
+        return Event(happened=happened)
+
+    def receipt(self, stop: Stop) -> Event:
+        assert stop.order_id is not None
+        receipt = HandoverReceipt(
+            purpose=stop.action.value,
+            order_id=stop.order_id,
+            stop_id=stop.id,
+            post=stop.post,
+            happened_at=self.clock.utc(),
+            code_sha256="a" * 64,
+        )
+        return Event(happened=receipt)
+
+    async def ends(self, seq: int) -> None:
+        """Wait until everything up to `seq` is acknowledged."""
+        while (await self.hear("ack")).ack < seq:
+            pass
