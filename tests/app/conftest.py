@@ -1,0 +1,156 @@
+"""The service without a network: the application itself, its mails, and people who use it."""
+
+import re
+from collections.abc import Callable, Iterator
+from email import message_from_bytes, policy
+from email.message import EmailMessage
+from pathlib import Path
+from typing import Any
+
+import pytest
+from fastapi import FastAPI
+from fastapi.testclient import TestClient
+
+from app.main import create_app
+from app.orders.service import Word
+from app.orders.transitions import By
+from app.settings import Settings
+from app.tables import OrderState, RobotRow
+from protocol.clock import SteppedClock
+
+HERE = "http://127.0.0.1"
+SENDER, RECIPIENT, STRANGER = (f"{name}@campus.example" for name in ("sender", "recipient", "stranger"))
+
+
+@pytest.fixture
+def clock() -> SteppedClock:
+    return SteppedClock()
+
+
+@pytest.fixture
+def pages(tmp_path: Path) -> Path:
+    folder = tmp_path / "pages"
+    folder.mkdir()
+    (folder / "index.html").write_text('<script type="importmap">{"imports": {}}</script>')
+    return folder
+
+
+@pytest.fixture
+def settings(tmp_path: Path, pages: Path) -> Settings:
+    return Settings(data=tmp_path / "data", pages=pages, public_url="https://mail.campus.example", time_zone="")
+
+
+@pytest.fixture
+def app(settings: Settings, clock: SteppedClock) -> FastAPI:
+    return create_app(settings, clock)
+
+
+@pytest.fixture
+def nobody(app: FastAPI) -> Iterator[TestClient]:
+    """A browser in which nobody is signed in."""
+    with TestClient(app, base_url=HERE, raise_server_exceptions=False) as client:
+        yield client
+
+
+class Mails:
+    """What lies in the spool folder."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+
+    def to(self, email: str) -> list[EmailMessage]:
+        mails = [
+            message_from_bytes(file.read_bytes(), policy=policy.default) for file in sorted(self.folder.glob("*.eml"))
+        ]
+        return [mail for mail in mails if mail["To"] == email]
+
+    def newest_code(self, email: str) -> str:
+        codes = [mail for mail in self.to(email) if mail["Message-ID"].startswith("<sign-in")]
+        codes.sort(key=lambda mail: int(mail["Message-ID"].split(".")[1]))
+        found = re.search(r"\b\d{8}\b", codes[-1].get_content())
+        assert found
+        return found[0]
+
+
+@pytest.fixture
+def mails(settings: Settings) -> Mails:
+    return Mails(settings.spool_folder)
+
+
+class Browser(TestClient):
+    """Somebody's browser: requests come from our own page."""
+
+    def __init__(self, app: FastAPI) -> None:
+        super().__init__(app, base_url=HERE, headers={"Sec-Fetch-Site": "same-origin"}, raise_server_exceptions=False)
+        self._keys = 0
+
+    def order(self, key: str | None = None, **changes: Any) -> Any:
+        self._keys += 1
+        body = {"from_post": "post1", "to_post": "post4", "recipient": RECIPIENT, **changes}
+        return self.post(
+            "/api/v1/orders", json=body, headers={"Idempotency-Key": key or f"key-{id(self)}-{self._keys}"}
+        )
+
+
+SignedIn = Callable[[str], Browser]
+
+
+@pytest.fixture
+def signed_in(app: FastAPI, nobody: TestClient, mails: Mails) -> SignedIn:
+    """Sign somebody in, as they would do it: ask for a code, read the mail, type the code."""
+
+    def sign_in(email: str) -> Browser:
+        browser = Browser(app)
+        browser.portal = nobody.portal  # one event loop for all: the service is one process
+        assert browser.post("/api/v1/sign-in/codes", json={"email": email}).status_code == 202
+        answer = browser.post("/api/v1/sign-in", json={"email": email, "code": mails.newest_code(email)})
+        assert answer.status_code == 200, answer.text
+        return browser
+
+    return sign_in
+
+
+@pytest.fixture
+def sender(signed_in: SignedIn) -> Browser:
+    return signed_in(SENDER)
+
+
+@pytest.fixture
+def recipient(signed_in: SignedIn) -> Browser:
+    return signed_in(RECIPIENT)
+
+
+class Mailroom:
+    """Moves orders as dispatch and a robot would, in transactions of the running service."""
+
+    def __init__(self, app: FastAPI, client: TestClient) -> None:
+        self.app = app
+        assert client.portal is not None
+        self._portal = client.portal
+        self._portal.call(self._enrol)
+
+    async def _enrol(self) -> None:
+        state = self.app.state
+        async with state.database.transaction() as session:
+            session.add(RobotRow(name="r1", enrolled_at=state.clock.utc(), server_journal="j1", post="post5"))
+
+    def move(self, order_id: str, *states: str, by: By = By.ROBOT, **known: Any) -> list[bool]:
+        return [self._portal.call(self._move, order_id, OrderState(state), by, known) for state in states]
+
+    async def _move(self, order_id: str, to: OrderState, by: By, known: dict[str, Any]) -> bool:
+        by = By.DISPATCHER if to is OrderState.ASSIGNED else by
+        async with self.app.state.database.transaction() as session:
+            moved: bool = await self.app.state.orders.move(session, order_id, to, Word(by, robot="r1", **known))
+            return moved
+
+    def send_mails(self) -> int:
+        sent: int = self._portal.call(self.app.state.outbox_worker.work_once)
+        return sent
+
+    def call(self, function: Callable[..., Any], *arguments: Any) -> Any:
+        return self._portal.call(function, *arguments)
+
+
+@pytest.fixture
+def mailroom(app: FastAPI, nobody: TestClient) -> Mailroom:
+    return Mailroom(app, nobody)

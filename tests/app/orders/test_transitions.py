@@ -1,0 +1,87 @@
+"""The table of transitions, driven at random: whatever is said, orders stay in lives that the design knows."""
+
+from hypothesis import strategies as st
+from hypothesis.stateful import RuleBasedStateMachine, invariant, rule
+
+from app.orders.transitions import ENDED, MAIL_ABOARD, TRANSITIONS, By, is_allowed
+from app.tables import OrderState as S
+
+WORDS = st.sampled_from(By)
+STATES = st.sampled_from(S)
+
+
+class LifeOfAnOrder(RuleBasedStateMachine):
+    """Everybody says anything at any time; only what the table allows happens."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.state = S.QUEUED
+        self.before_attention: S | None = None
+        self.past = [S.QUEUED]
+
+    @rule(to=STATES, by=WORDS)
+    def somebody_says(self, to: S, by: By) -> None:
+        if is_allowed(self.state, to, by, self.before_attention):
+            self.before_attention = self.state if to is S.ATTENTION else None
+            self.state = to
+            self.past.append(to)
+
+    @rule(step=st.integers(0, 9), by=WORDS)
+    def somebody_says_what_may_follow(self, step: int, by: By) -> None:
+        following = [*TRANSITIONS[self.state], *([self.before_attention] if self.before_attention else [])]
+        if following:
+            self.somebody_says(following[step % len(following)], by)
+
+    @invariant()
+    def what_has_ended_stays(self) -> None:
+        assert not ENDED & set(self.past[:-1])
+
+    @invariant()
+    def delivered_mail_was_loaded_and_is_not_loaded_twice(self) -> None:
+        without_faults = [
+            s for i, s in enumerate(self.past) if s is not S.ATTENTION and self.past[i - 1] is not S.ATTENTION
+        ]
+        assert without_faults.count(S.CARRYING) <= 1
+        if S.DELIVERED in self.past:
+            assert self.past.index(S.CARRYING) < self.past.index(S.AT_RECIPIENT) < self.past.index(S.DELIVERED)
+
+    @invariant()
+    def nothing_aboard_is_cancelled_or_expires(self) -> None:
+        if self.state in {S.CANCELLED, S.EXPIRED}:
+            assert not MAIL_ABOARD & set(self.past)
+
+    @invariant()
+    def attention_knows_where_it_came_from(self) -> None:
+        assert (self.state is S.ATTENTION) == (self.before_attention is not None)
+
+
+TestLifeOfAnOrder = LifeOfAnOrder.TestCase
+
+
+def test_every_state_has_its_place_in_the_table() -> None:
+    assert set(TRANSITIONS) == set(S)
+
+
+def test_every_state_can_be_reached_and_every_life_can_end() -> None:
+    reached, waiting = {S.QUEUED}, [S.QUEUED]
+    while waiting:
+        for following in TRANSITIONS[waiting.pop()]:
+            if following not in reached:
+                reached.add(following)
+                waiting.append(following)
+    assert reached == set(S)
+    assert {S.DELIVERED, S.RETURNED, S.HELD, S.EXPIRED, S.CANCELLED} == ENDED
+
+
+def test_only_the_robot_writes_custody() -> None:
+    """Loaded, received and returned are confirmed by the robot's receipt and by nobody else's word."""
+    for state, following in TRANSITIONS.items():
+        for custody in (S.CARRYING, S.DELIVERED, S.RETURNED):
+            assert following.get(custody, {By.ROBOT}) == {By.ROBOT}, state
+
+
+def test_out_of_attention_leads_only_back_or_home_with_what_is_aboard() -> None:
+    for before in S:
+        allowed = {to for to in S if is_allowed(S.ATTENTION, to, By.DISPATCHER, before)}
+        assert allowed == ({before, S.RETURNING} if before in MAIL_ABOARD else {before})
+    assert not any(is_allowed(S.ATTENTION, to, By.ROBOT, before) for to in S for before in S)

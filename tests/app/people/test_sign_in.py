@@ -1,0 +1,137 @@
+"""Signing in by a mailed code, staying signed in, signing out."""
+
+import pytest
+from fastapi import FastAPI
+from fastapi.testclient import TestClient
+
+from app.settings import Settings
+from protocol.clock import SteppedClock
+from tests.app.conftest import SENDER, Browser, Mails, SignedIn
+
+CODES, SIGN_IN = "/api/v1/sign-in/codes", "/api/v1/sign-in"
+
+
+def code_of(answer: object) -> str:
+    return answer.json()["code"]  # type: ignore[attr-defined]
+
+
+def test_a_person_signs_in_with_the_code_from_their_mail(nobody: TestClient, mails: Mails) -> None:
+    assert nobody.post(CODES, json={"email": "Ada.King@Campus.Example"}).status_code == 202
+    code = mails.newest_code("ada.king@campus.example")
+    person = nobody.post(SIGN_IN, json={"email": "ada.king@campus.example", "code": code})
+    assert person.status_code == 200
+    assert person.json()["name"] == "Ada King"
+    assert person.json()["roles"] == ["member"]
+    cookie = person.headers["set-cookie"]
+    assert cookie.startswith("session=")
+    assert "HttpOnly" in cookie
+    assert "SameSite=lax" in cookie
+    assert nobody.get("/api/v1/me").json() == person.json()
+
+
+def test_on_https_the_cookie_belongs_to_this_host_alone(app: FastAPI, nobody: TestClient, mails: Mails) -> None:
+    secure = TestClient(app, base_url="https://mail.campus.example")
+    secure.portal = nobody.portal
+    secure.post(CODES, json={"email": SENDER})
+    answer = secure.post(SIGN_IN, json={"email": SENDER, "code": mails.newest_code(SENDER)})
+    assert answer.headers["set-cookie"].startswith("__Host-session=")
+    assert "Secure" in answer.headers["set-cookie"]
+    assert secure.get("/api/v1/me").status_code == 200
+
+
+def test_plain_http_from_another_machine_is_refused(app: FastAPI, nobody: TestClient) -> None:
+    remote = TestClient(app, base_url="http://mail.campus.example")
+    remote.portal = nobody.portal
+    answer = remote.post(CODES, json={"email": SENDER})
+    assert (answer.status_code, code_of(answer)) == (403, "https_required")
+
+
+def test_an_address_of_another_domain_gets_no_code(nobody: TestClient, mails: Mails) -> None:
+    answer = nobody.post(CODES, json={"email": "eve@elsewhere.example"})
+    assert (answer.status_code, code_of(answer)) == (422, "address_not_allowed")
+    assert mails.to("eve@elsewhere.example") == []
+
+
+def test_a_wrong_code_is_refused_and_five_of_them_use_the_code_up(nobody: TestClient, mails: Mails) -> None:
+    nobody.post(CODES, json={"email": SENDER})
+    right = mails.newest_code(SENDER)
+    wrong = f"{(int(right) + 1) % 10**8:08d}"
+    refusals = [code_of(nobody.post(SIGN_IN, json={"email": SENDER, "code": wrong})) for _ in range(6)]
+    assert refusals == ["wrong_code"] * 5 + ["code_expired"]
+    assert code_of(nobody.post(SIGN_IN, json={"email": SENDER, "code": right})) == "code_expired"
+
+
+def test_a_code_is_good_once(nobody: TestClient, mails: Mails) -> None:
+    nobody.post(CODES, json={"email": SENDER})
+    wish = {"email": SENDER, "code": mails.newest_code(SENDER)}
+    assert nobody.post(SIGN_IN, json=wish).status_code == 200
+    assert code_of(nobody.post(SIGN_IN, json=wish)) == "code_expired"
+
+
+def test_a_code_is_good_for_ten_minutes(nobody: TestClient, mails: Mails, clock: SteppedClock) -> None:
+    nobody.post(CODES, json={"email": SENDER})
+    clock.advance(600)
+    answer = nobody.post(SIGN_IN, json={"email": SENDER, "code": mails.newest_code(SENDER)})
+    assert (answer.status_code, code_of(answer)) == (401, "code_expired")
+
+
+def test_only_the_newest_code_counts(nobody: TestClient, mails: Mails) -> None:
+    nobody.post(CODES, json={"email": SENDER})
+    first = mails.newest_code(SENDER)
+    nobody.post(CODES, json={"email": SENDER})
+    if first != mails.newest_code(SENDER):
+        assert code_of(nobody.post(SIGN_IN, json={"email": SENDER, "code": first})) == "wrong_code"
+
+
+def test_asking_too_often_for_codes_is_slowed_down(nobody: TestClient) -> None:
+    answers = [nobody.post(CODES, json={"email": SENDER}) for _ in range(11)]
+    assert [answer.status_code for answer in answers] == [202] * 10 + [429]
+    assert int(answers[-1].headers["Retry-After"]) > 0
+    assert nobody.post(CODES, json={"email": "other@campus.example"}).status_code == 202
+
+
+def test_a_session_ends_by_signing_out(sender: Browser) -> None:
+    cookie = sender.cookies["session"]
+    assert sender.delete("/api/v1/session").status_code == 204
+    sender.cookies.set("session", cookie)
+    assert code_of(sender.get("/api/v1/me")) == "not_signed_in"
+
+
+def test_a_session_ends_by_itself_after_thirty_days(sender: Browser, clock: SteppedClock) -> None:
+    clock.advance(30 * 86400 - 1)
+    assert sender.get("/api/v1/me").status_code == 200
+    clock.advance(1)
+    assert sender.get("/api/v1/me").status_code == 401
+
+
+@pytest.mark.parametrize(
+    "headers",
+    [
+        {"Sec-Fetch-Site": "cross-site"},
+        {"Sec-Fetch-Site": "same-site"},
+        {"Sec-Fetch-Site": "", "Origin": "http://evil.example"},
+        {"Sec-Fetch-Site": ""},
+    ],
+)
+def test_another_site_cannot_act_with_somebodys_cookie(sender: Browser, headers: dict[str, str]) -> None:
+    answer = sender.post("/api/v1/notices/read", json={"ids": []}, headers=headers)
+    assert (answer.status_code, code_of(answer)) == (403, "cross_site")
+
+
+def test_an_old_browser_that_says_only_its_origin_may_act(app: FastAPI, sender: Browser) -> None:
+    old = TestClient(app, base_url="http://127.0.0.1", cookies={"session": sender.cookies["session"]})
+    old.portal = sender.portal
+    answer = old.post("/api/v1/notices/read", json={"ids": []}, headers={"Origin": "http://127.0.0.1"})
+    assert answer.status_code == 204
+
+
+def test_neither_codes_nor_cookies_are_stored_in_the_clear(settings: Settings, sender: Browser, mails: Mails) -> None:
+    stored = b"".join(file.read_bytes() for file in settings.data.glob("campus-mail.sqlite*"))
+    assert SENDER.encode() in stored
+    assert mails.newest_code(SENDER).encode() not in stored
+    assert sender.cookies["session"].encode() not in stored
+
+
+def test_the_mail_is_written_in_the_browsers_language(signed_in: SignedIn, nobody: TestClient, mails: Mails) -> None:
+    nobody.post(CODES, json={"email": SENDER}, headers={"Accept-Language": "fr-CA,fr;q=0.9,en;q=0.5"})
+    assert mails.to(SENDER)[0]["Subject"] == "Votre code de connexion à Campus Mail"
