@@ -1,0 +1,64 @@
+"""The page about the simulated world names everything there is, and its example runs; so does the command."""
+
+import os
+import re
+import signal
+import stat
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import serial
+
+from robot.simulated import SWITCHES
+from robot.simulated.door import COMMANDS
+
+ROOT = Path(__file__).parents[3]
+PAGE = (ROOT / "docs" / "simulated-world.md").read_text(encoding="utf-8")
+COMMAND = [sys.executable, "-m", "robot.simulated"]
+
+
+@pytest.mark.parametrize("name", [*SWITCHES, *COMMANDS])
+def test_the_page_describes_every_switch_and_door_command(name):
+    assert re.search(rf"^\| `{name}` \|", PAGE, re.MULTILINE)
+
+
+def test_the_pages_example_runs(capsys):
+    example = re.search(r"```python\n(.*?)```", PAGE, re.DOTALL)
+    assert example
+    exec(example.group(1), {})  # noqa: S102  # our own page
+    assert "(480, 640, 3)" in capsys.readouterr().out
+
+
+def test_the_command_lists_its_faults():
+    told = subprocess.run([*COMMAND, "--list-faults"], capture_output=True, text=True, check=True, cwd=ROOT).stdout
+    assert all(name in told for name in SWITCHES)
+
+
+def test_the_command_opens_a_port_and_a_door_and_ends_with_ctrl_c(tmp_path):
+    link, door = tmp_path / "create2", tmp_path / "door"
+    options = ["--link", str(link), "--door", str(door), "--start", "post1"]
+    process = subprocess.Popen([*COMMAND, *options], stdout=subprocess.PIPE, text=True, cwd=ROOT)
+    assert process.stdout
+    path = process.stdout.readline().strip()
+    assert os.path.realpath(link) == path
+    assert stat.S_ISSOCK(door.stat().st_mode)
+    with serial.Serial(path, 115200, timeout=5) as port:
+        port.write(bytes((128, 142, 35)))
+        assert port.read(1) == b"\x01"
+    process.send_signal(signal.SIGINT)
+    process.stdout.close()
+    assert process.wait(timeout=10) == 0
+    assert not link.is_symlink()
+    assert not door.exists()
+
+
+@pytest.mark.parametrize(
+    ("options", "part"), [(["--map", "atlantis"], "atlantis"), (["--start", "post9"], "cannot start at 'post9'")]
+)
+def test_a_wrong_map_or_start_ends_the_command_with_a_sentence(options, part):
+    ended = subprocess.run([*COMMAND, *options], capture_output=True, text=True, check=False, cwd=ROOT)
+    assert ended.returncode == 2
+    assert part in ended.stderr
+    assert "Traceback" not in ended.stderr
