@@ -3,6 +3,7 @@
 import json
 
 import pytest
+from sqlmodel import select
 
 from app.database import Database
 from app.settings import Settings
@@ -187,7 +188,8 @@ async def test_nothing_is_acknowledged_before_it_is_committed(
     other = Database(settings.url_of_database)
     async with robot.connected(service.url, token):
         await robot.greet()
-        async with other.transaction():
+        async with other.transaction() as lock:
+            await lock.exec(select(RobotRow))  # the lock is taken with the first question
             seq = await robot.say(Clear(leg=LEG))
             with pytest.raises(TimeoutError):
                 await robot.hear("ack", limit_s=0.5)
