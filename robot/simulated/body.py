@@ -12,7 +12,7 @@ from .battery import Battery, Pack
 from .docking import Beside, SeekDock, Wheels, bearing_rad, ir_character
 from .drive_base import DriveBase, Motion
 from .faults import Faults
-from .obstacles import Contact, light_signals
+from .obstacles import BUMPER_RADIUS_M, Contact, light_signals
 from .open_interface import Activity, Hazards, OpenInterface
 from .packets import Readings
 from .pins import DiodeMount, LinePins
@@ -65,11 +65,16 @@ class Body:
         self._dock: Beside | None = None
         self._started_s = now
         self._steps = 0
+        world.robots.append(self)
 
     @property
     def now(self) -> float:
         """Seconds of the world's clock."""
         return self._started_s + self._steps * STEP_S
+
+    def nearest(self, x_m: float, y_m: float) -> tuple[float, float, float]:
+        """As other robots run into it: see `obstacles.Obstacle`."""
+        return self.base.x_m, self.base.y_m, BUMPER_RADIUS_M
 
     def place(self, x_m: float, y_m: float, heading_rad: float) -> None:
         """Put the robot down here, as a person would."""
@@ -145,23 +150,22 @@ class Body:
         dock = self._dock
         if dock and dock.held and ahead_mm * math.cos(dock.turned_rad) > 0:
             return True
-        if not self.world.obstacles:
+        if not self._contacts:
             return False
-        here = self.world.contacts(self.base.x_m, self.base.y_m, heading)
-        there = self.world.contacts(x_m, y_m, heading)
+        here = self.world.contacts(self, self.base.x_m, self.base.y_m, heading)
+        there = self.world.contacts(self, x_m, y_m, heading)
         return any(new.gap_m < 0 and new.gap_m < old.gap_m for old, new in zip(here, there, strict=True))
 
     def _look_around(self) -> None:
         pose = (self.base.x_m, self.base.y_m, self.base.heading_rad)
-        self._contacts = list(self.world.contacts(*pose)) if self.world.obstacles else []
+        self._contacts = self.world.contacts(self, *pose)
         self._dock = self.world.dock_beside(*pose) if self.world.docks else None
 
     # The firmware's slot -----------------------------------------------------------------------------------------
 
     def _slot(self) -> None:
         now = self.now
-        if self.world.obstacles or self._contacts:
-            self._look_around()
+        self._look_around()
         self.docked = self._touches_charger()
         self._tell_touch(now)
         self._tell_wheels()

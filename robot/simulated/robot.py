@@ -111,6 +111,7 @@ class SimulatedRobot:
         self._line.close()
 
     def close(self) -> None:
+        self.world.robots.remove(self._body)
         self._line.close()
         self.camera.release()
         self._body.pins.close()

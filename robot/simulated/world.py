@@ -1,6 +1,7 @@
 """What surrounds the robots: floor with tape, docks, markers, obstacles. Several robots can share one."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
+from itertools import chain
 from random import Random
 
 from maps import CampusMap, Dock, Marker
@@ -22,6 +23,7 @@ class World:
         self.campus = campus
         self.floor = Floor(campus, gap_m, Random(f"{seed}/gaps"))
         self.obstacles = list(obstacles)
+        self.robots: list[Obstacle] = []
         self.docks: tuple[Dock, ...] = tuple(post.dock for post in campus.docks() if post.dock)
         self.markers: tuple[Marker, ...] = tuple(marker for post in campus.posts.values() for marker in post.markers)
 
@@ -32,6 +34,7 @@ class World:
             return None
         return beside(nearest, x_m, y_m, heading_rad)
 
-    def contacts(self, x_m: float, y_m: float, heading_rad: float) -> Iterator[Contact]:
-        """Every obstacle as a robot at this pose meets it."""
-        return (contact(obstacle, x_m, y_m, heading_rad) for obstacle in self.obstacles)
+    def contacts(self, me: Obstacle, x_m: float, y_m: float, heading_rad: float) -> list[Contact]:
+        """Every obstacle, and every robot but `me`, as a robot at this pose meets it."""
+        others = (one for one in chain(self.obstacles, self.robots) if one is not me)
+        return [contact(one, x_m, y_m, heading_rad) for one in others]

@@ -169,6 +169,20 @@ def test_somebody_who_steps_aside_lets_the_robot_go_on(make):
     assert bench.robot.pose.y_m < 3.7
 
 
+def test_two_robots_in_one_world_run_into_each_other(make):
+    one = make("post1:post2")
+    other = make("post2:post1", world=one.robot.world)
+    one.send(128, 131)
+    one.drive(100, 100)
+    for _ in range(200):
+        one.run(0.1)
+        other.run(0.1)
+    other.send(128)
+    assert (one.ask(7), other.ask(7)) == (0b11, 0b11), "they meet head-on"
+    gap_m = one.robot.pose.y_m - other.robot.pose.y_m
+    assert gap_m == pytest.approx(2 * 0.17425, abs=0.003)
+
+
 # Battery and dock ------------------------------------------------------------------------------------------------
 
 
