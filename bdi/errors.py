@@ -1,0 +1,101 @@
+"""What can go wrong in the mind, by name.
+
+BdiError
+├── AgentSpeakError            the program is at fault: carries file, line and column
+│   ├── AgentSpeakSyntaxError  the text is not AgentSpeak
+│   ├── IncludeNotFound        an included file is missing or cannot be read
+│   ├── IncludeCircle          a file includes itself, directly or through others
+│   ├── UnknownDirective       `{ something }` that is no directive of ours
+│   ├── UnknownInternalAction  `.something` that does not exist
+│   └── UnknownAction          an action that the body did not declare
+├── UnknownActionId            a finished action that was never started
+└── UnknownPerformative        a message that is no tell, achieve, …
+"""
+
+from dataclasses import dataclass
+
+
+class BdiError(Exception):
+    """Root of everything that `bdi` raises on purpose."""
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where in a program something stands. Line and column count from 1; 0 means "not known"."""
+
+    source: str = "<text>"
+    line: int = 0
+    column: int = 0
+    text: str = ""
+
+    def __str__(self) -> str:
+        return f"{self.source}:{self.line}:{self.column}" if self.line else self.source
+
+    def picture(self) -> str:
+        """The line with a caret under the column, or nothing where the line is not known."""
+        if not self.text.strip():
+            return ""
+        shown = self.text.replace("\t", " ")
+        return f"\n    {shown}\n    {' ' * max(0, self.column - 1)}^"
+
+
+class AgentSpeakError(BdiError):
+    """A program that cannot be loaded. `str()` is the whole message: place, sentence, line and caret."""
+
+    def __init__(self, problem: str, place: Place, expected: tuple[str, ...] = ()) -> None:
+        self.problem = problem
+        self.place = place
+        self.expected = expected
+        hint = f"; expected {_either(expected)}" if expected else ""
+        super().__init__(f"{place}: {problem}{hint}{place.picture()}")
+
+    @property
+    def source(self) -> str:
+        return self.place.source
+
+    @property
+    def line(self) -> int:
+        return self.place.line
+
+    @property
+    def column(self) -> int:
+        return self.place.column
+
+
+class AgentSpeakSyntaxError(AgentSpeakError):
+    """The text is not AgentSpeak; `expected` lists what could have stood there."""
+
+
+class IncludeNotFound(AgentSpeakError):
+    """`{ include("file") }` names a file that cannot be read."""
+
+
+class IncludeCircle(AgentSpeakError):
+    """A file includes itself, directly or through others."""
+
+
+class UnknownDirective(AgentSpeakError):
+    """A directive that this interpreter does not have."""
+
+
+class UnknownInternalAction(AgentSpeakError):
+    """A plan or rule calls `.something` that does not exist, or with a wrong number of arguments."""
+
+
+class UnknownAction(AgentSpeakError):
+    """A plan starts an action that the body did not declare in `actions=`."""
+
+
+class UnknownActionId(BdiError):
+    """`finished` names an action that this agent never started: the caller mixed up two agents or two runs."""
+
+
+class UnknownPerformative(BdiError):
+    """A message whose performative this agent does not understand."""
+
+    def __init__(self, performative: str) -> None:
+        super().__init__(f"no agent understands the performative {performative!r}")
+
+
+def _either(options: tuple[str, ...]) -> str:
+    return options[0] if len(options) == 1 else ", ".join(options[:-1]) + " or " + options[-1]
