@@ -43,6 +43,8 @@ from .skills.tunes import BUMPED
 
 STOPPING = frozenset(fault.name for fault in reflexes.FAULTS if fault.response is reflexes.Response.STOP)
 PAUSING = STOPPING | {"bump"}
+OFF_DOCK_S = 2.0
+"""Contacts bounce: only after so long without power is the robot off its dock."""
 
 
 @dataclass
@@ -68,6 +70,7 @@ class DriveLoop:
         self._motion: Job | None = None
         self._pulse, self._pulse_until_s = STOP, -math.inf
         self._mode = Mode.PASSIVE
+        self._docked_s = now
         self._heartbeat_s = now
         self._stop_asked = self._rearm = False
         self._reflexes = reflexes.ReflexState()
@@ -132,6 +135,7 @@ class DriveLoop:
             self._inbox.popleft()(now)
         self.view = view = self._look(now)
         wanted = self._step_jobs(view, now)
+        self._choose_mode(now)
         decision = reflexes.decide(self._reflexes, self._senses(now), wanted or STOP, now)
         self._reflexes, self._rearm = decision.state, False
         self._note_faults(decision.faults, now)
@@ -196,6 +200,18 @@ class DriveLoop:
         if self._mode is Mode.PASSIVE and not allowed.still:
             self._request(SetMode(Mode.SAFE), now)
         return self._base.drive(allowed, now)
+
+    def _choose_mode(self, now: float) -> None:
+        """At rest: Passive on the dock, or it would not charge; Safe elsewhere, or a button would start to clean."""
+        state = self._state
+        if state is None or self._motion is not None:
+            self._docked_s = now
+        elif state.docked:
+            self._docked_s = now
+            if self._mode is not Mode.PASSIVE:
+                self._request(SetMode(Mode.PASSIVE), now)
+        elif self._mode is not Mode.SAFE and now - self._docked_s > OFF_DOCK_S:
+            self._request(SetMode(Mode.SAFE), now)
 
     # Jobs
 

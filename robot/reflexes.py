@@ -104,7 +104,7 @@ FAULTS: tuple[Fault, ...] = (
     ),
     Fault(
         "over_current",
-        lambda s: s.base is not None and s.base.wheel_over_current,
+        lambda s: s.base is not None and s.base.wheel_over_current and s.own_wheels,
         Response.STOP,
         0.5,
         2.0,

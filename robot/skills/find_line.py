@@ -10,11 +10,12 @@ COAST_MM = 40.0
 ARC_MM = 120.0
 ARC = (45.0, 90.0)
 """Slow and fast wheel of the arc towards the side where the line was seen last, mm/s."""
-SWEEPS_RAD = tuple(math.radians(degrees) for degrees in (25, 55, 100))
+SWEEPS_RAD = tuple(math.radians(degrees) for degrees in (25, 70))
 SEARCH_MM_S = 50.0
-SPIRAL_MM_S = 90.0
-SPIRAL_FROM, SPIRAL_TO, SPIRAL_MM = -0.4, 0.72, 3200.0
-"""Inner wheel as a share of the outer one: circles of 50 to 720 mm radius, over so much way."""
+SWEEP_MM_S = 80.0
+SPIRAL_MM_S = 120.0
+SPIRAL_FROM_MM, SPIRAL_PITCH_MM, SPIRAL_TURNS = 60.0, 130.0, 3.5
+"""Radius at the beginning and growth with each turn: no straight line within half a metre stays unmet."""
 ALIGN_RAD = math.radians(60)
 
 
@@ -34,7 +35,7 @@ class FindLine(Scripted):
         shape: BodyShape | None = None,
         side: float = 0.0,
         heading_rad: float | None = None,
-        limit_s: float = 120.0,
+        limit_s: float = 180.0,
     ) -> None:
         """`side`: where the line was seen last (left positive); `heading_rad`: its heading then, by odometry."""
         self._shape = shape or BodyShape()
@@ -72,14 +73,15 @@ class FindLine(Scripted):
         for angle in SWEEPS_RAD:
             for turn in (self._side * angle, -2 * self._side * angle, self._side * angle):
                 if not over_line(view):
-                    view = yield from turn_by(view, turn, SEARCH_MM_S, self._shape, over_line)
+                    view = yield from turn_by(view, turn, SWEEP_MM_S, self._shape, over_line)
         return view
 
     def _spiral(self, view: View) -> Part:
-        from_mm = view.odometry.travelled_mm
-        while (driven_mm := view.odometry.travelled_mm - from_mm) < SPIRAL_MM and not over_line(view):
-            share = SPIRAL_FROM + (SPIRAL_TO - SPIRAL_FROM) * driven_mm / SPIRAL_MM
-            inner, outer = SPIRAL_MM_S * share, SPIRAL_MM_S
+        """Outwards, towards the side where the line was seen last."""
+        from_rad, half = view.odometry.heading_rad, self._shape.wheel_base_mm / 2
+        while (turns := abs(view.odometry.heading_rad - from_rad) / math.tau) < SPIRAL_TURNS and not over_line(view):
+            radius_mm = SPIRAL_FROM_MM + SPIRAL_PITCH_MM * turns
+            inner, outer = SPIRAL_MM_S * (radius_mm - half) / (radius_mm + half), SPIRAL_MM_S
             view = yield Running(WheelSpeeds(inner, outer) if self._side > 0 else WheelSpeeds(outer, inner))
         return (yield from stand(view))
 

@@ -28,6 +28,9 @@ BLIND_BEFORE_POST_MM = 40.0
 OWN_POST_MM = 600.0
 """A marker of the post it set out from does not count so near to it."""
 STANDS_S = 0.2
+FRUITLESS_MM = 500.0
+MOST_SEARCHES = 3
+"""So many searches in a row with less than half a metre of line between them: this is where the line ends."""
 MOST_BUMPS = 3
 INNER_WHEEL_MM_S = 30.0
 
@@ -60,6 +63,7 @@ class FollowLine:
         self._bumps_before = view.bumps
         self._lit_mm = view.odometry.travelled_mm
         self._search: FindLine | None = None
+        self._searches, self._searched_mm = 0, -FRUITLESS_MM
         self._post: str | None = None
         self._post_at_mm = 0.0
         self._sighted_s = now
@@ -129,6 +133,10 @@ class FollowLine:
         return curve(speed, 2 * off_mm / LOOK_AHEAD_MM**2, self._shape)
 
     def _lost(self, view: View, now: float) -> Step:
+        fruitless = view.odometry.travelled_mm - self._searched_mm < FRUITLESS_MM
+        self._searches = self._searches + 1 if fruitless else 1
+        if self._searches > MOST_SEARCHES:
+            return Failed("line_lost")
         heading = view.odometry.heading_rad + self._line.heading
         self._search = FindLine(self._shape, side=self._line.at(self._shape.sensor_lead_mm), heading_rad=heading)
         self._search.start(view, now)
@@ -149,7 +157,7 @@ class FollowLine:
         self._sighted_s = now
         self._line = LineEstimate(self._shape)
         self._last = here
-        self._lit_mm = here.travelled_mm
+        self._lit_mm = self._searched_mm = here.travelled_mm
 
 
 def curve(speed_mm_s: float, curvature_per_mm: float, shape: BodyShape) -> WheelSpeeds:

@@ -27,8 +27,11 @@ def test_the_turns_of_the_papers_track_come_out(came_from: str, at: str, to: str
 
 @pytest.mark.parametrize(
     ("clockwise_deg", "way"),
-    [(0, "forward"), (45, "forward"), (46, "right"), (135, "right"), (136, "behind"), (180, "behind"), (225, "behind")]
-    + [(226, "left"), (270, "left"), (315, "left"), (316, "forward"), (359, "forward")],
+    [
+        *((0, "forward"), (45, "forward"), (316, "forward"), (359, "forward")),
+        *((46, "right"), (135, "right"), (136, "behind"), (180, "behind"), (225, "behind")),
+        *((226, "left"), (270, "left"), (315, "left")),
+    ],
 )
 def test_sectors_are_those_of_the_prototype(clockwise_deg: float, way: str):
     assert sector(-math.radians(clockwise_deg)) == way

@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import pytest
 
-from robot.drivers.interfaces import STOP, WheelSpeeds
+from robot.drivers.interfaces import STOP, Mode, WheelSpeeds
 from robot.errors import UnknownSkill
 from robot.skills import Done, DrivePulse, Failed, FollowLine, PaperTurn, Say, WaitHandover
 from tests.robot.skills.track import Drive
@@ -32,6 +32,7 @@ def test_a_cancelled_motion_ends_once_and_the_wheels_stand(drive: Make):
     robot.steps(1)
     robot.loop.cancel(job)
     assert robot.end_of(job, 0.1) == Failed("cancelled")
+    robot.tick()
     assert robot.loop.view.sent == STOP
     robot.loop.cancel(job)
     robot.steps(0.2)
@@ -121,8 +122,9 @@ def test_a_code_that_was_shown_before_the_wait_does_not_count(drive: Make):
 
 def test_spot_pressed_twice_loads_without_a_name(drive: Make):
     robot = drive("post1:post2")
-    robot.do(DrivePulse("stop"))
+    robot.steps(3)
     job = robot.loop.start(WaitHandover({VERIFIER}, 60.0), robot.now)
+    robot.tick()
     press_spot(robot)
     assert not robot.loop.finished(), "once may be an accident"
     press_spot(robot)
@@ -132,18 +134,29 @@ def test_spot_pressed_twice_loads_without_a_name(drive: Make):
 
 def test_spot_does_not_open_where_it_must_not(drive: Make):
     robot = drive("post1:post2")
-    robot.do(DrivePulse("stop"))
+    robot.steps(3)
     job = robot.loop.start(WaitHandover({VERIFIER}, 5.0, spot_counts=False), robot.now)
     press_spot(robot)
     press_spot(robot)
     assert robot.end_of(job, 6.0) == Failed("no_one_came")
 
 
+def test_a_robot_at_rest_keeps_its_buttons_to_itself_and_on_the_dock_it_charges(drive: Make):
+    robot = drive("post1:post2")
+    robot.steps(3)
+    assert robot.loop.view.base is not None and robot.loop.view.base.mode is Mode.SAFE
+    press_spot(robot)
+    robot.steps(2)
+    assert robot.distance_to_m("post1") < 0.001, "in Passive the button would start a cleaning cycle"
+    docked = drive("dock", battery_ratio=0.3)
+    docked.steps(5)
+    assert docked.loop.view.base is not None and docked.loop.view.base.mode is Mode.PASSIVE
+    assert docked.loop.view.base.charging
+
+
 def press_spot(robot: Drive) -> None:
-    robot.robot.set_fault("button_spot", True)
-    robot.steps(0.2)
-    robot.robot.set_fault("button_spot", False)
-    robot.steps(0.3)
+    robot.robot.body.interface.press_buttons(bytes((0b010,)))
+    robot.steps(0.5)
 
 
 def test_requests_from_many_threads_all_end_once(drive: Make):
