@@ -191,11 +191,11 @@ def test_driving_empties_the_battery_faster_than_standing(make):
         bench = make(battery_ratio=0.9)
         bench.send(128, 131)
         bench.drive(speed, -speed)
-        bench.run(600)
+        bench.run(120)
         return 0.9 * 2696 - bench.robot.battery.charge_mah
 
-    assert used_mah(0) == pytest.approx(250 * 600 / 3600, rel=0.01)
-    assert used_mah(100) == pytest.approx(850 * 600 / 3600, rel=0.02)
+    assert used_mah(0) == pytest.approx(250 * 120 / 3600, rel=0.01)
+    assert used_mah(100) == pytest.approx(850 * 120 / 3600, rel=0.02)
 
 
 def test_voltage_falls_with_the_charge(make):
