@@ -1,0 +1,106 @@
+"""People who use the service as a browser would: signed in with a code from their mail, over HTTP."""
+
+import asyncio
+import re
+import uuid
+from collections import Counter
+from collections.abc import Iterator
+from email import message_from_bytes, policy
+from email.message import EmailMessage
+from pathlib import Path
+from typing import Any
+
+import httpx
+
+from app.demo.settings import DemoFailed
+
+MAIL_LIMIT_S = 20.0
+LOOK_EVERY_S = 0.1
+
+
+class Spool:
+    """The mails that the service has written."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+
+    def new_mails(self, known: set[str]) -> Iterator[tuple[str, EmailMessage]]:
+        """Mails that are not `known` yet, as (file name, mail); they are known from then on."""
+        for file in sorted(self._folder.glob("*.eml"), key=lambda one: one.stat().st_mtime_ns):
+            if file.name not in known:
+                known.add(file.name)
+                yield file.name, message_from_bytes(file.read_bytes(), policy=policy.default)
+
+    def notices(self, order_id: str) -> Counter[tuple[str, str]]:
+        """How many mails about an order each person got of each kind, as (address, kind)."""
+        kinds = {name: mail for name, mail in self.new_mails(set()) if name.startswith(f"mail.{order_id}.")}
+        return Counter((str(mail["To"]), name.split(".")[2]) for name, mail in kinds.items())
+
+
+def sign_in_code(mail: EmailMessage) -> str | None:
+    """The code in a mail, if it is one for signing in."""
+    body = mail.get_body(("plain",))
+    found = re.search(r"\b\d{8}\b", body.get_content()) if body else None
+    return found[0] if found and str(mail["Message-ID"]).startswith("<sign-in.") else None
+
+
+class SimulatedPerson:
+    """Somebody with a mailbox and a browser."""
+
+    def __init__(self, email: str, url: str, spool: Spool) -> None:
+        self.email = email
+        self._http = httpx.AsyncClient(base_url=f"{url}/api/v1", headers={"Sec-Fetch-Site": "same-origin"}, timeout=20)
+        self._spool = spool
+
+    async def sign_in(self) -> None:
+        """Ask for a code, wait for the mail, type the code. Raises DemoFailed."""
+        known: set[str] = set()
+        list(self._spool.new_mails(known))
+        await self._ask("POST", "/sign-in/codes", {"email": self.email})
+        try:
+            async with asyncio.timeout(MAIL_LIMIT_S):
+                code = await self._next_code(known)
+        except TimeoutError:
+            raise DemoFailed(f"No sign-in code came for {self.email} within {MAIL_LIMIT_S:.0f} s.") from None
+        await self._ask("POST", "/sign-in", {"email": self.email, "code": code})
+
+    async def _next_code(self, known: set[str]) -> str:
+        while True:
+            for _, mail in self._spool.new_mails(known):
+                if mail["To"] == self.email and (code := sign_in_code(mail)):
+                    return code
+            await asyncio.sleep(LOOK_EVERY_S)
+
+    async def place_order(self, from_post: str, to_post: str, recipient: str) -> dict[str, Any]:
+        body = {"from_post": from_post, "to_post": to_post, "recipient": recipient, "description": "A letter"}
+        placed: dict[str, Any] = await self._ask("POST", "/orders", body, {"Idempotency-Key": str(uuid.uuid4())})
+        return placed
+
+    async def order(self, order_id: str) -> dict[str, Any]:
+        order: dict[str, Any] = await self._ask("GET", f"/orders/{order_id}")
+        return order
+
+    async def show_code(self, order_id: str) -> None:
+        """Hold one's code to the robot's camera."""
+        await self._ask("POST", "/demo/camera", {"order_id": order_id})
+
+    async def robots(self) -> list[dict[str, Any]]:
+        robots: list[dict[str, Any]] = await self._ask("GET", "/robots")
+        return robots
+
+    async def notices(self, order_id: str) -> Counter[str]:
+        """How often this person was told each kind of thing about an order."""
+        items = (await self._ask("GET", "/notices"))["items"]
+        return Counter(str(notice["kind"]) for notice in items if notice["order_id"] == order_id)
+
+    async def _ask(self, method: str, path: str, body: Any = None, headers: dict[str, str] | None = None) -> Any:
+        try:
+            answer = await self._http.request(method, path, json=body, headers=headers)
+        except httpx.HTTPError as error:
+            raise DemoFailed(f"The service does not answer {method} {path}: {type(error).__name__}.") from error
+        if answer.is_error:
+            raise DemoFailed(f"{method} {path} was refused: {answer.text}")
+        return answer.json()
+
+    async def close(self) -> None:
+        await self._http.aclose()

@@ -1,0 +1,101 @@
+"""What a demonstration is run with, and what goes wrong with one."""
+
+import json
+import os
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+from app.settings import Settings
+
+SENDER, RECIPIENT = "sender@campus.example", "recipient@campus.example"
+FROM_POST, TO_POST = "post1", "post4"
+ROBOT = "r1"
+ONCE_SPEED = 30.0
+"""The robot's process lowers it to what it keeps up with."""
+WATCHED_SPEED = 4.0
+HANDS_ON_SPEED = 2.0
+LIMIT_S = 180.0
+"""Real time: an order that is not delivered by then has failed."""
+LOW_RATIO = 0.2
+
+
+def default_speed(once: bool, hands_on: bool) -> float:
+    """As fast as it keeps up where nobody waits to see the end; slower for eyes, slowest for hands."""
+    if once:
+        return ONCE_SPEED
+    return HANDS_ON_SPEED if hands_on else WATCHED_SPEED
+
+
+class DemoFailed(Exception):
+    """Something did not happen, or somebody died; the sentence says what."""
+
+
+@dataclass(frozen=True)
+class Demo:
+    """One demonstration. Everything lies in `folder`; the door is apart, since socket paths must be short."""
+
+    folder: Path
+    door: Path
+    port: int
+    speed: float
+    once: bool
+    as_json: bool
+    low_battery: bool
+    hands_on: bool
+
+    @property
+    def url(self) -> str:
+        return f"http://127.0.0.1:{self.port}"
+
+    @property
+    def clock_file(self) -> Path:
+        return self.folder / "clock"
+
+    @property
+    def token_file(self) -> Path:
+        return self.folder / f"{ROBOT}.token"
+
+    @property
+    def service(self) -> Settings:
+        """The service's settings in this demonstration."""
+        return Settings(
+            port=self.port,
+            data=self.folder / "service",
+            map="test_track",
+            allowed_domains=("campus.example",),
+            public_url=self.url,
+            clock_file=self.clock_file,
+            demo_door=self.door,
+            # People read codes in real time, whatever the clock of the demonstration does.
+            sign_in_code_lifetime_s=600 * self.speed,
+            sign_in_codes_per_address="1000 per minute",
+        )
+
+    def service_command(self) -> list[str]:
+        return [sys.executable, "-m", "app", "serve", "--port", str(self.port)]
+
+    def service_environment(self) -> dict[str, str]:
+        """The settings as the service's process reads them."""
+        settings = self.service.model_dump(mode="json", exclude_unset=True)
+        ours = {f"CAMPUS_MAIL_{name.upper()}": value for name, value in settings.items()}
+        inherited = {name: value for name, value in os.environ.items() if not name.startswith("CAMPUS_MAIL_")}
+        return {**inherited, **{name: _as_text(value) for name, value in ours.items()}}
+
+    def robot_command(self) -> list[str]:
+        options = {
+            "--map": "test_track",
+            "--name": ROBOT,
+            "--server": f"ws://127.0.0.1:{self.port}/api/v1/robots/link",
+            "--token-file": str(self.token_file),
+            "--data": str(self.folder / "robot"),
+            "--clock": str(self.clock_file),
+            "--door": str(self.door),
+        }
+        # Given a charge to begin with, the simulated pack is a small one that is charged within minutes.
+        options |= {"--battery": "1.0"} if self.low_battery else {}
+        return [sys.executable, "-m", "robot", "--simulated", *(word for pair in options.items() for word in pair)]
+
+
+def _as_text(value: object) -> str:
+    return value if isinstance(value, str) else json.dumps(value)
