@@ -246,6 +246,7 @@ class Body:
         told.current_ma, told.temperature_c = clipped(battery.current_ma, -32768, 32767), round(battery.temperature_c)
         told.charge_mah = clipped(battery.charge_mah, 0, 65535)
         told.capacity_mah = clipped(battery.pack.capacity_mah, 0, 65535)
+        self.interface.charging_s = battery.charging_s
         if not battery.charge_mah and not self.docked:
             self.interface.lose_power()
 

@@ -64,6 +64,7 @@ class OpenInterface:
         self.asleep = False
         self.out = bytearray()
         self.ignored_commands = 0
+        self.charging_s = 0.0
         self._readings = readings
         self._faults = faults
         self._now = now
@@ -182,7 +183,7 @@ class OpenInterface:
         self._battery_line_at_s = now + 1.0
         told = self._readings
         self.out += firmware_text.battery_line(
-            now - self._slept_at_s, told.voltage_mv, told.current_ma, told.temperature_c, told.charge_mah
+            self.charging_s, told.voltage_mv, told.current_ma, told.temperature_c, told.charge_mah
         )
 
     def finish_activity(self) -> None:
