@@ -399,11 +399,10 @@ class Agent:
         """The next step of the top plan."""
         if intention.guarded:
             self._leave_reached_goals(intention)
-        if not self.clear_finished(intention):
-            return
         means = intention.stack[-1]
         step = means.step
-        assert step is not None
+        if step is None:
+            return  # leaving a finished plan takes the cycle
         means.step = step.next
         self.current = intention
         if self._listeners:

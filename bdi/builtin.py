@@ -29,6 +29,7 @@ class Definition:
     most: int | None
     lazy: frozenset[int] = frozenset()
     is_function: bool = False
+    named: bool = False  # whether it is told which variables its plan has, by name
 
     def accepts(self, count: int) -> bool:
         return self.least <= count and (self.most is None or count <= self.most)
@@ -39,15 +40,16 @@ FUNCTIONS: dict[str, Definition] = {}
 
 
 def internal_action(
-    name: str, least: int, most: int | None = -1, lazy: tuple[int, ...] = ()
+    name: str, least: int, most: int | None = -1, lazy: tuple[int, ...] = (), named: bool = False
 ) -> Callable[[Callable[..., Answer]], Callable[..., Answer]]:
     """Register `.name` with `least` to `most` arguments (as many as `least` if not given, any number for None).
 
-    Arguments in `lazy` come as a `Question`: a formula that the action asks itself.
+    Arguments in `lazy` come as a `Question`: a formula that the action asks itself. With `named` the first argument
+    is a dictionary of the variables of the plan that calls.
     """
 
     def register(call: Callable[..., Answer]) -> Callable[..., Answer]:
-        ACTIONS[f".{name}"] = Definition(f".{name}", call, least, least if most == -1 else most, frozenset(lazy))
+        ACTIONS[f".{name}"] = Definition(f".{name}", call, least, least if most == -1 else most, frozenset(lazy), named=named)
         return call
 
     return register
@@ -66,12 +68,13 @@ def function(name: str, least: int, most: int | None = -1) -> Callable[[Callable
 class Bound:
     """An internal action or function as one agent calls it."""
 
-    __slots__ = ("function", "lazy", "_call", "_mind")
+    __slots__ = ("_call", "_mind", "function", "lazy", "named")
 
     def __init__(self, mind: HasLogic, action: Definition | None, value: Definition | None) -> None:
         self._mind = mind
         self._call = action.call if action else None
         self.lazy = action.lazy if action else frozenset()
+        self.named = action is not None and action.named
         self.function = value.call if value else None
 
     def ask(self, args: tuple[Any, ...]) -> bool | Iterator[Any]:

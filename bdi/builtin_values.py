@@ -11,7 +11,7 @@ from bdi.builtin import Answer, HasLogic, function, internal_action, wrong_argum
 from bdi.logic import Question
 from bdi.parser import parse_term
 from bdi.terms import Atom, Code, Handle, List, OpenList, String, Structure, Term, Var, number, show
-from bdi.unify import compare, deref, is_ground, renamed, undo, unify
+from bdi.unify import compare, deref, is_ground, renamed, substituted, undo, unify, variables_in
 
 in_order = cmp_to_key(compare)
 
@@ -238,10 +238,13 @@ def replace(mind: HasLogic, text: Term, old: Term, new: Term, result: Term) -> A
     return _unify(mind, result, String(text_of(text).replace(text_of(old), text_of(new))))
 
 
-@internal_action("term2string", 2)
-def term2string(mind: HasLogic, term: Term, text: Term) -> Answer:
+@internal_action("term2string", 2, named=True)
+def term2string(mind: HasLogic, names: dict[str, Term], term: Term, text: Term) -> Answer:
+    """Variables in the text are those of the plan."""
     if isinstance(term, Var) and isinstance(text, String):
-        return _unify(mind, term, parse_term(text))
+        parsed = parse_term(str.__str__(text))
+        values = {variable: names[variable.name] for variable in variables_in(parsed) if variable.name in names}
+        return _unify(mind, term, substituted(parsed, values))
     return _unify(mind, text, String(text_of(term)))
 
 

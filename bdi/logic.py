@@ -65,6 +65,7 @@ class Builtin(Protocol):
     """What `logic` needs to know of an internal action or function: how to call it."""
 
     lazy: frozenset[int]  # arguments handed over as questions, not as values
+    named: bool  # whether the variables of the plan, by name, come first
 
     def ask(self, args: tuple[Any, ...]) -> "bool | Iterator[Any]": ...
 
@@ -587,6 +588,8 @@ class Logic:
             self.question(arg, scope) if place in builtin.lazy else self._value(arg, scope)
             for place, arg in enumerate(term.args)
         ]
+        if builtin.named:
+            return lambda frame: (_by_name(scope, frame), *[part(frame) for part in parts])
         return lambda frame: tuple([part(frame) for part in parts])
 
     def _value(self, term: Term, scope: Scope) -> Build:
@@ -674,6 +677,13 @@ def _agree(belief: Belief, args: tuple[Term, ...], annots: tuple[Term, ...], tra
         names: dict[Var, Term] = {}
         stored = tuple([renamed(arg, names) for arg in stored])
     return unify_all(args, stored, trail) and (not annots or unify_annots(annots, belief.annots, trail))
+
+
+def _by_name(scope: Scope, frame: Frame) -> dict[str, Term]:
+    for variable, slot in scope.slots.items():
+        if slot < len(frame) and frame[slot] is None:
+            frame[slot] = Var(variable.name)
+    return {variable.name: frame[slot] for variable, slot in scope.slots.items() if slot < len(frame)}
 
 
 def _composed(pattern: Term) -> Term | None:

@@ -444,8 +444,8 @@ class _Builder(Transformer[Token, Any]):
         negated = children[0] == "~"
         name, *braces = children[1:] if negated else children
         space, _, plain = name.rpartition("::")
-        if plain.startswith("'"):
-            space, plain = "", name[1:-1]
+        if name.startswith("'"):
+            space, plain = "", str(name)  # 'x' is not x: the quotes belong to the name
         return _literal(plain, braces, negated, space)
 
     def internal(self, name: Token, *braces: _Braces) -> Term:

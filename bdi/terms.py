@@ -6,7 +6,6 @@ Numbers are Python numbers (doubles in meaning, kept as `int` where they are who
 """
 
 import math
-import re
 from typing import Any, NamedTuple, TypeAlias, Union
 from weakref import WeakValueDictionary
 
@@ -206,9 +205,6 @@ def number(value: float) -> int | float:
 
 # ---- terms as text -------------------------------------------------------------------------------------------------
 
-_PLAIN_NAME = re.compile(r"(\.?[a-z][A-Za-z0-9_]*(\.[a-z][A-Za-z0-9_]*)*|)\Z")
-_BARE_OPERATORS = frozenset({"not"})
-
 
 def show(term: object) -> str:
     """A term as AgentSpeak, without spaces."""
@@ -217,9 +213,8 @@ def show(term: object) -> str:
 
 
 def _show_name(key: Predicate) -> str:
-    name = key.name if _PLAIN_NAME.match(key.name) else f"'{key.name}'"
     space = f"{key.namespace}::" if key.namespace else ""
-    return f"{'~' if key.negated else ''}{space}{name}"
+    return f"{'~' if key.negated else ''}{space}{key.name}"
 
 
 def _show_structure(term: Structure) -> str:
