@@ -124,7 +124,7 @@ def _devices(
     robot = _simulated_robot(settings, campus, clock, simulation)
     closing.callback(robot.close)
     saved = SavedWorld(robot, settings.data / "world.json" if simulation.persistent else None)
-    base = Create2(lambda: open_serial(robot.port_path), robot.brc)
+    base = Create2(lambda: open_serial(robot.port_path), robot.brc, settings.drive.velocity_deadline_s)
     sensor = _line_sensor(settings, robot.pin_factory)
     return Devices(base, sensor, robot.camera, robot, saved)
 
@@ -158,7 +158,7 @@ def _real_devices(settings: Settings) -> Devices:
 
     from .drivers.camera import GrabbingCamera
 
-    base = Create2(lambda: open_serial(settings.serial_port))
+    base = Create2(lambda: open_serial(settings.serial_port), deadline_s=settings.drive.velocity_deadline_s)
     camera = settings.camera
     return Devices(
         base,
@@ -175,7 +175,7 @@ def _join(
     drive = DriveLoop(devices.base, devices.line_sensor, shape, now)
     duties = Duties(store, Memory(store), Outbox(store), clock.utc)
     navigator = Navigator(campus, _home(settings, campus), duties)
-    hands = Hands(drive, navigator, duties, settings.drive.cruise_mm_s, shape)
+    hands = Hands(drive, navigator, duties, settings.drive.cruise_mm_s, settings.drive.turn_mm_s, shape)
     mode = percept_mode(settings)
     mind = Mind(Agent(program, name=settings.name), Actions(hands, table_for(mode)), hands, settings, mode)
     reader = MarkerReader(campus.posts, Optics(settings.camera.field_of_view_deg), shape)

@@ -56,10 +56,6 @@ class LineSettings(Section):
     lead_mm: Annotated[float, Field(ge=0.0, le=200.0)] = Field(
         default=60.0, description="how far the diodes are ahead of the wheel axle, mm (40 to 80 follows best)"
     )
-    lost_after_mm: Positive = Field(default=30.0, description="travel without line until it counts as lost, mm")
-    off_track_after_mm: Positive = Field(
-        default=80.0, description="travel with all diodes dark until that is no crossing but off the track, mm"
-    )
 
 
 class CameraSettings(Section):
@@ -81,10 +77,9 @@ class DriveSettings(Section):
         default=120.0, description="speed on a straight line, mm/s (never below 30: the base misbehaves there)"
     )
     turn_mm_s: Annotated[float, Field(ge=30.0, le=MAX_WHEEL_SPEED_MM_S)] = Field(
-        default=60.0, description="speed of each wheel when turning on the spot, mm/s"
+        default=80.0, description="speed of each wheel when turning on the spot, mm/s"
     )
     velocity_deadline_s: Positive = Field(default=0.4, description="a speed that is not renewed for so long stops, s")
-    silence_s: Positive = Field(default=1.0, description="a mind that is silent for so long stops the wheels, s")
 
 
 class BatterySettings(Section):

@@ -36,6 +36,7 @@ class Navigator:
         self._docked = False
         self._leaving = self.position.has_left
         self._ignored_until_s = -math.inf
+        self._nearest: tuple[object, str | None] = ((), home)  # asked ten times a second, answered once per post
 
     def look(self, view: View) -> None:
         """Take in what the body sees now."""
@@ -155,6 +156,12 @@ class Navigator:
 
     def nearest_dock(self) -> str | None:
         """The dock with the shortest way from here; the robot's own while the place is unknown."""
+        asked = (self.here, self._duties.avoid)
+        if asked != self._nearest[0]:
+            self._nearest = (asked, self._find_nearest_dock())
+        return self._nearest[1]
+
+    def _find_nearest_dock(self) -> str | None:
         reachable: list[tuple[float, str]] = []
         for dock in self.campus.docks() if self.here else ():
             try:

@@ -22,7 +22,9 @@ class Reporter:
     _visited: int = 0
     _told: set[str] = field(default_factory=set)
     _docked: bool = False
+    _lows: int = 0
     _charges: int = 0
+    """How often a low battery became full again."""
     _battery: str = ""
 
     def look(self, now: float) -> None:
@@ -49,11 +51,12 @@ class Reporter:
         base = self.mind.hands.view.base
         docked = bool(base and base.docked)
         if docked != self._docked:
-            self._charges += docked and bool(self._visited)
             self._docked = docked
             self._line("docked" if docked else "undocked")
         word = str(self.mind.battery.word)
         if word != self._battery and self.mind.battery.ratio is not None:
+            self._charges += word == "full" and self._lows > self._charges
+            self._lows += word == "low"
             self._battery = word
             self._line(f"battery {word} ({self.mind.battery.ratio:.0%})")
 

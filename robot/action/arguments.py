@@ -60,7 +60,9 @@ def _value(name: str, argument: Argument, term: object, campus: CampusMap) -> Va
         if isinstance(term, int | float):
             return term
         raise WrongArguments("wrong_arguments", f"{name}: {argument.name} is a number, not {term}")
-    text = str(term) if argument.kind is Kind.TERM else text_of(term)
+    text = text_of(term)
+    if text is None and argument.kind is Kind.TERM:
+        return str(term)
     if text is None:
         raise WrongArguments("wrong_arguments", f"{name}: {argument.name} is a name, not {term}")
     if argument.words and text not in argument.words:

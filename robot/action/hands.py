@@ -19,6 +19,7 @@ class Hands:
     navigator: Navigator
     duties: Duties
     cruise_mm_s: float = 120.0
+    turn_mm_s: float = 80.0
     shape: BodyShape = field(default_factory=BodyShape)
     view: View = field(default_factory=View)
     noted: Callable[[str], None] = lambda _: None

@@ -56,7 +56,7 @@ def _follow_line(hands: Hands, _: Sequence[Value], now: float) -> Run:
 def _turn(hands: Hands, arguments: Sequence[Value], now: float) -> Run:
     angle_rad = hands.navigator.turn_rad(str(arguments[0]))
     hands.navigator.begin_turn()
-    return _one(hands, Turn(angle_rad, hands.shape), now, lambda _: hands.navigator.turned())
+    return _one(hands, Turn(angle_rad, hands.shape, hands.turn_mm_s), now, lambda _: hands.navigator.turned())
 
 
 def _paper_turn(hands: Hands, arguments: Sequence[Value], now: float) -> Run:

@@ -19,7 +19,7 @@
 
 +!dock : docked.
 +!dock <- dock; clear_fault(no_dock).
--!dock[error(Error)] <- raise_fault(no_dock, Error); .fail.
+-!dock[error_msg(Why)] <- raise_fault(no_dock, Why); .fail.
 
 // Somebody pulled the robot out of its dock.
 -docked : pursuing(charge) | pursuing(idle) <- .abolish(pursuing(_)); !decide.

@@ -48,8 +48,8 @@ purpose(idle).
      !!decide.
 
 // Nothing a purpose runs into may leave the robot without one.
--!pursue(Purpose)[error(Error)]
-  <- raise_fault(trouble, Error);
+-!pursue(Purpose)[error_msg(Why)]
+  <- raise_fault(trouble, Why);
      .abolish(pursuing(_));
      rest(10);
      !!decide.

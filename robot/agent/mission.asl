@@ -24,8 +24,8 @@
      !attend(Do, Stop, Order, Limit_s).
 
 // A stop that can never be reached is told by name, and the mission goes on with the next one.
--!serve(Stop, _, _, _, _)[error(unknown_post)] <- report(gave_up, Stop, unknown_post).
--!serve(Stop, _, _, _, _)[error(no_route)] <- report(gave_up, Stop, no_route).
+-!serve(Stop, _, _, _, _)[reason(unknown_post)] <- report(gave_up, Stop, unknown_post).
+-!serve(Stop, _, _, _, _)[reason(no_route)] <- report(gave_up, Stop, no_route).
 
 // Loaded and received are confirmed by a code shown to the camera, never assumed.
 +!attend(load, Stop, Order, Limit_s) <- wait_handover(load, Order, Stop, Limit_s).
@@ -34,9 +34,9 @@
 +!attend(park, _, _, _).
 
 // Nobody came: the robot says so and does not block.
--!attend(_, Stop, _, _)[error(no_one_came)] <- report(gave_up, Stop, no_one_came).
+-!attend(_, Stop, _, _)[reason(no_one_came)] <- report(gave_up, Stop, no_one_came).
 
 // An errand given by hand: `--achieve 'visit(post4)'`.
 +!visit(Post) <- +errand(Post); !decide.
 +!fulfil(visit(Post)) <- !go_to(Post); say(arrived); -errand(Post).
--!fulfil(visit(Post))[error(Error)] <- raise_fault(errand, Error); -errand(Post).
+-!fulfil(visit(Post))[error_msg(Why)] <- raise_fault(errand, Why); -errand(Post).

@@ -2,5 +2,5 @@
 // bumped, lifted or stopped by hand does not wait for a plan. Here is only what the mind makes of it.
 
 // `halted` holds while a fault or the emergency stop keeps the wheels still until a person has seen to it.
-+halted <- say(alarm); !decide.
++halted <- say(refused); !decide.
 -halted <- !decide.

@@ -20,7 +20,7 @@
 
 // Nothing enters a corridor ungranted, the way to a dock included.
 +!permission(Post) <- claim(Post).
--!permission(Post)[error(denied)] <- rest(15); !permission(Post).
+-!permission(Post)[reason(denied)] <- rest(15); !permission(Post).
 
 +!leave(Post) : direction(Post, Way) & (Way = left | Way = right | Way = behind) <- turn(Way).
 +!leave(_).
@@ -38,9 +38,9 @@
   <- rest(3 * Try);
      !search;
      !follow(Try + 1).
--!follow(Try)[error(Error)]
-  <- raise_fault(way_blocked, Error);
-     say(help);
+-!follow(Try)[error_msg(Why)]
+  <- raise_fault(way_blocked, Why);
+     say(refused);
      rest(30);
      !search;
      !follow(Try).

@@ -1,0 +1,181 @@
+"""Actions: what a program asks for is begun, refused by name, ended or cancelled; nothing vanishes."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from pathlib import Path
+
+import pytest
+
+from bdi import parse_term
+from maps import builtin_map
+from protocol.parts import Stop, StopAction
+from protocol.to_robot import Mission
+from robot.action.actions import Actions, table_for
+from robot.action.hands import Hands
+from robot.action.table import ACTIONS, PAPER_ACTIONS
+from robot.config import PerceptMode
+from robot.duties import Duties
+from robot.memory import Memory
+from robot.navigator import Navigator
+from robot.outbox import Outbox
+from robot.skills.interfaces import Done, Failed
+from robot.store import Store
+from tests.robot.fake_body import FakeBody
+
+NOW = datetime(2026, 1, 5, 9, tzinfo=UTC)
+MISSION = Mission(
+    id="m1",
+    update=1,
+    stops=(
+        Stop(id="s1", post="post1", action=StopAction.LOAD, order_id="o1"),
+        Stop(id="s2", post="post4", action=StopAction.RECEIVE, order_id="o1"),
+    ),
+)
+
+
+@dataclass
+class Bench:
+    """Actions over a fake body, with real duties in a file."""
+
+    store: Store
+    mode: PerceptMode = PerceptMode.LATEST
+    body: FakeBody = field(default_factory=FakeBody)
+    noted: list[str] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.duties = Duties(self.store, Memory(self.store), Outbox(self.store), lambda: NOW)
+        self.navigator = Navigator(builtin_map("test_track"), "post5", self.duties)
+        self.hands = Hands(self.body, self.navigator, self.duties, noted=self.noted.append)
+        self.actions = Actions(self.hands, table_for(self.mode))
+        self._next = 0
+
+    def ask(self, text: str, now: float = 0.0) -> int:
+        self._next += 1
+        self.actions.begin(self._next, parse_term(text), now)
+        return self._next
+
+    def result(self, text: str, now: float = 0.0) -> str | None:
+        """Why it failed at once; None for done."""
+        id_ = self.ask(text, now)
+        return dict(self.actions.finished(now))[id_]
+
+    def told(self) -> list[str]:
+        return [kept.message.model_dump_json() for kept in self.duties.outbox.pending()]
+
+
+@pytest.fixture
+def bench(tmp_path: Path) -> Iterator[Bench]:
+    store = Store(tmp_path / "robot.db")
+    yield Bench(store)
+    store.close()
+
+
+@pytest.mark.parametrize(
+    ("asked", "reason"),
+    [
+        ("fly(post1)", "unknown_action"),
+        ("turn(up)", "wrong_arguments"),
+        ("turn", "wrong_arguments"),
+        ("turn(left,now)", "wrong_arguments"),
+        ("rest(soon)", "wrong_arguments"),
+        ("set_destination(post9)", "unknown_post"),
+        ("set_destination([post1])", "wrong_arguments"),
+    ],
+)
+def test_what_cannot_be_done_fails_by_name_and_is_noted(bench: Bench, asked: str, reason: str) -> None:
+    assert bench.result(asked) == reason
+    assert len(bench.noted) == 2, "why, in words, and that it failed"
+    assert bench.body.started == []
+
+
+def test_an_action_lasts_as_long_as_its_skill(bench: Bench) -> None:
+    id_ = bench.ask("follow_line")
+    assert bench.actions.finished(1.0) == []
+    bench.body.end("follow_line", Done("post2"))
+    assert bench.actions.finished(2.0) == [(id_, None)]
+    assert bench.actions.finished(3.0) == []
+
+
+def test_a_skill_that_fails_ends_its_action_with_its_reason(bench: Bench) -> None:
+    id_ = bench.ask("follow_line")
+    bench.body.end("follow_line", Failed("line_lost"))
+    assert bench.actions.finished(1.0) == [(id_, "line_lost")]
+
+
+def test_a_second_motion_is_busy_and_the_first_goes_on(bench: Bench) -> None:
+    bench.ask("follow_line")
+    assert bench.result("turn(left)") == "busy"
+    assert bench.actions.under_way == ("follow_line",)
+
+
+def test_a_dropped_intention_cancels_its_skill_before_the_next_one_starts(bench: Bench) -> None:
+    first = bench.ask("follow_line")
+    bench.actions.cancel([first])
+    second = bench.ask("turn(left)")
+    assert bench.body.cancelled == ["follow_line"]
+    bench.body.end("turn")
+    assert bench.actions.finished(1.0) == [(second, None)], "nothing more is heard of the first"
+
+
+def test_a_destination_that_no_corridor_reaches_is_named(bench: Bench) -> None:
+    bench.navigator.place("post1", "post2")
+    assert bench.result("set_destination(post4)") is None
+    assert bench.navigator.way() == "behind" or bench.navigator.way() == "forward"
+
+
+def test_rest_ends_after_its_time(bench: Bench) -> None:
+    id_ = bench.ask("rest(5)", now=10.0)
+    assert bench.actions.finished(14.9) == []
+    assert bench.actions.finished(15.0) == [(id_, None)]
+
+
+def test_without_a_server_the_robot_may_drive_where_it_likes(bench: Bench) -> None:
+    bench.navigator.place("post1", "post2")
+    assert bench.result("claim(post4)") is None
+
+
+def test_a_confirmed_handover_is_kept_and_told_in_one_go(bench: Bench) -> None:
+    bench.duties.give(MISSION)
+    bench.navigator.place("post1", "post2")
+    id_ = bench.ask("wait_handover(load,o1,s1,600)")
+    bench.body.end("wait_handover", Done("ab" * 32))
+    assert bench.actions.finished(1.0) == [(id_, None)]
+    assert (bench.duties.held.cargo, bench.duties.held.next_stop) == (("o1",), 1)
+    assert [text for text in bench.told() if '"handover"' in text and "ab" * 32 in text]
+
+
+def test_nobody_coming_changes_no_custody(bench: Bench) -> None:
+    bench.duties.give(MISSION)
+    id_ = bench.ask("wait_handover(load,o1,s1,600)")
+    bench.body.end("wait_handover", Failed("no_one_came"))
+    assert bench.actions.finished(1.0) == [(id_, "no_one_came")]
+    assert (bench.duties.held.cargo, bench.duties.held.next_stop) == ((), 0)
+
+
+def test_a_report_is_told_once_however_often_it_is_made(bench: Bench) -> None:
+    bench.duties.give(MISSION)
+    for _ in range(3):
+        assert bench.result("report(departed,s1)") is None
+    assert len([text for text in bench.told() if '"departed"' in text]) == 1
+
+
+def test_a_trouble_is_told_once_until_it_is_cleared(bench: Bench) -> None:
+    for _ in range(2):
+        bench.result("raise_fault(way_blocked,line_lost)")
+    bench.result("clear_fault(way_blocked)")
+    bench.result("clear_fault(way_blocked)")
+    assert len(bench.told()) == 2
+
+
+def test_a_program_that_drains_means_the_papers_turn(tmp_path: Path) -> None:
+    store = Store(tmp_path / "robot.db")
+    bench = Bench(store, PerceptMode.DRAIN)
+    bench.ask("turn(left)")
+    assert type(next(iter(bench.body.running.values()))).__name__ == "PaperTurn"
+    assert bench.result("turn(behind)") == "wrong_arguments"
+    store.close()
+
+
+def test_every_action_says_what_it_does() -> None:
+    assert [action.name for action in (*ACTIONS, *PAPER_ACTIONS) if not action.about] == []

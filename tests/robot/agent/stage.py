@@ -1,0 +1,93 @@
+"""A stage for our agent program alone: percepts go in, actions must come out within so many cycles.
+
+No robot, no clock, no thread: plain `Agent.cycle`. What the body would do is told by the test.
+"""
+
+from bdi import Agent, Finished, Message, parse_program
+from robot.assembly import OUR_PROGRAM
+
+PROGRAM = parse_program(OUR_PROGRAM.read_text("utf-8"), source=str(OUR_PROGRAM))
+SOON = 40
+
+
+class Stage:
+    """The agent, what it believes to perceive, and the actions that it waits for."""
+
+    def __init__(self, *percepts: str) -> None:
+        self.agent = Agent(PROGRAM, name="r1")
+        self.percepts = set(percepts)
+        self.waiting: dict[str, int] = {}
+        self.done: list[str] = []
+        self.cancelled: list[str] = []
+        self.failures: list[str] = []
+        self.now = 0.0
+        self._finished: list[Finished] = []
+        self._messages: list[Message] = []
+
+    def cycle(self) -> list[str]:
+        """One reasoning cycle; the actions that were started."""
+        outcome = self.agent.cycle(frozenset(self.percepts), self._messages[:1], self._finished, self.now)
+        self._messages, self._finished = self._messages[1:], []
+        self.now += 0.1
+        names = {id_: name for name, id_ in self.waiting.items()}
+        for id_ in outcome.cancelled:
+            self.cancelled.append(names[id_])
+            del self.waiting[names[id_]]
+        for action in outcome.actions:
+            self.waiting[str(action.term)] = action.id
+        self.failures += map(str, outcome.failures)
+        return [str(action.term) for action in outcome.actions]
+
+    def expect(self, action: str, within: int = SOON) -> None:
+        """The agent must start this action soon (and wait for it)."""
+        for _ in range(within):
+            if action in self.waiting:
+                return
+            self.cycle()
+        raise AssertionError(
+            f"no {action} within {within} cycles; it waits for {sorted(self.waiting)}, did {self.done}"
+        )
+
+    def expect_cancelled(self, action: str, within: int = SOON) -> None:
+        """The intention that waits for this action must be dropped soon."""
+        for _ in range(within):
+            if action in self.cancelled:
+                return
+            self.cycle()
+        raise AssertionError(f"{action} was not cancelled within {within} cycles; cancelled {self.cancelled}")
+
+    def does(self, *actions: str) -> None:
+        """It starts these one after another, and each succeeds at once."""
+        for action in actions:
+            self.expect(action)
+            self.succeeds(action)
+
+    def succeeds(self, action: str) -> None:
+        self._finished.append(Finished(self.waiting.pop(action)))
+        self.done.append(action)
+
+    def fails(self, action: str, reason: str) -> None:
+        self._finished.append(Finished(self.waiting.pop(action), reason))
+
+    def perceives(self, *added: str, without: tuple[str, ...] = ()) -> None:
+        """These hold from now on, those no longer."""
+        self.percepts = (self.percepts - set(without)) | set(added)
+
+    def reads(self, performative: str, content: str) -> None:
+        self._messages.append(Message("user", performative, content))
+
+    def settle(self, cycles: int = SOON) -> None:
+        """Let it think; whatever it starts, it waits for."""
+        for _ in range(cycles):
+            self.cycle()
+
+    # What happens between posts.
+
+    def leaves(self) -> None:
+        self.percepts = {term for term in self.percepts if not term.startswith(("at(", "direction("))}
+
+    def reaches(self, post: str, *more: str) -> None:
+        """follow_line ends at a post."""
+        self.leaves()
+        self.percepts |= {f"at({post})", *more}
+        self.succeeds("follow_line")

@@ -1,0 +1,143 @@
+"""Our agent when the battery is low, when something is in the way, and when somebody stops it."""
+
+from tests.robot.agent.stage import Stage
+from tests.robot.agent.test_mission import HOME, MISSION, drive
+
+CARRYING = (*HOME, *MISSION, "next_stop(1)", "carrying(o1)")
+
+
+def on_its_way_with_mail() -> Stage:
+    """Between post2 and post3."""
+    stage = Stage(*CARRYING, "at(post2)")
+    stage.does("report(departed,s2)", "set_destination(post4)", "claim(post4)")
+    stage.expect("follow_line")
+    stage.leaves()
+    return stage
+
+
+def becomes_low(stage: Stage) -> None:
+    stage.perceives("battery(low)", without=("battery(ok)",))
+
+
+def test_a_low_battery_interrupts_the_mission_charges_until_full_and_takes_it_up_again() -> None:
+    stage = on_its_way_with_mail()
+    becomes_low(stage)
+    stage.does("report_charge(low)")
+    stage.expect_cancelled("follow_line")
+    stage.expect("follow_line")  # interrupted between posts: on to the next marker
+    stage.reaches("post3")
+    stage.does("clear_fault(way_blocked)", "set_destination(post5)", "claim(post5)")
+    stage.perceives("direction(post5,left)")
+    stage.does("turn(left)")
+    stage.expect("follow_line")
+    stage.reaches("post5")
+    stage.does("clear_fault(way_blocked)")
+    stage.expect("dock")
+    stage.perceives("docked", "battery(ok)", without=("battery(low)",))
+    stage.succeeds("dock")
+    stage.does("clear_fault(no_dock)", "report_charge(charging)")
+    stage.settle()
+    assert stage.waiting == {}, "ok is not full: it goes on charging"
+    stage.perceives("battery(full)", without=("battery(ok)",))
+    stage.does("report_charge(charged)", "report(departed,s2)", "set_destination(post4)", "claim(post4)")
+    stage.expect("undock")
+    stage.perceives(without=("docked",))
+    stage.succeeds("undock")
+    drive(stage, "post4", "forward", "post3", "post4")
+    stage.does("report(arrived,s2)")
+    stage.expect("wait_handover(receive,o1,s2,600)")
+    assert stage.failures == []
+
+
+def test_low_is_told_once_even_if_the_battery_trembles() -> None:
+    stage = on_its_way_with_mail()
+    for _ in range(3):
+        becomes_low(stage)
+        stage.settle(10)
+        stage.perceives("battery(ok)", without=("battery(low)",))
+        stage.settle(10)
+        if "report_charge(low)" in stage.waiting:
+            stage.succeeds("report_charge(low)")
+    assert stage.done.count("report_charge(low)") == 1
+
+
+def test_a_mission_given_while_charging_waits_without_being_busy() -> None:
+    stage = Stage(*HOME, "docked", "at(post5)")
+    becomes_low(stage)
+    stage.does("report_charge(low)", "report_charge(charging)")
+    stage.perceives(*MISSION, "next_stop(0)")
+    stage.settle()
+    assert stage.waiting == {}
+    assert stage.agent.idle, "it waits for the percept, not by asking again and again"
+    stage.perceives("battery(full)", without=("battery(low)",))
+    stage.does("report_charge(charged)", "report(departed,s1)")
+
+
+def test_a_dock_that_cannot_be_found_is_told_and_tried_again() -> None:
+    stage = Stage(*HOME, "at(post5)")
+    stage.expect("dock")
+    stage.fails("dock", "no_dock")
+    stage.does('raise_fault(no_dock,"no_dock")')
+    stage.settle()
+    stage.does(next(action for action in stage.waiting if action.startswith("raise_fault(trouble")))
+    stage.does("rest(10)")
+    stage.expect("dock")
+
+
+def test_a_blocked_way_is_tried_again_with_growing_patience_then_people_are_told() -> None:
+    stage = on_its_way_with_mail()
+    for patience in (3, 6, 9):
+        stage.fails("follow_line", "blocked")
+        stage.does(f"rest({patience})", "find_line")
+        stage.expect("follow_line")
+    stage.fails("follow_line", "blocked")
+    stage.does('raise_fault(way_blocked,"blocked")', "say(refused)", "rest(30)", "find_line")
+    stage.expect("follow_line")
+    stage.reaches("post3")
+    stage.does("clear_fault(way_blocked)", "report(passed,s2)", "set_destination(post4)")
+
+
+def test_a_turn_that_finds_no_line_searches_and_goes_on() -> None:
+    stage = Stage(*CARRYING, "at(post3)")
+    stage.does("report(departed,s2)", "set_destination(post4)", "claim(post4)")
+    stage.perceives("direction(post4,right)")
+    stage.expect("turn(right)")
+    stage.fails("turn(right)", "line_lost")
+    stage.does("find_line")
+    stage.expect("follow_line")
+
+
+def test_a_denied_corridor_is_asked_for_again_after_a_while() -> None:
+    stage = Stage(*CARRYING, "at(post3)")
+    stage.does("report(departed,s2)", "set_destination(post4)")
+    stage.expect("claim(post4)")
+    stage.fails("claim(post4)", "denied")
+    stage.does("rest(15)")
+    stage.expect("claim(post4)")
+
+
+def test_an_emergency_stop_drops_everything_and_rearming_takes_it_up_again() -> None:
+    stage = on_its_way_with_mail()
+    stage.perceives("halted", "fault(emergency_stop)")
+    stage.does("say(refused)")
+    stage.settle()
+    assert stage.cancelled == ["follow_line"]
+    assert stage.waiting == {}
+    stage.perceives(without=("halted", "fault(emergency_stop)"))
+    stage.does("report(departed,s2)")
+    stage.expect("follow_line")
+
+
+def test_safety_comes_before_the_battery() -> None:
+    stage = Stage(*HOME, "halted", "at(post3)")
+    becomes_low(stage)
+    stage.does("report_charge(low)")
+    stage.settle()
+    assert not {"follow_line", "set_destination(post5)"} & {*stage.waiting, *stage.done}
+
+
+def test_a_robot_pulled_out_of_its_dock_drives_back() -> None:
+    stage = Stage(*HOME, "docked", "at(post5)")
+    stage.settle()
+    stage.perceives(without=("docked",))
+    stage.expect("dock")

@@ -1,0 +1,30 @@
+"""The manual names everything that a person can set and that an agent program can say."""
+
+from pathlib import Path
+
+import pytest
+
+from robot.action.table import ACTIONS, PAPER_ACTIONS
+from robot.config import keys, load_settings
+from robot.perception.percepts import PERCEPTS
+
+MANUAL = (Path(__file__).parents[2] / "docs" / "robot.md").read_text("utf-8")
+
+
+@pytest.mark.parametrize("key", sorted(keys()))
+def test_every_setting_is_in_the_manual_with_its_meaning(key: str) -> None:
+    rows = [line for line in MANUAL.splitlines() if line.startswith(f"| `{key}` |")]
+    assert [row for row in rows if keys()[key] in row], f"docs/robot.md does not describe {key}"
+
+
+def test_every_action_and_percept_is_in_the_manual() -> None:
+    missing = [action.name for action in (*ACTIONS, *PAPER_ACTIONS) if action.about not in MANUAL]
+    missing += [row.name for row in PERCEPTS if f"| `{row.name}` |" not in MANUAL]
+    assert missing == []
+
+
+def test_the_manuals_example_is_accepted(tmp_path: Path) -> None:
+    example = MANUAL.split("```toml\n")[1].split("```")[0]
+    path = tmp_path / "robot.toml"
+    path.write_text(example)
+    assert load_settings(path, {}).map == "carleton"
