@@ -310,9 +310,7 @@ def test_a_charging_robot_prints_a_battery_line_a_second_until_it_is_started(mak
     bench.run(10)
     lines = bench.heard().decode("ascii").splitlines()
     assert len(lines) == 10
-    assert re.fullmatch(
-        r"bat:   min 0  sec 8  mV \d+  mA 1250  tenths-deg-C \d+  mAH \d+  state 8  mode 7", lines[-1]
-    )
+    assert re.fullmatch(r"bat:   min 0  sec 8  mV \d+  mA 1250  tenths-deg-C \d+  mAH \d+  state 8  mode 7", lines[-1])
     bench.send(128)
     bench.heard()
     bench.run(5)
