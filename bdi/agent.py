@@ -522,7 +522,7 @@ class Agent:
     def forget(self, literal: Literal, intention: Intention | None) -> None:
         """-b: the newest belief of our own that unifies"""
         gone = self._take_back(sourced(literal, SELF))
-        if gone is not None and self.library.options(Trigger.BELIEF_REMOVED, gone.predicate):
+        if gone is not None:
             self._react(Trigger.BELIEF_REMOVED, gone, intention)
 
     def update(self, literal: Literal, intention: Intention) -> None:
