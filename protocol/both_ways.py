@@ -1,6 +1,6 @@
 """What either side says: that it has handled something, or that it could not."""
 
-from protocol.parts import Part, Sentence
+from protocol.parts import Part, Sentence, Seq
 
 
 class Ack(Part):
@@ -12,4 +12,4 @@ class Error(Part):
 
     code: str
     message: Sentence
-    seq: int | None = None
+    seq: Seq | None = None

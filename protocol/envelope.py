@@ -11,11 +11,11 @@ import json
 from collections.abc import Mapping
 from typing import Any, Final
 
-from pydantic import AwareDatetime, Field, SerializeAsAny, ValidationError
+from pydantic import Field, SerializeAsAny, ValidationError
 
 from protocol import both_ways, to_robot, to_server
 from protocol.errors import MalformedMessage, MessageTooLarge, NewerVersion, ProtocolError, UnknownMessage
-from protocol.parts import Identifier, Part
+from protocol.parts import Identifier, Moment, Part, Seq
 
 MAJOR_VERSION: Final = 1
 MAX_MESSAGE_BYTES: Final = 64 * 1024
@@ -57,9 +57,9 @@ class Envelope(Part):
     type: str
     robot: Identifier
     journal: Identifier
-    seq: int | None = Field(default=None, ge=1)
-    ack: int = Field(default=0, ge=0)
-    at: AwareDatetime
+    seq: Seq | None = None
+    ack: int = Field(default=0, ge=0, le=2**53)
+    at: Moment
     replay: bool = False
     body: SerializeAsAny[Part]
 
@@ -83,7 +83,8 @@ def parse(text: str | bytes, accepted: Mapping[str, type[Part]]) -> Envelope:
         return _read_envelope(raw, accepted)
     except ProtocolError as error:
         seq = raw.get("seq")
-        error.seq = seq if isinstance(seq, int) and not isinstance(seq, bool) else None
+        is_legible = isinstance(seq, int) and not isinstance(seq, bool) and 1 <= seq <= 2**53
+        error.seq = seq if is_legible else None
         raise
 
 

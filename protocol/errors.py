@@ -14,7 +14,8 @@ class ProtocolError(ValueError):
     code = "protocol_error"
 
     def __init__(self, sentence: str, seq: int | None = None) -> None:
-        super().__init__(sentence)
+        # What the sentence quotes came from outside; half a surrogate pair could not be sent back.
+        super().__init__(sentence.encode("utf-8", "backslashreplace").decode())
         self.seq = seq
 
 

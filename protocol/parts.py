@@ -1,5 +1,6 @@
 """The nouns that several messages share. Times are UTC, lengths are metres, charge is a ratio of 0 to 1."""
 
+from datetime import UTC, datetime
 from enum import StrEnum
 from typing import Annotated
 
@@ -11,13 +12,19 @@ PostName = Annotated[str, StringConstraints(pattern=r"^[a-z][A-Za-z0-9_]*$", max
 Identifier = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]*$", max_length=64)]
 Sentence = Annotated[str, StringConstraints(max_length=500)]
 Ratio = Annotated[float, Field(ge=0.0, le=1.0)]
+Seq = Annotated[int, Field(ge=1, le=2**53)]
+"""A number in a journal; what every database and every JSON reader can hold."""
+
+Moment = Annotated[AwareDatetime, Field(ge=datetime(1970, 1, 1, tzinfo=UTC), lt=datetime(3000, 1, 1, tzinfo=UTC))]
+"""When something happened, with its zone. A device that has lost its clock says 1970: allowed, and an alarm."""
+
 Sha256Hex = Annotated[str, StringConstraints(pattern=r"^[0-9a-f]{64}$")]
 
 
 class Part(BaseModel):
-    """Frozen and exact: a field that nobody declared is an error, never ignored."""
+    """Frozen and exact: a field that nobody declared is an error, never ignored; numbers are finite."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
 
 class StopAction(StrEnum):
@@ -57,8 +64,8 @@ class MissionHeld(Part):
     """Which mission the robot holds, and which of its stops comes next (0 = the first)."""
 
     id: Identifier
-    update: int = Field(ge=1)
-    next_stop: int = Field(ge=0)
+    update: Seq
+    next_stop: int = Field(ge=0, le=2**53)
 
 
 class Position(Part):
@@ -67,7 +74,7 @@ class Position(Part):
     post: PostName | None = None
     previous: PostName | None = None
     towards: PostName | None = None
-    seen_at: AwareDatetime | None = None
+    seen_at: Moment | None = None
 
 
 class Battery(Part):
@@ -81,7 +88,7 @@ class Received(Part):
     """The highest contiguous `seq` of the other side's journal that has been handled; nothing yet is journal None."""
 
     journal: Identifier | None = None
-    seq: int = Field(default=0, ge=0)
+    seq: int = Field(default=0, ge=0, le=2**53)
 
 
 class Activity(StrEnum):

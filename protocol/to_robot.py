@@ -1,8 +1,8 @@
 """What the server says to a robot: one frozen class per message."""
 
-from pydantic import AwareDatetime, Field
+from pydantic import Field
 
-from protocol.parts import Identifier, Leg, Part, Purpose, Received, Sentence, Sha256Hex, Stop
+from protocol.parts import Identifier, Leg, Moment, Part, Purpose, Received, Sentence, Seq, Sha256Hex, Stop
 
 
 class Welcome(Part):
@@ -12,16 +12,16 @@ class Welcome(Part):
     """
 
     received: Received
-    resume_from: int = Field(default=1, ge=1)
+    resume_from: Seq = 1
     server: Sentence
-    at: AwareDatetime
+    at: Moment
 
 
 class Mission(Part):
     """What to do now. The same update again is a no-op; different stops under the same number are an error."""
 
     id: Identifier
-    update: int = Field(ge=1)
+    update: Seq
     stops: tuple[Stop, ...]
 
 
@@ -31,7 +31,7 @@ class Verifier(Part):
     order_id: Identifier
     purpose: Purpose
     sha256: Sha256Hex
-    expires_at: AwareDatetime
+    expires_at: Moment
 
 
 class Verifiers(Part):

@@ -3,7 +3,7 @@
 from enum import StrEnum
 from typing import Annotated, Literal
 
-from pydantic import AwareDatetime, Field
+from pydantic import Field
 
 from protocol.parts import (
     Activity,
@@ -11,12 +11,14 @@ from protocol.parts import (
     Identifier,
     Leg,
     MissionHeld,
+    Moment,
     Part,
     Position,
     PostName,
     Purpose,
     Received,
     Sentence,
+    Seq,
     Sha256Hex,
 )
 
@@ -29,7 +31,7 @@ class Hello(Part):
     """
 
     received: Received = Received()
-    resume_from: int = Field(default=1, ge=1)
+    resume_from: Seq = 1
     position: Position
     cargo: tuple[Identifier, ...] = ()
     mission: MissionHeld | None = None
@@ -64,7 +66,7 @@ class Progress(Part):
 
     kind: Literal["progress"] = "progress"
     step: Step
-    happened_at: AwareDatetime
+    happened_at: Moment
     mission_id: Identifier
     stop_id: Identifier | None = None
     order_id: Identifier | None = None
@@ -83,7 +85,7 @@ class HandoverReceipt(Part):
     order_id: Identifier
     stop_id: Identifier
     post: PostName
-    happened_at: AwareDatetime
+    happened_at: Moment
     code_sha256: Sha256Hex | None
 
 
@@ -92,7 +94,7 @@ class Charge(Part):
 
     kind: Literal["charge"] = "charge"
     step: Literal["low", "charging", "charged"]
-    happened_at: AwareDatetime
+    happened_at: Moment
     post: PostName | None = None
     ratio: float = Field(ge=0.0, le=1.0)
 
@@ -103,7 +105,7 @@ class Fault(Part):
     kind: Literal["fault"] = "fault"
     name: Identifier
     cleared: bool = False
-    happened_at: AwareDatetime
+    happened_at: Moment
     post: PostName | None = None
     reason: Sentence
 
@@ -114,7 +116,7 @@ class CommandAnswer(Part):
     kind: Literal["answer"] = "answer"
     command_id: Identifier
     accepted: bool
-    happened_at: AwareDatetime
+    happened_at: Moment
     reason: Sentence | None = None
 
 

@@ -1,0 +1,58 @@
+"""`python -m protocol` prints the messages as docs/protocol.md shows them; `--write` puts them there."""
+
+import inspect
+import sys
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+from protocol.envelope import BOTH_WAYS, DURABLE, TO_ROBOT, TO_SERVER, parse
+from protocol.parts import Part
+
+EXAMPLES = Path(__file__).parent / "examples"
+PAGE = Path(__file__).parents[1] / "docs" / "protocol.md"
+BEGIN, END = "<!-- messages: python -m protocol --write -->\n", "<!-- end of messages -->\n"
+
+DIRECTIONS: Mapping[str, Mapping[str, type[Part]]] = {
+    "Robot to server": {name: kind for name, kind in TO_SERVER.items() if name not in BOTH_WAYS},
+    "Server to robot": {name: kind for name, kind in TO_ROBOT.items() if name not in BOTH_WAYS},
+    "Both ways": BOTH_WAYS,
+}
+
+
+def examples_of(name: str) -> list[Path]:
+    """The example files of a message type: `<type>.json` first, then its variants `<type>_<variant>.json`."""
+    return sorted(path for path in EXAMPLES.glob(f"{name}*.json") if path.stem.split("_")[0] == name)
+
+
+def messages_as_markdown() -> str:
+    """One section per direction, one part per message: what it means, whether it is kept, its example files."""
+    return "".join(_lines())
+
+
+def _lines() -> Iterator[str]:
+    for direction, messages in DIRECTIONS.items():
+        yield f"## {direction}\n\n"
+        for name, kind in messages.items():
+            yield f"### {name}\n\n{inspect.cleandoc(kind.__doc__ or '')}\n\n"
+            yield _kept(name)
+            for path in examples_of(name):
+                parse(path.read_bytes(), {name: kind})
+                yield f"`{path.relative_to(PAGE.parents[1])}`\n\n```json\n{path.read_text()}```\n\n"
+
+
+def _kept(name: str) -> str:
+    if name in DURABLE:
+        return "*Durable*: numbered, kept on disk, sent again until it is acknowledged.\n\n"
+    return "Not kept: carries no `seq`.\n\n"
+
+
+def _write() -> None:
+    before, _, rest = PAGE.read_text().partition(BEGIN)
+    PAGE.write_text(before + BEGIN + messages_as_markdown() + END + rest.partition(END)[2])
+
+
+if __name__ == "__main__":
+    if sys.argv[1:] == ["--write"]:
+        _write()
+    else:
+        print(messages_as_markdown(), end="")

@@ -1,0 +1,191 @@
+"""Every message has an example file, which is read, written and documented; nothing else is ever let in."""
+
+import ast
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from protocol.__main__ import BEGIN, END, EXAMPLES, PAGE, examples_of, messages_as_markdown
+from protocol.both_ways import Error
+from protocol.envelope import DURABLE, MAX_MESSAGE_BYTES, TO_ROBOT, TO_SERVER, Envelope, parse, type_of
+from protocol.errors import MalformedMessage, MessageTooLarge, NewerVersion, ProtocolError, UnknownMessage
+from protocol.parts import Part
+
+ROOT = Path(__file__).parents[2]
+EVERY = {**TO_SERVER, **TO_ROBOT}
+FILES = sorted(EXAMPLES.glob("*.json"))
+TEXTS = {path.stem: path.read_text() for path in FILES}
+texts = st.text(st.characters(), max_size=20)  # half surrogate pairs among them
+json_values = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats() | texts,
+    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(texts, inner, max_size=4),
+    max_leaves=10,
+)
+
+
+def accepted_by(name: str) -> Mapping[str, type[Part]]:
+    return TO_SERVER if name in TO_SERVER else TO_ROBOT
+
+
+def example(stem: str) -> dict[str, Any]:
+    raw: dict[str, Any] = json.loads(TEXTS[stem])
+    return raw
+
+
+@pytest.mark.parametrize("name", EVERY)
+def test_every_message_has_an_example_file(name: str) -> None:
+    assert EXAMPLES / f"{name}.json" in examples_of(name)
+
+
+def test_every_example_file_is_of_a_message_and_every_kind_of_event_is_among_them() -> None:
+    kinds = set()
+    for stem, text in TEXTS.items():
+        envelope = parse(text, EVERY)
+        assert envelope.type == stem.split("_")[0]
+        if envelope.type == "event":
+            kinds.add(example(stem)["body"]["happened"]["kind"])
+    assert kinds == {"progress", "handover", "charge", "fault", "answer"}
+
+
+@pytest.mark.parametrize("stem", TEXTS)
+def test_an_example_is_read_and_written_without_change(stem: str) -> None:
+    envelope = parse(TEXTS[stem], EVERY)
+    assert type_of(envelope.body) == envelope.type
+    assert json.loads(envelope.to_text()) == example(stem)
+    assert parse(envelope.to_text(), EVERY) == envelope
+
+
+@pytest.mark.parametrize("stem", TEXTS)
+def test_durable_messages_and_no_others_carry_a_number(stem: str) -> None:
+    raw = example(stem)
+    assert (raw["seq"] is not None) == (raw["type"] in DURABLE)
+    raw["seq"] = None if raw["type"] in DURABLE else 7
+    with pytest.raises(MalformedMessage, match="seq: durable messages carry a seq, others none"):
+        parse(json.dumps(raw), EVERY)
+
+
+def test_messages_are_frozen_and_exact() -> None:
+    envelope = parse(TEXTS["claim"], TO_SERVER)
+    with pytest.raises(ValueError, match="frozen"):
+        envelope.body.claim_id = "other"  # type: ignore[attr-defined]
+    raw = example("claim")
+    raw["body"]["colour"] = "red"
+    with pytest.raises(MalformedMessage, match=r"claim: colour: Extra inputs are not permitted") as caught:
+        parse(json.dumps(raw), TO_SERVER)
+    assert caught.value.seq == raw["seq"], "whoever sent it can find it again"
+
+
+@pytest.mark.parametrize(
+    ("stem", "place", "value"),
+    [
+        ("ack", "ack", 2**60),
+        ("clear", "seq", 2**60),
+        ("clear", "at", "0001-01-01T00:00:00+14:00"),
+        ("clear", "at", "1969-12-31T23:59:59Z"),
+        ("clear", "at", "2026-01-05T09:00:00"),
+    ],
+)
+def test_numbers_and_times_that_no_database_could_keep_are_malformed(stem: str, place: str, value: object) -> None:
+    with pytest.raises(MalformedMessage, match=place):
+        parse(json.dumps({**example(stem), place: value}), EVERY)
+
+
+@pytest.mark.parametrize("stem", ["mission", "grant", "welcome"])
+def test_what_goes_to_the_robot_is_unknown_to_the_server(stem: str) -> None:
+    with pytest.raises(UnknownMessage, match="is not known here; known are"):
+        parse(TEXTS[stem], TO_SERVER)
+
+
+@pytest.mark.parametrize("version", [2, 10**30])
+def test_a_newer_version_is_named_whatever_else_it_says(version: int) -> None:
+    with pytest.raises(NewerVersion, match="update this side first"):
+        parse(json.dumps({"v": version, "type": "teleport", "payload": []}), TO_ROBOT)
+
+
+@pytest.mark.parametrize("version", [0, -1, 1.0, "1", None, True])
+def test_a_version_that_is_none_is_malformed(version: object) -> None:
+    with pytest.raises(MalformedMessage, match="v: a whole number from 1"):
+        parse(json.dumps({**example("ack"), "v": version}), TO_ROBOT)
+
+
+def test_a_message_that_is_too_large_is_not_even_read() -> None:
+    with pytest.raises(MessageTooLarge, match=f"at most {MAX_MESSAGE_BYTES}"):
+        parse("[" * (MAX_MESSAGE_BYTES + 1), TO_ROBOT)
+    with pytest.raises(MessageTooLarge):
+        parse("é" * (MAX_MESSAGE_BYTES // 2 + 1), TO_ROBOT)
+
+
+def only_protocol_errors(text: str | bytes) -> Envelope | None:
+    try:
+        return parse(text, EVERY)
+    except ProtocolError as error:
+        answer = Error(code=error.code, message=str(error)[:500], seq=error.seq)
+        assert answer.message
+        assert answer.model_dump_json(), "it can be sent"
+        return None
+
+
+@given(st.text(st.characters()) | st.binary())
+def test_no_text_raises_anything_but_a_protocol_error(text: str | bytes) -> None:
+    only_protocol_errors(text)
+
+
+@given(json_values)
+def test_no_json_raises_anything_but_a_protocol_error(value: object) -> None:
+    only_protocol_errors(json.dumps(value))
+
+
+@given(st.sampled_from(FILES), st.data())
+def test_no_change_to_a_message_raises_anything_but_a_protocol_error(path: Path, data: st.DataObject) -> None:
+    """Somewhere in a sound message, something else; what is let in all the same is what a message says."""
+    raw = json.loads(path.read_text())
+    place, key = data.draw(st.sampled_from(list(_places(raw))))
+    place[key] = data.draw(json_values)
+    envelope = only_protocol_errors(json.dumps(raw))
+    if envelope is not None:
+        assert parse(envelope.to_text(), EVERY) == envelope
+
+
+@given(st.sampled_from(FILES), st.integers(0, 2000), st.text(max_size=3))
+def test_a_torn_message_raises_a_protocol_error(path: Path, at: int, stray: str) -> None:
+    text = path.read_text()
+    only_protocol_errors(text[:at] + stray + text[at + 1 :])
+    with pytest.raises(ProtocolError):
+        parse(text[: min(at, len(text.rstrip()) - 1)], EVERY)
+
+
+def _places(value: Any) -> list[tuple[Any, Any]]:
+    """Every place in a JSON value that holds something: container and key."""
+    if not isinstance(value, dict | list):
+        return []
+    keys = list(value) if isinstance(value, dict) else list(range(len(value)))
+    return [(value, key) for key in keys] + [place for key in keys for place in _places(value[key])]
+
+
+def test_the_documentation_shows_every_message_as_it_is() -> None:
+    shown = PAGE.read_text().partition(BEGIN)[2].partition(END)[0]
+    assert shown == messages_as_markdown(), "run: python -m protocol --write"
+
+
+def test_the_documentation_names_every_error_code_of_the_link() -> None:
+    page = PAGE.read_text()
+    sources = [ROOT / "protocol/errors.py", ROOT / "app/fleet/errors.py", ROOT / "robot/memory.py"]
+    codes = {code for path in sources for code in _codes_of_link(path)}
+    assert codes >= {"malformed_message", "message_gap", "mission_conflict", "unknown_stop"}
+    assert [code for code in sorted(codes) if f"`{code}`" not in page] == []
+
+
+def _codes_of_link(path: Path) -> set[str]:
+    """The `code = "…"` of the error classes in a file; base classes and those that answer HTTP requests excepted."""
+    not_on_the_link = {"protocol_error", "fleet_error", "robot_exists", "robot_name_invalid", "unknown_robot"}
+    found = set()
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name) and node.targets[0].id == "code":
+            assert isinstance(node.value, ast.Constant)
+            found.add(str(node.value.value))
+    return found - not_on_the_link
