@@ -8,11 +8,14 @@ const BASE = "/api/v1";
 
 /** The service refused: `code` is stable and has a text, `detail` is its own sentence (RFC 9457). */
 export class ApiProblem extends Error {
-  /** @param {number} status @param {{code?: string, title?: string, detail?: string}} body */
+  /** @param {number} status
+   *  @param {{code?: string, title?: string, detail?: string, errors?: {field: string, message: string}[]}} body */
   constructor(status, body) {
     super(body.detail ?? body.title ?? `HTTP ${status}`);
     this.status = status;
     this.code = body.code ?? "unknown";
+    /** The fields of the request that were not understood, without the "body." before them. */
+    this.fields = (body.errors ?? []).map(({ field }) => field.replace(/^body\./, ""));
   }
 }
 
@@ -31,7 +34,7 @@ async function ask(path, { method = "GET", body, headers = {} } = {}) {
     body: body ? JSON.stringify(body) : undefined,
   });
   if (!answer.ok) throw new ApiProblem(answer.status, await answer.json().catch(() => ({})));
-  return answer.headers.get("Content-Type")?.includes("json") ? answer.json() : null;
+  return answer.status === 204 ? null : answer.json();
 }
 
 /** @param {string} path @param {RequestInit} request */

@@ -6,7 +6,13 @@ import * as api from "./api.js";
 let asked = null;
 
 /** The map, asked for once per page. */
-export const loadMap = () => (asked ??= api.campusMap());
+export function loadMap() {
+  asked ??= api.campusMap().catch((failure) => {
+    asked = null;
+    throw failure;
+  });
+  return asked;
+}
 
 /** A post's title; its name where this map does not know it. @param {CampusMap} map @param {string | null} name */
 export const titleOf = (map, name) => map.posts.find((post) => post.name === name)?.title ?? name ?? "";

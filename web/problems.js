@@ -11,9 +11,11 @@ export function inWords(failure) {
 
 /**
  * The same as `{field: sentence}`; "form" is the field of everything that belongs to none.
- * @param {unknown} failure @param {Record<string, string>} fieldOfCode
+ * @param {unknown} failure @param {Record<string, string>} fieldOfCode @returns {Record<string, string>}
  */
 export function atFields(failure, fieldOfCode) {
-  const field = failure instanceof ApiProblem ? fieldOfCode[failure.code] : undefined;
-  return { [field ?? "form"]: inWords(failure) };
+  if (!(failure instanceof ApiProblem)) return { form: inWords(failure) };
+  const malformed = failure.fields.filter((field) => hasText(`error.malformed.${field}`));
+  if (malformed.length) return Object.fromEntries(malformed.map((field) => [field, t(`error.malformed.${field}`)]));
+  return { [fieldOfCode[failure.code] ?? "form"]: inWords(failure) };
 }

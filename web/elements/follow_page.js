@@ -21,6 +21,10 @@ import { PageElement } from "./page_element.js";
 const AT_ME = { load: "at_sender", receive: "at_recipient" };
 
 export class FollowPage extends PageElement {
+  /** How often it was asked; an answer to an older question than the newest is not shown. */
+  #asked = 0;
+  #waiting = false;
+
   static properties = {
     order_id: { attribute: false },
     demo: { type: Boolean },
@@ -42,8 +46,8 @@ export class FollowPage extends PageElement {
     this.robot = null;
     this.problem = "";
     new OnLive(this, {
-      order: (order) => order.id === this.order_id && this.#show(order),
-      robot: (robot) => robot.name === this.order?.robot?.name && (this.robot = robot),
+      order: (order) => order.id === this.order_id && this.#hear(() => this.#show(order)),
+      robot: (robot) => robot.name === this.order?.robot?.name && this.#hear(() => (this.robot = robot)),
       connected: (connected) => connected && this.#fetch(),
     });
   }
@@ -132,14 +136,31 @@ export class FollowPage extends PageElement {
     this.robot = order.robot;
   }
 
+  /** An answer that is still on its way may be older than what was just heard: ask again. @param {() => void} take */
+  #hear(take) {
+    take();
+    if (this.#waiting) this.#fetch();
+  }
+
   async #fetch() {
+    const question = ++this.#asked;
+    this.#waiting = true;
+    const found = await this.#ask();
+    if (question !== this.#asked) return;
+    this.#waiting = false;
+    if (!found) return;
+    [this.map, this.problem] = [found.map, ""];
+    this.#show(found.order);
+  }
+
+  /** Null after a failure, which is said where nothing else can be shown. */
+  async #ask() {
     try {
       const [map, order] = await Promise.all([loadMap(), api.order(this.order_id)]);
-      this.map = map;
-      this.#show(order);
+      return { map, order };
     } catch (failure) {
-      // What is known stays on the page when the network goes.
       if (!this.order) this.problem = failure instanceof api.ApiProblem ? t("follow.unknown.body") : inWords(failure);
+      return null;
     }
   }
 }

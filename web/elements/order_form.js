@@ -67,9 +67,12 @@ export class OrderForm extends PageElement {
       )}
       ${this.#recent()}
       ${field(
-        { name: "description", label: t("order.description"), hint: t("order.description_hint"), optional: true },
-        ({ id, describedBy }) => html`<input id=${id} name="description" maxlength="200" autocomplete="off"
-          .value=${this.wanted.description} aria-describedby=${describedBy} />`,
+        {
+          ...{ name: "description", label: t("order.description"), hint: t("order.description_hint") },
+          ...{ problem: this.problems.description, optional: true },
+        },
+        ({ id, describedBy, invalid }) => html`<input id=${id} name="description" maxlength="200" autocomplete="off"
+          .value=${this.wanted.description} aria-describedby=${describedBy} aria-invalid=${invalid} />`,
       )}
       ${estimateView(this.estimate)} ${this.problems.form ? problemLine(this.problems.form) : nothing}
       <button class="main" aria-disabled=${this.sending ? "true" : nothing}>
@@ -160,7 +163,7 @@ export class OrderForm extends PageElement {
       ...(from_post ? {} : { from_post: t("error.missing_from_post") }),
       ...(to_post ? {} : { to_post: t("error.missing_to_post") }),
       ...(recipient ? {} : { recipient: t("error.missing_recipient") }),
-      ...(input.validity.typeMismatch ? { recipient: t("error.not_an_email") } : {}),
+      ...(input.validity.typeMismatch ? { recipient: t("error.malformed.recipient") } : {}),
     };
   }
 }

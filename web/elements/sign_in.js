@@ -81,7 +81,7 @@ export class SignIn extends PageElement {
     event.preventDefault();
     const input = /** @type {HTMLInputElement} */ (this.querySelector("[name=email]"));
     this.email = input.value.trim();
-    if (!this.email || input.validity.typeMismatch) return this.#refuse({ email: t("error.not_an_email") });
+    if (!this.email || input.validity.typeMismatch) return this.#refuse({ email: t("error.malformed.email") });
     await this.#attempt(async () => {
       await api.requestCode(this.email);
       this.codeSent = true;
@@ -94,7 +94,7 @@ export class SignIn extends PageElement {
     event.preventDefault();
     const input = /** @type {HTMLInputElement} */ (this.querySelector("[name=code]"));
     const code = input.value.replace(/\D/g, "");
-    if (code.length !== 8) return this.#refuse({ code: t("error.missing_code") });
+    if (code.length !== 8) return this.#refuse({ code: t("error.malformed.code") });
     await this.#attempt(async () => {
       await api.signIn(this.email, code);
       location.reload();

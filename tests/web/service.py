@@ -1,0 +1,95 @@
+"""The real service in a process of its own, with a data folder that nobody keeps."""
+
+import contextlib
+import os
+import re
+import signal
+import socket
+import subprocess
+import sys
+import time
+from email import message_from_bytes, policy
+from pathlib import Path
+
+import httpx
+
+from app.database import Database
+from app.fleet.service import enrol
+from app.settings import Settings
+from protocol.clock import RealClock
+
+ROOT = Path(__file__).parents[2]
+START_LIMIT_S = 40.0
+MAIL_LIMIT_S = 10.0
+
+
+class Service:
+    """Serves on a free port of this machine; `door` makes it a demonstration."""
+
+    def __init__(self, folder: Path, campus: str = "test_track", door: Path | None = None) -> None:
+        self._folder = folder
+        self._port = _free_port()
+        self.url = f"http://127.0.0.1:{self._port}"
+        self._environment = {
+            **os.environ,
+            "CAMPUS_MAIL_DATA": str(folder),
+            "CAMPUS_MAIL_MAP": campus,
+            "CAMPUS_MAIL_ALLOWED_DOMAINS": '["campus.example"]',
+            **({"CAMPUS_MAIL_DEMO_DOOR": str(door)} if door else {}),
+        }
+
+    def __enter__(self) -> "Service":
+        with (self._folder / "service.log").open("ab") as log:
+            command = [sys.executable, "-m", "app", "serve", "--port", str(self._port)]
+            self._process = subprocess.Popen(command, cwd=ROOT, env=self._environment, stdout=log, stderr=log)
+        until_s = time.monotonic() + START_LIMIT_S
+        while not self._is_ready():
+            assert self._process.poll() is None and time.monotonic() < until_s, self.log()
+            time.sleep(0.05)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._process.send_signal(signal.SIGTERM)
+        self._process.wait(10)
+
+    def _is_ready(self) -> bool:
+        with contextlib.suppress(httpx.HTTPError):
+            return httpx.get(f"{self.url}/readyz").status_code == httpx.codes.OK
+        return False
+
+    def log(self) -> str:
+        return (self._folder / "service.log").read_text(errors="replace")[-3000:]
+
+    async def enrol_robot(self, name: str) -> str:
+        """The token of a new robot."""
+        database = Database(Settings(data=self._folder).url_of_database)
+        async with database.transaction() as session:
+            token = await enrol(session, RealClock(), name)
+        await database.close()
+        return token
+
+    @property
+    def link(self) -> str:
+        """Where robots connect."""
+        return self.url.replace("http", "ws") + "/api/v1/robots/link"
+
+    def code_mailed_to(self, email: str) -> str:
+        """The sign-in code in that person's newest mail."""
+        until_s = time.monotonic() + MAIL_LIMIT_S
+        while time.monotonic() < until_s:
+            for text in self._mails_to(email):
+                if found := re.search(r"\b(\d{8})\b", text):
+                    return found.group(1)
+            time.sleep(0.05)
+        raise AssertionError(f"no code was mailed to {email}")
+
+    def _mails_to(self, email: str) -> list[str]:
+        files = sorted((self._folder / "spool").glob("*.eml"), key=lambda file: file.stat().st_mtime_ns, reverse=True)
+        mails = [message_from_bytes(file.read_bytes(), policy=policy.default) for file in files]
+        return [mail.get_body(("plain",)).get_content() for mail in mails if mail["To"] == email]
+
+
+def _free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])

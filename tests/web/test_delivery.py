@@ -1,0 +1,186 @@
+"""Two people and a robot: a letter from the form to the hand, seen on both people's pages as it happens."""
+
+import re
+from collections.abc import AsyncIterator, Iterator
+from hashlib import sha256
+
+import pytest
+import pytest_asyncio
+from playwright.async_api import Page, expect
+
+from protocol.clock import RealClock
+from protocol.parts import Activity, Battery, Position, StopAction
+from protocol.to_robot import Cancel, Mission, Verifiers
+from protocol.to_server import CommandAnswer, Event, Snapshot, Step, Why
+from tests.app.fleet.playing import PlayedRobot
+from tests.web.camera import Camera
+from tests.web.service import Service
+
+pytestmark = pytest.mark.browser
+
+
+class Demonstration:
+    """A service with one robot, played by the test, and a camera to hold codes to."""
+
+    def __init__(self, service: Service, robot: PlayedRobot, camera: Camera) -> None:
+        self.service, self.robot, self.camera = service, robot, camera
+        self.title = f"Robot {robot.name}"
+
+    async def is_given_a_mission(self) -> Mission:
+        verifiers = (await self.robot.hear("verifiers")).body
+        assert isinstance(verifiers, Verifiers)
+        self._expected = {one.sha256 for one in verifiers.verifiers}
+        self.mission = await self.robot.mission()
+        await self.robot.report(self.mission, Step.ACCEPTED)
+        return self.mission
+
+    async def reports(self, step: Step, action: StopAction) -> None:
+        (stop,) = [stop for stop in self.mission.stops if stop.action is action]
+        await self.robot.ends(await self.robot.report(self.mission, step, stop))
+
+    async def is_seen(self, post: str, towards: str | None) -> None:
+        position = Position(post=post, towards=towards, seen_at=self.robot.clock.utc())
+        activity = Activity.DRIVING if towards else Activity.WAITING
+        await self.robot.say(Snapshot(position=position, activity=activity, battery=Battery(ratio=0.82)))
+
+    async def waits_for(self, sentence: str) -> None:
+        await self.robot.say(Why(sentence=sentence))
+
+    async def agrees_to_cancel(self) -> None:
+        cancel = (await self.robot.hear("cancel")).body
+        assert isinstance(cancel, Cancel)
+        now = self.robot.clock.utc()
+        answer = CommandAnswer(command_id=cancel.command_id, accepted=True, happened_at=now)
+        await self.robot.ends(await self.robot.say(Event(happened=answer)))
+
+    async def checks_the_code_and_hands_over(self, action: StopAction) -> None:
+        code = await self.camera.sees()
+        assert sha256(code.encode("ascii")).hexdigest() in self._expected
+        (stop,) = [stop for stop in self.mission.stops if stop.action is action]
+        await self.robot.ends(await self.robot.say(self.robot.receipt(stop)))
+
+
+@pytest_asyncio.fixture(scope="module", loop_scope="session")
+async def camera() -> AsyncIterator[Camera]:
+    async with Camera().watching() as camera:
+        yield camera
+
+
+@pytest.fixture(scope="module")
+def demo_service(tmp_path_factory: pytest.TempPathFactory, camera: Camera) -> Iterator[Service]:
+    with Service(tmp_path_factory.mktemp("demo"), door=camera.door) as service:
+        yield service
+
+
+@pytest_asyncio.fixture(loop_scope="session")
+async def demonstration(
+    demo_service: Service, camera: Camera, request: pytest.FixtureRequest
+) -> AsyncIterator[Demonstration]:
+    """Each test has a robot of its own, the only one that is connected."""
+    name = f"r{len(request.node.name)}"
+    robot, token = PlayedRobot(RealClock(), name, journal=f"journal-of-{name}"), await demo_service.enrol_robot(name)
+    async with robot.connected(demo_service.link, token):
+        await robot.greet("post5")
+        yield Demonstration(demo_service, robot, camera)
+
+
+async def follow_the_newest_notice(page: Page, title: str) -> None:
+    notices = page.get_by_role("link", name=re.compile("unread.*Notices|Notices.*unread"))
+    await notices.click()
+    await page.get_by_role("link", name=re.compile(title)).click()
+
+
+async def test_a_letter_is_ordered_loaded_carried_and_received_by_two_people(demonstration, visit):
+    robot = demonstration.title
+    ada = await visit("ada.king", on="phone", at=demonstration.service)
+    bob = await visit("bob.martin", on="desk", at=demonstration.service, color_scheme="dark")
+    await bob.page.goto("/")
+    await expect(bob.page.get_by_role("heading", name="Send a letter")).to_be_visible()
+
+    await ada.page.goto("/")
+    await ada.page.get_by_label("From").select_option("Post 1")
+    await ada.page.get_by_label("To", exact=True).select_option("Post 4")
+    await ada.page.get_by_label("Recipient’s e-mail").fill(bob.email)
+    await ada.page.get_by_label("What is it?").fill("Signed forms")
+    await ada.page.get_by_role("button", name="Send the robot").click()
+    standing = ada.page.get_by_role("heading", level=1)
+    await demonstration.is_given_a_mission()
+    await expect(standing).to_have_text(f"{robot} will collect your letter")
+
+    await demonstration.reports(Step.DEPARTED, StopAction.LOAD)
+    await expect(standing).to_have_text(f"{robot} is coming to Post 1")
+    await demonstration.is_seen("post3", towards="post2")
+    facts = ada.page.get_by_role("region", name="Where the robot is").get_by_role("list")
+    await expect(facts.get_by_text(re.compile("^Last seen at Post 3, "))).to_be_visible()
+    await expect(facts.get_by_text(re.compile("^Expected at Post 2, "))).to_be_visible()
+    await expect(facts.get_by_text("Battery 82%")).to_be_visible()
+    await expect(ada.page.get_by_role("img", name="Map: The paper's test track")).to_contain_text("last seen")
+
+    await demonstration.reports(Step.ARRIVED, StopAction.LOAD)
+    await demonstration.waits_for("waiting for the sender to load")
+    await expect(standing).to_have_text(f"{robot} is waiting for you at Post 1")
+    await expect(ada.page.get_by_role("region", name="Why it waits")).to_contain_text("waiting for the sender to load")
+    code = ada.page.get_by_role("region", name="Your code to load the robot")
+    await expect(code.get_by_role("img", name="QR code for the robot’s camera")).to_be_visible()
+    assert await code.get_by_role("img").evaluate("(image) => image.complete && image.naturalWidth > 0")
+    await code.get_by_role("button", name="Hold the code to the robot’s camera (simulated)").click()
+    await demonstration.checks_the_code_and_hands_over(StopAction.LOAD)
+    await expect(standing).to_have_text("Your letter is on its way to Post 4")
+    await expect(code).to_be_hidden()
+    await expect(ada.page.get_by_role("button", name="Cancel this order")).to_be_hidden()
+
+    await follow_the_newest_notice(bob.page, "is on its way to you")
+    standing_for_bob = bob.page.get_by_role("heading", level=1)
+    await expect(standing_for_bob).to_have_text("A letter is on its way to you")
+    code_of_bob = bob.page.get_by_role("region", name="Your code to take the letter")
+    await expect(code_of_bob.get_by_role("img")).to_be_hidden()
+    await code_of_bob.get_by_text("Show the code").click()
+    await expect(code_of_bob.get_by_role("img")).to_be_visible()
+
+    await demonstration.reports(Step.DEPARTED, StopAction.RECEIVE)
+    await demonstration.reports(Step.ARRIVED, StopAction.RECEIVE)
+    await expect(standing).to_have_text(f"{robot} is waiting for Bob Martin {name_suffix(bob)} at Post 4")
+    await expect(standing_for_bob).to_have_text(f"{robot} is waiting for you at Post 4")
+    await code_of_bob.get_by_role("button", name=re.compile("^Hold the code")).click()
+    await demonstration.checks_the_code_and_hands_over(StopAction.RECEIVE)
+
+    for page in (ada.page, bob.page):
+        await expect(page.get_by_role("heading", level=1)).to_have_text("Delivered")
+        timeline = page.get_by_role("region", name="So far, and next").get_by_role("listitem")
+        await expect(timeline).to_have_count(7)
+        await expect(timeline.last).to_contain_text(re.compile("Taken by Bob Martin .*, confirmed"))
+    await ada.page.get_by_role("link", name=re.compile("Notices")).click()
+    for title in ("Order accepted", "on its way to Post 1", "waiting at Post 1", "Delivered"):
+        await expect(ada.page.get_by_role("link", name=re.compile(title))).to_have_count(1)
+
+
+def name_suffix(visitor):
+    """Visitors are told apart by a number, which their name shows."""
+    return re.search(r"\.(n\d+)@", visitor.email)[1].capitalize()
+
+
+async def test_a_robot_out_of_reach_is_said_to_be_so_and_its_order_goes_on(demonstration, visit):
+    robot = demonstration.title
+    ada = await visit("ada.king", at=demonstration.service)
+    order_id = await ada.order("bob.martin@campus.example")
+    await demonstration.is_given_a_mission()
+    await demonstration.reports(Step.DEPARTED, StopAction.LOAD)
+    await ada.page.goto(f"/follow.html?order={order_id}")
+    await expect(ada.page.get_by_role("heading", level=1)).to_have_text(f"{robot} is coming to Post 1")
+    await demonstration.robot.socket.close()
+    await expect(ada.page.get_by_text(re.compile("^Out of network. Last heard of .* it goes on by itself"))).to_be_visible()
+    await expect(ada.page.get_by_role("heading", level=1)).to_have_text(f"{robot} is coming to Post 1")
+
+
+async def test_cancelling_with_a_robot_on_its_way_waits_for_the_robots_answer(demonstration, visit):
+    ada = await visit("ada.king", at=demonstration.service)
+    order_id = await ada.order("bob.martin@campus.example")
+    await demonstration.is_given_a_mission()
+    await demonstration.reports(Step.DEPARTED, StopAction.LOAD)
+    await ada.page.goto(f"/follow.html?order={order_id}")
+    await ada.page.get_by_role("button", name="Cancel this order").click()
+    await ada.page.get_by_role("button", name="Yes, cancel it").click()
+    await expect(ada.page.get_by_text("The robot has been asked to turn back.")).to_be_visible()
+    await expect(ada.page.get_by_role("button", name="Cancel this order")).to_be_hidden()
+    await demonstration.agrees_to_cancel()
+    await expect(ada.page.get_by_role("heading", level=1)).to_have_text("Cancelled")

@@ -1,0 +1,98 @@
+"""What holds on every page: languages, themes, small screens, and a network that comes and goes."""
+
+import re
+
+import pytest
+from playwright.async_api import expect
+
+pytestmark = pytest.mark.browser
+
+BOB = "bob.martin@campus.example"
+PAGES = ["/", "/mail.html", "/notices.html", "/follow.html?order={}"]
+NO_OVERFLOW = "() => document.documentElement.scrollWidth <= document.documentElement.clientWidth"
+GROUND = "() => getComputedStyle(document.documentElement).backgroundColor.match(/[0-9.]+/g).map(Number)"
+SMALL_TARGETS = """() => [...document.querySelectorAll("a, button, input, select, summary")]
+  .filter((element) => element.checkVisibility() && !element.matches(".skip"))
+  .map((element) => ({name: element.outerHTML.slice(0, 60), height: element.getBoundingClientRect().height}))
+  .filter(({height}) => height < 43.5)"""
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+@pytest.mark.parametrize("address", PAGES)
+async def test_a_page_fits_320_pixels_in_either_theme(visit, address, theme):
+    ada = await visit(on="phone", viewport={"width": 320, "height": 640}, color_scheme=theme)
+    order_id = await ada.order(BOB, what="A very long description-without-any-space-in-a-good-part-of-it")
+    await ada.page.goto(address.format(order_id))
+    await expect(ada.page.get_by_role("heading", level=1)).to_be_visible()
+    await expect(ada.page.get_by_text("One moment")).to_be_hidden()
+    assert await ada.page.evaluate(NO_OVERFLOW)
+    assert await ada.page.evaluate(SMALL_TARGETS) == []
+    brightness = sum((await ada.page.evaluate(GROUND))[:3]) / 3
+    assert (brightness > 200) == (theme == "light")
+
+
+async def test_a_french_speaker_orders_in_french(visit):
+    ada = await visit("aline.roy", on="phone", locale="fr-CA", signed_in=False)
+    page = ada.page
+    await page.goto("/")
+    await expect(page.get_by_role("heading", name="Le courrier qui voyage en robot")).to_be_visible()
+    await ada.sign_in()
+    await page.reload()
+    await page.get_by_label("De", exact=True).select_option("Post 1")
+    await page.get_by_label("À", exact=True).select_option("Post 4")
+    await page.get_by_label("E-mail du destinataire").fill(BOB)
+    await expect(page.get_by_text(re.compile(r"Une hypothèse d’après les 6\sm de la carte"))).to_be_visible()
+    await page.get_by_role("button", name="Envoyer le robot").click()
+    await expect(page.get_by_role("heading", name="Recherche d’un robot")).to_be_visible()
+    await expect(page.locator("html")).to_have_attribute("lang", "fr")
+    await page.get_by_role("link", name="Avis").click()
+    await expect(page.get_by_text(re.compile("^Commande acceptée"))).to_be_visible()
+
+
+async def test_without_network_the_page_keeps_what_it_knows_says_so_and_catches_up(visit):
+    ada = await visit()
+    order_id = await ada.order(BOB)
+    page = ada.page
+    await page.goto(f"/follow.html?order={order_id}")
+    await expect(page.get_by_role("heading", name="Looking for a robot")).to_be_visible()
+    await page.route("**/api/v1/**", lambda route: route.abort())
+    await page.evaluate("() => dispatchEvent(new Event('pagehide'))")
+    await page.evaluate("() => dispatchEvent(new PageTransitionEvent('pageshow', {persisted: true}))")
+    await expect(page.get_by_text(re.compile("^No connection"))).to_be_visible()
+    await expect(page.get_by_role("heading", name="Looking for a robot")).to_be_visible()
+    await ada.context.request.post(
+        f"/api/v1/orders/{order_id}/cancel", headers={"Sec-Fetch-Site": "same-origin"}
+    )
+    await page.unroute_all()
+    await expect(page.get_by_role("heading", name="Cancelled")).to_be_visible()
+    await expect(page.get_by_text(re.compile("^No connection"))).to_be_hidden()
+    ada.complaints = [complaint for complaint in ada.complaints if "ERR_FAILED" not in complaint]
+
+
+async def test_a_notice_arrives_live_is_counted_and_can_be_read(visit):
+    ada = await visit()
+    page = ada.page
+    await page.goto("/")
+    notices = page.get_by_role("link", name=re.compile("Notices"))
+    await expect(notices).to_have_accessible_name("Notices")
+    await expect(page.get_by_role("heading", name="Send a letter")).to_be_visible()
+    await ada.order(BOB)
+    await expect(notices).to_have_accessible_name(re.compile("1 unread"))
+    await notices.click()
+    await expect(page.get_by_role("link", name=re.compile("Order accepted.*Unread"))).to_be_visible()
+    await page.get_by_role("button", name="Mark all as read").click()
+    await expect(notices).to_have_accessible_name("Notices")
+    await expect(page.get_by_role("button", name="Mark all as read")).to_be_hidden()
+    await page.get_by_role("link", name=re.compile("Order accepted")).click()
+    await expect(page.get_by_role("heading", name="Looking for a robot")).to_be_visible()
+
+
+async def test_a_service_that_does_not_answer_is_said_in_words(visit):
+    ada = await visit(signed_in=False)
+    await ada.page.route("**/api/v1/**", lambda route: route.abort())
+    await ada.page.goto("/")
+    await expect(ada.page.get_by_role("heading", name="Campus Mail does not answer")).to_be_visible()
+    await ada.page.unroute_all()
+    await ada.page.get_by_role("button", name="Try again").click()
+    await expect(ada.page.get_by_label("E-mail address")).to_be_visible()
+    ada.complaints = [complaint for complaint in ada.complaints if "ERR_FAILED" not in complaint]

@@ -1,0 +1,185 @@
+"""Ordering a letter."""
+
+import re
+
+import pytest
+from playwright.async_api import Page, Route, expect
+
+pytestmark = pytest.mark.browser
+
+BOB = "bob.martin@campus.example"
+
+
+async def fill(page: Page, recipient: str = BOB, from_post: str = "Post 1", to_post: str = "Post 4", what: str = ""):
+    await page.get_by_label("From").select_option(from_post)
+    await page.get_by_label("To", exact=True).select_option(to_post)
+    await page.get_by_label("Recipient’s e-mail").fill(recipient)
+    await page.get_by_label("What is it?").fill(what)
+
+
+async def send(page: Page):
+    await page.get_by_role("button", name="Send the robot").click()
+
+
+async def test_the_time_of_arrival_is_shown_as_an_assumption_before_anything_is_ordered(visit):
+    ada = await visit("ada.king", on="phone")
+    await ada.page.goto("/")
+    await expect(ada.page.get_by_text("Choose both posts to see when it arrives.")).to_be_visible()
+    await fill(ada.page)
+    await expect(ada.page.get_by_role("status").get_by_text(re.compile("Arrives"))).to_be_visible()
+    await expect(ada.page.get_by_text("An assumption from the map’s 6 m, not yet from measured journeys.")).to_be_visible()
+    assert (await ada.api("/orders"))["items"] == []
+
+
+@pytest.mark.parametrize("device", ["phone", "desk"])
+async def test_an_ordered_letter_is_followed_at_once_and_stands_in_my_mail(visit, device):
+    ada = await visit("ada.king", on=device)
+    page = ada.page
+    await page.goto("/")
+    await fill(page, what="Signed forms")
+    await send(page)
+    await expect(page.get_by_role("heading", name="Looking for a robot")).to_be_visible()
+    await expect(page.get_by_text("Expected at Post 4")).to_be_visible()
+    await expect(page.get_by_text("No robot is on this order yet.")).to_be_visible()
+    await page.get_by_role("link", name="My mail").click()
+    sent = page.get_by_role("region", name="Sent")
+    await expect(sent.get_by_role("link", name=re.compile("Signed forms.*Ordered|Ordered.*Signed forms"))).to_be_visible()
+
+
+async def test_the_same_post_twice_is_refused_at_the_field(visit):
+    ada = await visit()
+    ada.refusals_expected |= {"/api/v1/estimate", "/api/v1/orders"}
+    await ada.page.goto("/")
+    await fill(ada.page, to_post="Post 1")
+    await send(ada.page)
+    to = ada.page.get_by_label("To", exact=True)
+    await expect(to).to_have_accessible_description(re.compile("The letter is there already"))
+    await expect(to).to_be_focused()
+    await to.select_option("Post 2")
+    await expect(to).to_have_accessible_description("")
+    await expect(ada.page.get_by_text(re.compile("Arrives"))).to_be_visible()
+
+
+async def test_an_unknown_recipient_is_refused_at_the_field(visit):
+    ada = await visit()
+    ada.refusals_expected.add("/api/v1/orders")
+    await ada.page.goto("/")
+    await fill(ada.page, recipient="eve@elsewhere.example")
+    await send(ada.page)
+    recipient = ada.page.get_by_label("Recipient’s e-mail")
+    await expect(recipient).to_have_accessible_description(re.compile("We know nobody with this address"))
+    await expect(recipient).to_be_focused()
+
+
+async def test_an_empty_form_says_what_is_missing_and_asks_nobody(visit):
+    ada = await visit()
+    await ada.page.goto("/")
+    await send(ada.page)
+    for words in ("Choose where the robot collects it.", "Choose where it goes.", "Say who it is for."):
+        await expect(ada.page.get_by_text(words)).to_be_visible()
+    await expect(ada.page.get_by_label("From")).to_be_focused()
+
+
+async def test_a_letter_is_ordered_with_the_keyboard_alone(visit):
+    ada = await visit()
+    page = ada.page
+    await page.goto("/")
+    await expect(page.get_by_role("heading", name="Send a letter")).to_be_visible()
+    await page.get_by_label("From").focus()
+    for keys in (["Post 1", "Tab"], ["Post 4", "Tab"], [BOB, "Tab"], ["Keys", "Enter"]):
+        await page.keyboard.type(keys[0])
+        await page.keyboard.press(keys[1])
+    await expect(page.get_by_role("heading", name="Looking for a robot")).to_be_visible()
+
+
+async def test_a_double_tap_is_one_order(visit):
+    ada = await visit(on="phone")
+    await ada.page.goto("/")
+    await fill(ada.page)
+    await ada.page.get_by_role("button", name="Send the robot").dblclick()
+    await expect(ada.page.get_by_role("heading", name="Looking for a robot")).to_be_visible()
+    assert len((await ada.api("/orders"))["items"]) == 1
+
+
+async def test_an_answer_that_is_lost_is_asked_for_again_and_nothing_is_ordered_twice(visit):
+    ada = await visit()
+    keys = []
+
+    async def lose_the_first_answer(route: Route) -> None:
+        keys.append(route.request.headers["idempotency-key"])
+        answer = await route.fetch()
+        await (route.abort() if len(keys) == 1 else route.fulfill(response=answer))
+
+    await ada.page.route(re.compile("/api/v1/orders$"), lose_the_first_answer)
+    await ada.page.goto("/")
+    await fill(ada.page)
+    await send(ada.page)
+    await expect(ada.page.get_by_role("heading", name="Looking for a robot")).to_be_visible()
+    assert len(keys) == 2 and len(set(keys)) == 1
+    assert len((await ada.api("/orders"))["items"]) == 1
+    ada.complaints = [complaint for complaint in ada.complaints if "ERR_FAILED" not in complaint]
+
+
+async def test_an_order_without_any_answer_survives_a_reload_with_its_key(visit):
+    ada = await visit()
+    page = ada.page
+    keys = []
+
+    async def lose(route: Route) -> None:
+        keys.append(route.request.headers["idempotency-key"])
+        await route.fetch()
+        await route.abort()
+
+    await page.goto("/")
+    await fill(page, what="Keys")
+    await page.route(re.compile("/api/v1/orders$"), lose)
+    await send(page)
+    await expect(page.get_by_text(re.compile("No answer yet.*will not be ordered twice"))).to_be_visible()
+    await page.unroute_all()
+    await page.reload()
+    await expect(page.get_by_text("There was no answer to this order.")).to_be_visible()
+    await expect(page.get_by_label("What is it?")).to_have_value("Keys")
+    async with page.expect_request(re.compile("/api/v1/orders$")) as sent:
+        await send(page)
+    await expect(page.get_by_role("heading", name="Looking for a robot")).to_be_visible()
+    assert {(await sent.value).headers["idempotency-key"]} == set(keys)
+    assert len((await ada.api("/orders"))["items"]) == 1
+    ada.complaints = [complaint for complaint in ada.complaints if "ERR_FAILED" not in complaint]
+
+
+async def test_a_repeat_takes_three_taps(visit):
+    ada = await visit()
+    await ada.order(BOB, to_post="post3", what="First")
+    page = ada.page
+    await page.goto("/")
+    await page.get_by_role("button", name=re.compile("^Bob Martin")).click()
+    await expect(page.get_by_label("From")).to_have_value("post1")
+    await expect(page.get_by_label("To", exact=True)).to_have_value("post3")
+    await expect(page.get_by_label("Recipient’s e-mail")).to_have_value(BOB)
+    await expect(page.get_by_text(re.compile("Arrives"))).to_be_visible()
+    await send(page)
+    await expect(page.get_by_role("heading", name="Looking for a robot")).to_be_visible()
+
+
+async def test_an_order_is_cancelled_after_asking_once(visit):
+    ada = await visit()
+    order_id = await ada.order(BOB)
+    page = ada.page
+    await page.goto(f"/follow.html?order={order_id}")
+    await page.get_by_role("button", name="Cancel this order").click()
+    await page.get_by_role("button", name="Keep it").click()
+    await page.get_by_role("button", name="Cancel this order").click()
+    await page.get_by_role("dialog").get_by_role("button", name="Yes, cancel it").click()
+    await expect(page.get_by_role("heading", name="Cancelled")).to_be_visible()
+    await expect(page.get_by_role("button", name="Cancel this order")).to_be_hidden()
+    await page.get_by_role("link", name="Send another like this").click()
+    await expect(page.get_by_label("Recipient’s e-mail")).to_have_value(BOB)
+
+
+async def test_an_order_of_others_is_not_here(visit):
+    ada, eve = await visit("ada.king"), await visit("eve")
+    order_id = await ada.order(BOB)
+    eve.refusals_expected.add(f"/api/v1/orders/{order_id}")
+    await eve.page.goto(f"/follow.html?order={order_id}")
+    await expect(eve.page.get_by_role("heading", name="This letter is not here")).to_be_visible()
+    await expect(eve.page.get_by_text("or it is not yours to see")).to_be_visible()

@@ -1,0 +1,76 @@
+"""Somebody with a browser. What their browser complains of fails the test."""
+
+import re
+import uuid
+from dataclasses import dataclass, field
+from types import TracebackType
+from typing import Any
+
+from playwright.async_api import Browser, BrowserContext, ConsoleMessage, Page
+
+from tests.web.service import Service
+
+# Browsers write every refused request to the console. A page that asks who is signed in is refused by design.
+REFUSED = re.compile(r"Failed to load resource: the server responded with a status of 4\d\d")
+WHO_AM_I = "/api/v1/me"
+
+
+@dataclass
+class Visitor:
+    """A person, signed in with `sign_in` or by the pages themselves."""
+
+    browser: Browser
+    service: Service
+    email: str
+    options: dict[str, Any]
+    refusals_expected: set[str] = field(default_factory=lambda: {WHO_AM_I})
+    complaints: list[str] = field(default_factory=list)
+
+    async def __aenter__(self) -> "Visitor":
+        self.context: BrowserContext = await self.browser.new_context(base_url=self.service.url, **self.options)
+        self.context.set_default_timeout(15_000)
+        self.page = await self.new_page()
+        return self
+
+    async def __aexit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        await self.context.close()
+        if error is None:
+            assert not self.complaints, f"the browser of {self.email} complains: {self.complaints}"
+
+    async def new_page(self) -> Page:
+        page = await self.context.new_page()
+        page.on("console", self._hear)
+        page.on("pageerror", lambda error: self.complaints.append(str(error)))
+        return page
+
+    def _hear(self, message: ConsoleMessage) -> None:
+        path = re.sub(r"^https?://[^/]+", "", message.location["url"]).partition("?")[0]
+        expected = path in self.refusals_expected and REFUSED.match(message.text)
+        if message.type in ("error", "warning") and not expected:
+            self.complaints.append(f"{message.text} ({path})")
+
+    async def sign_in(self) -> "Visitor":
+        """Without the pages, in a moment."""
+        api = self.context.request
+        own = {"Sec-Fetch-Site": "same-origin", "Accept-Language": self.options["locale"]}
+        for path, more in (("/sign-in/codes", {}), ("/sign-in", {"code": None})):
+            body = {"email": self.email, **({"code": self.service.code_mailed_to(self.email)} if more else {})}
+            answer = await api.post(f"/api/v1{path}", data=body, headers=own)
+            assert answer.ok, await answer.text()
+        return self
+
+    async def api(self, path: str) -> Any:
+        """What the service says to this person."""
+        answer = await self.context.request.get(f"/api/v1{path}")
+        assert answer.ok, await answer.text()
+        return await answer.json()
+
+    async def order(self, recipient: str, from_post: str = "post1", to_post: str = "post4", what: str = "") -> str:
+        """An order placed without the pages; its id."""
+        body = {"from_post": from_post, "to_post": to_post, "recipient": recipient, "description": what}
+        headers = {"Sec-Fetch-Site": "same-origin", "Idempotency-Key": str(uuid.uuid4())}
+        answer = await self.context.request.post("/api/v1/orders", data=body, headers=headers)
+        assert answer.ok, await answer.text()
+        return str((await answer.json())["id"])
