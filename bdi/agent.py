@@ -31,8 +31,8 @@ from bdi.logic import Builtin, Frame, Logic
 from bdi.messages import Finished, Message
 from bdi.parser import parse_literal, parse_term
 from bdi.performatives import PERFORMATIVES, sourced
-from bdi.plans import CompiledPlan, Compiler, Options
-from bdi.syntax import Belief, Program, Trigger
+from bdi.plans import CompiledPlan, Compiler, Options, relevant
+from bdi.syntax import Belief, Plan, Program, Trigger
 from bdi.terms import Atom, List, Literal, String, Structure, Term, Var, atom, literal_of, show, structure
 from bdi.trace import Deliberated, Failed, Stepped, TraceEntry
 from bdi.unify import FIXED, renamed, resolve, resolve_all, undo, unify, variables_in
@@ -88,8 +88,8 @@ class _Percept:
         self.literal = literal
         self.relation = agent.beliefs.relation(literal.predicate)
         self.annots = (*literal.annots, PERCEPT)
-        self.on_added = agent.library.options(Trigger.BELIEF_ADDED, literal.predicate)
-        self.on_removed = agent.library.options(Trigger.BELIEF_REMOVED, literal.predicate)
+        self.on_added = agent.relevant_plans(Trigger.BELIEF_ADDED, literal)
+        self.on_removed = agent.relevant_plans(Trigger.BELIEF_REMOVED, literal)
 
 
 class Agent:
@@ -546,21 +546,33 @@ class Agent:
 
     def _react(self, trigger: Trigger, literal: Literal, intention: Intention | None) -> None:
         """Post the event of a changed belief. A plan that made the change waits for it, even if nobody reacts."""
-        options = self.library.options(trigger, literal.predicate)
         if intention is None:
-            if options or self.waiters:
-                self.notice(trigger, literal, options)
+            self.notice(trigger, literal)
         else:
+            options = self.library.options(trigger, literal.predicate)
             self._wait_for_event(intention, Event(trigger, literal, options, intention))
             self._tell_waiters(trigger, literal)
 
     def notice(self, trigger: Trigger, literal: Literal, options: Options | None = None) -> None:
         """An event of the world."""
         if options is None:
-            options = self.library.options(trigger, literal.predicate)
+            options = self.relevant_plans(trigger, literal)
         if options:
             self.events.append(Event(trigger, literal, options))
         self._tell_waiters(trigger, literal)
+
+    def relevant_plans(self, trigger: Trigger, literal: Literal) -> Options:
+        return relevant(self.library.options(trigger, literal.predicate), literal)
+
+    def add_plan(self, plan: Plan, first: bool = False) -> None:
+        """.add_plan, tellHow"""
+        self.library.add(plan, first)
+        self._seen.clear()
+
+    def remove_plan(self, label: str) -> bool:
+        """Whether there was one with this label."""
+        self._seen.clear()
+        return self.library.remove(label)
 
     def _tell_waiters(self, trigger: Trigger, literal: Literal) -> None:
         for waiter in self.waiters:
@@ -637,9 +649,9 @@ class Agent:
 
     def _fail_event(self, event: Event) -> None:
         """A goal that no plan is for, or none whose context holds."""
-        relevant = bool(event.options)
-        error = "no_applicable" if relevant else "no_relevant"
-        problem = "no plan has a context that holds" if relevant else "there is no plan"
+        known = bool(relevant(event.options, event.literal))
+        error = "no_applicable" if known else "no_relevant"
+        problem = "no plan has a context that holds" if known else "there is no plan"
         failure = StepFailed(error, f"{problem} for {event}")
         trigger = FAILURE_OF.get(event.trigger)
         intention = event.intention

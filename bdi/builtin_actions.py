@@ -364,7 +364,7 @@ def add_annot(mind: Mind, literal: Term, annot: Term, result: Term) -> Answer:
 def add_plan(mind: Mind, plans: Term, source: Term | None = None, place: Term | None = None) -> Answer:
     """One plan or a list of them, as text; `begin` puts them before the others."""
     for each in plans if isinstance(plans, List) else (plans,):
-        mind.library.add(plan_of(each), first=place == atom("begin"))
+        mind.add_plan(plan_of(each), first=place == atom("begin"))
     return True
 
 
@@ -379,7 +379,7 @@ def plan_of(term: Term) -> Plan:
 
 @internal_action("remove_plan", 1, 2)
 def remove_plan(mind: Mind, labels: Term, source: Term | None = None) -> Answer:
-    found = [mind.library.remove(text_of(each)) for each in (labels if isinstance(labels, List) else (labels,))]
+    found = [mind.remove_plan(text_of(each)) for each in (labels if isinstance(labels, List) else (labels,))]
     return all(found)
 
 

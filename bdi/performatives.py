@@ -79,11 +79,11 @@ def _ask_how(mind: Mind, message: Message) -> None:
 
 
 def _tell_how(mind: Mind, message: Message) -> None:
-    mind.library.add(plan_of(String(_text(message))))
+    mind.add_plan(plan_of(String(_text(message))))
 
 
 def _untell_how(mind: Mind, message: Message) -> None:
-    mind.library.remove(_text(message))
+    mind.remove_plan(_text(message))
 
 
 def _text(message: Message) -> str:

@@ -12,7 +12,7 @@ from bdi.logic import Build, Builtin, Frame, Known, Logic, Match, Scope, Solve, 
 from bdi.syntax import Body, Does, For, Fork, If, Plan, Simple, Trigger, While, variables_of
 from bdi.syntax import Step as Written
 from bdi.terms import INTERNAL, TRUE, Atom, Code, Literal, Predicate, Structure, Term, Var, show
-from bdi.unify import FIXED, resolve, resolve_all, undo, unify_annots, variables_in
+from bdi.unify import FIXED, Trail, renamed, resolve, resolve_all, undo, unify, unify_annots, variables_in
 
 Applicable = Callable[[Event], "Frame | None"]  # the filled frame if head and context hold
 Run = Callable[[Intention, Means], None]
@@ -53,8 +53,20 @@ class CompiledPlan:
         self._compiler.compile(self)
         return self.applicable(event)
 
+    def concerns(self, literal: Literal) -> bool:
+        """Whether the head unifies, whatever the context says: then the plan is relevant."""
+        trail: Trail = []
+        found = unify(self.plan.head, renamed(literal, {}), trail)
+        undo(trail, 0)
+        return found
+
 
 Options = list[CompiledPlan]
+
+
+def relevant(options: Options, literal: Literal) -> Options:
+    """Those whose head unifies with the event."""
+    return [plan for plan in options if plan.concerns(literal)] if options else options
 
 
 class Library:
