@@ -14,7 +14,7 @@ from app.commands import enrol
 from app.demo.children import running
 from app.demo.people import Spool
 from app.demo.screen import Screen
-from app.demo.settings import LIMIT_S, ROBOT, Demo, DemoFailed
+from app.demo.settings import LIMIT_S, ROBOT, ROBOT_CONFIG, Demo, DemoFailed
 from app.demo.story import Story
 from app.serving import listen
 from protocol.clock import SharedClock
@@ -66,6 +66,7 @@ async def _until(stop: asyncio.Event, play: Coroutine[Any, Any, int], interrupte
 
 async def _play(demo: Demo, spool: Spool, screen: Screen) -> int:
     clock = SharedClock.create(demo.clock_file, demo.speed)
+    demo.robot_config.write_text(ROBOT_CONFIG)
     await _write_token(demo)
     logs = demo.folder / "service.log", demo.folder / "robot.log"
     async with (

@@ -71,8 +71,9 @@ class Screen:
         told = sum(sum(kinds.values()) for kinds in summary["notifications"].values())
         robot = summary["robot"]
         self._console.print(
-            f"[green]Delivered[/] in {summary['wall_s']} s. The robot drove {robot['distance_m']} m in {robot['time_s']} s "
-            f"of its time and searched for the line {robot['find_line_episodes']} times. {told} notices, each once.",
+            f"[green]Delivered[/] in {summary['wall_s']} s. "
+            f"The robot drove {robot['distance_m']} m in {robot['time_s']} s of its own time "
+            f"and searched for the line {robot['find_line_episodes']} times. {told} notices, each once.",
             soft_wrap=True,
         )
 
