@@ -25,7 +25,8 @@ from robot.outbox import Outbox
 from robot.store import Store
 
 AT = datetime(2026, 1, 5, 9, 0, tzinfo=UTC)
-QUICK = Rhythm(ping_every_s=0.1, ping_limit_s=0.2, greeting_limit_s=2.0, retry_longest_s=0.2, snapshot_every_s=0.3)
+QUICK = Rhythm(ping_limit_s=20.0, retry_longest_s=0.2, snapshot_every_s=0.3)
+IMPATIENT = Rhythm(ping_every_s=0.3, ping_limit_s=0.5, retry_longest_s=0.2)
 MISSION = Mission(id="m1", update=1, stops=(Stop(id="s1", post="post1", action=StopAction.LOAD, order_id="o1"),))
 
 
@@ -288,10 +289,10 @@ async def test_a_network_that_swallows_everything_is_noticed_and_left_behind(rob
     open_way = asyncio.Event()
     open_way.set()
     async with playing() as server, await asyncio.start_server(black_hole, "127.0.0.1", 0) as wire:
-        async with robot.linked(f"ws://127.0.0.1:{wire.sockets[0].getsockname()[1]}") as link:
+        async with robot.linked(f"ws://127.0.0.1:{wire.sockets[0].getsockname()[1]}", IMPATIENT) as link:
             await until(lambda: link.online)
             open_way.clear()
-            await until(lambda: not link.online, limit_s=2.0)
+            await until(lambda: not link.online)
             assert link.problem
             open_way.set()
             await until(lambda: link.online)

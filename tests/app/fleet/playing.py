@@ -86,7 +86,7 @@ class Service:
 
 
 @asynccontextmanager
-async def serving(settings: Settings, clock: Clock) -> AsyncIterator[Service]:
+async def serving(settings: Settings, clock: Clock, ping_s: float = 10.0) -> AsyncIterator[Service]:
     """The service from start to stop; again with the same settings, it is a restart."""
     listening = socket.create_server(("127.0.0.1", 0))
     app = create_app(settings, clock)
@@ -94,8 +94,8 @@ async def serving(settings: Settings, clock: Clock) -> AsyncIterator[Service]:
         app,
         log_config=None,
         ws="websockets-sansio",
-        ws_ping_interval=0.2,
-        ws_ping_timeout=0.3,
+        ws_ping_interval=ping_s,
+        ws_ping_timeout=ping_s,
         timeout_graceful_shutdown=1,
     )
     server = uvicorn.Server(config)

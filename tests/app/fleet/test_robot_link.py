@@ -375,15 +375,18 @@ async def test_a_sender_who_never_came_frees_the_robot(service: Service, robot: 
         assert (await robot.mission()).stops[0].order_id == another
 
 
-async def test_a_robot_that_falls_silent_is_shown_as_offline(service: Service, robot: PlayedRobot) -> None:
+async def test_a_robot_that_falls_silent_is_shown_as_offline(
+    settings: Settings, clock: SteppedClock, robot: PlayedRobot
+) -> None:
     """Its machine is still there and answers no ping: as when it has driven out of the network's reach."""
-    token = await service.enrol("r1")
-    async with robot.connected(service.url, token):
-        await robot.greet()
-        assert robot.socket is not None
-        robot.socket.transport.pause_reading()
-        await until(lambda: _is_offline(service))
-        robot.socket.transport.abort()
+    async with serving(settings, clock, ping_s=0.5) as service:
+        token = await service.enrol("r1")
+        async with robot.connected(service.url, token):
+            await robot.greet()
+            assert robot.socket is not None
+            robot.socket.transport.pause_reading()
+            await until(lambda: _is_offline(service))
+            robot.socket.transport.abort()
 
 
 async def test_a_clock_far_off_and_another_map_are_reported(
