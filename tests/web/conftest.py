@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 import pytest_asyncio
-from playwright.async_api import Browser, Playwright, async_playwright
+from playwright.async_api import Browser, Playwright, async_playwright, expect
 
 from tests.web.service import Service
 from tests.web.visitor import Visitor
@@ -20,6 +20,8 @@ from tests.web.visitor import Visitor
 QUIET = ["--disable-gpu", "--disable-background-networking", "--disable-component-update", "--disable-sync"]
 QUIET += ["--no-first-run"]
 Visit = Callable[..., Any]
+# Nothing is as slow as this; a machine that has other things to do may be.
+expect.set_options(timeout=15_000)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -168,7 +168,9 @@ async def test_a_robot_out_of_reach_is_said_to_be_so_and_its_order_goes_on(demon
     await ada.page.goto(f"/follow.html?order={order_id}")
     await expect(ada.page.get_by_role("heading", level=1)).to_have_text(f"{robot} is coming to Post 1")
     await demonstration.robot.socket.close()
-    await expect(ada.page.get_by_text(re.compile("^Out of network. Last heard of .* it goes on by itself"))).to_be_visible()
+    await expect(
+        ada.page.get_by_text(re.compile("^Out of network. Last heard of .* it goes on by itself"))
+    ).to_be_visible()
     await expect(ada.page.get_by_role("heading", level=1)).to_have_text(f"{robot} is coming to Post 1")
 
 

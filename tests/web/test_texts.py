@@ -1,15 +1,14 @@
-"""The words of the pages, and what the pages are made of."""
+"""The words of the pages: one catalogue per language."""
 
 import json
 import re
 from pathlib import Path
 
-import pytest
-
 WEB = Path(__file__).parents[2] / "web"
-CATALOGUES = {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in sorted((WEB / "texts").glob("*.json"))}
+CATALOGUES = {
+    path.stem: json.loads(path.read_text(encoding="utf-8")) for path in sorted((WEB / "texts").glob("*.json"))
+}
 SCRIPTS = [path for path in sorted(WEB.rglob("*.js")) if "node_modules" not in path.parts]
-PAGES = sorted(WEB.glob("*.html"))
 # t("key"), hasText("key"), and t(`prefix.${…}`), whose keys begin with the prefix
 WHOLE_KEY = re.compile(r'"([a-z_]+(?:\.[a-z_0-9]+)+)"')
 KEY_PREFIX = re.compile(r"`([a-z_]+\.(?:[a-z_]+\.)*)\$\{")
@@ -42,24 +41,3 @@ def test_every_text_is_used_and_every_text_used_is_there():
     assert [p for p in prefixes if not any(key.startswith(p) for key in CATALOGUES["en"])] == []
     unused = [key for key in CATALOGUES["en"] if key not in named and not key.startswith(tuple(prefixes))]
     assert unused == []
-
-
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
-def test_a_page_has_no_script_of_its_own_but_the_import_map(page):
-    html = page.read_text(encoding="utf-8")
-    scripts = re.findall(r"<script([^>]*)>(.*?)</script>", html, re.DOTALL)
-    assert [attributes for attributes, text in scripts if text] == [' type="importmap"']
-    assert not re.search(r"\son\w+=|\sstyle=|<style|javascript:", html)
-
-
-def test_all_pages_have_the_same_import_map():
-    maps = {re.search(r"<script type=\"importmap\">(.*?)</script>", page.read_text(), re.DOTALL)[1] for page in PAGES}
-    assert len(maps) == 1
-
-
-def test_only_one_file_knows_addresses_of_the_service():
-    assert [path.name for path in SCRIPTS if "/api/v1" in path.read_text(encoding="utf-8")] == ["api.js"]
-
-
-def test_the_lock_file_names_no_host():
-    assert "://" not in (WEB / "package-lock.json").read_text(encoding="utf-8")

@@ -123,18 +123,27 @@ export class OrderForm extends PageElement {
     this.dispatchEvent(new CustomEvent("wanted", { detail: this.wanted }));
   }
 
+  /** Asks when it would arrive, each time that the ends of the way change. */
   async #look() {
     const { from_post, to_post } = this.wanted;
     const stillWanted = () => from_post === this.wanted.from_post && to_post === this.wanted.to_post;
     this.estimate = null;
     if (!from_post || !to_post) return;
+    if (from_post === to_post) return this.#say({ to_post: t("error.same_post") });
     this.estimate = "looking";
     try {
       const estimate = await api.estimate(from_post, to_post);
       if (stillWanted()) this.estimate = estimate;
     } catch (failure) {
-      if (stillWanted()) [this.estimate, this.problems] = [null, { ...this.problems, ...atFields(failure, FIELD_OF_CODE) }];
+      if (!stillWanted()) return;
+      this.estimate = null;
+      this.#say(atFields(failure, FIELD_OF_CODE));
     }
+  }
+
+  /** Beside what is said already. @param {Record<string, string>} problems */
+  #say(problems) {
+    this.problems = { ...this.problems, ...problems };
   }
 
   /** @param {SubmitEvent} event */
