@@ -1,0 +1,140 @@
+"""Dispatch in the running service: woken by orders and robots, robust to restarts, one mission per robot."""
+
+from collections.abc import AsyncIterator
+
+import pytest
+
+from app.settings import Settings
+from app.tables import MessageToRobot, MissionRow, Order
+from protocol.clock import SteppedClock
+from protocol.parts import Activity, Battery
+from protocol.to_server import Event, Snapshot, Step
+from tests.app.fleet.playing import PlayedRobot, Service, at_post, serving, until
+
+
+@pytest.fixture
+async def service(settings: Settings, clock: SteppedClock) -> AsyncIterator[Service]:
+    async with serving(settings, clock) as service:
+        yield service
+
+
+async def why(service: Service, order_id: str) -> str | None:
+    return str((await service.row(Order, id=order_id)).why or "") or None
+
+
+async def waits_because(service: Service, order_id: str, sentence: str) -> None:
+    async def says_so() -> bool:
+        return await why(service, order_id) == sentence
+
+    await until(says_so)
+
+
+async def an_order(service: Service, clock: SteppedClock) -> str:
+    """One after another: each a second later."""
+    clock.advance(1.0)
+    return await service.order("post1", "post4")
+
+
+async def test_an_order_waits_with_a_reason_until_a_robot_connects(service: Service, clock: SteppedClock) -> None:
+    robot = PlayedRobot(clock)
+    token = await service.enrol("r1")
+    order_id = await service.order()
+    await waits_because(service, order_id, "No robot is connected at the moment.")
+    async with robot.connected(service.url, token):
+        await robot.greet()
+        await robot.mission()
+        await service.reaches(order_id, "assigned")
+        assert await why(service, order_id) is None
+
+
+async def test_verifiers_come_before_the_mission_that_needs_them(service: Service, clock: SteppedClock) -> None:
+    robot = PlayedRobot(clock)
+    token = await service.enrol("r1")
+    async with robot.connected(service.url, token):
+        await robot.greet()
+        await service.order()
+        await robot.mission()
+        assert [(one.type, one.seq) for one in robot.heard if one.seq] == [("verifiers", 1), ("mission", 2)]
+
+
+async def test_each_robot_has_one_mission_and_the_nearer_one_gets_the_first_order(
+    service: Service, clock: SteppedClock
+) -> None:
+    near, far = PlayedRobot(clock, "near", "journal-n"), PlayedRobot(clock, "far", "journal-f")
+    near_token, far_token = await service.enrol("near"), await service.enrol("far")
+    async with far.connected(service.url, far_token), near.connected(service.url, near_token):
+        await far.greet("post4")
+        await near.greet("post2")
+        first, second, third = [await an_order(service, clock) for _ in range(3)]
+        assert (await near.mission()).stops[0].order_id == first
+        assert (await far.mission()).stops[0].order_id == second
+        await waits_because(service, third, "Every robot is busy.")
+    assert [row.robot for row in await service.rows(MissionRow)] == ["near", "far"]
+
+
+async def test_a_robot_that_delivered_is_given_the_next_order(service: Service, clock: SteppedClock) -> None:
+    robot = PlayedRobot(clock)
+    token = await service.enrol("r1")
+    first, second = await an_order(service, clock), await an_order(service, clock)
+    async with robot.connected(service.url, token):
+        await robot.greet()
+        mission = await robot.mission()
+        assert mission.stops[0].order_id == first
+        for stop in mission.stops:
+            await robot.report(mission, Step.ARRIVED, stop)
+            await robot.say(robot.receipt(stop))
+        assert (await robot.mission()).stops[0].order_id == second
+    assert await service.states(first) == [
+        "queued", "assigned", "to_sender", "at_sender", "carrying", "at_recipient", "delivered",
+    ]  # fmt: skip
+
+
+async def test_a_robot_is_given_work_when_it_has_charged_enough(service: Service, clock: SteppedClock) -> None:
+    robot = PlayedRobot(clock)
+    token = await service.enrol("r1")
+    order_id = await service.order()
+    async with robot.connected(service.url, token):
+        await robot.greet(battery=Battery(ratio=0.1, charging=True))
+        await waits_because(service, order_id, "The free robots are charging first.")
+        snapshot = Snapshot(position=at_post("post5"), activity=Activity.CHARGING, battery=Battery(ratio=0.8))
+        await robot.say(snapshot)
+        await robot.mission()
+
+
+async def test_a_mission_decided_on_before_a_restart_reaches_the_robot_after_it_and_only_once(
+    settings: Settings, clock: SteppedClock
+) -> None:
+    robot = PlayedRobot(clock)
+    async with serving(settings, clock) as service:
+        token = await service.enrol("r1")
+        await service.order()
+    async with serving(settings, clock) as service:
+        async with robot.connected(service.url, token):
+            await robot.greet()
+            mission = await robot.mission()
+            assert robot.socket is not None
+            robot.socket.transport.abort()  # before it has stored or acknowledged anything
+        robot.received = robot.received.model_copy(update={"journal": None, "seq": 0})
+    async with serving(settings, clock) as service, robot.connected(service.url, token):
+        await robot.greet()
+        assert await robot.mission() == mission
+        assert len(await service.rows(MessageToRobot, type="mission")) == 1
+        assert len(await service.rows(MissionRow)) == 1
+
+
+async def test_a_robot_with_mail_aboard_is_not_free_even_if_its_mission_is_over(
+    service: Service, clock: SteppedClock
+) -> None:
+    robot = PlayedRobot(clock)
+    token = await service.enrol("r1")
+    await service.order()
+    async with robot.connected(service.url, token):
+        await robot.greet()
+        mission = await robot.mission()
+        load, receive = mission.stops
+        await robot.say(robot.receipt(load))
+        await robot.report(mission, Step.GAVE_UP, receive, reason="nobody came in 600 s")
+        done: Event = robot.progress(mission, Step.DONE)
+        await robot.ends(await robot.say(done))
+        another = await service.order()
+        await waits_because(service, another, "Every robot is busy.")
