@@ -3,14 +3,14 @@
 import asyncio
 import signal
 from asyncio.subprocess import Process
-from collections.abc import AsyncIterator, Mapping, Sequence
-from contextlib import asynccontextmanager, suppress
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 from app.demo.settings import DemoFailed
 
-STOP_WITHIN_S = 2.3
+STOP_WITHIN_S = 2.0
 LAST_LINES = 15
 
 
@@ -32,25 +32,32 @@ class Child:
         raise DemoFailed(f"The {self.name} ended with exit code {code}. Its last words:\n{self.last_words()}")
 
 
-@asynccontextmanager
-async def running(
-    name: str, command: Sequence[str], log: Path, environment: Mapping[str, str] | None = None
-) -> AsyncIterator[Child]:
-    """A child that is stopped at the end: asked first, then made to."""
-    with log.open("ab") as output:
-        # A session of its own: Ctrl-C at the terminal reaches us alone, and we stop the children in order.
-        process = await asyncio.create_subprocess_exec(
-            *command,
-            stdin=asyncio.subprocess.DEVNULL,
-            stdout=output,
-            stderr=output,
-            env=environment,
-            start_new_session=True,
-        )
-    try:
-        yield Child(name, process, log)
-    finally:
-        await _stop(process)
+class Children:
+    """Starts children, and stops them all at once."""
+
+    def __init__(self) -> None:
+        self._started: list[Process] = []
+
+    async def start(
+        self, name: str, command: Sequence[str], log: Path, environment: Mapping[str, str] | None = None
+    ) -> Child:
+        """A new process; what it says goes to `log`."""
+        with log.open("ab") as output:
+            # A session of its own: Ctrl-C at the terminal reaches us alone, and we stop the children.
+            process = await asyncio.create_subprocess_exec(
+                *command,
+                stdin=asyncio.subprocess.DEVNULL,
+                stdout=output,
+                stderr=output,
+                env=environment,
+                start_new_session=True,
+            )
+        self._started.append(process)
+        return Child(name, process, log)
+
+    async def stop(self) -> None:
+        """Ask first, then make them."""
+        await asyncio.gather(*(_stop(process) for process in self._started))
 
 
 async def _stop(process: Process) -> None:

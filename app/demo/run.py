@@ -11,7 +11,7 @@ from typing import Any
 import httpx
 
 from app.commands import enrol
-from app.demo.children import running
+from app.demo.children import Children
 from app.demo.people import Spool
 from app.demo.screen import Screen
 from app.demo.settings import LIMIT_S, ROBOT, ROBOT_CONFIG, Demo, DemoFailed
@@ -68,16 +68,24 @@ async def _play(demo: Demo, spool: Spool, screen: Screen) -> int:
     clock = SharedClock.create(demo.clock_file, demo.speed)
     demo.robot_config.write_text(ROBOT_CONFIG)
     await _write_token(demo)
-    logs = demo.folder / "service.log", demo.folder / "robot.log"
-    async with (
-        running("service", demo.service_command(), logs[0], demo.service_environment()) as service,
-        _together([service.watch(), _print_codes(screen)]),
-    ):
+    children = Children()
+    try:
+        await _perform(demo, children, Story(demo, clock, spool, screen.see_order), screen)
+    finally:
+        await children.stop()
+    return 0
+
+
+async def _perform(demo: Demo, children: Children, story: Story, screen: Screen) -> None:
+    service = await children.start(
+        "service", demo.service_command(), demo.folder / "service.log", demo.service_environment()
+    )
+    async with _beside([service.watch(), _print_codes(screen)]):
         await _is_ready(demo)
         screen.welcome()
-        async with running("robot", demo.robot_command(), logs[1]) as robot, _together([robot.watch()]):
-            await _tell_story(demo, Story(demo, clock, spool, screen.see_order), screen)
-    return 0
+        robot = await children.start("robot", demo.robot_command(), demo.folder / "robot.log")
+        async with _beside([robot.watch()]):
+            await _tell_story(demo, story, screen)
 
 
 async def _tell_story(demo: Demo, story: Story, screen: Screen) -> None:
@@ -97,7 +105,7 @@ async def _tell_story(demo: Demo, story: Story, screen: Screen) -> None:
 
 
 @asynccontextmanager
-async def _together(watchers: list[Coroutine[Any, Any, None]]) -> AsyncIterator[None]:
+async def _beside(watchers: list[Coroutine[Any, Any, None]]) -> AsyncIterator[None]:
     """What goes on beside the story; a watcher that fails ends the story with its own error."""
     try:
         async with asyncio.TaskGroup() as group:
