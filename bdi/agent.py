@@ -33,9 +33,9 @@ from bdi.parser import parse_literal, parse_term
 from bdi.performatives import PERFORMATIVES, sourced
 from bdi.plans import CompiledPlan, Compiler, Options, relevant
 from bdi.syntax import Belief, Plan, Program, Trigger
-from bdi.terms import Atom, List, Literal, String, Structure, Term, Var, atom, literal_of, show, structure
+from bdi.terms import Atom, Literal, String, Structure, Term, Var, atom, literal_of, show, structure
 from bdi.trace import Deliberated, Failed, Stepped, TraceEntry
-from bdi.unify import FIXED, renamed, resolve, resolve_all, undo, unify, variables_in
+from bdi.unify import FIXED, renamed, resolve, resolve_all, undo, unify
 from bdi.waiting import Waiter
 
 REMEMBERED_TEXTS = 20_000  # percepts and messages given as text are parsed once; then the memory starts again
@@ -126,7 +126,7 @@ class Agent:
         self._pending: dict[int, Intention] = {}
         self.timers: list[tuple[float, int, Intention]] = []
         self.waiters: list[Waiter] = []
-        self._asked: dict[str, tuple[Intention, Term]] = {}
+        self._asked: dict[str, tuple[Intention, Term, float | None]] = {}
         self._percepts: frozenset[Any] = frozenset()
         self._seen: dict[Any, _Percept] = {}
         self._mixed = False  # whether one percept may come written in several ways
@@ -192,7 +192,7 @@ class Agent:
             self.process_message(self._mailbox.popleft())
         if finished:
             self._feedback.extend(finished)
-        if self.timers or self.waiters:
+        if self.timers or self.waiters or self._asked:
             self._wake()
 
     def perceive(self, percepts: Iterable[Term | str]) -> None:
@@ -245,31 +245,46 @@ class Agent:
         asked = self._asked.pop(message.reply_to, None)
         if asked is None:
             return  # the question was dropped meanwhile
-        intention, pattern = asked
-        if unify(pattern, as_term(message.content), self.logic.trail):
+        intention, pattern, _ = asked
+        if intention.number in self.intentions:
+            self._take_answer(intention, pattern, as_term(message.content))
+
+    def _take_answer(self, intention: Intention, pattern: Term, answer: Term) -> None:
+        if unify(pattern, answer, self.logic.trail):
             self.logic.trail.clear()
-            self._resume(intention)
+            self._go_on(intention)
         else:
             undo(self.logic.trail, 0)
-            self.fail(intention, StepFailed("ask_failed", f"the answer is {message.content}, not {show(pattern)}"))
+            self.fail(intention, StepFailed("ask_failed", f"the answer is {show(answer)}, not {show(pattern)}"))
 
     def _wake(self) -> None:
         """Intentions whose `.wait` is over go on."""
         while self.timers and self.timers[0][0] <= self.now:
             _, _, intention = heappop(self.timers)
             if intention.state is State.TIME and intention.waits_for is not None and intention.waits_for <= self.now:
-                self._resume(intention)
+                self._go_on(intention)
         for waiter in list(self.waiters):
             verdict = waiter.check(self)
             if verdict is not None:
                 self.waiters.remove(waiter)
                 self._finish_waiting(waiter, verdict)
+        for message_id, (intention, pattern, deadline_s) in list(self._asked.items()):
+            if deadline_s is not None and self.now >= deadline_s:
+                del self._asked[message_id]
+                self._take_answer(intention, pattern, atom("timeout"))
+
+    def _go_on(self, intention: Intention) -> None:
+        """What it waited for is here: on with the next step, or back to the plan below."""
+        intention.state = State.RUNNING
+        intention.waits_for = None
+        if self.clear_finished(intention):
+            self._resume(intention)
 
     def _finish_waiting(self, waiter: Waiter, in_time: bool) -> None:
         if waiter.intention.number not in self.intentions:
             return
         if in_time or waiter.quiet:
-            self._resume(waiter.intention)
+            self._go_on(waiter.intention)
         else:
             self.fail(waiter.intention, StepFailed("wait_timeout", f"{waiter.what} did not happen in time"))
 
@@ -382,9 +397,7 @@ class Agent:
         if finished.failure is not None:
             self.fail(intention, _action_failure(finished))
             return
-        intention.state = State.RUNNING
-        if self.clear_finished(intention):
-            self._resume(intention)
+        self._go_on(intention)
 
     def select_intention(self) -> Intention | None:
         """Round robin; an atomic plan runs alone."""
@@ -485,13 +498,13 @@ class Agent:
         if self._scoped:
             options = self._scoped_options(intention, goal, options)
         goal, returns = _with_own_variables(goal)
-        self._wait_for_event(intention, Event(Trigger.GOAL_ADDED, goal, options, intention, returns))
+        self._wait_for_event(intention, Event(Trigger.GOAL_ADDED, goal, options, intention, returns=returns))
 
     def _scoped_options(self, intention: Intention, goal: Literal, options: Options) -> Options:
         """Sub-plans of the plans that led here go before those of the agent."""
         for means in reversed(intention.stack):
             if means.plan.subplans is not None:
-                found = means.plan.subplans.options(Trigger.GOAL_ADDED, goal.predicate)
+                found: Options = means.plan.subplans.options(Trigger.GOAL_ADDED, goal.predicate)
                 if found:
                     return found
         return options
@@ -510,7 +523,7 @@ class Agent:
     def ask_plans(self, intention: Intention, goal: Literal, options: Options) -> None:
         """?g that no belief answers"""
         goal, returns = _with_own_variables(goal)
-        self._wait_for_event(intention, Event(Trigger.TEST_ADDED, goal, options, intention, returns))
+        self._wait_for_event(intention, Event(Trigger.TEST_ADDED, goal, options, intention, returns=returns))
 
     def believe(self, literal: Literal, intention: Intention | None, last: bool = False) -> None:
         """+b: waits for its event; ++b does not"""
@@ -598,7 +611,8 @@ class Agent:
     def join(self, intention: Intention) -> None:
         """The end of a branch: the last one goes on, or the first one alone."""
         fork = intention.fork
-        assert fork is not None
+        if fork is None:
+            return
         fork.branches.remove(intention)
         if fork.wait_for_all and fork.branches:
             self._end(intention)
@@ -640,7 +654,7 @@ class Agent:
         if not options:
             return False
         literal = Structure(goal.key, resolve_all(goal.args), (*goal.annots, *annots))
-        event = Event(trigger, literal, options, intention, goal.returns, place)
+        event = Event(trigger, literal, options, intention, returns=goal.returns, under=place)
         if intention is None:
             self.events.append(event)
         else:
@@ -710,7 +724,10 @@ class Agent:
             intention.action = None
         if intention in self.running:
             self.running.remove(intention)
-        self.waiters = [waiter for waiter in self.waiters if waiter.intention is not intention]
+        if self.waiters:
+            self.waiters = [waiter for waiter in self.waiters if waiter.intention is not intention]
+        if self._asked:
+            self._asked = {key: asked for key, asked in self._asked.items() if asked[0] is not intention}
 
     def hold(self, intention: Intention) -> None:
         """It takes no more steps; what it waits for may still come in."""
@@ -797,10 +814,10 @@ class Agent:
         self._last_message += 1
         return f"{self.name}-{self._last_message}"
 
-    def wait_for_answer(self, intention: Intention, message_id: str, answer: Term) -> None:
+    def wait_for_answer(self, intention: Intention, message_id: str, answer: Term, deadline_s: float | None) -> None:
         intention.state = State.ANSWER
         intention.waits_for = f"the answer to {message_id}"
-        self._asked[message_id] = (intention, answer)
+        self._asked[message_id] = (intention, answer, deadline_s)
 
     def event_in(self, text: String) -> tuple[Trigger, Any]:
         trigger, literal = event_named(text)
@@ -838,7 +855,7 @@ class Agent:
 
 def as_term(content: Term | str) -> Term:
     """Text is parsed, a term is itself."""
-    return parse_term(content) if type(content) is str else content
+    return parse_term(content) if type(content) is str else content  # type: ignore[return-value]
 
 
 def as_literal(content: Term | str) -> Literal:
@@ -861,7 +878,8 @@ def _with_own_variables(goal: Literal) -> tuple[Literal, tuple[tuple[Var, Var], 
         return goal, ()
     names: dict[Var, Term] = {}
     args = tuple([renamed(arg, names) for arg in args])
-    return Structure(goal.predicate, args, resolve_all(goal.annots)), tuple(names.items())  # type: ignore[return-value]
+    pairs = [(outer, inner) for outer, inner in names.items() if type(inner) is Var]
+    return Structure(goal.predicate, args, resolve_all(goal.annots)), tuple(pairs)
 
 
 def _place_of(intention: Intention, is_goal: Callable[[Means], bool]) -> int | None:
@@ -874,7 +892,7 @@ def _action_failure(finished: Finished) -> StepFailed:
     try:
         reason = as_term(failure) if failure is not None else String("")
     except AgentSpeakSyntaxError:
-        reason = String(failure)  # a sentence, not a term
+        reason = String(str(failure))  # a sentence, not a term
     message = finished.message or text_of(reason)
     plain: tuple[Term, ...] = (reason,) if isinstance(reason, Atom | Structure) else ()
     return StepFailed("action_failed", message, (*plain, structure("reason", reason)))

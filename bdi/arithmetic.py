@@ -1,4 +1,4 @@
-"""Numbers: all are doubles in meaning; `div` works on whole numbers of 32 bits, `mod` keeps the sign of the dividend."""
+"""Numbers: all are doubles in meaning; `div` cuts to whole numbers of 32 bits first, `mod` has the dividend's sign."""
 
 import math
 from collections.abc import Callable

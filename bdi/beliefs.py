@@ -1,4 +1,4 @@
-"""What the agent believes: one relation for each predicate, newest belief first, with an index on the first argument."""
+"""What the agent believes: one relation for each predicate, newest first, indexed by the first argument."""
 
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
@@ -49,18 +49,18 @@ class Relation:
 
     def candidates(self, first: Term | None) -> Iterable[Any]:
         """The keys of the facts that can have this first argument (None: any), newest first."""
-        if first is None or type(first) not in FIXED or self.irregular or len(self.facts) < INDEX_FROM:
-            return reversed(self.facts)
-        if self.by_first is None:
-            self._build_index()
-        assert self.by_first is not None
-        found = self.by_first.get(first)
+        found: dict[Any, Any] | None = self.facts
+        if first is not None and type(first) in FIXED and not self.irregular and len(self.facts) >= INDEX_FROM:
+            if self.by_first is None:
+                self.by_first = self._index()
+            found = self.by_first.get(first)
         return reversed(found) if found else ()
 
-    def _build_index(self) -> None:
-        self.by_first = {}
+    def _index(self) -> dict[Term, dict[Arguments, None]]:
+        index: dict[Term, dict[Arguments, None]] = {}
         for args in self.facts:
-            self.by_first.setdefault(args[0], {})[args] = None
+            index.setdefault(args[0], {})[args] = None
+        return index
 
     def __iter__(self) -> Iterator[Belief]:
         return (fact for fact in reversed(list(self.facts.values())) if type(fact) is Belief)

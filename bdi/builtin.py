@@ -12,7 +12,7 @@ from bdi.intentions import StepFailed
 from bdi.logic import Builtin, Logic
 from bdi.terms import Predicate, Structure, Term, show
 
-Answer: TypeAlias = bool | None | Iterator[Any]  # None counts as True
+Answer: TypeAlias = bool | Iterator[Any] | None  # None counts as True
 
 
 class HasLogic(Protocol):
@@ -49,7 +49,9 @@ def internal_action(
     """
 
     def register(call: Callable[..., Answer]) -> Callable[..., Answer]:
-        ACTIONS[f".{name}"] = Definition(f".{name}", call, least, least if most == -1 else most, frozenset(lazy), named=named)
+        ACTIONS[f".{name}"] = Definition(
+            f".{name}", call, least, least if most == -1 else most, frozenset(lazy), named=named
+        )
         return call
 
     return register
@@ -81,7 +83,7 @@ class Bound:
         if self._call is None:
             return False
         answer = self._call(self._mind, *args)
-        return True if answer is None else answer  # type: ignore[no-any-return]
+        return True if answer is None else answer
 
 
 def find_builtin(key: Predicate, mind: HasLogic) -> Builtin | None:
@@ -112,5 +114,3 @@ def _over_values(key: Predicate, call: Callable[..., Any]) -> Callable[[tuple[Te
 
 def wrong_arguments(name: str, expected: str, got: object) -> StepFailed:
     return StepFailed("wrong_arguments", f".{name} takes {expected}, not {show(got)}")
-
-

@@ -60,16 +60,15 @@ def fail(mind: Mind, *annots: Term) -> Answer:
 
 
 @internal_action("send", 3, 5)
-def send(
-    mind: Mind, receiver: Term, performative: Term, content: Term, answer: Term | None = None, wait_ms: Term = 0
-) -> Answer:
-    """With an `answer` the intention waits for it."""
+def send(mind: Mind, receiver: Term, performative: Term, content: Term, *answer: Term) -> Answer:
+    """.send(TO, PERFORMATIVE, CONTENT, ANSWER, MS): with an answer the intention waits for it, MS at most."""
     receivers = items_of(receiver, "send") if isinstance(receiver, List) else (receiver,)
     for each in receivers:
         message_id = mind.new_message_id()
         mind.send(Message(mind.name, text_of(performative), content, text_of(each), message_id))
-        if answer is not None:
-            mind.wait_for_answer(mind.current, message_id, answer)
+        if answer:
+            deadline_s = moment_of(mind.now, answer[1]) if len(answer) > 1 else None
+            mind.wait_for_answer(mind.current, message_id, answer[0], deadline_s)
     return True
 
 
@@ -91,8 +90,8 @@ def _unifies(mind: Mind, pattern: Term, literal: Literal) -> bool:
 
 def _pursues(mind: Mind, goal: Term) -> Callable[[Means], bool]:
     """Whether means are for this goal."""
-    return lambda means: means.event.trigger in (Trigger.GOAL_ADDED, Trigger.GOAL_FAILED) and _unifies(
-        mind, goal, means.event.literal
+    return lambda means: (
+        means.event.trigger in (Trigger.GOAL_ADDED, Trigger.GOAL_FAILED) and _unifies(mind, goal, means.event.literal)
     )
 
 
@@ -396,4 +395,3 @@ def relevant_plans(mind: Mind, trigger: Term, plans: Term, labels: Term | None =
 @internal_action("eval", 2, lazy=(1,))
 def evaluate(mind: Mind, result: Term, formula: Question) -> Answer:
     return unify(result, atom("true" if formula.first() else "false"), mind.logic.trail)
-

@@ -80,7 +80,7 @@ def nth(mind: HasLogic, place: Term, items: Term, item: Term) -> Answer:
 def concat(mind: HasLogic, *args: Term) -> Answer:
     *parts, result = args
     if all(isinstance(part, List) for part in parts):
-        return _unify(mind, result, List([item for part in parts for item in part]))  # type: ignore[union-attr]
+        return _unify(mind, result, List([item for part in parts for item in items_of(part, "concat")]))
     if len(parts) == 2 and isinstance(result, List) and any(isinstance(part, Var) for part in parts):
         splits = ((List(result[:at]), List(result[at:])) for at in range(len(result) + 1))
         return _each(mind, (((parts[0], left), (parts[1], right)) for left, right in splits))
@@ -173,7 +173,7 @@ def suffix(mind: HasLogic, part: Term, items: Term) -> Answer:
 
 @internal_action("empty", 1)
 def empty(mind: HasLogic, value: Term) -> Answer:
-    return length_of(value) == 0
+    return bool(length_of(value) == 0)
 
 
 @internal_action("range", 3, 4)
@@ -309,13 +309,13 @@ def _put(value: Any, item: Term) -> None:
 
 
 for _name, _make in {"queue": deque, "set": dict, "map": dict}.items():
-    _register_collection(_name, _make)  # type: ignore[arg-type]
+    _register_collection(_name, _make)
 
 
 def _inside(term: Term, kind: type, name: str) -> Any:
     if isinstance(term, Handle) and isinstance(term.value, kind):
         return term.value
-    raise wrong_arguments(name, f"a {name.split('.')[0]}", term)
+    raise wrong_arguments(name, f"a {name.split('.', maxsplit=1)[0]}", term)
 
 
 @internal_action("queue.add", 2)

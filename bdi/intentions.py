@@ -23,7 +23,7 @@ class State(Enum):
 
 
 class Step:
-    """One compiled step of a plan body. `run(agent, intention, means)`; `next` is the step after it, None at the end."""
+    """One compiled step of a plan body. `run(intention, means)`; `next` is the step after it, None at the end."""
 
     __slots__ = ("next", "run", "source")
 
@@ -44,6 +44,7 @@ class Event:
         literal: Literal,
         options: Any,
         intention: "Intention | None" = None,
+        *,
         returns: tuple[tuple[Var, Var], ...] = (),
         under: int = 0,
     ) -> None:

@@ -5,9 +5,9 @@ and answers True as soon as that does. So a conjunction is a call, a second answ
 needed. A slot is None until its variable is met; then it holds a value or a `Var`.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
-from typing import Any, Protocol, TypeAlias
+from typing import Any, NamedTuple, Protocol, TypeAlias
 
 from bdi.arithmetic import OPERATION_OF, ArithmeticFailure
 from bdi.beliefs import Belief, Beliefs, Derivation, Relation
@@ -81,7 +81,7 @@ class Known:
         """Once this formula has come true."""
         return Known(self.filled | filled_by(term), self.met | frozenset(variables_in(term)))
 
-    def among(self, variables: Iterator[Var] | dict[Var, None]) -> "Known":
+    def among(self, variables: Iterable[Var]) -> "Known":
         new = frozenset(variables)
         return Known(self.filled | new, self.met | new)
 
@@ -125,11 +125,10 @@ class Question:
 
 def filled_by(term: Term) -> frozenset[Var]:
     """The variables whose slots are certainly filled once the formula has come true."""
-    key = getattr(term, "predicate", None)
+    key = term.predicate if isinstance(term, Atom | Structure) else None
     if key is NOT:
         return frozenset()
-    if key is AND or key is OR:
-        assert isinstance(term, Structure)
+    if isinstance(term, Structure) and key in (AND, OR):
         left, right = (filled_by(part) for part in term.args)
         return left | right if key is AND else left & right
     if key is not None and key.name.startswith(INTERNAL):
@@ -243,8 +242,7 @@ class Logic:
             items = [self.build(item, scope) for item in term.items]
             tail = self.build(term.tail, scope)
             return lambda frame: resolve(OpenList(tuple([item(frame) for item in items]), tail(frame)))
-        assert isinstance(term, List)
-        parts = [self.build(item, scope) for item in term]
+        parts = [self.build(item, scope) for item in parts_of(term)]
         return lambda frame: List([part(frame) for part in parts])
 
     # ---- matching a value against a pattern ------------------------------------------------------------------------
@@ -288,8 +286,8 @@ class Logic:
         compiler = self._formulas().get(key)
         if compiler:
             return compiler(term, scope, known, then)
-        if key in RELATIONS:
-            return self._solve_relation(term, scope, known, then)
+        if key in RELATIONS and isinstance(term, Structure):
+            return self._solve_relation(term, scope, then)
         if key.name.startswith(INTERNAL):
             return self._solve_builtin(term, scope, then)
         return self._solve_literal(term, scope, known, then)
@@ -357,8 +355,8 @@ class Logic:
             return self._solve_fact(relation, term.args, then, any_way)
         if not free:
             return self._solve_look_up(relation, term.args, filled, then, any_way)
-        places = [(place, scope.slot(arg)) for place, arg in enumerate(term.args) if arg in free]  # type: ignore[arg-type]
-        return self._solve_scan(relation, fixed, filled, places, then, any_way)
+        places = [(place, scope.slot(arg)) for place, arg in enumerate(term.args) if arg in free]
+        return self._solve_scan(relation, _Pattern(tuple(fixed), tuple(filled), tuple(places)), then, any_way)
 
     def _solve_fact(self, relation: Relation, args: tuple[Term, ...], then: Solve, any_way: Solve) -> Solve:
         """Nothing but constants: `docked`, `battery(low)`."""
@@ -392,16 +390,9 @@ class Logic:
 
         return look_up
 
-    def _solve_scan(
-        self,
-        relation: Relation,
-        fixed: list[tuple[int, Term]],
-        filled: list[tuple[int, int]],
-        free: list[tuple[int, int]],
-        then: Solve,
-        any_way: Solve,
-    ) -> Solve:
+    def _solve_scan(self, relation: Relation, pattern: "_Pattern", then: Solve, any_way: Solve) -> Solve:
         """Some variables get their value here: `dockStation(D)`."""
+        fixed, filled, free = pattern
 
         def scan(frame: Frame) -> bool:
             if relation.irregular:
@@ -410,58 +401,15 @@ class Logic:
                 return False
             wanted = fixed
             if filled:
-                wanted = fixed + [(place, frame[slot]) for place, slot in filled]
+                wanted = (*fixed, *[(place, frame[slot]) for place, slot in filled])
                 for _, value in wanted:
                     if type(value) not in FIXED:
                         return any_way(frame)
-            first = wanted[0][1] if wanted and wanted[0][0] == 0 else None
-            for args in relation.candidates(first):
+            for args in relation.candidates(_first_of(wanted)) if wanted else reversed(relation.facts):
                 for place, value in wanted:
                     if args[place] != value:
                         break
                 else:
-                    for place, slot in free:
-                        frame[slot] = args[place]
-                    if then(frame):
-                        return True
-            for _, slot in free:
-                frame[slot] = None
-            return False
-
-        filled = sorted(filled)
-        if filled and filled[0][0] == 0:
-            # The first argument goes first, so that the index can serve it.
-            return self._solve_scan_by_first(relation, fixed, filled, free, then, any_way)
-        return scan
-
-    def _solve_scan_by_first(
-        self,
-        relation: Relation,
-        fixed: list[tuple[int, Term]],
-        filled: list[tuple[int, int]],
-        free: list[tuple[int, int]],
-        then: Solve,
-        any_way: Solve,
-    ) -> Solve:
-        """The first argument has its value: `direction(OLD, D)` with OLD known."""
-        first_slot = filled[0][1]
-        others = filled[1:]
-
-        def scan(frame: Frame) -> bool:
-            if relation.irregular:
-                return any_way(frame)
-            if not relation.facts:
-                return False
-            first = frame[first_slot]
-            if type(first) not in FIXED:
-                return any_way(frame)
-            wanted = fixed
-            if others:
-                wanted = fixed + [(place, frame[slot]) for place, slot in others]
-                if any(type(value) not in FIXED for _, value in wanted):
-                    return any_way(frame)
-            for args in relation.candidates(first):
-                if args[0] == first and all(args[place] == value for place, value in wanted):
                     for place, slot in free:
                         frame[slot] = args[place]
                     if then(frame):
@@ -524,12 +472,12 @@ class Logic:
 
     # ---- comparisons -----------------------------------------------------------------------------------------------
 
-    def _solve_relation(self, term: Structure, scope: Scope, known: Known, then: Solve) -> Solve:
+    def _solve_relation(self, term: Structure, scope: Scope, then: Solve) -> Solve:
         """X < Y   X == Y   X = Y   X =.. [name,args,annots]"""
         left, right = (self.build(arg, scope) for arg in term.args)
         name = term.predicate.name
         if name == "=":
-            return self._solve_equation(term, left, right, scope, known, then)
+            return self._solve_equation(left, right, then)
         if name == "=..":
             return self._solve_decomposition(left, right, then)
         test = _TESTS[name]
@@ -544,9 +492,7 @@ class Logic:
 
         return compared
 
-    def _solve_equation(
-        self, term: Structure, left: Build, right: Build, scope: Scope, known: Known, then: Solve
-    ) -> Solve:
+    def _solve_equation(self, left: Build, right: Build, then: Solve) -> Solve:
         trail = self.trail
 
         def equation(frame: Frame) -> bool:
@@ -677,6 +623,19 @@ def _agree(belief: Belief, args: tuple[Term, ...], annots: tuple[Term, ...], tra
         names: dict[Var, Term] = {}
         stored = tuple([renamed(arg, names) for arg in stored])
     return unify_all(args, stored, trail) and (not annots or unify_annots(annots, belief.annots, trail))
+
+
+class _Pattern(NamedTuple):
+    """How a belief is looked for: what is at which place, by value, by filled slot, by slot to fill."""
+
+    fixed: tuple[tuple[int, Term], ...]
+    filled: tuple[tuple[int, int], ...]
+    free: tuple[tuple[int, int], ...]
+
+
+def _first_of(wanted: tuple[tuple[int, Term], ...]) -> Term | None:
+    """The first argument, if it is known."""
+    return next((value for place, value in wanted if place == 0), None)
 
 
 def _by_name(scope: Scope, frame: Frame) -> dict[str, Term]:

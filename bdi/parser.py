@@ -219,15 +219,13 @@ def _place(text: str, source: str, line: int, column: int) -> Place:
 def _syntax_error(error: UnexpectedInput, text: str, source: str) -> AgentSpeakSyntaxError:
     """Lark's error in the words of the language."""
     line, column = error.line, error.column
+    problem, expected = "the text ends too early", set(getattr(error, "expected", ()))
     if isinstance(error, UnexpectedCharacters):
-        problem, expected = f"unexpected character {error.char!r}", error.allowed
+        problem, expected = f"unexpected character {error.char!r}", error.allowed or set()
+    elif isinstance(error, UnexpectedToken) and error.token.type != "$END":
+        problem = f"unexpected {str(error.token)!r}"
     else:
-        assert isinstance(error, UnexpectedToken)
-        at_end = error.token.type == "$END"
-        problem, expected = f"unexpected {str(error.token)!r}", error.expected
-        if at_end:
-            problem = "the text ends too early"
-            line, column = text.count("\n") + 1, len(text) - text.rfind("\n")
+        line, column = text.count("\n") + 1, len(text) - text.rfind("\n")
     return AgentSpeakSyntaxError(problem, _place(text, source, line, column), _named(expected or set()))
 
 
@@ -350,8 +348,8 @@ class _Builder(Transformer[Token, Any]):
 
     # -- bodies
 
-    def body(self, *steps: Step | tuple[Step, ...]) -> Body:
-        return Body(tuple(step for step in steps if not isinstance(step, Token)))
+    def body(self, *steps: Step) -> Body:
+        return Body(steps)
 
     @v_args(meta=True)
     def formula_step(self, meta: Meta, children: list[Term]) -> Simple:

@@ -103,4 +103,3 @@ PERFORMATIVES: dict[str, Callable[[Mind, Message], None]] = {
     "untellHow": _untell_how,
     "signal": _signal,
 }
-

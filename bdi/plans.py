@@ -205,8 +205,7 @@ class Compiler:
         if written.does in (Does.CONSTRAINT, Does.TEST):
             return self._test(written, scope, known)
         if written.does is Does.INTERNAL:
-            assert isinstance(term, Atom | Structure)
-            return self._internal(term, scope)
+            return self._internal(_literal(term), scope)
         if written.does is Does.VARIABLE or isinstance(term, Code):
             return self._variable(term, scope)
         build = self.logic.build(term, scope)
@@ -505,4 +504,3 @@ _DEEDS: dict[Does, Callable[[Doer, Intention, Literal], None]] = {
     Does.REMOVE_APART: lambda doer, intention, term: doer.forget(term, None),
     Does.UPDATE: lambda doer, intention, term: doer.update(term, intention),
 }
-

@@ -7,7 +7,7 @@ Annotations are a subset test: `p(X)[a]` unifies with `p(1)[a,b]`, not the other
 from collections.abc import Callable, Iterable
 from functools import cmp_to_key
 
-from bdi.arithmetic import ArithmeticFailure, calculate
+from bdi.arithmetic import calculate
 from bdi.terms import (
     ARITHMETIC,
     NEGATIVE,
@@ -95,8 +95,9 @@ def unify_annots(wanted: tuple[Term, ...], present: tuple[Term, ...], trail: Tra
     Both sides are gone through once, in standard order, so that two wanted annotations never share a present one.
     """
     tail = None
-    if type(wanted[-1]) is OpenList:
-        wanted, tail = (*wanted[:-1], *wanted[-1].items), wanted[-1].tail
+    last = wanted[-1]
+    if type(last) is OpenList:
+        wanted, tail = (*wanted[:-1], *last.items), last.tail
     left_over = sorted(present, key=_in_order)
     start = 0
     for annot in sorted(wanted, key=_in_order) if len(wanted) > 1 else wanted:

@@ -13,7 +13,9 @@ from bdi.unify import undo, unify
 class Waiter:
     """An intention that waits until something happens, or until `deadline_s` (None: for ever)."""
 
-    def __init__(self, intention: Intention, what: str, deadline_s: float | None, happened: Callable[[Any], bool]):
+    def __init__(
+        self, intention: Intention, what: str, deadline_s: float | None, happened: Callable[[Any], bool]
+    ) -> None:
         self.intention = intention
         self.what = what
         self.deadline_s = deadline_s
@@ -43,9 +45,7 @@ class Waiter:
         return None
 
 
-def event_waiter(
-    intention: Intention, trigger: Trigger, literal: Literal, deadline_s: float | None
-) -> Waiter:
+def event_waiter(intention: Intention, trigger: Trigger, literal: Literal, deadline_s: float | None) -> Waiter:
     """.wait("+b(X)")"""
     waiter = Waiter(intention, f"{trigger}{literal}", deadline_s, lambda mind: False)
     waiter.wanted = (trigger, literal)
