@@ -18,7 +18,7 @@ from .drivers.create2 import Create2
 from .drivers.interfaces import BodyShape, Camera, LineSensor
 from .drivers.line_sensor import ThreeDiodes
 from .drivers.marker_reader import MarkerReader, MarkerWatch, Optics
-from .drivers.serial_port import open_serial
+from .drivers.serial_port import SerialPort, open_serial
 from .duties import Duties
 from .link import Link
 from .memory import Memory
@@ -39,7 +39,8 @@ class Simulation:
     start: str | None = None
     battery_ratio: float | None = None
     seed: int = 0
-    persistent: bool = True
+    in_memory: bool = False
+    """The byte machine behind an object and not behind a pseudo-terminal: quicker, for stepped time."""
 
 
 @dataclass
@@ -123,8 +124,12 @@ def _devices(
         return _real_devices(settings)
     robot = _simulated_robot(settings, campus, clock, simulation)
     closing.callback(robot.close)
-    saved = SavedWorld(robot, settings.data / "world.json" if simulation.persistent else None)
-    base = Create2(lambda: open_serial(robot.port_path), robot.brc, settings.drive.velocity_deadline_s)
+    saved = SavedWorld(robot, settings.data / "world.json")
+
+    def open_port() -> SerialPort:
+        return robot.memory_port() if simulation.in_memory else open_serial(robot.port_path)
+
+    base = Create2(open_port, robot.brc, settings.drive.velocity_deadline_s)
     sensor = _line_sensor(settings, robot.pin_factory)
     return Devices(base, sensor, robot.camera, robot, saved)
 
@@ -142,6 +147,7 @@ def _simulated_robot(settings: Settings, campus: CampusMap, clock: Clock, simula
         clock.now(),
         simulation.start or "dock",
         simulation.seed,
+        in_memory=simulation.in_memory,
         options=options,
         battery_ratio=simulation.battery_ratio,
         capacity_mah=settings.battery.simulated_capacity_mah,

@@ -82,6 +82,10 @@ class LockstepRunner:
     def stop(self) -> None:
         self._stopping.set()
 
+    def restart(self) -> None:
+        """`run` may be called again, and goes on where it stopped."""
+        self._stopping.clear()
+
     def run(self) -> None:
         while not self._stopping.is_set():
             if isinstance(self._clock, SteppedClock):

@@ -12,11 +12,11 @@ LAYOUT = 1
 class SavedWorld:
     """Moves the simulated robot along, and keeps its pose and charge in a file from which the next start goes on."""
 
-    def __init__(self, robot: SimulatedRobot, path: Path | None) -> None:
+    def __init__(self, robot: SimulatedRobot, path: Path) -> None:
         self._robot, self._path = robot, path
         self._saved_s = robot.now
         self.restored = False
-        if path and path.exists():
+        if path.exists():
             self._restore(path)
 
     def _restore(self, path: Path) -> None:
@@ -36,8 +36,6 @@ class SavedWorld:
 
     def save(self) -> None:
         """Whole or not at all: a kill in the middle leaves the older file."""
-        if self._path is None:
-            return
         pose = self._robot.pose
         saved = {
             "layout": LAYOUT,

@@ -9,6 +9,7 @@
      !go_to(Post).
 +!go_to(Post) : not at(_)
   <- !reach_a_post;
+     !tell_passed(Post);
      !go_to(Post).
 +!go_to(Post)
   <- set_destination(Post);

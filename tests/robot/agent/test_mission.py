@@ -117,7 +117,7 @@ def test_after_a_restart_between_posts_it_drives_on_to_the_next_marker_and_deliv
     stage.does("report(departed,s2)")
     stage.expect("follow_line")
     stage.reaches("post3")
-    stage.does("clear_fault(way_blocked)", "set_destination(post4)")
+    stage.does("clear_fault(way_blocked)", "report(passed,s2)", "set_destination(post4)")
 
 
 def test_an_unknown_post_is_given_up_by_name_and_the_mission_goes_on() -> None:

@@ -1,0 +1,132 @@
+"""The whole robot with our agent program in the simulated world: bytes, pins and pictures, no network."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from protocol.parts import Purpose
+from tests.robot.daemon.simulated_run import SimulatedRun
+
+PROGRESS = [
+    "progress accepted",
+    "progress departed",
+    "progress passed",
+    "progress passed",
+    "progress arrived",
+    "handover load",
+    "progress departed",
+    "progress passed",
+    "progress passed",
+    "progress arrived",
+    "handover receive",
+    "progress done",
+]
+
+
+@pytest.fixture
+def run(tmp_path: Path) -> Iterator[SimulatedRun]:
+    run = SimulatedRun(tmp_path)
+    yield run
+    run.close()
+
+
+def test_a_letter_is_fetched_delivered_and_the_robot_goes_home(run: SimulatedRun) -> None:
+    run.given_a_letter()
+    run.until(lambda: run.waits_for("wait_handover(load"))
+    assert run.visited == ["post5", "post3", "post2", "post1"]
+    run.passes(10)
+    assert run.waits_for("wait_handover(load"), "nobody has shown a code yet"
+    run.shows(Purpose.RECEIVE)
+    run.passes(5)
+    assert run.duties.held.cargo == (), "the wrong code opens nothing"
+    run.shows(Purpose.LOAD)
+    run.until(lambda: run.duties.held.cargo == ("o1",), 10)
+    run.until(lambda: run.waits_for("wait_handover(receive"))
+    run.shows(Purpose.RECEIVE)
+    run.until(lambda: run.duties.held.mission is None, 10)
+    run.until(lambda: run.is_home)
+    assert run.visited[3:] == ["post1", "post2", "post3", "post4", "post3", "post5"]
+    assert run.told() == PROGRESS
+
+
+def test_a_battery_low_with_mail_aboard_is_charged_and_each_thing_told_once(run: SimulatedRun) -> None:
+    run.given_a_letter()
+    run.until(lambda: run.waits_for("wait_handover(load"))
+    run.shows(Purpose.LOAD)
+    run.until(lambda: run.is_at("post2"))
+    run.robot.sag(0.2)
+    run.until(lambda: run.robot.docked)
+    run.until(lambda: not run.robot.docked)
+    run.until(lambda: run.waits_for("wait_handover(receive"))
+    told = run.told()
+    assert [one for one in told if one.startswith("charge")] == ["charge low", "charge charging", "charge charged"]
+    assert told.count("progress departed") == 2
+    assert told.count("handover load") == 1
+
+
+def test_a_recipient_who_never_comes_does_not_keep_the_robot(run: SimulatedRun) -> None:
+    run.given_a_letter()
+    run.until(lambda: run.waits_for("wait_handover(load"))
+    run.shows(Purpose.LOAD)
+    run.until(lambda: run.waits_for("wait_handover(receive"))
+    run.until(lambda: run.is_home)
+    assert run.duties.held.cargo == ("o1",), "the mail stays aboard and is known to be"
+    assert run.told()[-2:] == ["progress gave_up", "progress done"]
+
+
+def test_killed_on_the_way_with_mail_it_wakes_up_knowing_and_delivers(tmp_path: Path) -> None:
+    first = SimulatedRun(tmp_path)
+    first.given_a_letter()
+    first.until(lambda: first.waits_for("wait_handover(load"))
+    first.shows(Purpose.LOAD)
+    first.until(lambda: first.is_at("post2"))
+    first.passes(6)
+    pose = first.robot.pose
+    first.kill()
+
+    second = SimulatedRun(tmp_path)
+    assert abs(second.robot.pose.x_m - pose.x_m) < 0.15, "the robot stands where it stood"
+    assert second.duties.held.cargo == ("o1",)
+    second.until(lambda: second.waits_for("wait_handover(receive"))
+    second.shows(Purpose.RECEIVE)
+    second.until(lambda: second.duties.held.mission is None, 10)
+    told = second.told()
+    second.close()
+    assert told == PROGRESS
+
+
+def test_killed_while_it_waits_for_the_sender_it_goes_on_waiting_there(tmp_path: Path) -> None:
+    first = SimulatedRun(tmp_path, start="post2:post1")
+    first.given_a_letter()
+    first.until(lambda: first.waits_for("wait_handover(load"))
+    first.passes(2)
+    first.kill()
+
+    second = SimulatedRun(tmp_path)
+    second.until(lambda: second.waits_for("wait_handover(load"), 10)
+    second.shows(Purpose.LOAD)
+    second.until(lambda: second.is_at("post3"))
+    second.close()
+
+
+def test_somebody_in_the_way_is_waited_for(run: SimulatedRun) -> None:
+    run.asks("", "visit(post4)")
+    run.until(lambda: run.is_at("post3"))
+    run.passes(3)
+    run.robot.bump("both")
+    run.until(lambda: "bump" in run.mind.hands.view.faults, 5)
+    run.until(lambda: run.is_at("post4"))
+    assert run.told().count("fault bump") == 2, "that it happened, and that it is over"
+
+
+def test_a_lifted_robot_stands_until_it_is_put_down_and_then_goes_on(run: SimulatedRun) -> None:
+    run.asks("", "visit(post4)")
+    run.until(lambda: run.is_at("post3"))
+    run.passes(3)
+    run.robot.lift(True)
+    run.passes(5)
+    assert run.mind.hands.view.sent.still
+    assert not run.waits_for("follow_line")
+    run.robot.lift(False)
+    run.until(lambda: run.is_at("post4"))
