@@ -12,7 +12,7 @@ const ROOM = { width: 82, height: 100 };
 const MARGIN = 18;
 const LINE_HEIGHT = 15;
 const CHARACTER_WIDTH = 7.2;
-const GAP = 15;
+const GAP = 19;
 
 /** Puts the campus into a space that grows with its posts, north up. @param {CampusMap} map */
 export function drawing(map) {

@@ -31,7 +31,7 @@ export class CampusMapElement extends PageElement {
     this.to = "";
     /** @type {Robot | null} the robot to show; null for none */
     this.robot = null;
-    /** Whether the list of facts belongs to it. */
+    /** Whether what is known of the robot stands below it. */
     this.following = false;
     new Ticking(this);
   }

@@ -73,9 +73,9 @@ export class FollowPage extends PageElement {
       </div>
       <div class="column">
         <section class="card" aria-labelledby="map-title">
-          <h2 id="map-title">${t("follow.map")}</h2>
+          <h2 id="map-title">${t(hasEnded(order) ? "follow.map_ended" : "follow.map")}</h2>
           <campus-map .map=${map} .robot=${hasEnded(order) ? null : this.robot} .from=${order.from_post} .to=${order.to_post}
-            following></campus-map>
+            ?following=${!hasEnded(order)}></campus-map>
         </section>
         ${orderDetails(order)}
         <div class="choices">
