@@ -1,4 +1,4 @@
-"""python -m bdi: run an AgentSpeak program without a body."""
+"""Run AgentSpeak programs without a body, and see what they do."""
 
 import json
 from collections.abc import Iterator
@@ -16,7 +16,6 @@ from bdi.percept_file import Stimulus, read_percepts
 from bdi.terms import show
 
 app = typer.Typer(
-    help=__doc__,
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
@@ -36,7 +35,7 @@ def commands() -> None:
 def run(
     program: Annotated[Path, typer.Argument(help="The agent program, an .asl file.")],
     *,
-    percepts: Annotated[Path | None, typer.Option(help="One line a cycle; see below.")] = None,
+    percepts: Annotated[Path | None, typer.Option(help="One line a cycle, as described above.")] = None,
     cycles: Annotated[int | None, typer.Option(min=1, help="Stop after so many cycles.")] = None,
     fail: Annotated[list[str] | None, typer.Option(help="Actions of this name fail; may be repeated.")] = None,
     seed: Annotated[int, typer.Option(help="For .random: equal seeds give equal runs.")] = 0,
@@ -50,6 +49,8 @@ def run(
     A percept file has one line a cycle: literals separated by spaces, or a JSON object
     {"percepts": ["line(center)"], "messages": [["achieve", "g(1)"]]} with null for "nothing new". Without a file
     nothing is perceived.
+
+    Only actions go to the output; what `.print` says, messages and goals that were given up go to the error stream.
 
     The run ends at an action called `done`, when nothing is left to do and the file is at its end, or after --cycles.
     """
@@ -73,6 +74,11 @@ def _complain(problem: str) -> None:
     raise typer.Exit(2)
 
 
+def _aside(line: str) -> None:
+    """Whatever is no action goes to the error stream, so that the output can be compared."""
+    typer.echo(line, err=True)
+
+
 @dataclass(slots=True)
 class _Report:
     """Prints what happens, for people or as JSON lines."""
@@ -83,16 +89,16 @@ class _Report:
         if self.as_json:
             self._json(number, outcome)
             return
-        for line in outcome.printed:
-            print(f"{number} # {line}")
-        for message in outcome.messages:
-            print(f"{number} > {message.receiver} {message.performative} {show(message.content)}")
-        for failure in outcome.failures:
-            print(f"{number} ! {failure}")
         for action in outcome.actions:
             print(f"{number} {action}")
+        for line in outcome.printed:
+            _aside(f"{number} says: {line}")
+        for message in outcome.messages:
+            _aside(f"{number} to {message.receiver}: {message.performative} {show(message.content)}")
+        for failure in outcome.failures:
+            _aside(f"{number} failed: {failure}")
         for cancelled in outcome.cancelled:
-            print(f"{number} x action {cancelled} cancelled")
+            _aside(f"{number} cancelled: action {cancelled}")
 
     def _json(self, number: int, outcome: Outcome) -> None:
         entry: dict[str, Any] = {
@@ -111,7 +117,7 @@ class _Report:
         if self.as_json:
             print(json.dumps({"trace": line}))
         else:
-            print(f"    {line}")
+            _aside(f"    {line}")
 
 
 def _run(

@@ -786,8 +786,11 @@ class Agent:
 
     @property
     def idle(self) -> bool:
-        """Whether nothing is left to do until something comes in."""
-        return not (self.events or self.intentions or self._mailbox)
+        """Whether nothing is left to do until something comes in: no percept, message or news of an action is due,
+        and no wait has an end."""
+        waits = [waiter.deadline_s for waiter in self.waiters] + [asked[2] for asked in self._asked.values()]
+        busy = self.events or self.running or self._mailbox or self._feedback or self._pending or self.timers
+        return not busy and all(deadline_s is None for deadline_s in waits)
 
     def listen(self, callback: Callable[[TraceEntry], None]) -> None:
         """Call this for everything that is chosen, and fill `outcome.trace`. Costs time only from here on."""

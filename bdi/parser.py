@@ -223,7 +223,7 @@ def _syntax_error(error: UnexpectedInput, text: str, source: str) -> AgentSpeakS
     if isinstance(error, UnexpectedCharacters):
         problem, expected = f"unexpected character {error.char!r}", error.allowed or set()
     elif isinstance(error, UnexpectedToken) and error.token.type != "$END":
-        problem = f"unexpected {str(error.token)!r}"
+        problem, expected = f"unexpected {str(error.token)!r}", set(error.accepts or expected)
     else:
         line, column = text.count("\n") + 1, len(text) - text.rfind("\n")
     return AgentSpeakSyntaxError(problem, _place(text, source, line, column), _named(expected or set()))
