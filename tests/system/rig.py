@@ -51,6 +51,9 @@ class Person:
         self._http = httpx.Client(base_url=base_url, headers={"Sec-Fetch-Site": "same-origin"}, timeout=20)
         self._spool = spool
 
+    def leave(self) -> None:
+        self._http.close()
+
     def sign_in(self) -> None:
         self._http.post("/api/v1/sign-in/codes", json={"email": self.email}).raise_for_status()
         code = wait_for("the mailed code", self._mailed_code)
@@ -91,6 +94,7 @@ class Rig:
         self.base_url = f"http://127.0.0.1:{self.port}"
         self.wire = CuttableWire(self.port)
         self.processes: dict[str, subprocess.Popen[bytes]] = {}
+        self.people: list[Person] = []
         self.door = Path(f"/tmp/campus-mail-door-{uuid.uuid4().hex[:12]}")  # socket paths are short
 
     def __enter__(self) -> "Rig":
@@ -111,10 +115,23 @@ class Rig:
         return self
 
     def __exit__(self, *_: object) -> None:
-        for name in list(self.processes):
-            self.stop(name)
-        self.wire.__exit__()
-        self.door.unlink(missing_ok=True)
+        for person in self.people:
+            person.leave()
+        try:
+            for name in ("robot", "service"):
+                self.stop(name)
+        finally:
+            for name in list(self.processes):
+                self.kill(name)
+            self.wire.__exit__()
+            self.door.unlink(missing_ok=True)
+
+    def sign_in(self, email: str) -> Person:
+        """Somebody who reads their code in the spool of mails."""
+        person = Person(email, self.base_url, self.folder / "service" / "spool")
+        self.people.append(person)
+        person.sign_in()
+        return person
 
     def _service_env(self) -> dict[str, str]:
         return {
@@ -148,14 +165,10 @@ class Rig:
         self._start("robot", arguments, dict(os.environ))
 
     def stop(self, name: str) -> None:
-        process = self.processes.pop(name)
-        process.send_signal(signal.SIGTERM)
-        try:
-            process.wait(10)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            process.wait()
-            raise AssertionError(f"{name} did not stop within 10 s of SIGTERM") from None
+        if name in self.processes:
+            self.processes[name].send_signal(signal.SIGTERM)
+            self.processes[name].wait(10)
+            del self.processes[name]
 
     def kill(self, name: str) -> None:
         """SIGKILL: no chance to tidy up."""

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from tests.system.rig import RECIPIENT, SENDER, Person, Rig, wait_for
+from tests.system.rig import RECIPIENT, SENDER, Rig, wait_for
 
 pytestmark = [pytest.mark.system, pytest.mark.timeout(280)]
 
@@ -21,12 +21,8 @@ class Letter:
     """A rig with both people signed in and one order under way, post1 → post4."""
 
     def __init__(self, rig: Rig) -> None:
-        spool = rig.folder / "service" / "spool"
         self.rig = rig
-        self.sender = Person(SENDER, rig.base_url, spool)
-        self.recipient = Person(RECIPIENT, rig.base_url, spool)
-        self.sender.sign_in()
-        self.recipient.sign_in()
+        self.sender, self.recipient = rig.sign_in(SENDER), rig.sign_in(RECIPIENT)
         self.id = self.sender.order("post1", "post4", RECIPIENT)
 
     def load(self) -> None:
