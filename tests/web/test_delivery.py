@@ -117,6 +117,7 @@ async def test_a_letter_is_ordered_loaded_carried_and_received_by_two_people(dem
     await expect(ada.page.get_by_role("img", name="Map: The paper's test track")).to_contain_text("last seen")
 
     await demonstration.reports(Step.ARRIVED, StopAction.LOAD)
+    await demonstration.is_seen("post1", towards=None)
     await demonstration.waits_for("waiting for the sender to load")
     await expect(standing).to_have_text(f"{robot} is waiting for you at Post 1")
     await expect(ada.page.get_by_role("region", name="Why it waits")).to_contain_text("waiting for the sender to load")

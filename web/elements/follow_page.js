@@ -19,6 +19,7 @@ import { PageElement } from "./page_element.js";
 /** @import { CampusMap, Order, Robot } from "../api_types.ts" */
 
 const AT_ME = { load: "at_sender", receive: "at_recipient" };
+const WAITING = ["waiting", "charging", "stopped"];
 
 export class FollowPage extends PageElement {
   /** How often it was asked; an answer to an older question than the newest is not shown. */
@@ -111,9 +112,10 @@ export class FollowPage extends PageElement {
     </ol>`;
   }
 
-  /** @param {Order} order */
+  /** A robot that is on its way waits for nothing, whatever it says that it is doing. @param {Order} order */
   #why(order) {
-    const why = order.why ?? this.robot?.why;
+    const { robot } = this;
+    const why = robot ? WAITING.includes(robot.activity) && robot.why : order.why;
     if (!why || hasEnded(order)) return nothing;
     return html`<section class="card why" aria-labelledby="why-title">
       <h2 id="why-title">${t("follow.why")}</h2>
