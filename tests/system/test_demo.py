@@ -1,13 +1,16 @@
 """What a newcomer sees: the demonstration, and the paper's own run."""
 
 import json
-import os
+import re
 import signal
 import subprocess
 import sys
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
+import httpx
+import psutil
 import pytest
 
 from tests.system.rig import ROOT, free_port, wait_for
@@ -38,33 +41,48 @@ def test_the_demo_ends_delivered_with_each_person_told_each_thing_once(options: 
     assert summary["robot"]["distance_m"] > 6.0
 
 
+class ServingDemo:
+    """The demonstration that goes on serving; what it says goes to a file."""
+
+    def __init__(self, folder: Path) -> None:
+        self.port = free_port()
+        self._said = folder / "said"
+        command = [sys.executable, "-m", "app", "demo", "--port", str(self.port), "--speed", "10"]
+        with self._said.open("wb") as said:
+            self.process = subprocess.Popen(command, cwd=ROOT, stdout=said, stderr=said)
+
+    def said(self, pattern: str) -> str | None:
+        assert self.process.poll() is None, self._said.read_text()
+        found = re.search(pattern, self._said.read_text())
+        return found.group(1) if found else None
+
+
 @pytest.fixture
-def serving_demo() -> Iterator[tuple[subprocess.Popen[str], int]]:
-    port = free_port()
-    command = [sys.executable, "-m", "app", "demo", "--port", str(port), "--speed", "10"]
-    process = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-    yield process, port
-    if process.poll() is None:
-        process.kill()
-        process.wait()
+def serving_demo(tmp_path: Path) -> Iterator[ServingDemo]:
+    demo = ServingDemo(tmp_path)
+    yield demo
+    if demo.process.poll() is None:
+        demo.process.kill()
+        demo.process.wait()
 
 
-def test_ctrl_c_stops_everything_within_three_seconds_an_open_event_stream_included(
-    serving_demo: tuple[subprocess.Popen[str], int],
-) -> None:
-    process, port = serving_demo
-    assert process.stdout is not None
-    os.set_blocking(process.stdout.fileno(), False)
-    said = ""
-
-    def the_address_is_printed() -> bool:
-        nonlocal said
-        said += process.stdout.read() or "" if process.stdout else ""
-        return f"127.0.0.1:{port}" in said
-
-    wait_for(f"the page's address, not only: {said}", the_address_is_printed)
-    process.send_signal(signal.SIGINT)
-    assert process.wait(3) == 0
+def test_ctrl_c_stops_everything_within_three_seconds_an_open_event_stream_included(serving_demo: ServingDemo) -> None:
+    base_url = wait_for("the page's address", lambda: serving_demo.said(r"(http://127\.0\.0\.1:\d+)"))
+    code = wait_for("a code to sign in with", lambda: serving_demo.said(r"sender@campus\.example: (\d{8})"))
+    with httpx.Client(base_url=base_url, headers={"Sec-Fetch-Site": "same-origin"}) as browser:
+        body = {"email": "sender@campus.example", "code": code}
+        again = browser.post("/api/v1/sign-in/codes", json={"email": body["email"]})
+        assert again.status_code == httpx.codes.ACCEPTED, again.text
+        body["code"] = wait_for(
+            "the second code", lambda: serving_demo.said(rf"sender@campus\.example: (?!{code})(\d{{8}})")
+        )
+        browser.post("/api/v1/sign-in", json=body).raise_for_status()
+        with browser.stream("GET", "/api/v1/live") as events:
+            assert events.status_code == httpx.codes.OK
+            children = psutil.Process(serving_demo.process.pid).children(recursive=True)
+            serving_demo.process.send_signal(signal.SIGINT)
+            assert serving_demo.process.wait(3) == 0
+    assert [child for child in children if child.is_running()] == []
 
 
 @pytest.mark.skipif(not PAPERS_AGENT.exists(), reason="the paper's program lies in ../shared, which is absent here")
