@@ -59,10 +59,11 @@ def serve(settings: Settings) -> None:
     with listen(settings.host, settings.port) as listening:
         asyncio.run(migrate(settings))
         app = create_app(settings, open_clock(settings))
-        Server(app, _config(app)).run(sockets=[listening])
+        Server(app, config_of(app)).run(sockets=[listening])
 
 
-def _config(app: FastAPI) -> uvicorn.Config:
+def config_of(app: FastAPI) -> uvicorn.Config:
+    """How uvicorn serves the application."""
     return uvicorn.Config(
         app,
         log_config=None,

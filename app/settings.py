@@ -7,7 +7,7 @@ Secrets come from files: the server key lives in its own file, and any setting m
 import os
 from pathlib import Path
 from typing import Annotated
-from zoneinfo import ZoneInfo
+from zoneinfo import ZoneInfo, available_timezones
 
 from fastapi import Depends
 from pydantic import Field, field_validator
@@ -63,8 +63,8 @@ class Settings(BaseSettings):
     @field_validator("time_zone")
     @classmethod
     def _zone_is_known(cls, name: str) -> str:
-        if name:
-            ZoneInfo(name)
+        if name and name not in available_timezones():
+            raise ValueError(f"there is no time zone {name!r}; zones are named like America/Toronto")
         return name
 
     @property
@@ -91,7 +91,7 @@ def load_settings() -> Settings:
         raise StartError(f"CAMPUS_MAIL_SECRETS_DIR={secrets_dir} is no folder. Make it, or unset the variable.")
     try:
         return Settings(_secrets_dir=secrets_dir)
-    except (ValueError, KeyError) as error:
+    except ValueError as error:
         raise StartError(f"The settings cannot be used. {error}") from error
 
 

@@ -1,7 +1,9 @@
 """The service without a network: the application itself, its mails, and people who use it."""
 
 import re
+import threading
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from email import message_from_bytes, policy
 from email.message import EmailMessage
 from pathlib import Path
@@ -14,6 +16,7 @@ from fastapi.testclient import TestClient
 from app.main import create_app
 from app.orders.service import Word
 from app.orders.transitions import By
+from app.serving import Server, config_of, listen
 from app.settings import Settings
 from app.tables import OrderState, RobotRow
 from protocol.clock import SteppedClock
@@ -154,3 +157,26 @@ class Mailroom:
 @pytest.fixture
 def mailroom(app: FastAPI, nobody: TestClient) -> Mailroom:
     return Mailroom(app, nobody)
+
+
+@dataclass(frozen=True)
+class Served:
+    """The service listening on a port of its own."""
+
+    url: str
+    server: Server
+
+
+@pytest.fixture
+def served(app: FastAPI, nobody: object) -> Iterator[Served]:
+    """The real server; the test client runs the lifespan already."""
+    config = config_of(app)
+    config.lifespan = "off"
+    server = Server(app, config)
+    with listen("127.0.0.1", 0) as listening:
+        thread = threading.Thread(target=server.run, kwargs={"sockets": [listening]})
+        thread.start()
+        yield Served(f"http://127.0.0.1:{listening.getsockname()[1]}", server)
+        server.should_exit = True
+        thread.join(10)
+        assert not thread.is_alive()

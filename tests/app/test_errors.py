@@ -1,0 +1,101 @@
+"""Every error is a problem document with a stable code, and no answer gives away what it should not."""
+
+import pytest
+from fastapi import FastAPI
+from fastapi.testclient import TestClient
+
+from app.errors import PROBLEM_JSON
+from tests.app.conftest import Browser
+
+OPEN = {"/api/v1/about", "/api/v1/map", "/api/v1/sign-in", "/api/v1/sign-in/codes"}
+
+
+@pytest.mark.parametrize(
+    ("method", "path", "status", "code"),
+    [
+        ("GET", "/nowhere", 404, "not_found"),
+        ("GET", "/api/v1/nowhere", 404, "not_found"),
+        ("GET", "/package.json", 404, "not_found"),
+        ("GET", "/node_modules/lit/package.json", 404, "not_found"),
+        ("DELETE", "/api/v1/me", 405, "method_not_allowed"),
+        ("GET", "/api/v1/me", 401, "not_signed_in"),
+    ],
+)
+def test_what_is_not_there_is_a_problem_too(nobody: TestClient, method: str, path: str, status: int, code: str) -> None:
+    answer = nobody.request(method, path)
+    assert answer.headers["content-type"] == PROBLEM_JSON
+    problem = answer.json()
+    assert (answer.status_code, problem["status"], problem["code"]) == (status, status, code)
+    assert problem["type"] == f"urn:campus-mail:problem:{code}"
+
+
+def test_what_does_not_fit_is_named_by_its_field_and_not_repeated(nobody: TestClient) -> None:
+    answer = nobody.post("/api/v1/sign-in", json={"email": "ann@campus.example", "code": "sesame-1234"})
+    problem = answer.json()
+    assert (answer.status_code, problem["code"]) == (422, "invalid_request")
+    assert [error["field"] for error in problem["errors"]] == ["code"]
+    assert "sesame" not in answer.text
+
+
+def test_a_body_that_is_no_json_is_a_problem(nobody: TestClient) -> None:
+    answer = nobody.post("/api/v1/sign-in", content="{", headers={"Content-Type": "application/json"})
+    assert (answer.status_code, answer.json()["code"]) == (422, "invalid_request")
+
+
+def test_what_nobody_foresaw_is_a_problem_without_its_inside(app: FastAPI, nobody: TestClient) -> None:
+    async def broken() -> None:
+        raise RuntimeError("the inside")
+
+    app.add_api_route("/broken", broken)
+    answer = nobody.get("/broken")
+    assert (answer.status_code, answer.json()["code"]) == (500, "unforeseen")
+    assert "inside" not in answer.text
+
+
+def api_routes(app: FastAPI) -> list[tuple[str, str]]:
+    paths = app.openapi()["paths"]
+    return [(method.upper(), path) for path, methods in paths.items() for method in methods if path.startswith("/api")]
+
+
+def test_every_route_that_is_not_open_wants_somebody_signed_in(app: FastAPI, nobody: TestClient) -> None:
+    closed = [(method, path) for method, path in api_routes(app) if path not in OPEN]
+    assert len(closed) > 10
+    for method, path in closed:
+        answer = nobody.request(method, path.replace("{order_id}", "o1"), headers={"Idempotency-Key": "k"})
+        assert (answer.status_code, answer.json()["code"]) == (401, "not_signed_in"), (method, path)
+
+
+def test_every_route_that_changes_something_wants_our_own_page(app: FastAPI, sender: Browser) -> None:
+    for method, path in api_routes(app):
+        if method == "GET" or path in OPEN:
+            continue
+        headers = {"Idempotency-Key": "k", "Sec-Fetch-Site": "cross-site"}
+        answer = sender.request(method, path.replace("{order_id}", "o1"), headers=headers)
+        assert (answer.status_code, answer.json()["code"]) == (403, "cross_site"), (method, path)
+
+
+def test_pages_run_no_script_but_their_own(nobody: TestClient) -> None:
+    answer = nobody.get("/")
+    policy = answer.headers["content-security-policy"]
+    assert "script-src 'self' 'sha256-" in policy
+    assert "unsafe-inline" not in policy
+    assert answer.headers["cache-control"] == "no-cache"
+    assert answer.headers["x-content-type-options"] == "nosniff"
+
+
+def test_the_service_says_how_it_is(nobody: TestClient) -> None:
+    assert nobody.get("/healthz").json() == {"status": "ok"}
+    assert nobody.get("/readyz").json() == {"status": "ready"}
+    assert nobody.get("/version").json()["version"] == nobody.get("/api/v1/about").json()["version"]
+
+
+def test_a_page_learns_what_the_map_is(nobody: TestClient) -> None:
+    campus = nobody.get("/api/v1/map").json()
+    assert {"post1", "post4"} <= {post["name"] for post in campus["posts"]}
+    assert all(len(corridor["tape"]) >= 2 for corridor in campus["corridors"])
+    assert nobody.get("/api/v1/about").json()["demo"] is False
+
+
+def test_without_a_demonstration_there_is_no_camera(sender: Browser) -> None:
+    answer = sender.post("/api/v1/demo/camera", json={"order_id": "o1"})
+    assert (answer.status_code, answer.json()["code"]) == (404, "not_a_demonstration")

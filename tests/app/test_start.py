@@ -1,0 +1,235 @@
+"""What keeps the service from starting is said in a sentence with a way out, and nothing is half done."""
+
+import asyncio
+import logging
+import os
+import sqlite3
+import subprocess
+import sys
+from collections.abc import Iterator
+from datetime import datetime
+from pathlib import Path
+
+import pytest
+import structlog
+from alembic import command
+from alembic.config import Config
+from sqlalchemy.exc import StatementError
+from typer.testing import CliRunner
+
+from app.__main__ import app as commands
+from app.commands import migrate
+from app.database import Database
+from app.errors import StartError
+from app.logs import redact
+from app.schema_version import INI, NewerDatabase, bring_to_head, is_at_head
+from app.server_key import open_server_key
+from app.serving import PortTaken, listen
+from app.settings import Settings, load_settings, open_clock, open_map
+from app.tables import Person
+from app.tables.columns import NaiveTime
+
+ROOT = INI.parent
+
+
+@pytest.fixture(autouse=True)
+def _logs_as_before() -> Iterator[None]:
+    """Commands that run in this process set logging up for themselves."""
+    root = logging.getLogger()
+    handlers, level = root.handlers[:], root.level
+    yield
+    root.handlers[:] = handlers
+    root.setLevel(level)
+    structlog.reset_defaults()
+
+
+async def test_a_new_database_is_at_head_and_owned_by_us_alone(settings: Settings) -> None:
+    await migrate(settings)
+    assert settings.data.stat().st_mode & 0o777 == 0o700
+    database = Database(settings.url_of_database)
+    assert await is_at_head(database)
+    await bring_to_head(database)
+    await database.close()
+
+
+async def test_the_models_and_the_migrations_say_the_same(settings: Settings) -> None:
+    """Alembic's own check: it would find nothing to migrate."""
+    settings.data.mkdir()
+    database = Database(settings.url_of_database)
+    await bring_to_head(database)
+    config = Config(INI)
+
+    def check(connection: object) -> None:
+        config.attributes["connection"] = connection
+        command.check(config)
+
+    async with database.engine.connect() as connection:
+        await connection.run_sync(check)
+    await database.close()
+
+
+async def test_the_first_migration_can_be_undone(settings: Settings) -> None:
+    settings.data.mkdir()
+    database = Database(settings.url_of_database)
+    await bring_to_head(database)
+    config = Config(INI)
+
+    def undo(connection: object) -> None:
+        config.attributes["connection"] = connection
+        command.downgrade(config, "base")
+
+    async with database.writing.begin() as connection:
+        await connection.run_sync(undo)
+    await database.close()
+    with sqlite3.connect(settings.data / "campus-mail.sqlite") as plain:
+        tables = {name for (name,) in plain.execute("select name from sqlite_master where type = 'table'")}
+    plain.close()
+    assert tables <= {"alembic_version", "sqlite_sequence"}
+
+
+def test_a_database_of_a_newer_version_is_refused_and_left_alone(settings: Settings) -> None:
+    asyncio.run(migrate(settings))
+    file = settings.data / "campus-mail.sqlite"
+    with sqlite3.connect(file) as plain:
+        plain.execute("update alembic_version set version_num = '9999'")
+    plain.close()
+    before = file.read_bytes()
+    with pytest.raises(NewerDatabase, match="written by a newer one"):
+        asyncio.run(migrate(settings))
+    assert file.read_bytes() == before
+    command_line = [sys.executable, "-m", "app", "serve", "--port", "0"]
+    environment = {**os.environ, "CAMPUS_MAIL_DATA": str(settings.data)}
+    ran = subprocess.run(
+        command_line, cwd=ROOT, env=environment, capture_output=True, text=True, timeout=60, check=False
+    )
+    assert (ran.returncode, ran.stdout) == (2, "")
+    assert "9999" in ran.stderr
+    assert "Traceback" not in ran.stderr
+
+
+def test_a_taken_port_is_named_with_a_way_out_and_nothing_is_made(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with listen("127.0.0.1", 0) as taken:
+        port = taken.getsockname()[1]
+        with pytest.raises(PortTaken, match=f"--port {port + 1}"):
+            listen("127.0.0.1", port)
+        monkeypatch.setenv("CAMPUS_MAIL_DATA", str(tmp_path / "data"))
+        served = CliRunner().invoke(commands, ["serve", "--port", str(port)])
+        shown = CliRunner().invoke(commands, ["demo", "--once", "--json", "--port", str(port)])
+    for ran in (served, shown):
+        assert (ran.exit_code, ran.stdout) == (2, "")
+        assert f"Port {port} on 127.0.0.1 is taken" in ran.stderr
+    assert not (tmp_path / "data").exists()
+
+
+def test_an_address_of_another_machine_is_named() -> None:
+    with pytest.raises(StartError, match=r"Cannot listen on 192\.0\.2\.1"):
+        listen("192.0.2.1", 0)
+
+
+def test_an_unknown_map_is_named(settings: Settings) -> None:
+    with pytest.raises(StartError, match=r"The map cannot be used\. atlantis"):
+        open_map(settings.model_copy(update={"map": "atlantis"}))
+
+
+def test_an_absent_clock_file_is_named(settings: Settings, tmp_path: Path) -> None:
+    with pytest.raises(StartError, match="clock"):
+        open_clock(settings.model_copy(update={"clock_file": tmp_path / "clock"}))
+
+
+@pytest.mark.parametrize("content", ["", "00ff", "z" * 64])
+def test_a_damaged_server_key_is_never_replaced(tmp_path: Path, content: str) -> None:
+    path = tmp_path / "server.key"
+    path.touch(mode=0o600)
+    path.write_text(content)
+    with pytest.raises(StartError, match="server key"):
+        open_server_key(path)
+    assert path.read_text() == content
+
+
+def test_a_server_key_that_others_can_read_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "server.key"
+    open_server_key(path)
+    path.chmod(0o644)
+    with pytest.raises(StartError, match="0600"):
+        open_server_key(path)
+
+
+def test_settings_come_from_the_environment_and_secrets_from_files(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "campus_mail_database_url").write_text("postgresql+asyncpg://mail:secret@db/mail")
+    monkeypatch.setenv("CAMPUS_MAIL_SECRETS_DIR", str(tmp_path))
+    monkeypatch.setenv("CAMPUS_MAIL_ALLOWED_DOMAINS", '["Campus.Example", "@other.example"]')
+    settings = load_settings()
+    assert settings.url_of_database == "postgresql+asyncpg://mail:secret@db/mail"
+    assert settings.allowed_domains == ("campus.example", "other.example")
+
+
+@pytest.mark.parametrize(
+    ("name", "value"), [("PORT", "many"), ("ALLOWED_DOMAINS", "no list"), ("TIME_ZONE", "Mars/Olympus")]
+)
+def test_a_setting_that_cannot_be_used_is_named(monkeypatch: pytest.MonkeyPatch, name: str, value: str) -> None:
+    monkeypatch.setenv(f"CAMPUS_MAIL_{name}", value)
+    with pytest.raises(StartError, match=f"(?i){name}"):
+        load_settings()
+
+
+def test_every_setting_is_described_in_the_docs() -> None:
+    page = (ROOT / "docs" / "service.md").read_text()
+    for name, field in Settings.model_fields.items():
+        assert field.description, name
+        assert f"`CAMPUS_MAIL_{name.upper()}`" in page, name
+
+
+def test_every_command_is_described_in_the_docs() -> None:
+    page = (ROOT / "docs" / "service.md").read_text()
+    for words in ("serve", "migrate", "demo", "people role", "robots enrol"):
+        assert f"`python -m app {words}" in page, words
+
+
+async def test_a_time_without_a_zone_is_never_stored(settings: Settings) -> None:
+    await migrate(settings)
+    database = Database(settings.url_of_database)
+    naive = datetime(2026, 1, 5, 9, 0)  # noqa: DTZ001  # that is the point
+    with pytest.raises(StatementError) as caught:
+        async with database.transaction() as session:
+            session.add(Person(id="p", email="p@campus.example", name="P", created_at=naive))
+    assert isinstance(caught.value.orig, NaiveTime)
+    await database.close()
+
+
+def test_roles_are_given_on_the_command_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("CAMPUS_MAIL_DATA", str(tmp_path / "data"))
+    given = CliRunner().invoke(commands, ["people", "role", "Dan@Campus.Example", "--add", "dispatcher"])
+    assert (given.exit_code, given.stdout.strip()) == (0, "Dan@Campus.Example: dispatcher, member")
+    refused = CliRunner().invoke(commands, ["people", "role", "dan@campus.example", "--add", "boss"])
+    assert (refused.exit_code, refused.stdout) == (2, "")
+    assert "There are: member, dispatcher, maintainer" in refused.stderr
+
+
+def test_a_robot_is_enrolled_once_and_given_a_new_token_on_demand(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("CAMPUS_MAIL_DATA", str(tmp_path / "data"))
+    first = CliRunner().invoke(commands, ["robots", "enrol", "r1"])
+    assert first.stdout.startswith("cmr_")
+    refused = CliRunner().invoke(commands, ["robots", "enrol", "r1"])
+    assert (refused.exit_code, refused.stdout) == (2, "")
+    again = CliRunner().invoke(commands, ["robots", "enrol", "r1", "--again"])
+    assert again.stdout.startswith("cmr_")
+    assert again.stdout != first.stdout
+
+
+def test_no_secret_reaches_a_log() -> None:
+    event = {
+        "event": "code CM1:0123456789abcdef0123456789abcdef and 12345678, session=abc.def; token cmr_01234567_aB-c",
+        "Authorization": "Bearer x",
+        "deep": {"token": "x", "list": ["cmr_01234567_secret"]},
+        "order": "cf179875c3a1ccbd",
+    }
+    said = str(redact(None, "info", dict(event)))
+    for secret in ("0123456789abcdef", "12345678,", "abc.def", "aB-c", "Bearer", "secret"):
+        assert secret not in said
+    assert "cf179875c3a1ccbd" in said
