@@ -100,8 +100,8 @@ def run(  # noqa: PLR0917  # typer reads the options from here
 ) -> None:
     """Run one robot until Ctrl-C, or until what it was told to --achieve is done.
 
-    Exit status 0: done, or stopped by a signal. 1: not done within --limit, or the agent gave up. 2: something to put
-    right first, which is named.
+    Exit status 0: done, or nothing was to be achieved. 1: not done within --limit, given up, or stopped before.
+    2: something to put right first, which is named.
     """
     asked = {
         "map": campus,

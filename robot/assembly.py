@@ -14,6 +14,7 @@ from .action.hands import Hands
 from .config import ConfigError, PerceptMode, Settings, read_token
 from .daemon import Daemon
 from .drive_loop import DriveLoop
+from .drivers.camera import GrabbingCamera
 from .drivers.create2 import Create2
 from .drivers.interfaces import BodyShape, Camera, LineSensor
 from .drivers.line_sensor import ThreeDiodes
@@ -125,6 +126,7 @@ def _devices(
     robot = _simulated_robot(settings, campus, clock, simulation)
     closing.callback(robot.close)
     saved = SavedWorld(robot, settings.data / "world.json")
+    closing.callback(saved.close)
 
     def open_port() -> SerialPort:
         return robot.memory_port() if simulation.in_memory else open_serial(robot.port_path)
@@ -140,7 +142,7 @@ def _simulated_robot(settings: Settings, campus: CampusMap, clock: Clock, simula
             diodes=DiodeMount(lead_mm=settings.line.lead_mm, spacing_mm=settings.line.spacing_mm),
             pack=Pack(charger_ma=settings.battery.simulated_charger_ma),
         ),
-        camera=CameraMount(),
+        camera=CameraMount(colour=False),  # grey is all that the decoder looks at
     )
     return SimulatedRobot(
         campus,
@@ -160,17 +162,17 @@ def _line_sensor(settings: Settings, pin_factory: Any) -> ThreeDiodes:
 
 
 def _real_devices(settings: Settings) -> Devices:
-    from gpiozero.pins.lgpio import LGPIOFactory
-
-    from .drivers.camera import GrabbingCamera
-
     base = Create2(lambda: open_serial(settings.serial_port), deadline_s=settings.drive.velocity_deadline_s)
     camera = settings.camera
-    return Devices(
-        base,
-        _line_sensor(settings, LGPIOFactory()),
-        GrabbingCamera(camera.device, camera.width_px, camera.height_px, camera.exposure_ms),
-    )
+    try:
+        from gpiozero.pins.lgpio import LGPIOFactory
+
+        sensor = _line_sensor(settings, LGPIOFactory())
+    except (ImportError, OSError) as error:
+        way_out = "On a Raspberry Pi: pip install 'campus-mail[pi]'; elsewhere: --simulated."
+        raise ConfigError("this computer", "line", f"its pins cannot be used: {error}", way_out) from None
+    frames = GrabbingCamera(camera.device, camera.width_px, camera.height_px, camera.exposure_ms)
+    return Devices(base, sensor, frames)
 
 
 def _join(

@@ -105,7 +105,7 @@ class RateSettings(Section):
     line_hz: Positive = Field(default=200.0, description="samples of the line sensor (majority vote per drive tick)")
     camera_hz: Positive = Field(default=10.0, description="frames looked at")
     mind_hz: Positive = Field(default=10.0, description="perception and reasoning (the paper's cycle is 100 ms)")
-    snapshot_hz: Positive = Field(default=1.0, description="state sent to the server; what survives a crash is saved")
+    snapshot_hz: Positive = Field(default=1.0, description="state sent to the server")
 
 
 class MindSettings(Section):

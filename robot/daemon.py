@@ -7,7 +7,7 @@
 | drive  | rates.drive_hz    | base, line, odometry, skill, reflexes, wheels       | wheels; mind (the view)    |
 | camera | rates.camera_hz   | one frame: markers and hand-over codes              | drive (the view)           |
 | mind   | rates.mind_hz     | percepts, reasoning, actions, heartbeat             | drive (skills); outbox     |
-| tell   | rates.snapshot_hz | snapshot for the server; the simulated world saved  | link; the next start       |
+| tell   | rates.snapshot_hz | snapshot for the server                             | link                       |
 
 Line and drive share a thread, since base and line sensor have one owner. Nothing in that thread waits for the mind, the
 network or the disk. The link is not in the table: it lives in a thread of its own and is met through queues.
@@ -27,7 +27,7 @@ from .mind import Mind
 from .runners import Loop
 
 SOFTWARE = "campus-mail robot 0.1.0"
-LAST_TICKS = 10
+LAST_TICKS = 30
 TICK_S = 0.02
 
 
@@ -107,8 +107,6 @@ class Daemon:
     def _tell_tick(self, now: float) -> None:
         if self.server:
             self.server.snapshot(self.mind.snapshot())
-        if self.world:
-            self.world.save()
 
     def hello(self) -> Hello:
         """What the server is told at every connection; called in the link's thread."""

@@ -5,7 +5,7 @@ of short steps does not take a second. It knows no thread and no clock: `tick(no
 """
 
 from collections import deque
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -55,16 +55,36 @@ class Mind:
         if view.base:
             self.battery = self.battery.seen(view.base, self.settings.battery, now)
         self._tell_faults(view.faults)
-        for _ in range(1 if self.mode is PerceptMode.DRAIN else self.settings.mind.steps_per_tick):
-            self._cycle(now)
+        self._reason(now)
         self.hands.body.heartbeat(now)
         self._tell_why()
 
-    def _cycle(self, now: float) -> None:
-        percepts = perceive(self.seen(now), self.mode, self.settings.mind.age_limit_s)
+    def _reason(self, now: float) -> None:
+        """One cycle, or in latest mode as many as there is something to think about."""
+        self._cycle(self._percepts(now), now)
+        shown = self._world_known
+        for _ in range(self.settings.mind.steps_per_tick - 1 if self.mode is PerceptMode.LATEST else 0):
+            finished = self.actions.finished(now)
+            if not (finished or self.inbox or self.agent.events or self.agent.running):
+                return
+            # An action that has ended may have changed what holds (the destination, the next stop).
+            changed = finished or shown != self._world_known
+            shown = self._world_known
+            self._cycle(self._percepts(now) if changed else None, now, finished)
+
+    @property
+    def _world_known(self) -> tuple[int, str | None]:
+        return self.hands.duties.revision, self.hands.navigator.destination
+
+    def _percepts(self, now: float) -> frozenset[str]:
+        return perceive(self.seen(now), self.mode, self.settings.mind.age_limit_s)
+
+    def _cycle(
+        self, percepts: frozenset[str] | None, now: float, finished: Sequence[tuple[int, str | None]] | None = None
+    ) -> None:
         messages = [self.inbox.popleft()] if self.inbox else []
-        finished = [Finished(id_, failure) for id_, failure in self.actions.finished(now)]
-        outcome = self.agent.cycle(percepts, messages, finished, now)
+        ended = self.actions.finished(now) if finished is None else finished
+        outcome = self.agent.cycle(percepts, messages, [Finished(id_, failure) for id_, failure in ended], now)
         self.actions.cancel(outcome.cancelled)
         for action in outcome.actions:
             self.actions.begin(action.id, action.term, now)

@@ -95,7 +95,11 @@ class Ending:
     until_s: float
     stop: Callable[[], None]
     problem: str | None = None
+    """Why the goals were not reached; None if they were, or if there were none."""
     _quiet_since_s: float | None = None
+
+    def __post_init__(self) -> None:
+        self.problem = "stopped before it was done" if self.goals else None
 
     def look(self, now: float) -> None:
         """After a tick of the mind."""

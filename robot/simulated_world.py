@@ -1,28 +1,29 @@
 """What a simulated world remembers: a real robot stays where it is when its computer dies, so this one must too."""
 
 import json
+import os
 from pathlib import Path
+from typing import Any
 
 from .simulated import Pose, SimulatedRobot
 
 SAVE_EVERY_S = 0.5
-LAYOUT = 1
+SAVED_BYTES = 512
 
 
 class SavedWorld:
     """Moves the simulated robot along, and keeps its pose and charge in a file from which the next start goes on."""
 
     def __init__(self, robot: SimulatedRobot, path: Path) -> None:
-        self._robot, self._path = robot, path
+        self._robot = robot
         self._saved_s = robot.now
-        self.restored = False
-        if path.exists():
-            self._restore(path)
+        self._file = os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
+        text = os.pread(self._file, SAVED_BYTES, 0)
+        self.restored = bool(text)
+        if text:
+            self._restore(json.loads(text))
 
-    def _restore(self, path: Path) -> None:
-        saved = json.loads(path.read_text())
-        if saved["layout"] != LAYOUT:
-            return
+    def _restore(self, saved: dict[str, Any]) -> None:
         self._robot.place(Pose(saved["x_m"], saved["y_m"], saved["heading_rad"]))
         self._robot.sag(saved["battery_ratio"])
         self.restored = True
@@ -35,15 +36,18 @@ class SavedWorld:
             self.save()
 
     def save(self) -> None:
-        """Whole or not at all: a kill in the middle leaves the older file."""
-        pose = self._robot.pose
+        """One small write into the open file: a kill comes before or after it, never in the middle."""
+        pose, state = self._robot.pose, self._robot.state()
         saved = {
-            "layout": LAYOUT,
             "x_m": pose.x_m,
             "y_m": pose.y_m,
             "heading_rad": pose.heading_rad,
             "battery_ratio": self._robot.battery.ratio,
+            # Not read again; for whoever looks at how it ended.
+            "mode": state["mode"],
+            "wheels_mm_s": [round(speed) for speed in state["wheels_mm_s"]],
         }
-        new = self._path.with_suffix(".new")
-        new.write_text(json.dumps(saved))
-        new.replace(self._path)
+        os.pwrite(self._file, json.dumps(saved).ljust(SAVED_BYTES).encode(), 0)
+
+    def close(self) -> None:
+        os.close(self._file)
