@@ -124,6 +124,7 @@ async def test_a_letter_is_ordered_loaded_carried_and_received_by_two_people(dem
     code = ada.page.get_by_role("region", name="Your code to load the robot")
     await expect(code.get_by_role("img", name="QR code for the robot’s camera")).to_be_visible()
     assert await code.get_by_role("img").evaluate("(image) => image.complete && image.naturalWidth > 0")
+    await ada.assert_accessible()
     await code.get_by_role("button", name="Hold the code to the robot’s camera (simulated)").click()
     await demonstration.checks_the_code_and_hands_over(StopAction.LOAD)
     await expect(standing).to_have_text("Your letter is on its way to Post 4")
@@ -137,6 +138,7 @@ async def test_a_letter_is_ordered_loaded_carried_and_received_by_two_people(dem
     await expect(code_of_bob.get_by_role("img")).to_be_hidden()
     await code_of_bob.get_by_text("Show the code").click()
     await expect(code_of_bob.get_by_role("img")).to_be_visible()
+    await bob.assert_accessible()
 
     await demonstration.reports(Step.DEPARTED, StopAction.RECEIVE)
     await demonstration.reports(Step.ARRIVED, StopAction.RECEIVE)

@@ -8,11 +8,17 @@ from typing import Any
 
 from playwright.async_api import Browser, BrowserContext, ConsoleMessage, Page
 
-from tests.web.service import Service
+from tests.web.service import ROOT, Service
 
 # Browsers write every refused request to the console. A page that asks who is signed in is refused by design.
 REFUSED = re.compile(r"Failed to load resource: the server responded with a status of 4\d\d")
 WHO_AM_I = "/api/v1/me"
+AXE = ROOT / "web/node_modules/axe-core/axe.min.js"
+AXE_RUN = """async () => {
+  const tags = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"];
+  const found = await axe.run(document, {runOnly: tags});
+  return found.violations.map(({id, nodes}) => `${id}: ${nodes.map(({html}) => html.slice(0, 120)).join(" ")}`);
+}"""
 
 
 @dataclass
@@ -60,6 +66,13 @@ class Visitor:
             answer = await api.post(f"/api/v1{path}", data=body, headers=own)
             assert answer.ok, await answer.text()
         return self
+
+    async def assert_accessible(self, page: Page | None = None) -> None:
+        """axe-core finds no violation of WCAG 2.2 A and AA on what the page shows now."""
+        page = page or self.page
+        await page.evaluate(AXE.read_text(encoding="utf-8"))
+        violations = await page.evaluate(AXE_RUN)
+        assert not violations, violations
 
     async def api(self, path: str) -> Any:
         """What the service says to this person."""

@@ -91,6 +91,10 @@ export class FollowPage extends PageElement {
     </div>`;
   }
 
+  updated() {
+    if (this.order && this.map) document.title = `${stateSentence(this.order, this.map)} · ${t("app.name")}`;
+  }
+
   /** @param {Order} order @param {CampusMap} map */
   #standing(order, map) {
     return html`<section class="standing ${order.state}">

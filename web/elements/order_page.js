@@ -35,7 +35,10 @@ export class OrderPage extends PageElement {
       ...(unansweredOrder() ?? wantedFrom(location.search)),
     };
     this.problem = "";
-    new OnLive(this, { order: (order) => (this.orders = [order, ...this.orders.filter(({ id }) => id !== order.id)]) });
+    new OnLive(this, {
+      order: (order) => (this.orders = [order, ...this.orders.filter(({ id }) => id !== order.id)]),
+      connected: (connected) => connected && this.#fetch(),
+    });
   }
 
   firstUpdated() {

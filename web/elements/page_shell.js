@@ -82,7 +82,7 @@ export class PageShell extends PageElement {
   /** @param {Person} person */
   #account(person) {
     return html`<details class="account">
-      <summary aria-label="${t("account.open")}: ${person.name}">${initials(person.name)}</summary>
+      <summary>${initials(person.name)}<span class="unseen"> ${t("account.open")}: ${person.name}</span></summary>
       <div class="sheet">
         <strong>${person.name}</strong><span>${person.email}</span>
         <button class="quiet" @click=${this.#signOut}>${t("account.sign_out")}</button>
