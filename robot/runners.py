@@ -5,6 +5,7 @@ world: one thread, every tick at exactly its simulated time and in the order of 
 faster than the machine can follow; then it is this runner that slows the clock down.
 """
 
+import math
 import threading
 import time
 from collections.abc import Callable, Sequence
@@ -20,8 +21,9 @@ log = structlog.get_logger("robot.runner")
 
 SLOWEST = 0.25
 LOOK_REAL_S = 0.2
-LAG_REAL_S = 0.08
-"""A clock that is ahead by more than the machine does in this time is slowed down."""
+CATCH_UP = 0.75
+LAG_REAL_S = 0.25
+"""A clock that is ahead by more than passes in this time is slowed down."""
 LONGEST_NAP_S = 0.02
 STOP_WITHIN_S = 1.0
 
@@ -98,13 +100,13 @@ class LockstepRunner:
         self._tick_next()
 
     def _chase(self) -> None:
-        began_s = time.perf_counter()
+        began_s, begun_at_s = time.perf_counter(), self.now_s
         until_s = self._clock.now()
         while self._due[0][0] <= until_s and not self._stopping.is_set():
             self._tick_next()
             if time.perf_counter() - began_s > LOOK_REAL_S:
                 break
-        self._govern(time.perf_counter() - began_s)
+        self._govern(self.now_s - begun_at_s, time.perf_counter() - began_s)
         ahead_s = self._due[0][0] - self._clock.now()
         if ahead_s > 0:
             time.sleep(min(self._clock.real_s(ahead_s), LONGEST_NAP_S))
@@ -117,38 +119,42 @@ class LockstepRunner:
         self.lags[loop.name].note(max(0.0, self._clock.now() - due_s))
         heapreplace(self._due, (due_s + 1.0 / loop.rate_hz, number))
 
-    def _govern(self, worked_s: float) -> None:
+    def _govern(self, done_s: float, worked_s: float) -> None:
         if not isinstance(self._clock, SharedClock):
             return
         lag_s = self._clock.now() - self._due[0][0]
-        speed = self._governor.speed(self._clock.speed, lag_s, worked_s, time.perf_counter())
+        speed = self._governor.speed(self._clock.speed, lag_s, done_s, worked_s, time.perf_counter())
         if speed != self._clock.speed:
             self._clock.set_speed(speed)
 
 
 @dataclass
 class Governor:
-    """How fast a shared clock may run, so that the world keeps up with it: a little idle time, never far behind."""
+    """How fast a shared clock may run, so that the world keeps up with it.
+
+    A short lag is made up for by working on; only one that lasts slows the clock down, since other programs on the
+    same machine take their turns too. With time to spare the clock goes faster again, up to what was asked.
+    """
 
     max_speed: float
     _worked_s: float = 0.0
+    _done_s: float = 0.0
     _since_s: float = field(default_factory=time.perf_counter)
 
-    def speed(self, speed: float, lag_s: float, worked_s: float, real_s: float) -> float:
-        """The speed from now on. `lag_s` is of the scaled clock, the other two are the machine's."""
+    def speed(self, speed: float, lag_s: float, done_s: float, worked_s: float, real_s: float) -> float:
+        """The speed from now on. `done_s` of the scaled clock were worked off in `worked_s` of the machine's."""
         self._worked_s += worked_s
-        if lag_s > speed * LAG_REAL_S and worked_s > LAG_REAL_S:
-            self._begin(real_s)
-            return max(SLOWEST, speed * 0.7)
+        self._done_s += done_s
         elapsed_s = real_s - self._since_s
         if elapsed_s < LOOK_REAL_S:
             return speed
+        possible = self._done_s / self._worked_s if self._worked_s else math.inf
         busy = self._worked_s / elapsed_s
-        self._begin(real_s)
-        return min(self.max_speed, speed * 1.2) if busy < 0.75 else speed
-
-    def _begin(self, real_s: float) -> None:
-        self._worked_s, self._since_s = 0.0, real_s
+        self._worked_s, self._done_s, self._since_s = 0.0, 0.0, real_s
+        if lag_s > speed * LAG_REAL_S:
+            # A little slower than what is possible, so that the lag melts away.
+            return min(speed, max(SLOWEST, CATCH_UP * possible))
+        return min(self.max_speed, speed * 1.25) if busy < 0.85 else speed
 
 
 class ThreadedRunner:
