@@ -5,7 +5,9 @@ and answers True as soon as that does. So a conjunction is a call, a second answ
 needed. A slot is None until its variable is met; then it holds a value or a `Var`.
 """
 
+import sys
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any, NamedTuple, Protocol, TypeAlias
 
@@ -58,6 +60,8 @@ Frame: TypeAlias = list[Any]
 Solve: TypeAlias = Callable[[Frame], bool]
 Build: TypeAlias = Callable[[Frame], Term]
 Match: TypeAlias = Callable[[Frame, Term], bool]
+LONGEST_PROOF = 100_000  # calls; a step of a proof takes three to five
+DEEPEST_QUESTIONS = 100  # `.findall` within `.findall` of the same place
 RULE_SLOTS = 2  # a rule's frame begins with what comes after the call, and the caller's frame
 
 
@@ -84,6 +88,17 @@ class Known:
     def among(self, variables: Iterable[Var]) -> "Known":
         new = frozenset(variables)
         return Known(self.filled | new, self.met | new)
+
+
+@contextmanager
+def deep_stack() -> Iterator[None]:
+    """Let Python functions call each other more deeply. Their frames are on the heap (CPython 3.11 and later)."""
+    usual = sys.getrecursionlimit()
+    sys.setrecursionlimit(max(usual, LONGEST_PROOF))
+    try:
+        yield
+    finally:
+        sys.setrecursionlimit(usual)
 
 
 class Scope:
@@ -157,6 +172,7 @@ class Logic:
         self.beliefs = beliefs
         self.builtin = builtin
         self.trail: Trail = []
+        self._asked = False  # whether a formula is being asked that may be asked again with more stack
 
     # ---- terms -----------------------------------------------------------------------------------------------------
 
@@ -273,6 +289,49 @@ class Logic:
     def _match_constant(self, constant: Term) -> Match:
         trail = self.trail
         return lambda frame, value: value == constant or (type(value) not in FIXED and unify(constant, value, trail))
+
+    def formula(self, term: Term, scope: Scope, known: Known, then: Solve) -> Solve:
+        """`compile` for what a plan or somebody outside asks: long proofs by rules get the stack they need.
+
+        A proof is a chain of calls. Where rules are involved it may be longer than Python's usual limit; then the
+        formula is asked again with a higher one, which holds only for that time.
+        """
+        solve = self.compile(term, scope, known, then)
+        if not self._may_need_rules(term):
+            return solve
+        unfilled = [scope.slot(variable) for variable in variables_in(term) if variable not in known.filled]
+        trail = self.trail
+
+        def ask(frame: Frame) -> bool:
+            if self._asked:
+                return solve(frame)  # a question within a question: the outer one takes care
+            mark = len(trail)
+            before = [frame[slot] for slot in unfilled]
+            self._asked = True
+            try:
+                return solve(frame)
+            except RecursionError:
+                undo(trail, mark)
+            finally:
+                self._asked = False
+            for slot, value in zip(unfilled, before, strict=True):
+                frame[slot] = value
+            return self._ask_deeply(solve, frame)
+
+        return ask
+
+    def _ask_deeply(self, solve: Solve, frame: Frame) -> bool:
+        self._asked = True
+        try:
+            with deep_stack():
+                return solve(frame)
+        finally:
+            self._asked = False
+
+    def _may_need_rules(self, term: Term) -> bool:
+        if isinstance(term, Atom | Structure) and self.beliefs.relation(term.predicate).irregular:
+            return True
+        return type(term) is Var or any(self._may_need_rules(part) for part in parts_of(term))
 
     # ---- formulas --------------------------------------------------------------------------------------------------
 
@@ -551,10 +610,12 @@ class Logic:
             found.append(renamed(template(frame), {}))
             return False
 
-        solve = self.compile(term, scope, Known(met=frozenset(variables_in(term))), collect)
+        solve = self.formula(term, scope, Known(met=frozenset(variables_in(term))), collect)
 
         def answers(frame: Frame, template: Build) -> list[Term]:
             found: list[Term] = []
+            if len(collectors) >= DEEPEST_QUESTIONS:
+                raise RecursionError("a formula asks itself")
             collectors.append((found, template))
             try:
                 solve(frame)
@@ -598,7 +659,7 @@ class Logic:
             answers.append({name: value for name, value in values if type(value) is not Var})
             return False
 
-        solve = self.compile(formula, scope, Known(), collect)
+        solve = self.formula(formula, scope, Known(), collect)
         for variable in variables:
             scope.slot(variable)
         solve([None] * scope.size)

@@ -126,7 +126,7 @@ class Compiler:
         known = Known().among(dict.fromkeys(met))
         context = None
         if plan.context is not None and plan.context is not TRUE:
-            context = self.logic.compile(plan.context, scope, known, succeed)
+            context = self.logic.formula(plan.context, scope, known, succeed)
             known = known.after(plan.context)
         if plan.condition is not None:
             compiled.condition = self._silent(plan.condition, scope)
@@ -220,7 +220,7 @@ class Compiler:
     def _test(self, written: Simple, scope: Scope, known: Known) -> Run:
         """?b   ?(b & X > 2)   X > 2"""
         term, trail = written.term, self.logic.trail
-        solve = self.logic.compile(term, scope, known, succeed)
+        solve = self.logic.formula(term, scope, known, succeed)
         build = self.logic.build(term, scope)
         error = "test_goal_failed" if written.does is Does.TEST else "constraint_failed"
         options = None
@@ -324,7 +324,7 @@ class Compiler:
 
     def _if(self, written: If, scope: Scope, known: Known, following: Step | None) -> Step:
         """if (c) {..} else {..}"""
-        condition = self.logic.compile(written.condition, scope, known, succeed)
+        condition = self.logic.formula(written.condition, scope, known, succeed)
         met = Known(known.filled, known.met | frozenset(variables_in(written.condition)))
         then = self.chain(written.then, scope, known.after(written.condition), following)
         otherwise = self.chain(written.otherwise, scope, met, following)
@@ -339,7 +339,7 @@ class Compiler:
 
     def _while(self, written: While, scope: Scope, known: Known, following: Step | None) -> Step:
         """while (c) {..}: what a round binds is forgotten before the next."""
-        condition = self.logic.compile(written.condition, scope, known, succeed)
+        condition = self.logic.formula(written.condition, scope, known, succeed)
         trail = self.logic.trail
 
         def loop(intention: Intention, means: Means) -> None:
@@ -390,13 +390,12 @@ class Compiler:
             found.append([(slot, resolve(value)) for slot, value in values if value is not None])
             return False
 
-        solve = self.logic.compile(formula, scope, known, collect)
+        solve = self.logic.formula(formula, scope, known, collect)
 
         def answers(frame: Frame) -> Any:
-            solve(frame)
-            answers = found[:]
             found.clear()
-            return iter(answers)
+            solve(frame)
+            return iter(found[:])
 
         return answers
 
