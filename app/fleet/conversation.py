@@ -3,7 +3,8 @@
 import asyncio
 import contextlib
 import json
-from typing import Final
+from collections.abc import Coroutine, Sequence
+from typing import Any, Final, TypeVar
 
 import structlog
 from sqlmodel.ext.asyncio.session import AsyncSession
@@ -14,12 +15,14 @@ from app.fleet.alarms import raise_alarm
 from app.fleet.errors import OutOfTurn, WrongRobot
 from app.fleet.greeting import greet
 from app.fleet.service import Fleet
-from app.tables import RobotRow
+from app.tables import MessageToRobot, RobotRow
 from protocol.both_ways import Ack, Error
 from protocol.envelope import TO_ROBOT, TO_SERVER, Envelope, parse, type_of
 from protocol.errors import ProtocolError
 from protocol.parts import Part
 from protocol.to_server import Hello, Snapshot, Why
+
+T = TypeVar("T")
 
 GREETING_LIMIT_S: Final = 10.0
 MAX_UNACKNOWLEDGED: Final = 50
@@ -144,8 +147,7 @@ class Conversation:
     async def _handle(self, envelope: Envelope) -> None:
         if isinstance(envelope.body, Ack) and envelope.ack <= self._acknowledged:
             return
-        async with self._fleet.database.transaction() as session:
-            problem = await self._take(session, envelope)
+        problem = await unbroken(self._take(envelope))
         if envelope.ack > self._acknowledged:
             self._acknowledged = envelope.ack
             self._wake.set()
@@ -154,7 +156,11 @@ class Conversation:
             self._received_seq = max(self._received_seq, envelope.seq)
             await self._send(problem or Ack())
 
-    async def _take(self, session: AsyncSession, envelope: Envelope) -> Error | None:
+    async def _take(self, envelope: Envelope) -> Error | None:
+        async with self._fleet.database.transaction() as session:
+            return await self._take_in(session, envelope)
+
+    async def _take_in(self, session: AsyncSession, envelope: Envelope) -> Error | None:
         fleet = self._fleet
         robot = await robot_row(session, self._robot)
         robot.heard_at = fleet.clock.utc()
@@ -178,12 +184,14 @@ class Conversation:
         while True:
             self._wake.clear()
             room = MAX_UNACKNOWLEDGED - (self._sent - self._acknowledged)
-            async with self._fleet.database.reading() as session:
-                rows = await outbox.pending(session, self._robot, self._sent, max(0, room))
-            for row in rows:
+            for row in await unbroken(self._pending(max(0, room))):
                 await self._send(TO_ROBOT[row.type].model_validate_json(json.dumps(row.body)), row.seq)
                 self._sent = row.seq
             await self._wake.wait()
+
+    async def _pending(self, limit: int) -> Sequence[MessageToRobot]:
+        async with self._fleet.database.reading() as session:
+            return await outbox.pending(session, self._robot, self._sent, limit)
 
     async def _send(self, message: Part, seq: int | None = None) -> None:
         envelope = Envelope(
@@ -217,6 +225,22 @@ class Conversation:
                 robot.online = False
                 fleet.announce(session, robot)
         log.info("robot_offline", robot=self._robot)
+
+
+async def unbroken(work: Coroutine[Any, Any, T]) -> T:
+    """Do it to its end, even if the connection ends meanwhile.
+
+    A transaction that is cancelled half-way may be committed all the same, and then nobody would be told: what it put
+    into the outbox would wait until something else happened.
+    """
+    task = asyncio.create_task(work)
+    try:
+        return await asyncio.shield(task)
+    except asyncio.CancelledError:
+        await asyncio.wait([task])
+        if not task.cancelled() and (error := task.exception()):
+            log.warning("last_work_failed", error=repr(error))
+        raise
 
 
 def said(error: Exception) -> str:

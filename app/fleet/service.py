@@ -111,7 +111,7 @@ class Fleet:
         """Take over what a robot says of its present state."""
         robot.heard_at = self.clock.utc()
         if isinstance(message, Why):
-            robot.why = message.waiting_for or message.sentence
+            robot.why = message.sentence
         else:
             note_state(robot, message.position, message.battery)
             robot.activity = message.activity
