@@ -171,13 +171,14 @@ class Connection:
         if taken.reception is Reception.GAP:
             raise LinkBroken(f"message {seq} came from the server, {self._received_seq + 1} was next")
         self._received_seq = max(self._received_seq, seq)
+        if taken.reception is Reception.NEW and taken.refusal is None:
+            # Before anything is sent: if the connection breaks just now, nobody would deliver it until the next start.
+            self._ends.deliver(Incoming(envelope.body, envelope.journal, seq))
         # Acknowledged after it is on the disk: a crash in between must make the server send it again.
         await self._send(Ack())
         if taken.refusal is not None:
             log.error("message_refused", seq=seq, reason=str(taken.refusal))
             await self._send(Error(code=taken.refusal.code, message=str(taken.refusal), seq=seq))
-        elif taken.reception is Reception.NEW:
-            self._ends.deliver(Incoming(envelope.body, envelope.journal, seq))
 
     def _note_acknowledged(self, seq: int) -> None:
         if seq > self._acknowledged:
