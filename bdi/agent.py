@@ -261,7 +261,7 @@ class Agent:
         """Intentions whose `.wait` is over go on."""
         while self.timers and self.timers[0][0] <= self.now:
             _, _, intention = heappop(self.timers)
-            if intention.state is State.TIME and intention.waits_for is not None and intention.waits_for <= self.now:
+            if intention.state is State.TIME and isinstance(intention.waits_for, float):
                 self._go_on(intention)
         for waiter in list(self.waiters):
             verdict = waiter.check(self)
@@ -632,7 +632,7 @@ class Agent:
         self._withdraw(intention)
         code = show(step.source.term) if step is not None and hasattr(step.source, "term") else ""
         place = getattr(step.source, "place", None) if step is not None else None
-        annots = _failure_annots(failure, code or show(resolve(intention.waits_for or String(""))), place)
+        annots = _failure_annots(failure, code or str(intention.waits_for or ""), place)
         if not self._fail_below(intention, len(intention.stack), annots):
             self._give_up(intention, failure)
 
@@ -653,6 +653,8 @@ class Agent:
         options = self.library.options(trigger, goal.key)
         if not options:
             return False
+        for _, inner in goal.returns:
+            inner.ref = None  # what the failed plan found out does not count
         literal = Structure(goal.key, resolve_all(goal.args), (*goal.annots, *annots))
         event = Event(trigger, literal, options, intention, returns=goal.returns, under=place)
         if intention is None:
@@ -677,7 +679,7 @@ class Agent:
             if self._post_failure(intention, event, trigger, height, annots):
                 return
         if intention is None:
-            self._report(GoalFailure(show(event.literal), error, failure.message))
+            self._report(GoalFailure(str(event), error, failure.message))
         elif not self._fail_below(intention, height, annots[-len(annots) :]):
             self._give_up(intention, failure, event)
 

@@ -32,10 +32,10 @@ def explain(intentions: Iterable[Intention], events: Iterable[Event], goal: Lite
     for intention in intentions:
         for height, means in enumerate(intention.stack):
             if _is_about(means.event, goal):
-                return _about_intention(intention, height, show(means.event.literal))
+                return _about_intention(intention, height, means.event.plain)
     for event in events:
         if _is_about(event, goal):
-            text = show(event.literal)
+            text = event.plain
             return Why(text, f"{text} waits for its turn: no plan has been chosen yet.", State.EVENT.value)
     text = show(goal)
     return Why(text, f"{text} is not pursued: it was never asked for, is reached, or was given up.", "unknown")
@@ -50,7 +50,7 @@ def _about_intention(intention: Intention, height: int, goal: str) -> Why:
     because = tuple(str(means.event) for means in reversed(intention.stack[height:]))
     waits_for = _awaited(intention)
     reason = _reason(intention, top, waits_for)
-    chain = "".join(f", needed for {show(means.event.literal)}" for means in _goals_between(intention, height))
+    chain = "".join(f", needed for {means.event.plain}" for means in _goals_between(intention, height))
     return Why(
         goal,
         f"{goal} {reason}{chain}.",

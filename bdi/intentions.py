@@ -61,8 +61,13 @@ class Event:
     def literal(self) -> Literal:
         return literal_of(self.key, resolve_all(self.args), resolve_all(self.annots))
 
+    @property
+    def plain(self) -> str:
+        """What it is about, as people read it: without annotations."""
+        return show(literal_of(self.key, resolve_all(self.args)))
+
     def __str__(self) -> str:
-        return f"{self.trigger}{show(self.literal)}"
+        return f"{self.trigger}{self.plain}"
 
 
 class Means:

@@ -61,7 +61,6 @@ from bdi.terms import (
 )
 
 Read = Callable[[Path], str]
-DEEPEST_NESTING = 200  # brackets within brackets; real programs stay below ten
 
 # ---- public --------------------------------------------------------------------------------------------------------
 
@@ -184,31 +183,18 @@ def _grammar() -> Lark:
 
 
 def _parse(text: str, start: str, source: str) -> Any:
-    _refuse_deep_nesting(text, source)
     try:
         tree = _grammar().parse(text, start=start)
     except UnexpectedInput as error:
         raise _syntax_error(error, text, source) from None
     try:
         return _Builder(text, source).transform(tree)
+    except RecursionError:
+        raise AgentSpeakSyntaxError("this is nested too deeply", _place(text, source, 1, 1)) from None
     except VisitError as error:
         if isinstance(error.orig_exc, AgentSpeakError):
             raise error.orig_exc from None
         raise
-
-
-def _refuse_deep_nesting(text: str, source: str) -> None:
-    """Walking a tree takes stack: text that is only brackets must not use it up."""
-    depth = 0
-    for position, char in enumerate(text):
-        if char in "([{~!-+":
-            depth += char in "([{"
-        elif char in ")]}":
-            depth -= 1
-        if depth > DEEPEST_NESTING:
-            line = text.count("\n", 0, position) + 1
-            column = position - text.rfind("\n", 0, position)
-            raise AgentSpeakSyntaxError("brackets are nested too deeply", _place(text, source, line, column))
 
 
 def _place(text: str, source: str, line: int, column: int) -> Place:
