@@ -25,11 +25,14 @@ async def test_the_time_of_arrival_is_shown_as_an_assumption_before_anything_is_
     ada = await visit("ada.king", on="phone")
     await ada.page.goto("/")
     await expect(ada.page.get_by_text("Choose both posts to see when it arrives.")).to_be_visible()
+    button = ada.page.get_by_role("button", name="Send the robot")
+    place = await button.bounding_box()
     await fill(ada.page)
     await expect(ada.page.get_by_role("status").get_by_text(re.compile("Arrives"))).to_be_visible()
     await expect(
         ada.page.get_by_text("An assumption from the map’s 6 m, not yet from measured journeys.")
     ).to_be_visible()
+    assert await button.bounding_box() == place, "nothing moves under a finger"
     assert (await ada.api("/orders"))["items"] == []
 
 
@@ -107,6 +110,7 @@ async def test_a_double_tap_is_one_order(visit):
 
 async def test_an_answer_that_is_lost_is_asked_for_again_and_nothing_is_ordered_twice(visit):
     ada = await visit()
+    ada.loses_answers = True
     keys = []
 
     async def lose_the_first_answer(route: Route) -> None:
@@ -121,11 +125,11 @@ async def test_an_answer_that_is_lost_is_asked_for_again_and_nothing_is_ordered_
     await expect(ada.page.get_by_role("heading", name="Looking for a robot")).to_be_visible()
     assert len(keys) == 2 and len(set(keys)) == 1
     assert len((await ada.api("/orders"))["items"]) == 1
-    ada.complaints = [complaint for complaint in ada.complaints if "ERR_FAILED" not in complaint]
 
 
 async def test_an_order_without_any_answer_survives_a_reload_with_its_key(visit):
     ada = await visit()
+    ada.loses_answers = True
     page = ada.page
     keys = []
 
@@ -148,7 +152,6 @@ async def test_an_order_without_any_answer_survives_a_reload_with_its_key(visit)
     await expect(page.get_by_role("heading", name="Looking for a robot")).to_be_visible()
     assert {(await sent.value).headers["idempotency-key"]} == set(keys)
     assert len((await ada.api("/orders"))["items"]) == 1
-    ada.complaints = [complaint for complaint in ada.complaints if "ERR_FAILED" not in complaint]
 
 
 async def test_a_repeat_takes_three_taps(visit):

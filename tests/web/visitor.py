@@ -2,6 +2,8 @@
 
 import re
 import uuid
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
 from types import TracebackType
 from typing import Any
@@ -31,6 +33,7 @@ class Visitor:
     options: dict[str, Any]
     refusals_expected: set[str] = field(default_factory=lambda: {WHO_AM_I})
     complaints: list[str] = field(default_factory=list)
+    loses_answers: bool = False
 
     async def __aenter__(self) -> "Visitor":
         self.context: BrowserContext = await self.browser.new_context(base_url=self.service.url, **self.options)
@@ -54,8 +57,17 @@ class Visitor:
     def _hear(self, message: ConsoleMessage) -> None:
         path = re.sub(r"^https?://[^/]+", "", message.location["url"]).partition("?")[0]
         expected = path in self.refusals_expected and REFUSED.match(message.text)
+        expected = expected or (self.loses_answers and "net::ERR_FAILED" in message.text)
         if message.type in ("error", "warning") and not expected:
             self.complaints.append(f"{message.text} ({path})")
+
+    @asynccontextmanager
+    async def without_network(self) -> AsyncIterator[None]:
+        """The service cannot be reached from the page."""
+        self.loses_answers = True
+        await self.page.route("**/api/v1/**", lambda route: route.abort())
+        yield
+        await self.page.unroute_all()
 
     async def sign_in(self) -> "Visitor":
         """Without the pages, in a moment."""

@@ -5,6 +5,7 @@ import { PAGES } from "../links.js";
 import { OnLive } from "../live.js";
 import { counted, t } from "../texts.js";
 import { icon } from "./icon.js";
+import "./notice_toast.js";
 import { PageElement } from "./page_element.js";
 import "./sign_in.js";
 /** @import { About, Person } from "../api_types.ts" */
@@ -58,6 +59,7 @@ export class PageShell extends PageElement {
       <main id="content" tabindex="-1">
         ${this.person ? this.content() : html`<sign-in .about=${this.about}></sign-in>`}
       </main>
+      ${this.person && this.page !== "notices" ? html`<notice-toast></notice-toast>` : nothing}
       ${this.about?.simulated ? html`<footer class="foot">${t("app.demo")}</footer>` : nothing}
     `;
   }
