@@ -20,8 +20,9 @@ from protocol.clock import Clock, RealClock, SharedClock, SteppedClock
 from .assembly import Parts, Simulation, assemble
 from .config import ConfigError, PerceptMode, Settings, load_settings
 from .errors import RobotError
+from .link import LinkError
 from .mind import messages_from_person
-from .report import Ending, Reporter
+from .report import Ending, Refusal, Reporter
 from .runners import LockstepRunner, Runner, ThreadedRunner
 from .simulated import Door, SimulatedWorldError
 from .store import StoreError
@@ -177,13 +178,16 @@ def _run(settings: Settings, clock: Clock, simulation: Simulation | None, wish: 
         closing.callback(lambda: parts.daemon.close(runner.now_s))
         reporter = _reporter(parts, clock, wish)
         ending = Ending(parts.mind, wish.goals, clock.now() + wish.limit_s, runner.stop)
-        parts.daemon.watchers = (reporter.look, ending.look)
+        refusal = Refusal(parts.link, runner.stop)
+        parts.daemon.watchers = (reporter.look, ending.look, refusal.look)
         if wish.door and parts.robot:
             closing.callback(Door(parts.robot, wish.door, lambda: {"robot": reporter.summary()}).close)
         if parts.link:
             parts.link.start()
         _stop_on_signals(runner)
         runner.run()
+    if refusal.reason:
+        raise LinkError(refusal.reason)
     _tell_end(reporter, ending, wish)
     return ending.problem is None
 

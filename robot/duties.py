@@ -74,6 +74,8 @@ class Duties:
         self._claimed: dict[tuple[Leg, ...], str] = {}
         self._faults: set[str] = set()
         self.paused = False
+        self.rearm_asked = False
+        """Somebody at the service has looked, and lets a stopped robot go again; the mind passes it on."""
         self.cancelled: frozenset[str] = frozenset()
         self.avoid: frozenset[Leg] = frozenset()
         self.revision = 0
@@ -136,7 +138,7 @@ class Duties:
                 self.paused = True
                 self._answer(message.command_id, None)
             case Resume():
-                self.paused = False
+                self.paused, self.rearm_asked = False, True
                 self._answer(message.command_id, None)
             case Recall():
                 self._answer(message.command_id, self._recall())

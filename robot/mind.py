@@ -21,6 +21,7 @@ from .perception.percepts import perceive
 from .perception.seen import Seen, Whereabouts
 from .reasons import reason
 from .reflexes import FAULTS
+from .skills.interfaces import View
 
 HALTING: Final = frozenset({"emergency_stop", "wheel_drop", "cliff", "over_current"})
 """Faults that a plan cannot drive out of: somebody has to see to them."""
@@ -55,6 +56,7 @@ class Mind:
         if view.base:
             self.battery = self.battery.seen(view.base, self.settings.battery, now)
         self._tell_faults(view.faults)
+        self._rearm(view)
         self._reason(now)
         self.hands.body.heartbeat(now)
         self._tell_why()
@@ -119,6 +121,13 @@ class Mind:
             cleared = name not in faults
             self.hands.duties.report_fault(name, _TOLD.get(name, name), self.hands.place, cleared)
         self._faults = faults
+
+    def _rearm(self, view: View) -> None:
+        """An emergency stop ends when somebody lets the robot go: by the Spot button, or at the service."""
+        pressed = view.base is not None and view.base.spot_pressed
+        if "emergency_stop" in view.faults and (pressed or self.hands.duties.rearm_asked):
+            self.hands.body.rearm()
+        self.hands.duties.rearm_asked = False
 
     def _tell_why(self) -> None:
         why = reason(self.actions.under_way, self.hands.view, self.hands.navigator, self.hands.duties)

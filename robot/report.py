@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from .link import Link, LinkState
 from .mind import Mind
 from .simulated import SimulatedRobot
 
@@ -119,3 +120,22 @@ class Ending:
     def _end(self, problem: str | None) -> None:
         self.problem = problem
         self.stop()
+
+
+@dataclass
+class Refusal:
+    """Ends a run whose server has never let it in: a wrong token. One that was let in before goes on without network."""
+
+    link: Link | None
+    stop: Callable[[], None]
+    reason: str | None = None
+    _was_online: bool = False
+
+    def look(self, _: float) -> None:
+        """After a tick of the mind."""
+        if self.link is None:
+            return
+        self._was_online = self._was_online or self.link.online
+        if self.link.state is LinkState.REFUSED and not self._was_online:
+            self.reason = self.link.problem or "the server refused this robot"
+            self.stop()

@@ -44,6 +44,7 @@ purpose(idle).
 // The others end by being fulfilled.
 +!pursue(Purpose)
   <- !fulfil(Purpose);
+     clear_fault(trouble);
      .abolish(pursuing(_));
      !!decide.
 

@@ -89,7 +89,7 @@ def test_a_finished_mission_is_reported_and_the_robot_goes_home_and_rests() -> N
     stage.expect("dock")
     stage.perceives("docked")
     stage.succeeds("dock")
-    stage.does("clear_fault(no_dock)", "release")
+    stage.does("clear_fault(no_dock)", "release", "clear_fault(trouble)")
     stage.settle()
     assert (stage.waiting, stage.failures) == ({}, [])
 
@@ -180,6 +180,6 @@ def test_an_errand_to_nowhere_is_told_and_forgotten() -> None:
     stage.reads("achieve", "visit(nowhere)")
     stage.expect("set_destination(nowhere)")
     stage.fails("set_destination(nowhere)", "unknown_post")
-    stage.does('raise_fault(errand,"unknown_post")')
+    stage.does('raise_fault(errand,"unknown_post")', "clear_fault(trouble)")
     stage.settle()
     assert stage.waiting == {}

@@ -1,0 +1,167 @@
+"""What the robot owes: told once, kept on the disk, answered by name."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from protocol.parts import Leg, Part, Purpose, Stop, StopAction
+from protocol.to_robot import Cancel, Deny, Grant, Mission, Pause, Recall, Resume
+from protocol.to_server import Step
+from robot.duties import Duties, NoSuchStop
+from robot.memory import Incoming, Memory
+from robot.outbox import Outbox
+from robot.store import Store
+
+NOW = datetime(2026, 1, 5, 9, tzinfo=UTC)
+LOAD = Stop(id="s1", post="post1", action=StopAction.LOAD, order_id="o1")
+RECEIVE = Stop(id="s2", post="post4", action=StopAction.RECEIVE, order_id="o1")
+LETTER = Mission(id="m1", update=1, stops=(LOAD, RECEIVE))
+TO_POST3, TO_POST4 = Leg(from_post="post2", to_post="post3"), Leg(from_post="post3", to_post="post4")
+
+
+@dataclass
+class FakeServer:
+    """Hands over what a test puts in; what goes to the server waits in the outbox."""
+
+    memory: Memory
+    waiting: list[Incoming] = field(default_factory=list)
+
+    def says(self, message: Part) -> None:
+        if isinstance(message, Mission):
+            self.memory.hold(message)
+        if isinstance(message, Grant):
+            self.memory.grant(message.legs)
+        self.waiting.append(Incoming(message, "journal", len(self.waiting) + 1))
+
+    def incoming(self) -> list[Incoming]:
+        taken, self.waiting = self.waiting, []
+        return taken
+
+    def wake(self) -> None:
+        pass
+
+
+@dataclass
+class Desk:
+    duties: Duties
+    server: FakeServer
+
+    def hears(self, message: Part) -> list[dict[str, Any]]:
+        """What the robot has to say to this message."""
+        before = len(self.told())
+        self.server.says(message)
+        self.duties.take_messages()
+        return self.told()[before:]
+
+    def told(self) -> list[dict[str, Any]]:
+        messages = [kept.message for kept in self.duties.outbox.pending()]
+        return [getattr(message, "happened", message).model_dump(mode="json") for message in messages]
+
+
+@pytest.fixture
+def store(tmp_path: Path) -> Iterator[Store]:
+    store = Store(tmp_path / "robot.db")
+    yield store
+    store.close()
+
+
+@pytest.fixture
+def desk(store: Store) -> Desk:
+    server = FakeServer(Memory(store))
+    return Desk(Duties(store, server.memory, Outbox(store), lambda: NOW, server), server)
+
+
+def test_a_mission_is_accepted_once_however_often_it_comes(desk: Desk) -> None:
+    assert [one["step"] for one in desk.hears(LETTER)] == ["accepted"]
+    assert desk.hears(LETTER) == []
+    assert desk.duties.held.stop == LOAD
+
+
+def test_each_step_of_a_stop_is_told_once_and_each_post_passed_once(desk: Desk) -> None:
+    desk.hears(LETTER)
+    for _ in range(2):
+        desk.duties.report(Step.DEPARTED, "s1", "post5")
+        desk.duties.report(Step.PASSED, "s1", "post3")
+        desk.duties.report(Step.PASSED, "s1", "post2")
+    assert [(one["step"], one["post"]) for one in desk.told()[1:]] == [
+        ("departed", "post5"),
+        ("passed", "post3"),
+        ("passed", "post2"),
+    ]
+
+
+def test_what_was_told_before_a_restart_is_not_told_again(desk: Desk, store: Store) -> None:
+    desk.hears(LETTER)
+    desk.duties.handed_over(Purpose.LOAD, "s1", "post1", "ab" * 32)
+    again = Duties(store, Memory(store), Outbox(store), lambda: NOW)
+    assert (again.held.cargo, again.held.stop) == (("o1",), RECEIVE)
+    again.handed_over(Purpose.LOAD, "s1", "post1", "ab" * 32)
+    again.report(Step.DEPARTED, "s2", "post1")
+    assert [one["kind"] for one in desk.told()] == ["progress", "handover", "progress"]
+
+
+def test_a_stop_that_nobody_knows_is_named(desk: Desk) -> None:
+    desk.hears(LETTER)
+    with pytest.raises(NoSuchStop, match="s9"):
+        desk.duties.report(Step.ARRIVED, "s9", "post1")
+
+
+def test_a_cancelled_order_is_answered_and_its_mission_gone(desk: Desk) -> None:
+    desk.hears(LETTER)
+    (answer,) = desk.hears(Cancel(command_id="c1", order_id="o1"))
+    assert (answer["command_id"], answer["accepted"]) == ("c1", True)
+    assert desk.duties.held.mission is None
+
+
+def test_an_order_whose_mail_is_aboard_is_not_cancelled_and_says_why(desk: Desk) -> None:
+    desk.hears(LETTER)
+    desk.duties.handed_over(Purpose.LOAD, "s1", "post1", "ab" * 32)
+    (answer,) = desk.hears(Cancel(command_id="c1", order_id="o1"))
+    assert (answer["accepted"], answer["reason"]) == (False, "the mail is aboard")
+    assert desk.duties.held.stop == RECEIVE
+
+
+def test_pause_resume_and_recall_are_each_answered(desk: Desk) -> None:
+    desk.hears(LETTER)
+    assert desk.hears(Pause(command_id="c1", reason="fire drill"))[0]["accepted"]
+    assert desk.duties.paused
+    assert desk.hears(Resume(command_id="c2"))[0]["accepted"]
+    assert not desk.duties.paused
+    assert desk.hears(Recall(command_id="c3", reason="service"))[0]["accepted"]
+    assert desk.duties.held.mission is None
+
+
+def test_corridors_are_claimed_once_and_entered_when_granted(desk: Desk) -> None:
+    legs = (TO_POST3, TO_POST4)
+    claim_id = desk.duties.claim(legs)
+    assert desk.duties.claim(legs) == claim_id
+    assert len(desk.told()) == 1
+    assert not desk.duties.may_enter(legs)
+    desk.hears(Grant(claim_id=claim_id or "", legs=legs))
+    assert desk.duties.may_enter(legs)
+    assert desk.duties.claim(legs) is None, "nothing left to ask for"
+
+
+def test_leaving_a_corridor_gives_it_back(desk: Desk) -> None:
+    desk.hears(Grant(claim_id="c1", legs=(TO_POST3, TO_POST4)))
+    desk.duties.clear([TO_POST3])
+    assert desk.told()[-1]["leg"] == {"from_post": "post2", "to_post": "post3"}
+    assert desk.duties.held.grants == (TO_POST4,)
+
+
+def test_a_denial_names_what_to_avoid_and_the_next_claim_is_a_new_one(desk: Desk) -> None:
+    claim_id = desk.duties.claim([TO_POST4]) or ""
+    desk.hears(Deny(claim_id=claim_id, avoid=(TO_POST4,), reason="taken"))
+    assert desk.duties.denial(claim_id) is not None
+    assert desk.duties.avoid == {TO_POST4}
+    assert desk.duties.claim([TO_POST4]) != claim_id
+
+
+def test_a_fault_is_told_when_it_begins_and_when_it_ends(desk: Desk) -> None:
+    for cleared in (False, False, True, True):
+        desk.duties.report_fault("bump", "Something stands in the way.", "post3", cleared)
+    assert [one["cleared"] for one in desk.told()] == [False, True]
