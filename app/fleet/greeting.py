@@ -8,7 +8,7 @@ from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.fleet import inbox, outbox
-from app.fleet.alarms import raise_alarm
+from app.fleet.alarms import clear_alarms, raise_alarm
 from app.fleet.progress import active_mission
 from app.fleet.service import Fleet, note_state
 from app.tables import MissionRow, Order, RobotRow, StopRow
@@ -111,9 +111,13 @@ async def _compare_clocks(session: AsyncSession, robot: RobotRow, at: datetime, 
     if abs(off) > CLOCK_TOLERANCE:
         sentence = f"the robot's clock is off by {off.total_seconds():+.0f} s"
         await raise_alarm(session, robot.name, "clock_off", sentence, now=now)
+    else:
+        await clear_alarms(session, robot.name, "clock_off", now)
 
 
 async def _compare_maps(session: AsyncSession, fleet: Fleet, robot: RobotRow, hello: Hello, now: datetime) -> None:
     if hello.map_version != fleet.campus.version:
         sentence = f"the robot has map {hello.map_version}, the service {fleet.campus.version}: give it the same file"
         await raise_alarm(session, robot.name, "other_map", sentence, now=now)
+    else:
+        await clear_alarms(session, robot.name, "other_map", now)

@@ -180,6 +180,18 @@ def test_the_documentation_names_every_error_code_of_the_link() -> None:
     assert [code for code in sorted(codes) if f"`{code}`" not in page] == []
 
 
+def test_the_documentation_names_every_alarm() -> None:
+    calls = [
+        node
+        for path in (ROOT / "app/fleet").glob("*.py")
+        for node in ast.walk(ast.parse(path.read_text()))
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "raise_alarm"
+    ]
+    names = {call.args[2].value for call in calls if isinstance(call.args[2], ast.Constant)}
+    assert "second_socket" in names
+    assert [name for name in sorted(map(str, names)) if f"`{name}`" not in PAGE.read_text()] == []
+
+
 def _codes_of_link(path: Path) -> set[str]:
     """The `code = "…"` of the error classes in a file; base classes and those that answer HTTP requests excepted."""
     not_on_the_link = {"protocol_error", "fleet_error", "robot_exists", "robot_name_invalid", "unknown_robot"}

@@ -399,3 +399,6 @@ async def test_a_clock_far_off_and_another_map_are_reported(
         await late.greet()
     assert (await service.row(Alarm, name="clock_off")).reason.endswith("-3600 s")
     assert "give it the same file" in (await service.row(Alarm, name="other_map")).reason
+    async with PlayedRobot(clock).connected(service.url, token) as right:
+        await right.greet(map_version=service.app.state.campus.version)
+    assert all(row.cleared_at for row in await service.rows(Alarm)), "both are over"
