@@ -14,10 +14,10 @@ from .find_line import FindLine, over_line
 from .interfaces import Done, Failed, Running, Step, View
 from .line_estimate import LineEstimate
 
-LOOK_AHEAD_MM = 130.0
+LOOK_AHEAD_MM = 80.0
 SLOWEST_MM_S = 70.0
-SLOW_BY_MM = 25.0
-"""The speed falls towards the slowest as the line ahead is off by so much."""
+CLOSE_MM, SLOW_BY_MM = 8.0, 25.0
+"""The speed falls towards the slowest as the line ahead is off by more than the first, by so much."""
 CRAWL_MM_S = 40.0
 BRAKE_MM_S2 = 150.0
 WHEEL_LAG_S = 0.06
@@ -127,7 +127,8 @@ class FollowLine:
 
     def _speeds(self, to_go_mm: float | None) -> WheelSpeeds:
         off_mm = self._line.at(LOOK_AHEAD_MM)
-        speed = self._cruise_mm_s - (self._cruise_mm_s - SLOWEST_MM_S) * min(1.0, abs(off_mm) / SLOW_BY_MM)
+        off_share = min(1.0, max(0.0, abs(off_mm) - CLOSE_MM) / SLOW_BY_MM)
+        speed = self._cruise_mm_s - (self._cruise_mm_s - SLOWEST_MM_S) * off_share
         if to_go_mm is not None:
             speed = min(speed, max(CRAWL_MM_S, math.sqrt(2 * BRAKE_MM_S2 * max(0.0, to_go_mm - 5.0))))
         return curve(speed, 2 * off_mm / LOOK_AHEAD_MM**2, self._shape)

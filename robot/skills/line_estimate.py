@@ -12,7 +12,8 @@ from ..drivers.interfaces import BodyShape, LineReading
 EDGE_SIGMA_MM = 2.0
 OFFSET_NOISE_MM2_PER_MM = 0.01
 HEADING_NOISE_PER_MM = 4e-6
-CURVATURE_NOISE_PER_MM = 4e-10
+CURVATURE_NOISE_PER_MM = 1e-8
+"""Tuned on bends of 250 to 600 mm radius with 1 % flipped reads and gaps of 20 mm; less of it misses tight bends."""
 START_OFFSET_MM2, START_HEADING, START_CURVATURE = 15.0**2, 0.25**2, 0.0005**2
 STEEPEST = 0.9
 """Headings beyond this are no longer a line that is followed."""

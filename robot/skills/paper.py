@@ -14,7 +14,7 @@ PULSES = {
     "left": WheelSpeeds(30, 60),
     "right": WheelSpeeds(60, 30),
     "stop": STOP,
-    "spiral": WheelSpeeds(-30, 30),
+    "spiral": WheelSpeeds(0, 60),
 }
 """The prototype drove 50 mm/s, corrected at 10 mm/s ± 6 mm/s, and veered: no wheel goes below 30 here."""
 
