@@ -21,6 +21,7 @@ from protocol.clock import SharedClock
 
 READY_LIMIT_S = 60.0
 LOOK_EVERY_S = 0.1
+A_MOMENT_S = 0.5
 EXIT_FAILED = 1
 EXIT_INTERRUPTED = 130
 
@@ -85,7 +86,12 @@ async def _perform(demo: Demo, children: Children, story: Story, screen: Screen)
         screen.welcome()
         robot = await children.start("robot", demo.robot_command(), demo.folder / "robot.log")
         async with _beside([robot.watch()]):
-            await _tell_story(demo, story, screen)
+            try:
+                await _tell_story(demo, story, screen)
+            except DemoFailed:
+                # If a child has died that is the better reason: its watcher cancels us here.
+                await asyncio.sleep(A_MOMENT_S)
+                raise
 
 
 async def _tell_story(demo: Demo, story: Story, screen: Screen) -> None:
