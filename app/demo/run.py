@@ -88,10 +88,15 @@ async def _perform(demo: Demo, children: Children, story: Story, screen: Screen)
         async with _beside([robot.watch()]):
             try:
                 await _tell_story(demo, story, screen)
-            except DemoFailed:
+            except DemoFailed as failure:
                 # If a child has died that is the better reason: its watcher cancels us here.
                 await asyncio.sleep(A_MOMENT_S)
-                raise
+                if demo.once:
+                    raise
+                screen.failed(str(failure))
+            if not demo.once:
+                screen.go_on()
+                await asyncio.Event().wait()
 
 
 async def _tell_story(demo: Demo, story: Story, screen: Screen) -> None:
@@ -105,9 +110,6 @@ async def _tell_story(demo: Demo, story: Story, screen: Screen) -> None:
     if demo.as_json:
         print(json.dumps(summary, indent=2))  # noqa: T201  # the one object on stdout
     screen.delivered(summary)
-    if not demo.once:
-        screen.go_on()
-        await asyncio.Event().wait()
 
 
 @asynccontextmanager

@@ -44,7 +44,7 @@ async def mail_code(
     wish: CodeRequest,
     desk: DeskDep,
     limits: LimitsDep,
-    session: SessionDep,
+    database: DatabaseDep,
     clock: ClockDep,
     settings: SettingsDep,
     accept_language: Language = "",
@@ -52,7 +52,9 @@ async def mail_code(
     """Mail an 8-digit code to an address of the campus."""
     await limits.count_code(wish.email)
     language = language_from(accept_language, settings.default_language)
-    row = await desk.mail_code(session, wish.email, language, clock.utc())
+    async with database.transaction() as session:
+        row, code = await desk.make_code(session, wish.email, clock.utc())
+    await desk.mail_code(row, code, language)
     return CodeMailed(expires_at=row.expires_at)
 
 

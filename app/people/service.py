@@ -1,5 +1,6 @@
 """Signing in and out. Codes and sessions are known here by their hashes alone."""
 
+import asyncio
 import hmac
 import re
 import secrets
@@ -42,8 +43,8 @@ class SignInDesk:
     key: ServerKey
     spool: Spool
 
-    async def mail_code(self, session: AsyncSession, email: str, language: str, now: datetime) -> SignInCode:
-        """Make a code and mail it; only its hash is kept. Raises AddressNotAllowed."""
+    async def make_code(self, session: AsyncSession, email: str, now: datetime) -> tuple[SignInCode, str]:
+        """A new code, of which only the hash is kept, and its eight digits. Raises AddressNotAllowed."""
         if not is_allowed(email, self.settings):
             domains = ", ".join(self.settings.allowed_domains)
             raise AddressNotAllowed(f"Sign in with an address of {domains}.")
@@ -52,13 +53,14 @@ class SignInDesk:
         row = SignInCode(email=email, code_hash=self._hash(email, code), created_at=now, expires_at=now + lifetime)
         session.add(row)
         await session.flush()
-        self.spool.send(self._mail(row, code, language, now))
-        return row
+        return row, code
 
-    def _mail(self, row: SignInCode, code: str, language: str, now: datetime) -> Mail:
+    async def mail_code(self, row: SignInCode, code: str, language: str) -> None:
+        """Mail a code whose row is committed: a mailed code is one that works."""
         facts = {"code": code, "minutes": str(round(self.settings.sign_in_code_lifetime_s / 60))}
         subject, body = text(language, "sign_in.title"), text(language, "sign_in.body", facts)
-        return Mail(f"sign-in.{row.id}.{new_id()}", row.email, subject, body, now)
+        mail = Mail(f"sign-in.{row.id}.{new_id()}", row.email, subject, body, row.created_at)
+        await asyncio.to_thread(self.spool.send, mail)
 
     async def check_code(
         self, session: AsyncSession, email: str, code: str, now: datetime
