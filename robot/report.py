@@ -124,7 +124,7 @@ class Ending:
 
 @dataclass
 class Refusal:
-    """Ends a run whose server has never let it in: a wrong token. One that was let in before goes on without network."""
+    """Ends a run whose server has never let it in: a wrong token. One that was let in before goes on without it."""
 
     link: Link | None
     stop: Callable[[], None]
