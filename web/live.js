@@ -53,6 +53,9 @@ export function startLive() {
   addEventListener("pageshow", (event) => event.persisted && feed.start());
 }
 
+/** Nobody is signed in any more. */
+export const stopLive = () => feed.stop();
+
 /** Lets an element hear changes for as long as it is on the page. @implements {ReactiveController} */
 export class OnLive {
   /** @type {AbortController | null} */

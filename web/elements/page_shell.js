@@ -2,7 +2,7 @@
 import { html, nothing } from "lit";
 import * as api from "../api.js";
 import { PAGES } from "../links.js";
-import { OnLive } from "../live.js";
+import { OnLive, stopLive } from "../live.js";
 import { counted, t } from "../texts.js";
 import { icon } from "./icon.js";
 import "./notice_toast.js";
@@ -93,6 +93,7 @@ export class PageShell extends PageElement {
   }
 
   async #signOut() {
+    stopLive();
     await api.signOut();
     location.assign(PAGES.order);
   }
