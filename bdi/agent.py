@@ -35,7 +35,7 @@ from bdi.plans import CompiledPlan, Compiler, Options, relevant
 from bdi.syntax import Belief, Plan, Program, Trigger
 from bdi.terms import Atom, Literal, String, Structure, Term, Var, atom, literal_of, show, structure
 from bdi.trace import Deliberated, Failed, Stepped, TraceEntry
-from bdi.unify import FIXED, renamed, resolve, resolve_all, undo, unify
+from bdi.unify import FIXED, is_ground, renamed, resolve, resolve_all, undo, unify
 from bdi.waiting import Waiter
 
 REMEMBERED_TEXTS = 20_000  # percepts and messages given as text are parsed once; then the memory starts again
@@ -129,6 +129,7 @@ class Agent:
         self._asked: dict[str, tuple[Intention, Term, float | None]] = {}
         self._percepts: frozenset[Any] = frozenset()
         self._seen: dict[Any, _Percept] = {}
+        self._read: dict[str, Literal] = {}
         self._mixed = False  # whether one percept may come written in several ways
         self._last_action = 0
         self._last_intention = 0
@@ -240,6 +241,20 @@ class Agent:
         if message.performative not in PERFORMATIVES:
             raise UnknownPerformative(message.performative)
         return PERFORMATIVES[message.performative](self, message)
+
+    def literal_in(self, message: Message) -> Literal:
+        """What a message is about. Text without variables is remembered."""
+        text = message.content
+        if type(text) is not str:
+            return as_literal(text)
+        literal = self._read.get(text)
+        if literal is None:
+            literal = as_literal(text)
+            if len(self._read) >= REMEMBERED_TEXTS:
+                self._read.clear()
+            if is_ground(literal):
+                self._read[text] = literal
+        return literal
 
     def _process_answer(self, message: Message) -> None:
         asked = self._asked.pop(message.reply_to, None)

@@ -329,9 +329,12 @@ class Logic:
             self._asked = False
 
     def _may_need_rules(self, term: Term) -> bool:
-        if isinstance(term, Atom | Structure) and self.beliefs.relation(term.predicate).irregular:
-            return True
-        return type(term) is Var or any(self._may_need_rules(part) for part in parts_of(term))
+        if not isinstance(term, Atom | Structure):
+            return type(term) is Var
+        key = term.predicate
+        if key in (AND, OR, NOT) or key.name.startswith(INTERNAL):
+            return any(self._may_need_rules(part) for part in term.args)
+        return self.beliefs.relation(key).irregular > 0
 
     # ---- formulas --------------------------------------------------------------------------------------------------
 

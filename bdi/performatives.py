@@ -6,9 +6,8 @@ from typing import Any, TypeAlias
 from bdi.beliefs import SOURCE
 from bdi.builtin_actions import drop_desire, plan_of
 from bdi.messages import Message
-from bdi.parser import parse_literal
 from bdi.syntax import Trigger
-from bdi.terms import Atom, List, Literal, String, Structure, Term, atom, show
+from bdi.terms import List, Literal, String, Structure, Term, atom, show
 
 Mind: TypeAlias = Any  # the Agent; it stands above this module, which therefore cannot name it
 
@@ -20,46 +19,38 @@ def sourced(literal: Literal, source: Term) -> Literal:
     return Structure(literal.predicate, literal.args, (*literal.annots, source))
 
 
-def _content(message: Message) -> Literal:
-    content = message.content
-    literal = parse_literal(content) if type(content) is str else content
-    if not isinstance(literal, Atom | Structure):
-        raise TypeError(f"{message.performative} needs a literal, not {show(literal)}")
-    return literal
-
-
-def _from_sender(message: Message) -> Literal:
-    return sourced(_content(message), Structure(SOURCE, (atom(message.sender),)))
+def _from_sender(mind: Mind, message: Message) -> Literal:
+    return sourced(mind.literal_in(message), Structure(SOURCE, (atom(message.sender),)))
 
 
 def _tell(mind: Mind, message: Message) -> None:
-    mind.believe(_from_sender(message), None)
+    mind.believe(_from_sender(mind, message), None)
 
 
 def _untell(mind: Mind, message: Message) -> None:
-    mind.forget(_from_sender(message), None)
+    mind.forget(_from_sender(mind, message), None)
 
 
 def _achieve(mind: Mind, message: Message) -> None:
-    mind.achieve_apart(_from_sender(message))
+    mind.achieve_apart(_from_sender(mind, message))
 
 
 def _unachieve(mind: Mind, message: Message) -> None:
-    drop_desire(mind, _content(message))
+    drop_desire(mind, mind.literal_in(message))
 
 
 def _signal(mind: Mind, message: Message) -> None:
-    literal = _from_sender(message)
+    literal = _from_sender(mind, message)
     mind.notice(Trigger.BELIEF_ADDED, literal)
 
 
 def _ask_one(mind: Mind, message: Message) -> None:
-    answers = _answers(mind, _content(message))
+    answers = _answers(mind, mind.literal_in(message))
     _answer(mind, message, answers[0] if answers else atom("false"))
 
 
 def _ask_all(mind: Mind, message: Message) -> None:
-    _answer(mind, message, List(_answers(mind, _content(message))))
+    _answer(mind, message, List(_answers(mind, mind.literal_in(message))))
 
 
 def _answers(mind: Mind, literal: Literal) -> list[Term]:

@@ -12,7 +12,7 @@ from bdi.logic import Build, Builtin, Frame, Known, Logic, Match, Scope, Solve, 
 from bdi.syntax import Body, Does, For, Fork, If, Plan, Simple, Trigger, While, variables_of
 from bdi.syntax import Step as Written
 from bdi.terms import INTERNAL, TRUE, Atom, Code, Literal, Predicate, Structure, Term, Var, show
-from bdi.unify import FIXED, Trail, renamed, resolve, resolve_all, undo, unify, unify_annots, variables_in
+from bdi.unify import FIXED, Trail, parts_of, renamed, resolve, resolve_all, undo, unify, unify_annots, variables_in
 
 Applicable = Callable[[Event], "Frame | None"]  # the filled frame if head and context hold
 Run = Callable[[Intention, Means], None]
@@ -210,11 +210,17 @@ class Compiler:
             return self._variable(term, scope)
         build = self.logic.build(term, scope)
         key = term.predicate if isinstance(term, Atom | Structure) else None
-        run = _GOALS[written.does](self, build, key) if written.does in _GOALS else self._deed(written.does, build)
+        run = (
+            _GOALS[written.does](self, build, key)
+            if written.does in _GOALS
+            else self._deed(written.does, build, _fixed(term))
+        )
         return _variables_named(run, term) if isinstance(term, Var) else run
 
-    def _deed(self, does: Does, build: Build) -> Run:
+    def _deed(self, does: Does, build: Build, fixed: Literal | None) -> Run:
         doer, deed = self.doer, _DEEDS[does]
+        if fixed is not None:
+            return lambda intention, means: deed(doer, intention, fixed)
         return lambda intention, means: deed(doer, intention, _literal(build(means.frame)))
 
     def _test(self, written: Simple, scope: Scope, known: Known) -> Run:
@@ -456,6 +462,12 @@ def _known_after(written: Written, known: Known) -> Known:
     if isinstance(written, Simple):
         return known.after(written.term)
     return Known(known.filled, known.met | frozenset(variables_of(Body((written,)))))
+
+
+def _fixed(term: Term) -> Literal | None:
+    """The literal itself if every part is a plain value, so that there is nothing to work out."""
+    plain = isinstance(term, Atom | Structure) and all(type(part) in FIXED for part in parts_of(term))
+    return term if plain else None  # type: ignore[return-value]
 
 
 def _literal(value: Term) -> Literal:
