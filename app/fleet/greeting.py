@@ -7,14 +7,14 @@ from typing import Final
 from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.fleet import inbox, outbox
+from app.fleet import inbox, outbox, traffic
 from app.fleet.alarms import clear_alarms, raise_alarm
 from app.fleet.progress import active_mission
 from app.fleet.service import Fleet, note_state
 from app.tables import MissionRow, Order, RobotRow, StopRow
 from protocol.envelope import Envelope
 from protocol.parts import Received, Stop, StopAction
-from protocol.to_robot import Mission, Verifiers, Welcome
+from protocol.to_robot import Grant, Mission, Verifiers, Welcome
 from protocol.to_server import Hello
 
 CLOCK_TOLERANCE: Final = timedelta(minutes=5)
@@ -39,7 +39,7 @@ async def greet(session: AsyncSession, fleet: Fleet, robot: RobotRow, envelope: 
         await raise_alarm(session, robot.name, "messages_lost", f"{lost} messages of this robot are lost", now=now)
     await _settle_outbox(session, robot, hello.received, now)
     if is_new_memory:
-        await restate_mission(session, fleet, robot)
+        await restate(session, fleet, robot)
     await _compare_clocks(session, robot, envelope.at, now)
     await _compare_maps(session, fleet, robot, hello, now)
     note_state(robot, hello.position, hello.battery)
@@ -64,8 +64,11 @@ async def _settle_outbox(session: AsyncSession, robot: RobotRow, received: Recei
         await outbox.acknowledged(session, robot.name, received.seq, now)
 
 
-async def restate_mission(session: AsyncSession, fleet: Fleet, robot: RobotRow) -> None:
-    """The robot's memory is new: what is left of its mission comes again, under the next number."""
+async def restate(session: AsyncSession, fleet: Fleet, robot: RobotRow) -> None:
+    """The robot's memory is new: the corridors it holds, and what is left of its mission under the next number."""
+    if held := await traffic.held_by(session, robot.name):
+        # It may stand in one of them: it has to know that it may leave, and has to report it clear.
+        await fleet.tell(session, robot, Grant(claim_id=f"restated-{robot.last_seq + 1}", legs=held))
     mission = await active_mission(session, robot.name)
     if mission is None:
         return

@@ -52,7 +52,8 @@ async def held_by(session: AsyncSession, robot: str) -> tuple[Leg, ...]:
     """The corridors that a robot may be in, in the order in which it was granted them."""
     held = select(GrantRow).where(GrantRow.robot == robot, col(GrantRow.cleared_at).is_(None))
     rows = (await session.exec(held.order_by(col(GrantRow.id)))).all()
-    return tuple(Leg(from_post=row.from_post, to_post=row.to_post) for row in rows)
+    legs = (Leg(from_post=row.from_post, to_post=row.to_post) for row in rows)
+    return tuple(dict.fromkeys(legs))
 
 
 def _grant(robot: str, claim_id: str, leg: Leg, now: datetime) -> GrantRow:

@@ -4,13 +4,15 @@ import json
 
 import pytest
 from sqlmodel import select
+from structlog.testing import capture_logs
 
 from app.database import Database
+from app.fleet.conversation import MAX_UNACKNOWLEDGED
 from app.settings import Settings
 from app.tables import Alarm, GrantRow, Handover, MessageToRobot, MissionRow, Order, RobotMessage, RobotRow, RobotToken
 from protocol.clock import SteppedClock
 from protocol.parts import Activity, Battery, Leg, Position, Received
-from protocol.to_robot import Cancel, Grant, Verifiers
+from protocol.to_robot import Cancel, Grant, Resume, Verifiers
 from protocol.to_server import Claim, Clear, CommandAnswer, Event, Fault, Snapshot, Step, Why
 from tests.app.fleet.playing import PlayedRobot, Service, serving, until
 
@@ -253,6 +255,7 @@ async def test_a_robot_without_its_memory_gets_what_is_left_of_its_mission(
         await robot.greet()
         mission = await robot.mission()
         await robot.report(mission, Step.ARRIVED, mission.stops[0])
+        await robot.say(Claim(claim_id="c1", legs=(LEG,)))
         await robot.ends(await robot.say(robot.receipt(mission.stops[0])))
     new_disk = PlayedRobot(clock, journal="journal-2")
     async with new_disk.connected(service.url, token):
@@ -261,6 +264,8 @@ async def test_a_robot_without_its_memory_gets_what_is_left_of_its_mission(
         if again.update == 1:  # what the old disk had not acknowledged comes first
             again = await new_disk.mission()
     assert (again.id, again.update, again.stops) == (mission.id, 2, mission.stops[1:])
+    grants = [one.body for one in new_disk.heard if isinstance(one.body, Grant)]
+    assert grants[-1].legs == (LEG,), "it may stand there"
     assert len(await service.rows(Alarm, name="memory_lost")) == 1
     assert str((await service.row(Order, id=order_id)).state) == "carrying"
 
@@ -294,6 +299,46 @@ async def test_what_cannot_be_followed_is_written_down_answered_and_does_not_com
     assert await service.states(order_id) == ["queued", "assigned", "to_sender"]
     assert await service.rows(Handover) == [], "nothing of a refused receipt is left"
     assert {row.name for row in await service.rows(Alarm)} >= set(codes)
+
+
+async def test_a_service_that_fails_says_so_and_the_robot_keeps_what_it_had_to_say(
+    service: Service, robot: PlayedRobot
+) -> None:
+    """The table is away for a while, as after a mistake of a person."""
+    token = await service.enrol("r1")
+    engine = service.app.state.database.writing
+    async with engine.begin() as connection:
+        await connection.exec_driver_sql("ALTER TABLE robot_messages RENAME TO away")
+    with capture_logs() as logs:
+        async with robot.connected(service.url, token):
+            await robot.greet()
+            await robot.say(Clear(leg=LEG))
+            assert await robot.close_code() == 1011
+    assert [line["log_level"] for line in logs if line["event"] == "conversation_failed"] == ["error"]
+    async with engine.begin() as connection:
+        await connection.exec_driver_sql("ALTER TABLE away RENAME TO robot_messages")
+    async with robot.connected(service.url, token):
+        assert (await robot.greet()).received.seq == 0
+        await robot.say(Clear(leg=LEG), seq=1)
+        await robot.ends(1)
+
+
+async def test_a_slow_robot_gets_no_more_than_it_acknowledges(service: Service, robot: PlayedRobot) -> None:
+    token = await service.enrol("r1")
+    many = MAX_UNACKNOWLEDGED + 10
+    async with service.app.state.database.transaction() as session:
+        row = await session.get(RobotRow, "r1")
+        for number in range(many):
+            await service.app.state.fleet.tell(session, row, Resume(command_id=f"c{number}"))
+    async with robot.connected(service.url, token):
+        await robot.greet()
+        with pytest.raises(TimeoutError):
+            await robot.hear("nothing of the kind", limit_s=0.5)
+        assert robot.received.seq == MAX_UNACKNOWLEDGED
+        await robot.say(Why(sentence="acknowledges by the way"))
+        while robot.received.seq < many:
+            await robot.hear("resume")
+    assert [one.seq for one in robot.heard if one.seq] == list(range(1, many + 1))
 
 
 async def test_claims_are_granted_once_and_cleared_by_the_robot_alone(service: Service, robot: PlayedRobot) -> None:
