@@ -22,9 +22,8 @@ const AT_ME = { load: "at_sender", receive: "at_recipient" };
 const WAITING = ["waiting", "charging", "stopped"];
 
 export class FollowPage extends PageElement {
-  /** How often it was asked; an answer to an older question than the newest is not shown. */
-  #asked = 0;
-  #waiting = false;
+  /** Whether anything was heard since the service was asked last. */
+  #heard = false;
 
   static properties = {
     order_id: { attribute: false },
@@ -142,31 +141,26 @@ export class FollowPage extends PageElement {
     this.robot = order.robot;
   }
 
-  /** An answer that is still on its way may be older than what was just heard: ask again. @param {() => void} take */
+  /** @param {() => void} take */
   #hear(take) {
     take();
-    if (this.#waiting) this.#fetch();
+    this.#heard = true;
   }
 
+  /** An answer may be older than what is heard while it is on its way: then it is asked for once more. */
   async #fetch() {
-    const question = ++this.#asked;
-    this.#waiting = true;
-    const found = await this.#ask();
-    if (question !== this.#asked) return;
-    this.#waiting = false;
-    if (!found) return;
-    [this.map, this.problem] = [found.map, ""];
-    this.#show(found.order);
+    this.#heard = false;
+    await this.#ask();
+    if (this.#heard) await this.#ask();
   }
 
-  /** Null after a failure, which is said where nothing else can be shown. */
   async #ask() {
     try {
       const [map, order] = await Promise.all([loadMap(), api.order(this.order_id)]);
-      return { map, order };
+      [this.map, this.problem] = [map, ""];
+      this.#show(order);
     } catch (failure) {
       if (!this.order) this.problem = failure instanceof api.ApiProblem ? t("follow.unknown.body") : inWords(failure);
-      return null;
     }
   }
 }
