@@ -9,6 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from ..errors import RobotError
 from . import open_interface as oi
 from .interfaces import STOP, BaseState, ChargingState, Mode, Note, WheelSpeeds
 from .serial_port import NoWakeUpLine, SerialPort, WakeUpLine
@@ -294,7 +295,7 @@ class Create2:
         self._next_try_s = now + RETRY_S
         try:
             self._port = self._open_port()
-        except Exception as error:
+        except (RobotError, OSError) as error:
             self.health.problem = str(error)
             return False
         self._next_try_s = now
