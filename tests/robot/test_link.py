@@ -18,8 +18,8 @@ from protocol.envelope import TO_SERVER, Envelope, parse, type_of
 from protocol.parts import Activity, Battery, Leg, Part, Position, Received, Stop, StopAction
 from protocol.to_robot import Cancel, Mission, Pause, Welcome
 from protocol.to_server import Clear, Hello, Snapshot, Why
-from robot.connection import MAX_UNACKNOWLEDGED, Rhythm
-from robot.link import InsecureServer, Link, LinkState, check_secure, retry_delays_s
+from robot.connection import MAX_UNACKNOWLEDGED, Connection, Ends, Newest, Rhythm
+from robot.link import MAX_INCOMING, InsecureServer, Link, LinkState, check_secure, retry_delays_s
 from robot.memory import Incoming, Memory
 from robot.outbox import Outbox
 from robot.store import Store
@@ -28,6 +28,10 @@ AT = datetime(2026, 1, 5, 9, 0, tzinfo=UTC)
 QUICK = Rhythm(ping_limit_s=20.0, retry_longest_s=0.2, snapshot_every_s=0.3)
 IMPATIENT = Rhythm(ping_every_s=0.3, ping_limit_s=0.5, retry_longest_s=0.2)
 MISSION = Mission(id="m1", update=1, stops=(Stop(id="s1", post="post1", action=StopAction.LOAD, order_id="o1"),))
+
+
+def from_server(message: Part, seq: int | None = None, ack: int = 0, journal: str = "server-journal") -> Envelope:
+    return Envelope(type=type_of(message), robot="r1", journal=journal, seq=seq, ack=ack, at=AT, body=message)
 
 
 @dataclass
@@ -57,10 +61,7 @@ class PlayedServer:
             pass
 
     async def send(self, message: Part, seq: int | None = None, ack: int = 0) -> None:
-        envelope = Envelope(
-            type=type_of(message), robot="r1", journal=self.journal, seq=seq, ack=ack, at=AT, body=message
-        )
-        await self.sockets[-1].send(envelope.to_text())
+        await self.sockets[-1].send(from_server(message, seq, ack, self.journal).to_text())
 
     def types(self) -> list[str]:
         return [envelope.type for envelope in self.heard]
@@ -269,7 +270,12 @@ async def test_an_error_from_the_server_reaches_the_daemon(robot: Robot) -> None
         await until(lambda: link.online)
         await server.send(Error(code="unknown_order", message="there is no order o9", seq=3))
         arrived: list[Incoming] = []
-        await until(lambda: arrived or arrived.__iadd__(link.incoming()))
+
+        def something_arrived() -> bool:
+            arrived.extend(link.incoming())
+            return bool(arrived)
+
+        await until(something_arrived)
         assert [one.message for one in arrived] == [Error(code="unknown_order", message="there is no order o9", seq=3)]
 
 
@@ -352,6 +358,55 @@ async def test_a_slow_server_gets_no_more_than_it_acknowledges(robot: Robot) -> 
         await server.send(Error(code="note", message=""), ack=MAX_UNACKNOWLEDGED)
         await until(lambda: len(server.numbers()) == MAX_UNACKNOWLEDGED + 10)
         assert link.online
+
+
+async def test_a_daemon_that_takes_nothing_is_not_buried_and_misses_nothing(robot: Robot) -> None:
+    many = MAX_INCOMING + 20
+    async with playing() as server, robot.linked(server.url) as link:
+        await until(lambda: link.online)
+        for seq in range(1, many + 1):
+            await server.send(Pause(command_id=f"p{seq}", reason=""), seq=seq)
+        await until(lambda: server.heard[-1].ack == MAX_INCOMING)
+        await asyncio.sleep(0.2)
+        assert server.heard[-1].ack == MAX_INCOMING, "what cannot be taken is not acknowledged"
+        taken = link.incoming()
+        await until(lambda: server.heard[-1].ack == many)
+        taken += link.incoming()
+        assert [incoming.seq for incoming in taken] == list(range(1, many + 1))
+
+
+@dataclass
+class BreakingSocket:
+    """Says what it was given to say, and breaks when an acknowledgement is to be sent."""
+
+    texts: list[str]
+
+    async def send(self, message: str) -> None:
+        if parse(message, TO_SERVER).type == "ack":
+            raise ConnectionResetError
+
+    async def recv(self) -> str:
+        return self.texts.pop(0)
+
+    async def close(self, code: int = 1000, reason: str = "") -> None:
+        pass
+
+
+async def test_what_was_stored_is_delivered_even_if_it_cannot_be_acknowledged(robot: Robot) -> None:
+    """The server need not send it again, so nobody else would deliver it before the next start."""
+    delivered: list[Incoming] = []
+    hello = Hello(position=Position(), battery=Battery(ratio=0.8), software="0.1.0", map_version="m1")
+    ends = Ends("r1", RealClock(), robot.outbox, robot.memory, lambda: hello, Newest(), delivered.append, QUICK)
+    welcome = Welcome(received=Received(), server="played", at=AT)
+    room = asyncio.Event()
+    room.set()
+    socket = BreakingSocket([from_server(welcome).to_text(), from_server(MISSION, 1).to_text()])
+    connection = Connection(socket, ends, asyncio.Event(), room)
+    await connection.greet()
+    with pytest.raises(ConnectionResetError):
+        await connection.run()
+    assert [incoming.message for incoming in delivered] == [MISSION]
+    assert robot.memory.received().seq == 1
 
 
 async def test_the_reason_is_said_when_it_changes_and_again_after_a_reconnect(robot: Robot) -> None:
