@@ -1,6 +1,6 @@
 """A mind for hire: AgentSpeak programs with the meaning that Jason gives them, one reasoning cycle at a time."""
 
-from bdi.agent import Action, Agent, GoalFailure, Outcome
+from bdi.agent import Agent
 from bdi.errors import (
     AgentSpeakError,
     AgentSpeakSyntaxError,
@@ -16,6 +16,7 @@ from bdi.errors import (
 )
 from bdi.explain import Why
 from bdi.messages import Finished, Message
+from bdi.outcome import Action, GoalFailure, Outcome
 from bdi.parser import load_program, parse_literal, parse_plan, parse_program, parse_term
 from bdi.syntax import Program
 from bdi.terms import Atom, List, Literal, String, Structure, Term, Var, atom, show, structure

@@ -8,9 +8,10 @@ from typing import Annotated, Any
 
 import typer
 
-from bdi.agent import Agent, Outcome
+from bdi.agent import Agent
 from bdi.errors import BdiError
 from bdi.messages import Finished, Message
+from bdi.outcome import Outcome
 from bdi.parser import load_program
 from bdi.percept_file import Stimulus, read_percepts
 from bdi.terms import show

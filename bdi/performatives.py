@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import Any, TypeAlias
 
 from bdi.beliefs import SOURCE
-from bdi.builtin_actions import drop_desire, plan_of
+from bdi.builtin_actions import drop_desire, event_named, plan_of
 from bdi.messages import Message
 from bdi.syntax import Trigger
 from bdi.terms import List, Literal, String, Structure, Term, atom, show
@@ -63,9 +63,9 @@ def _answer(mind: Mind, message: Message, content: Term) -> None:
 
 def _ask_how(mind: Mind, message: Message) -> None:
     """The content is an event as text, "+!g"; the answer a list of plans as texts."""
-    text = message.content if type(message.content) is str else show(message.content).strip('"')
-    wanted = mind.event_in(String(text))
-    plans = mind.library.options(*wanted)
+    text = _text(message)
+    trigger, wanted = event_named(String(text))
+    plans = mind.library.options(trigger, wanted.predicate)
     _answer(mind, message, List([String(str(each.plan)) for each in plans]))
 
 
@@ -79,7 +79,7 @@ def _untell_how(mind: Mind, message: Message) -> None:
 
 def _text(message: Message) -> str:
     content = message.content
-    return content if type(content) is str else content.__format__("") if isinstance(content, str) else show(content)
+    return str.__str__(content) if isinstance(content, str) else show(content)
 
 
 PERFORMATIVES: dict[str, Callable[[Mind, Message], None]] = {

@@ -172,6 +172,11 @@ def test_a_plan_can_wait_for_an_answer() -> None:
     assert [str(each) for each in outcome.actions] == ["go(mine)"]
 
 
+def test_a_question_about_how_is_answered_with_plans() -> None:
+    answer = told(agent_of("@here +!g(X) : X > 1 <- a."), "askHow", "+!g(_)", id="q").messages[0]
+    assert str(answer.content) == '["@here +!g(X) : (X>1) <- a."]'
+
+
 def test_plans_can_be_told_and_untold() -> None:
     agent = agent_of("")
     told(agent, "tellHow", "@new +!g <- a.")
