@@ -44,7 +44,7 @@ class Demonstration:
         activity = Activity.DRIVING if towards else Activity.WAITING
         await self.robot.say(Snapshot(position=position, activity=activity, battery=Battery(ratio=0.82)))
 
-    async def waits_for(self, sentence: str) -> None:
+    async def says(self, sentence: str) -> None:
         await self.robot.say(Why(sentence=sentence))
 
     async def agrees_to_cancel(self) -> None:
@@ -111,15 +111,18 @@ async def test_a_letter_is_ordered_loaded_carried_and_received_by_two_people(dem
     await demonstration.reports(Step.DEPARTED, StopAction.LOAD)
     await expect(standing).to_have_text(f"{robot} is coming to Post 1")
     await demonstration.is_seen("post3", towards="post2")
+    await demonstration.says("Driving towards post2")
     facts = ada.page.get_by_role("region", name="Where the robot is").get_by_role("list")
     await expect(facts.get_by_text(re.compile("^Last seen at Post 3, "))).to_be_visible()
     await expect(facts.get_by_text(re.compile("^Expected at Post 2, "))).to_be_visible()
+    await expect(facts.get_by_text("Driving towards post2")).to_be_visible()
     await expect(facts.get_by_text("Battery 82%")).to_be_visible()
+    await expect(ada.page.get_by_role("region", name="Why it waits")).to_be_hidden()
     await expect(ada.page.get_by_role("img", name="Map: The paper's test track")).to_contain_text("last seen")
 
     await demonstration.reports(Step.ARRIVED, StopAction.LOAD)
     await demonstration.is_seen("post1", towards=None)
-    await demonstration.waits_for("waiting for the sender to load")
+    await demonstration.says("waiting for the sender to load")
     await expect(standing).to_have_text(f"{robot} is waiting for you at Post 1")
     await expect(ada.page.get_by_role("region", name="Why it waits")).to_contain_text("waiting for the sender to load")
     code = ada.page.get_by_role("region", name="Your code to load the robot")

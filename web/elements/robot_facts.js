@@ -17,7 +17,7 @@ export function robotFacts(map, robot, from, to) {
 }
 
 /** @param {CampusMap} map @param {Robot} robot */
-function aboutRobot(map, { last_seen, expected, towards, battery, online, heard_at, activity }) {
+function aboutRobot(map, { last_seen, expected, towards, battery, online, heard_at, activity, why }) {
   const now_ms = serverNow();
   return [
     fact(
@@ -29,6 +29,7 @@ function aboutRobot(map, { last_seen, expected, towards, battery, online, heard_
       : towards && activity === "driving"
         ? fact("clock", t("map.towards", { post: titleOf(map, towards) }))
         : nothing,
+    why && activity === "driving" ? fact("send", why) : nothing,
     online || !heard_at ? nothing : fact("network", t("robot.offline", { ago: ago(heard_at, now_ms) })),
     battery
       ? fact("battery", t(battery.charging ? "robot.charging" : "robot.battery", { charge: percent(battery.ratio) }))
