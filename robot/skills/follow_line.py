@@ -120,7 +120,7 @@ class FollowLine:
         self._last = here
         self._line.move(here.ahead_mm - before.ahead_mm, here.heading_rad - before.heading_rad)
         blind = to_go_mm is not None and to_go_mm < self._shape.sensor_lead_mm + BLIND_BEFORE_POST_MM
-        if over_line(view) and not blind:
+        if not blind:
             self._line.see(view.reading)
         if over_line(view):
             self._lit_mm = here.travelled_mm

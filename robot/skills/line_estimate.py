@@ -14,6 +14,8 @@ OFFSET_NOISE_MM2_PER_MM = 0.01
 HEADING_NOISE_PER_MM = 4e-6
 CURVATURE_NOISE_PER_MM = 1e-8
 """Tuned on bends of 250 to 600 mm radius with 1 % flipped reads and gaps of 20 mm; less of it misses tight bends."""
+INSIDE_DOUBT = 3.0
+"""Reads between two edges agree with each other, not with the truth: they pull to the middle only weakly."""
 START_OFFSET_MM2, START_HEADING, START_CURVATURE = 15.0**2, 0.25**2, 0.0005**2
 STEEPEST = 0.9
 """Headings beyond this are no longer a line that is followed."""
@@ -76,6 +78,7 @@ class LineEstimate:
         """What the diodes say: an edge that has just passed, or a side on which the estimate must not be."""
         interval = self._intervals.get(reading)
         if interval is None:
+            self._slipped_out(reading)
             self._before = None
             return
         before, self._before = self._before, interval
@@ -88,8 +91,16 @@ class LineEstimate:
                 return
         if not low <= at <= high:
             self._correct(min(max(at, low), high), EDGE_SIGMA_MM)
-        elif before is None:
-            self._correct((low + high) / 2, (high - low) / 3.5)
+        else:
+            sigma_mm = (high - low) / 3.5
+            self._correct((low + high) / 2, sigma_mm if before is None else INSIDE_DOUBT * sigma_mm)
+
+    def _slipped_out(self, reading: LineReading) -> None:
+        """Nothing lit just after an outer diode alone: the line went out on that side (a worn place would rather come
+        while it runs under the centre)."""
+        outermost = self.shape.diode_spacing_mm + self.shape.tape_width_mm / 2
+        if self._before is not None and not any(reading) and outermost in (abs(self._before[0]), abs(self._before[1])):
+            self._correct(outermost if self._before[1] == outermost else -outermost, EDGE_SIGMA_MM)
 
     def at(self, ahead_mm: float) -> float:
         """Where the line is so far ahead of the axle, mm to the left."""
