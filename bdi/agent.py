@@ -19,7 +19,7 @@ from typing import Any
 from bdi.arithmetic import ArithmeticFailure
 from bdi.beliefs import PERCEPT, SELF
 from bdi.doing import Doing
-from bdi.errors import UnknownActionId, UnknownPerformative
+from bdi.errors import AgentSpeakError, UnknownActionId, UnknownPerformative
 from bdi.explain import Why, explain
 from bdi.intentions import Event, Intention, Means, State, StepFailed
 from bdi.loading import check_program
@@ -72,6 +72,7 @@ class Agent(Doing):
         self.library = Compiler(self, self.logic).library
         self._percepts: frozenset[Any] = frozenset()
         self._read: dict[str, Literal] = {}
+        self._notations: set[str] = set()
         self._mixed = False  # whether one percept may come written in several ways
         self._load(program)
 
@@ -154,11 +155,10 @@ class Agent(Doing):
             if len(self._seen) >= REMEMBERED_TEXTS:
                 self._seen.clear()
             literal = as_literal(percept)
-            # The same percept in two notations must stay one percept: from now on compare terms, not texts.
-            if type(percept) is not str or show(literal) != percept:
-                self._mixed = self._mixed or type(percept) is str or any(type(key) is str for key in self._seen)
-            elif not self._mixed and any(type(key) is not str for key in self._seen):
-                self._mixed = True
+            # The same percept in two notations must stay one percept: from then on terms are compared, not texts.
+            notation = "term" if type(percept) is not str else "text" if show(literal) == percept else "free text"
+            self._notations.add(notation)
+            self._mixed = len(self._notations) > 1 or notation == "free text"
             seen = self._seen[percept] = _Percept(literal, self)
         return seen
 
@@ -263,7 +263,7 @@ class Agent(Doing):
         for plan in event.options:
             try:
                 frame = plan.applicable(event)
-            except (ArithmeticFailure, StepFailed, RecursionError):
+            except (ArithmeticFailure, StepFailed, AgentSpeakError, RecursionError):
                 frame = None  # a context that cannot be worked out does not hold
             if frame is not None:
                 trail.clear()
@@ -353,6 +353,8 @@ class Agent(Doing):
             self.fail(intention, failure, step)
         except ArithmeticFailure as failure:
             self.fail(intention, StepFailed("arithmetic", str(failure)), step)
+        except AgentSpeakError as failure:  # text that an internal action was to read
+            self.fail(intention, StepFailed("wrong_arguments", str(failure)), step)
         except RecursionError:
             self.fail(intention, StepFailed("recursion", f"{step.source} goes too deep"), step)
         finally:

@@ -3,10 +3,11 @@
 import math
 from collections.abc import Callable
 
+from bdi.errors import BdiError
 from bdi.terms import Predicate, number, predicate
 
 
-class ArithmeticFailure(Exception):
+class ArithmeticFailure(BdiError):
     """A division of whole numbers by zero, or an operand that is no number."""
 
 

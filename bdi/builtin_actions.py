@@ -68,7 +68,7 @@ def send(mind: Mind, receiver: Term, performative: Term, content: Term, *answer:
         mind.send(Message(mind.name, text_of(performative), content, text_of(each), message_id))
         if answer:
             deadline_s = moment_of(mind.now, answer[1]) if len(answer) > 1 else None
-            mind.wait_for_answer(mind.current, message_id, answer[0], deadline_s)
+            mind.wait_for_answer(_running(mind, "send"), message_id, answer[0], deadline_s)
     return True
 
 
@@ -93,6 +93,14 @@ def _pursues(mind: Mind, goal: Term) -> Callable[[Means], bool]:
     return lambda means: (
         means.event.trigger in (Trigger.GOAL_ADDED, Trigger.GOAL_FAILED) and _unifies(mind, goal, means.event.literal)
     )
+
+
+def _running(mind: Mind, name: str) -> Intention:
+    """The intention whose step this is. In a condition there is none."""
+    intention: Intention | None = mind.current
+    if intention is None:
+        raise StepFailed("wrong_arguments", f".{name} belongs in the body of a plan, not in a condition")
+    return intention
 
 
 def _intentions_for(mind: Mind, goal: Term) -> list[Intention]:
@@ -135,7 +143,7 @@ def drop_all_events(mind: Mind) -> Answer:
 
 @internal_action("drop_intention", 0, 1)
 def drop_intention(mind: Mind, goal: Term | None = None) -> Answer:
-    for intention in [mind.current] if goal is None else _intentions_for(mind, goal):
+    for intention in [_running(mind, "drop_intention")] if goal is None else _intentions_for(mind, goal):
         mind.drop(intention)
     return True
 
@@ -182,7 +190,7 @@ def _goals_that_unify(mind: Mind, goal: Term, goals: list[Literal]) -> Iterator[
 
 @internal_action("suspend", 0, 1)
 def suspend(mind: Mind, goal: Term | None = None) -> Answer:
-    for intention in [mind.current] if goal is None else _intentions_for(mind, goal):
+    for intention in [_running(mind, "suspend")] if goal is None else _intentions_for(mind, goal):
         mind.hold(intention)
     return True
 
@@ -239,7 +247,7 @@ def fail_goal(mind: Mind, goal: Term, *annots: Term) -> Answer:
 def wait(mind: Mind, what: Question, timeout: Term | None = None, elapsed: Term | None = None) -> Answer:
     """.wait(MS)   .wait("+event", MS)   .wait(formula, MS): with a third argument a time-out is no failure."""
     condition = what.term()
-    intention: Intention = mind.current
+    intention = _running(mind, "wait")
     if isinstance(condition, int | float):
         moment = mind.now + condition / 1000
         intention.waits_for = moment
@@ -331,14 +339,20 @@ def belief(mind: Mind, pattern: Term) -> Answer:
 
 @internal_action("asserta", 1)
 def asserta(mind: Mind, literal: Term) -> Answer:
-    mind.believe(literal, None)
+    mind.believe(_believable(literal, "asserta"), None)
     return True
 
 
 @internal_action("assertz", 1)
 def assertz(mind: Mind, literal: Term) -> Answer:
-    mind.believe(literal, None, last=True)
+    mind.believe(_believable(literal, "assertz"), None, last=True)
     return True
+
+
+def _believable(literal: Term, name: str) -> Literal:
+    if not isinstance(literal, Atom | Structure):
+        raise wrong_arguments(name, "a literal", literal)
+    return literal
 
 
 @internal_action("list_beliefs", 0)

@@ -10,7 +10,7 @@ from typing import Any
 from bdi.builtin import Answer, HasLogic, function, internal_action, wrong_arguments
 from bdi.logic import Question
 from bdi.parser import parse_term
-from bdi.terms import Atom, Code, Handle, List, OpenList, String, Structure, Term, Var, number, show
+from bdi.terms import Atom, Handle, List, OpenList, String, Structure, Term, Var, number, show
 from bdi.unify import compare, deref, is_ground, renamed, substituted, undo, unify, variables_in
 
 in_order = cmp_to_key(compare)
@@ -267,18 +267,6 @@ def _register_kind(name: str, holds: Callable[[Term], bool]) -> None:
 
 for _name, _holds in KINDS.items():
     _register_kind(_name, _holds)
-
-TYPES: dict[type, tuple[str, ...]] = {
-    int: ("number",),
-    float: ("number",),
-    String: ("string",),
-    List: ("list",),
-    Atom: ("atom", "literal", "ground"),
-    Structure: ("structure", "literal"),
-    Var: ("free",),
-    Code: ("plan_body",),
-    Handle: ("object",),
-}
 
 
 @internal_action("copy_term", 2)

@@ -8,6 +8,8 @@ BdiError
 │   ├── UnknownDirective       `{ something }` that is no directive of ours
 │   ├── UnknownInternalAction  `.something` that does not exist
 │   └── UnknownAction          an action that the body did not declare
+├── StepFailed                 a step of a plan cannot be done (in `intentions`; plans see it as -!g[error(E)])
+├── ArithmeticFailure          numbers that cannot be calculated (in `arithmetic`)
 ├── UnknownActionId            a finished action that was never started
 └── UnknownPerformative        a message that is no tell, achieve, …
 """

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from enum import Enum
 from typing import Any
 
+from bdi.errors import BdiError
 from bdi.syntax import Trigger
 from bdi.terms import Literal, Term, Var, literal_of, show
 from bdi.unify import resolve_all
@@ -18,7 +19,6 @@ class State(Enum):
     TIME = "waits for a moment"
     ANSWER = "waits for an answer"
     SUSPENDED = "is suspended"
-    JOIN = "waits for its other branches"
     DONE = "is done"
 
 
@@ -123,7 +123,7 @@ GOALS = frozenset({Trigger.GOAL_ADDED, Trigger.TEST_ADDED, Trigger.GOAL_FAILED, 
 FAILURE_OF = {Trigger.GOAL_ADDED: Trigger.GOAL_FAILED, Trigger.TEST_ADDED: Trigger.TEST_FAILED}
 
 
-class StepFailed(Exception):
+class StepFailed(BdiError):
     """A step of a plan cannot be done: `error` names the kind (`no_applicable`, `test_goal_failed`, …)."""
 
     def __init__(self, error: str, message: str, annots: tuple[Term, ...] = ()) -> None:

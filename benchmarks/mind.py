@@ -91,7 +91,7 @@ def look_up_us(facts: int = 10_000, times: int = 2_000) -> float:
 def percepts_us_per_cycle(percepts: int = 500, changed: int = 50, cycles: int = 400) -> float:
     agent = Agent(parse_program("+seen(0,_) <- act."))
     script = [
-        frozenset(f"seen({n},{step + 1 if n < changed else 0})" for n in range(percepts)) for step in range(cycles)
+        frozenset(f"seen({n},{step % 7 if n < changed else 0})" for n in range(percepts)) for step in range(cycles)
     ]
 
     def run() -> None:

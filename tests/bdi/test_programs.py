@@ -20,6 +20,7 @@ from bdi import (
     parse_program,
     parse_term,
 )
+from bdi.builtin import ACTIONS, FUNCTIONS
 
 MAIL = """// the heart of a courier
 dockStation(post0).
@@ -158,6 +159,34 @@ def test_mangled_programs_raise_only_errors_of_the_language(text: str) -> None:
         return
     for cycle in range(20):
         agent.cycle({"battery(low)", "edge(a,b)"} if cycle % 2 else set(), now=cycle * 0.1)
+
+
+VALUES = st.sampled_from(
+    [
+        *["X", "_", "Q", "1", "-2", "0.5", "1/0", "math.abs(-1)", '"text"', '"+b(X)"', '"+(("'],
+        *["a", "g", "g(X)", "~b", "[]", "[1,2,3]", "[a|T]", '[b(1),"s",2]', "{p(1)}", "b(X) & X > 0"],
+    ]
+)
+PLACES = st.sampled_from(
+    [
+        "!g. +!g <- .queue.create(Q); CALL; ok(X). -!g <- rescued.",
+        "!g. +!g : CALL <- ok(X). +!g <- no.",
+        "!g. +!g <- Z = CALL; ok(Z). -!g <- rescued.",
+        "r(X) :- CALL. !g. +!g : r(X) <- ok. +!g <- for (CALL) { .print(X) }.",
+    ]
+)
+
+
+@settings(max_examples=300, deadline=None)
+@given(st.sampled_from([*ACTIONS, *FUNCTIONS]), st.lists(VALUES, max_size=4), PLACES)
+def test_internal_actions_with_any_arguments_fail_by_name_if_at_all(name: str, values: list[str], place: str) -> None:
+    call = f"{name}({','.join(values)})" if values else name
+    try:
+        agent = Agent(parse_program("b(1). b(2). " + place.replace("CALL", call)))
+    except AgentSpeakError:
+        return
+    for cycle in range(8):
+        agent.cycle([], now=float(cycle))
 
 
 @settings(max_examples=150, deadline=None)
