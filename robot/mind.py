@@ -101,7 +101,13 @@ class Mind:
     def seen(self, now: float) -> Seen:
         """The moment as perception is shown it."""
         hands, navigator = self.hands, self.hands.navigator
-        where = Whereabouts(navigator.at, navigator.position.previous, navigator.destination, navigator.way())
+        where = Whereabouts(
+            navigator.at,
+            navigator.position.previous,
+            navigator.destination,
+            navigator.way(),
+            navigator.rests_at,
+        )
         return Seen(
             at_s=now,
             view=hands.view,

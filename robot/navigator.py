@@ -13,6 +13,8 @@ from robot.navigation.directions import Way, next_post
 from robot.navigation.position import Position
 from robot.skills.interfaces import View
 
+RESTS_MM = 25.0
+"""A pulse or two of the paper's `drive`. Its program does not look at the line as long as it perceives a post."""
 SAME_WAY_RAD = math.radians(60)
 """A robot that looks along a corridor to within this is taken to be going there."""
 TURNING = frozenset({"turn", "undock", "find_line"})
@@ -36,6 +38,7 @@ class Navigator:
         self._docked = False
         self._leaving = self.position.has_left
         self._ignored_until_s = -math.inf
+        self._arrived_mm = 0.0
         self._nearest: tuple[object, str | None] = ((), home)  # asked ten times a second, answered once per post
 
     def look(self, view: View) -> None:
@@ -73,6 +76,7 @@ class Navigator:
 
     def _note_arrival(self, post: str, before: str | None) -> None:
         self._leaving, self.towards = False, None
+        self._arrived_mm = self._odometry.ahead_mm
         self._duties.seen(post)
         if before and before != post:
             self._duties.clear([Leg(from_post=before, to_post=post)])
@@ -108,6 +112,11 @@ class Navigator:
     def at(self) -> str | None:
         """The post where the robot stands; None once it follows the line away from there."""
         return None if self._leaving else self.position.at
+
+    @property
+    def rests_at(self) -> str | None:
+        """The post, as long as the robot has not rolled on from where it reached it."""
+        return self.at if abs(self._odometry.ahead_mm - self._arrived_mm) <= RESTS_MM else None
 
     @property
     def here(self) -> str | None:
@@ -196,6 +205,7 @@ class Navigator:
             self._looks(dock.heading_rad + math.pi)
             self.position = replace(self.position, post_at_mm=self._odometry.ahead_mm, has_left=False)
             self._leaving, self.towards = False, None
+            self._arrived_mm = self._odometry.ahead_mm
 
     def _looks(self, heading_rad: float) -> None:
         self.position = replace(self.position, facing_rad=heading_rad, spot_turn_rad=self._odometry.spot_turn_rad)

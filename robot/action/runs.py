@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-from ..skills.interfaces import Body, Done, Failed, JobEnd, Skill
+from ..skills.interfaces import Body, Done, JobEnd, Skill
 
 
 @dataclass(frozen=True)
@@ -74,12 +74,20 @@ SkillMaker = Callable[[], Skill | None]
 
 
 class Skills:
-    """One skill after another; the first that fails ends the action. `then` hears what the last one gave."""
+    """One skill after another; the first that fails ends the action. `then` hears what the last one gave.
+
+    `rescue` names failures and what to try after one of them, once: if that succeeds, so did the skill before it.
+    """
 
     def __init__(
-        self, body: Body, makers: Sequence[SkillMaker], now: float, then: Callable[[Done], None] | None = None
+        self,
+        body: Body,
+        makers: Sequence[SkillMaker],
+        now: float,
+        then: Callable[[Done], None] | None = None,
+        rescue: Mapping[str, SkillMaker] | None = None,
     ) -> None:
-        self._body, self._waiting, self._then = body, list(makers), then
+        self._body, self._waiting, self._then, self._rescue = body, list(makers), then, dict(rescue or {})
         self._job: int | None = None
         self._last = Done()
         self._begin_next(now)
@@ -93,9 +101,12 @@ class Skills:
     def poll(self, ends: Ends, now: float) -> Ended | None:
         end = ends.get(self._job) if self._job is not None else None
         if end is not None:
-            if isinstance(end.outcome, Failed):
+            if isinstance(end.outcome, Done):
+                self._last = end.outcome
+            elif end.outcome.reason in self._rescue:
+                self._waiting.insert(0, self._rescue.pop(end.outcome.reason))
+            else:
                 return Ended(end.outcome.reason)
-            self._last = end.outcome
             self._begin_next(now)
         if self._job is not None:
             return None

@@ -3,7 +3,7 @@
 To give the agent something new to do, add a row. An action ends done or failed(reason); nothing is ever ignored.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, get_args
 
@@ -27,7 +27,7 @@ from ..skills.interfaces import Done, Skill
 from ..skills.tunes import TUNES
 from .arguments import Argument, Kind, Value, word
 from .hands import Hands
-from .runs import DONE, AtOnce, Ended, Rest, Run, Skills, Wait
+from .runs import DONE, AtOnce, Ended, Rest, Run, SkillMaker, Skills, Wait
 
 
 @dataclass(frozen=True)
@@ -40,8 +40,14 @@ class Action:
     begin: Callable[[Hands, Sequence[Value], float], Run]
 
 
-def _one(hands: Hands, skill: Skill, now: float, then: Callable[[Done], None] | None = None) -> Run:
-    return Skills(hands.body, [lambda: skill], now, then)
+def _one(
+    hands: Hands,
+    skill: Skill,
+    now: float,
+    then: Callable[[Done], None] | None = None,
+    rescue: Mapping[str, SkillMaker] | None = None,
+) -> Run:
+    return Skills(hands.body, [lambda: skill], now, then, rescue)
 
 
 # Moving.
@@ -77,7 +83,9 @@ def _dock(hands: Hands, _: Sequence[Value], now: float) -> Run:
 
 
 def _undock(hands: Hands, _: Sequence[Value], now: float) -> Run:
-    return _one(hands, Undock(hands.shape), now, lambda _: hands.navigator.undocked())
+    """A dock stands beside the tape's end: with a wheel worn, the robot comes out a hand's breadth beside the line."""
+    look_about = {"line_lost": lambda: FindLine(hands.shape)}
+    return _one(hands, Undock(hands.shape), now, lambda _: hands.navigator.undocked(), look_about)
 
 
 def _station(hands: Hands, arguments: Sequence[Value], now: float) -> Run:

@@ -54,7 +54,7 @@ def _line(seen: Seen) -> Terms:
 
 def _post_point(seen: Seen) -> Terms:
     where = seen.where
-    return [f"postPoint({where.at},{where.previous or 'unknown'})"] if where.at else []
+    return [f"postPoint({where.rests_at},{where.previous or 'unknown'})"] if where.rests_at else []
 
 
 def _direction(seen: Seen) -> Terms:
@@ -90,7 +90,12 @@ def _mission(seen: Seen) -> Terms:
 PERCEPTS: Final = (
     Percept("battery", "battery(low|ok|full), with hysteresis", _battery, _base_age_s, drained=True),
     Percept("line", "line(center|left|right|across|lost)", _line, _view_age_s, drained=True),
-    Percept("postPoint", "postPoint(Current, Previous): the robot is at a post", _post_point, drained=True),
+    Percept(
+        "postPoint",
+        "postPoint(Current, Previous): the robot has reached a post, until it rolls on",
+        _post_point,
+        drained=True,
+    ),
     Percept("direction", "direction(Destination, forward|left|right|behind|arrived)", _direction, drained=True),
     Percept("docked", "the charging contacts of a dock are under power", _docked, _base_age_s),
     Percept("charging_dock", "the dock is charging the battery", _charging, _base_age_s),

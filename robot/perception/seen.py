@@ -16,6 +16,8 @@ class Whereabouts:
     destination: str | None = None
     way: str | None = None
     """forward, left, right, behind or arrived; None while it cannot be known."""
+    rests_at: str | None = None
+    """The post as long as the robot has not begun to roll on from there."""
 
 
 @dataclass(frozen=True)

@@ -103,6 +103,21 @@ def test_a_skill_that_fails_ends_its_action_with_its_reason(bench: Bench) -> Non
     assert bench.actions.finished(1.0) == [(id_, "line_lost")]
 
 
+def test_an_undocked_robot_that_finds_no_line_looks_about_before_it_gives_up(bench: Bench) -> None:
+    id_ = bench.ask("undock")
+    bench.body.end("undock", Failed("line_lost"))
+    assert bench.actions.finished(1.0) == []
+    assert bench.body.started == ["undock", "find_line"]
+    bench.body.end("find_line")
+    assert bench.actions.finished(2.0) == [(id_, None)]
+
+
+def test_an_undocking_that_never_began_is_not_rescued(bench: Bench) -> None:
+    id_ = bench.ask("undock")
+    bench.body.end("undock", Failed("not_docked"))
+    assert bench.actions.finished(1.0) == [(id_, "not_docked")]
+
+
 def test_a_second_motion_is_busy_and_the_first_goes_on(bench: Bench) -> None:
     bench.ask("follow_line")
     assert bench.result("turn(left)") == "busy"

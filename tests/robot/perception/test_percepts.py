@@ -29,7 +29,7 @@ MISSION = Mission(
 def seen(now: float = 10.0, *, base_at_s: float = 10.0, **more: object) -> Seen:
     view = View(at_s=now, base=BaseState(at_s=base_at_s), line=LineSymbol.CENTER)
     battery = BatterySense(BatteryWord.OK, 0.5)
-    return replace(Seen(now, view, battery, Whereabouts("post2", "post1", "post4", "left")), **more)
+    return replace(Seen(now, view, battery, Whereabouts("post2", "post1", "post4", "left", "post2")), **more)
 
 
 def test_the_papers_words_are_shown_in_both_modes() -> None:
@@ -41,7 +41,7 @@ def test_the_papers_words_are_shown_in_both_modes() -> None:
 def test_before_anything_is_known_the_paper_says_unknown() -> None:
     nowhere = seen(where=Whereabouts())
     assert "direction(unknown,unknown)" in perceive(nowhere, DRAIN, 2.0)
-    first = seen(where=Whereabouts(at="post3"))
+    first = seen(where=Whereabouts(at="post3", rests_at="post3"))
     assert "postPoint(post3,unknown)" in perceive(first, DRAIN, 2.0)
 
 
