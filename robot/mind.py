@@ -91,6 +91,8 @@ class Mind:
         for action in outcome.actions:
             self.actions.begin(action.id, action.term, now)
         self.failures += map(str, outcome.failures)
+        for line in outcome.printed:
+            self.hands.noted(line)
         self.cycles += 1
 
     @property

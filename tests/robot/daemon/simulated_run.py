@@ -40,6 +40,8 @@ class SimulatedRun:
         self.robot = self.parts.robot
         self.mind, self.duties = self.parts.mind, self.parts.mind.hands.duties
         self.did: list[str] = []
+        self.printed: list[str] = []
+        self.mind.hands.noted = self.printed.append
         self._runner = LockstepRunner(self.parts.daemon.loops(), self.clock)
         self._wanted: Callable[[], object] = lambda: False
         self._until_s = 0.0

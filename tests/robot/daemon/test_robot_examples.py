@@ -1,0 +1,25 @@
+"""The examples of the robot do what they say."""
+
+from pathlib import Path
+
+from maps import find_map
+from robot.config import load_settings
+from tests.robot.daemon.simulated_run import SimulatedRun
+
+EXAMPLES = Path(__file__).parents[3] / "examples" / "robot"
+
+
+def test_the_example_settings_are_accepted_and_name_a_post_with_a_dock() -> None:
+    settings = load_settings(EXAMPLES / "robot.toml", {})
+    assert settings.home is not None
+    assert find_map(settings.map).post(settings.home).dock is not None
+
+
+def test_the_patrol_goes_three_rounds(tmp_path: Path) -> None:
+    run = SimulatedRun(tmp_path, "post2:post1", mind__program=EXAMPLES / "patrol.asl", mind__percepts="latest")
+    run.asks("", "patrol")
+    run.until(lambda: run.mind.is_quiet and run.mind.cycles > 10, 900)
+    assert run.visited == 3 * ["post2", "post1", "post2", "post3"]
+    assert run.mind.failures == []
+    assert run.printed[-1] == "the patrol is over"
+    run.close()
