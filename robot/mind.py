@@ -16,7 +16,7 @@ from protocol.to_server import Snapshot, Why
 from .action.actions import Actions
 from .action.hands import Hands
 from .config import PerceptMode, Settings
-from .perception.battery import BatterySense
+from .perception.battery import BatterySense, BatteryWord
 from .perception.percepts import perceive
 from .perception.seen import Seen, Whereabouts
 from .reasons import reason
@@ -138,10 +138,18 @@ class Mind:
         self.hands.duties.rearm_asked = False
 
     def _tell_why(self) -> None:
-        why = reason(self.actions.under_way, self.hands.view, self.hands.navigator, self.hands.duties)
+        why = reason(
+            self.actions.under_way, self.hands.view, self.hands.navigator, self.hands.duties, self._is_charging
+        )
         if why != self._why:
             self._why = why
             self.said(why)
+
+    @property
+    def _is_charging(self) -> bool:
+        """In the dock and not full: the trickle that keeps a full battery full is no charging to wait for."""
+        base = self.hands.view.base
+        return base is not None and base.charging and self.battery.word is not BatteryWord.FULL
 
     @property
     def why(self) -> Why | None:
@@ -154,7 +162,7 @@ class Mind:
         return Snapshot(
             position=held.position,
             activity=self.activity(),
-            battery=battery_now(bool(self.hands.view.base and self.hands.view.base.charging), self.battery),
+            battery=Battery(ratio=self.battery.ratio or 0.0, charging=self._is_charging),
             cargo=held.cargo,
             mission=held.mission_held,
         )
@@ -165,14 +173,10 @@ class Mind:
         if view.faults & HALTING:
             return Activity.STOPPED
         if view.base and view.base.docked and view.motion is None:
-            return Activity.CHARGING if view.base.charging else Activity.IDLE
+            return Activity.CHARGING if self._is_charging else Activity.IDLE
         if view.motion:
             return Activity.DRIVING
         return Activity.WAITING if self.actions.under_way else Activity.IDLE
-
-
-def battery_now(charging: bool, battery: BatterySense) -> Battery:
-    return Battery(ratio=battery.ratio or 0.0, charging=charging)
 
 
 def messages_from_person(tell: Iterable[str], achieve: Iterable[str]) -> list[Message]:

@@ -42,7 +42,7 @@ _WAITS: Final[dict[str, Callable[[Navigator], tuple[str, str | None]]]] = {
 }
 
 
-def reason(under_way: Sequence[str], view: View, navigator: Navigator, duties: Duties) -> Why:
+def reason(under_way: Sequence[str], view: View, navigator: Navigator, duties: Duties, charging: bool) -> Why:
     """One sentence, the goal behind it, and what it waits for."""
     stop = duties.held.stop
     goal = _PURPOSES[stop.action].format(post=stop.post) if stop else None
@@ -53,8 +53,8 @@ def reason(under_way: Sequence[str], view: View, navigator: Navigator, duties: D
         sentence, waiting_for = _of_action(under_way[-1], navigator)
         return Why(sentence=sentence, goal=goal, waiting_for=waiting_for)
     if view.base and view.base.docked:
-        doing = "Charging" if view.base.charging else "In its dock"
-        waiting_for = "a full battery" if stop else None
+        doing = "Charging" if charging else "In its dock"
+        waiting_for = "a full battery" if stop and charging else None
         return Why(sentence=f"{doing} at {navigator.here}", goal=goal, waiting_for=waiting_for)
     return Why(sentence="Paused" if duties.paused else "Nothing to do", goal=goal)
 

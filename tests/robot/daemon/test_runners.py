@@ -7,6 +7,9 @@ from pathlib import Path
 import pytest
 
 from protocol.clock import RealClock, SharedClock, SteppedClock
+from robot.assembly import Simulation, assemble
+from robot.config import load_settings
+from robot.mind import messages_from_person
 from robot.runners import Governor, LockstepRunner, Loop, ThreadedRunner
 
 
@@ -83,3 +86,20 @@ def test_a_loop_that_breaks_stops_all_the_others_and_is_raised() -> None:
     runner = ThreadedRunner([Loop("broken", 10.0, "nobody", broken), Loop("fine", 10.0, "nobody", float)], RealClock())
     with pytest.raises(RuntimeError, match="fell off"):
         runner.run()
+
+
+def test_on_threads_and_real_time_the_same_loops_drive_the_same_robot(tmp_path: Path) -> None:
+    clock = RealClock()
+    settings = load_settings(None, {"data": tmp_path})
+    parts = assemble(settings, clock, Simulation("post3:post2"))
+    parts.mind.inbox.extend(messages_from_person([], ["visit(post2)"]))
+    assert parts.robot is not None
+    robot = parts.robot
+    runner = ThreadedRunner(parts.daemon.loops(), clock)
+    until_s = clock.now() + 20.0
+    parts.daemon.watchers = (lambda now: runner.stop() if robot.driven_mm > 150 or now > until_s else None,)
+    runner.run()
+    parts.daemon.close(clock.now())
+    assert robot.driven_mm > 150
+    assert robot.state()["mode"] == "passive"
+    assert runner.lags["line and drive"].ticks > 100

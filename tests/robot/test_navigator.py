@@ -1,0 +1,150 @@
+"""Where the robot believes to be, which way to go, and what it still knows after a power cut."""
+
+import math
+from collections.abc import Iterator
+from datetime import UTC, datetime
+from pathlib import Path
+
+import pytest
+
+from maps import builtin_map
+from protocol.parts import Leg
+from robot.duties import Duties
+from robot.memory import Memory
+from robot.navigator import Navigator
+from robot.outbox import Outbox
+from robot.store import Store
+from tests.robot.fake_body import FakeBody
+
+CAMPUS = builtin_map("test_track")
+
+
+class Walk:
+    """A navigator with a body that is led through the map by hand."""
+
+    def __init__(self, store: Store, home: str | None = "post5") -> None:
+        self.duties = Duties(store, Memory(store), Outbox(store), lambda: datetime(2026, 1, 5, tzinfo=UTC))
+        self.navigator = Navigator(CAMPUS, home, self.duties)
+        self.body = FakeBody()
+        self.now = 0.0
+
+    def look(self) -> None:
+        self.now += 0.1
+        self.body.passes_time(self.now)
+        self.navigator.look(self.body.view)
+
+    def drives_to(self, post: str) -> None:
+        """Off along the line, the marker abreast, the post under the axle."""
+        self.navigator.leave()
+        self.body.rolls(1700.0)
+        self.look()
+        self.body.sees(post)
+        self.look()
+        self.body.rolls(300.0)
+        self.look()
+
+    def turns(self, way: str) -> None:
+        self.body.turns(self.navigator.turn_rad(way))
+        self.look()
+        self.navigator.turned()
+
+
+@pytest.fixture
+def store(tmp_path: Path) -> Iterator[Store]:
+    store = Store(tmp_path / "robot.db")
+    yield store
+    store.close()
+
+
+@pytest.fixture
+def walk(store: Store) -> Walk:
+    walk = Walk(store)
+    walk.look()
+    return walk
+
+
+def test_the_turns_of_the_papers_track_come_from_its_geometry(walk: Walk) -> None:
+    walk.navigator.place("post1", "post2")
+    walk.drives_to("post2")
+    walk.navigator.destination = "post4"
+    assert walk.navigator.way() == "left"
+    assert walk.navigator.turn_rad("left") == pytest.approx(math.pi / 2)
+    walk.turns("left")
+    assert walk.navigator.way() == "forward"
+    walk.drives_to("post3")
+    assert walk.navigator.way() == "right"
+    walk.turns("right")
+    walk.drives_to("post4")
+    assert walk.navigator.way() == "arrived"
+    assert walk.navigator.visited == ["post1", "post2", "post3", "post4"]
+
+
+def test_what_lies_behind_is_reached_by_half_a_turn_to_the_side_that_was_asked(walk: Walk) -> None:
+    walk.navigator.place("post2", "post1")
+    walk.drives_to("post1")
+    walk.navigator.destination = "post4"
+    assert walk.navigator.way() == "behind"
+    assert walk.navigator.turn_rad("left") == pytest.approx(math.pi)
+    assert walk.navigator.turn_rad("right") == pytest.approx(-math.pi)
+
+
+def test_between_posts_it_is_nowhere_and_the_post_ahead_is_known(walk: Walk) -> None:
+    walk.navigator.place("post3", "post4")
+    assert walk.navigator.at == "post3"
+    walk.navigator.leave()
+    assert (walk.navigator.at, walk.navigator.way(), walk.navigator.towards) == (None, None, "post4")
+
+
+def test_a_post_is_perceived_until_the_robot_rolls_on(walk: Walk) -> None:
+    walk.navigator.place("post3", "post4")
+    walk.body.rolls(20.0)
+    walk.look()
+    assert walk.navigator.rests_at == "post3"
+    walk.body.rolls(10.0)
+    walk.look()
+    assert (walk.navigator.rests_at, walk.navigator.at) == (None, "post3")
+
+
+def test_a_corridor_is_given_back_when_its_far_end_is_reached(walk: Walk) -> None:
+    leg = Leg(from_post="post2", to_post="post3")
+    walk.duties.memory.grant([leg])
+    walk.duties.seen("post2")
+    walk.navigator.place("post2", "post3")
+    walk.drives_to("post3")
+    assert walk.duties.held.grants == ()
+
+
+def test_the_nearest_dock_is_by_the_map_and_its_own_while_it_is_lost(store: Store) -> None:
+    walk = Walk(store, home="post5")
+    assert walk.navigator.nearest_dock() == "post5"
+
+
+def test_a_robot_that_stood_at_a_post_still_stands_there_after_a_power_cut(walk: Walk, store: Store) -> None:
+    walk.navigator.place("post1", "post2")
+    walk.drives_to("post2")
+    again = Walk(store)
+    again.look()
+    again.navigator.destination = "post4"
+    assert (again.navigator.at, again.navigator.way()) == ("post2", "left")
+
+
+def test_a_robot_that_was_on_its_way_is_nowhere_until_the_next_marker(walk: Walk, store: Store) -> None:
+    walk.navigator.place("post2", "post3")
+    walk.navigator.leave()
+    again = Walk(store)
+    again.look()
+    assert (again.navigator.at, again.navigator.towards, again.navigator.here) == (None, "post3", "post2")
+    again.body.sees("post3")
+    again.look()
+    again.body.rolls(300.0)
+    again.look()
+    again.navigator.destination = "post5"
+    assert (again.navigator.at, again.navigator.way()) == ("post3", "left")
+
+
+def test_a_power_cut_in_the_middle_of_a_turn_is_not_taken_for_standing(walk: Walk, store: Store) -> None:
+    walk.navigator.place("post1", "post2")
+    walk.drives_to("post2")
+    walk.navigator.destination = "post4"
+    walk.navigator.begin_turn()
+    assert Walk(store).navigator.at is None
