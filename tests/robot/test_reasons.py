@@ -1,0 +1,71 @@
+"""What people read when they ask what the robot is doing and waiting for."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime
+from pathlib import Path
+
+import pytest
+
+from maps import builtin_map
+from protocol.parts import Stop, StopAction
+from protocol.to_robot import Mission
+from robot.drivers.interfaces import BaseState
+from robot.duties import Duties
+from robot.memory import Memory
+from robot.navigator import Navigator
+from robot.outbox import Outbox
+from robot.reasons import reason
+from robot.skills.interfaces import View
+from robot.store import Store
+
+MISSION = Mission(id="m1", update=1, stops=(Stop(id="s1", post="post1", action=StopAction.LOAD, order_id="o1"),))
+
+
+@dataclass
+class Robot:
+    duties: Duties
+    navigator: Navigator
+
+    def why(self, *under_way: str, view: View | None = None, charging: bool = False) -> tuple[str, str | None]:
+        said = reason(under_way, view or View(), self.navigator, self.duties, charging)
+        return said.sentence, said.waiting_for
+
+
+@pytest.fixture
+def robot(tmp_path: Path) -> Iterator[Robot]:
+    store = Store(tmp_path / "robot.db")
+    duties = Duties(store, Memory(store), Outbox(store), lambda: datetime(2026, 1, 5, tzinfo=UTC))
+    navigator = Navigator(builtin_map("test_track"), "post5", duties)
+    navigator.place("post3", "post4")
+    yield Robot(duties, navigator)
+    store.close()
+
+
+def test_what_it_waits_for_is_named(robot: Robot) -> None:
+    sentence, waits_for = robot.why('wait_handover(load,"o1","s1",600)')
+    assert (sentence, waits_for) == ("Waiting for the sender at post3", "the sender's code")
+    assert robot.why("wait_handover(receive,o1,s2,600)")[1] == "the recipient's code"
+    assert robot.why("claim(post4)")[1] == "permission from the server"
+
+
+def test_on_its_way_it_says_where_to(robot: Robot) -> None:
+    robot.navigator.leave()
+    assert robot.why("follow_line") == ("Driving towards post4", None)
+
+
+def test_a_fault_comes_before_everything_else(robot: Robot) -> None:
+    view = replace(View(), faults=frozenset({"bump"}))
+    assert robot.why("follow_line", view=view) == ("Something stands in the robot's way.", "a free way")
+
+
+def test_a_robot_that_charges_with_a_mission_says_what_for(robot: Robot) -> None:
+    docked = View(base=BaseState(at_s=0.0, home_base=True))
+    assert robot.why(view=docked) == ("In its dock at post3", None)
+    robot.duties.give(MISSION)
+    assert robot.why(view=docked, charging=True) == ("Charging at post3", "a full battery")
+    assert reason((), docked, robot.navigator, robot.duties, True).goal == "to collect mail at post1"
+
+
+def test_an_action_nobody_has_words_for_is_shown_as_it_is(robot: Robot) -> None:
+    assert robot.why("dance(tango)")[0] == "Doing dance(tango)"
