@@ -163,6 +163,13 @@ class Navigator:
         except NoRoute:
             return None
 
+    @property
+    def ahead_m(self) -> float:
+        """The length of the corridor it is in or about to enter; of the longest one while that is not known."""
+        if self.here and self.towards:
+            return self.campus.corridor(self.here, self.towards).length_m
+        return max((corridor.length_m for corridor in self.campus.corridors), default=0.0)
+
     def nearest_dock(self) -> str | None:
         """The dock with the shortest way from here; the robot's own while the place is unknown."""
         asked = (self.here, self._duties.avoid)

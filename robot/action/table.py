@@ -52,11 +52,15 @@ def _one(
 
 # Moving.
 
+FOLLOW_LEAST_S, FOLLOW_TIMES = 180.0, 3.0
+"""The watchdog of the way: so many times the time that the corridor should take, and a while for searches."""
+
 
 def _follow_line(hands: Hands, _: Sequence[Value], now: float) -> Run:
-    leaving = hands.navigator.at
-    hands.navigator.leave()
-    return _one(hands, FollowLine(hands.navigator.campus, leaving, hands.cruise_mm_s, hands.shape), now)
+    navigator = hands.navigator
+    navigator.leave()
+    limit_s = FOLLOW_LEAST_S + FOLLOW_TIMES * navigator.ahead_m * 1000 / hands.cruise_mm_s
+    return _one(hands, FollowLine(navigator.campus, navigator.here, hands.cruise_mm_s, hands.shape, limit_s), now)
 
 
 def _turn(hands: Hands, arguments: Sequence[Value], now: float) -> Run:

@@ -118,6 +118,13 @@ def test_an_undocking_that_never_began_is_not_rescued(bench: Bench) -> None:
     assert bench.actions.finished(1.0) == [(id_, "not_docked")]
 
 
+def test_a_long_corridor_is_given_the_time_it_takes(bench: Bench) -> None:
+    bench.navigator.place("post1", "post2")
+    bench.ask("follow_line")
+    limit_s = next(iter(bench.body.running.values())).limit_s
+    assert limit_s == pytest.approx(180 + 3 * 2.0 / 0.12)
+
+
 def test_a_second_motion_is_busy_and_the_first_goes_on(bench: Bench) -> None:
     bench.ask("follow_line")
     assert bench.result("turn(left)") == "busy"
