@@ -119,7 +119,13 @@ class Problem(BaseModel):
     errors: list[FieldProblem] | None = None
 
 
-CODES_OF_STATUS = {404: "not_found", 405: "method_not_allowed", 413: "too_large", 415: "unsupported_media_type"}
+CODES_OF_STATUS = {
+    400: "bad_request",
+    404: "not_found",
+    405: "method_not_allowed",
+    413: "too_large",
+    415: "unsupported_media_type",
+}
 
 PROBLEM_ANSWERS: dict[int | str, dict[str, Any]] = {
     status: {

@@ -8,6 +8,7 @@ import structlog
 from fastapi import FastAPI
 
 from app import about, demo_camera
+from app.body_limit import BodyLimit
 from app.database import Database
 from app.dispatch.service import Dispatcher
 from app.errors import add_error_answers
@@ -22,7 +23,7 @@ from app.orders import routes as orders_routes
 from app.orders.codes import PURPOSE_OF_NOTICE, code_png, code_text
 from app.orders.idempotency import Running
 from app.orders.service import Orders
-from app.pages import SafeHeaders, add_pages, content_security_policy
+from app.pages import GzippedPages, SafeHeaders, add_pages, content_security_policy
 from app.people import routes as people_routes
 from app.people.rate_limits import RateLimits
 from app.people.service import SignInDesk
@@ -65,6 +66,8 @@ def create_app(settings: Settings, clock: Clock) -> FastAPI:
         app.include_router(router, prefix=API)
     app.include_router(about.root_router)
     add_pages(app, settings.pages)
+    app.add_middleware(BodyLimit)
+    app.add_middleware(GzippedPages)
     app.add_middleware(SafeHeaders, policy=content_security_policy(settings.pages))
     return app
 

@@ -1,6 +1,7 @@
 """Serves the pages of `web/` and what they use from npm, with the headers that keep them safe and fresh."""
 
 import base64
+import posixpath
 import re
 from collections.abc import Iterable
 from hashlib import sha256
@@ -9,24 +10,24 @@ from typing import Final
 
 import structlog
 from fastapi import FastAPI
-from starlette.datastructures import MutableHeaders
+from starlette.datastructures import Headers, MutableHeaders
+from starlette.middleware.gzip import GZipMiddleware
 from starlette.staticfiles import StaticFiles
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from app.errors import NotFound
+from app.errors import problem_answer
 
 log = structlog.get_logger(__name__)
 
 NPM_PACKAGES: Final = ("lit", "lit-html", "lit-element", "@lit/reactive-element")
 """What browsers may fetch of node_modules."""
-NOT_PAGES: Final = ("/node_modules/{rest:path}", "/package.json", "/package-lock.json", "/tsconfig.json")
+NOT_PAGES: Final = frozenset({"node_modules", "package.json", "package-lock.json", "tsconfig.json"})
+"""What lies in the pages' folder and is for those who work on them."""
 IMPORT_MAP = re.compile(rb'<script type="importmap">(.*?)</script>', re.DOTALL)
 
 
 def add_pages(app: FastAPI, folder: Path) -> None:
     """Serve `folder` at `/` and the packages at `/npm/`; routes of the API come first."""
-    for path in NOT_PAGES:
-        app.add_api_route(path, _not_a_page, include_in_schema=False)
     for package in NPM_PACKAGES:
         package_folder = folder / "node_modules" / package
         if package_folder.is_dir():
@@ -39,8 +40,9 @@ def add_pages(app: FastAPI, folder: Path) -> None:
         log.warning("there are no pages", folder=str(folder))
 
 
-async def _not_a_page() -> None:
-    raise NotFound("This is not a page.")
+def is_hidden(path: str) -> bool:
+    """Whether a path leads to what is no page, by whichever way round."""
+    return posixpath.normpath(path).strip("/").split("/")[0] in NOT_PAGES
 
 
 def import_map_hashes(pages: Iterable[Path]) -> list[str]:
@@ -56,6 +58,25 @@ def content_security_policy(folder: Path) -> str:
         f"default-src 'self'; script-src 'self' {hashes}; img-src 'self' data:; object-src 'none'; "
         "base-uri 'none'; form-action 'self'; frame-ancestors 'none'"
     )
+
+
+class GzippedPages:
+    """Compresses pages, and hides what is none.
+
+    The API is left as it is: its answers hold secrets next to what others wrote, which a compressed length gives away
+    bit by bit (BREACH), and its event stream must not be held back. Ranges are of the file as it lies on the disk.
+    """
+
+    def __init__(self, app: ASGIApp) -> None:
+        self._plain, self._gzipped = app, GZipMiddleware(app)
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] == "http" and is_hidden(scope["path"]):
+            await problem_answer(404, "not_found", "This is not a page.")(scope, receive, send)
+        elif scope["type"] != "http" or scope["path"].startswith("/api/") or "range" in Headers(scope=scope):
+            await self._plain(scope, receive, send)
+        else:
+            await self._gzipped(scope, receive, send)
 
 
 class SafeHeaders:

@@ -2,7 +2,7 @@
 
 import base64
 import binascii
-from datetime import datetime
+from datetime import UTC, datetime
 from typing import Annotated, Literal
 
 from fastapi import APIRouter, Depends, Header, Path, Query, Request, Response
@@ -26,6 +26,7 @@ from maps import shortest_route
 router = APIRouter(tags=["orders"])
 
 OrderId = Annotated[str, Path(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]*$", max_length=64)]
+NOT_OURS = "This cursor did not come from `next` of an earlier answer."
 REPLAYED = "Idempotency-Replayed"
 
 
@@ -125,9 +126,9 @@ def _place(cursor: str) -> tuple[datetime, str]:
         at, order_id = base64.urlsafe_b64decode(cursor.encode()).decode().split(" ")
         place = datetime.fromisoformat(at)
     except (ValueError, binascii.Error):
-        raise BadCursor("This cursor did not come from `next` of an earlier answer.") from None
-    if place.tzinfo is None:
-        raise BadCursor("This cursor did not come from `next` of an earlier answer.")
+        raise BadCursor(NOT_OURS) from None
+    if place.tzinfo is not UTC:
+        raise BadCursor(NOT_OURS)
     return place, order_id
 
 

@@ -2,7 +2,7 @@
 
 from urllib.parse import urlsplit
 
-from starlette.requests import Request
+from starlette.requests import HTTPConnection, Request
 
 from app.people.errors import CrossSite, HttpsRequired
 
@@ -24,15 +24,22 @@ def refuse_other_sites(request: Request) -> None:
         raise CrossSite("This request came from another site.")
 
 
+def travels_safely(connection: HTTPConnection) -> bool:
+    """Encrypted, or within this machine."""
+    return connection.url.scheme in {"https", "wss"} or connection.url.hostname in LOOPBACK
+
+
 def require_https_or_loopback(request: Request) -> None:
     """A session must not travel in the open."""
-    if request.url.scheme == "https" or request.url.hostname in LOOPBACK:
-        return
-    raise HttpsRequired("Campus Mail is used over https; plain http is taken on this machine alone.")
+    if not travels_safely(request):
+        raise HttpsRequired("Campus Mail is used over https; plain http is taken on this machine alone.")
 
 
 def _comes_from_here(request: Request) -> bool:
     if "sec-fetch-site" in request.headers:
         return request.headers["sec-fetch-site"] == "same-origin"
-    origin = urlsplit(request.headers.get("origin", ""))
+    try:
+        origin = urlsplit(request.headers.get("origin", ""))
+    except ValueError:  # no URL at all
+        return False
     return (origin.scheme, origin.netloc) == (request.url.scheme, request.url.netloc)
