@@ -15,7 +15,8 @@ from app.fleet.alarms import raise_alarm
 from app.fleet.errors import OutOfTurn, WrongRobot
 from app.fleet.greeting import greet
 from app.fleet.service import Fleet
-from app.tables import MessageToRobot, RobotRow
+from app.fleet.tokens import is_revoked
+from app.tables import MessageToRobot, RobotRow, RobotToken
 from protocol.both_ways import Ack, Error
 from protocol.envelope import TO_ROBOT, TO_SERVER, Envelope, parse, type_of
 from protocol.errors import ProtocolError
@@ -40,11 +41,16 @@ class Gone(Exception):
     """The socket is closed."""
 
 
+class TokenRevoked(Exception):
+    """The token that opened this connection is worthless by now."""
+
+
 class Conversation:
     """What one open connection knows. It is this robot's seat in `Connections`."""
 
-    def __init__(self, fleet: Fleet, robot: str, socket: WebSocket) -> None:
-        self._fleet, self._robot, self._socket = fleet, robot, socket
+    def __init__(self, fleet: Fleet, token: RobotToken, socket: WebSocket) -> None:
+        self._fleet, self._robot, self._socket = fleet, token.robot, socket
+        self._token_prefix = token.prefix
         self._wake = asyncio.Event()
         self._giving_way = asyncio.Event()
         self._sending = asyncio.Lock()
@@ -67,6 +73,9 @@ class Conversation:
             await self._talk()
         except Gone:
             pass
+        except TokenRevoked:
+            log.warning("robot_token_revoked", robot=self._robot)
+            await self._close(TOKEN_REFUSED, "token revoked")
         except ProtocolError as error:
             log.warning("robot_refused", robot=self._robot, code=error.code, sentence=str(error))
             await self._close(PROTOCOL_BROKEN, error.code, Error(code=error.code, message=said(error), seq=error.seq))
@@ -162,6 +171,7 @@ class Conversation:
 
     async def _take_in(self, session: AsyncSession, envelope: Envelope) -> Error | None:
         fleet = self._fleet
+        await self._check_token(session)
         robot = await robot_row(session, self._robot)
         robot.heard_at = fleet.clock.utc()
         if envelope.ack > self._acknowledged:
@@ -191,7 +201,13 @@ class Conversation:
 
     async def _pending(self, limit: int) -> Sequence[MessageToRobot]:
         async with self._fleet.database.reading() as session:
+            await self._check_token(session)
             return await outbox.pending(session, self._robot, self._sent, limit)
+
+    async def _check_token(self, session: AsyncSession) -> None:
+        """With every message: what was stolen must not go on being heard, or told, once it is found out."""
+        if await is_revoked(session, self._token_prefix):
+            raise TokenRevoked
 
     async def _send(self, message: Part, seq: int | None = None) -> None:
         envelope = Envelope(

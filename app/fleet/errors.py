@@ -7,6 +7,7 @@ ServiceError
 FleetError           a message that was understood and cannot be followed; it is recorded, answered and an alarm
 ├── UnknownMission   the robot speaks of a mission that it was not given
 ├── UnknownStop      … of a stop that its mission does not have
+├── UnknownCommand   … of a command that it was not given
 └── UnknownCorridor  … of a corridor that the map does not have
 ProtocolError        a message that cannot be taken; the connection is closed, the robot keeps what it had to say
 ├── WrongRobot       signed in as one robot, speaking as another
@@ -52,6 +53,12 @@ class UnknownStop(FleetError):
     """The robot and the service do not hold the same mission."""
 
     code = "unknown_stop"
+
+
+class UnknownCommand(FleetError):
+    """A robot answers what it was not asked: no order is cancelled on its word alone."""
+
+    code = "unknown_command"
 
 
 class UnknownCorridor(FleetError):

@@ -1,5 +1,6 @@
 """The beginning of a connection: both sides learn where the other stands, and nothing is lost or done twice."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from typing import Final
@@ -9,12 +10,13 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.fleet import inbox, outbox, traffic
 from app.fleet.alarms import clear_alarms, raise_alarm
-from app.fleet.progress import active_mission
+from app.fleet.progress import CANCEL, active_mission
 from app.fleet.service import Fleet, note_state
+from app.orders.transitions import ROBOT_COMING
 from app.tables import MissionRow, Order, RobotRow, StopRow
 from protocol.envelope import Envelope
 from protocol.parts import Received, Stop, StopAction
-from protocol.to_robot import Grant, Mission, Verifiers, Welcome
+from protocol.to_robot import Cancel, Grant, Mission, Verifiers, Welcome
 from protocol.to_server import Hello
 
 CLOCK_TOLERANCE: Final = timedelta(minutes=5)
@@ -78,9 +80,14 @@ async def restate(session: AsyncSession, fleet: Fleet, robot: RobotRow) -> None:
     )
     mission.update_number += 1
     stops = await undone_stops(session, mission)
-    if verifiers := await _verifiers(session, fleet, stops):
-        await fleet.tell(session, robot, verifiers)
+    orders = await _orders_of(session, stops)
+    if verifiers := tuple(one for order in orders for one in fleet.orders.verifiers(order)):
+        await fleet.tell(session, robot, Verifiers(verifiers=verifiers))
     await fleet.tell(session, robot, Mission(id=mission.id, update=mission.update_number, stops=stops))
+    for order in orders:
+        if order.cancel_requested_at is not None and order.state in ROBOT_COMING:
+            # It was told before, but who knows whether it had got round to it.
+            await fleet.tell(session, robot, Cancel(command_id=CANCEL + order.id, order_id=order.id))
 
 
 async def undone_stops(session: AsyncSession, mission: MissionRow) -> tuple[Stop, ...]:
@@ -101,11 +108,9 @@ def stop_of(row: StopRow) -> Stop:
     )
 
 
-async def _verifiers(session: AsyncSession, fleet: Fleet, stops: tuple[Stop, ...]) -> Verifiers | None:
+async def _orders_of(session: AsyncSession, stops: tuple[Stop, ...]) -> Sequence[Order]:
     order_ids = {stop.order_id for stop in stops if stop.order_id}
-    orders = [await session.get(Order, order_id) for order_id in sorted(order_ids)]
-    verifiers = tuple(one for order in orders if order for one in fleet.orders.verifiers(order))
-    return Verifiers(verifiers=verifiers) if verifiers else None
+    return (await session.exec(select(Order).where(col(Order.id).in_(order_ids)).order_by(col(Order.id)))).all()
 
 
 async def _compare_clocks(session: AsyncSession, robot: RobotRow, at: datetime, now: datetime) -> None:

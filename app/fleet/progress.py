@@ -13,9 +13,9 @@ from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.fleet.alarms import clear_alarms, raise_alarm
-from app.fleet.errors import UnknownMission, UnknownStop
+from app.fleet.errors import UnknownCommand, UnknownMission, UnknownStop
 from app.orders.service import Orders, Word
-from app.orders.transitions import By
+from app.orders.transitions import ENDED, By
 from app.tables import Handover, MissionRow, MissionState, Order, OrderState, StopRow
 from protocol.parts import Part, Purpose, StopAction
 from protocol.to_server import Charge, CommandAnswer, Event, Fault, HandoverReceipt, Progress, Step
@@ -39,8 +39,6 @@ AT_STOP: Final[Mapping[tuple[Step, StopAction], tuple[OrderState, ...]]] = {
     # A robot that stood at the sender's post already arrives without having set out.
     (Step.ARRIVED, StopAction.LOAD): (OrderState.TO_SENDER, OrderState.AT_SENDER),
     (Step.ARRIVED, StopAction.RECEIVE): (OrderState.AT_RECIPIENT,),
-    (Step.GAVE_UP, StopAction.LOAD): (OrderState.EXPIRED,),
-    (Step.GAVE_UP, StopAction.RECEIVE): (OrderState.RETURNING,),
 }
 """What the order of a stop goes through when its robot reports a step there."""
 
@@ -80,19 +78,51 @@ async def _progress_at_stop(report: Report, progress: Progress, mission: Mission
     action = StopAction(stop.action)
     if (name := TIME_OF_STEP.get(progress.step)) and getattr(stop, name) is None:
         setattr(stop, name, progress.happened_at)
-    if stop.order_id is not None:
+    if stop.order_id is not None and progress.step is Step.GAVE_UP:
+        await _GIVEN_UP[action](report, progress, mission, stop.order_id)
+    elif stop.order_id is not None:
         word = report.word(progress.happened_at, progress.post, progress.reason)
         await _move(report, stop.order_id, AT_STOP.get((progress.step, action), ()), word)
-    if (progress.step, action) == (Step.GAVE_UP, StopAction.LOAD):
-        # Nothing came aboard, so nothing is left to do. Thin: a mission serves one order.
-        _end(mission, MissionState.GAVE_UP, report.now)
     await _end_when_all_is_done(report, mission)
+
+
+async def _not_loaded(report: Report, progress: Progress, mission: MissionRow, order_id: str) -> None:
+    """The sender did not come, or (which is nobody's delay, but a fault) the robot cannot get there.
+
+    Nothing came aboard, so nothing is left to do. Thin: a mission serves one order.
+    """
+    order = await report.session.get_one(Order, order_id)
+    to, reason = OrderState.EXPIRED, progress.reason
+    if order.state in (OrderState.ASSIGNED, OrderState.TO_SENDER):
+        to, reason = OrderState.ATTENTION, f"The robot cannot get to the sender: {progress.reason}."
+    await _move(report, order_id, (to,), report.word(progress.happened_at, progress.post, reason))
+    _end(mission, MissionState.GAVE_UP, report.now)
+
+
+NOT_TAKEN: Final = "mail_not_taken"
+
+
+async def _not_taken(report: Report, progress: Progress, mission: MissionRow, order_id: str) -> None:
+    """The mail stays aboard, and its robot gets nothing else to do, until a person has fetched it.
+
+    Thin: bringing it back, or to the mailroom, is a later issue; until then the alarm and the order say where it is.
+    """
+    word = report.word(progress.happened_at, progress.post, progress.reason)
+    await _move(report, order_id, (OrderState.RETURNING,), word)
+    await report.orders.explain(report.session, order_id, f"Nobody took the mail. It is still in robot {report.robot}.")
+    reason = f"the mail of order {order_id} was not taken ({progress.reason}) and is still aboard: fetch it"
+    await raise_alarm(report.session, report.robot, NOT_TAKEN, reason, now=report.now, post=progress.post)
+
+
+_GIVEN_UP: Final = {StopAction.LOAD: _not_loaded, StopAction.RECEIVE: _not_taken}
+"""Other stops have no order, so that nobody waits there."""
 
 
 async def _handover(report: Report, receipt: HandoverReceipt) -> None:
     stop = await report.session.get(StopRow, receipt.stop_id)
-    if stop is None or stop.order_id != receipt.order_id:
-        raise UnknownStop(f"{report.robot} was given no stop {receipt.stop_id} for order {receipt.order_id}")
+    if stop is None or (stop.order_id, stop.action) != (receipt.order_id, receipt.purpose):
+        what = f"to {receipt.purpose} order {receipt.order_id}"
+        raise UnknownStop(f"{report.robot} was given no stop {receipt.stop_id} {what}")
     stop.done_at = stop.done_at or receipt.happened_at
     if not await _is_receipted(report.session, receipt):
         report.session.add(
@@ -150,9 +180,16 @@ async def _answer(report: Report, answer: CommandAnswer) -> None:
         reason = answer.reason or f"the robot refused {answer.command_id}"
         await raise_alarm(report.session, report.robot, "command_refused", reason, now=report.now)
     elif order_id != answer.command_id:
-        word = report.word(answer.happened_at, None, answer.reason)
-        await _move(report, order_id, (OrderState.CANCELLED,), word)
-        await _end_missions_without_orders(report, order_id)
+        await _let_go(report, order_id, answer)
+
+
+async def _let_go(report: Report, order_id: str, answer: CommandAnswer) -> None:
+    order = await report.session.get(Order, order_id)
+    if order is None or order.robot != report.robot or order.cancel_requested_at is None:
+        raise UnknownCommand(f"{report.robot} was not told to drop order {order_id}")
+    if order.state not in ENDED:  # else it ended while the wish was on its way
+        await _move(report, order_id, (OrderState.CANCELLED,), report.word(answer.happened_at, None, answer.reason))
+    await _end_missions_without_orders(report, order_id)
 
 
 async def _end_missions_without_orders(report: Report, order_id: str) -> None:

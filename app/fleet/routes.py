@@ -9,9 +9,10 @@ from app.database import ReadingDep
 from app.errors import problems
 from app.fleet.conversation import TOKEN_REFUSED, Conversation
 from app.fleet.service import Fleet
-from app.fleet.tokens import robot_of
+from app.fleet.tokens import token_of
 from app.orders.robot_view import RobotView
 from app.people.current_user import CurrentUser
+from app.people.same_origin import travels_safely
 
 router = APIRouter(tags=["robots"])
 
@@ -34,9 +35,10 @@ async def all_robots(user: CurrentUser, session: ReadingDep, fleet: FleetDep) ->
 async def robot_link(socket: WebSocket, fleet: FleetDep) -> None:
     """The link of one robot (docs/protocol.md), signed in by its token."""
     async with fleet.database.transaction() as session:
-        robot = await robot_of(session, socket.headers.get("Authorization"), fleet.clock.utc())
+        token = await token_of(session, socket.headers.get("Authorization"), fleet.clock.utc())
     await socket.accept()
-    if robot is None:
-        await socket.close(TOKEN_REFUSED, "token refused")
+    if token is None or not travels_safely(socket):
+        reason = "token refused" if token is None else "a token is taken over wss alone"
+        await socket.close(TOKEN_REFUSED, reason)
         return
-    await Conversation(fleet, robot, socket).run()
+    await Conversation(fleet, token, socket).run()

@@ -29,8 +29,8 @@ def make_token() -> NewToken:
     return NewToken(prefix, f"cmr_{prefix}_{secret}", _hash(secret))
 
 
-async def robot_of(session: AsyncSession, authorization: str | None, now: datetime) -> str | None:
-    """The name of the robot whose token an Authorization header carries; None if it is refused."""
+async def token_of(session: AsyncSession, authorization: str | None, now: datetime) -> RobotToken | None:
+    """The token that an Authorization header carries, which says whose it is; None if it is refused."""
     match = _TOKEN.fullmatch((authorization or "").removeprefix("Bearer "))
     row = await session.get(RobotToken, match["prefix"]) if match else None
     if match is None or row is None or row.revoked_at is not None:
@@ -38,7 +38,13 @@ async def robot_of(session: AsyncSession, authorization: str | None, now: dateti
     if not hmac.compare_digest(row.secret_hash, _hash(match["secret"])):
         return None
     row.used_at = now
-    return row.robot
+    return row
+
+
+async def is_revoked(session: AsyncSession, prefix: str) -> bool:
+    """Whether a token that let somebody in is worthless by now."""
+    row = await session.get(RobotToken, prefix)
+    return row is None or row.revoked_at is not None
 
 
 def _hash(secret: str) -> str:

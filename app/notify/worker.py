@@ -76,8 +76,9 @@ class OutboxWorker:
             async with self.database.reading() as session:
                 mail = await self._mail(session, outgoing)
             await asyncio.to_thread(self.spool.send, mail)
-        except OSError as error:
-            problem = f"{type(error).__name__}: {error}"
+        except Exception as error:
+            # Whatever is wrong with one mail, those behind it go out.
+            problem = f"{type(error).__name__}: {error}"[:500]
             log.warning("mail not spooled", key=outgoing.key, problem=problem)
         async with self.database.transaction() as session:
             session.add(outgoing)

@@ -15,7 +15,7 @@ from app.orders.codes import code_text, turn_of, verifiers
 from app.orders.schemas import NewOrder, OrderView
 from app.orders.telling import facts_of, tell_about
 from app.orders.transitions import ENDED, By, is_allowed
-from app.orders.views import OrderFacts, is_cancellable, load_facts, order_view, role_in, view_for
+from app.orders.views import OrderFacts, is_cancel_under_way, is_cancellable, load_facts, order_view, role_in, view_for
 from app.orders.window import Window, arrival_window
 from app.people.service import SignInDesk, find_person, new_id
 from app.people.service import is_allowed as is_allowed_address
@@ -138,7 +138,7 @@ class Orders:
             raise _unknown(order_id)
         if if_match and not _matches(if_match, order.version):
             raise errors.OrderChanged(f"The order is at version {order.version} now. Read it again first.")
-        if order.state is not OrderState.CANCELLED and order.cancel_requested_at is None:
+        if not is_cancel_under_way(order):
             if role == "recipient" or not is_cancellable(order):
                 raise errors.NotCancellable(_why_not_cancellable(order, role))
             await self._cancel(session, order, Word(By(role), person_id=person.id))

@@ -91,7 +91,7 @@ def order_view(facts: OrderFacts, role: MyRole, person_id: str, campus: CampusMa
         my_role=role,
         my_code=None if turn is None else turn.value,
         can_cancel=role != "recipient" and is_cancellable(order),
-        cancel_requested=order.cancel_requested_at is not None and order.state in ROBOT_COMING,
+        cancel_requested=is_cancel_under_way(order) and order.state not in ENDED,
         events=[_event(event) for event in facts.events],
     )
 
@@ -100,6 +100,13 @@ def is_cancellable(order: Order) -> bool:
     """Until the mail is aboard, and once."""
     waiting = order.state is OrderState.QUEUED or order.state in ROBOT_COMING
     return waiting and order.cancel_requested_at is None
+
+
+def is_cancel_under_way(order: Order) -> bool:
+    """Cancelled, or asked for with the robot's answer still to come: asking again changes nothing."""
+    if order.state in ROBOT_COMING:
+        return order.cancel_requested_at is not None
+    return order.state is OrderState.CANCELLED
 
 
 def _window(order: Order) -> WindowView | None:

@@ -12,7 +12,7 @@ from fastapi.testclient import TestClient
 
 from app.fleet.errors import RobotExists, RobotNameInvalid, UnknownRobot
 from app.fleet.service import enrol, new_token
-from app.fleet.tokens import robot_of
+from app.fleet.tokens import token_of
 from app.settings import Settings
 from app.tables import RobotRow
 from protocol.clock import SteppedClock
@@ -76,8 +76,10 @@ async def test_a_new_token_makes_the_older_ones_worthless(service: Service, cloc
     async with database.transaction() as session:
         new = await new_token(session, clock, "r1")
     async with database.transaction() as session:
-        assert await robot_of(session, f"Bearer {new}", clock.utc()) == "r1"
-        assert await robot_of(session, f"Bearer {old}", clock.utc()) is None
+        known = await token_of(session, f"Bearer {new}", clock.utc())
+        assert known is not None
+        assert known.robot == "r1"
+        assert await token_of(session, f"Bearer {old}", clock.utc()) is None
         with pytest.raises(UnknownRobot, match="r9"):
             await new_token(session, clock, "r9")
 
@@ -86,8 +88,9 @@ async def test_the_token_of_one_robot_opens_no_other(service: Service, clock: St
     tokens = [await service.enrol(name) for name in ("r1", "r2")]
     mixed = "_".join([*tokens[0].split("_", 2)[:2], tokens[1].split("_", 2)[2]])
     async with service.app.state.database.transaction() as session:
-        assert [await robot_of(session, f"Bearer {token}", clock.utc()) for token in tokens] == ["r1", "r2"]
-        assert await robot_of(session, f"Bearer {mixed}", clock.utc()) is None
+        known = [await token_of(session, f"Bearer {token}", clock.utc()) for token in tokens]
+        assert [row and row.robot for row in known] == ["r1", "r2"]
+        assert await token_of(session, f"Bearer {mixed}", clock.utc()) is None
 
 
 async def test_the_command_prints_the_token_once_and_says_what_is_wrong_in_words(settings: Settings) -> None:
