@@ -9,9 +9,12 @@ from typing import Annotated, Any
 
 from fastapi import Depends
 from sqlalchemy import Connection, event
+from sqlalchemy.exc import ArgumentError
 from sqlalchemy.ext.asyncio import AsyncEngine, create_async_engine
 from sqlmodel.ext.asyncio.session import AsyncSession
 from starlette.requests import HTTPConnection
+
+from app.errors import StartError
 
 PRAGMAS = ("journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON", "busy_timeout=10000")
 _AFTER_COMMIT = "after_commit"
@@ -21,11 +24,20 @@ class Database:
     """Opens sessions. Writers take SQLite's write lock at once, because a reader that becomes one can be refused."""
 
     def __init__(self, url: str) -> None:
-        self.engine: AsyncEngine = create_async_engine(url)
+        """Opens nothing yet. Raises StartError for a URL that leads nowhere."""
+        try:
+            self.engine: AsyncEngine = create_async_engine(url)
+        except (ArgumentError, ImportError) as error:  # not repeated: a URL may hold a password
+            raise StartError(f"CAMPUS_MAIL_DATABASE_URL cannot be used: {error}.") from None
         self.writing = self.engine.execution_options(begin="BEGIN IMMEDIATE")
         if self.engine.dialect.name == "sqlite":
             event.listen(self.engine.sync_engine, "connect", _prepare_sqlite)
             event.listen(self.engine.sync_engine, "begin", _begin_sqlite)
+
+    @property
+    def name(self) -> str:
+        """Which database it is, without its password."""
+        return self.engine.url.render_as_string(hide_password=True)
 
     @asynccontextmanager
     async def transaction(self) -> AsyncIterator[AsyncSession]:

@@ -8,6 +8,7 @@ from alembic.migration import MigrationContext
 from alembic.script import ScriptDirectory
 from alembic.util import CommandError
 from sqlalchemy import Connection
+from sqlalchemy.exc import DBAPIError
 
 from app.database import Database
 from app.errors import StartError
@@ -25,10 +26,21 @@ class NewerDatabase(StartError):
         )
 
 
+class DatabaseUnusable(StartError):
+    """No database, or one that cannot be read or written."""
+
+
 async def bring_to_head(database: Database) -> None:
-    """Run the migrations that are missing, in one transaction. Raises NewerDatabase, having changed nothing."""
-    async with database.writing.begin() as connection:
-        await connection.run_sync(_bring_to_head)
+    """Run the migrations that are missing, in one transaction.
+
+    Raises NewerDatabase or DatabaseUnusable, having changed nothing.
+    """
+    try:
+        async with database.writing.begin() as connection:
+            await connection.run_sync(_bring_to_head)
+    except (DBAPIError, OSError) as error:
+        why = error.orig if isinstance(error, DBAPIError) else error
+        raise DatabaseUnusable(f"The database {database.name} cannot be used: {why}.") from error
 
 
 async def is_at_head(database: Database) -> bool:

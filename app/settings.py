@@ -46,6 +46,9 @@ class Settings(BaseSettings):
     time_zone: str = Field("", description="Zone of times in mails, such as America/Toronto; empty: the machine's own.")
     sign_in_code_lifetime_s: float = Field(600, gt=0, description="How long a mailed sign-in code is good for.")
     session_lifetime_s: float = Field(30 * 86400, gt=0, description="How long a browser stays signed in.")
+    session_check_s: float = Field(
+        30, gt=0, description="How often an open event stream asks whether its person is still signed in; real time."
+    )
     handover_code_lifetime_s: float = Field(7 * 86400, gt=0, description="How long the codes of an order are good for.")
     sign_in_codes_per_address: str = Field("10 per 15 minutes", description="Sign-in codes mailed to one mail address.")
     sign_in_tries_per_host: str = Field("200 per 15 minutes", description="Sign-in requests from one network address.")

@@ -1,17 +1,20 @@
 """The signed-in person as an argument: `async def my_route(user: CurrentUser)`."""
 
+from collections.abc import Awaitable, Callable
 from typing import Annotated
 
 from fastapi import Depends, Request, Security
 from fastapi.security import APIKeyCookie
 
-from app.database import DatabaseDep
+from app.database import Database, DatabaseDep
 from app.errors import NotSignedIn
 from app.people.same_origin import require_https_or_loopback, require_same_origin
 from app.people.service import person_of_session
 from app.settings import ClockDep
 from app.tables import Person
+from protocol.clock import Clock
 
+StillSignedIn = Callable[[Person], Awaitable[bool]]
 HTTPS_COOKIE = "__Host-session"
 LOCAL_COOKIE = "session"
 
@@ -30,13 +33,28 @@ async def _current_user(
     token = request.cookies.get(cookie_name(request))
     if not token:
         raise NotSignedIn("Sign in first.")
-    # A short look of its own, so that an event stream holds no session and a writer no lock while it waits.
-    async with database.reading() as session:
-        person = await person_of_session(session, token, clock.utc())
+    person = await _person(database, token, clock)
     if person is None:
         raise NotSignedIn("This session has ended. Sign in again.")
     require_same_origin(request)
     return person
 
 
+async def _person(database: Database, token: str, clock: Clock) -> Person | None:
+    # A short look of its own, so that an event stream holds no session and a writer no lock while it waits.
+    async with database.reading() as session:
+        return await person_of_session(session, token, clock.utc())
+
+
+def _still_signed_in(request: Request, database: DatabaseDep, clock: ClockDep) -> StillSignedIn:
+    """Whether the session of this request goes on, and with it what its person may see."""
+
+    async def ask(user: Person) -> bool:
+        person = await _person(database, request.cookies[cookie_name(request)], clock)
+        return person is not None and person.roles == user.roles
+
+    return ask
+
+
 CurrentUser = Annotated[Person, Depends(_current_user)]
+StillSignedInDep = Annotated[StillSignedIn, Depends(_still_signed_in)]

@@ -77,8 +77,13 @@ class SignInDesk:
         return None
 
     async def open_session(self, session: AsyncSession, email: str, language: str, now: datetime) -> tuple[Person, str]:
-        """The person, made at their first sign-in, and the secret of a new session (for the cookie alone)."""
+        """The person, made at their first sign-in, and the secret of a new session (for the cookie alone).
+
+        Whoever was only sent something so far was given the default language; what their browser speaks is nearer.
+        """
         person = await self.person(session, email, now, language)
+        if not await _has_signed_in(session, person):
+            person.language = language
         token = secrets.token_urlsafe(32)
         lifetime = timedelta(seconds=self.settings.session_lifetime_s)
         row = PersonSession(token_hash=hash_of(token), person_id=person.id, created_at=now, expires_at=now + lifetime)
@@ -107,6 +112,11 @@ def make_person(email: str, language: str, now: datetime) -> Person:
 async def find_person(session: AsyncSession, email: str) -> Person | None:
     """Whoever has this address (lower case), if anybody."""
     return (await session.exec(select(Person).where(Person.email == email))).first()
+
+
+async def _has_signed_in(session: AsyncSession, person: Person) -> bool:
+    theirs = select(PersonSession.id).where(PersonSession.person_id == person.id).limit(1)
+    return (await session.exec(theirs)).first() is not None
 
 
 async def person_of_session(session: AsyncSession, token: str, now: datetime) -> Person | None:
