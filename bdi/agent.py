@@ -12,49 +12,33 @@
 Nothing here knows a clock, a thread or a device: all comes in by `cycle` and goes out by its answer.
 """
 
-from collections.abc import Callable, Iterable
-from heapq import heappop
-from typing import Any
+from collections.abc import Callable, Iterable, Sequence
 
 from bdi.arithmetic import ArithmeticFailure
-from bdi.beliefs import PERCEPT, SELF
-from bdi.doing import Doing
-from bdi.errors import AgentSpeakError, UnknownActionId, UnknownPerformative
+from bdi.beliefs import SELF
+from bdi.errors import AgentSpeakError
 from bdi.explain import Why, explain
-from bdi.intentions import Event, Intention, Means, State, StepFailed
+from bdi.intentions import NOT_WORKED_OUT, Event, Intention, Means, State, StepFailed
 from bdi.loading import check_program
-from bdi.logic import Frame
+from bdi.logic import Frame, Solve
 from bdi.messages import Finished, Message
 from bdi.outcome import QUIET, Outcome
-from bdi.parser import parse_literal, parse_term
-from bdi.performatives import PERFORMATIVES, sourced
+from bdi.parser import literal_from, term_from
+from bdi.percepts import Change
+from bdi.performatives import sourced
 from bdi.plans import CompiledPlan, Compiler
 from bdi.recovery import action_failure
+from bdi.sensing import Letter, Sensing
 from bdi.syntax import Belief, Program, Trigger
-from bdi.terms import Atom, Literal, Structure, Term, atom, show
+from bdi.terms import Term
 from bdi.trace import Deliberated, Stepped, TraceEntry
-from bdi.unify import is_ground, undo, unify
-from bdi.waiting import Waiter
+from bdi.unify import undo
 
-REMEMBERED_TEXTS = 20_000  # percepts and messages given as text are parsed once; then the memory starts again
 BELIEF_EVENTS = (Trigger.BELIEF_ADDED, Trigger.BELIEF_REMOVED)
 FAILURE_EVENTS = (Trigger.GOAL_FAILED, Trigger.TEST_FAILED)
 
 
-class _Percept:
-    """A percept with everything that adding and removing it needs, looked up once."""
-
-    __slots__ = ("annots", "literal", "on_added", "on_removed", "relation")
-
-    def __init__(self, literal: Literal, agent: "Agent") -> None:
-        self.literal = literal
-        self.relation = agent.beliefs.relation(literal.predicate)
-        self.annots = (*literal.annots, PERCEPT)
-        self.on_added = agent.relevant_plans(Trigger.BELIEF_ADDED, literal)
-        self.on_removed = agent.relevant_plans(Trigger.BELIEF_REMOVED, literal)
-
-
-class Agent(Doing):
+class Agent(Sensing):
     """One AgentSpeak agent.
 
     `actions` declares the external actions that the body can do, as names or name/arity ("drive", "drive/1"); a plan
@@ -70,10 +54,6 @@ class Agent(Doing):
     ) -> None:
         super().__init__(name, actions, random_seed)
         self.library = Compiler(self, self.logic).library
-        self._percepts: frozenset[Any] = frozenset()
-        self._read: dict[str, Literal] = {}
-        self._notations: set[str] = set()
-        self._mixed = False  # whether one percept may come written in several ways
         self._load(program)
 
     def _load(self, program: Program) -> None:
@@ -101,131 +81,33 @@ class Agent(Doing):
         """One reasoning cycle.
 
         `percepts` is all that is perceived now (None: nothing new), `finished` the actions that are over since the
-        last cycle, `now` a clock in seconds that never goes back. Terms may be given as text. Raises
-        AgentSpeakSyntaxError for text that is none, UnknownActionId for an action that was never started.
+        last cycle, `now` a clock in seconds that never goes back. Terms may be given as text.
+
+        Raises AgentSpeakSyntaxError for text that is none, NotALiteral for a term that is none, UnknownPerformative,
+        and UnknownActionId for an action that was never started. Then nothing has happened: the agent is as before.
         """
+        change = None if percepts is None else self.percepts.change(percepts)
+        letters = [self.read(message) for message in messages] if messages else ()
+        ended = [self.started(news) for news in finished] if finished else ()
         self.now = now
         self.cycles += 1
-        self.sense(percepts, messages, finished)
+        self.sense(change, letters, ended)
         if self.events:
             self.deliberate()
         self.act()
         return self._take_outcome() if self._reported else QUIET
 
-    # ---- sense -----------------------------------------------------------------------------------------------------
-
-    def sense(
-        self, percepts: Iterable[Term | str] | None, messages: Iterable[Message], finished: Iterable[Finished]
-    ) -> None:
-        if percepts is not None:
-            self.perceive(percepts)
-        if messages:
-            self._mailbox.extend(messages)
+    def sense(self, change: Change | None, letters: Sequence[Letter], ended: Sequence[Finished]) -> None:
+        if change is not None:
+            self.perceive(change)
+        if letters:
+            self._mailbox.extend(letters)
         if self._mailbox:
             self.process_message(self._mailbox.popleft())
-        if finished:
-            self._feedback.extend(finished)
+        if ended:
+            self._feedback.extend(ended)
         if self.timers or self.waiters or self._asked:
-            self._wake()
-
-    def perceive(self, percepts: Iterable[Term | str]) -> None:
-        """Believe what is perceived now, forget what no longer is: deletions, then additions."""
-        now = frozenset(map(self._canonical, percepts) if self._mixed else percepts)
-        before = self._percepts
-        if now == before:
-            return
-        gone = [self._percept(percept) for percept in before - now]
-        new = [self._percept(percept) for percept in now - before]
-        if self._mixed and any(type(percept) is str for percept in now):
-            self._percepts = frozenset(map(self._canonical, before))
-            self.perceive(now)
-            return
-        self._percepts = now
-        for percept in gone:
-            if percept.relation.take_back(percept.literal.args, (PERCEPT,)) and (percept.on_removed or self.waiters):
-                self.notice(Trigger.BELIEF_REMOVED, percept.literal, percept.on_removed)
-        for percept in new:
-            if percept.relation.add(percept.literal.args, percept.annots) and (percept.on_added or self.waiters):
-                self.notice(Trigger.BELIEF_ADDED, percept.literal, percept.on_added)
-
-    def _percept(self, percept: Term | str) -> _Percept:
-        """Looked up by text or term."""
-        seen = self._seen.get(percept)
-        if seen is None:
-            if len(self._seen) >= REMEMBERED_TEXTS:
-                self._seen.clear()
-            literal = as_literal(percept)
-            # The same percept in two notations must stay one percept: from then on terms are compared, not texts.
-            notation = "term" if type(percept) is not str else "text" if show(literal) == percept else "free text"
-            self._notations.add(notation)
-            self._mixed = len(self._notations) > 1 or notation == "free text"
-            seen = self._seen[percept] = _Percept(literal, self)
-        return seen
-
-    def _canonical(self, percept: Term | str) -> Literal:
-        return self._percept(percept).literal
-
-    def process_message(self, message: Message) -> None:
-        """One message of another agent."""
-        if message.reply_to:
-            return self._process_answer(message)
-        if message.performative not in PERFORMATIVES:
-            raise UnknownPerformative(message.performative)
-        return PERFORMATIVES[message.performative](self, message)
-
-    def literal_in(self, message: Message) -> Literal:
-        """What a message is about. Text without variables is remembered."""
-        text = message.content
-        if type(text) is not str:
-            return as_literal(text)
-        literal = self._read.get(text)
-        if literal is None:
-            literal = as_literal(text)
-            if len(self._read) >= REMEMBERED_TEXTS:
-                self._read.clear()
-            if is_ground(literal):
-                self._read[text] = literal
-        return literal
-
-    def _process_answer(self, message: Message) -> None:
-        asked = self._asked.pop(message.reply_to, None)
-        if asked is None:
-            return  # the question was dropped meanwhile
-        intention, pattern, _ = asked
-        if intention.number in self.intentions:
-            self._take_answer(intention, pattern, as_term(message.content))
-
-    def _take_answer(self, intention: Intention, pattern: Term, answer: Term) -> None:
-        if unify(pattern, answer, self.logic.trail):
-            self.logic.trail.clear()
-            self._go_on(intention)
-        else:
-            undo(self.logic.trail, 0)
-            self.fail(intention, StepFailed("ask_failed", f"the answer is {show(answer)}, not {show(pattern)}"))
-
-    def _wake(self) -> None:
-        """Intentions whose `.wait` is over go on."""
-        while self.timers and self.timers[0][0] <= self.now:
-            _, _, intention = heappop(self.timers)
-            if intention.state is State.TIME and isinstance(intention.waits_for, float):
-                self._go_on(intention)
-        for waiter in list(self.waiters):
-            verdict = waiter.check(self)
-            if verdict is not None:
-                self.waiters.remove(waiter)
-                self._finish_waiting(waiter, verdict)
-        for message_id, (intention, pattern, deadline_s) in list(self._asked.items()):
-            if deadline_s is not None and self.now >= deadline_s:
-                del self._asked[message_id]
-                self._take_answer(intention, pattern, atom("timeout"))
-
-    def _finish_waiting(self, waiter: Waiter, in_time: bool) -> None:
-        if waiter.intention.number not in self.intentions:
-            return
-        if in_time or waiter.quiet:
-            self._go_on(waiter.intention)
-        else:
-            self.fail(waiter.intention, StepFailed("wait_timeout", f"{waiter.what} did not happen in time"))
+            self.wake()
 
     # ---- deliberate ------------------------------------------------------------------------------------------------
 
@@ -263,7 +145,7 @@ class Agent(Doing):
         for plan in event.options:
             try:
                 frame = plan.applicable(event)
-            except (ArithmeticFailure, StepFailed, AgentSpeakError, RecursionError):
+            except NOT_WORKED_OUT:
                 frame = None  # a context that cannot be worked out does not hold
             if frame is not None:
                 trail.clear()
@@ -307,7 +189,7 @@ class Agent(Doing):
     def act(self) -> None:
         if self._feedback:
             self.process_feedback(self._feedback.popleft())
-        intention = self.select_intention()
+        intention = self.selected = self.select_intention()
         if intention is not None:
             self.step(intention)
             if intention.state is State.RUNNING and self.clear_finished(intention) and not intention.held:
@@ -315,8 +197,6 @@ class Agent(Doing):
 
     def process_feedback(self, finished: Finished) -> None:
         """An action is over: its intention goes on, or fails."""
-        if not 0 < finished.id <= self._last_action:
-            raise UnknownActionId(f"action {finished.id} was never started by {self.name}")
         intention = self._pending.pop(finished.id, None)
         if intention is None:
             return  # it was cancelled, and ended before the body heard of it
@@ -363,17 +243,24 @@ class Agent(Doing):
     def _leave_reached_goals(self, intention: Intention) -> None:
         """`+!g <: condition`: once the condition holds, the goal counts as reached."""
         for height, means in enumerate(intention.stack):
-            condition = means.plan.condition
-            if condition is not None and condition(means.frame):
+            if self._is_reached(means):
                 del intention.stack[height + 1 :]
                 means.step = None
                 return
+
+    def _is_reached(self, means: Means) -> bool:
+        condition: Solve | None = means.plan.condition
+        try:
+            return condition is not None and condition(means.frame)
+        except NOT_WORKED_OUT:
+            undo(self.logic.trail, 0)
+            return False
 
     # ---- looking in ------------------------------------------------------------------------------------------------
 
     def ask(self, formula: Term | str) -> list[dict[str, Term]]:
         """All answers to a formula over the beliefs, each as name → value."""
-        return self.logic.query(as_term(formula))
+        return self.logic.query(term_from(formula))
 
     def believes(self, formula: Term | str) -> bool:
         return bool(self.ask(formula))
@@ -392,18 +279,4 @@ class Agent(Doing):
 
     def why(self, goal: Term | str) -> Why:
         """Why a goal is not reached yet, in words and as data."""
-        return explain(self.intentions.values(), self.events, as_literal(goal))
-
-
-def as_term(content: Term | str) -> Term:
-    """Text is parsed, a term is itself."""
-    return parse_term(content) if type(content) is str else content  # type: ignore[return-value]
-
-
-def as_literal(content: Term | str) -> Literal:
-    """A belief, goal or percept. Raises AgentSpeakSyntaxError for text that is none, TypeError for another term."""
-    if type(content) is str:
-        return parse_literal(content)
-    if isinstance(content, Atom | Structure):
-        return content
-    raise TypeError(f"{content!r} is no literal")
+        return explain(self.intentions.values(), self.events, literal_from(goal))

@@ -6,17 +6,13 @@ every way in which it is true (having bound variables with `unify`). A function 
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Any, Protocol, TypeAlias
+from typing import Any, TypeAlias
 
 from bdi.intentions import StepFailed
-from bdi.logic import Builtin, Logic
+from bdi.logic import Builtin, HasLogic
 from bdi.terms import Predicate, Structure, Term, show
 
 Answer: TypeAlias = bool | Iterator[Any] | None  # None counts as True
-
-
-class HasLogic(Protocol):
-    logic: Logic
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterator
 from heapq import heappush
-from typing import Any, TypeAlias
 
 from bdi.builtin import Answer, internal_action, wrong_arguments
 from bdi.builtin_values import items_of, text_of
@@ -10,13 +9,12 @@ from bdi.errors import AgentSpeakSyntaxError
 from bdi.intentions import Intention, Means, State, StepFailed
 from bdi.logic import Question
 from bdi.messages import Message
-from bdi.parser import parse_plan
+from bdi.mind import Mind
+from bdi.parser import parse_event, parse_plan
 from bdi.syntax import Plan, Trigger
-from bdi.terms import Atom, Code, List, Literal, String, Structure, Term, Var, atom, show, structure
+from bdi.terms import Atom, Code, List, Literal, String, Structure, Term, atom, show, structure
 from bdi.unify import undo, unify
 from bdi.waiting import event_waiter, formula_waiter, moment_of
-
-Mind: TypeAlias = Any  # the Agent; it stands above this module, which therefore cannot name it
 
 # ---- words ---------------------------------------------------------------------------------------------------------
 
@@ -277,10 +275,10 @@ def _trigger_in(condition: Term) -> tuple[Trigger, Literal] | None:
 
 def event_named(text: String) -> tuple[Trigger, Literal]:
     """ "+!g(X)" """
-    plan = parse_plan(f"{str.__str__(text)}.")
-    if isinstance(plan.head, Var):
-        raise wrong_arguments("wait", "an event with a name", text)
-    return plan.trigger, plan.head
+    try:
+        return parse_event(str.__str__(text))
+    except AgentSpeakSyntaxError as error:
+        raise wrong_arguments("wait", "an event with a name", text) from error
 
 
 @internal_action("time", 3)

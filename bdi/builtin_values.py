@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterable, Iterator
 from functools import cmp_to_key
 from typing import Any
 
-from bdi.builtin import Answer, HasLogic, function, internal_action, wrong_arguments
-from bdi.logic import Question
+from bdi.builtin import Answer, function, internal_action, wrong_arguments
+from bdi.logic import HasLogic, Question
 from bdi.parser import parse_term
 from bdi.terms import Atom, Handle, List, OpenList, String, Structure, Term, Var, number, show
 from bdi.unify import compare, deref, is_ground, renamed, substituted, undo, unify, variables_in

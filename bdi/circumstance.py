@@ -37,14 +37,13 @@ class Circumstance:
         self.running: deque[Intention] = deque()
         self.atomic: Intention | None = None
         self.current: Intention | None = None  # whose step is being taken
+        self.selected: Intention | None = None  # whose turn this cycle was
         self.timers: list[tuple[float, int, Intention]] = []
         self.waiters: list[Waiter] = []
         self._builtins: dict[Any, Builtin | None] = {}
-        self._mailbox: deque[Message] = deque()
         self._feedback: deque[Finished] = deque()
         self._pending: dict[int, Intention] = {}  # by the action that each waits for
         self._asked: dict[str, tuple[Intention, Term, float | None]] = {}  # by message id: who, pattern, deadline
-        self._seen: dict[Any, Any] = {}  # percepts by text or term
         self._last_action = 0
         self._last_intention = 0
         self._last_message = 0
@@ -169,13 +168,17 @@ class Circumstance:
         intention.state = State.EVENT
         self.events.append(event)
 
-    def notice(self, trigger: Trigger, literal: Literal, options: Options | None = None) -> None:
+    def notice(self, trigger: Trigger, literal: Literal) -> None:
         """An event of the world."""
-        if options is None:
-            options = self.relevant_plans(trigger, literal)
-        if options:
-            self.events.append(Event(trigger, literal, options))
-        self._tell_waiters(trigger, literal)
+        self.notice_event(Event(trigger, literal, self.relevant_plans(trigger, literal)), literal)
+
+    def notice_event(self, event: Event, literal: Literal) -> None:
+        """What came to be has its turn even if no plan is about it yet: one may be told by then. (Not while an atomic
+        plan holds the agent: nobody would take it away.) What ceased to be has none."""
+        if event.options or (event.trigger is Trigger.BELIEF_ADDED and self.atomic is None):
+            self.events.append(event)
+        if self.waiters:
+            self._tell_waiters(event.trigger, literal)
 
     def _tell_waiters(self, trigger: Trigger, literal: Literal) -> None:
         for waiter in self.waiters:
@@ -187,12 +190,15 @@ class Circumstance:
     def add_plan(self, plan: Plan, first: bool = False) -> None:
         """.add_plan, tellHow"""
         self.library.add(plan, first)
-        self._seen.clear()
+        self.plans_changed()
 
     def remove_plan(self, label: str) -> bool:
         """Whether there was one with this label."""
-        self._seen.clear()
+        self.plans_changed()
         return self.library.remove(label)
+
+    def plans_changed(self) -> None:
+        """Whatever was looked up by plan must be looked up again."""
 
     # ---- what the outside will hear --------------------------------------------------------------------------------
 

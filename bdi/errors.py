@@ -11,7 +11,8 @@ BdiError
 ├── StepFailed                 a step of a plan cannot be done (in `intentions`; plans see it as -!g[error(E)])
 ├── ArithmeticFailure          numbers that cannot be calculated (in `arithmetic`)
 ├── UnknownActionId            a finished action that was never started
-└── UnknownPerformative        a message that is no tell, achieve, …
+├── UnknownPerformative        a message that is no tell, achieve, …
+└── NotALiteral                a percept, belief or goal given as another kind of term, such as a number
 """
 
 from dataclasses import dataclass
@@ -97,6 +98,13 @@ class UnknownPerformative(BdiError):
 
     def __init__(self, performative: str) -> None:
         super().__init__(f"no agent understands the performative {performative!r}")
+
+
+class NotALiteral(BdiError):
+    """A percept, belief or goal given as something else, such as a number or a list."""
+
+    def __init__(self, given: object) -> None:
+        super().__init__(f"{given!r} is no literal: give a term such as Atom or Structure, or its text")
 
 
 def _either(options: tuple[str, ...]) -> str:

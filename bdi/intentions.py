@@ -4,7 +4,8 @@ from collections.abc import Callable
 from enum import Enum
 from typing import Any
 
-from bdi.errors import BdiError
+from bdi.arithmetic import ArithmeticFailure
+from bdi.errors import AgentSpeakError, BdiError
 from bdi.syntax import Trigger
 from bdi.terms import Literal, Term, Var, literal_of, show
 from bdi.unify import resolve_all
@@ -131,3 +132,7 @@ class StepFailed(BdiError):
         self.error = error
         self.message = message
         self.annots = annots
+
+
+# A condition that runs into one of these does not hold.
+NOT_WORKED_OUT = (ArithmeticFailure, StepFailed, AgentSpeakError, RecursionError)

@@ -74,6 +74,10 @@ class Builtin(Protocol):
     def ask(self, args: tuple[Any, ...]) -> "bool | Iterator[Any]": ...
 
 
+class HasLogic(Protocol):
+    logic: "Logic"
+
+
 @dataclass(frozen=True, slots=True)
 class Known:
     """What is known of the slots at one place of a program, before it runs."""

@@ -15,6 +15,7 @@ from bdi.errors import (
     AgentSpeakSyntaxError,
     IncludeCircle,
     IncludeNotFound,
+    NotALiteral,
     Place,
     UnknownDirective,
 )
@@ -107,6 +108,28 @@ def parse_plan(text: str) -> Plan:
     if len(clauses) != 1 or not isinstance(clauses[0], Plan):
         raise AgentSpeakSyntaxError("this is not one plan", Place("<plan>", 1, 1, text), ("+!g : context <- body",))
     return clauses[0]
+
+
+def parse_event(text: str) -> tuple[Trigger, Literal]:
+    """ "+!g(X)", as `.wait` and askHow take it"""
+    plan = parse_plan(f"{text}.")
+    if isinstance(plan.head, Var):
+        raise AgentSpeakSyntaxError("this is not an event with a name", Place("<event>", 1, 1, text), ("+!g",))
+    return plan.trigger, plan.head
+
+
+def term_from(content: Term | str) -> Term:
+    """Text is parsed, a term is itself."""
+    return parse_term(content) if type(content) is str else content  # type: ignore[return-value]
+
+
+def literal_from(content: Term | str) -> Literal:
+    """A belief, goal or percept. Raises AgentSpeakSyntaxError for text that is none, NotALiteral for another term."""
+    if type(content) is str:
+        return parse_literal(content)
+    if isinstance(content, Atom | Structure):
+        return content
+    raise NotALiteral(content)
 
 
 _NO_LITERALS = RELATIONS | {AND, OR, NOT, NEGATIVE, POSITIVE} | {predicate(name, 2) for name in "+-*/"}

@@ -65,8 +65,9 @@ Options = list[CompiledPlan]
 
 
 def relevant(options: Options, literal: Literal) -> Options:
-    """Those whose head unifies with the event."""
-    return [plan for plan in options if plan.concerns(literal)] if options else options
+    """Those whose head unifies with the event; if all do, the very list, which is kept up to date."""
+    found = [plan for plan in options if plan.concerns(literal)]
+    return options if len(found) == len(options) else found
 
 
 class Library:

@@ -1,20 +1,26 @@
 """`.wait` for an event or a formula, with or without an end."""
 
 from collections.abc import Callable
-from typing import Any
+from typing import Protocol
 
 from bdi.intentions import Intention
-from bdi.logic import Question
+from bdi.logic import HasLogic, Question
 from bdi.syntax import Trigger
 from bdi.terms import Literal, Term
 from bdi.unify import undo, unify
+
+
+class HasTime(HasLogic, Protocol):
+    """`now` in seconds, of the clock that the agent is given."""
+
+    now: float
 
 
 class Waiter:
     """An intention that waits until something happens, or until `deadline_s` (None: for ever)."""
 
     def __init__(
-        self, intention: Intention, what: str, deadline_s: float | None, happened: Callable[[Any], bool]
+        self, intention: Intention, what: str, deadline_s: float | None, happened: Callable[[HasTime], bool]
     ) -> None:
         self.intention = intention
         self.what = what
@@ -24,7 +30,7 @@ class Waiter:
         self.quiet = False  # whether being late is no failure
         self._happened = happened
 
-    def notice(self, trigger: Trigger, literal: Literal, mind: Any) -> None:
+    def notice(self, trigger: Trigger, literal: Literal, mind: HasTime) -> None:
         """An event of the agent: is it the one?"""
         if self.wanted is None or self.seen or self.wanted[0] is not trigger:
             return
@@ -36,7 +42,7 @@ class Waiter:
         else:
             undo(trail, mark)
 
-    def check(self, mind: Any) -> bool | None:
+    def check(self, mind: HasTime) -> bool | None:
         """True: it happened; False: too late; None: wait on."""
         if self.seen or self._happened(mind):
             return True

@@ -1,10 +1,22 @@
 """What a body sees of an agent: actions, cancellations, failures, messages, waiting."""
 
 from collections.abc import Iterable
+from typing import Any
 
 import pytest
 
-from bdi import Agent, Finished, Message, Outcome, UnknownActionId, UnknownPerformative, parse_program, parse_term
+from bdi import (
+    Agent,
+    AgentSpeakSyntaxError,
+    Finished,
+    Message,
+    NotALiteral,
+    Outcome,
+    UnknownActionId,
+    UnknownPerformative,
+    parse_program,
+    parse_term,
+)
 
 
 def agent_of(text: str, **options: object) -> Agent:
@@ -188,6 +200,79 @@ def test_plans_can_be_told_and_untold() -> None:
 def test_an_unknown_performative_is_an_error() -> None:
     with pytest.raises(UnknownPerformative):
         told(agent_of(""), "shout", "a")
+
+
+def test_a_plan_told_while_an_event_waits_for_its_turn_reacts_to_it() -> None:
+    agent = agent_of('!a. +!a <- .add_plan("+b(X) <- heard(X).").')
+    agent.cycle({"b(1)"})
+    assert [str(action) for _ in range(3) for action in agent.cycle().actions] == ["heard(1)"]
+
+
+def test_events_that_nobody_is_about_do_not_pile_up_behind_an_atomic_plan() -> None:
+    agent = agent_of("!g. @g[atomic] +!g <- drive.")
+    for at in range(50):
+        agent.cycle({f"at({at})"})
+    assert len(agent.events) <= 1
+
+
+# ---- the door ------------------------------------------------------------------------------------------------------
+
+WRONG: dict[str, tuple[type[Exception], dict[str, Any]]] = {
+    "a percept that is no AgentSpeak": (AgentSpeakSyntaxError, {"percepts": ["at(a)", "fine", "at("]}),
+    "a percept in another notation beside one that is none": (AgentSpeakSyntaxError, {"percepts": ["at( b )", ")"]}),
+    "a percept that is a number": (NotALiteral, {"percepts": [7]}),
+    "a comparison as percept": (AgentSpeakSyntaxError, {"percepts": ["X > 1"]}),
+    "an unknown performative": (UnknownPerformative, {"messages": [Message("bob", "shout", "b(1)")]}),
+    "a message that is no AgentSpeak": (AgentSpeakSyntaxError, {"messages": [Message("bob", "tell", "b(")]}),
+    "a message about a number": (NotALiteral, {"messages": [Message("bob", "achieve", 5)]}),
+    "a question about no event": (AgentSpeakSyntaxError, {"messages": [Message("bob", "askHow", "g")]}),
+    "a plan that is none": (AgentSpeakSyntaxError, {"messages": [Message("bob", "tellHow", "+!g <- (")]}),
+    "an answer that is no AgentSpeak": (AgentSpeakSyntaxError, {"messages": [Message("b", "tell", "(", reply_to="1")]}),
+    "an action that was never started": (UnknownActionId, {"finished": [Finished(1), Finished(99)]}),
+}
+
+
+@pytest.mark.parametrize("wrong", WRONG)
+def test_what_is_wrong_is_refused_by_name_and_the_agent_is_as_before(wrong: str) -> None:
+    error, given = WRONG[wrong]
+    program = "+at(P) <- seen(P). -at(P) <- lost(P). +b(X) <- told(X). !g. +!g <- drive; arrived. +c <- c."
+    agents = [agent_of(program), agent_of(program)]
+    for agent in agents:
+        agent.cycle({"at(a)"}, now=1.0)
+        agent.cycle(now=2.0)
+    good: dict[str, Any] = {"percepts": ["c"], "messages": [Message("bob", "tell", "b(1)")], "finished": [Finished(1)]}
+    with pytest.raises(error):
+        agents[0].cycle(**{**good, **given}, now=3.0)
+    assert snapshot(agents[0]) == snapshot(agents[1])
+    later = [[outcomes_of(agent, cycle) for cycle in range(8)] for agent in agents]
+    assert later[0] == later[1]
+
+
+def snapshot(agent: Agent) -> list[Any]:
+    intentions = [(str(each), each.state) for each in agent.intentions.values()]
+    return [
+        agent.now,
+        agent.cycles,
+        list(map(str, agent.beliefs)),
+        list(map(str, agent.events)),
+        intentions,
+        agent.idle,
+    ]
+
+
+def outcomes_of(agent: Agent, cycle: int) -> list[str]:
+    return [str(action) for action in agent.cycle({"at(a)"} if cycle < 4 else set(), now=4.0 + cycle).actions]
+
+
+def test_a_question_that_cannot_be_worked_out_is_answered_with_no() -> None:
+    agent = agent_of("p(X) :- .nth(5,[a],X).")
+    assert str(told(agent, "askOne", "p(X)", id="q").messages[0].content) == "false"
+
+
+def test_a_wait_for_what_cannot_be_worked_out_is_a_failure() -> None:
+    agent = agent_of("!g. +!g <- .wait(b(I) & .nth(I,[a],X)); never. -!g[error(E)] <- late(E).")
+    agent.cycle()
+    assert [str(action) for _ in range(4) for action in agent.cycle({"b(5)"}).actions] == ["late(wait_failed)"]
 
 
 # ---- time ----------------------------------------------------------------------------------------------------------

@@ -14,6 +14,7 @@ import pytest
 from bdi import Agent, Finished, Literal, Message, Term, Var, load_program, parse_program, parse_term, show
 from bdi.arithmetic import ArithmeticFailure
 from bdi.beliefs import SELF
+from bdi.intentions import State
 from bdi.terms import Structure, literal_of
 from bdi.unify import Trail, compare, deref, resolve, unify, variables_in
 
@@ -83,9 +84,15 @@ def own_beliefs(agent: Agent) -> list[str]:
     return sorted(str(literal_of(literal.predicate, literal.args)) for literal in own)
 
 
+def intentions_as_recorded(agent: Agent) -> int:
+    """The record counts the selected intention besides: it stays selected until the next turn, unless it waits."""
+    selected = agent.selected
+    return len(agent.intentions) + (selected is not None and selected.state in (State.RUNNING, State.DONE))
+
+
 @needs_cases
 @pytest.mark.parametrize("as_terms", [False, True], ids=["percepts as text", "percepts as terms"])
-def test_the_papers_agent_acts_and_believes_as_recorded_in_all_3000_cycles(as_terms: bool) -> None:
+def test_the_papers_agent_acts_believes_and_intends_as_recorded_in_all_3000_cycles(as_terms: bool) -> None:
     with gzip.open(CASES / "paper" / "trace.jsonl.gz", "rt") as lines:
         trace = [json.loads(line) for line in lines]
     agent = Agent(load_program(CASES / "paper" / "mail.asl"), name="mail")
@@ -96,10 +103,17 @@ def test_the_papers_agent_acts_and_believes_as_recorded_in_all_3000_cycles(as_te
         percepts = [parse_term(text) for text in row["percepts"]] if as_terms else row["percepts"]
         outcome = agent.cycle(percepts, messages, finished, row["cycle"] * 0.1)
         finished = [Finished(action.id) for action in outcome.actions]
-        got = ([str(action) for action in outcome.actions], own_beliefs(agent))
+        got = (
+            [str(action) for action in outcome.actions],
+            own_beliefs(agent),
+            intentions_as_recorded(agent),
+            len(agent.events),
+        )
         wanted = (
             [row["action"]] if row["action"] else [],
             sorted(text for text in row["beliefs"] if not text.startswith("kqml::")),
+            row["intentions"],
+            row["events"],
         )
         matched += got == wanted
         if got != wanted and not first_difference:

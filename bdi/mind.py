@@ -1,0 +1,56 @@
+"""The agent as an internal action, a message and a wait see it. `agent.Agent` is one."""
+
+from collections import deque
+from collections.abc import Callable
+from random import Random
+from typing import Protocol
+
+from bdi.beliefs import Beliefs
+from bdi.intentions import Event, Intention, Means
+from bdi.messages import Message
+from bdi.plans import Library, Options
+from bdi.syntax import Plan, Trigger
+from bdi.terms import Literal, Term
+from bdi.waiting import HasTime, Waiter
+
+
+class Mind(HasTime, Protocol):
+    """What there is to see, and what can be asked for."""
+
+    name: str
+    random: Random
+    beliefs: Beliefs
+    library: Library
+    events: deque[Event]
+    intentions: dict[int, Intention]
+    current: Intention | None  # whose step is being taken; None in a condition
+    timers: list[tuple[float, int, Intention]]
+    waiters: list[Waiter]
+
+    def literal_of(self, content: Term | str) -> Literal: ...
+
+    # beliefs and plans
+    def believe(self, literal: Literal, intention: Intention | None, last: bool = False) -> None: ...
+    def forget(self, literal: Literal, intention: Intention | None) -> None: ...
+    def forget_all(self, pattern: Literal) -> None: ...
+    def notice(self, trigger: Trigger, literal: Literal) -> None: ...
+    def add_plan(self, plan: Plan, first: bool = False) -> None: ...
+    def remove_plan(self, label: str) -> bool: ...
+
+    # goals and intentions
+    def achieve_apart(self, goal: Literal, options: Options | None = None) -> None: ...
+    def drop(self, intention: Intention) -> None: ...
+    def hold(self, intention: Intention) -> None: ...
+    def release(self, intention: Intention) -> None: ...
+    def reach_goal(self, intention: Intention, is_goal: Callable[[Means], bool]) -> None: ...
+    def give_up_goal(
+        self, intention: Intention, is_goal: Callable[[Means], bool], annots: tuple[Term, ...]
+    ) -> None: ...
+
+    # the outside
+    def say(self, line: str) -> None: ...
+    def send(self, message: Message) -> None: ...
+    def new_message_id(self) -> str: ...
+    def wait_for_answer(
+        self, intention: Intention, message_id: str, answer: Term, deadline_s: float | None
+    ) -> None: ...
