@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from bdi.beliefs import SOURCE
-from bdi.builtin_actions import drop_desire
+from bdi.builtin.goals import drop_desire
 from bdi.intentions import NOT_WORKED_OUT
 from bdi.messages import Message
 from bdi.mind import Mind

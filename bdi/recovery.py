@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from bdi.builtin_values import text_of
+from bdi.builtin.arguments import text_of
 from bdi.circumstance import Circumstance
 from bdi.errors import AgentSpeakSyntaxError, Place
 from bdi.intentions import FAILURE_OF, Event, Intention, Means, Step, StepFailed
