@@ -180,8 +180,8 @@ def _join(
 ) -> Parts:
     """Devices, body, duties, navigator, agent: each knows only those before it."""
     shape, now = shape_of(settings), clock.now()
-    drive = DriveLoop(devices.base, devices.line_sensor, shape, now)
     duties = Duties(store, Memory(store), Outbox(store), clock.utc)
+    drive = DriveLoop(devices.base, devices.line_sensor, shape, now, duties.held.faults)
     navigator = Navigator(campus, _home(settings, campus), duties)
     hands = Hands(drive, navigator, duties, settings.drive.cruise_mm_s, settings.drive.turn_mm_s, shape)
     mode = percept_mode(settings)

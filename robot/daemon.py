@@ -10,7 +10,8 @@
 | tell   | rates.snapshot_hz | snapshot for the server                             | link                       |
 
 Line and drive share a thread, since base and line sensor have one owner. Nothing in that thread waits for the mind, the
-network or the disk. The link is not in the table: it lives in a thread of its own and is met through queues.
+network or the disk, and the last thing it does, whatever ends it, is to stop the wheels. The link is not in the table:
+it lives in a thread of its own and is met through queues.
 """
 
 from collections.abc import Callable
@@ -67,7 +68,7 @@ class Daemon:
         """The table; in lockstep, loops that are due together run in its order."""
         rates = self.rates
         table = (
-            Loop("drive", rates.drive_hz, "wheels; the view of the mind", self._drive_tick),
+            Loop("drive", rates.drive_hz, "wheels; the view of the mind", self._drive_tick, self.base.close),
             Loop("camera", rates.camera_hz, "markers and codes for drive", self._camera_tick),
             Loop("mind", rates.mind_hz, "skills for drive; the outbox", self._mind_tick),
             Loop("tell", rates.snapshot_hz, "the link", self._tell_tick),
@@ -91,7 +92,7 @@ class Daemon:
             else:
                 self._drive_tick(now)
 
-        return Loop("line and drive", self.rates.line_hz, "wheels; the view of the mind", tick)
+        return Loop("line and drive", self.rates.line_hz, "wheels; the view of the mind", tick, self.base.close)
 
     def _drive_tick(self, now: float) -> None:
         self.drive.tick(now)

@@ -6,9 +6,11 @@ cancels skills, the camera loop reports what it read, and both read the latest `
 
 import math
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Container
 from dataclasses import dataclass
 from itertools import count
+
+import structlog
 
 from . import reflexes
 from .drivers.interfaces import (
@@ -41,6 +43,8 @@ from .skills.interfaces import (
 )
 from .skills.tunes import BUMPED
 
+log = structlog.get_logger("robot.drive")
+
 STOPPING = frozenset(fault.name for fault in reflexes.FAULTS if fault.response is reflexes.Response.STOP)
 PAUSING = STOPPING | {"bump"}
 OFF_DOCK_S = 2.0
@@ -61,7 +65,15 @@ class Job:
 class DriveLoop:
     """See `skills.interfaces.Body` for what other threads may call; `tick` belongs to one thread alone."""
 
-    def __init__(self, base: Base, line_sensor: LineSensor, shape: BodyShape | None = None, now: float = 0.0) -> None:
+    def __init__(
+        self,
+        base: Base,
+        line_sensor: LineSensor,
+        shape: BodyShape | None = None,
+        now: float = 0.0,
+        faults_before: Container[str] = (),
+    ) -> None:
+        """`faults_before`: what was wrong when the daemon last ran; an emergency stop outlives a restart."""
         self._base, self._line_sensor, self._shape = base, line_sensor, shape or BodyShape()
         self._inbox: deque[Callable[[float], None]] = deque()
         self._finished: deque[JobEnd] = deque()
@@ -73,7 +85,7 @@ class DriveLoop:
         self._docked_s = now
         self._heartbeat_s = now
         self._stop_asked = self._rearm = False
-        self._reflexes = reflexes.ReflexState()
+        self._reflexes = reflexes.ReflexState.woken(faults_before, now)
         self._faults: frozenset[str] = frozenset()
         self._state: BaseState | None = None
         self._odometry = Odometry()
@@ -112,11 +124,11 @@ class DriveLoop:
 
     def emergency_stop(self) -> None:
         """See `Body.emergency_stop`."""
-        self._stop_asked = True
+        self._inbox.append(lambda _: self._take_stop(True))
 
     def rearm(self) -> None:
         """See `Body.rearm`."""
-        self._stop_asked, self._rearm = False, True
+        self._inbox.append(lambda _: self._take_stop(False))
 
     def report(self, report: CameraReport, now: float) -> None:
         """What the camera loop read in one frame."""
@@ -194,17 +206,23 @@ class DriveLoop:
         stopped = self._faults & STOPPING
         if wanted is None and stopped and self._motion:
             self._end(self._motion.number, Failed(min(stopped)), now)
-            self._request(SetMode(Mode.SAFE), now)
         elif wanted is None:
             return STOP
+        if stopped:
+            self._take_wheels(now)
         if self._mode is Mode.PASSIVE and not allowed.still:
             self._request(SetMode(Mode.SAFE), now)
         return self._base.drive(allowed, now)
 
+    def _take_wheels(self, now: float) -> None:
+        """From the firmware, which in Passive docks on, or cleans because somebody pressed Clean."""
+        if self._mode is Mode.PASSIVE and self._state is not None:
+            self._request(SetMode(Mode.SAFE), now)
+
     def _choose_mode(self, now: float) -> None:
         """At rest: Passive on the dock, or it would not charge; Safe elsewhere, or a button would start to clean."""
         state = self._state
-        if state is None or self._motion is not None:
+        if state is None or self._motion is not None or self._faults & STOPPING:
             self._docked_s = now
         elif state.docked:
             self._docked_s = now
@@ -223,7 +241,10 @@ class DriveLoop:
         self._jobs[number] = job
         if skill.moves:
             self._motion = job
-        skill.start(self._look(now), now)
+        try:
+            skill.start(self._look(now), now)
+        except Exception:
+            self._end(number, _broken(skill), now)
 
     def _end(self, number: int, outcome: Outcome, now: float) -> None:
         job = self._jobs.pop(number, None)
@@ -232,6 +253,8 @@ class DriveLoop:
         if job is self._motion:
             self._motion = None
             self._pulse_until_s = -math.inf
+            if job.wheels is None and not isinstance(outcome, Done):
+                self._take_wheels(now)
         for request in outcome.requests:
             self._request(request, now)
         self._finished.append(JobEnd(number, job.skill.name, outcome, now))
@@ -248,7 +271,10 @@ class DriveLoop:
         return self._pulse if now < self._pulse_until_s else STOP
 
     def _step_job(self, job: Job, view: View, now: float) -> None:
-        step = job.skill.step(view, now)
+        try:
+            step = job.skill.step(view, now)
+        except Exception:
+            step = _broken(job.skill)
         if not isinstance(step, Running):
             self._end(job.number, step, now)
             if isinstance(step, Done) and step.pulse is not None:
@@ -273,9 +299,18 @@ class DriveLoop:
             case ShowLights(colour, brightness):
                 self._base.show_lights(colour, brightness, now)
 
+    def _take_stop(self, asked: bool) -> None:
+        self._stop_asked, self._rearm = asked, not asked
+
     def _take_report(self, report: CameraReport, now: float) -> None:
         self._camera_s, self._camera_age_s = now, report.frame_age_s
         for sighting in report.posts:
             self._post, self._post_odometry = sighting, self._odometry
         for sighting in report.codes:
             self._code = sighting
+
+
+def _broken(skill: Skill) -> Failed:
+    """A mistake in a skill ends the skill, never the loop that keeps the wheels."""
+    log.exception("skill_broken", skill=skill.name)
+    return Failed("broken")

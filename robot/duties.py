@@ -34,7 +34,13 @@ class Held:
     next_stop: int = 0
     cargo: tuple[str, ...] = ()
     grants: tuple[Leg, ...] = ()
+    verifiers: tuple[Verifier, ...] = ()
     position: Position = field(default_factory=Position)
+    paused: bool = False
+    cancelled: frozenset[str] = frozenset()
+    """Orders of the mission that are not to be served any more."""
+    faults: frozenset[str] = frozenset()
+    """Told and not over."""
 
     @property
     def stop(self) -> Stop | None:
@@ -72,11 +78,8 @@ class Duties:
         self._server = server
         self._denied: dict[str, Deny] = {}
         self._claimed: dict[tuple[Leg, ...], str] = {}
-        self._faults: set[str] = set()
-        self.paused = False
         self.rearm_asked = False
         """Somebody at the service has looked, and lets a stopped robot go again; the mind passes it on."""
-        self.cancelled: frozenset[str] = frozenset()
         self.avoid: frozenset[Leg] = frozenset()
         self.revision = 0
         """Goes up with every change of what is held."""
@@ -94,7 +97,11 @@ class Duties:
                 self.memory.next_stop(),
                 self.memory.cargo(),
                 self.memory.grants(),
+                self.memory.verifiers(),
                 self.memory.position(),
+                self.memory.paused(),
+                self.memory.cancelled(),
+                self.memory.faults(),
             )
         self.revision += 1
 
@@ -135,10 +142,11 @@ class Duties:
             case Cancel():
                 self._answer(message.command_id, self._cancel(message.order_id))
             case Pause():
-                self.paused = True
+                self.memory.pause(True)
                 self._answer(message.command_id, None)
             case Resume():
-                self.paused, self.rearm_asked = False, True
+                self.memory.pause(False)
+                self.rearm_asked = True
                 self._answer(message.command_id, None)
             case Recall():
                 self._answer(message.command_id, self._recall())
@@ -160,10 +168,9 @@ class Duties:
             return "the mail is aboard"
         mission = self.memory.mission()
         ahead = mission.stops[self.memory.next_stop() :] if mission else ()
+        self.memory.cancel(order_id)
         if all(stop.order_id in (order_id, None) for stop in ahead):
             self.memory.drop_mission()
-        self.cancelled |= {order_id}
-        self.memory.forget_verifiers(order_id)
         return None
 
     def _recall(self) -> str | None:
@@ -208,10 +215,16 @@ class Duties:
 
     def finish_stop(self, stop_id: str) -> None:
         """The stop is done, or given up: the next one comes."""
-        mission, stop = self._stop(stop_id)
+        self._stop(stop_id)
         with self._store.transaction():
-            self.memory.reach(max(self.memory.next_stop(), mission.stops.index(stop) + 1))
+            self._pass(stop_id)
         self._changed()
+
+    def _pass(self, stop_id: str) -> None:
+        mission = self.memory.mission()
+        numbers = [number for number, stop in enumerate(mission.stops) if stop.id == stop_id] if mission else []
+        for number in numbers:
+            self.memory.reach(max(self.memory.next_stop(), number + 1))
 
     def finish_mission(self, mission_id: str, post: str | None) -> None:
         """All stops are done: say so once, and be free for the next mission."""
@@ -224,19 +237,32 @@ class Duties:
             self.memory.drop_mission()
         self._told()
 
-    def verifiers(self, order_id: str, purpose: Purpose) -> tuple[Verifier, ...]:
-        """What opens this hand-over."""
-        return tuple(v for v in self.memory.verifiers() if (v.order_id, v.purpose) == (order_id, purpose))
+    def codes(self, order_id: str, purpose: Purpose) -> tuple[str, ...]:
+        """What opens this hand-over now, as SHA-256. For any thread, and without a look at the disk."""
+        now = self._utc()
+        return tuple(
+            v.sha256
+            for v in self.held.verifiers
+            if (v.order_id, v.purpose) == (order_id, purpose) and now < v.expires_at
+        )
 
-    def handed_over(self, purpose: Purpose, stop_id: str, post: str, code_sha256: str | None) -> None:
-        """Mail changed hands at a stop. What is aboard, how far the mission is and the receipt: all or nothing."""
-        mission, stop = self._stop(stop_id)
-        order_id = stop.order_id or ""
+    def at_stop(self, stop_id: str) -> tuple[Mission, Stop]:
+        """A stop of the mission held, with its mission. Raises NoSuchStop."""
+        return self._stop(stop_id)
+
+    def handed_over(self, place: tuple[Mission, Stop], purpose: Purpose, post: str, code_sha256: str | None) -> None:
+        """Mail changed hands at a stop. What is aboard, how far the mission is and the receipt: all or nothing.
+
+        `place` is the stop as it was when the robot began to wait: mail that was taken aboard is aboard, even if the
+        mission was dropped in the same moment.
+        """
+        mission, stop = place
+        stop_id, order_id = stop.id, stop.order_id or ""
         with self._store.transaction():
             if not self.memory.first_time(mission.id, f"handover:{stop_id}"):
                 return
             (self.memory.load if purpose is Purpose.LOAD else self.memory.unload)(order_id)
-            self.memory.reach(max(self.memory.next_stop(), mission.stops.index(stop) + 1))
+            self._pass(stop_id)
             receipt = HandoverReceipt(
                 purpose=purpose,
                 order_id=order_id,
@@ -246,8 +272,7 @@ class Duties:
                 code_sha256=code_sha256,
             )
             self._tell(receipt)
-            if purpose is Purpose.RECEIVE:
-                self.memory.forget_verifiers(order_id)
+            self.memory.forget_verifiers(order_id, None if purpose is Purpose.RECEIVE else purpose)
         self._told()
 
     def report_charge(self, step: ChargeStep, post: str | None, ratio: float) -> None:
@@ -257,10 +282,11 @@ class Duties:
 
     def report_fault(self, name: str, reason: str, post: str | None, cleared: bool = False) -> None:
         """A fault begins or is over; said once until it changes."""
-        if cleared != (name in self._faults):
+        if cleared != (name in self.held.faults):
             return
-        (self._faults.discard if cleared else self._faults.add)(name)
-        self._tell(Fault(name=name, cleared=cleared, happened_at=self._utc(), post=post, reason=reason))
+        with self._store.transaction():
+            self.memory.keep_faults(self.held.faults ^ {name})
+            self._tell(Fault(name=name, cleared=cleared, happened_at=self._utc(), post=post, reason=reason))
         self._told()
 
     # Corridors.

@@ -17,7 +17,7 @@ from pydantic import TypeAdapter
 
 from protocol import sequence
 from protocol.envelope import TO_ROBOT, Envelope, type_of
-from protocol.parts import Leg, MissionHeld, Part, Position, Received
+from protocol.parts import Leg, MissionHeld, Part, Position, Purpose, Received
 from protocol.sequence import Reception
 from protocol.to_robot import Grant, Mission, Verifier, Verifiers
 from robot.store import Store
@@ -30,6 +30,8 @@ _CARGO: Final = TypeAdapter(tuple[str, ...])
 _VERIFIERS: Final = TypeAdapter(tuple[Verifier, ...])
 _LEGS: Final = TypeAdapter(tuple[Leg, ...])
 _POSITION: Final = TypeAdapter(Position)
+_FLAG: Final = TypeAdapter(bool)
+_NAMES: Final = TypeAdapter(frozenset[str])
 _RECEIVED: Final = TypeAdapter(Received)
 
 
@@ -105,6 +107,7 @@ class Memory:
         with self._store.transaction():
             self._write("mission", _MISSION, None)
             self._write("next_stop", _NUMBER, 0)
+            self._write("cancelled", _NAMES, frozenset())
 
     def first_time(self, mission_id: str, key: str) -> bool:
         """True once for each key of a mission, for ever: what was reported is not reported again after a restart.
@@ -141,11 +144,41 @@ class Memory:
             kept = {(one.order_id, one.purpose): one for one in (*self.verifiers(), *verifiers.verifiers)}
             self._write("verifiers", _VERIFIERS, tuple(kept.values()))
 
-    def forget_verifiers(self, order_id: str) -> None:
-        """The codes of this order are used up."""
+    def forget_verifiers(self, order_id: str, purpose: Purpose | None = None) -> None:
+        """The code of this order for `purpose` is used up; without a purpose, all of its codes."""
         with self._store.transaction():
-            kept = tuple(one for one in self.verifiers() if one.order_id != order_id)
+            kept = tuple(
+                one for one in self.verifiers() if one.order_id != order_id or purpose not in (None, one.purpose)
+            )
             self._write("verifiers", _VERIFIERS, kept)
+
+    # What it was told to leave undone, and what is wrong with it.
+
+    def paused(self) -> bool:
+        """Whether it was asked to wait at the next post."""
+        return self._read("paused", _FLAG, False)
+
+    def pause(self, paused: bool) -> None:
+        """Wait at the next post, or no longer."""
+        self._write("paused", _FLAG, paused)
+
+    def cancelled(self) -> frozenset[str]:
+        """The orders of the mission held that are not to be served any more."""
+        return self._read("cancelled", _NAMES, frozenset())
+
+    def cancel(self, order_id: str) -> None:
+        """This order of the mission held is not to be served; its codes open nothing any more."""
+        with self._store.transaction():
+            self._write("cancelled", _NAMES, self.cancelled() | {order_id})
+            self.forget_verifiers(order_id)
+
+    def faults(self) -> frozenset[str]:
+        """The faults that were told and are not over."""
+        return self._read("faults", _NAMES, frozenset())
+
+    def keep_faults(self, faults: frozenset[str]) -> None:
+        """These are told and not over. Put the message into the outbox in the same transaction."""
+        self._write("faults", _NAMES, faults)
 
     # Where it may drive and where it was seen.
 

@@ -20,12 +20,14 @@ from .perception.battery import BatterySense, BatteryWord
 from .perception.percepts import perceive
 from .perception.seen import Seen, Whereabouts
 from .reasons import reason
-from .reflexes import FAULTS
+from .reflexes import FAULTS, LATCHED
 from .skills.interfaces import View
 
-HALTING: Final = frozenset({"emergency_stop", "wheel_drop", "cliff", "over_current"})
+HALTING: Final = LATCHED | {"over_current"}
 """Faults that a plan cannot drive out of: somebody has to see to them."""
 WATCH_S: Final = 30.0
+Ended = tuple[int, str | None]
+"""The id of an action that has ended, and the atom that says why if it failed."""
 _TOLD: Final = {fault.name: fault.told for fault in FAULTS}
 
 
@@ -46,24 +48,24 @@ class Mind:
     failures: list[str] = field(default_factory=list)
     """Goals that nobody could help, in words."""
     _why: Why | None = None
-    _faults: frozenset[str] = frozenset()
 
     def tick(self, now: float) -> None:
         """Once every 100 ms or so."""
         view = self.hands.view = self.hands.body.view
         self.hands.navigator.look(view)
+        ended = self.actions.finished(now)  # before what the server wants: mail that came aboard cannot be cancelled
         self.hands.duties.take_messages()
         if view.base:
             self.battery = self.battery.seen(view.base, self.settings.battery, now)
         self._tell_faults(view.faults)
         self._rearm(view)
-        self._reason(now)
+        self._reason(now, ended)
         self.hands.body.heartbeat(now)
         self._tell_why()
 
-    def _reason(self, now: float) -> None:
+    def _reason(self, now: float, ended: Sequence[Ended]) -> None:
         """One cycle, or in latest mode as many as there is something to think about."""
-        self._cycle(self._percepts(now), now)
+        self._cycle(self._percepts(now), now, ended)
         shown = self._world_known
         for _ in range(self.settings.mind.steps_per_tick - 1 if self.mode is PerceptMode.LATEST else 0):
             finished = self.actions.finished(now)
@@ -81,11 +83,8 @@ class Mind:
     def _percepts(self, now: float) -> frozenset[str]:
         return perceive(self.seen(now), self.mode, self.settings.mind.age_limit_s)
 
-    def _cycle(
-        self, percepts: frozenset[str] | None, now: float, finished: Sequence[tuple[int, str | None]] | None = None
-    ) -> None:
+    def _cycle(self, percepts: frozenset[str] | None, now: float, ended: Sequence[Ended]) -> None:
         messages = [self.inbox.popleft()] if self.inbox else []
-        ended = self.actions.finished(now) if finished is None else finished
         outcome = self.agent.cycle(percepts, messages, [Finished(id_, failure) for id_, failure in ended], now)
         self.actions.cancel(outcome.cancelled)
         for action in outcome.actions:
@@ -116,8 +115,6 @@ class Mind:
             battery=self.battery,
             where=where,
             held=hands.duties.held,
-            paused=hands.duties.paused,
-            cancelled=hands.duties.cancelled,
             halting=hands.view.faults & HALTING,
             home=navigator.home,
             nearest_dock=navigator.nearest_dock(),
@@ -125,15 +122,15 @@ class Mind:
         )
 
     def _tell_faults(self, faults: frozenset[str]) -> None:
-        for name in faults ^ self._faults:
-            cleared = name not in faults
-            self.hands.duties.report_fault(name, _TOLD.get(name, name), self.hands.place, cleared)
-        self._faults = faults
+        """Those that a restart ended are told to be over, too."""
+        duties = self.hands.duties
+        for name in sorted(faults ^ (duties.held.faults & _TOLD.keys())):
+            duties.report_fault(name, _TOLD[name], self.hands.place, cleared=name not in faults)
 
     def _rearm(self, view: View) -> None:
-        """An emergency stop ends when somebody lets the robot go: by the Spot button, or at the service."""
+        """A latched stop ends when somebody lets the robot go: by the Spot button, or at the service."""
         pressed = view.base is not None and view.base.spot_pressed
-        if "emergency_stop" in view.faults and (pressed or self.hands.duties.rearm_asked):
+        if view.faults & LATCHED and (pressed or self.hands.duties.rearm_asked):
             self.hands.body.rearm()
         self.hands.duties.rearm_asked = False
 

@@ -56,7 +56,7 @@ def reason(under_way: Sequence[str], view: View, navigator: Navigator, duties: D
         doing = "Charging" if charging else "In its dock"
         waiting_for = "a full battery" if stop and charging else None
         return Why(sentence=f"{doing} at {navigator.here}", goal=goal, waiting_for=waiting_for)
-    return Why(sentence="Paused" if duties.paused else "Nothing to do", goal=goal)
+    return Why(sentence="Paused" if duties.held.paused else "Nothing to do", goal=goal)
 
 
 def _of_action(action: str, navigator: Navigator) -> tuple[str, str | None]:

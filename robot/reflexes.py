@@ -3,7 +3,7 @@
 It works when everything above is dead: it needs the newest frame of the base, two ages and the speeds that are wanted.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Container
 from dataclasses import dataclass, replace
 from enum import Enum, auto
 
@@ -75,16 +75,16 @@ FAULTS: tuple[Fault, ...] = (
         lambda s: s.base is not None and s.base.wheel_drop,
         Response.STOP,
         0.0,
-        2.0,
-        "The robot is lifted, or a wheel hangs in the air.",
+        None,
+        "The robot was lifted, or a wheel hung in the air. It goes on when it is re-armed.",
     ),
     Fault(
         "cliff",
         lambda s: s.base is not None and s.base.cliff,
         Response.STOP,
         0.0,
-        2.0,
-        "The robot stands before a drop. Please put it back on the line.",
+        None,
+        "The robot stands before a drop. Please put it back on the line and re-arm it.",
     ),
     Fault(
         "base_silent",
@@ -129,6 +129,10 @@ FAULTS: tuple[Fault, ...] = (
 )
 
 
+LATCHED = frozenset(fault.name for fault in FAULTS if fault.clears_s is None)
+"""Only a person ends these, not even a restart does."""
+
+
 @dataclass(frozen=True, slots=True)
 class FaultMemory:
     """One fault through time, in seconds; None: not so at present."""
@@ -146,6 +150,12 @@ class ReflexState:
     """What the reflexes remember from tick to tick, one entry for each line of the table."""
 
     memories: tuple[FaultMemory, ...] = (_FORGOTTEN,) * len(FAULTS)
+
+    @classmethod
+    def woken(cls, faults: Container[str], now: float) -> "ReflexState":
+        """After a restart: those of `faults` that were latched before it still are."""
+        latched = FaultMemory(active_since_s=now, last_present_s=now)
+        return cls(tuple(latched if one.name in LATCHED and one.name in faults else _FORGOTTEN for one in FAULTS))
 
 
 @dataclass(frozen=True, slots=True)

@@ -36,6 +36,8 @@ class Loop:
     rate_hz: float
     feeds: str
     tick: Callable[[float], None]
+    at_end: Callable[[], None] = lambda: None
+    """Done by the loop's own thread when it ends, whatever ended it: it waits for no other thread."""
 
 
 @dataclass
@@ -158,7 +160,10 @@ class Governor:
 
 
 class ThreadedRunner:
-    """A thread for each loop. A late loop never runs twice to catch up: the wheels need the present, not the past."""
+    """A thread for each loop. A late loop never runs twice to catch up: the wheels need the present, not the past.
+
+    A thread that hangs keeps nobody: the others end without it, each with its `at_end`.
+    """
 
     def __init__(self, loops: Sequence[Loop], clock: Clock) -> None:
         self.lags = {loop.name: Lag() for loop in loops}
@@ -177,8 +182,9 @@ class ThreadedRunner:
         for thread in self._threads:
             thread.start()
         self._stopping.wait()
+        until_s = time.monotonic() + STOP_WITHIN_S
         for thread in self._threads:
-            thread.join(STOP_WITHIN_S)
+            thread.join(max(0.0, until_s - time.monotonic()))
         if self._failure:
             raise self._failure
 
@@ -192,5 +198,7 @@ class ThreadedRunner:
                 due_s = max(due_s + period_s, self._clock.now())
         except BaseException as failure:
             log.exception("loop_failed", loop=loop.name)
-            self._failure = failure
+            self._failure = self._failure or failure
+        finally:
             self._stopping.set()
+            loop.at_end()

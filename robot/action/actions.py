@@ -4,6 +4,7 @@ from collections.abc import Iterable, Sequence
 from typing import Final, Protocol
 
 from ..config import PerceptMode
+from ..duties import NoSuchStop
 from .arguments import WrongArguments, checked
 from .hands import Hands
 from .runs import AtOnce, Ended, Run
@@ -30,6 +31,7 @@ class Actions:
         self._table = {(action.name, len(action.takes)): action for action in table}
         self._runs: dict[int, Run] = {}
         self._terms: dict[int, str] = {}
+        self._dropped: list[Run] = []
 
     @property
     def under_way(self) -> tuple[str, ...]:
@@ -50,6 +52,10 @@ class Actions:
         except WrongArguments as error:
             self._hands.noted(f"cannot do {term}: {error}")
             return AtOnce(Ended(error.reason))
+        except NoSuchStop as error:
+            # The mission was taken back while the agent was about to do its next step.
+            self._hands.noted(f"cannot do {term}: {error}")
+            return AtOnce(Ended("no_such_stop"))
 
     def _action(self, term: Term) -> Action:
         action = self._table.get((term.functor, len(term.args)))
@@ -63,6 +69,7 @@ class Actions:
     def finished(self, now: float) -> list[tuple[int, str | None]]:
         """Those that have ended since the last call, with the atom that says why if they failed."""
         ends = {end.job: end for end in self._hands.body.finished()}
+        self._dropped = [run for run in self._dropped if run.poll(ends, now) is None]
         ended = [(id_, run.poll(ends, now)) for id_, run in self._runs.items()]
         done = [(id_, end.failure) for id_, end in ended if end]
         for id_, failure in done:
@@ -72,10 +79,15 @@ class Actions:
         return done
 
     def cancel(self, action_ids: Iterable[int]) -> None:
-        """Their intentions were dropped: the body stops them before it starts anything new."""
+        """Their intentions were dropped: the body stops them before it starts anything new.
+
+        One that was done at that very moment is done: mail that has changed hands is written down though no plan asks.
+        """
         for id_ in action_ids:
             if id_ in self._runs:
-                self._runs.pop(id_).cancel()
+                run = self._runs.pop(id_)
+                run.cancel()
+                self._dropped.append(run)
                 del self._terms[id_]
 
 

@@ -1,5 +1,6 @@
 """What an action becomes while it lasts: polled by the mind until it ends, cancelled when its intention is dropped."""
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol
@@ -19,7 +20,7 @@ Ends = Mapping[int, JobEnd]
 
 
 class Run(Protocol):
-    """An action under way."""
+    """An action under way. A cancelled one is polled until it has ended, too."""
 
     def poll(self, ends: Ends, now: float) -> Ended | None:
         """None while it goes on. `ends` are the skills that have ended since the last look, by job."""
@@ -53,7 +54,7 @@ class Rest:
         return DONE if now >= self._until_s else None
 
     def cancel(self) -> None:
-        pass
+        self._until_s = -math.inf
 
 
 class Wait:
@@ -66,7 +67,7 @@ class Wait:
         return self._ask()
 
     def cancel(self) -> None:
-        pass
+        self._ask = lambda: DONE
 
 
 SkillMaker = Callable[[], Skill | None]
@@ -115,5 +116,6 @@ class Skills:
         return DONE
 
     def cancel(self) -> None:
+        self._waiting, self._rescue = [], {}
         if self._job is not None:
             self._body.cancel(self._job)

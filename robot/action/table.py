@@ -156,13 +156,15 @@ def _finish_mission(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
 
 def _wait_handover(hands: Hands, arguments: Sequence[Value], now: float) -> Run:
     purpose, order_id, stop_id, limit_s = Purpose(str(arguments[0])), str(arguments[1]), str(arguments[2]), arguments[3]
-    codes = frozenset(verifier.sha256 for verifier in hands.duties.verifiers(order_id, purpose))
+    place = hands.duties.at_stop(stop_id)
 
     def custody(done: Done) -> None:
-        hands.duties.handed_over(purpose, stop_id, hands.place or "", done.result)
+        hands.duties.handed_over(place, purpose, hands.place or place[1].post, done.result)
 
     # Only loading may be confirmed by the Spot button: it identifies nobody.
-    waiting = WaitHandover(codes, float(limit_s), spot_counts=purpose is Purpose.LOAD)
+    waiting = WaitHandover(
+        lambda: hands.duties.codes(order_id, purpose), float(limit_s), spot_counts=purpose is Purpose.LOAD
+    )
     return _one(hands, waiting, now, custody)
 
 

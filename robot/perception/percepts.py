@@ -121,9 +121,9 @@ PERCEPTS: Final = (
     Percept(
         "cancelled",
         "cancelled(Order): it is not to be served any more",
-        lambda s: (f"cancelled({atom_or_text(order)})" for order in s.cancelled),
+        lambda s: (f"cancelled({atom_or_text(order)})" for order in s.held.cancelled),
     ),
-    Percept("paused", "the server asked to wait at the next post", lambda s: ["paused"] if s.paused else []),
+    Percept("paused", "the server asked to wait at the next post", lambda s: ["paused"] if s.held.paused else []),
     Percept("home", "home(Post): where its own dock is", lambda s: [f"home({s.home})"] if s.home else []),
     Percept(
         "nearest_dock",

@@ -29,8 +29,6 @@ class Seen:
     battery: BatterySense = field(default_factory=BatterySense)
     where: Whereabouts = Whereabouts()
     held: Held = field(default_factory=Held)
-    paused: bool = False
-    cancelled: frozenset[str] = frozenset()
     halting: frozenset[str] = field(default_factory=frozenset)
     """Those of the active faults that keep the wheels still until a person has seen to them."""
     home: str | None = None

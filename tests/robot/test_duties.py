@@ -2,14 +2,14 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from protocol.parts import Leg, Part, Purpose, Stop, StopAction
-from protocol.to_robot import Cancel, Deny, Grant, Mission, Pause, Recall, Resume
+from protocol.to_robot import Cancel, Deny, Grant, Mission, Pause, Recall, Resume, Verifier, Verifiers
 from protocol.to_server import Step
 from robot.duties import Duties, NoSuchStop
 from robot.memory import Incoming, Memory
@@ -96,10 +96,10 @@ def test_each_step_of_a_stop_is_told_once_and_each_post_passed_once(desk: Desk) 
 
 def test_what_was_told_before_a_restart_is_not_told_again(desk: Desk, store: Store) -> None:
     desk.hears(LETTER)
-    desk.duties.handed_over(Purpose.LOAD, "s1", "post1", "ab" * 32)
+    desk.duties.handed_over((LETTER, LOAD), Purpose.LOAD, "post1", "ab" * 32)
     again = Duties(store, Memory(store), Outbox(store), lambda: NOW)
     assert (again.held.cargo, again.held.stop) == (("o1",), RECEIVE)
-    again.handed_over(Purpose.LOAD, "s1", "post1", "ab" * 32)
+    again.handed_over((LETTER, LOAD), Purpose.LOAD, "post1", "ab" * 32)
     again.report(Step.DEPARTED, "s2", "post1")
     assert [one["kind"] for one in desk.told()] == ["progress", "handover", "progress"]
 
@@ -119,7 +119,7 @@ def test_a_cancelled_order_is_answered_and_its_mission_gone(desk: Desk) -> None:
 
 def test_an_order_whose_mail_is_aboard_is_not_cancelled_and_says_why(desk: Desk) -> None:
     desk.hears(LETTER)
-    desk.duties.handed_over(Purpose.LOAD, "s1", "post1", "ab" * 32)
+    desk.duties.handed_over((LETTER, LOAD), Purpose.LOAD, "post1", "ab" * 32)
     (answer,) = desk.hears(Cancel(command_id="c1", order_id="o1"))
     assert (answer["accepted"], answer["reason"]) == (False, "the mail is aboard")
     assert desk.duties.held.stop == RECEIVE
@@ -128,9 +128,9 @@ def test_an_order_whose_mail_is_aboard_is_not_cancelled_and_says_why(desk: Desk)
 def test_pause_resume_and_recall_are_each_answered(desk: Desk) -> None:
     desk.hears(LETTER)
     assert desk.hears(Pause(command_id="c1", reason="fire drill"))[0]["accepted"]
-    assert desk.duties.paused
+    assert desk.duties.held.paused
     assert desk.hears(Resume(command_id="c2"))[0]["accepted"]
-    assert not desk.duties.paused
+    assert not desk.duties.held.paused
     assert desk.hears(Recall(command_id="c3", reason="service"))[0]["accepted"]
     assert desk.duties.held.mission is None
 
@@ -165,3 +165,66 @@ def test_a_fault_is_told_when_it_begins_and_when_it_ends(desk: Desk) -> None:
     for cleared in (False, False, True, True):
         desk.duties.report_fault("bump", "Something stands in the way.", "post3", cleared)
     assert [one["cleared"] for one in desk.told()] == [False, True]
+
+
+def again_of(store: Store) -> Duties:
+    """The same robot after a power cut."""
+    return Duties(store, Memory(store), Outbox(store), lambda: NOW)
+
+
+def test_a_paused_robot_is_paused_after_a_restart(desk: Desk, store: Store) -> None:
+    desk.hears(Pause(command_id="c1", reason="fire drill"))
+    assert again_of(store).held.paused
+    desk.hears(Resume(command_id="c2"))
+    assert not again_of(store).held.paused
+
+
+def test_an_order_that_was_cancelled_is_not_served_after_a_restart(desk: Desk, store: Store) -> None:
+    other = Stop(id="s3", post="post2", action=StopAction.LOAD, order_id="o2")
+    desk.hears(Mission(id="m1", update=1, stops=(LOAD, RECEIVE, other)))
+    desk.hears(Cancel(command_id="c1", order_id="o1"))
+    assert again_of(store).held.cancelled == {"o1"}
+    desk.duties.finish_mission("m1", "post2")
+    assert again_of(store).held.cancelled == frozenset()
+
+
+def test_a_fault_that_was_told_is_known_after_a_restart_and_told_to_be_over_once(desk: Desk, store: Store) -> None:
+    desk.duties.report_fault("way_blocked", "The agent met line_lost.", "post3")
+    again = again_of(store)
+    again.report_fault("way_blocked", "The agent met line_lost.", "post3")
+    again.report_fault("way_blocked", "It is over.", "post3", cleared=True)
+    assert [one["cleared"] for one in desk.told()] == [False, True]
+
+
+def verifier(purpose: Purpose, text: str, expires_at: datetime = NOW + timedelta(hours=1)) -> Verifier:
+    return Verifier(order_id="o1", purpose=purpose, sha256=text * 64, expires_at=expires_at)
+
+
+def test_only_the_code_of_this_order_and_purpose_that_has_not_expired_opens(desk: Desk) -> None:
+    desk.duties.memory.keep_verifiers(
+        Verifiers(verifiers=(verifier(Purpose.LOAD, "a", NOW), verifier(Purpose.RECEIVE, "b")))
+    )
+    desk.hears(LETTER)
+    assert desk.duties.codes("o1", Purpose.LOAD) == (), "it has just expired"
+    assert desk.duties.codes("o1", Purpose.RECEIVE) == ("b" * 64,)
+    assert desk.duties.codes("o2", Purpose.RECEIVE) == (), "another order"
+
+
+def test_a_code_opens_once(desk: Desk) -> None:
+    desk.duties.memory.keep_verifiers(
+        Verifiers(verifiers=(verifier(Purpose.LOAD, "a"), verifier(Purpose.RECEIVE, "b")))
+    )
+    desk.hears(LETTER)
+    desk.duties.handed_over((LETTER, LOAD), Purpose.LOAD, "post1", "a" * 64)
+    assert desk.duties.codes("o1", Purpose.LOAD) == ()
+    assert desk.duties.codes("o1", Purpose.RECEIVE) == ("b" * 64,)
+    desk.duties.handed_over((LETTER, RECEIVE), Purpose.RECEIVE, "post4", "b" * 64)
+    assert desk.duties.codes("o1", Purpose.RECEIVE) == ()
+
+
+def test_mail_that_came_aboard_is_aboard_though_the_order_is_cancelled_in_that_moment(desk: Desk) -> None:
+    desk.hears(LETTER)
+    desk.hears(Cancel(command_id="c1", order_id="o1"))
+    desk.duties.handed_over((LETTER, LOAD), Purpose.LOAD, "post1", "a" * 64)
+    assert desk.duties.held.cargo == ("o1",)
+    assert desk.told()[-1]["kind"] == "handover"

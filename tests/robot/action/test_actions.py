@@ -167,6 +167,20 @@ def test_a_confirmed_handover_is_kept_and_told_in_one_go(bench: Bench) -> None:
     assert [text for text in bench.told() if '"handover"' in text and "ab" * 32 in text]
 
 
+def test_mail_handed_over_in_the_moment_its_plan_is_dropped_is_in_custody_all_the_same(bench: Bench) -> None:
+    bench.duties.give(MISSION)
+    id_ = bench.ask("wait_handover(load,o1,s1,600)")
+    bench.body.end("wait_handover", Done("ab" * 32))
+    bench.actions.cancel([id_])
+    assert bench.actions.finished(1.0) == [], "the agent does not hear of it"
+    assert bench.duties.held.cargo == ("o1",)
+
+
+def test_a_step_of_a_mission_that_was_taken_back_fails_by_name(bench: Bench) -> None:
+    for step in ("report(departed,s1)", "finish_stop(s1)", "wait_handover(load,o1,s1,600)"):
+        assert bench.result(step) == "no_such_stop"
+
+
 def test_nobody_coming_changes_no_custody(bench: Bench) -> None:
     bench.duties.give(MISSION)
     id_ = bench.ask("wait_handover(load,o1,s1,600)")

@@ -120,7 +120,7 @@ def test_somebody_in_the_way_is_waited_for(run: SimulatedRun) -> None:
     assert run.told().count("fault bump") == 2, "that it happened, and that it is over"
 
 
-def test_a_lifted_robot_stands_until_it_is_put_down_and_then_goes_on(run: SimulatedRun) -> None:
+def test_a_lifted_robot_stands_until_it_is_put_down_and_let_go_and_then_goes_on(run: SimulatedRun) -> None:
     run.asks("", "visit(post4)")
     run.until(lambda: run.is_at("post3"))
     run.passes(3)
@@ -129,4 +129,25 @@ def test_a_lifted_robot_stands_until_it_is_put_down_and_then_goes_on(run: Simula
     assert run.mind.hands.view.sent.still
     assert not run.waits_for("follow_line")
     run.robot.lift(False)
+    run.passes(5)
+    assert run.mind.hands.view.sent.still, "nobody has let it go yet"
+    run.duties.rearm_asked = True
     run.until(lambda: run.is_at("post4"))
+
+
+def test_an_emergency_stop_outlives_a_restart(tmp_path: Path) -> None:
+    first = SimulatedRun(tmp_path, start="post3:post4")
+    first.asks("", "visit(post4)")
+    first.until(lambda: first.robot.driven_mm > 50)
+    first.mind.hands.body.emergency_stop()
+    first.passes(2)
+    first.kill()
+
+    second = SimulatedRun(tmp_path)
+    second.asks("", "visit(post4)")
+    second.passes(5)
+    assert second.robot.driven_mm < 5
+    assert second.mind.activity() == "stopped"
+    second.duties.rearm_asked = True
+    second.until(lambda: second.is_at("post4"))
+    second.close()

@@ -132,7 +132,7 @@ def test_somebody_who_does_not_move_blocks_the_way(drive: Make):
     assert robot.loop.view.bumps == 3
 
 
-def test_before_a_drop_it_stands_until_it_is_gone_and_goes_on(drive: Make):
+def test_before_a_drop_it_stands_until_somebody_lets_it_go_on(drive: Make):
     robot = drive("post1:post2")
     job = robot.loop.start(follow(robot, "post1"), robot.now)
     robot.steps(3)
@@ -144,6 +144,9 @@ def test_before_a_drop_it_stands_until_it_is_gone_and_goes_on(drive: Make):
     assert robot.loop.view.faults == {"cliff"}
     assert robot.loop.view.base is not None and robot.loop.view.base.mode is Mode.PASSIVE
     robot.robot.cliff(False)
+    robot.steps(5)
+    assert robot.robot.pose == here
+    robot.loop.rearm()
     assert robot.end_of(job) == Done("post2")
 
 

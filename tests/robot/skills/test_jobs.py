@@ -1,5 +1,6 @@
 """Jobs: every one ends once; one motion at a time; handovers, pulses, songs."""
 
+import math
 import threading
 from collections.abc import Callable
 from hashlib import sha256
@@ -9,7 +10,8 @@ import pytest
 
 from robot.drivers.interfaces import STOP, Mode, WheelSpeeds
 from robot.errors import UnknownSkill
-from robot.skills import Done, DrivePulse, Failed, FollowLine, PaperTurn, Say, WaitHandover
+from robot.simulated import Pose
+from robot.skills import Dock, Done, DrivePulse, Failed, FollowLine, PaperTurn, Running, Say, View, WaitHandover
 from tests.robot.skills.track import Drive
 
 Make = Callable[..., Drive]
@@ -93,7 +95,7 @@ def test_the_papers_turn_without_a_line_fails_in_ten_seconds(drive: Make):
 
 def test_the_right_code_opens(drive: Make):
     robot = drive("post1:post2")
-    job = robot.loop.start(WaitHandover({VERIFIER}, 60.0), robot.now)
+    job = robot.loop.start(WaitHandover(lambda: {VERIFIER}, 60.0), robot.now)
     robot.steps(2)
     robot.robot.show_code(CODE)
     outcome = robot.end_of(job, 2.0)
@@ -103,7 +105,7 @@ def test_the_right_code_opens(drive: Make):
 def test_a_wrong_code_is_refused_with_a_sound_once_and_waited_on(drive: Make):
     robot = drive("post1:post2")
     robot.do(DrivePulse("stop"))
-    waiting = WaitHandover({VERIFIER}, 60.0)
+    waiting = WaitHandover(lambda: {VERIFIER}, 60.0)
     job = robot.loop.start(waiting, robot.now)
     robot.robot.show_code("CM1:" + "f" * 32)
     robot.steps(5)
@@ -116,14 +118,73 @@ def test_a_code_that_was_shown_before_the_wait_does_not_count(drive: Make):
     robot = drive("post1:post2")
     robot.robot.show_code(CODE, for_s=1.0)
     robot.steps(2)
-    job = robot.loop.start(WaitHandover({VERIFIER}, 3.0), robot.now)
+    job = robot.loop.start(WaitHandover(lambda: {VERIFIER}, 3.0), robot.now)
     assert robot.end_of(job, 4.0) == Failed("no_one_came")
+
+
+def test_a_code_that_opens_only_later_and_one_that_no_longer_does(drive: Make):
+    robot = drive("post1:post2")
+    codes = {VERIFIER}
+    job = robot.loop.start(WaitHandover(lambda: codes, 60.0), robot.now)
+    codes.clear()
+    robot.robot.show_code(CODE)
+    robot.steps(2)
+    assert robot.loop.finished() == (), "taken back"
+    codes.add(VERIFIER)
+    assert robot.end_of(job, 2.0).__class__ is Done, "given while the robot waits"
+
+
+class Broken(DrivePulse):
+    """Drives for a moment, then meets a mistake of its author."""
+
+    def __init__(self, at_once: bool = False) -> None:
+        super().__init__("forward")
+        self.at_once, self.steps = at_once, 0
+
+    def start(self, view: View, now: float) -> None:
+        if self.at_once:
+            raise ZeroDivisionError
+
+    def step(self, view: View, now: float) -> Running:
+        self.steps += 1
+        if self.steps > 50:
+            raise ZeroDivisionError
+        return Running(WheelSpeeds(100, 100))
+
+
+@pytest.mark.parametrize("at_once", [True, False])
+def test_a_mistake_in_a_skill_ends_that_skill_and_the_wheels_stand(drive: Make, at_once: bool):
+    robot = drive("post1:post2")
+    assert robot.do(Broken(at_once), 2) == Failed("broken")
+    robot.steps(1)
+    assert robot.robot.state()["wheels_mm_s"] == [0, 0]
+    assert robot.do(DrivePulse("forward"), 1).__class__ is Done, "the loop goes on"
+
+
+def test_a_docking_that_is_cancelled_stands_at_once(drive: Make):
+    robot = drive("post5:post3")
+    robot.robot.place(Pose(2.0, 3.8, math.pi / 2))
+    job = robot.loop.start(Dock(), robot.now)
+    robot.until(lambda: robot.robot.state()["wheels_mm_s"] != [0, 0], 5)
+    robot.loop.cancel(job)
+    robot.steps(0.5)
+    assert robot.robot.state()["wheels_mm_s"] == [0, 0]
+
+
+def test_clean_pressed_in_the_dock_starts_no_cleaning_round(drive: Make):
+    robot = drive("dock", battery_ratio=0.5)
+    robot.steps(5)
+    robot.robot.body.interface.press_buttons(bytes((0b001,)))
+    robot.steps(5)
+    assert robot.loop.view.faults == {"emergency_stop"}
+    assert robot.robot.state()["wheels_mm_s"] == [0, 0]
+    assert robot.loop.view.base is not None and robot.loop.view.base.charging, "stopped, and charging all the same"
 
 
 def test_spot_pressed_twice_loads_without_a_name(drive: Make):
     robot = drive("post1:post2")
     robot.steps(3)
-    job = robot.loop.start(WaitHandover({VERIFIER}, 60.0), robot.now)
+    job = robot.loop.start(WaitHandover(lambda: {VERIFIER}, 60.0), robot.now)
     robot.tick()
     press_spot(robot)
     assert not robot.loop.finished(), "once may be an accident"
@@ -135,7 +196,7 @@ def test_spot_pressed_twice_loads_without_a_name(drive: Make):
 def test_spot_does_not_open_where_it_must_not(drive: Make):
     robot = drive("post1:post2")
     robot.steps(3)
-    job = robot.loop.start(WaitHandover({VERIFIER}, 5.0, spot_counts=False), robot.now)
+    job = robot.loop.start(WaitHandover(lambda: {VERIFIER}, 5.0, spot_counts=False), robot.now)
     press_spot(robot)
     press_spot(robot)
     assert robot.end_of(job, 6.0) == Failed("no_one_came")
