@@ -1,0 +1,84 @@
+"""What a formula does as a step of a plan."""
+
+from bdi.errors import (
+    AgentSpeakSyntaxError,
+    Place,
+)
+from bdi.syntax import (
+    Body,
+    Does,
+    If,
+    Simple,
+    Step,
+)
+from bdi.terms import (
+    AND,
+    INTERNAL,
+    NEGATIVE,
+    NOT,
+    OR,
+    POSITIVE,
+    RELATIONS,
+    Atom,
+    Code,
+    Structure,
+    Term,
+    Var,
+    atom,
+    predicate,
+)
+
+NO_LITERALS = RELATIONS | {AND, OR, NOT, NEGATIVE, POSITIVE} | {predicate(name, 2) for name in "+-*/"}
+
+
+_BELIEF_STEPS = {
+    (POSITIVE,): Does.ADD,
+    (POSITIVE, POSITIVE): Does.ADD_APART,
+    (NEGATIVE,): Does.REMOVE,
+    (NEGATIVE, NEGATIVE): Does.REMOVE_APART,
+    (NEGATIVE, POSITIVE): Does.UPDATE,
+}
+
+
+def step_of(term: Term, place: Place) -> Simple:
+    """What a formula does as a step: signs make it a change of belief."""
+    signs, inner = [], term
+    while isinstance(inner, Structure) and inner.predicate in (NEGATIVE, POSITIVE):
+        signs.append(inner.predicate)
+        inner = inner.args[0]
+    if signs:
+        if tuple(signs) not in _BELIEF_STEPS:
+            raise AgentSpeakSyntaxError(f"{term} is no step of a plan", place, ("+b", "-b", "-+b", "++b", "--b"))
+        return Simple(_BELIEF_STEPS[tuple(signs)], believed(inner, place), place)
+    return Simple(_deed_of(term, place), term, place)
+
+
+def _deed_of(term: Term, place: Place) -> Does:
+    if isinstance(term, Var | Code):
+        return Does.VARIABLE
+    if isinstance(term, Atom | Structure):
+        if term.predicate in RELATIONS or term.predicate in (AND, OR, NOT) or term.functor in ("true", "false"):
+            return Does.CONSTRAINT
+        if term.functor.startswith(INTERNAL):
+            return Does.INTERNAL
+        if term.predicate not in NO_LITERALS:
+            return Does.ACTION
+    raise AgentSpeakSyntaxError(f"{term} is no step of a plan", place, ("an action", "a goal", "a belief"))
+
+
+def believed(term: Term, place: Place) -> Term:
+    good = isinstance(term, Var) or (
+        isinstance(term, Atom | Structure)
+        and term.predicate not in NO_LITERALS
+        and not term.functor.startswith(INTERNAL)
+    )
+    if not good:
+        raise AgentSpeakSyntaxError(f"{term} cannot be believed", place, ("a name",))
+    return term
+
+
+def branch_of(step: Step) -> Body:
+    """A branch of a fork: `(a; b)` counts as its steps."""
+    if isinstance(step, If) and step.condition is atom("true"):
+        return step.then
+    return Body((step,))
