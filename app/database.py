@@ -79,9 +79,13 @@ def _prepare_sqlite(connection: Any, record: Any) -> None:
     # The driver must not begin transactions of its own: `_begin_sqlite` says which kind is wanted.
     connection.isolation_level = None
     cursor = connection.cursor()
-    for pragma in PRAGMAS:
-        cursor.execute(f"PRAGMA {pragma}")
-    cursor.close()
+    try:
+        for pragma in PRAGMAS:
+            cursor.execute(f"PRAGMA {pragma}")
+        cursor.close()
+    except BaseException:  # no database of ours; nobody else knows this connection yet
+        connection.close()
+        raise
 
 
 def _begin_sqlite(connection: Connection) -> None:

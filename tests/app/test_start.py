@@ -22,7 +22,7 @@ from app.commands import migrate
 from app.database import Database
 from app.errors import StartError
 from app.logs import redact
-from app.schema_version import INI, NewerDatabase, bring_to_head, is_at_head
+from app.schema_version import INI, DatabaseUnusable, NewerDatabase, bring_to_head, is_at_head
 from app.server_key import open_server_key
 from app.serving import PortTaken, listen
 from app.settings import Settings, load_settings, open_clock, open_map
@@ -105,6 +105,34 @@ def test_a_database_of_a_newer_version_is_refused_and_left_alone(settings: Setti
     assert (ran.returncode, ran.stdout) == (2, "")
     assert "9999" in ran.stderr
     assert "Traceback" not in ran.stderr
+
+
+@pytest.mark.parametrize(
+    ("url", "named"),
+    [
+        ("nonsense", "CAMPUS_MAIL_DATABASE_URL"),
+        ("foo://somebody:secret@here", "CAMPUS_MAIL_DATABASE_URL"),
+        ("sqlite+aiosqlite:////nowhere/at/all.sqlite", "unable to open database file"),
+    ],
+)
+def test_a_database_that_leads_nowhere_is_named_without_its_password(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, url: str, named: str
+) -> None:
+    monkeypatch.setenv("CAMPUS_MAIL_DATA", str(tmp_path))
+    monkeypatch.setenv("CAMPUS_MAIL_DATABASE_URL", url)
+    ran = CliRunner().invoke(commands, ["migrate"])
+    assert ran.exit_code == 2
+    assert named in ran.stderr
+    assert "secret" not in ran.stderr
+
+
+def test_a_file_that_is_no_database_is_named_and_left_as_it_is(settings: Settings) -> None:
+    settings.data.mkdir(exist_ok=True)
+    file = settings.data / "campus-mail.sqlite"
+    file.write_text("somebody's shopping list, and not a database of ours")
+    with pytest.raises(DatabaseUnusable, match="file is not a database"):
+        asyncio.run(migrate(settings))
+    assert file.read_text().startswith("somebody's")
 
 
 def test_a_taken_port_is_named_with_a_way_out_and_nothing_is_made(

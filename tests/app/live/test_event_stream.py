@@ -10,8 +10,10 @@ import pytest
 from fastapi import FastAPI
 
 from app.live.feed import REPLAYED, Happening, LocalFeed
+from app.people.service import find_person, set_roles
+from app.settings import Settings
 from app.tables import Person, Role
-from tests.app.conftest import RECIPIENT, STRANGER, Browser, Mailroom, Served, SignedIn
+from tests.app.conftest import RECIPIENT, SENDER, STRANGER, Browser, Mailroom, Served, SignedIn
 
 ANN = Person(id="ann", email="ann@campus.example", name="Ann", roles=["member"])
 BOB = Person(id="bob", email="bob@campus.example", name="Bob", roles=["member"])
@@ -100,6 +102,35 @@ def test_the_server_ends_within_three_seconds_with_a_stream_open(served: Served,
 def test_a_stream_needs_somebody_signed_in(served: Served) -> None:
     answer = httpx.get(f"{served.url}/api/v1/live")
     assert (answer.status_code, answer.json()["code"]) == (401, "not_signed_in")
+
+
+@pytest.fixture
+def settings(settings: Settings) -> Settings:
+    return settings.model_copy(update={"session_check_s": 0.2})
+
+
+def test_a_stream_ends_with_the_session_it_was_opened_in(served: Served, sender: Browser, recipient: Browser) -> None:
+    with following(served.url, sender) as stream, following(served.url, recipient) as other:
+        assert sender.delete("/api/v1/session").status_code == 204
+        with pytest.raises(EOFError):
+            stream.next()
+        order_by(recipient, served.url)
+        assert other.next()[0] in {"order", "notice"}, "who is still signed in hears on"
+
+
+def test_a_stream_ends_when_what_its_person_may_see_has_changed(
+    app: FastAPI, served: Served, sender: Browser, mailroom: Mailroom
+) -> None:
+    async def make_dispatcher() -> None:
+        async with app.state.database.transaction() as session:
+            person = await find_person(session, SENDER)
+            assert person
+            set_roles(person, {Role.DISPATCHER}, set())
+
+    with following(served.url, sender) as stream:
+        mailroom.call(make_dispatcher)
+        with pytest.raises(EOFError):
+            stream.next()
 
 
 def happening(number: int, person: Person | None = None, role: Role | None = None) -> Happening:

@@ -67,6 +67,26 @@ def test_what_cannot_be_spooled_is_tried_again_later_and_arrives(
     assert stuck().problem is None
 
 
+def test_a_mail_that_cannot_be_made_holds_up_nobody_elses(
+    app: FastAPI, sender: Browser, mailroom: Mailroom, mails: Mails
+) -> None:
+    worker = app.state.outbox_worker
+    broken: list[str] = []
+
+    def picture(order_id: str, kind: NoticeKind) -> None:
+        broken.extend([] if broken else [order_id])
+        if order_id in broken:
+            raise ValueError("no picture")
+
+    worker.code_picture = picture
+    sender.order()
+    mailroom.send_mails()
+    sender.order()
+    mailroom.send_mails()
+    assert len(broken) == 1
+    assert len(about_the_order(mails)) == 1
+
+
 def test_pauses_double_up_to_a_quarter_of_an_hour() -> None:
     assert [pause_s(tries) for tries in (1, 2, 3)] == [5.0, 10.0, 20.0]
     assert pause_s(50) == LONGEST_PAUSE_S

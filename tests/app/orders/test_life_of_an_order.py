@@ -110,6 +110,18 @@ def test_with_the_mail_aboard_nothing_is_cancelled(
     assert seen(sender, order_id)["can_cancel"] is False
 
 
+def test_a_wish_to_cancel_that_came_too_late_is_not_said_to_be_granted(
+    sender: Browser, recipient: Browser, mailroom: Mailroom, order_id: str
+) -> None:
+    mailroom.move(order_id, *WAY[:2])
+    cancel = f"/api/v1/orders/{order_id}/cancel"
+    assert sender.post(cancel).json()["cancel_requested"] is True
+    assert sender.post(cancel).json()["version"] == seen(sender, order_id)["version"], "asked for once"
+    mailroom.move(order_id, *WAY[2:4])
+    assert seen(sender, order_id)["cancel_requested"] is False
+    assert sender.post(cancel).json()["code"] == "not_cancellable"
+
+
 def test_only_the_sender_cancels(recipient: Browser, order_id: str) -> None:
     assert recipient.post(f"/api/v1/orders/{order_id}/cancel").json()["code"] == "not_cancellable"
     assert seen(recipient, order_id)["can_cancel"] is False

@@ -1,14 +1,17 @@
 """Placing an order: what is answered, what is refused, and that a retry is the same order."""
 
 import asyncio
+import threading
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
+import httpx
 import pytest
 from fastapi import FastAPI
 
 from app.orders.idempotency import Running
 from protocol.clock import SteppedClock
-from tests.app.conftest import RECIPIENT, SENDER, STRANGER, Browser, Mailroom, Mails, SignedIn
+from tests.app.conftest import RECIPIENT, SENDER, STRANGER, Browser, Mailroom, Mails, Served, SignedIn
 
 
 def refused(answer: Any) -> tuple[int, str]:
@@ -108,6 +111,25 @@ def test_two_requests_at_once_with_one_key_make_one_order(app: FastAPI, sender: 
 
     assert set(mailroom.call(both)) <= {201, 409}
     assert len(sender.get("/api/v1/orders").json()["items"]) == 1
+
+
+def test_two_connections_at_once_with_one_key_make_one_order(served: Served, sender: Browser) -> None:
+    body = {"from_post": "post1", "to_post": "post4", "recipient": RECIPIENT}
+    cookie = f"session={sender.cookies['session']}"
+    headers = {"Idempotency-Key": "k1", "Sec-Fetch-Site": "same-origin", "Cookie": cookie}
+    begin = threading.Barrier(8)
+
+    def ask(_: int) -> httpx.Response:
+        begin.wait()
+        return httpx.post(f"{served.url}/api/v1/orders", json=body, headers=headers)
+
+    with ThreadPoolExecutor(8) as people:
+        answers = list(people.map(ask, range(8)))
+    placed = [answer.json()["id"] for answer in answers if answer.status_code == 201]
+    assert {answer.status_code for answer in answers} <= {201, 409}
+    assert len(set(placed)) == 1
+    assert sum("Idempotency-Replayed" not in a.headers for a in answers if a.status_code == 201) == 1
+    assert [order["id"] for order in sender.get("/api/v1/orders").json()["items"]] == placed[:1]
 
 
 def test_the_estimate_says_window_and_length_before_anything_is_ordered(sender: Browser) -> None:

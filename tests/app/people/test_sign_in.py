@@ -46,6 +46,18 @@ def test_plain_http_from_another_machine_is_refused(app: FastAPI, nobody: TestCl
     assert (answer.status_code, code_of(answer)) == (403, "https_required")
 
 
+def test_somebody_who_was_sent_something_first_is_spoken_to_as_their_browser_does_from_then_on(
+    nobody: TestClient, sender: Browser, mails: Mails
+) -> None:
+    sender.order(recipient="bob@campus.example")
+    languages = []
+    for wanted in ("fr-CA,fr;q=0.9", "en"):
+        nobody.post(CODES, json={"email": "bob@campus.example"})
+        wish = {"email": "bob@campus.example", "code": mails.newest_code("bob@campus.example")}
+        languages.append(nobody.post(SIGN_IN, json=wish, headers={"Accept-Language": wanted}).json()["language"])
+    assert languages == ["fr", "fr"], "the first sign-in settles it, not whichever machine comes later"
+
+
 def test_an_address_of_another_domain_gets_no_code(nobody: TestClient, mails: Mails) -> None:
     answer = nobody.post(CODES, json={"email": "eve@elsewhere.example"})
     assert (answer.status_code, code_of(answer)) == (422, "address_not_allowed")

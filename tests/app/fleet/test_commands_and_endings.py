@@ -1,0 +1,149 @@
+"""What becomes of an order when it does not go as ordered: cancelled, not fetched, not taken; and of a stolen token."""
+
+import socket
+
+from websockets.asyncio.client import connect
+
+from app.fleet.service import new_token
+from app.tables import Alarm, MissionRow, Order
+from protocol.clock import SteppedClock
+from protocol.to_robot import Cancel
+from protocol.to_server import CommandAnswer, Event, Step
+from tests.app.fleet.playing import PlayedRobot, Service
+
+
+def accepts(command_id: str, robot: PlayedRobot) -> Event:
+    return Event(happened=CommandAnswer(command_id=command_id, accepted=True, happened_at=robot.clock.utc()))
+
+
+async def error_code(robot: PlayedRobot) -> str:
+    return str((await robot.hear("error")).body.model_dump()["code"])
+
+
+async def told_to_cancel(robot: PlayedRobot) -> Cancel:
+    cancel = (await robot.hear("cancel")).body
+    assert isinstance(cancel, Cancel)
+    return cancel
+
+
+async def test_a_robot_that_cannot_get_to_the_sender_is_free_and_the_order_says_why(
+    service: Service, robot: PlayedRobot
+) -> None:
+    token = await service.enrol("r1")
+    order_id = await service.order()
+    async with robot.connected(service.url, token):
+        await robot.greet()
+        mission = await robot.mission()
+        await robot.report(mission, Step.DEPARTED, mission.stops[0])
+        await robot.report(mission, Step.GAVE_UP, mission.stops[0], reason="no_route")
+        await service.reaches(order_id, "attention")
+        another = await service.order("post2", "post3")
+        assert (await robot.mission()).stops[0].order_id == another
+    assert "no_route" in (await service.row(Order, id=order_id)).why
+    assert (await service.states(order_id))[-2:] == ["to_sender", "attention"]
+
+
+async def test_mail_that_nobody_took_is_not_lost_sight_of(service: Service, robot: PlayedRobot) -> None:
+    """Thin: there is no way back yet. The order and an alarm say where the mail is; its robot gets nothing else."""
+    token = await service.enrol("r1")
+    order_id = await service.order()
+    async with robot.connected(service.url, token):
+        await robot.greet()
+        mission = await robot.mission()
+        load, receive = mission.stops
+        await robot.say(robot.receipt(load))
+        await robot.report(mission, Step.ARRIVED, receive)
+        await robot.report(mission, Step.GAVE_UP, receive, reason="no_one_came")
+        await service.order("post2", "post3")
+        await robot.ends(await robot.report(mission, Step.DONE))
+        assert not await service.app.state.dispatcher.assign_next()
+    order = await service.row(Order, id=order_id)
+    assert (str(order.state), order.robot) == ("returning", "r1")
+    assert "still in robot r1" in order.why
+    assert order_id in (await service.row(Alarm, name="mail_not_taken")).reason
+    assert len(await service.rows(MissionRow)) == 1
+
+
+async def test_a_robot_drops_only_what_it_was_told_to_drop(service: Service, robot: PlayedRobot) -> None:
+    other = PlayedRobot(robot.clock, name="r2", journal="journal-r2")
+    tokens = [await service.enrol(name) for name in ("r1", "r2")]
+    order_id = await service.order()
+    async with robot.connected(service.url, tokens[0]):
+        await robot.greet()
+        await robot.mission()
+        await robot.say(accepts(f"cancel-{order_id}", robot))
+        assert await error_code(robot) == "unknown_command"
+        await service.cancel(order_id)
+        async with other.connected(service.url, tokens[1]):
+            await other.greet()
+            await other.say(accepts(f"cancel-{order_id}", other))
+            assert await error_code(other) == "unknown_command"
+    assert await service.states(order_id) == ["queued", "assigned"]
+
+
+async def test_a_cancel_that_crossed_the_end_of_its_order_changes_nothing(service: Service, robot: PlayedRobot) -> None:
+    token = await service.enrol("r1")
+    order_id = await service.order()
+    async with robot.connected(service.url, token):
+        await robot.greet()
+        mission = await robot.mission()
+        await robot.report(mission, Step.ARRIVED, mission.stops[0])
+        await service.reaches(order_id, "at_sender")
+        await service.cancel(order_id)
+        await robot.report(mission, Step.GAVE_UP, mission.stops[0], reason="no_one_came")
+        cancel = await told_to_cancel(robot)
+        await robot.ends(await robot.say(accepts(cancel.command_id, robot)))
+    assert (await service.states(order_id))[-1] == "expired"
+    assert await service.rows(Alarm, name="transition_refused") == []
+
+
+async def test_a_robot_without_its_memory_is_told_again_what_to_drop(
+    service: Service, robot: PlayedRobot, clock: SteppedClock
+) -> None:
+    token = await service.enrol("r1")
+    order_id = await service.order()
+    async with robot.connected(service.url, token):
+        await robot.greet()
+        mission = await robot.mission()
+        await service.cancel(order_id)
+        await robot.hear("cancel")
+        await robot.ends(await robot.report(mission, Step.ACCEPTED))  # with it, the cancel is acknowledged
+    new_disk = PlayedRobot(clock, journal="journal-2")
+    async with new_disk.connected(service.url, token):
+        await new_disk.greet()
+        assert (await new_disk.mission()).update == 2
+        assert (await told_to_cancel(new_disk)).order_id == order_id
+
+
+async def test_a_receipt_for_the_wrong_end_of_an_order_is_refused(service: Service, robot: PlayedRobot) -> None:
+    token = await service.enrol("r1")
+    order_id = await service.order()
+    async with robot.connected(service.url, token):
+        await robot.greet()
+        load, receive = (await robot.mission()).stops
+        await robot.say(robot.receipt(load))
+        await robot.say(robot.receipt(load.model_copy(update={"action": receive.action})))
+        assert await error_code(robot) == "unknown_stop"
+    assert (await service.states(order_id))[-1] == "carrying"
+
+
+async def test_a_token_that_is_revoked_closes_the_connection_it_had_opened(
+    service: Service, robot: PlayedRobot
+) -> None:
+    token = await service.enrol("r1")
+    async with robot.connected(service.url, token):
+        await robot.greet()
+        async with service.app.state.database.transaction() as session:
+            await new_token(session, service.app.state.clock, "r1")
+        await service.order()
+        assert await robot.close_code() == 4401
+    assert "mission" not in [envelope.type for envelope in robot.heard], "it hears nothing more"
+
+
+async def test_a_token_is_taken_over_wss_alone_but_from_this_machine(service: Service, robot: PlayedRobot) -> None:
+    token = await service.enrol("r1")
+    url = service.url.replace("127.0.0.1", "mail.campus.example")
+    sock = socket.create_connection(("127.0.0.1", service.port))
+    headers = {"Authorization": f"Bearer {token}"}
+    async with connect(url, sock=sock, additional_headers=headers, proxy=None) as robot.socket:
+        assert await robot.close_code() == 4401
