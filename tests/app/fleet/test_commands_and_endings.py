@@ -5,11 +5,14 @@ import socket
 from websockets.asyncio.client import connect
 
 from app.fleet.service import new_token
-from app.tables import Alarm, MissionRow, Order
+from app.tables import Alarm, MessageToRobot, MissionRow, Order
 from protocol.clock import SteppedClock
-from protocol.to_robot import Cancel
-from protocol.to_server import CommandAnswer, Event, Step
+from protocol.parts import Leg
+from protocol.to_robot import Cancel, Grant
+from protocol.to_server import Claim, CommandAnswer, Event, Step
 from tests.app.fleet.playing import PlayedRobot, Service
+
+LEG = Leg(from_post="post1", to_post="post2")
 
 
 def accepts(command_id: str, robot: PlayedRobot) -> Event:
@@ -147,3 +150,58 @@ async def test_a_token_is_taken_over_wss_alone_but_from_this_machine(service: Se
     headers = {"Authorization": f"Bearer {token}"}
     async with connect(url, sock=sock, additional_headers=headers, proxy=None) as robot.socket:
         assert await robot.close_code() == 4401
+
+
+async def test_a_robot_without_its_memory_gets_what_is_left_of_its_mission(
+    service: Service, robot: PlayedRobot, clock: SteppedClock
+) -> None:
+    token = await service.enrol("r1")
+    order_id = await service.order()
+    async with robot.connected(service.url, token):
+        await robot.greet()
+        mission = await robot.mission()
+        await robot.report(mission, Step.ARRIVED, mission.stops[0])
+        await robot.say(Claim(claim_id="c1", legs=(LEG,)))
+        await robot.ends(await robot.say(robot.receipt(mission.stops[0])))
+    new_disk = PlayedRobot(clock, journal="journal-2")
+    async with new_disk.connected(service.url, token):
+        await new_disk.greet()
+        again = await new_disk.mission()
+        if again.update == 1:  # what the old disk had not acknowledged comes first
+            again = await new_disk.mission()
+    assert (again.id, again.update, again.stops) == (mission.id, 2, mission.stops[1:])
+    grants = [one.body for one in new_disk.heard if isinstance(one.body, Grant)]
+    assert grants[-1].legs == (LEG,), "it may stand there"
+    assert len(await service.rows(Alarm, name="memory_lost")) == 1
+    assert str((await service.row(Order, id=order_id)).state) == "carrying"
+
+
+async def test_a_cancelled_order_is_taken_from_the_robot_which_is_free_again(
+    service: Service, robot: PlayedRobot
+) -> None:
+    token = await service.enrol("r1")
+    order_id = await service.order()
+    async with robot.connected(service.url, token):
+        await robot.greet()
+        await robot.mission()
+        await service.cancel(order_id)
+        cancel = await told_to_cancel(robot)
+        assert cancel.order_id == order_id
+        await robot.say(accepts(cancel.command_id, robot))
+        await service.reaches(order_id, "cancelled")
+        another = await service.order("post2", "post3")
+        assert (await robot.mission()).stops[0].order_id == another
+    assert len(await service.rows(MessageToRobot, type="cancel")) == 1
+
+
+async def test_a_sender_who_never_came_frees_the_robot(service: Service, robot: PlayedRobot) -> None:
+    token = await service.enrol("r1")
+    order_id = await service.order()
+    async with robot.connected(service.url, token):
+        await robot.greet()
+        mission = await robot.mission()
+        await robot.report(mission, Step.ARRIVED, mission.stops[0])
+        await robot.report(mission, Step.GAVE_UP, mission.stops[0], reason="nobody came in 600 s")
+        await service.reaches(order_id, "expired")
+        another = await service.order()
+        assert (await robot.mission()).stops[0].order_id == another

@@ -9,11 +9,11 @@ from structlog.testing import capture_logs
 from app.database import Database
 from app.fleet.conversation import MAX_UNACKNOWLEDGED
 from app.settings import Settings
-from app.tables import Alarm, GrantRow, Handover, MessageToRobot, MissionRow, Order, RobotMessage, RobotRow, RobotToken
+from app.tables import Alarm, GrantRow, Handover, MessageToRobot, MissionRow, RobotMessage, RobotRow, RobotToken
 from protocol.clock import SteppedClock
 from protocol.parts import Activity, Battery, Leg, Position, Received
-from protocol.to_robot import Cancel, Grant, Resume, Verifiers
-from protocol.to_server import Claim, Clear, CommandAnswer, Event, Fault, Snapshot, Step, Why
+from protocol.to_robot import Grant, Resume, Verifiers
+from protocol.to_server import Claim, Clear, Event, Fault, Snapshot, Step, Why
 from tests.app.fleet.playing import PlayedRobot, Service, serving, until
 
 LEG = Leg(from_post="post1", to_post="post2")
@@ -246,30 +246,6 @@ async def test_what_was_not_acknowledged_is_sent_again_and_what_was_is_not(
             await robot.hear("mission", limit_s=0.2)
 
 
-async def test_a_robot_without_its_memory_gets_what_is_left_of_its_mission(
-    service: Service, robot: PlayedRobot, clock: SteppedClock
-) -> None:
-    token = await service.enrol("r1")
-    order_id = await service.order()
-    async with robot.connected(service.url, token):
-        await robot.greet()
-        mission = await robot.mission()
-        await robot.report(mission, Step.ARRIVED, mission.stops[0])
-        await robot.say(Claim(claim_id="c1", legs=(LEG,)))
-        await robot.ends(await robot.say(robot.receipt(mission.stops[0])))
-    new_disk = PlayedRobot(clock, journal="journal-2")
-    async with new_disk.connected(service.url, token):
-        await new_disk.greet()
-        again = await new_disk.mission()
-        if again.update == 1:  # what the old disk had not acknowledged comes first
-            again = await new_disk.mission()
-    assert (again.id, again.update, again.stops) == (mission.id, 2, mission.stops[1:])
-    grants = [one.body for one in new_disk.heard if isinstance(one.body, Grant)]
-    assert grants[-1].legs == (LEG,), "it may stand there"
-    assert len(await service.rows(Alarm, name="memory_lost")) == 1
-    assert str((await service.row(Order, id=order_id)).state) == "carrying"
-
-
 async def test_a_service_whose_database_was_put_back_begins_a_new_journal(service: Service, robot: PlayedRobot) -> None:
     token = await service.enrol("r1")
     journal = (await service.row(RobotRow)).server_journal
@@ -385,39 +361,6 @@ async def test_a_fault_is_an_alarm_until_it_is_over(service: Service, robot: Pla
         assert (await service.row(Alarm, name="cliff")).cleared_at is None
         await robot.ends(await robot.say(Event(happened=fault.model_copy(update={"cleared": True}))))
     assert (await service.row(Alarm, name="cliff")).cleared_at is not None
-
-
-async def test_a_cancelled_order_is_taken_from_the_robot_which_is_free_again(
-    service: Service, robot: PlayedRobot
-) -> None:
-    token = await service.enrol("r1")
-    order_id = await service.order()
-    async with robot.connected(service.url, token):
-        await robot.greet()
-        await robot.mission()
-        await service.cancel(order_id)
-        cancel = (await robot.hear("cancel")).body
-        assert isinstance(cancel, Cancel)
-        assert cancel.order_id == order_id
-        answer = CommandAnswer(command_id=cancel.command_id, accepted=True, happened_at=robot.clock.utc())
-        await robot.say(Event(happened=answer))
-        await service.reaches(order_id, "cancelled")
-        another = await service.order("post2", "post3")
-        assert (await robot.mission()).stops[0].order_id == another
-    assert len(await service.rows(MessageToRobot, type="cancel")) == 1
-
-
-async def test_a_sender_who_never_came_frees_the_robot(service: Service, robot: PlayedRobot) -> None:
-    token = await service.enrol("r1")
-    order_id = await service.order()
-    async with robot.connected(service.url, token):
-        await robot.greet()
-        mission = await robot.mission()
-        await robot.report(mission, Step.ARRIVED, mission.stops[0])
-        await robot.report(mission, Step.GAVE_UP, mission.stops[0], reason="nobody came in 600 s")
-        await service.reaches(order_id, "expired")
-        another = await service.order()
-        assert (await robot.mission()).stops[0].order_id == another
 
 
 async def test_a_robot_that_falls_silent_is_shown_as_offline(
