@@ -18,7 +18,7 @@ from bdi.arithmetic import ArithmeticFailure
 from bdi.beliefs import SELF
 from bdi.errors import AgentSpeakError
 from bdi.explain import Why, explain
-from bdi.intentions import NOT_WORKED_OUT, Event, Intention, Means, State, StepFailed
+from bdi.intentions import NOT_WORKED_OUT, RUNNING, Event, Intention, Means, StepFailed
 from bdi.loading import check_program
 from bdi.logic import Frame, Solve
 from bdi.messages import Finished, Message
@@ -29,12 +29,12 @@ from bdi.performatives import sourced
 from bdi.plans import CompiledPlan, Compiler
 from bdi.recovery import action_failure
 from bdi.sensing import Letter, Sensing
-from bdi.syntax import Belief, Program, Trigger
+from bdi.syntax import BELIEF_ADDED, BELIEF_REMOVED, GOAL_ADDED, Belief, Program, Trigger
 from bdi.terms import Term
 from bdi.trace import Deliberated, Stepped, TraceEntry
 from bdi.unify import undo
 
-BELIEF_EVENTS = (Trigger.BELIEF_ADDED, Trigger.BELIEF_REMOVED)
+BELIEF_EVENTS = (BELIEF_ADDED, BELIEF_REMOVED)
 FAILURE_EVENTS = (Trigger.GOAL_FAILED, Trigger.TEST_FAILED)
 
 
@@ -112,10 +112,8 @@ class Agent(Sensing):
     # ---- deliberate ------------------------------------------------------------------------------------------------
 
     def deliberate(self) -> None:
-        """Answer one event; events of the world that no plan is about do not count."""
+        """Answer one event."""
         event = self.select_event()
-        while event is not None and not event.options and event.intention is None and event.trigger in BELIEF_EVENTS:
-            event = self.select_event()
         if event is None:
             return
         chosen = self.select_plan(event)
@@ -130,12 +128,17 @@ class Agent(Sensing):
             self._fail_event(event)
 
     def select_event(self) -> Event | None:
-        """First in, first out; while an atomic plan runs only its own events."""
+        """First in, first out, passing over what no plan is about; while an atomic plan runs only its own events."""
+        events = self.events
         if self.atomic is None:
-            return self.events.popleft() if self.events else None
-        for event in self.events:
+            while events:
+                event = events.popleft()
+                if event.options or event.intention is not None or event.trigger not in BELIEF_EVENTS:
+                    return event
+            return None
+        for event in events:
             if event.intention is self.atomic:
-                self.events.remove(event)
+                events.remove(event)
                 return event
         return None
 
@@ -177,8 +180,8 @@ class Agent(Sensing):
         if (
             top.step is None
             and event.key is top.event.key
-            and event.trigger is Trigger.GOAL_ADDED
-            and top.event.trigger is Trigger.GOAL_ADDED
+            and event.trigger is GOAL_ADDED
+            and top.event.trigger is GOAL_ADDED
             and not top.plan.atomic
         ):
             stack.pop()
@@ -192,7 +195,7 @@ class Agent(Sensing):
         intention = self.selected = self.select_intention()
         if intention is not None:
             self.step(intention)
-            if intention.state is State.RUNNING and self.clear_finished(intention) and not intention.held:
+            if intention.state is RUNNING and self.clear_finished(intention) and not intention.held:
                 self.running.append(intention)
 
     def process_feedback(self, finished: Finished) -> None:

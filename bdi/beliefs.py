@@ -119,8 +119,8 @@ class Relation:
         belief = self.facts.get(args)
         if type(belief) is not Belief:
             return False
-        left = tuple([annot for annot in belief.annots if annot not in annots])
-        if annots and any(type(annot) is Structure and annot.predicate is SOURCE for annot in left):
+        left = tuple([annot for annot in belief.annots if annot not in annots]) if belief.annots != annots else ()
+        if left and annots and any(type(annot) is Structure and annot.predicate is SOURCE for annot in left):
             belief.annots = left
         else:
             self.discard(args)

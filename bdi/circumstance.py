@@ -7,12 +7,12 @@ from typing import Any
 
 from bdi.beliefs import Beliefs
 from bdi.builtin import find_builtin
-from bdi.intentions import Event, Fork, Intention, State
+from bdi.intentions import RUNNING, WAITS_FOR_EVENT, Event, Fork, Intention, State
 from bdi.logic import Builtin, Logic
 from bdi.messages import Finished, Message
 from bdi.outcome import Action, GoalFailure, Outcome
 from bdi.plans import Library, Options, relevant
-from bdi.syntax import Plan, Trigger
+from bdi.syntax import BELIEF_ADDED, Plan, Trigger
 from bdi.terms import Literal, Term
 from bdi.trace import Failed, TraceEntry
 from bdi.unify import resolve
@@ -65,14 +65,14 @@ class Circumstance:
 
     def _resume(self, intention: Intention) -> None:
         """It can go on; unless somebody suspended it."""
-        intention.state = State.RUNNING
+        intention.state = RUNNING
         intention.waits_for = None
         if not intention.held:
             self.running.append(intention)
 
     def _go_on(self, intention: Intention) -> None:
         """What it waited for is here: on with the next step, or back to the plan below."""
-        intention.state = State.RUNNING
+        intention.state = RUNNING
         intention.waits_for = None
         if self.clear_finished(intention):
             self._resume(intention)
@@ -132,7 +132,7 @@ class Circumstance:
         """Nothing that it waits for matters any more."""
         self._withdraw(intention)
         self.events = deque(event for event in self.events if event.intention is not intention)
-        intention.state = State.RUNNING
+        intention.state = RUNNING
 
     def _drop_branches(self, fork: Fork) -> None:
         for branch in fork.branches:
@@ -159,26 +159,28 @@ class Circumstance:
     def release(self, intention: Intention) -> None:
         if intention.held:
             intention.held = False
-            if intention.state is State.RUNNING:
+            if intention.state is RUNNING:
                 self.running.append(intention)
 
     # ---- events and plans ------------------------------------------------------------------------------------------
 
     def _wait_for_event(self, intention: Intention, event: Event) -> None:
-        intention.state = State.EVENT
+        intention.state = WAITS_FOR_EVENT
         self.events.append(event)
 
     def notice(self, trigger: Trigger, literal: Literal) -> None:
         """An event of the world."""
-        self.notice_event(Event(trigger, literal, self.relevant_plans(trigger, literal)), literal)
+        self.notice_events([Event(trigger, literal, self.relevant_plans(trigger, literal))])
 
-    def notice_event(self, event: Event, literal: Literal) -> None:
+    def notice_events(self, events: Iterable[Event]) -> None:
         """What came to be has its turn even if no plan is about it yet: one may be told by then. (Not while an atomic
         plan holds the agent: nobody would take it away.) What ceased to be has none."""
-        if event.options or (event.trigger is Trigger.BELIEF_ADDED and self.atomic is None):
-            self.events.append(event)
-        if self.waiters:
-            self._tell_waiters(event.trigger, literal)
+        lenient = self.atomic is None
+        for event in events:
+            if event.options or (lenient and event.trigger is BELIEF_ADDED):
+                self.events.append(event)
+            if self.waiters:
+                self._tell_waiters(event.trigger, event.literal)
 
     def _tell_waiters(self, trigger: Trigger, literal: Literal) -> None:
         for waiter in self.waiters:

@@ -3,14 +3,14 @@
 from typing import Any
 
 from bdi.beliefs import SELF
-from bdi.intentions import Event, Fork, Intention, Means, State, Step, StepFailed
+from bdi.intentions import WAITS_FOR_ACTION, Event, Fork, Intention, Means, State, Step, StepFailed
 from bdi.loading import is_known_action
 from bdi.logic import Builtin
 from bdi.outcome import Action
 from bdi.performatives import sourced
 from bdi.plans import Options
 from bdi.recovery import Recovery
-from bdi.syntax import Trigger
+from bdi.syntax import BELIEF_ADDED, BELIEF_REMOVED, GOAL_ADDED, Trigger
 from bdi.terms import Literal, Structure, Term, Var, literal_of
 from bdi.unify import FIXED, renamed, resolve_all, undo
 
@@ -29,7 +29,7 @@ class Doing(Recovery):
         self._last_action += 1
         self._pending[self._last_action] = intention
         intention.action = self._last_action
-        intention.state = State.ACTION
+        intention.state = WAITS_FOR_ACTION
         intention.waits_for = term
         self._actions.append(Action(self._last_action, term, intention.number))
         self._reported = True
@@ -58,13 +58,13 @@ class Doing(Recovery):
         if self._scoped:
             options = self._scoped_options(intention, goal, options)
         goal, returns = _with_own_variables(goal)
-        self._wait_for_event(intention, Event(Trigger.GOAL_ADDED, goal, options, intention, returns=returns))
+        self._wait_for_event(intention, Event(GOAL_ADDED, goal, options, intention, returns=returns))
 
     def _scoped_options(self, intention: Intention, goal: Literal, options: Options) -> Options:
         """Sub-plans of the plans that led here go before those of the agent."""
         for means in reversed(intention.stack):
             if means.plan.subplans is not None:
-                found: Options = means.plan.subplans.options(Trigger.GOAL_ADDED, goal.predicate)
+                found: Options = means.plan.subplans.options(GOAL_ADDED, goal.predicate)
                 if found:
                     return found
         return options
@@ -72,9 +72,9 @@ class Doing(Recovery):
     def achieve_apart(self, goal: Literal, options: Options | None = None) -> None:
         """!!g"""
         if options is None:
-            options = self.library.options(Trigger.GOAL_ADDED, goal.predicate)
+            options = self.library.options(GOAL_ADDED, goal.predicate)
         goal, _ = _with_own_variables(goal)
-        self.events.append(Event(Trigger.GOAL_ADDED, goal, options))
+        self.events.append(Event(GOAL_ADDED, goal, options))
 
     def ask_plans(self, intention: Intention, goal: Literal, options: Options) -> None:
         """?g that no belief answers"""
@@ -88,13 +88,13 @@ class Doing(Recovery):
         literal = sourced(literal, SELF)
         key = literal.predicate
         if self.beliefs.relation(key).add(literal.args, literal.annots, last):
-            self._react(Trigger.BELIEF_ADDED, literal, intention)
+            self._react(BELIEF_ADDED, literal, intention)
 
     def forget(self, literal: Literal, intention: Intention | None) -> None:
         """-b: the newest belief of our own that unifies"""
         gone = self._take_back(sourced(literal, SELF))
         if gone is not None:
-            self._react(Trigger.BELIEF_REMOVED, gone, intention)
+            self._react(BELIEF_REMOVED, gone, intention)
 
     def update(self, literal: Literal, intention: Intention) -> None:
         """-+b: one belief of this predicate goes, whatever its arguments"""
@@ -108,7 +108,7 @@ class Doing(Recovery):
         for belief in list(relation):
             if relation.find_in(belief, pattern.args, pattern.annots, self.logic.trail):
                 relation.discard(belief.args)
-                self._react(Trigger.BELIEF_REMOVED, literal_of(pattern.predicate, belief.args, belief.annots), None)
+                self._react(BELIEF_REMOVED, literal_of(pattern.predicate, belief.args, belief.annots), None)
 
     def _take_back(self, literal: Literal) -> Literal | None:
         """Remove the annotations (the source among them) of the newest belief that unifies; what it was, or None."""

@@ -23,6 +23,10 @@ class State(Enum):
     DONE = "is done"
 
 
+# By themselves for what runs in every cycle, as in `syntax`.
+RUNNING, WAITS_FOR_ACTION, WAITS_FOR_EVENT = State.RUNNING, State.ACTION, State.EVENT
+
+
 class Step:
     """One compiled step of a plan body. `run(intention, means)`; `next` is the step after it, None at the end."""
 

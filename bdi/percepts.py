@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 from operator import attrgetter
-from typing import Any, NamedTuple
+from typing import Any, TypeAlias
 
 from bdi.beliefs import PERCEPT
 from bdi.intentions import Event
@@ -37,12 +37,7 @@ def _event(trigger: Trigger, literal: Literal, mind: Mind) -> Event:
 _text = attrgetter("text")
 
 
-class Change(NamedTuple):
-    """What is perceived now, what of it is new, and what is gone."""
-
-    now: frozenset[Any]
-    gone: list[Percept]
-    new: list[Percept]
+Change: TypeAlias = tuple[frozenset[Any], list[Percept], list[Percept]]  # what is perceived now; gone of it; new in it
 
 
 class Percepts:
@@ -56,23 +51,24 @@ class Percepts:
         self._mixed = False  # whether one percept may come written in several ways
 
     def change(self, percepts: Iterable[Term | str]) -> Change | None:
-        """None if all is as before. Raises AgentSpeakSyntaxError and NotALiteral; nothing is changed until `now` is
-        set to what the answer says."""
+        """None if all is as before. Raises AgentSpeakSyntaxError and NotALiteral.
+
+        Nothing is changed until `now` is set to the first of the answer.
+        """
         now = frozenset(map(self._canonical, percepts) if self._mixed else percepts)
         if now == self.now:
             return None
-        new = self._in_order(now - self.now)
-        gone = self._in_order(self.now - now)
+        known, look_up = self._known, self._percept
+        new = [known.get(percept) or look_up(percept) for percept in now - self.now]
+        gone = [known.get(percept) or look_up(percept) for percept in self.now - now]
         if self._mixed and any(type(percept) is str for percept in now):
             return self.change(now)
-        return Change(now, gone, new)
-
-    def _in_order(self, percepts: frozenset[Any]) -> list[Percept]:
-        """By text: a set has another order in every run, and equal inputs must give equal runs."""
-        found = [self._percept(percept) for percept in percepts]
-        if len(found) > 1:
-            found.sort(key=_text)
-        return found
+        # By text: a set has another order in every run, and equal inputs must give equal runs.
+        if len(new) > 1:
+            new.sort(key=_text)
+        if len(gone) > 1:
+            gone.sort(key=_text)
+        return now, gone, new
 
     def forget_plans(self) -> None:
         """The plans have changed: look them up again."""

@@ -17,6 +17,8 @@ from bdi.terms import Literal, Term, atom, show
 from bdi.unify import is_ground, undo, unify
 from bdi.waiting import Waiter
 
+FROM_PERCEPT = (PERCEPT,)
+
 
 class Letter(NamedTuple):
     """A message that has been read: `content` is what its performative takes."""
@@ -68,13 +70,15 @@ class Sensing(Doing):
 
     def perceive(self, change: Change) -> None:
         """Believe what is perceived now, forget what no longer is: deletions, then additions."""
-        self.percepts.now = change.now
-        for percept in change.gone:
-            if percept.relation.take_back(percept.literal.args, (PERCEPT,)):
-                self.notice_event(percept.removed, percept.literal)
-        for percept in change.new:
+        self.percepts.now, gone, new = change
+        events = []
+        for percept in gone:
+            if percept.relation.take_back(percept.literal.args, FROM_PERCEPT):
+                events.append(percept.removed)
+        for percept in new:
             if percept.relation.add(percept.literal.args, percept.annots):
-                self.notice_event(percept.added, percept.literal)
+                events.append(percept.added)
+        self.notice_events(events)
 
     def plans_changed(self) -> None:
         self.percepts.forget_plans()

@@ -23,6 +23,10 @@ class Trigger(StrEnum):
     TEST_STATE = "^?"
 
 
+# By themselves for what runs in every cycle: reading a member off its Enum takes 90 ns in CPython 3.11.
+BELIEF_ADDED, BELIEF_REMOVED, GOAL_ADDED = Trigger.BELIEF_ADDED, Trigger.BELIEF_REMOVED, Trigger.GOAL_ADDED
+
+
 class Does(StrEnum):
     """What one step of a plan body does; the value is how it is written."""
 
