@@ -11,6 +11,7 @@ from pathlib import Path
 from types import FrameType
 from typing import Annotated, Any, NoReturn
 
+import structlog
 import typer
 
 from bdi import BdiError
@@ -24,7 +25,7 @@ from .link import LinkError
 from .mind import messages_from_person
 from .report import Ending, Refusal, Reporter
 from .runners import LockstepRunner, Runner, ThreadedRunner
-from .simulated import Door, SimulatedWorldError
+from .simulated import Door, SimulatedRobot, SimulatedWorldError
 from .store import StoreError
 
 UNFINISHED, MISUSE = 1, 2
@@ -104,6 +105,7 @@ def run(  # noqa: PLR0917  # typer reads the options from here
     Exit status 0: done, or nothing was to be achieved. 1: not done within --limit, given up, or stopped before.
     2: something to put right first, which is named.
     """
+    structlog.configure(logger_factory=lambda *_: structlog.PrintLogger(sys.stderr))  # stdout is for --json
     asked = {
         "map": campus,
         "name": name,
@@ -181,7 +183,7 @@ def _run(settings: Settings, clock: Clock, simulation: Simulation | None, wish: 
         refusal = Refusal(parts.link, runner.stop)
         parts.daemon.watchers = (reporter.look, ending.look, refusal.look)
         if wish.door and parts.robot:
-            closing.callback(Door(parts.robot, wish.door, lambda: {"robot": reporter.summary()}).close)
+            closing.callback(_open_door(parts.robot, wish.door, reporter).close)
         if parts.link:
             parts.link.start()
         _stop_on_signals(runner)
@@ -190,6 +192,15 @@ def _run(settings: Settings, clock: Clock, simulation: Simulation | None, wish: 
         raise LinkError(refusal.reason)
     _tell_end(reporter, ending, wish)
     return ending.problem is None
+
+
+def _open_door(robot: SimulatedRobot, path: Path, reporter: Reporter) -> Door:
+    try:
+        return Door(robot, path, lambda: {"robot": reporter.summary()})
+    except OSError as error:
+        raise ConfigError(
+            str(path), "--door", f"no socket can be made there: {error}", "Give another --door."
+        ) from None
 
 
 def _check_door(path: Path) -> None:

@@ -91,7 +91,7 @@ def assemble(settings: Settings, clock: Clock, simulation: Simulation | None) ->
         campus = find_map(settings.map)
         token = read_token(_token_file(settings)) if settings.server else None
         program = load_program(settings)
-        settings.data.mkdir(parents=True, exist_ok=True)
+        _make_folder(settings.data)
         store = Store(settings.data / "robot.db")
         closing.callback(store.close)
         devices = _devices(settings, campus, clock, simulation, closing)
@@ -101,6 +101,13 @@ def assemble(settings: Settings, clock: Clock, simulation: Simulation | None) ->
             parts.link = _link(settings, settings.server, token, clock, parts)
         parts.daemon.close_devices = closing.pop_all().close
         return parts
+
+
+def _make_folder(path: Path) -> None:
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise ConfigError(str(path), "data", f"no folder can be made there: {error.strerror}", "Give --data.") from None
 
 
 def _home(settings: Settings, campus: CampusMap) -> str | None:

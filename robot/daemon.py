@@ -15,6 +15,7 @@ it lives in a thread of its own and is met through queues.
 """
 
 from collections.abc import Callable
+from contextlib import ExitStack
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -123,11 +124,12 @@ class Daemon:
 
     def close(self, now: float) -> None:
         """Stop the wheels, leave the base in Passive (or it would never charge), close outbox and link."""
-        self.base.close()
-        if self.world:
-            for tick in range(LAST_TICKS):  # the last bytes are on their way to the simulated base
-                self.world.step_until(now + tick * TICK_S)
-            self.world.save()
-        if self.server:
-            self.server.stop()
-        self.close_devices()
+        with ExitStack() as last:  # each of them, even if one before it fails
+            last.callback(self.close_devices)
+            if self.server:
+                last.callback(self.server.stop)
+            self.base.close()
+            if self.world:
+                for tick in range(LAST_TICKS):  # the last bytes are on their way to the simulated base
+                    self.world.step_until(now + tick * TICK_S)
+                self.world.save()

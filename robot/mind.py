@@ -96,8 +96,8 @@ class Mind:
 
     @property
     def is_quiet(self) -> bool:
-        """The agent has nothing at all to do."""
-        return not self.inbox and self.agent.idle
+        """The agent has nothing at all to do, and nothing that it waits for either."""
+        return not self.inbox and self.agent.idle and not self.agent.intentions
 
     def seen(self, now: float) -> Seen:
         """The moment as perception is shown it."""

@@ -5,23 +5,37 @@ import os
 from pathlib import Path
 from typing import Any
 
+from .errors import RobotError
 from .simulated import Pose, SimulatedRobot
 
 SAVE_EVERY_S = 0.5
 SAVED_BYTES = 512
 
 
+class WorldNotKept(RobotError):
+    """The file of the simulated world cannot be read or written."""
+
+    def __init__(self, path: Path, problem: object) -> None:
+        super().__init__(
+            f"{path}: the simulated robot cannot keep its place there: {problem}. Delete it or free some room."
+        )
+
+
 class SavedWorld:
     """Moves the simulated robot along, and keeps its pose and charge in a file from which the next start goes on."""
 
     def __init__(self, robot: SimulatedRobot, path: Path) -> None:
-        self._robot = robot
+        """Raises WorldNotKept, as `step_until` does."""
+        self._robot, self._path = robot, path
         self._saved_s = robot.now
-        self._file = os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
-        text = os.pread(self._file, SAVED_BYTES, 0)
-        self.restored = bool(text)
-        if text:
-            self._restore(json.loads(text))
+        self.restored = False
+        try:
+            self._file = os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
+            text = os.pread(self._file, SAVED_BYTES, 0)
+            if text:
+                self._restore(json.loads(text))
+        except (OSError, ValueError, KeyError, TypeError) as error:
+            raise WorldNotKept(path, error) from None
 
     def _restore(self, saved: dict[str, Any]) -> None:
         self._robot.place(Pose(saved["x_m"], saved["y_m"], saved["heading_rad"]))
@@ -47,7 +61,10 @@ class SavedWorld:
             "mode": state["mode"],
             "wheels_mm_s": [round(speed) for speed in state["wheels_mm_s"]],
         }
-        os.pwrite(self._file, json.dumps(saved).ljust(SAVED_BYTES).encode(), 0)
+        try:
+            os.pwrite(self._file, json.dumps(saved).ljust(SAVED_BYTES).encode(), 0)
+        except OSError as error:
+            raise WorldNotKept(self._path, error.strerror) from None
 
     def close(self) -> None:
         os.close(self._file)

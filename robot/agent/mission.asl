@@ -37,6 +37,14 @@
 -!attend(_, Stop, _, _)[reason(no_one_came)] <- report(gave_up, Stop, no_one_came).
 
 // An errand given by hand: `--achieve 'visit(post4)'`.
-+!visit(Post) <- +errand(Post); !decide.
-+!fulfil(visit(Post)) <- !go_to(Post); say(arrived); -errand(Post).
--!fulfil(visit(Post))[error_msg(Why)] <- raise_fault(errand, Why); -errand(Post).
+// The goal lasts as long as the errand, and fails with it: whoever gave it is told the truth.
++!visit(Post)
+  <- +errand(Post);
+     !decide;
+     .wait(not errand(Post));
+     !has_visited(Post).
++!has_visited(Post) : missed(Post, Why) <- -missed(Post, Why); .fail(missed, error_msg(Why)).
++!has_visited(_).
+
++!fulfil(visit(Post)) <- !go_to(Post); say(arrived); clear_fault(errand); -errand(Post).
+-!fulfil(visit(Post))[error_msg(Why)] <- raise_fault(errand, Why); +missed(Post, Why); -errand(Post).

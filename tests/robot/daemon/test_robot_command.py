@@ -86,6 +86,27 @@ def test_a_door_that_somebody_listens_at_is_taken(tmp_path: Path) -> None:
         assert "--door" in refused("--simulated", "--door", str(tmp_path / "door"))
 
 
+def test_a_data_folder_that_cannot_be_made_is_named(tmp_path: Path) -> None:
+    assert "--data" in refused("--simulated", "--data", write(tmp_path / "file", "no folder"))
+
+
+def test_a_door_in_a_folder_that_is_not_there_is_named(tmp_path: Path) -> None:
+    assert "--door" in refused("--simulated", "--door", str(tmp_path / "nowhere" / "door"))
+
+
+@pytest.mark.parametrize("file", ["world.json", "robot.db"])
+def test_a_broken_file_in_the_data_folder_is_named(tmp_path: Path, file: str) -> None:
+    write(tmp_path / file, "neither json nor a database")
+    assert file in refused("--simulated", "--data", str(tmp_path))
+
+
+def test_an_errand_to_a_post_that_is_not_there_is_not_done() -> None:
+    ran = CliRunner().invoke(cli, ["--simulated", "--achieve", "visit(post9)", "--json"])
+    assert ran.exit_code == 1
+    summary = json.loads(ran.stdout)
+    assert (summary["done"], "unknown_post" in summary["reason"]) == (False, True)
+
+
 def test_a_goal_that_fails_ends_with_status_1_and_the_reason(tmp_path: Path) -> None:
     program = write(tmp_path / "lost.asl", "+!deliver(P) <- setDestination(P).\n")
     arguments = ["--simulated", "--agent", program, "--achieve", "deliver(post9)", "--json"]
