@@ -93,7 +93,9 @@ async def _not_loaded(report: Report, progress: Progress, mission: MissionRow, o
     """
     order = await report.session.get_one(Order, order_id)
     to, reason = OrderState.EXPIRED, progress.reason
-    if order.state in (OrderState.ASSIGNED, OrderState.TO_SENDER):
+    if order.cancel_requested_at is not None:  # as wished, whatever the robot answers later
+        to = OrderState.CANCELLED
+    elif order.state in (OrderState.ASSIGNED, OrderState.TO_SENDER):
         to, reason = OrderState.ATTENTION, f"The robot cannot get to the sender: {progress.reason}."
     await _move(report, order_id, (to,), report.word(progress.happened_at, progress.post, reason))
     _end(mission, MissionState.GAVE_UP, report.now)

@@ -2,6 +2,7 @@
 
 import socket
 
+import pytest
 from websockets.asyncio.client import connect
 
 from app.fleet.service import new_token
@@ -84,19 +85,21 @@ async def test_a_robot_drops_only_what_it_was_told_to_drop(service: Service, rob
     assert await service.states(order_id) == ["queued", "assigned"]
 
 
-async def test_a_cancel_that_crossed_the_end_of_its_order_changes_nothing(service: Service, robot: PlayedRobot) -> None:
+@pytest.mark.parametrize(("step", "reason"), [(Step.ARRIVED, "no_one_came"), (Step.DEPARTED, "no_route")])
+async def test_a_robot_that_gives_up_what_was_to_be_cancelled_has_cancelled_it(
+    service: Service, robot: PlayedRobot, step: Step, reason: str
+) -> None:
     token = await service.enrol("r1")
     order_id = await service.order()
     async with robot.connected(service.url, token):
         await robot.greet()
         mission = await robot.mission()
-        await robot.report(mission, Step.ARRIVED, mission.stops[0])
-        await service.reaches(order_id, "at_sender")
+        await robot.ends(await robot.report(mission, step, mission.stops[0]))
         await service.cancel(order_id)
-        await robot.report(mission, Step.GAVE_UP, mission.stops[0], reason="no_one_came")
+        await robot.report(mission, Step.GAVE_UP, mission.stops[0], reason=reason)
         cancel = await told_to_cancel(robot)
         await robot.ends(await robot.say(accepts(cancel.command_id, robot)))
-    assert (await service.states(order_id))[-1] == "expired"
+    assert (await service.states(order_id))[-1] == "cancelled"
     assert await service.rows(Alarm, name="transition_refused") == []
 
 
