@@ -35,6 +35,7 @@
 // The watchdog of the way: follow_line itself gives up when no post comes where one should.
 +!follow <- !follow(1).
 +!follow(_) <- follow_line; clear_fault(way_blocked).
+-!follow(_) : docked.   // it was put off docking at the last moment, and is in the dock: a post like any other
 -!follow(Try) : Try <= 3
   <- rest(3 * Try);
      !search;
