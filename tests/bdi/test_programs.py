@@ -10,8 +10,10 @@ from bdi import (
     Agent,
     AgentSpeakError,
     AgentSpeakSyntaxError,
+    BdiError,
     IncludeCircle,
     IncludeNotFound,
+    Message,
     UnknownAction,
     UnknownDirective,
     UnknownInternalAction,
@@ -21,6 +23,7 @@ from bdi import (
     parse_term,
 )
 from bdi.builtin import ACTIONS, FUNCTIONS
+from bdi.performatives import PERFORMATIVES
 
 MAIL = """// the heart of a courier
 dockStation(post0).
@@ -196,3 +199,32 @@ def test_any_text_is_a_term_or_a_syntax_error(text: str) -> None:
         parse_term(text)
     except AgentSpeakSyntaxError as error:
         assert error.line >= 1
+
+
+CONTENTS = st.one_of(
+    st.sampled_from(
+        ["p(1/0)", "r(X)", "r(1/0)", "p(X)[source(Y)]", "~p", "+!g(X)", "+!X", "@l +b <- .nth(9,[a],X); a.", "g"]
+    ),
+    st.builds("{}({})".format, st.sampled_from(["p", "r", "g", "b"]), VALUES),
+    st.text(alphabet="pX1 ()[]|,.~-+*/&!?{}\"'_:=<>@", max_size=12),
+)
+
+
+@settings(max_examples=300, deadline=None)
+@given(
+    st.sampled_from([*PERFORMATIVES, "shout"]), CONTENTS, st.sampled_from(["", "ag-1"]), st.lists(CONTENTS, max_size=2)
+)
+def test_a_wrong_message_or_percept_is_refused_by_name_and_never_troubles_a_cycle(
+    performative: str, content: str, reply_to: str, percepts: list[str]
+) -> None:
+    program = (
+        "r(X) :- .nth(9,[a],X). !g. +!g <- .send(bob, askOne, at(X), at(_)). +p(X) : X > 1 <- a(X). +!g(X) <- b(X/0)."
+    )
+    agent = Agent(parse_program(program), name="ag")
+    agent.cycle()
+    try:
+        agent.cycle(percepts, [Message("bob", performative, content, id="q", reply_to=reply_to)])
+    except BdiError:
+        assert agent.cycles == 1, "refused in the middle of a cycle, not at the door"
+    for cycle in range(6):
+        agent.cycle(now=float(cycle))
