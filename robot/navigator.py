@@ -17,6 +17,8 @@ RESTS_MM = 25.0
 """A pulse or two of the paper's `drive`. Its program does not look at the line as long as it perceives a post."""
 SAME_WAY_RAD = math.radians(60)
 """A robot that looks along a corridor to within this is taken to be going there."""
+STRAIGHT_RAD = math.radians(12)
+"""Within this the line is under the diodes, and following it straightens the robot up."""
 TURNING = frozenset({"turn", "undock", "find_line"})
 """Skills during which a marker is seen from aslant: it says nothing about the way that is left to its post."""
 PLAIN_TURNS = {"left": math.pi / 2, "right": -math.pi / 2, "behind": math.pi}
@@ -154,6 +156,13 @@ class Navigator:
             return plain_rad
         # A hair beyond 180 degrees must not turn the other way round than asked.
         return by_map_rad if abs(by_map_rad) < math.radians(170) else math.copysign(by_map_rad, plain_rad)
+
+    @property
+    def aslant_rad(self) -> float:
+        """How far it must turn to look along the corridor that its way takes; 0 if it does, or if none is known."""
+        towards = self._next_post()
+        turn_rad = self._turn_to(towards) if towards else None
+        return turn_rad if turn_rad is not None and abs(turn_rad) > STRAIGHT_RAD else 0.0
 
     def _next_post(self) -> str | None:
         if self.destination is None or self.at is None:

@@ -57,10 +57,24 @@ FOLLOW_LEAST_S, FOLLOW_TIMES = 180.0, 3.0
 
 
 def _follow_line(hands: Hands, _: Sequence[Value], now: float) -> Run:
+    """Along the line; a robot that looks aslant (its turn was interrupted) straightens up first."""
     navigator = hands.navigator
-    navigator.leave()
-    limit_s = FOLLOW_LEAST_S + FOLLOW_TIMES * navigator.ahead_m * 1000 / hands.cruise_mm_s
-    return _one(hands, FollowLine(navigator.campus, navigator.here, hands.cruise_mm_s, hands.shape, limit_s), now)
+    aslant_rad = navigator.aslant_rad
+
+    def straighten() -> Skill | None:
+        if not aslant_rad:
+            return None
+        navigator.begin_turn()
+        return Turn(aslant_rad, hands.shape, hands.turn_mm_s)
+
+    def follow() -> Skill:
+        if aslant_rad:
+            navigator.turned()
+        navigator.leave()
+        limit_s = FOLLOW_LEAST_S + FOLLOW_TIMES * navigator.ahead_m * 1000 / hands.cruise_mm_s
+        return FollowLine(navigator.campus, navigator.here, hands.cruise_mm_s, hands.shape, limit_s)
+
+    return Skills(hands.body, [straighten, follow], now)
 
 
 def _turn(hands: Hands, arguments: Sequence[Value], now: float) -> Run:

@@ -1,5 +1,6 @@
 """Actions: what a program asks for is begun, refused by name, ended or cancelled; nothing vanishes."""
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
@@ -123,6 +124,21 @@ def test_a_long_corridor_is_given_the_time_it_takes(bench: Bench) -> None:
     bench.ask("follow_line")
     limit_s = next(iter(bench.body.running.values())).limit_s
     assert limit_s == pytest.approx(180 + 3 * 2.0 / 0.12)
+
+
+def test_a_robot_whose_turn_was_interrupted_straightens_up_before_it_follows_the_line(bench: Bench) -> None:
+    bench.navigator.place("post2", "post3")
+    bench.result("set_destination(post3)")
+    bench.body.turns(math.radians(-30))
+    bench.navigator.look(bench.body.view)
+    assert bench.navigator.way() == "forward"
+    id_ = bench.ask("follow_line")
+    assert bench.body.started == ["turn"]
+    bench.body.end("turn")
+    assert bench.actions.finished(1.0) == []
+    assert bench.body.started == ["turn", "follow_line"]
+    bench.body.end("follow_line", Done("post3"))
+    assert bench.actions.finished(2.0) == [(id_, None)]
 
 
 def test_a_second_motion_is_busy_and_the_first_goes_on(bench: Bench) -> None:
