@@ -6,7 +6,7 @@ from hashlib import sha256
 
 import pytest
 import pytest_asyncio
-from playwright.async_api import Page, expect
+from playwright.async_api import Page, Route, expect
 
 from protocol.clock import RealClock
 from protocol.parts import Activity, Battery, Position, StopAction
@@ -182,6 +182,42 @@ async def test_a_robot_out_of_reach_is_said_to_be_so_and_its_order_goes_on(demon
         ada.page.get_by_text(re.compile("^Out of network. Last heard of .* it goes on by itself"))
     ).to_be_visible()
     await expect(ada.page.get_by_role("heading", level=1)).to_have_text(f"{robot} is coming to Post 1")
+
+
+async def test_an_answer_that_is_overtaken_does_not_undo_what_was_heard(demonstration, visit):
+    """Several answers in a row are read by the service before the robot is heard, and reach the page after that."""
+    ada = await visit("ada.king", at=demonstration.service)
+    order_id = await ada.order("bob.martin@campus.example")
+    await demonstration.is_given_a_mission()
+    await demonstration.reports(Step.DEPARTED, StopAction.LOAD)
+    posts = iter(("post5", "post3", "post2"))
+
+    async def be_overtaken(route: Route) -> None:
+        answer = await route.fetch()
+        await ada.page.wait_for_function("window.following")
+        if post := next(posts, None):
+            async with ada.page.expect_event("console", lambda said: said.text == "robot heard"):
+                await demonstration.is_seen(post, towards="post1")
+        await route.fulfill(response=answer)
+
+    await ada.page.add_init_script(
+        """const Real = EventSource;
+        window.EventSource = class extends Real {
+          constructor(url) {
+            super(url);
+            this.addEventListener("open", () => (window.following = true));
+            this.addEventListener("robot", () => setTimeout(() => console.log("robot heard")));
+          }
+        };"""
+    )
+    await ada.page.route(f"**/api/v1/orders/{order_id}", be_overtaken)
+    await ada.page.goto(f"/follow.html?order={order_id}")
+    facts = ada.page.get_by_role("region", name="Where the robot is").get_by_role("list")
+    await expect(facts.get_by_text(re.compile("^Last seen at Post 2, "))).to_be_visible()
+    assert next(posts, None) is None
+    await ada.page.wait_for_timeout(500)  # whatever is still on its way has come by then
+    await expect(facts.get_by_text(re.compile("^Last seen at Post 2, "))).to_be_visible()
+    await ada.page.unroute_all(behavior="wait")
 
 
 async def test_cancelling_with_a_robot_on_its_way_waits_for_the_robots_answer(demonstration, visit):

@@ -22,8 +22,8 @@ const AT_ME = { load: "at_sender", receive: "at_recipient" };
 const WAITING = ["waiting", "charging", "stopped"];
 
 export class FollowPage extends PageElement {
-  /** Whether anything was heard since the service was asked last. */
-  #heard = false;
+  /** How often something was heard. */
+  #heard = 0;
 
   static properties = {
     order_id: { attribute: false },
@@ -47,7 +47,7 @@ export class FollowPage extends PageElement {
     this.problem = "";
     new OnLive(this, {
       order: (order) => order.id === this.order_id && this.#hear(() => this.#show(order)),
-      robot: (robot) => robot.name === this.order?.robot?.name && this.#hear(() => (this.robot = robot)),
+      robot: (robot) => this.#concerns(robot) && this.#hear(() => (this.robot = robot)),
       connected: (connected) => connected && this.#fetch(),
     });
   }
@@ -141,17 +141,24 @@ export class FollowPage extends PageElement {
     this.robot = order.robot;
   }
 
+  /** Before the first answer any robot may be the one. @param {Robot} robot */
+  #concerns(robot) {
+    return this.order === null || robot.name === this.order.robot?.name;
+  }
+
   /** @param {() => void} take */
   #hear(take) {
     take();
-    this.#heard = true;
+    this.#heard += 1;
   }
 
-  /** An answer may be older than what is heard while it is on its way: then it is asked for once more. */
+  /** An answer may be older than what is heard while it is on its way: then it is asked for again. */
   async #fetch() {
-    this.#heard = false;
-    await this.#ask();
-    if (this.#heard) await this.#ask();
+    let heard;
+    do {
+      heard = this.#heard;
+      await this.#ask();
+    } while (heard !== this.#heard);
   }
 
   async #ask() {
