@@ -1,5 +1,7 @@
 """Brings the database to the schema of this code, and refuses one that is newer."""
 
+import asyncio
+import sqlite3
 from pathlib import Path
 
 from alembic import command
@@ -7,7 +9,7 @@ from alembic.config import Config
 from alembic.migration import MigrationContext
 from alembic.script import ScriptDirectory
 from alembic.util import CommandError
-from sqlalchemy import Connection
+from sqlalchemy import URL, Connection
 from sqlalchemy.exc import DBAPIError
 
 from app.database import Database
@@ -36,9 +38,10 @@ async def bring_to_head(database: Database) -> None:
     Raises NewerDatabase or DatabaseUnusable, having changed nothing.
     """
     try:
+        await asyncio.to_thread(_open, database.engine.url)
         async with database.writing.begin() as connection:
             await connection.run_sync(_bring_to_head)
-    except (DBAPIError, OSError) as error:
+    except (DBAPIError, OSError, sqlite3.Error) as error:
         why = error.orig if isinstance(error, DBAPIError) else error
         raise DatabaseUnusable(f"The database {database.name} cannot be used: {why}.") from error
 
@@ -47,6 +50,15 @@ async def is_at_head(database: Database) -> bool:
     """Whether the schema is the one of this code."""
     async with database.engine.connect() as connection:
         return await connection.run_sync(_revision) == _scripts().get_current_head()
+
+
+def _open(url: URL) -> None:
+    """Whether SQLite can open its file is found out without the asynchronous driver.
+
+    A connection of the driver that fails to open leaves a thread behind, which complains once the event loop is closed.
+    """
+    if url.get_backend_name() == "sqlite" and url.database:
+        sqlite3.connect(url.database).close()
 
 
 def _bring_to_head(connection: Connection) -> None:
