@@ -10,7 +10,6 @@ from robot.simulated import DiodeMount, Motion, Options, Person, Pose, UnknownSt
 from robot.simulated.body import Build
 from robot.simulated.drive_base import MM_PER_COUNT
 
-SAFE = 2
 STILL = Motion(ripple_mm_s=0.0, wheel_error=0.0)
 
 
