@@ -5,10 +5,6 @@ import os
 import secrets
 from hashlib import sha256
 from pathlib import Path
-from typing import Annotated
-
-from fastapi import Depends
-from starlette.requests import HTTPConnection
 
 from app.errors import StartError
 
@@ -53,11 +49,3 @@ def _make_once(path: Path) -> None:
         pass
     finally:
         unfinished.unlink()
-
-
-def _key_of(connection: HTTPConnection) -> ServerKey:
-    key: ServerKey = connection.app.state.server_key
-    return key
-
-
-ServerKeyDep = Annotated[ServerKey, Depends(_key_of)]
