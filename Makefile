@@ -6,12 +6,12 @@ BIN := .venv/bin
 ARGS ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help setup test check format demo serve robot bench pin clean
+.PHONY: help setup test check format demo serve robot bench bench-mind fuzz-mind pin clean
 # A recipe that fails must not leave its stamp behind.
 .DELETE_ON_ERROR:
 
 help: ## List the verbs
-	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-8s %s\n", $$1, $$2 }' Makefile
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-10s %s\n", $$1, $$2 }' Makefile
 
 setup: .venv/.python-ready .venv/.pages-ready ## Make .venv and fetch every package (all other verbs do this by themselves)
 
@@ -39,7 +39,14 @@ robot: setup ## Start one robot with a simulated body
 	$(BIN)/python -m robot --simulated $(ARGS)
 
 bench: setup ## Measure: everything in benchmarks/
-	@set -e; for file in benchmarks/*.py; do echo "== $$file"; PYTHONPATH=. $(BIN)/python "$$file" $(ARGS); done
+	@set -e; for file in $(wildcard benchmarks/*.py benchmarks/*/__main__.py); do \
+	  echo "== $$file"; PYTHONPATH=. $(BIN)/python "$$file" $(ARGS); done
+
+bench-mind: setup ## Measure the mind beside python-agentspeak and, where JASON_JAR is set, Jason; prints JSON
+	@$(BIN)/python -m benchmarks.mind $(ARGS)
+
+fuzz-mind: setup ## Feed the mind 10,000 mangled programs: each is read and run, or what is wrong is named
+	@$(BIN)/python -m benchmarks.fuzz_mind $(ARGS)
 
 pin: setup ## Write constraints.txt anew from pyproject.toml
 	$(BIN)/pip install --quiet uv
@@ -66,6 +73,8 @@ clean: ## Remove what setup, tests and runs have made
 	  print(*p["dependencies"], *p["optional-dependencies"]["develop"], sep="\n")' > .venv/requirements.txt
 	@echo "Fetching the Python packages …"
 	@$(BIN)/pip install --quiet --disable-pip-version-check -r .venv/requirements.txt -c constraints.txt
+	@# So that a first start is quick, also where Python is told to leave no compiled modules behind.
+	@$(BIN)/python -m compileall -q protocol maps bdi robot app
 	@touch $@
 
 # The pages' tools run on the system's node if its npm is recent, else on the node that a Python package has brought.

@@ -1,15 +1,19 @@
 """What the agent believes: one relation for each predicate, newest first, indexed by the first argument."""
 
 from collections.abc import Callable, Iterable, Iterator
+from itertools import combinations
 from typing import Any
+from weakref import WeakMethod
 
-from bdi.terms import Literal, Predicate, Structure, Term, Var, atom, literal_of, predicate
-from bdi.unify import FIXED, Trail, deref, parts_of, undo, unify_all, unify_annots, variables_in
+from bdi.terms import Literal, OpenList, Predicate, Structure, Term, Var, atom, literal_of, predicate
+from bdi.unify import FIXED, Trail, deref, in_order, parts_of, renamed, undo, unify, unify_annots, variables_in
 
 Arguments = tuple[Term, ...]
 SOURCE = predicate("source", 1)
 SELF = Structure(SOURCE, (atom("self"),))
+FROM_SELF = (SELF,)  # of a goal that a plan posts, unless it says otherwise
 PERCEPT = Structure(SOURCE, (atom("percept"),))
+FEW = 50
 INDEX_FROM = 8  # facts; below it, looking at each is quicker than an index
 
 
@@ -25,25 +29,27 @@ class Belief:
 
 
 class Derivation:
-    """A rule in its place among the facts of its predicate; `solve(args, resume, frame)` is filled in by `logic`."""
+    """A rule in its place among the facts of its predicate; `proof.call(args, then)` is filled in by `logic`."""
 
-    __slots__ = ("rule", "solve")
+    __slots__ = ("proof", "rule")
 
-    def __init__(self, rule: Any, solve: Callable[..., bool]) -> None:
+    def __init__(self, rule: Any, proof: Any) -> None:
         self.rule = rule
-        self.solve = solve
+        self.proof = proof
 
 
 class Relation:
     """All beliefs with one predicate. `facts` goes from the oldest to the newest: read it reversed."""
 
-    __slots__ = ("by_first", "facts", "irregular", "predicate")
+    __slots__ = ("_crowded", "_dependents", "by_first", "facts", "irregular", "predicate")
 
     def __init__(self, key: Predicate) -> None:
         self.predicate = key
         self.facts: dict[Any, Belief | Derivation] = {}
+        self._crowded = FEW  # dependents, before the dead are looked for among them
         self.irregular = 0  # entries that equality does not find: rules, facts with variables or annotated parts
         self.by_first: dict[Term, dict[Arguments, None]] | None = None
+        self._dependents: dict[int, WeakMethod[Callable[[], None]]] = {}  # by object; see depend
 
     # -- reading
 
@@ -89,9 +95,13 @@ class Relation:
 
     def add_rule(self, derivation: Derivation, last: bool = False) -> None:
         self.facts[derivation] = derivation
-        self.irregular += 1
+        self._count_irregular(1)
         if last:
             self.facts = {derivation: self.facts.pop(derivation), **self.facts}
+
+    def discard_rule(self, derivation: Derivation) -> None:
+        if self.facts.pop(derivation, None) is not None:
+            self._count_irregular(-1)
 
     def discard(self, args: Arguments) -> None:
         """Forget the fact with exactly these arguments, whoever said it."""
@@ -102,8 +112,7 @@ class Relation:
         """Keep `irregular` and the index in step with `facts`."""
         for arg in args:
             if type(arg) not in FIXED and _is_loose(arg):
-                self.irregular += change
-                self.by_first = None
+                self._count_irregular(change)
                 return
         if self.by_first is not None and args:
             bucket = self.by_first.setdefault(args[0], {})
@@ -113,6 +122,25 @@ class Relation:
                 del bucket[args]
                 if not bucket:
                     del self.by_first[args[0]]
+
+    def _count_irregular(self, change: int) -> None:
+        self.irregular += change
+        self.by_first = None
+        if self._dependents:
+            found = [reference() for reference in self._dependents.values()]
+            self._dependents = {}
+            for forget in found:
+                if forget is not None:
+                    forget()
+
+    def depend(self, forget: Callable[[], None]) -> None:
+        """Call this method of an object that takes the relation for regular once it is no longer. As long as there is
+        such an object: nobody is kept alive."""
+        known = self._dependents
+        if len(known) >= self._crowded:
+            known = self._dependents = {key: each for key, each in known.items() if each() is not None}
+            self._crowded = 2 * len(known) + FEW
+        known[id(forget.__self__)] = WeakMethod(forget)  # type: ignore[attr-defined]
 
     def take_back(self, args: Arguments, annots: Arguments) -> bool:
         """Remove these annotations of the fact, and the fact itself once no source is left. False: no such fact."""
@@ -129,11 +157,11 @@ class Relation:
     def find(self, args: Arguments, annots: Arguments, trail: Trail) -> Belief | None:
         """The newest fact that unifies, with the variables of `args` and `annots` bound to it."""
         exact = self.facts.get(args)
-        if type(exact) is Belief and not annots:
+        if type(exact) is Belief and (not annots or (annots == exact.annots and not self.irregular)):
             return exact
         for belief in self:
             mark = len(trail)
-            if _agrees(belief, args, annots, trail):
+            if agrees(belief, args, annots, trail):
                 return belief
             undo(trail, mark)
         return None
@@ -141,19 +169,51 @@ class Relation:
     def find_in(self, belief: Belief, args: Arguments, annots: Arguments, trail: Trail) -> bool:
         """Whether this fact unifies; nothing stays bound."""
         mark = len(trail)
-        found = _agrees(belief, args, annots, trail)
+        found = agrees(belief, args, annots, trail)
         undo(trail, mark)
         return found
 
 
-def _agrees(belief: Belief, args: Arguments, annots: Arguments, trail: Trail) -> bool:
-    return unify_all(args, belief.args, trail) and (not annots or unify_annots(annots, belief.annots, trail))
+def agrees(belief: Belief, args: Arguments, annots: Arguments, trail: Trail) -> bool:
+    """Whether the fact unifies. Its own variables stay free: it means the same the next time."""
+    stored = belief.args
+    if belief.open:
+        names: dict[Var, Term] = {}
+        stored = tuple([renamed(arg, names) for arg in stored])
+    for arg, fact in zip(args, stored, strict=True):
+        if not unify(arg, fact, trail):
+            return False
+    return not annots or unify_annots(annots, belief.annots, trail)
+
+
+def agreements(belief: Belief, args: Arguments, annots: Arguments, trail: Trail) -> Iterator[None]:
+    """The ways in which the fact unifies: b[source(S)] once for every source. A tail takes all in one way."""
+    mark = len(trail)
+    for chosen in _choices(belief.annots, annots):
+        if agrees(belief, args, (), trail) and unify_annots(annots, chosen, trail):
+            yield
+        undo(trail, mark)
+
+
+def _choices(present: Arguments, wanted: Arguments) -> Iterable[Arguments]:
+    """As many annotations as are wanted, in every way that can make a difference."""
+    if len(present) <= len(wanted) or type(wanted[-1]) is OpenList or not any(map(variables_in, wanted)):
+        return (present,)
+    return combinations(sorted(present, key=in_order), len(wanted))
 
 
 def _is_loose(term: Term) -> bool:
     if type(term) is Var or (type(term) is Structure and term.annots):
         return True
     return any(_is_loose(deref(part)) for part in parts_of(term))
+
+
+def annots_from_self(annots: Arguments) -> Arguments:
+    """The annotations of a goal or belief of our own; a source that is written there stays the only one."""
+    if not annots:
+        return FROM_SELF
+    named = any(type(annot) is Structure and annot.predicate is SOURCE for annot in annots)
+    return annots if named else (*annots, SELF)
 
 
 class Beliefs:

@@ -1,12 +1,12 @@
 """What a program is made of, as the parser hands it over. Formulas are terms (see the operators in `terms`)."""
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
-from typing import TypeAlias
+from typing import Any, TypeAlias, TypeVar
 
 from bdi.errors import Place
-from bdi.terms import Literal, Term, Var, show
+from bdi.terms import ANNOTATED, Code, List, Literal, OpenList, Predicate, String, Structure, Term, Var, atom, show
 from bdi.unify import variables_in
 
 
@@ -46,6 +46,25 @@ class Does(StrEnum):
     VARIABLE = "X"  # a plan body held by a variable
 
 
+_ESCAPES = str.maketrans({"\\": "\\\\", '"': '\\"', "\n": "\\n", "\t": "\\t", "\r": "\\r", "\b": "\\b", "\f": "\\f"})
+
+
+def written(term: Term) -> str:
+    """A term as a program writes it: unlike in `show`, strings have their escapes."""
+    text = show(term)
+    return show(_escaped(term)) if '"' in text else text
+
+
+def _escaped(term: Term) -> Term:
+    if isinstance(term, String):
+        return String(str.__str__(term).translate(_ESCAPES))
+    if isinstance(term, Structure):
+        return Structure(term.predicate, tuple(map(_escaped, term.args)), tuple(map(_escaped, term.annots)))
+    if isinstance(term, List):
+        return List(map(_escaped, term))
+    return OpenList(tuple(map(_escaped, term.items)), _escaped(term.tail)) if isinstance(term, OpenList) else term
+
+
 @dataclass(frozen=True, slots=True)
 class Simple:
     """`!g(X)`, `+b`, `p(1)`, `X > 2`: one step with one term."""
@@ -56,7 +75,7 @@ class Simple:
 
     def __str__(self) -> str:
         mark = "" if self.does in _UNMARKED else self.does.value
-        return f"{mark}{show(self.term)}"
+        return f"{mark}{written(self.term)}"
 
 
 _UNMARKED = frozenset({Does.ACTION, Does.INTERNAL, Does.CONSTRAINT, Does.VARIABLE})
@@ -72,8 +91,12 @@ class If:
     place: Place
 
     def __str__(self) -> str:
-        other = f" else {{{self.otherwise}}}" if self.otherwise.steps else ""
-        return f"if ({show(self.condition)}) {{{self.then}}}{other}"
+        other = ""
+        if len(self.otherwise.steps) == 1 and isinstance(self.otherwise.steps[0], If):
+            other = f" el{self.otherwise}"
+        elif self.otherwise.steps:
+            other = f" else {{{self.otherwise}}}"
+        return f"if ({written(self.condition)}) {{{self.then}}}{other}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +108,7 @@ class While:
     place: Place
 
     def __str__(self) -> str:
-        return f"while ({show(self.condition)}) {{{self.body}}}"
+        return f"while ({written(self.condition)}) {{{self.body}}}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,7 +120,7 @@ class For:
     place: Place
 
     def __str__(self) -> str:
-        return f"for ({show(self.condition)}) {{{self.body}}}"
+        return f"for ({written(self.condition)}) {{{self.body}}}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,7 +149,7 @@ class Body:
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """`@label trigger : context <: condition <- body. { subplans }`. `head` may be a variable: `+!G`."""
+    """`@label trigger : context <: condition <- body. { subplans }`. `head` may be a variable: `+!G[source(S)]`."""
 
     label: Literal
     trigger: Trigger
@@ -136,15 +159,20 @@ class Plan:
     place: Place
     condition: Term | None = None
     subplans: tuple["Plan", ...] = ()
+    head_annots: tuple[Term, ...] = ()  # where the head is a variable
 
     def has(self, annotation: str) -> bool:
         """Whether the label carries this annotation, as `@label[atomic]`."""
         return any(getattr(annot, "functor", "") == annotation for annot in self.label.annots)
 
     def __str__(self) -> str:
-        context = f" : {show(self.context)}" if self.context is not None else ""
+        label = f"@{written(self.label)} " if self.label.functor or self.label.annots else ""
+        head = Structure(ANNOTATED, (self.head,), self.head_annots) if self.head_annots else self.head
+        context = f" : {written(self.context)}" if self.context is not None else ""
+        condition = f" <: {written(self.condition)}" if self.condition is not None else ""
         body = f" <- {self.body}" if self.body.steps else ""
-        return f"@{show(self.label)} {self.trigger}{show(self.head)}{context}{body}."
+        inner = f" {{ {' '.join(map(str, self.subplans))} }}" if self.subplans else ""
+        return f"{label}{self.trigger}{written(head)}{context}{condition}{body}.{inner}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -156,15 +184,16 @@ class Rule:
     place: Place
 
     def __str__(self) -> str:
-        return f"{show(self.head)} :- {show(self.formula)}."
+        return f"{written(self.head)} :- {written(self.formula)}."
 
 
 @dataclass(frozen=True, slots=True)
 class Directive:
-    """`{ include("safety.asl") }`; the parser's caller carries it out."""
+    """`{ include("safety.asl") }`, or `{ begin term } clauses { end }`; the parser's caller carries it out."""
 
     term: Literal
     place: Place
+    clauses: "tuple[Clause, ...] | None" = None  # of its block; None where there is none
 
 
 @dataclass(frozen=True, slots=True)
@@ -179,7 +208,31 @@ class Goal:
     place: Place
 
 
+@dataclass(frozen=True, slots=True)
+class Function:
+    """`{ register_function("name", arity, "rule") }`: `name(X)` is the Y for which `rule(X,Y)` holds."""
+
+    name: str
+    arity: int
+    target: Predicate  # of the rule or internal action, with the result as its last argument
+    place: Place
+
+
+Held = TypeVar("Held", bound="Body | Plan | Rule")  # what a value in braces can hold
+
 Clause: TypeAlias = Belief | Rule | Goal | Plan | Directive
+
+
+@dataclass(frozen=True, slots=True)
+class CompatibilityWarning:
+    """Something written as in older programs: `sentence` says what, `today` is what to write."""
+
+    place: Place
+    sentence: str
+    today: str
+
+    def __str__(self) -> str:
+        return f"{self.place}: {self.sentence}{self.place.picture()}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -191,24 +244,92 @@ class Program:
     goals: tuple[Goal, ...] = ()
     plans: tuple[Plan, ...] = ()
     sources: tuple[str, ...] = field(default=())
+    functions: tuple[Function, ...] = ()
+    namespaces: int = 0  # how many local and fresh ones it has: each is named by its number
+    warnings: tuple[CompatibilityWarning, ...] = ()  # in the compatibility mode
+
+    def joined(self, more: "Program") -> "Program":
+        """Both: what was loaded first, then what was added by `.include`."""
+        parts = ("beliefs", "goals", "plans", "sources", "functions")
+        both = {name: getattr(self, name) + getattr(more, name) for name in parts}
+        return Program(self.source, **both, namespaces=more.namespaces)
 
 
-def variables_of(body: Body) -> dict[Var, None]:
-    """The variables of a plan body, in order of appearance."""
+def variables_of(held: Body | Plan | Rule) -> dict[Var, None]:
+    """The variables of a plan body, plan or rule, in order of appearance."""
     found: dict[Var, None] = {}
-    for term in _terms_of(body):
+    for term in terms_of(held):
         variables_in(term, found)
     return found
 
 
-def _terms_of(body: Body) -> Iterator[Term]:
-    for step in body.steps:
-        if isinstance(step, Simple):
-            yield step.term
-        elif isinstance(step, Fork):
-            for branch in step.branches:
-                yield from _terms_of(branch)
-        else:
-            yield step.condition
-            for inner in (step.then, step.otherwise) if isinstance(step, If) else (step.body,):
-                yield from _terms_of(inner)
+def terms_of(held: Body | Plan | Rule) -> Iterator[Term]:
+    """The terms of a plan body, plan or rule, in order of appearance; those inside them are not given apart."""
+    if isinstance(held, Rule):
+        yield from (held.head, held.formula)
+    elif isinstance(held, Plan):
+        yield from (held.label, held.head, *held.head_annots)
+        yield from (formula for formula in (held.context, held.condition) if formula is not None)
+        yield from terms_of(held.body)
+    else:
+        for step in held.steps:
+            yield from _terms_of(step)
+
+
+def _terms_of(step: Step) -> Iterator[Term]:
+    if isinstance(step, Simple):
+        yield step.term
+    elif isinstance(step, Fork):
+        for branch in step.branches:
+            yield from terms_of(branch)
+    else:
+        yield step.condition
+        for inner in (step.then, step.otherwise) if isinstance(step, If) else (step.body,):
+            yield from terms_of(inner)
+
+
+def with_terms(held: Held, change: Callable[[Any], Any]) -> Held:
+    """The same plan body, plan or rule with each of its terms changed."""
+    if isinstance(held, Rule):
+        return replace(held, head=change(held.head), formula=change(held.formula))
+    if isinstance(held, Body):
+        return replace(held, steps=tuple(_with_terms(step, change) for step in held.steps))
+    return replace(
+        held,
+        label=change(held.label),
+        head=change(held.head),
+        head_annots=tuple(map(change, held.head_annots)),
+        context=None if held.context is None else change(held.context),
+        condition=None if held.condition is None else change(held.condition),
+        body=with_terms(held.body, change),
+        subplans=tuple(with_terms(inner, change) for inner in held.subplans),
+    )
+
+
+def _with_terms(step: Step, change: Callable[[Any], Any]) -> Step:
+    if isinstance(step, Simple):
+        return replace(step, term=change(step.term))
+    if isinstance(step, Fork):
+        return replace(step, branches=tuple(with_terms(branch, change) for branch in step.branches))
+    if isinstance(step, If):
+        then, otherwise = with_terms(step.then, change), with_terms(step.otherwise, change)
+        return replace(step, condition=change(step.condition), then=then, otherwise=otherwise)
+    return replace(step, condition=change(step.condition), body=with_terms(step.body, change))
+
+
+def event_of(held: Body | Plan | Rule) -> tuple[Trigger, Literal | Var] | None:
+    """{+!g(X)} as an event, also {+b} which is a plan body as well; None for anything else."""
+    if isinstance(held, Plan):
+        return held.trigger, held.head
+    if isinstance(held, Body) and len(held.steps) == 1 and isinstance(held.steps[0], Simple):
+        step = held.steps[0]
+        if step.does in (Does.ADD, Does.REMOVE) and not isinstance(step.term, Code):
+            return Trigger(step.does.value), step.term  # type: ignore[return-value]
+    return None
+
+
+def event_alone(plan: Plan) -> Body | Plan:
+    """What `{+!g(X)}` and `{+b}` are: the event of the plan, as it is written by itself."""
+    if plan.trigger in (BELIEF_ADDED, BELIEF_REMOVED):
+        return Body((Simple(Does(plan.trigger.value), plan.head, plan.place),))
+    return Plan(atom(""), plan.trigger, plan.head, None, Body(), plan.place, head_annots=plan.head_annots)

@@ -6,6 +6,7 @@ Numbers are Python numbers (doubles in meaning, kept as `int` where they are who
 """
 
 import math
+from collections.abc import Callable
 from typing import Any, NamedTuple, TypeAlias, Union
 from weakref import WeakValueDictionary
 
@@ -26,7 +27,7 @@ class Predicate:
 
     def __str__(self) -> str:
         prefix = f"{self.namespace}::" if self.namespace else ""
-        return f"{'~' if self.negated else ''}{prefix}{self.name}"
+        return f"{prefix}{'~' if self.negated else ''}{self.name}"
 
     def __repr__(self) -> str:
         return f"{self}/{self.arity}"
@@ -120,6 +121,7 @@ class OpenList(NamedTuple):
 
     items: "tuple[Term, ...]"
     tail: "Term"
+    mark: None = None  # in no other term: as a bare pair, [a|b] would be equal to the list [[a],b]
 
     def __str__(self) -> str:
         return show(self)
@@ -169,19 +171,32 @@ class Code:
 Term: TypeAlias = Union[Atom, Structure, int, float, String, List, OpenList, Var, Handle, Code]  # noqa: UP007
 Literal: TypeAlias = Atom | Structure
 
+# Makes a named tuple of a plain one in half the time: make(Structure, (predicate, args, annots)).
+make = tuple.__new__
+
 TRUE = atom("true")
 FALSE = atom("false")
 
 # Operators are structures too, so that formulas can be terms. The names cannot be written as functors.
-OPERATORS = {"+", "-", "*", "/", "div", "mod", "**", "<", "<=", ">", ">=", "==", "\\==", "=", "=..", "&", "|"}
+OPERATORS = {"+", "-", "*", "/", "div", "mod", "**", "<", "<=", ">", ">=", "==", "\\==", "=", "=..", "&", "|", "[]"}
 ARITHMETIC = frozenset(predicate(name, 2) for name in ("+", "-", "*", "/", "div", "mod", "**"))
 NEGATIVE = predicate("-", 1)
 POSITIVE = predicate("+", 1)
 NOT = predicate("not", 1)
 AND = predicate("&", 2)
 OR = predicate("|", 2)
+THIS_SPACE = "this_ns"  # how a program names the namespace that it is read into; `::x` is this_ns::x
+DEFAULT_SPACE = "default"  # how the namespace without a name is called
+PRIVATE_SPACE = "#"  # begins the name of a local namespace: no text can say it
+IN_SPACE = predicate("::", 2)  # NS::p(X), n::X: a literal whose namespace or name is a variable
+ANNOTATED = predicate("[]", 1)  # X[a]: whatever literal X is, with these annotations too
 RELATIONS = frozenset(predicate(name, 2) for name in ("<", "<=", ">", ">=", "==", "\\==", "=", "=.."))
-INTERNAL = "."  # internal actions are structures whose name begins with a dot
+INTERNAL = "."  # internal actions are structures whose name has a dot: `.print(X)`, `courier.distance(A,B,D)`
+
+
+def is_internal(name: str) -> bool:
+    """Whether this names an internal action or a function, by its form. 'in.quotes' is a name like any other."""
+    return INTERNAL in name and name != "=.." and not name.startswith("'")
 
 
 def structure(name: str, *args: Term, annots: tuple[Term, ...] = (), negated: bool = False) -> Literal:
@@ -192,6 +207,36 @@ def structure(name: str, *args: Term, annots: tuple[Term, ...] = (), negated: bo
 
 def literal_of(key: Predicate, args: tuple[Term, ...], annots: tuple[Term, ...] = ()) -> Literal:
     return Structure(key, args, annots) if args or annots else atom_of(key)
+
+
+def plain(key: Predicate) -> Predicate:
+    """The predicate without its namespace."""
+    return predicate(key.name, key.arity, key.negated) if key.namespace else key
+
+
+def space_of(key: Predicate) -> Atom:
+    """The name of its namespace, as a term."""
+    return atom(key.namespace or DEFAULT_SPACE)
+
+
+def in_space(space: Term, inner: Term) -> Literal:
+    """`space::inner`; as long as one of them is a variable, a term that waits for it."""
+    if type(space) is Atom and isinstance(inner, Atom | Structure):
+        key, name = inner.predicate, space.functor
+        if key not in (IN_SPACE, ANNOTATED) and not key.namespace:
+            own = predicate(key.name, key.arity, key.negated, "" if name == DEFAULT_SPACE else name)
+            return literal_of(own, inner.args, inner.annots)
+    return Structure(IN_SPACE, (space, inner))
+
+
+def annotated(inner: Term, annots: tuple[Term, ...]) -> Term:
+    """`inner[annots]`; as long as that is a variable, a term that waits for it."""
+    if isinstance(inner, Structure) and inner.predicate is IN_SPACE:
+        return in_space(inner.args[0], annotated(inner.args[1], annots))
+    if isinstance(inner, Atom | Structure):
+        new = [annot for annot in annots if annot not in inner.annots]
+        return literal_of(inner.predicate, inner.args, (*inner.annots, *new))
+    return Structure(ANNOTATED, (inner,), annots)
 
 
 def number(value: float) -> int | float:
@@ -214,24 +259,39 @@ def show(term: object) -> str:
 
 def _show_name(key: Predicate) -> str:
     space = f"{key.namespace}::" if key.namespace else ""
-    return f"{'~' if key.negated else ''}{space}{key.name}"
+    return f"{space}{'~' if key.negated else ''}{key.name}"
 
 
 def _show_structure(term: Structure) -> str:
     key, args, annots = term
+    if key is ANNOTATED:
+        return show(args[0]) + (_show_annots(annots) if annots else "")
     if key.name in OPERATORS and not key.negated:
         if key.arity == 2:
-            return f"({show(args[0])}{_spaced(key.name)}{show(args[1])})"
+            return f"({_operand(key, args[0])}{_spaced(key.name)}{_operand(key, args[1])})"
         if key.arity == 1:
             return f"({key.name}{show(args[0])})"
     if key is NOT:
         return f"not ({show(args[0])})"
+    if key is IN_SPACE:
+        return f"{show(args[0])}::{show(args[1])}"
     text = _show_name(key)
     if args:
         text += "(" + ",".join(map(show, args)) + ")"
     if annots:
-        text += "[" + ",".join(map(show, annots)) + "]"
+        text += _show_annots(annots)
     return text
+
+
+def _show_annots(annots: tuple[Term, ...]) -> str:
+    last = annots[-1]
+    return show(OpenList((*annots[:-1], *last.items), last.tail) if type(last) is OpenList else List(annots))
+
+
+def _operand(key: Predicate, term: Term) -> str:
+    """`not` binds less than anything but & and |"""
+    loose = type(term) is Structure and term.predicate is NOT and key is not AND and key is not OR
+    return f"({show(term)})" if loose else show(term)
 
 
 def _spaced(operator: str) -> str:
@@ -272,10 +332,6 @@ def _show_var(term: Var) -> str:
     return term.name if term.ref is None else show(term.ref)
 
 
-def _show_code(term: Code) -> str:
-    return f"{{{term.body}}}"
-
-
 _SHOW: dict[type, Any] = {
     Atom: lambda term: _show_name(term.predicate),
     Structure: _show_structure,
@@ -286,13 +342,17 @@ _SHOW: dict[type, Any] = {
     OpenList: _show_open_list,
     Var: _show_var,
     Handle: lambda term: show_handle(term.value),
-    Code: _show_code,
 }
+
+
+def show_by(kind: type, text_of: Callable[[Any], str]) -> None:
+    """How values of this kind are written is known further up."""
+    _SHOW[kind] = text_of
 
 
 def show_handle(value: object) -> str:
     if isinstance(value, dict):
-        return "{" + ",".join(f"{show(k)}={show(v)}" for k, v in value.items()) + "}"
+        return "{" + ",".join(f"{show(k)}->{show(v)}" for k, v in value.items()) + "}"
     if isinstance(value, (set, frozenset)):
         return "{" + ",".join(map(show, value)) + "}"
     if hasattr(value, "__iter__"):

@@ -6,27 +6,37 @@ Annotations are a subset test: `p(X)[a]` unifies with `p(1)[a,b]`, not the other
 
 from collections.abc import Callable, Iterable
 from functools import cmp_to_key
+from typing import Any
 
-from bdi.arithmetic import calculate
+from bdi.arithmetic import ArithmeticFailure, calculate
 from bdi.terms import (
+    ANNOTATED,
     ARITHMETIC,
+    IN_SPACE,
     NEGATIVE,
     POSITIVE,
+    PRIVATE_SPACE,
     Atom,
     Code,
     Handle,
     List,
+    Literal,
     OpenList,
     String,
     Structure,
     Term,
     Var,
+    annotated,
+    in_space,
     literal_of,
     number,
+    plain,
     show,
+    space_of,
 )
 
 Trail = list[Var]
+EVALUATED = ARITHMETIC | {NEGATIVE, POSITIVE, IN_SPACE}  # what resolving a term works out
 FIXED = frozenset({Atom, int, float, String, Handle})  # types without parts and without variables
 
 
@@ -71,22 +81,45 @@ def unify_all(left: Iterable[Term], right: Iterable[Term], trail: Trail) -> bool
 
 def _unify_atom(left: Atom, right: Term, trail: Trail) -> bool:
     # An atom is also part of the same atom with annotations.
-    return type(right) is Structure and left.predicate is right.predicate
+    if type(right) is not Structure:
+        return False
+    return left.predicate is right.predicate or _unify_in_space(left, right, trail)
+
+
+def _unify_in_space(left: Literal, right: Literal, trail: Trail) -> bool:
+    """`NS::p(X)`, `n::X` or `X[a]` with a literal. A variable never learns the name of a local namespace."""
+    if right.predicate in (IN_SPACE, ANNOTATED):
+        left, right = right, left
+    if left.predicate is ANNOTATED:
+        return unify(left.args[0], right, trail) and unify_annots(left.annots, right.annots, trail)
+    key = right.predicate
+    if left.predicate is not IN_SPACE or key is IN_SPACE:
+        return False
+    space = deref(left.args[0])
+    if type(space) is Var and key.namespace.startswith(PRIVATE_SPACE):
+        return False
+    inner = literal_of(plain(key), right.args, right.annots)
+    return unify(space, space_of(key), trail) and unify(left.args[1], inner, trail)
 
 
 def _unify_structure(left: Structure, right: Term, trail: Trail) -> bool:
     key, args, annots = left
     if type(right) is Structure:
-        return (
-            key is right.predicate
-            and unify_all(args, right.args, trail)
-            and (not annots or unify_annots(annots, right.annots, trail))
-        )
+        if key is not right.predicate:
+            return _unify_in_space(left, right, trail)
+        return unify_all(args, right.args, trail) and (not annots or unify_annots(annots, right.annots, trail))
     if type(right) is Atom:
-        return key is right.predicate and (not annots or unify_annots(annots, (), trail))
-    if key in ARITHMETIC and type(right) in (int, float):
-        return resolve(left) == right
-    return False
+        if key is not right.predicate:
+            return _unify_in_space(left, right, trail)
+        return not annots or unify_annots(annots, (), trail)
+    return key in ARITHMETIC and type(right) in (int, float) and _amounts_to(left, right)
+
+
+def _amounts_to(expression: Structure, value: Term) -> bool:
+    try:
+        return resolve(expression) == value
+    except ArithmeticFailure:
+        return False
 
 
 def unify_annots(wanted: tuple[Term, ...], present: tuple[Term, ...], trail: Trail) -> bool:
@@ -96,11 +129,13 @@ def unify_annots(wanted: tuple[Term, ...], present: tuple[Term, ...], trail: Tra
     """
     tail = None
     last = wanted[-1]
+    if present and type(present[-1]) is OpenList and type(last) is not OpenList:
+        wanted, present, last = present, wanted, present[-1]
     if type(last) is OpenList:
         wanted, tail = (*wanted[:-1], *last.items), last.tail
-    left_over = sorted(present, key=_in_order)
+    left_over = sorted(present, key=in_order)
     start = 0
-    for annot in sorted(wanted, key=_in_order) if len(wanted) > 1 else wanted:
+    for annot in sorted(wanted, key=in_order) if len(wanted) > 1 else wanted:
         place = _place_of(annot, left_over, start, trail)
         if place is None:
             return False
@@ -140,17 +175,17 @@ def _unify_open_list(left: OpenList, right: Term, trail: Trail) -> bool:
     return unify_all(left.items, right.items[:count], trail) and unify(left.tail, rest, trail)
 
 
-def _unify_code(left: Code, right: Term, trail: Trail) -> bool:
-    return type(right) is Code and (left.body is right.body or str(left) == str(right))
-
-
 _UNIFIERS: dict[type, Callable[..., bool]] = {
     Atom: _unify_atom,
     Structure: _unify_structure,
     List: _unify_list,
     OpenList: _unify_open_list,
-    Code: _unify_code,
 }
+
+
+def unify_by(kind: type, unifier: Callable[[Any, Term, Trail], bool]) -> None:
+    """How values of this kind unify is known further up."""
+    _UNIFIERS[kind] = unifier
 
 
 # ---- reading off ---------------------------------------------------------------------------------------------------
@@ -175,14 +210,18 @@ def _resolve_var(term: Var) -> Term:
 def _resolve_structure(term: Structure) -> Term:
     key, args, annots = term
     args = resolve_all(args)
-    if key in ARITHMETIC or key is NEGATIVE or key is POSITIVE:
+    if key in EVALUATED:
         return evaluated(Structure(key, args))
+    if key is ANNOTATED:
+        return annotated(args[0], annots_of(annots))
     return Structure(key, args, annots_of(annots) if annots else annots)
 
 
 def evaluated(expression: Structure) -> Term:
     """The number, or the expression itself while an operand is not yet a number. Raises ArithmeticFailure."""
     key, args, _ = expression
+    if key is IN_SPACE:
+        return in_space(*args)
     if not all(type(arg) in (int, float) for arg in args):
         return expression
     if key is NEGATIVE:
@@ -318,9 +357,9 @@ def _compare_lists(left: List | OpenList, right: List | OpenList) -> int:
 def _compare_literals(left: Atom | Structure, right: Atom | Structure) -> int:
     a, b = left.predicate, right.predicate
     return (
-        _compare_values(a.negated, b.negated)
-        or _compare_values(a.namespace, b.namespace)
+        _compare_values(a.namespace, b.namespace)
         or _compare_values(a.name, b.name)
+        or _compare_values(a.negated, b.negated)
         or _compare_sequences(left.args, right.args)
         or _compare_sequences(left.annots, right.annots)
     )
@@ -339,4 +378,4 @@ _COMPARERS: tuple[Callable[..., int], ...] = (
 )
 
 
-_in_order = cmp_to_key(compare)
+in_order = cmp_to_key(compare)

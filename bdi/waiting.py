@@ -3,10 +3,10 @@
 from collections.abc import Callable
 from typing import Protocol
 
-from bdi.intentions import Intention
+from bdi.intentions import Intention, State
 from bdi.logic import HasLogic, Question
 from bdi.syntax import Trigger
-from bdi.terms import Literal, Term
+from bdi.terms import Literal, String, Structure, Term, atom, number, predicate, structure
 from bdi.unify import undo, unify
 
 
@@ -14,6 +14,33 @@ class HasTime(HasLogic, Protocol):
     """`now` in seconds, of the clock that the agent is given."""
 
     now: float
+
+
+class Moment(float):
+    """The end of `.wait(MS)`, in seconds of the agent's clock."""
+
+    milliseconds: Term = 0
+
+
+def moment_after(now: float, milliseconds: float) -> Moment:
+    moment = Moment(now + milliseconds / 1000)
+    moment.milliseconds = milliseconds
+    return moment
+
+
+def reason_of(intention: Intention) -> Term | None:
+    """What it waits for: action(drive(uc)), wait(500)[time(500)], wait("+b(X)"), ask; None: for nothing outside."""
+    awaited = intention.waits_for
+    if intention.state is State.ACTION:
+        return structure("action", awaited)
+    if intention.state is State.ANSWER:
+        return atom("ask")
+    if isinstance(awaited, Moment):
+        return Structure(WAIT, (awaited.milliseconds,), (structure("time", awaited.milliseconds),))
+    return Structure(WAIT, (String(awaited.what),)) if isinstance(awaited, Waiter) else None
+
+
+WAIT = predicate("wait", 1)
 
 
 class Waiter:
@@ -27,7 +54,8 @@ class Waiter:
         self.deadline_s = deadline_s
         self.wanted: tuple[Trigger, Literal] | None = None
         self.seen = False
-        self.quiet = False  # whether being late is no failure
+        self.elapsed: Term | None = None  # gets the milliseconds that it took; then being late is no failure
+        self.since_s = 0.0
         self._happened = happened
 
     def notice(self, trigger: Trigger, literal: Literal, mind: HasTime) -> None:
@@ -50,6 +78,14 @@ class Waiter:
             return False
         return None
 
+    def tell_elapsed(self, mind: HasTime) -> bool:
+        if self.elapsed is None:
+            return True
+        took_ms = number(round((mind.now - self.since_s) * 1000, 3))
+        told = unify(self.elapsed, took_ms, mind.logic.trail)
+        mind.logic.trail.clear()
+        return told
+
 
 def event_waiter(intention: Intention, trigger: Trigger, literal: Literal, deadline_s: float | None) -> Waiter:
     """.wait("+b(X)")"""
@@ -60,7 +96,16 @@ def event_waiter(intention: Intention, trigger: Trigger, literal: Literal, deadl
 
 def formula_waiter(intention: Intention, formula: Question, deadline_s: float | None) -> Waiter:
     """.wait(b(X) & X > 2)"""
-    return Waiter(intention, str(formula.term()), deadline_s, lambda mind: formula.first())
+
+    def happened(mind: HasTime) -> bool:
+        trail = mind.logic.trail
+        if formula.bind_first():
+            trail.clear()
+            return True
+        undo(trail, 0)
+        return False
+
+    return Waiter(intention, str(formula.term()), deadline_s, happened)
 
 
 def moment_of(now: float, milliseconds: Term) -> float | None:

@@ -70,7 +70,7 @@ class Wish:
 
 
 @cli.command(epilog=EPILOG)
-def run(  # noqa: PLR0917  # typer reads the options from here
+def run(  # typer reads the options from here
     config: Annotated[Path | None, typer.Option(help="Settings (TOML); docs/robot.md lists every key.")] = None,
     simulated: Annotated[bool, typer.Option("--simulated", help="A simulated body in a simulated tunnel.")] = False,
     campus: Annotated[str | None, typer.Option("--map", help="A built-in map by name, or a map file.")] = None,

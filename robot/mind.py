@@ -9,6 +9,8 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
+import structlog
+
 from bdi import Agent, Finished, Message
 from protocol.parts import Activity, Battery
 from protocol.to_server import Snapshot, Why
@@ -22,6 +24,8 @@ from .perception.seen import Seen, Whereabouts
 from .reasons import reason
 from .reflexes import FAULTS, LATCHED
 from .skills.interfaces import View
+
+log = structlog.get_logger("robot.mind")
 
 HALTING: Final = LATCHED | {"over_current"}
 """Faults that a plan cannot drive out of: somebody has to see to them."""
@@ -92,6 +96,14 @@ class Mind:
         self.failures += map(str, outcome.failures)
         for line in outcome.printed:
             self.hands.noted(line)
+        for message in outcome.messages:
+            # A robot's agent has nobody to write to: people are told by actions.
+            log.warning(
+                "agent_message_undelivered",
+                receiver=message.receiver,
+                performative=message.performative,
+                content=str(message.content),
+            )
         self.cycles += 1
 
     @property

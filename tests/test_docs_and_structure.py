@@ -32,7 +32,7 @@ def verbs() -> dict[str, str]:
     makefile = (CHECKOUT / "Makefile").read_text()
     phony = re.search(r"^\.PHONY: (.*)$", makefile, re.MULTILINE)
     assert phony
-    described = dict(re.findall(r"^([a-z]+):.*?## (.+)$", makefile, re.MULTILINE))
+    described = dict(re.findall(r"^([a-z-]+):.*?## (.+)$", makefile, re.MULTILINE))
     return {verb: described.get(verb, "") for verb in phony[1].split()}
 
 

@@ -1,20 +1,54 @@
 """Internal actions and functions. To add one: write it in the module it belongs to, and decorate it."""
 
-from bdi.builtin import beliefs, collections, formulas, functions, goals, lists, plans, strings, time, words
-from bdi.builtin.table import ACTIONS, FUNCTIONS, find_builtin
+from bdi.builtin import (
+    agents,
+    annotations,
+    beliefs,
+    chance,
+    clock,
+    collections,
+    events,
+    formulas,
+    functions,
+    goals,
+    lists,
+    namespaces,
+    plans,
+    printing,
+    statements,
+    strings,
+    time,
+    types,
+    words,
+)
+from bdi.builtin.table import ACTIONS, FUNCTIONS, STANDARD, Definition, Table, find_builtin
+from bdi.builtin.unsupported import NOT_SUPPORTED
 
 __all__ = [
     "ACTIONS",
     "FUNCTIONS",
+    "NOT_SUPPORTED",
+    "STANDARD",
+    "Definition",
+    "Table",
+    "agents",
+    "annotations",
     "beliefs",
+    "chance",
+    "clock",
     "collections",
+    "events",
     "find_builtin",
     "formulas",
     "functions",
     "goals",
     "lists",
+    "namespaces",
     "plans",
+    "printing",
+    "statements",
     "strings",
     "time",
+    "types",
     "words",
 ]

@@ -1,19 +1,13 @@
 """What internal actions do with their arguments."""
 
 from collections.abc import Iterable, Iterator
-from functools import cmp_to_key
 
 from bdi.builtin.table import wrong_arguments
-from bdi.errors import AgentSpeakSyntaxError
 from bdi.intentions import Intention, StepFailed
 from bdi.logic import HasLogic
 from bdi.mind import Mind
-from bdi.parser import parse_event
-from bdi.syntax import Trigger
-from bdi.terms import Code, Handle, List, Literal, String, Term, show
-from bdi.unify import compare, undo, unify
-
-in_order = cmp_to_key(compare)
+from bdi.terms import Handle, List, String, Term, show
+from bdi.unify import in_order, undo, unify
 
 
 def bind(mind: HasLogic, left: Term, right: Term) -> bool:
@@ -28,6 +22,14 @@ def alternatives(mind: HasLogic, alternatives: Iterable[tuple[tuple[Term, Term],
         if all(unify(left, right, trail) for left, right in pairs):
             yield True
         undo(trail, mark)
+
+
+def unifiable(mind: HasLogic, left: Term, right: Term) -> bool:
+    """Whether they would unify; nothing stays bound."""
+    mark = len(mind.logic.trail)
+    found = unify(left, right, mind.logic.trail)
+    undo(mind.logic.trail, mark)
+    return found
 
 
 def items_of(term: Term, name: str) -> tuple[Term, ...]:
@@ -50,23 +52,6 @@ def running_intention(mind: Mind, name: str) -> Intention:
     if intention is None:
         raise StepFailed("wrong_arguments", f".{name} belongs in the body of a plan, not in a condition")
     return intention
-
-
-def event_in(condition: Term) -> tuple[Trigger, Literal] | None:
-    """ "+b(X)" or {+b(X)}; None for anything else."""
-    if isinstance(condition, String):
-        return event_named(condition)
-    if isinstance(condition, Code) and len(condition.body.steps) == 1:
-        return event_named(String(str(condition.body)))
-    return None
-
-
-def event_named(text: String) -> tuple[Trigger, Literal]:
-    """ "+!g(X)" """
-    try:
-        return parse_event(str.__str__(text))
-    except AgentSpeakSyntaxError as error:
-        raise wrong_arguments("wait", "an event with a name", text) from error
 
 
 def unique(items: Iterable[Term]) -> List:

@@ -1,57 +1,66 @@
-"""Beliefs: `.abolish`, `.belief`, `.asserta`, …"""
+"""Beliefs: `.abolish`, `.belief`, `.asserta`, `.list_beliefs`, …"""
 
+from collections.abc import Iterator
+
+from bdi.builtin.arguments import unifiable
+from bdi.builtin.code import rule_in
+from bdi.builtin.kinds import LITERAL, Kind, optional
 from bdi.builtin.table import Answer, internal_action, wrong_arguments
 from bdi.mind import Mind
-from bdi.terms import Atom, Literal, Structure, Term, show
-from bdi.unify import unify
+from bdi.terms import Atom, Code, Literal, Structure, Term, literal_of, show
+from bdi.unify import undo, unify
+
+BELIEVED = Kind("a literal or a rule", lambda value: type(value) in (Atom, Structure, Code))
 
 
-@internal_action("abolish", 1)
-def abolish(mind: Mind, pattern: Term) -> Answer:
+@internal_action("abolish", LITERAL)
+def abolish(mind: Mind, pattern: Literal) -> Answer:
     """Forget every belief that unifies, whoever said it."""
-    if not isinstance(pattern, Atom | Structure):
-        raise wrong_arguments("abolish", "a literal", pattern)
     mind.forget_all(pattern)
     return True
 
 
-@internal_action("belief", 1)
-def belief(mind: Mind, pattern: Term) -> Answer:
-    """A belief that is a fact, not derived by a rule."""
-    if not isinstance(pattern, Atom | Structure):
-        raise wrong_arguments("belief", "a literal", pattern)
-    relation = mind.beliefs.relation(pattern.predicate)
-    return relation.find(pattern.args, pattern.annots, mind.logic.trail) is not None
+@internal_action("belief", LITERAL)
+def belief(mind: Mind, pattern: Literal) -> Answer:
+    """Every belief that is a fact, not derived by a rule."""
+    return _facts_like(mind, pattern)
 
 
-@internal_action("asserta", 1)
-def asserta(mind: Mind, literal: Term) -> Answer:
-    mind.believe(_believable(literal, "asserta"), None)
+def _facts_like(mind: Mind, pattern: Literal) -> Iterator[bool]:
+    trail = mind.logic.trail
+    for fact in list(mind.beliefs.relation(pattern.predicate)):
+        mark = len(trail)
+        if unify(pattern, literal_of(pattern.predicate, fact.args, fact.annots), trail):
+            yield True
+        undo(trail, mark)
+
+
+@internal_action("asserta", BELIEVED)
+def asserta(mind: Mind, term: Term) -> Answer:
+    """As `+<b`, but in a rule too; and for a rule { p(X) :- q(X) }."""
+    return _believe(mind, term, last=False)
+
+
+@internal_action("assertz", BELIEVED)
+def assertz(mind: Mind, term: Term) -> Answer:
+    """As `+>b`, but in a rule too; and for a rule { p(X) :- q(X) }."""
+    return _believe(mind, term, last=True)
+
+
+def _believe(mind: Mind, term: Term, last: bool) -> bool:
+    rule = rule_in(term)
+    if rule is not None:
+        mind.beliefs.relation(rule.head.predicate).add_rule(mind.logic.derivation(rule), last)
+    elif isinstance(term, Atom | Structure):
+        mind.believe(term, None, last)
+    else:
+        raise wrong_arguments("asserta", "a literal or a rule", term)
     return True
 
 
-@internal_action("assertz", 1)
-def assertz(mind: Mind, literal: Term) -> Answer:
-    mind.believe(_believable(literal, "assertz"), None, last=True)
-    return True
-
-
-def _believable(literal: Term, name: str) -> Literal:
-    if not isinstance(literal, Atom | Structure):
-        raise wrong_arguments(name, "a literal", literal)
-    return literal
-
-
-@internal_action("list_beliefs", 0)
-def list_beliefs(mind: Mind) -> Answer:
+@internal_action("list_beliefs", optional(LITERAL))
+def list_beliefs(mind: Mind, pattern: Term | None = None) -> Answer:
     for literal in mind.beliefs:
-        mind.say(show(literal))
+        if pattern is None or unifiable(mind, pattern, literal):
+            mind.say(show(literal))
     return True
-
-
-@internal_action("add_annot", 3)
-def add_annot(mind: Mind, literal: Term, annot: Term, result: Term) -> Answer:
-    if not isinstance(literal, Atom | Structure):
-        raise wrong_arguments("add_annot", "a literal", literal)
-    annots = literal.annots if annot in literal.annots else (*literal.annots, annot)
-    return unify(result, Structure(literal.predicate, literal.args, annots), mind.logic.trail)

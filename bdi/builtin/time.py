@@ -1,65 +1,46 @@
-"""Time and chance: `.wait`, `.time`, `.random`, …"""
+"""`.wait`: for a moment, an event or a formula."""
 
-from heapq import heappush
-
-from bdi.builtin.arguments import event_in, items_of, running_intention
-from bdi.builtin.table import Answer, internal_action
-from bdi.intentions import State
+from bdi.builtin.arguments import running_intention
+from bdi.builtin.code import event_in
+from bdi.builtin.kinds import ANY, FORMULA, OUT, optional
+from bdi.builtin.table import Answer, internal_action, wrong_arguments
 from bdi.logic import Question
 from bdi.mind import Mind
-from bdi.terms import List, Term, show
-from bdi.unify import unify
-from bdi.waiting import event_waiter, formula_waiter, moment_of
+from bdi.terms import Literal, Term
+from bdi.unify import substituted, variables_in
+from bdi.waiting import event_waiter, formula_waiter, moment_after, moment_of
 
 
-@internal_action("wait", 1, 3, lazy=(0,))
-def wait(mind: Mind, what: Question, timeout: Term | None = None, elapsed: Term | None = None) -> Answer:
-    """.wait(MS)   .wait("+event", MS)   .wait(formula, MS): with a third argument a time-out is no failure."""
+@internal_action("wait", FORMULA, optional(ANY), optional(OUT), named=True)
+def wait(
+    mind: Mind, variables: dict[str, Term], what: Question, timeout: Term | None = None, elapsed: Term | None = None
+) -> Answer:
+    """.wait(MS)   .wait("+event", MS, ELAPSED)   .wait(formula, MS, ELAPSED)
+
+    MS is the longest time. When it is over the step fails (wait_timeout), unless ELAPSED asks how long it took. The
+    variables of the event, or of the first answer to the formula, have their values then.
+    """
     condition = what.term()
     intention = running_intention(mind, "wait")
     if isinstance(condition, int | float):
-        moment = mind.now + condition / 1000
-        intention.waits_for = moment
-        intention.state = State.TIME
-        heappush(mind.timers, (moment, intention.number, intention))
+        mind.wait_for(intention, moment_after(mind.now, condition))
         return True
     deadline_s = None if timeout is None else moment_of(mind.now, timeout)
-    trigger = event_in(condition)
-    if trigger is None and what.first():
-        return True
-    waiter = event_waiter(intention, *trigger, deadline_s) if trigger else formula_waiter(intention, what, deadline_s)
-    waiter.quiet = elapsed is not None
-    intention.state = State.TIME
-    intention.waits_for = waiter
-    mind.waiters.append(waiter)
+    if timeout is not None and deadline_s is None:
+        raise wrong_arguments("wait", "a number of milliseconds as longest time", timeout)
+    event = event_in(condition)
+    if event is not None:
+        waiter = event_waiter(intention, event[0], _as_in_plan(event[1], variables), deadline_s)
+    else:
+        waiter = formula_waiter(intention, what, deadline_s)
+    waiter.elapsed, waiter.since_s = elapsed, mind.now
+    if event is None and waiter.check(mind):
+        return waiter.tell_elapsed(mind)
+    mind.wait_for(intention, waiter)
     return True
 
 
-@internal_action("time", 3)
-def clock(mind: Mind, hours: Term, minutes: Term, seconds: Term) -> Answer:
-    """Hours, minutes and seconds of the clock that the agent is given, which need not be the time of day."""
-    whole = int(mind.now)
-    parts = (whole // 3600, whole // 60 % 60, whole % 60)
-    return all(unify(a, b, mind.logic.trail) for a, b in zip((hours, minutes, seconds), parts, strict=True))
-
-
-@internal_action("random", 1, 2)
-def random(mind: Mind, *args: Term) -> Answer:
-    """.random(X): from 0 to 1. .random(LIST, X): one of them."""
-    if len(args) == 1:
-        return unify(args[0], mind.random.random(), mind.logic.trail)
-    items = items_of(args[0], "random")
-    return bool(items) and unify(args[1], mind.random.choice(items), mind.logic.trail)
-
-
-@internal_action("set_random_seed", 1)
-def set_random_seed(mind: Mind, seed: Term) -> Answer:
-    mind.random.seed(show(seed))
-    return True
-
-
-@internal_action("shuffle", 2)
-def shuffle(mind: Mind, items: Term, result: Term) -> Answer:
-    mixed = list(items_of(items, "shuffle"))
-    mind.random.shuffle(mixed)
-    return unify(result, List(mixed), mind.logic.trail)
+def _as_in_plan(literal: Literal, variables: dict[str, Term]) -> Literal:
+    """The X of "+b(X)" is the X of the plan."""
+    values = {each: variables[each.name] for each in variables_in(literal) if each.name in variables}
+    return substituted(literal, values)  # type: ignore[return-value]

@@ -1,6 +1,7 @@
-"""Terms and formulas, compiled once."""
+"""Formulas over what is believed, compiled once."""
 
-from bdi.logic.formulas import HasLogic, Logic
-from bdi.logic.frames import Build, Builtin, Frame, Known, Match, Question, Scope, Solve, succeed
+from bdi.logic.frames import Builtin, Frame, Known, Question, Scope
+from bdi.logic.functions import Compiled
+from bdi.logic.logic import HasLogic, Logic
 
-__all__ = ["Build", "Builtin", "Frame", "HasLogic", "Known", "Logic", "Match", "Question", "Scope", "Solve", "succeed"]
+__all__ = ["Builtin", "Compiled", "Frame", "HasLogic", "Known", "Logic", "Question", "Scope"]

@@ -1,4 +1,4 @@
-"""The frame of a formula: which variable lives in which slot, and what is known of the slots."""
+"""What compiled code works with: frames of variables, internal actions, questions."""
 
 import sys
 from collections.abc import Callable, Iterable, Iterator
@@ -6,29 +6,13 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any, Protocol, TypeAlias
 
-from bdi.terms import (
-    AND,
-    INTERNAL,
-    NOT,
-    OR,
-    TRUE,
-    Atom,
-    Structure,
-    Term,
-    Var,
-)
-from bdi.unify import (
-    resolve,
-    variables_in,
-)
+from bdi.terms import AND, NOT, OR, Atom, Structure, Term, Var, is_internal
+from bdi.unify import renamed, resolve, variables_in
 
-Frame: TypeAlias = list[Any]
-Solve: TypeAlias = Callable[[Frame], bool]
-Build: TypeAlias = Callable[[Frame], Term]
-Match: TypeAlias = Callable[[Frame, Term], bool]
+Frame: TypeAlias = list[Any]  # a value for each variable of a plan; None until it is met
+Test: TypeAlias = Callable[[Frame], Any]  # fills the frame and answers True, or None
+Build: TypeAlias = Callable[[Frame], Any]
 LONGEST_PROOF = 100_000  # calls; a step of a proof takes three to five
-DEEPEST_QUESTIONS = 100  # `.findall` within `.findall` of the same place
-RULE_SLOTS = 2  # a rule's frame begins with what comes after the call, and the caller's frame
 
 
 class Builtin(Protocol):
@@ -40,9 +24,20 @@ class Builtin(Protocol):
     def ask(self, args: tuple[Any, ...]) -> "bool | Iterator[Any]": ...
 
 
+@contextmanager
+def deep_stack() -> Iterator[None]:
+    """Let Python functions call each other more deeply. Their frames are on the heap (CPython 3.11 and later)."""
+    usual = sys.getrecursionlimit()
+    sys.setrecursionlimit(max(usual, LONGEST_PROOF))
+    try:
+        yield
+    finally:
+        sys.setrecursionlimit(usual)
+
+
 @dataclass(frozen=True, slots=True)
 class Known:
-    """What is known of the slots at one place of a program, before it runs."""
+    """What is known of the slots of a frame at one place of a program, before it runs."""
 
     filled: frozenset[Var] = frozenset()  # certainly not None
     met: frozenset[Var] = frozenset()  # perhaps not None
@@ -56,15 +51,17 @@ class Known:
         return Known(self.filled | new, self.met | new)
 
 
-@contextmanager
-def deep_stack() -> Iterator[None]:
-    """Let Python functions call each other more deeply. Their frames are on the heap (CPython 3.11 and later)."""
-    usual = sys.getrecursionlimit()
-    sys.setrecursionlimit(max(usual, LONGEST_PROOF))
-    try:
-        yield
-    finally:
-        sys.setrecursionlimit(usual)
+def filled_by(term: Term) -> frozenset[Var]:
+    """The variables whose slots are certainly filled once the formula has come true."""
+    key = term.predicate if isinstance(term, Atom | Structure) else None
+    if key is NOT:
+        return frozenset()
+    if isinstance(term, Structure) and key in (AND, OR):
+        left, right = (filled_by(part) for part in term.args)
+        return left | right if key is AND else left & right
+    if key is not None and is_internal(key.name):
+        return frozenset()
+    return frozenset(variables_in(term))
 
 
 class Scope:
@@ -81,51 +78,58 @@ class Scope:
             self.size += 1
         return found
 
+    def add_all(self, variables: Iterable[Var]) -> None:
+        for variable in variables:
+            self.slot(variable)
+
+
+class Asker(Protocol):
+    def ask_within(self, ask: Callable[[], Any]) -> Any: ...
+    def ask_deeply(self, ask: Callable[[], Any]) -> Any: ...
+
 
 class Question:
-    """A formula handed to an internal action, such as the second argument of `.findall`, with the frame it is about."""
+    """A formula handed to an internal action, such as the second argument of `.findall`.
 
-    __slots__ = ("_answers", "build", "frame", "mark")
+    `solve(*values, collect)` calls `collect` with the values of all variables concerned for every answer.
+    """
 
-    def __init__(self, frame: Frame, build: Build, answers: Callable[[Frame, Build], list[Term]]) -> None:
-        self.frame = frame
-        self.build = build
-        self._answers = answers
+    __slots__ = ("_asker", "_build", "_now", "_solve", "_values")
+
+    def __init__(
+        self,
+        solve: Callable[..., Any],
+        build: Callable[..., Term],
+        now: Callable[..., Term],
+        values: tuple[Any, ...],
+        asker: "Asker",
+    ) -> None:
+        self._solve = solve
+        self._build = build
+        self._now = now
+        self._values = values
+        self._asker = asker
 
     def answers(self, template: "Question") -> list[Term]:
         """The template once for every way in which the formula is true."""
-        return self._answers(self.frame, template.build)
+        build = template._build
+
+        def ask() -> list[Term]:
+            found: list[Term] = []
+            self._solve(*self._values, lambda *values: found.append(renamed(build(*values), {})))
+            return found
+
+        answers: list[Term] = self._asker.ask_within(ask)
+        return answers
 
     def first(self) -> bool:
         """Whether the formula is true, whatever its variables."""
-        return bool(self._answers(self.frame, lambda frame: TRUE))
+        return self._asker.ask_within(lambda: self._solve(*self._values, lambda *values: True)) is not None
+
+    def bind_first(self) -> bool:
+        """Whether it is true; the variables that it was asked with keep what the first answer says."""
+        return self._asker.ask_deeply(lambda: self._solve(*self._values, lambda *values: True)) is not None
 
     def term(self) -> Term:
-        return resolve(self.build(self.frame))
-
-
-def filled_by(term: Term) -> frozenset[Var]:
-    """The variables whose slots are certainly filled once the formula has come true."""
-    key = term.predicate if isinstance(term, Atom | Structure) else None
-    if key is NOT:
-        return frozenset()
-    if isinstance(term, Structure) and key in (AND, OR):
-        left, right = (filled_by(part) for part in term.args)
-        return left | right if key is AND else left & right
-    if key is not None and key.name.startswith(INTERNAL):
-        return frozenset()
-    return frozenset(variables_in(term))
-
-
-def succeed(frame: Frame) -> bool:
-    return True
-
-
-def fail(frame: Frame) -> bool:
-    return False
-
-
-def proved(frame: Frame) -> bool:
-    """The end of a rule: go on where it was called."""
-    answer: bool = frame[0](frame[1])
-    return answer
+        """The formula with what is known of its variables."""
+        return resolve(self._now(*self._values))

@@ -1,151 +1,168 @@
-"""Terms compiled: a function that makes the term from a frame, or matches a value against it."""
+"""Terms as Python expressions: one that makes the term, or lines that match a value against it."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
-from bdi.arithmetic import OPERATION_OF, ArithmeticFailure
-from bdi.logic.frames import Build, Builtin, Frame, Match, Scope
-from bdi.terms import (
-    ARITHMETIC,
-    NEGATIVE,
-    POSITIVE,
-    Code,
-    List,
-    OpenList,
-    Predicate,
-    Structure,
-    Term,
-    Var,
-    number,
-)
-from bdi.unify import (
-    FIXED,
-    Trail,
-    annots_of,
-    deref,
-    evaluated,
-    parts_of,
-    resolve,
-    unify,
-    variables_in,
-)
+from bdi.arithmetic import ArithmeticFailure
+from bdi.logic.frames import Builtin
+from bdi.logic.writer import Flow, Writer
+from bdi.terms import ANNOTATED, Atom, Code, Literal, OpenList, Predicate, Structure, Term, Var, predicate
+from bdi.unify import EVALUATED, FIXED, parts_of, resolve, variables_in
+
+EXACT = {predicate("+", 2): "+", predicate("-", 2): "-", predicate("*", 2): "*"}
+DIV = predicate("div", 2)
+WHOLE_BOUND = 2**53  # as in `terms.number`
 
 
-class Terms:
-    """Compiles terms."""
+class TermWriter:
+    """Writes terms."""
 
     def __init__(self, builtin: Callable[[Predicate], Builtin | None]) -> None:
         self.builtin = builtin
-        self.trail: Trail = []
 
-    def build(self, term: Term, scope: Scope) -> Build:
-        """A function that makes the term from a frame. Values may still hold variables bound later: `resolve` them."""
-        if type(term) in FIXED:
-            return lambda frame: term
+    # ---- making ----------------------------------------------------------------------------------------------------
+
+    def met(self, w: Writer, variables: Iterable[Var], flow: Flow) -> Flow:
+        """Every variable gets a name; one that has not been met becomes a free variable."""
+        for variable in variables:
+            if variable not in flow.names:
+                name = w.fresh(variable.name)
+                w.line(f"{name} = Var({variable.name!r})")
+                flow = flow.with_name(variable, name)
+        return flow
+
+    def expression(self, w: Writer, term: Term, flow: Flow) -> str:
+        """A Python expression that makes the term. All its variables have names."""
+        if type(term) is int and abs(term) < WHOLE_BOUND:
+            return repr(term)
+        if type(term) in FIXED and not self.has_functions(term):
+            return w.constant(term)
         if type(term) is Var:
-            return self._build_variable(scope.slot(term), term.name)
+            return flow.names[term]
         if type(term) is Code:
-            return self._build_code(term, scope)
-        if not variables_in(term) and not self._has_functions(term):
-            return self._build_ground(term)
-        if type(term) is Structure:
-            return self._build_structure(term, scope)
-        return self._build_sequence(term, scope)
+            scope = ", ".join(
+                f"{w.constant(each)}: {self.expression(w, value, flow)}" for each, value in term.scope.items()
+            )
+            return f"Code({w.constant(term.body, 'BODY')}, {{{scope}}})"
+        if not variables_in(term) and not self.has_functions(term):
+            return self._ground(w, term)
+        if isinstance(term, Atom | Structure):
+            return self._structure(w, term, flow)
+        if isinstance(term, OpenList):
+            items, tail = self.expressions(w, term.items, flow), self.expression(w, term.tail, flow)
+            return f"resolve(OpenList({items}, {tail}))"
+        return f"List({self.expressions(w, parts_of(term), flow)})"
 
-    def _build_variable(self, slot: int, name: str) -> Build:
-        def variable(frame: Frame) -> Term:
-            value = frame[slot]
-            if value is None:
-                value = frame[slot] = Var(name)
-            elif type(value) is Var:
-                return deref(value)
-            return value  # type: ignore[no-any-return]
+    def expressions(self, w: Writer, terms: Iterable[Term], flow: Flow) -> str:
+        """A Python tuple of them."""
+        return "(" + "".join(f"{self.expression(w, term, flow)}, " for term in terms) + ")"
 
-        return variable
+    def value(self, w: Writer, term: Term, flow: Flow) -> str:
+        """As `expression`, with variables replaced by what they stand for."""
+        if self._is_flat(term):
+            args = "".join(f"{self.value(w, arg, flow)}, " for arg in term.args)  # type: ignore[union-attr]
+            return f"make(Structure, ({w.constant(term.predicate, 'KEY')}, ({args}), ()))"  # type: ignore[union-attr]
+        made = self.expression(w, term, flow)
+        if (
+            type(term) in FIXED
+            or (type(term) is Var and term in flow.plain)
+            or (made.isidentifier() and type(term) is not Var)
+        ):
+            return made
+        return f"({made} if type({made}) in FIXED else resolve({made}))" if type(term) is Var else f"resolve({made})"
 
-    def _build_ground(self, term: Term) -> Build:
+    def _is_flat(self, term: Term) -> bool:
+        """p(X,a): nothing but variables and values without parts, so that it is enough to look at each."""
+        if type(term) is not Structure or term.annots or not variables_in(term) or term.predicate in EVALUATED:
+            return False
+        return all(map(is_simple, term.args)) and not self.has_functions(term)
+
+    def _ground(self, w: Writer, term: Term) -> str:
         try:
-            value = resolve(term)
+            return self.expression_of_value(w, resolve(term))
         except ArithmeticFailure:
-            return lambda frame: resolve(term)
-        return lambda frame: value
+            return f"resolve({w.constant(term)})"
 
-    def _build_code(self, term: Code, scope: Scope) -> Build:
-        parts = [(variable, self.build(value, scope)) for variable, value in term.scope.items()]
-        return lambda frame: Code(term.body, {variable: part(frame) for variable, part in parts})
+    def expression_of_value(self, w: Writer, value: Term) -> str:
+        return repr(value) if type(value) is int and abs(value) < WHOLE_BOUND else w.constant(value)
 
-    def _has_functions(self, term: Term) -> bool:
-        if isinstance(term, Structure) and self._function(term.predicate):
+    def _structure(self, w: Writer, term: Literal, flow: Flow) -> str:
+        key = term.predicate
+        if key in EXACT:
+            return self._exact(w, term, flow)
+        args = self.expressions(w, term.args, flow)
+        if key in EVALUATED and not self.function(key):
+            return f"calculated({w.constant(key, 'OPERATOR')}, {args})"
+        function = self.function(key)
+        if function:
+            return f"{w.constant(function, 'FUNCTION')}(resolve_all({args}))"
+        if key is ANNOTATED:
+            return f"annotated(resolve({args}[0]), resolve_all({self.expressions(w, term.annots, flow)}))"
+        annots = f"annots_of({self.expressions(w, term.annots, flow)})" if term.annots else "()"
+        return f"make(Structure, ({w.constant(key, 'KEY')}, {args}, {annots}))"
+
+    def _exact(self, w: Writer, term: Literal, flow: Flow) -> str:
+        """+ - * of whole numbers right here, anything else by `calculated`."""
+        names, tests = [], []
+        for arg in term.args:
+            made = self.expression(w, arg, flow)
+            if type(arg) is int:
+                names.append(made)
+                continue
+            name = made if made.isidentifier() else w.fresh("n")
+            tests.append(f"(type({made if name == made else f'{name} := {made}'}) is int)")
+            names.append(name)
+        left, right = names
+        total, key = w.fresh("n"), w.constant(term.predicate, "OPERATOR")
+        result = f"({total} := {left} {EXACT[term.predicate]} {right})"
+        step = _step_of(term)
+        fits = f"{-WHOLE_BOUND} <= {result} <= {WHOLE_BOUND}"
+        if step:
+            fits = f"{result} <= {WHOLE_BOUND}" if step > 0 else f"{result} >= {-WHOLE_BOUND}"
+        whole = f"({total} if {fits} else float({total}))"
+        return f"({whole} if {' & '.join(tests)} else calculated({key}, ({left}, {right})))"
+
+    def has_functions(self, term: Term) -> bool:
+        if isinstance(term, Atom | Structure) and self.function(term.predicate):
             return True
-        return any(self._has_functions(part) for part in parts_of(term))
+        return any(self.has_functions(part) for part in parts_of(term))
 
-    def _function(self, key: Predicate) -> Any:
+    def function(self, key: Predicate) -> Any:
         """The arithmetic function of this name, such as `math.abs`, if there is one."""
-        if "." not in key.name and key.name != "time":
-            return None
         return getattr(self.builtin(key), "function", None)
 
-    def _build_structure(self, term: Structure, scope: Scope) -> Build:
-        key = term.predicate
-        if key in ARITHMETIC:
-            return self._build_arithmetic(term, scope)
-        parts = [self.build(arg, scope) for arg in term.args]
-        annots = [self.build(annot, scope) for annot in term.annots]
-        function = self._function(key)
-        if function:
-            return lambda frame: function(tuple([resolve(part(frame)) for part in parts]))
-        if key is NEGATIVE or key is POSITIVE:
-            return lambda frame: evaluated(Structure(key, (resolve(parts[0](frame)),)))
-        if not annots:
-            return lambda frame: Structure(key, tuple([part(frame) for part in parts]))
-        return lambda frame: Structure(
-            key, tuple([part(frame) for part in parts]), annots_of(tuple([annot(frame) for annot in annots]))
-        )
-
-    def _build_arithmetic(self, term: Structure, scope: Scope) -> Build:
-        left, right = (self.build(arg, scope) for arg in term.args)
-        key = term.predicate
-        calculate = OPERATION_OF[key]
-
-        def arithmetic(frame: Frame) -> Term:
-            a, b = left(frame), right(frame)
-            if type(a) in (int, float) and type(b) in (int, float):
-                return number(calculate(a, b))  # type: ignore[arg-type]
-            return evaluated(Structure(key, (resolve(a), resolve(b))))
-
-        return arithmetic
-
-    def _build_sequence(self, term: Term, scope: Scope) -> Build:
-        if isinstance(term, OpenList):
-            items = [self.build(item, scope) for item in term.items]
-            tail = self.build(term.tail, scope)
-            return lambda frame: resolve(OpenList(tuple([item(frame) for item in items]), tail(frame)))
-        parts = [self.build(item, scope) for item in parts_of(term)]
-        return lambda frame: List([part(frame) for part in parts])
-
-    def match(self, pattern: Term, scope: Scope, met: set[Var]) -> Match:
-        """A function that makes a pattern and a value equal; `met` are the variables seen to the left of here."""
-        if type(pattern) is Var:
-            first = pattern not in met
-            met.add(pattern)
-            return self._match_first(scope.slot(pattern)) if first else self._match_again(scope.slot(pattern))
-        if type(pattern) in FIXED:
-            return self._match_constant(pattern)
-        met.update(variables_in(pattern))
-        build, trail = self.build(pattern, scope), self.trail
-        return lambda frame, value: unify(build(frame), value, trail)
-
-    def _match_first(self, slot: int) -> Match:
-        def first(frame: Frame, value: Term) -> bool:
-            frame[slot] = value
+    def may_fail(self, term: Term) -> bool:
+        """Whether making it can raise ArithmeticFailure."""
+        if isinstance(term, Atom | Structure) and (term.predicate is DIV or self.function(term.predicate)):
             return True
+        return any(self.may_fail(part) for part in parts_of(term))
 
-        return first
+    # ---- matching --------------------------------------------------------------------------------------------------
 
-    def _match_again(self, slot: int) -> Match:
-        trail = self.trail
-        return lambda frame, value: unify(frame[slot], value, trail)
+    def match(self, w: Writer, pattern: Term, given: str, flow: Flow) -> Flow:
+        """Go on only if the value in `given` unifies with the pattern."""
+        if type(pattern) is Var:
+            if pattern not in flow.names:
+                return flow.with_name(pattern, given)
+            w.require(f"unify({flow.names[pattern]}, {given}, trail)")
+            return flow
+        if type(pattern) in FIXED:
+            wanted = self.expression(w, pattern, flow)
+            w.refuse(f"{given} != {wanted} and (type({given}) in FIXED or not unify({wanted}, {given}, trail))")
+            return flow
+        flow = self.met(w, variables_in(pattern), flow)
+        w.require(f"unify({self.expression(w, pattern, flow)}, {given}, trail)")
+        return flow
 
-    def _match_constant(self, constant: Term) -> Match:
-        trail = self.trail
-        return lambda frame, value: value == constant or (type(value) not in FIXED and unify(constant, value, trail))
+
+def _step_of(term: Literal) -> int:
+    """X + 1 is 1, X - 2 is -2: then only one bound can be passed. Otherwise 0."""
+    by = term.args[1]
+    if type(by) is not int or term.predicate.name not in "+-":
+        return 0
+    return by if term.predicate.name == "+" else -by
+
+
+def is_simple(term: Term) -> bool:
+    """A variable or a value without parts."""
+    return type(term) is Var or type(term) in FIXED

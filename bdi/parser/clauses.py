@@ -1,21 +1,19 @@
 """Each rule of the grammar gets its meaning."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from typing import Any
-
-from lark import v_args
-from lark.tree import Meta
 
 from bdi.errors import (
     AgentSpeakSyntaxError,
 )
-from bdi.parser.steps import NO_LITERALS, believed, branch_of, step_of
+from bdi.parser.steps import NO_LITERALS, Run, believed, branch_of, run_together, step_of
 from bdi.parser.terms import Braces, Marked, Terms
 from bdi.syntax import (
     Belief,
     Body,
     Clause,
+    CompatibilityWarning,
     Directive,
     Does,
     For,
@@ -30,6 +28,7 @@ from bdi.syntax import (
     While,
 )
 from bdi.terms import (
+    ANNOTATED,
     Atom,
     Code,
     Literal,
@@ -42,22 +41,31 @@ from bdi.terms import (
 )
 
 
-def with_own_labels(plans: list[Plan]) -> Iterator[Plan]:
+def with_own_labels(plans: list[Plan], first: int = 1) -> Iterator[Plan]:
     """Plans without a name get p__1, p__2, … in source order."""
-    for count, plan in enumerate(plans, 1):
+    for count, plan in enumerate(plans, first):
         if plan.label.functor:
             yield plan
         else:
             yield replace(plan, label=literal_of(predicate(f"p__{count}"), (), plan.label.annots))
 
 
-@v_args(inline=True)
+Warn = Callable[[CompatibilityWarning], None]
+
+
 class Clauses(Terms):
-    """Builds clauses bottom-up."""
+    """Builds clauses bottom-up. Each method has the name of its rule in the grammar."""
+
+    def __init__(self, text: str, source: str, warn: Warn | None = None) -> None:
+        super().__init__(text, source)
+        self.warn = warn  # of what older programs write
 
     # -- clauses
 
     def program(self, *clauses: Clause | tuple[Plan, ...]) -> list[Clause]:
+        return self._with_subplans(clauses)
+
+    def _with_subplans(self, clauses: Iterable[Clause | tuple[Plan, ...]]) -> list[Clause]:
         kept: list[Clause] = []
         for clause in clauses:
             if not isinstance(clause, tuple):
@@ -68,44 +76,59 @@ class Clauses(Terms):
                 raise AgentSpeakSyntaxError("these sub-plans follow no plan", clause[0].place)
         return kept
 
-    @v_args(meta=True)
-    def belief(self, meta: Meta, children: list[Literal]) -> Belief:
+    def belief(self, literal: Literal) -> Belief:
         self.variables = {}
-        return Belief(children[0], self.place(meta))
+        return Belief(literal, self.place)
 
-    @v_args(meta=True)
-    def rule(self, meta: Meta, children: list[Any]) -> Rule:
+    def rule(self, head: Literal, formula: Term) -> Rule:
         self.variables = {}
-        return Rule(children[0], children[1], self.place(meta))
+        return self.rule_value(head, formula)
 
-    @v_args(meta=True)
-    def goal(self, meta: Meta, children: list[Literal]) -> Goal:
+    def rule_value(self, head: Literal, formula: Term) -> Rule:
+        return Rule(head, formula, self.place)
+
+    def goal(self, literal: Literal) -> Goal:
         self.variables = {}
-        return Goal(children[0], self.place(meta))
+        return Goal(literal, self.place)
 
-    @v_args(meta=True)
-    def directive(self, meta: Meta, children: list[Literal]) -> Directive:
-        return Directive(children[0], self.place(meta))
-
-    @v_args(meta=True)
-    def plan(self, meta: Meta, children: list[Any]) -> Plan:
+    def directive(self, term: Literal) -> Directive:
         self.variables = {}
-        parts = {child.kind: child.value for child in children if isinstance(child, Marked)}
-        trigger, head = parts["trigger"]
-        body = next((child for child in children if isinstance(child, Body)), Body())
-        label = parts.get("label") or atom("")
-        return Plan(label, trigger, head, parts.get("context"), body, self.place(meta), parts.get("condition"))
+        return Directive(term, self.place)
 
-    def subplans(self, *plans: Plan) -> tuple[Plan, ...]:
-        return tuple(with_own_labels(list(plans)))
+    def block(self, term: Literal, *clauses: Any) -> Directive:
+        self.variables = {}
+        return Directive(term, self.place, tuple(self._with_subplans(clauses)))
+
+    def plan(self, *parts: Any) -> Plan:
+        self.variables = {}
+        return self.plan_value(*parts)
+
+    def plan_value(self, *parts: Any) -> Plan:
+        named = {part.kind: part.value for part in parts if isinstance(part, Marked)}
+        trigger, head = named["trigger"]
+        annots: tuple[Term, ...] = ()
+        if isinstance(head, Structure) and head.predicate is ANNOTATED:  # +!G[source(S)]
+            annots, head = head.annots, head.args[0]
+        body = next((part for part in parts if isinstance(part, Body)), Body())
+        label = named.get("label") or atom("")
+        context, condition = named.get("context"), named.get("condition")
+        return Plan(label, trigger, head, context, body, self.place, condition, head_annots=annots)
+
+    def subplans(self, *plans: Any) -> tuple[Plan, ...]:
+        kept = self._with_subplans(plans)
+        return tuple(with_own_labels([plan for plan in kept if isinstance(plan, Plan)]))
+
+    def label_variable(self, label: Var | Structure) -> Marked:
+        """Of a plan as a value: { @L +!G <- B }"""
+        return Marked("label", Structure(ANNOTATED, (label,)))
 
     def label(self, label: Literal | Braces) -> Marked:
         if isinstance(label, Braces):
             label = literal_of(predicate(""), (), label.terms)
         return Marked("label", label)
 
-    def trigger(self, *children: Any) -> Marked:
-        *signs, head = children
+    def trigger(self, *parts: Any) -> Marked:
+        *signs, head = parts
         return Marked("trigger", (Trigger("".join(signs)), head))
 
     def context(self, formula: Term) -> Marked:
@@ -116,64 +139,58 @@ class Clauses(Terms):
 
     # -- bodies
 
-    def body(self, *steps: Step) -> Body:
-        return Body(steps)
+    def body(self, *steps: Step | Run) -> Body:
+        return Body(tuple(each for step in steps for each in (step.steps if isinstance(step, Run) else (step,))))
 
-    @v_args(meta=True)
-    def formula_step(self, meta: Meta, children: list[Term]) -> Simple:
+    def formula_step(self, formula: Term) -> Simple | Run:
         """p(1)   .x(1)   X > 2   +b   ++b   -b   --b   -+b   X"""
-        return step_of(children[0], self.place(meta))
+        terms = run_together(formula)
+        if len(terms) == 1:
+            return step_of(formula, self.place)
+        steps = tuple(step_of(term, self.place) for term in terms)
+        sentence = f"';' is missing between {steps[0]} and {steps[1]}"
+        if self.warn is None:
+            raise AgentSpeakSyntaxError(sentence, self.place)
+        self.warn(CompatibilityWarning(self.place, sentence, ";"))
+        return Run(steps)
 
-    @v_args(meta=True)
-    def achieve(self, meta: Meta, children: list[Term]) -> Simple:
-        return Simple(Does.ACHIEVE, self.goal_term(children[0], meta), self.place(meta))
+    def achieve(self, term: Term) -> Simple:
+        return Simple(Does.ACHIEVE, self._goal_term(term), self.place)
 
-    @v_args(meta=True)
-    def achieve_apart(self, meta: Meta, children: list[Term]) -> Simple:
-        return Simple(Does.ACHIEVE_APART, self.goal_term(children[0], meta), self.place(meta))
+    def achieve_apart(self, term: Term) -> Simple:
+        return Simple(Does.ACHIEVE_APART, self._goal_term(term), self.place)
 
-    def goal_term(self, term: Term, meta: Meta) -> Term:
+    def _goal_term(self, term: Term) -> Term:
         if isinstance(term, Atom | Structure | Var | Code) and getattr(term, "predicate", None) not in NO_LITERALS:
             return term
-        raise AgentSpeakSyntaxError(f"{term} cannot be a goal", self.place(meta), ("a name", "a variable"))
+        raise AgentSpeakSyntaxError(f"{term} cannot be a goal", self.place, ("a name", "a variable"))
 
-    @v_args(meta=True)
-    def test(self, meta: Meta, children: list[Term]) -> Simple:
-        return Simple(Does.TEST, children[0], self.place(meta))
+    def test(self, term: Term) -> Simple:
+        return Simple(Does.TEST, term, self.place)
 
-    @v_args(meta=True)
-    def add_first(self, meta: Meta, children: list[Term]) -> Simple:
-        return Simple(Does.ADD_FIRST, believed(children[0], self.place(meta)), self.place(meta))
+    def add_first(self, term: Term) -> Simple:
+        return Simple(Does.ADD_FIRST, believed(term, self.place), self.place)
 
-    @v_args(meta=True)
-    def add_last(self, meta: Meta, children: list[Term]) -> Simple:
-        return Simple(Does.ADD_LAST, believed(children[0], self.place(meta)), self.place(meta))
+    def add_last(self, term: Term) -> Simple:
+        return Simple(Does.ADD_LAST, believed(term, self.place), self.place)
 
-    @v_args(meta=True)
-    def bracket(self, meta: Meta, children: list[Body]) -> Step:
-        """( a; b ) is the condition-free `if`."""
-        return If(atom("true"), children[0], Body(), self.place(meta))
+    def bracket(self, body: Body) -> Run:
+        """( a; b ): its steps are those of the body around it."""
+        return Run(body.steps)
 
-    @v_args(meta=True)
-    def or_fork(self, meta: Meta, children: list[Step]) -> Fork:
-        return Fork(False, tuple(branch_of(child) for child in children), self.place(meta))
+    def fork_all(self, *branches: Step) -> Fork:
+        return Fork(True, tuple(branch_of(branch) for branch in branches), self.place)
 
-    @v_args(meta=True)
-    def and_fork(self, meta: Meta, children: list[Step]) -> Fork:
-        return Fork(True, tuple(branch_of(child) for child in children), self.place(meta))
+    def fork_any(self, *branches: Step) -> Fork:
+        return Fork(False, tuple(branch_of(branch) for branch in branches), self.place)
 
-    @v_args(meta=True)
-    def if_step(self, meta: Meta, children: list[Any]) -> If:
-        condition, then, *rest = children
-        otherwise = rest[0] if rest else Body()
-        return If(condition, then, otherwise if isinstance(otherwise, Body) else Body((otherwise,)), self.place(meta))
+    def if_step(self, condition: Term, then: Body, otherwise: Body | If | None = None) -> If:
+        if otherwise is None:
+            otherwise = Body()
+        return If(condition, then, otherwise if isinstance(otherwise, Body) else Body((otherwise,)), self.place)
 
-    elif_step = if_step
+    def while_step(self, condition: Term, body: Body) -> While:
+        return While(condition, body, self.place)
 
-    @v_args(meta=True)
-    def while_step(self, meta: Meta, children: list[Any]) -> While:
-        return While(children[0], children[1], self.place(meta))
-
-    @v_args(meta=True)
-    def for_step(self, meta: Meta, children: list[Any]) -> For:
-        return For(children[0], children[1], self.place(meta))
+    def for_step(self, condition: Term, body: Body) -> For:
+        return For(condition, body, self.place)

@@ -1,75 +1,147 @@
 """Text to program, with everything that it includes."""
 
-from collections.abc import Callable
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
-from bdi.errors import (
-    IncludeCircle,
-    IncludeNotFound,
-    UnknownDirective,
-)
-from bdi.parser.clauses import with_own_labels
+from bdi.errors import IncludeCircle, Place
+from bdi.parser.clauses import Warn, with_own_labels
+from bdi.parser.directives import declared_space, expanded, file_of, function_of, space_of
+from bdi.parser.includes import Directives, Includes, Read, read_file
+from bdi.parser.namespaces import Module, Numbers
 from bdi.parser.texts import parse
-from bdi.syntax import (
-    Belief,
-    Clause,
-    Directive,
-    Goal,
-    Plan,
-    Program,
-    Rule,
-)
-from bdi.terms import (
-    String,
-)
-
-Read = Callable[[Path], str]
+from bdi.syntax import Belief, Clause, CompatibilityWarning, Directive, Function, Goal, Plan, Program, Rule
 
 
-def load_program(path: str | Path) -> Program:
+def load_program(
+    path: str | Path,
+    *,
+    search_path: Sequence[str | Path] = (),
+    remap: Mapping[str, str | Path] | None = None,
+    directives: Directives | None = None,
+    compatible: bool = False,
+    warn: Warn | None = None,
+) -> Program:
     """The program in this file, with everything it includes. Raises AgentSpeakError; OSError if it cannot be read."""
-    return parse_program(_read_text(Path(path)), source=str(path))
-
-
-def parse_program(text: str, source: str = "<text>", read: Read | None = None) -> Program:
-    """A program with its includes in place. Included paths are relative to the file that includes them.
-
-    `read` gives the text of an included file (by default from disk). Raises AgentSpeakSyntaxError, IncludeNotFound,
-    IncludeCircle, UnknownDirective.
-    """
-    collected = _Collected(read or _read_text)
-    collected.add(text, source, ())
-    return Program(
-        source,
-        tuple(collected.beliefs),
-        tuple(collected.goals),
-        tuple(with_own_labels(collected.plans)),
-        tuple(collected.sources),
+    text = read_file(Path(path))
+    return parse_program(
+        text,
+        str(path),
+        search_path=search_path,
+        remap=remap,
+        directives=directives,
+        compatible=compatible,
+        warn=warn,
     )
 
 
-def _read_text(path: Path) -> str:
-    return path.read_text(encoding="utf-8")
+def parse_program(
+    text: str,
+    source: str = "<text>",
+    read: Read | None = None,
+    *,
+    search_path: Sequence[str | Path] = (),
+    remap: Mapping[str, str | Path] | None = None,
+    directives: Directives | None = None,
+    compatible: bool = False,
+    warn: Warn | None = None,
+) -> Program:
+    """A program with its includes in place. Included files are looked for as `includes.Includes` says.
+
+    `read` gives the text of an included file (by default from disk), `directives` are the caller's own, by name (see
+    `directives`). With `compatible` what older programs write is read, too (see `mends`); `Program.warnings` says
+    where, and `warn` is told at once. Raises AgentSpeakSyntaxError, IncludeNotFound, IncludeCircle, UnknownDirective.
+    """
+    collected = _Collected(Includes(read or read_file, search_path, remap or {}, directives or {}))
+    if compatible:
+        collected.warn = _both(collected.warnings.append, warn)
+    collected.add_file(text, source, Module(numbers=collected.numbers).of_file(text, ""))
+    return collected.program(source)
+
+
+def load_module(name: str, space: str | None, loader: Includes, so_far: Program) -> tuple[Program, str]:
+    """A file for an agent that is running, and the namespace it is loaded into (None: a fresh one).
+
+    `so_far` is what the agent was made of: the file is looked for beside it. Raises as `parse_program`.
+    """
+    path, text = loader.find(name, Place(so_far.source))
+    collected = _Collected(loader, so_far)
+    outside = Module(numbers=collected.numbers)
+    module = outside.of_file(text, outside.fresh() if space is None else space)
+    collected.add_file(text, str(path), module)
+    return collected.program(str(path)), module.space
+
+
+def _both(keep: Warn, tell: Warn | None) -> Warn:
+    def warn(warning: CompatibilityWarning) -> None:
+        keep(warning)
+        if tell is not None:
+            tell(warning)
+
+    return warn
 
 
 class _Collected:
     """A program while its files are read, each where it is included."""
 
-    def __init__(self, read: Read) -> None:
-        self.read = read
+    def __init__(self, includes: Includes, so_far: Program | None = None) -> None:
+        self.includes = includes
+        self.numbers = Numbers(so_far.namespaces if so_far else 0)
+        self.first_plan = len(so_far.plans) + 1 if so_far else 1
         self.beliefs: list[Belief | Rule] = []
         self.goals: list[Goal] = []
         self.plans: list[Plan] = []
+        self.functions: list[Function] = []
         self.sources: list[str] = []
+        self.warnings: list[CompatibilityWarning] = []
+        self.warn: Warn | None = None  # in the compatibility mode
+        self.open: list[Path] = []  # the files that are being read, each included by the one before
 
-    def add(self, text: str, source: str, outer: tuple[Path, ...]) -> None:
+    def program(self, source: str) -> Program:
+        return Program(
+            source,
+            tuple(self.beliefs),
+            tuple(self.goals),
+            tuple(with_own_labels(self.plans, self.first_plan)),
+            tuple(self.sources),
+            tuple(self.functions),
+            self.numbers.taken,
+            tuple(self.warnings),
+        )
+
+    # ---- files
+
+    @contextmanager
+    def reading(self, source: str) -> Iterator[None]:
         self.sources.append(source)
-        here = (*outer, Path(source).resolve())
-        for clause in parse(text, "program", source):
+        self.open.append(Path(source).resolve())
+        yield
+        self.open.pop()
+
+    def include(self, directive: Directive, module: Module) -> None:
+        """{ include("file") }, { include("file", space) }"""
+        space = space_of(directive, module)
+        path, text = self.found(directive)
+        self.add_file(text, str(path), module.of_file(text, space))
+
+    def add_file(self, text: str, source: str, module: Module) -> None:
+        with self.reading(source):
+            self.add(parse(text, "program", source, self.warn), module)
+
+    def found(self, directive: Directive) -> tuple[Path, str]:
+        path, text = self.includes.find(file_of(directive), directive.place)
+        if path.resolve() in self.open:
+            raise IncludeCircle(f"{path} includes itself", directive.place)
+        return path, text
+
+    # ---- clauses
+
+    def add(self, clauses: Iterable[Clause], module: Module) -> None:
+        for clause in clauses:
             if isinstance(clause, Directive):
-                self.obey(clause, Path(source).parent, here)
+                self.obey(clause, module)
             else:
-                self.keep(clause)
+                self.keep(module.clause(clause))
 
     def keep(self, clause: Clause) -> None:
         if isinstance(clause, Plan):
@@ -79,19 +151,30 @@ class _Collected:
         elif isinstance(clause, Belief | Rule):
             self.beliefs.append(clause)
 
-    def obey(self, directive: Directive, folder: Path, here: tuple[Path, ...]) -> None:
-        """{ include("file") }"""
-        term = directive.term
-        if term.functor != "include" or len(term.args) != 1 or not isinstance(term.args[0], String):
-            raise UnknownDirective(f"unknown directive {{ {term} }}", directive.place, ('{ include("file.asl") }',))
-        path = folder / str.__str__(term.args[0])
-        if path.resolve() in here:
-            raise IncludeCircle(f"{path} includes itself", directive.place)
-        self.add(self.text_of(path, directive), str(path), here)
+    def obey(self, directive: Directive, module: Module) -> None:
+        name = directive.term.functor
+        if name == "include":
+            self.include(directive, module)
+        elif name == "namespace":
+            space = declared_space(directive, module)
+            self.add(directive.clauses or (), module.inner(space))
+        elif name == "register_function":
+            self.functions.append(function_of(directive, module))
+        else:
+            module.prefixes = True  # of the plans that a pattern makes
+            self.add(expanded(directive, tuple(self.flat(directive.clauses or ())), self.includes.directives), module)
 
-    def text_of(self, path: Path, directive: Directive) -> str:
-        try:
-            return self.read(path)
-        except (OSError, ValueError) as error:
-            reason = getattr(error, "strerror", None) or "not a text file"
-            raise IncludeNotFound(f"cannot include {path}: {reason}", directive.place) from error
+    def flat(self, clauses: Iterable[Clause]) -> Iterator[Clause]:
+        """The clauses of a block with the directives in it carried out, so that the one around them sees it all. What
+        is in a namespace of its own stays apart."""
+        for clause in clauses:
+            if not isinstance(clause, Directive) or clause.term.functor in ("namespace", "register_function"):
+                yield clause
+            elif clause.term.functor != "include":
+                yield from expanded(clause, tuple(self.flat(clause.clauses or ())), self.includes.directives)
+            elif len(clause.term.args) > 1:
+                yield clause
+            else:
+                path, text = self.found(clause)
+                with self.reading(str(path)):
+                    yield from self.flat(parse(text, "program", str(path), self.warn))

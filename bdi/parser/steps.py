@@ -1,5 +1,7 @@
 """What a formula does as a step of a plan."""
 
+from typing import NamedTuple
+
 from bdi.errors import (
     AgentSpeakSyntaxError,
     Place,
@@ -7,13 +9,11 @@ from bdi.errors import (
 from bdi.syntax import (
     Body,
     Does,
-    If,
     Simple,
     Step,
 )
 from bdi.terms import (
     AND,
-    INTERNAL,
     NEGATIVE,
     NOT,
     OR,
@@ -24,7 +24,7 @@ from bdi.terms import (
     Structure,
     Term,
     Var,
-    atom,
+    is_internal,
     predicate,
 )
 
@@ -53,13 +53,34 @@ def step_of(term: Term, place: Place) -> Simple:
     return Simple(_deed_of(term, place), term, place)
 
 
+class Run(NamedTuple):
+    """Steps that count as one until the body around them is built."""
+
+    steps: tuple[Step, ...]
+
+
+def run_together(term: Term) -> list[Term]:
+    """a + b - c, where a is no number, is meant as a; +b; -c."""
+    signed: list[Term] = []
+    while isinstance(term, Structure) and term.predicate in _JOINED:
+        signed.append(Structure(_JOINED[term.predicate], (term.args[1],)))
+        term = term.args[0]
+    is_deed = isinstance(term, Atom | Structure) and (
+        term.predicate not in NO_LITERALS or term.predicate in _JOINED.values()
+    )
+    return [term, *reversed(signed)] if is_deed else [term]
+
+
+_JOINED = {predicate("+", 2): POSITIVE, predicate("-", 2): NEGATIVE}
+
+
 def _deed_of(term: Term, place: Place) -> Does:
     if isinstance(term, Var | Code):
         return Does.VARIABLE
     if isinstance(term, Atom | Structure):
         if term.predicate in RELATIONS or term.predicate in (AND, OR, NOT) or term.functor in ("true", "false"):
             return Does.CONSTRAINT
-        if term.functor.startswith(INTERNAL):
+        if is_internal(term.functor):
             return Does.INTERNAL
         if term.predicate not in NO_LITERALS:
             return Does.ACTION
@@ -67,18 +88,15 @@ def _deed_of(term: Term, place: Place) -> Does:
 
 
 def believed(term: Term, place: Place) -> Term:
-    good = isinstance(term, Var) or (
-        isinstance(term, Atom | Structure)
-        and term.predicate not in NO_LITERALS
-        and not term.functor.startswith(INTERNAL)
+    """What can be added and removed: a belief, and `{ plan }` and `{ rule }`."""
+    good = isinstance(term, Var | Code) or (
+        isinstance(term, Atom | Structure) and term.predicate not in NO_LITERALS and not is_internal(term.functor)
     )
     if not good:
         raise AgentSpeakSyntaxError(f"{term} cannot be believed", place, ("a name",))
     return term
 
 
-def branch_of(step: Step) -> Body:
+def branch_of(step: Step | Run) -> Body:
     """A branch of a fork: `(a; b)` counts as its steps."""
-    if isinstance(step, If) and step.condition is atom("true"):
-        return step.then
-    return Body((step,))
+    return Body(step.steps if isinstance(step, Run) else (step,))

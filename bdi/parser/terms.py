@@ -1,24 +1,27 @@
 """What the grammar says about terms and formulas."""
 
-from dataclasses import dataclass
-from typing import Any
-
-from lark import Token, Transformer, v_args
-from lark.tree import Meta
+from functools import cmp_to_key
+from typing import Any, NamedTuple
 
 from bdi.errors import (
+    AgentSpeakSyntaxError,
     Place,
 )
+from bdi.parser.places import Places
 from bdi.syntax import (
     Body,
+    Plan,
+    Rule,
     variables_of,
 )
 from bdi.terms import (
     AND,
     NEGATIVE,
     NOT,
+    OPERATORS,
     OR,
     POSITIVE,
+    THIS_SPACE,
     Code,
     List,
     Literal,
@@ -27,42 +30,43 @@ from bdi.terms import (
     Structure,
     Term,
     Var,
+    annotated,
+    atom,
+    in_space,
     literal_of,
     number,
     predicate,
 )
+from bdi.unify import compare
+
+MOST_DIGITS = 15  # of a whole number that is surely exact
 
 
-@dataclass(frozen=True, slots=True)
-class Braces:
+class Braces(NamedTuple):
     """Arguments or annotations on their way to the literal that they belong to."""
 
     annotations: bool
     terms: tuple[Term, ...]
 
 
-class Marked:
-    """A part of a plan on its way to the plan."""
+class Marked(NamedTuple):
+    """A part of a plan or list on its way there."""
 
-    def __init__(self, kind: str, value: Any) -> None:
-        self.kind = kind
-        self.value = value
+    kind: str
+    value: Any
 
 
-@v_args(inline=True)
-class Terms(Transformer[Token, Any]):
+class Terms:
     """Builds terms bottom-up. One variable object for each name within a clause."""
 
     def __init__(self, text: str, source: str) -> None:
-        super().__init__(visit_tokens=False)
-        self.lines = text.split("\n")
-        self.source = source
+        self.places = Places(text, source)
+        self.at = 0  # where what is being built begins
         self.variables: dict[str, Var] = {}
 
-    def place(self, meta: Meta) -> Place:
-        if meta.empty:
-            return Place(self.source)
-        return Place(self.source, meta.line, meta.column, self.lines[meta.line - 1])
+    @property
+    def place(self) -> Place:
+        return self.places.at(self.at)
 
     def either(self, left: Term, right: Term) -> Term:
         return Structure(OR, (left, right))
@@ -73,33 +77,69 @@ class Terms(Transformer[Token, Any]):
     def negated(self, formula: Term) -> Term:
         return Structure(NOT, (formula,))
 
-    def operation(self, left: Term, sign: Token, right: Term) -> Term:
-        return Structure(predicate(str(sign), 2), (left, right))
+    def operation(self, left: Term, sign: str, right: Term) -> Term:
+        return Structure(predicate(sign, 2), (left, right))
 
-    def signed(self, sign: Token, term: Term) -> Term:
+    def signed(self, sign: str, term: Term) -> Term:
         return Structure(NEGATIVE if sign == "-" else POSITIVE, (term,))
 
-    def number(self, token: Token) -> Term:
-        return number(float(token)) if any(mark in token for mark in ".eE") else number(int(token))
+    def number(self, digits: str) -> Term:
+        if len(digits) <= MOST_DIGITS and digits.isdecimal():
+            return int(digits)
+        value = float(digits)
+        if value == float("inf"):
+            raise AgentSpeakSyntaxError("this number is too large", self.place)
+        return number(value)
 
-    def string(self, token: Token) -> Term:
-        return String(_unescaped(token[1:-1]))
+    def string(self, quoted: str) -> Term:
+        return String(self._unescaped(quoted[1:-1]))
 
-    def variable(self, token: Token, annots: Braces | None = None) -> Term:
-        if token == "_":  # noqa: S105 — the unnamed variable
+    def _unescaped(self, text: str) -> str:
+        if "\\" not in text:
+            return text
+        chars = iter(text)
+        return "".join(self._escape(next(chars)) if char == "\\" else char for char in chars)
+
+    def _escape(self, char: str) -> str:
+        if char not in ESCAPES:
+            raise AgentSpeakSyntaxError(
+                f"there is no escape \\{char}", self.place, tuple(f"\\{each}" for each in ESCAPES)
+            )
+        return ESCAPES[char]
+
+    def variable(self, name: str, annots: Braces | None = None) -> Term:
+        variable = self._variable(name)
+        return annotated(variable, annots.terms) if annots else variable
+
+    def _variable(self, name: str) -> Term:
+        if "::" in name:
+            space, _, name = name.partition("::")
+            return in_space(self._space(space or THIS_SPACE), self._variable(name))
+        if name == "_":
             return Var("_")
-        return self.variables.setdefault(str(token), Var(str(token)))
+        return self.variables.setdefault(name, Var(name))
+
+    def _space(self, name: str) -> Term:
+        """NS, or a name"""
+        return atom(name) if name[0].islower() else self._variable(name)
 
     def literal(self, *children: Any) -> Literal:
         negated = children[0] == "~"
         name, *braces = children[1:] if negated else children
-        space, _, plain = name.rpartition("::")
-        if name.startswith("'"):
-            space, plain = "", str(name)  # 'x' is not x: the quotes belong to the name
+        space, plain = "", name
+        if "::" in name and not name.startswith("'"):  # 'x' is not x: the quotes belong to the name
+            space, _, plain = name.partition("::")
+            space = space or THIS_SPACE
+        if plain.startswith("~"):
+            negated, plain = True, plain[1:]
+        if plain in OPERATORS and braces:
+            raise AgentSpeakSyntaxError(f"'{plain}' is an operator and cannot be a name", self.place, ("a name",))
+        if space and not space[0].islower():
+            return in_space(self._space(space), _literal(plain, braces, negated))
         return _literal(plain, braces, negated, space)
 
-    def internal(self, name: Token, *braces: Braces) -> Term:
-        return _literal(str(name), list(braces))
+    def internal(self, name: str, *braces: Braces) -> Term:
+        return _literal(name, list(braces))
 
     def arguments(self, *terms: Term) -> Braces:
         return Braces(False, terms)
@@ -110,28 +150,29 @@ class Terms(Transformer[Token, Any]):
 
     def sequence(self, *children: Any) -> Term:
         if children and isinstance(children[-1], Marked):
-            return OpenList(children[:-1], children[-1].value)
+            tail = children[-1].value
+            return OpenList(children[:-1], tail)
         return List(children)
 
     def tail(self, term: Term) -> Marked:
         return Marked("tail", term)
 
-    @v_args(meta=True)
-    def code(self, meta: Meta, children: list[Body]) -> Term:
-        return Code(children[0], {variable: variable for variable in variables_of(children[0])})
+    def code(self, held: Body | Plan | Rule) -> Term:
+        return Code(held, {variable: variable for variable in variables_of(held)})
 
 
 def _literal(name: str, braces: list[Braces], negated: bool = False, space: str = "") -> Literal:
     args = next((brace.terms for brace in braces if not brace.annotations), ())
-    annots = next((brace.terms for brace in braces if brace.annotations), ())
+    annots = _in_order(next((brace.terms for brace in braces if brace.annotations), ()))
     return literal_of(predicate(name, len(args), negated, space), args, annots)
 
 
-_ESCAPES = {"n": "\n", "t": "\t", "r": "\r"}
+def _in_order(annots: tuple[Term, ...]) -> tuple[Term, ...]:
+    """In standard order, as they are shown; a last `|T` stays last."""
+    if len(annots) < 2:
+        return annots
+    tail = annots[-1:] if isinstance(annots[-1], OpenList) else ()
+    return (*sorted(annots[: len(annots) - len(tail)], key=cmp_to_key(compare)), *tail)
 
 
-def _unescaped(text: str) -> str:
-    if "\\" not in text:
-        return text
-    parts = iter(text)
-    return "".join((_ESCAPES.get(after := next(parts, ""), after)) if char == "\\" else char for char in parts)
+ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "b": "\b", "f": "\f", '"': '"', "'": "'", "\\": "\\"}

@@ -1,15 +1,13 @@
 """How steps follow each other: bodies, `if`, `while`, `for`, branches side by side."""
 
-from collections.abc import Callable
-from typing import Any
-
 from bdi.intentions import Intention, Means, Step
-from bdi.logic import Frame, Known, Scope, succeed
-from bdi.plans.steps import Steps
+from bdi.logic import Compiled, Known, Scope
+from bdi.plans.steps import Run, Steps
+from bdi.plans.written_out import as_statement
 from bdi.syntax import Body, Does, For, Fork, If, Simple, While, variables_of
 from bdi.syntax import Step as Written
-from bdi.terms import Term
-from bdi.unify import resolve, variables_in
+from bdi.terms import Atom, Structure, Term, Var
+from bdi.unify import undo, variables_in
 
 
 class Control(Steps):
@@ -20,14 +18,30 @@ class Control(Steps):
         before: list[Known] = []
         for written in body.steps:
             before.append(known)
-            known = _known_after(written, known)
+            known = self._known_after(written, known, scope)
         for written, now in zip(reversed(body.steps), reversed(before), strict=True):
             following = self._step(written, scope, now, following)
         return following
 
+    def _known_after(self, written: Written, known: Known, scope: Scope) -> Known:
+        """A finished step has filled its variables, except where it may have skipped them."""
+        if isinstance(written, Simple) and written.does is Does.INTERNAL:
+            return Known(known.filled, known.met | self._met_by(written.term, scope))
+        if isinstance(written, Simple):
+            return known.after(written.term)
+        return Known(known.filled, known.met | frozenset(variables_of(Body((written,)))))
+
+    def _met_by(self, term: Term, scope: Scope) -> frozenset[Var]:
+        """One that is told the variables by name may fill any of them: .wait("+b(X)")"""
+        builtin = self.logic.builtin(term.predicate) if isinstance(term, Atom | Structure) else None
+        return frozenset(scope.slots if builtin is not None and builtin.named else variables_in(term))
+
     def _step(self, written: Written, scope: Scope, known: Known, following: Step | None) -> Step:
         if isinstance(written, Simple):
-            return Step(self.simple(written, scope, known), written, following)
+            other = as_statement(written)
+            if other is not None:
+                return self._step(other, scope, known, following)
+            return _step_of(self.simple(written, scope, known), written, following)
         if isinstance(written, If):
             return self._if(written, scope, known, following)
         if isinstance(written, While):
@@ -38,34 +52,34 @@ class Control(Steps):
 
     def _if(self, written: If, scope: Scope, known: Known, following: Step | None) -> Step:
         """if (c) {..} else {..}"""
-        condition = self.logic.formula(written.condition, scope, known, succeed)
+        condition = self.logic.test(written.condition, scope, known)
         met = Known(known.filled, known.met | frozenset(variables_in(written.condition)))
         then = self.chain(written.then, scope, known.after(written.condition), following)
         otherwise = self.chain(written.otherwise, scope, met, following)
         trail = self.logic.trail
 
         def branch(intention: Intention, means: Means) -> None:
-            holds = condition(means.frame)
-            trail.clear()
+            holds = condition.call(means.frame)
+            trail.clear() if holds else undo(trail, 0)
             means.step = then if holds else otherwise
 
         return Step(branch, written, following)
 
     def _while(self, written: While, scope: Scope, known: Known, following: Step | None) -> Step:
         """while (c) {..}: what a round binds is forgotten before the next."""
-        condition = self.logic.formula(written.condition, scope, known, succeed)
+        condition = self.logic.test(written.condition, scope, known)
         trail = self.logic.trail
 
         def loop(intention: Intention, means: Means) -> None:
             if not means.loops or means.loops[-1][0] is not step:
-                means.loops.append((step, means.frame[:]))
+                means.loops = (*means.loops, (step, means.frame[:]))
             means.frame[:] = means.loops[-1][1]
-            holds = condition(means.frame)
-            trail.clear()
+            holds = condition.call(means.frame)
+            trail.clear() if holds else undo(trail, 0)
             if holds:
                 means.step = first
             else:
-                means.loops.pop()
+                means.loops = means.loops[:-1]
                 means.step = following
 
         step = Step(loop, written, following)
@@ -74,16 +88,16 @@ class Control(Steps):
 
     def _for(self, written: For, scope: Scope, known: Known, following: Step | None) -> Step:
         """for (c) {..}: all answers are found first, then the body runs once for each."""
-        answers = self._answers(written.condition, scope, known)
+        answers = self.logic.rounds(written.condition, scope, known)
 
         def loop(intention: Intention, means: Means) -> None:
             if not means.loops or means.loops[-1][0] is not step:
-                means.loops.append((step, means.frame[:], answers(means.frame)))
+                means.loops = (*means.loops, (step, means.frame[:], iter(answers.call(means.frame))))
             _, saved, left = means.loops[-1]
             means.frame[:] = saved
             answer = next(left, None)
             if answer is None:
-                means.loops.pop()
+                means.loops = means.loops[:-1]
                 means.step = following
                 return
             for slot, value in answer:
@@ -94,30 +108,12 @@ class Control(Steps):
         first = self.chain(written.body, scope, known.after(written.condition), step)
         return step
 
-    def _answers(self, formula: Term, scope: Scope, known: Known) -> Callable[[Frame], Any]:
-        variables = variables_in(formula)
-        slots = [scope.slot(variable) for variable in variables]
-        found: list[list[tuple[int, Term]]] = []
-
-        def collect(frame: Frame) -> bool:
-            values = [(slot, frame[slot]) for slot in slots]
-            found.append([(slot, resolve(value)) for slot, value in values if value is not None])
-            return False
-
-        solve = self.logic.formula(formula, scope, known, collect)
-
-        def answers(frame: Frame) -> Any:
-            found.clear()
-            solve(frame)
-            return iter(found[:])
-
-        return answers
-
     def _fork(self, written: Fork, scope: Scope, known: Known, following: Step | None) -> Step:
         """a |&| b   a ||| b"""
         doer = self.doer
         join = Step(lambda intention, means: doer.join(intention), written, following)
-        firsts = [self.chain(branch, scope, known, join) for branch in written.branches]
+        meanwhile = Known(known.filled, known.met | frozenset(variables_of(Body((written,)))))  # by another branch
+        firsts = [self.chain(branch, scope, meanwhile, join) for branch in written.branches]
         return Step(
             lambda intention, means: doer.fork(intention, firsts, written.wait_for_all),
             written,
@@ -125,10 +121,9 @@ class Control(Steps):
         )
 
 
-def _known_after(written: Written, known: Known) -> Known:
-    """A finished step has filled its variables, except where it may have skipped them."""
-    if isinstance(written, Simple) and written.does is Does.INTERNAL:
-        return Known(known.filled, known.met | frozenset(variables_in(written.term)))
-    if isinstance(written, Simple):
-        return known.after(written.term)
-    return Known(known.filled, known.met | frozenset(variables_of(Body((written,)))))
+def _step_of(run: Run | Compiled, written: Written, following: Step | None) -> Step:
+    if not isinstance(run, Compiled):
+        return Step(run, written, following)
+    step = Step(run.call, written, following)
+    run.tell(step.runs)
+    return step

@@ -5,14 +5,32 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from typing import Any, Protocol
 
+from bdi.beliefs import annots_from_self
 from bdi.intentions import Intention, Means, Step, StepFailed
-from bdi.logic import Build, Builtin, Known, Logic, Scope, succeed
+from bdi.logic import Builtin, Compiled, Known, Logic, Scope
 from bdi.plans.library import Library, Options
-from bdi.syntax import Body, Does, Simple, Trigger
-from bdi.terms import INTERNAL, Atom, Code, Literal, Predicate, Structure, Term, Var, show
-from bdi.unify import FIXED, parts_of, resolve, resolve_all, undo
+from bdi.syntax import GOAL_ADDED, Body, Does, Simple, Trigger, variables_of
+from bdi.terms import (
+    ANNOTATED,
+    IN_SPACE,
+    Atom,
+    Code,
+    Literal,
+    Predicate,
+    Structure,
+    Term,
+    Var,
+    is_internal,
+    predicate,
+    show,
+)
+from bdi.unify import EVALUATED, FIXED, parts_of, undo, variables_in
 
 Run = Callable[[Intention, Means], None]
+Build = Callable[[Any], Any]
+Arguments = tuple[Term, ...]
+REMEMBERED_BODIES = 200
+WAIT = predicate(".wait", 1)
 
 
 class Doer(Protocol):
@@ -20,136 +38,178 @@ class Doer(Protocol):
 
     def start_action(self, intention: Intention, term: Literal) -> None: ...
     def call_internal(self, intention: Intention, builtin: Builtin, args: tuple[Any, ...]) -> bool: ...
-    def achieve(self, intention: Intention, goal: Literal, options: Options) -> None: ...
-    def achieve_apart(self, goal: Literal, options: Options) -> None: ...
+    def achieve(
+        self, intention: Intention, key: Predicate, args: Arguments, annots: Arguments, options: Options
+    ) -> None: ...
+    def post_goal(
+        self, intention: Intention, key: Predicate, args: Arguments, annots: Arguments, options: Options
+    ) -> None: ...
+    def achieve_apart(self, goal: Literal) -> None: ...
     def ask_plans(self, intention: Intention, goal: Literal, options: Options) -> None: ...
+    def with_subplans(
+        self, intention: Intention, trigger: Trigger, goal: Term, options: Options | None
+    ) -> Options | None: ...
     def believe(self, literal: Literal, intention: Intention | None, last: bool = False) -> None: ...
     def forget(self, literal: Literal, intention: Intention | None) -> None: ...
     def update(self, literal: Literal, intention: Intention) -> None: ...
+    def learn(self, code: Code, does: Does) -> None: ...
     def fork(self, intention: Intention, branches: list[Step | None], wait_for_all: bool) -> None: ...
     def join(self, intention: Intention) -> None: ...
     def step(self, intention: Intention) -> None: ...
 
 
+Deed = Callable[[Intention, Literal], None]
+
+
 class Steps(ABC):
-    """Compiles single steps."""
+    """Compiles single steps. What a step needs of its variables is compiled when it first runs."""
 
     def __init__(self, doer: Doer, logic: Logic, library: Library) -> None:
         self.doer = doer
         self.logic = logic
         self.library = library
+        self._chains: dict[tuple[Any, ...], tuple[Body, Scope, Step | None]] = {}  # of bodies held by values
 
     @abstractmethod
     def chain(self, body: Body, scope: Scope, known: Known, following: Step | None) -> Step | None: ...
 
-    def simple(self, written: Simple, scope: Scope, known: Known) -> Run:
-        term = written.term
-        if written.does in (Does.CONSTRAINT, Does.TEST):
+    def simple(self, written: Simple, scope: Scope, known: Known) -> Run | Compiled:
+        term, does = written.term, written.does
+        if does in (Does.CONSTRAINT, Does.TEST):
             return self._test(written, scope, known)
-        if written.does is Does.INTERNAL:
-            return self._internal(_literal(term), scope)
-        if written.does is Does.VARIABLE or isinstance(term, Code):
-            return self._variable(term, scope)
-        build = self.logic.build(term, scope)
-        key = term.predicate if isinstance(term, Atom | Structure) else None
-        run = (
-            _GOALS[written.does](self, build, key)
-            if written.does in _GOALS
-            else self._deed(written.does, build, _fixed(term))
-        )
-        return _variables_named(run, term) if isinstance(term, Var) else run
+        if does is Does.INTERNAL:
+            return self._internal(_literal(term), scope, known)
+        if isinstance(term, Code) and does in _DEEDS:
+            return self._with_variable(does, self._one(term, scope, known))  # +{ +!g <- a }
+        if does is Does.VARIABLE or isinstance(term, Code):
+            return self._variable(term, scope, known)
+        if isinstance(term, Structure) and term.predicate in (IN_SPACE, ANNOTATED):
+            return self._with_variable(does, self._one(term, scope, known))
+        if isinstance(term, Var):
+            return _variables_named(self._with_variable(does, self._one(term, scope, known)), term)
+        literal = _literal_written(term)
+        if does in (Does.ACHIEVE, Does.ACHIEVE_APART):
+            return self._goal(does, literal, scope, known)
+        return self._deed(_DEEDS[does](self.doer), literal, scope, known)
 
-    def _deed(self, does: Does, build: Build, fixed: Literal | None) -> Run:
-        doer, deed = self.doer, _DEEDS[does]
-        if fixed is not None:
-            return lambda intention, means: deed(doer, intention, fixed)
-        return lambda intention, means: deed(doer, intention, _literal(build(means.frame)))
+    def _one(self, term: Term, scope: Scope, known: Known) -> Build:
+        """The term with the values of its variables."""
+        build = self.logic.builder((term,), scope, known, resolved=True)
+        return lambda frame: build.call(frame)[0]
 
-    def _test(self, written: Simple, scope: Scope, known: Known) -> Run:
-        """?b   ?(b & X > 2)   X > 2"""
-        term, trail = written.term, self.logic.trail
-        solve = self.logic.formula(term, scope, known, succeed)
-        build = self.logic.build(term, scope)
-        error = "test_goal_failed" if written.does is Does.TEST else "constraint_failed"
-        options = None
-        if written.does is Does.TEST and isinstance(term, Atom | Structure):
-            options = self.library.options(Trigger.TEST_ADDED, term.predicate)
+    # ---- beliefs and actions ---------------------------------------------------------------------------------------
 
-        def test(intention: Intention, means: Means) -> None:
-            found = solve(means.frame)
-            if found:
-                trail.clear()
-                return
-            undo(trail, 0)
-            if not options:
-                raise StepFailed(error, f"{written.does.value}{show(resolve(build(means.frame)))} is not the case")
-            self.doer.ask_plans(intention, _literal(build(means.frame)), options)
+    def _deed(self, deed: Deed, term: Literal, scope: Scope, known: Known) -> Run | Compiled:
+        """p(1)   +b   ++b   +<b   +>b   -b   --b   -+b"""
+        if _is_fixed(term):
+            return lambda intention, means: deed(intention, term)
+        if self.logic.function(term.predicate) or term.predicate in EVALUATED:
+            build = self._one(term, scope, known)  # who knows what that will be
+            return lambda intention, means: deed(intention, _literal(build(means.frame)))
+        return self.logic.deed_step(deed, term, scope, known)
 
-        return test if written.does is Does.TEST else self._constraint(term, scope, test)
-
-    def _constraint(self, term: Term, scope: Scope, test: Run) -> Run:
-        """Arithmetic that cannot be done is named as such, not taken for false."""
-        builds = [self.logic.build(arg, scope) for arg in getattr(term, "args", ())]
-
-        def constraint(intention: Intention, means: Means) -> None:
-            try:
-                test(intention, means)
-            except StepFailed:
-                for build in builds:
-                    resolve(build(means.frame))
-                raise
-
-        return constraint
-
-    def _achieve(self, build: Build, key: Predicate | None) -> Run:
-        """!g"""
+    def _with_variable(self, does: Does, build: Build) -> Run:
+        """!X   !!X   +X, where X is a goal, a plan body, a belief, plan or rule"""
         doer, library = self.doer, self.library
-        options = library.options(Trigger.GOAL_ADDED, key) if key else None
 
         def achieve(intention: Intention, means: Means) -> None:
             goal = build(means.frame)
-            if options is None:
-                goal = resolve(goal)
-                if isinstance(goal, Code):
-                    return self.run_code(intention, means, goal)
-                literal = _literal(goal)
-                return doer.achieve(intention, literal, library.options(Trigger.GOAL_ADDED, literal.predicate))
-            return doer.achieve(intention, goal, options)  # type: ignore[arg-type]
+            if isinstance(goal, Code):
+                self.run_code(intention, means, goal)
+                return
+            literal = _literal(goal)
+            options = library.options(GOAL_ADDED, literal.predicate)
+            annots = annots_from_self(literal.annots)
+            doer.achieve(intention, literal.predicate, literal.args, annots, options)
 
-        return achieve
+        if does is Does.ACHIEVE:
+            return achieve
+        if does is Does.ACHIEVE_APART:
+            return lambda intention, means: doer.achieve_apart(_literal(build(means.frame)))
+        deed = _DEEDS[does](doer)
 
-    def _achieve_apart(self, build: Build, key: Predicate | None) -> Run:
-        """!!g"""
+        def believe(intention: Intention, means: Means) -> None:
+            value = build(means.frame)
+            if type(value) is Code and does is not Does.ACTION:
+                doer.learn(value, does)
+            else:
+                deed(intention, _literal(value))
 
-        def achieve_apart(intention: Intention, means: Means) -> None:
-            goal = _literal(build(means.frame))
-            self.doer.achieve_apart(goal, self.library.options(Trigger.GOAL_ADDED, goal.predicate))
+        return believe
 
-        return achieve_apart
+    # ---- goals -----------------------------------------------------------------------------------------------------
 
-    def _internal(self, term: Literal, scope: Scope) -> Run:
+    def _goal(self, does: Does, term: Literal, scope: Scope, known: Known) -> Run | Compiled:
+        """!g   !!g"""
+        doer = self.doer
+        if does is Does.ACHIEVE_APART:
+            build = self._one(term, scope, known)
+            return lambda intention, means: doer.achieve_apart(_literal(build(means.frame)))
+        key, args, annots = term.predicate, term.args, annots_from_self(term.annots)
+        options = self.library.options(GOAL_ADDED, key)
+        if _is_fixed(term):
+            return lambda intention, means: doer.post_goal(intention, key, args, annots, options)
+        if term.annots or self.logic.has_functions(term):
+            whole = self._one(term, scope, known)
+
+            def achieve(intention: Intention, means: Means) -> None:
+                goal = _literal(whole(means.frame))
+                doer.achieve(intention, goal.predicate, goal.args, annots_from_self(goal.annots), options)
+
+            return achieve
+        return self.logic.goal_step(doer, term, options, scope, known)
+
+    def _test(self, written: Simple, scope: Scope, known: Known) -> Run:
+        """?b   ?(b & X > 2)   X > 2"""
+        term, trail, doer = written.term, self.logic.trail, self.doer
+        solve = self.logic.test(term, scope, known)
+        value = self._one(term, scope, Known(known.filled, known.met | frozenset(variables_in(term))))
+        is_test = written.does is Does.TEST
+        error, mark = ("test_goal_failed", "?") if is_test else ("constraint_failed", "")
+        options, late = None, is_test and isinstance(term, Structure) and term.predicate in (IN_SPACE, ANNOTATED)
+        if is_test and isinstance(term, Atom | Structure) and not late:
+            options = self.library.options(Trigger.TEST_ADDED, term.predicate)
+
+        def test(intention: Intention, means: Means) -> None:
+            if solve.call(means.frame):
+                trail.clear()
+                return
+            undo(trail, 0)
+            shown = value(means.frame)
+            plans = self.library.options(Trigger.TEST_ADDED, _literal(shown).predicate) if late else options
+            if is_test:
+                plans = doer.with_subplans(intention, Trigger.TEST_ADDED, shown, plans)
+            if not plans:
+                raise StepFailed(error, f"{mark}{show(shown)} is not the case")
+            doer.ask_plans(intention, _literal(shown), plans)
+
+        return test
+
+    # ---- internal actions and bodies held by values ----------------------------------------------------------------
+
+    def _internal(self, term: Literal, scope: Scope, known: Known) -> Run:
         """.print(X)"""
         builtin = self.logic.builtin(term.predicate)
         if builtin is None:
             return _unknown_internal(term)
-        arguments, doer = self.logic.arguments(term, builtin, scope), self.doer
+        arguments, doer = self.logic.call(term, builtin, scope, known), self.doer
 
         def internal(intention: Intention, means: Means) -> None:
-            if not doer.call_internal(intention, builtin, arguments(means.frame)):
+            if not doer.call_internal(intention, builtin, arguments.call(means.frame)):
                 raise StepFailed("ia_failed", f"{show(term)} failed")
 
         return internal
 
-    def _variable(self, term: Term, scope: Scope) -> Run:
+    def _variable(self, term: Term, scope: Scope, known: Known) -> Run:
         """X, where X is a plan body, an action or an internal action; it starts in the same cycle."""
-        build = self.logic.build(term, scope)
+        build = self._one(term, scope, known)
 
         def variable(intention: Intention, means: Means) -> None:
-            value = resolve(build(means.frame))
+            value = build(means.frame)
             if isinstance(value, Code):
                 self.run_code(intention, means, value)
-            elif isinstance(value, Atom | Structure) and value.functor.startswith(INTERNAL):
-                self._internal(value, Scope())(intention, means)
+            elif isinstance(value, Atom | Structure) and is_internal(value.functor):
+                self._internal(value, Scope(), Known())(intention, means)
             elif isinstance(value, Var):
                 raise StepFailed("body_var_without_value", f"{value.name} has no value")
             else:
@@ -159,32 +219,47 @@ class Steps(ABC):
 
     def run_code(self, intention: Intention, means: Means, code: Code) -> None:
         """Go on with the body held by a value: its variables get slots at the end of the frame."""
-        scope = Scope(len(means.frame))
-        for variable, value in code.scope.items():
-            scope.slot(variable)
-            means.frame.append(value)
-        means.step = self.chain(code.body, scope, Known().among(code.scope), means.step)
-        means.frame.extend([None] * (scope.size - len(means.frame)))
-        if means.step is not None:
+        if not isinstance(code.body, Body):
+            raise StepFailed("wrong_arguments", f"{show(code)} is no plan body")
+        frame = means.frame
+        scope, first = self._chain_of(code, len(frame), means.step)
+        frame.extend(code.scope.values())
+        frame.extend([None] * (scope.size - len(frame)))
+        means.step = first
+        if first is not None:
             self.doer.step(intention)
 
+    def _chain_of(self, code: Code, start: int, following: Step | None) -> tuple[Scope, Step | None]:
+        """The steps of the body, remembered: a loop may run it many times."""
+        key = (id(code.body), start, following, *code.scope)
+        found = self._chains.get(key)
+        if found is None:
+            if len(self._chains) >= REMEMBERED_BODIES:
+                self._chains.clear()
+            scope = Scope(start)
+            scope.add_all((*code.scope, *variables_of(code.body)))
+            first = self.chain(code.body, scope, Known().among(code.scope), following)
+            found = self._chains[key] = code.body, scope, first  # the body is kept, so that its id stays its own
+        return found[1:]
 
-def _fixed(term: Term) -> Literal | None:
-    """The literal itself if every part is a plain value, so that there is nothing to work out."""
-    plain = isinstance(term, Atom | Structure) and all(type(part) in FIXED for part in parts_of(term))
-    return term if plain else None  # type: ignore[return-value]
+
+def _is_fixed(term: Literal) -> bool:
+    """Whether every part is a plain value, so that there is nothing to work out (as there is in `math.pi`)."""
+    parts = parts_of(term)
+    return all(type(part) in FIXED and not (type(part) is Atom and is_internal(part.functor)) for part in parts)
+
+
+def _literal_written(term: Term) -> Literal:
+    if isinstance(term, Atom | Structure):
+        return term
+    raise StepFailed("wrong_arguments", f"{show(term)} is no literal")
 
 
 def _literal(value: Term) -> Literal:
     """A value about to be done or believed; anything else fails by name."""
-    if type(value) is Structure:
-        return Structure(value[0], resolve_all(value[1]), resolve_all(value[2]))
-    if type(value) is Atom:
+    if isinstance(value, Atom | Structure) and value.predicate not in (IN_SPACE, ANNOTATED):
         return value
-    resolved = resolve(value) if type(value) not in FIXED else value
-    if isinstance(resolved, Atom | Structure):
-        return resolved
-    raise StepFailed("wrong_arguments", f"{show(resolved)} is no literal")
+    raise StepFailed("wrong_arguments", f"{show(value)} is no literal")
 
 
 def _variables_named(run: Run, variable: Var) -> Run:
@@ -206,19 +281,13 @@ def _unknown_internal(term: Literal) -> Run:
     return unknown
 
 
-_GOALS: dict[Does, Callable[[Steps, Build, Predicate | None], Run]] = {
-    Does.ACHIEVE: Steps._achieve,
-    Does.ACHIEVE_APART: Steps._achieve_apart,
-}
-
-
-_DEEDS: dict[Does, Callable[[Doer, Intention, Literal], None]] = {
-    Does.ACTION: lambda doer, intention, term: doer.start_action(intention, term),
-    Does.ADD: lambda doer, intention, term: doer.believe(term, intention),
-    Does.ADD_FIRST: lambda doer, intention, term: doer.believe(term, intention),
-    Does.ADD_LAST: lambda doer, intention, term: doer.believe(term, intention, last=True),
-    Does.ADD_APART: lambda doer, intention, term: doer.believe(term, None),
-    Does.REMOVE: lambda doer, intention, term: doer.forget(term, intention),
-    Does.REMOVE_APART: lambda doer, intention, term: doer.forget(term, None),
-    Does.UPDATE: lambda doer, intention, term: doer.update(term, intention),
+_DEEDS: dict[Does, Callable[[Doer], Deed]] = {
+    Does.ACTION: lambda doer: doer.start_action,
+    Does.ADD: lambda doer: lambda intention, term: doer.believe(term, intention),
+    Does.ADD_FIRST: lambda doer: lambda intention, term: doer.believe(term, intention),
+    Does.ADD_LAST: lambda doer: lambda intention, term: doer.believe(term, intention, last=True),
+    Does.ADD_APART: lambda doer: lambda intention, term: doer.believe(term, None),
+    Does.REMOVE: lambda doer: lambda intention, term: doer.forget(term, intention),
+    Does.REMOVE_APART: lambda doer: lambda intention, term: doer.forget(term, None),
+    Does.UPDATE: lambda doer: lambda intention, term: doer.update(term, intention),
 }

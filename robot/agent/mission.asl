@@ -26,6 +26,9 @@
 // A stop that can never be reached is told by name, and the mission goes on with the next one.
 -!serve(Stop, _, _, _, _)[reason(unknown_post)] <- report(gave_up, Stop, unknown_post).
 -!serve(Stop, _, _, _, _)[reason(no_route)] <- report(gave_up, Stop, no_route).
+// What else goes wrong is no matter of this stop: it fails with the purpose. (A failure that a plan -!serve is about, but
+// none takes care of, would end the intention.)
+-!serve(_, _, _, _, _)[error_msg(Why)] <- .fail(error_msg(Why)).
 
 // Loaded and received are confirmed by a code shown to the camera, never assumed.
 +!attend(load, Stop, Order, Limit_s) <- wait_handover(load, Order, Stop, Limit_s).
@@ -35,6 +38,8 @@
 
 // Nobody came: the robot says so and does not block.
 -!attend(_, Stop, _, _)[reason(no_one_came)] <- report(gave_up, Stop, no_one_came).
+-!attend(_, _, _, _)[reason(Reason), error_msg(Why)] <- .fail(reason(Reason), error_msg(Why)).
+-!attend(_, _, _, _)[error_msg(Why)] <- .fail(error_msg(Why)).
 
 // An errand given by hand: `--achieve 'visit(post4)'`.
 // The goal lasts as long as the errand, and fails with it: whoever gave it is told the truth.
@@ -46,5 +51,7 @@
 +!has_visited(Post) : missed(Post, Why) <- -missed(Post, Why); .fail(missed, error_msg(Why)).
 +!has_visited(_).
 
-+!fulfil(visit(Post)) <- !go_to(Post); say(arrived); clear_fault(errand); -errand(Post).
--!fulfil(visit(Post))[error_msg(Why)] <- raise_fault(errand, Why); +missed(Post, Why); -errand(Post).
+// A goal of its own: with a plan -!fulfil(…) here, what goes wrong in other purposes would not get as far as -!pursue.
++!fulfil(visit(Post)) <- !run_errand(Post).
++!run_errand(Post) <- !go_to(Post); say(arrived); clear_fault(errand); -errand(Post).
+-!run_errand(Post)[error_msg(Why)] <- raise_fault(errand, Why); +missed(Post, Why); -errand(Post).

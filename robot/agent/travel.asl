@@ -22,6 +22,8 @@
 // Nothing enters a corridor ungranted, the way to a dock included.
 +!permission(Post) <- claim(Post).
 -!permission(Post)[reason(denied)] <- rest(15); !permission(Post).
+-!permission(_)[reason(Reason), error_msg(Why)] <- .fail(reason(Reason), error_msg(Why)).
+-!permission(_)[error_msg(Why)] <- .fail(error_msg(Why)).
 
 +!leave(Post) : direction(Post, Way) & (Way = left | Way = right | Way = behind) <- turn(Way).
 +!leave(_).

@@ -173,7 +173,7 @@ def test_a_question_is_answered_from_the_beliefs() -> None:
     one = told(agent, "askOne", "at(X)", id="q1").messages[0]
     assert (one.sender, one.receiver, one.reply_to, str(one.content)) == ("r1", "bob", "q1", "at(uc)")
     assert str(told(agent, "askAll", "at(X)").messages[0].content) == "[at(uc),at(library)]"
-    assert str(told(agent, "askOne", "lost(X)").messages[0].content) == "false"
+    assert told(agent, "askOne", "lost(X)").messages[0].performative == "untell"
 
 
 def test_a_plan_can_wait_for_an_answer() -> None:
@@ -186,7 +186,7 @@ def test_a_plan_can_wait_for_an_answer() -> None:
 
 def test_a_question_about_how_is_answered_with_plans() -> None:
     answer = told(agent_of("@here +!g(X) : X > 1 <- a."), "askHow", "+!g(_)", id="q").messages[0]
-    assert str(answer.content) == '["@here +!g(X) : (X>1) <- a."]'
+    assert str(answer.content) == "[{@here +!g(X) : (X>1) <- a}]"
 
 
 def test_plans_can_be_told_and_untold() -> None:
@@ -266,7 +266,7 @@ def outcomes_of(agent: Agent, cycle: int) -> list[str]:
 
 def test_a_question_that_cannot_be_worked_out_is_answered_with_no() -> None:
     agent = agent_of("p(X) :- .nth(5,[a],X).")
-    assert str(told(agent, "askOne", "p(X)", id="q").messages[0].content) == "false"
+    assert told(agent, "askOne", "p(X)", id="q").messages[0].performative == "untell"
 
 
 def test_a_wait_for_what_cannot_be_worked_out_is_a_failure() -> None:
@@ -315,7 +315,7 @@ def test_a_listener_hears_of_every_choice() -> None:
     heard: list[str] = []
     agent.listen(lambda entry: heard.append(str(entry)))
     outcome = agent.cycle()
-    assert heard == ["1 +!g: plan second, of 2 relevant", "1 intention 1: b"]
+    assert heard == ["1 +!g: plan second (line 1), of 2 relevant", "1 intention 1: b"]
     assert [str(entry) for entry in outcome.trace] == heard
 
 
@@ -332,3 +332,21 @@ def test_nothing_grows_over_100_000_cycles() -> None:
     assert len(agent.intentions) == 1
     assert len(next(iter(agent.intentions.values())).stack) == 1
     assert len(agent.logic.trail) == 0
+
+
+def test_the_trace_says_why_a_goal_failed() -> None:
+    agent = agent_of("!g.\n+!g <- .fail(error(lost)).\n-!g <- b.")
+    heard: list[str] = []
+    agent.listen(lambda entry: heard.append(str(entry)))
+    for _ in range(2):
+        agent.cycle()
+    assert "2 -!g[error(lost)]: plan p__2 (line 3), of 1 relevant" in heard
+
+
+def test_text_in_place_of_a_program_or_a_set_of_percepts_is_refused() -> None:
+    with pytest.raises(TypeError, match=r"Agent\(parse_program\(text\)\)"):
+        Agent("!g. +!g <- a.")  # type: ignore[arg-type]
+    agent = Agent(parse_program("+p <- a."))
+    with pytest.raises(TypeError, match=r"percepts are a set: \{'p'\}, not 'p'"):
+        agent.cycle("p")
+    assert [str(action) for action in agent.cycle({"p"}).actions] == ["a"]

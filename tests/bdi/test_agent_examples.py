@@ -1,8 +1,9 @@
-"""The examples of docs/agentspeak.md do what they say, and the page shows them as they are."""
+"""The pages about AgentSpeak run: programs, commands and Python, as they are shown."""
 
-import json
 import re
+import shlex
 from pathlib import Path
+from typing import Any
 
 import pytest
 from typer.testing import CliRunner
@@ -10,45 +11,46 @@ from typer.testing import CliRunner
 from bdi.__main__ import app
 
 ROOT = Path(__file__).parents[2]
-EXAMPLES = sorted((ROOT / "examples" / "agents").glob("*.asl"))
-PAGE = ROOT / "docs" / "agentspeak.md"
+AGENTS = ROOT / "examples" / "agents"
+EXAMPLES = sorted([*AGENTS.glob("*.asl"), *(AGENTS / "contract_net").glob("*.asl")])
+TESTED = [path for path in EXAMPLES if "prints" in path.read_text()]
+DOCS = ROOT / "docs"
+PAGE = (DOCS / "agentspeak.md").read_text()
+SESSIONS = re.findall(r"```console\n\$ (.*)\n([\s\S]*?)```", (DOCS / "agentspeak-tools.md").read_text())
+PIECES = re.findall(r"```python\n([\s\S]*?)```", (DOCS / "agentspeak-python.md").read_text())
 
 
-def sections(text: str) -> dict[str, list[str]]:
-    """The closing comment: `percepts`, `messages`, `fails NAME` and `prints`, each followed by its lines."""
-    found: dict[str, list[str]] = {}
-    comment = text.rpartition("/*")[2].partition("*/")[0]
-    for block in re.split(r"\n\s*\n", comment.strip()):
-        title, *lines = block.splitlines()
-        found[title.strip()] = lines
-    return found
+@pytest.mark.parametrize("path", TESTED, ids=lambda path: path.name)
+def test_an_example_does_what_it_says(path: Path) -> None:
+    result = CliRunner().invoke(app, ["test", str(path)])
+    assert result.exit_code == 0, result.output
 
 
-@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.name)
-def test_an_example_prints_what_it_says(path: Path, tmp_path: Path) -> None:
-    said = sections(path.read_text())
-    percepts = said.get("percepts", [])
-    messages = [line.split(" ", 1) for line in said.get("messages", [])]
-    script = [{"percepts": line.split(), "messages": []} for line in percepts] or [
-        {"percepts": [], "messages": messages}
-    ]
-    (tmp_path / "percepts.jsonl").write_text("\n".join(map(json.dumps, script)))
-    failing = [
-        word for title in said if title.startswith("fails ") for word in ("--fail", title.removeprefix("fails "))
-    ]
-    arguments = ["run", str(path), "--percepts", str(tmp_path / "percepts.jsonl"), "--cycles", "60", *failing]
-    assert CliRunner().invoke(app, arguments).stdout.splitlines() == said["prints"]
+def test_every_example_is_shown_as_it_is() -> None:
+    assert len(TESTED) > 15
+    assert [path.name for path in EXAMPLES if path.read_text().strip() not in PAGE] == []
 
 
-def test_the_page_shows_every_example_as_it_is() -> None:
-    page = PAGE.read_text()
-    missing = [path.name for path in EXAMPLES if path.read_text().strip() not in page]
-    assert EXAMPLES
-    assert not missing
+def test_every_program_that_is_shown_is_an_example() -> None:
+    texts = {path.read_text().strip() for path in EXAMPLES}
+    shown = re.findall(r"```agentspeak\n([\s\S]*?)```", PAGE)
+    assert [text for text in shown if text.strip() not in texts] == []
 
 
-def test_the_page_names_every_internal_action_and_function() -> None:
-    from bdi.builtin import ACTIONS, FUNCTIONS
+@pytest.mark.parametrize(("command", "output"), SESSIONS, ids=[command for command, _ in SESSIONS])
+def test_a_command_prints_what_the_page_shows(command: str, output: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
+    typed, _, wanted = command.rpartition(" | ")
+    lines = shlex.split(typed)[1].replace("\\n", "\n") if typed else None
+    words = shlex.split(wanted)
+    assert words[:3] == ["python", "-m", "bdi"]
+    result = CliRunner().invoke(app, words[3:], input=lines)
+    assert [line.rstrip() for line in result.stdout.rstrip().splitlines()] == output.rstrip().splitlines()
 
-    page = PAGE.read_text()
-    assert [name for name in [*ACTIONS, *FUNCTIONS] if f"`{name}`" not in page] == []
+
+def test_the_pieces_of_python_run_one_after_the_other(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
+    names: dict[str, Any] = {}
+    assert PIECES
+    for piece in PIECES:
+        exec(compile(piece, "docs/agentspeak-python.md", "exec"), names)  # noqa: S102 -- our own page

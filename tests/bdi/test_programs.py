@@ -7,10 +7,12 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from bdi import (
+    Action,
     Agent,
     AgentSpeakError,
     AgentSpeakSyntaxError,
     BdiError,
+    Finished,
     IncludeCircle,
     IncludeNotFound,
     Message,
@@ -44,7 +46,7 @@ def test_a_syntax_error_shows_file_line_column_and_a_caret() -> None:
     error = caught.value
     assert (error.source, error.line, error.column) == ("robot.asl", 2, 12)
     assert str(error).splitlines() == [
-        "robot.asl:2:12: unexpected ';'; expected ')', ',' or '|'",
+        "robot.asl:2:12: unexpected ';' while the '(' of line 2, column 10 is open; expected ')', ',' or '|'",
         "    +!g <- go(1;",
         "               ^",
     ]
@@ -212,7 +214,7 @@ CONTENTS = st.one_of(
 
 @settings(max_examples=300, deadline=None)
 @given(
-    st.sampled_from([*PERFORMATIVES, "shout"]), CONTENTS, st.sampled_from(["", "ag-1"]), st.lists(CONTENTS, max_size=2)
+    st.sampled_from([*PERFORMATIVES, "shout"]), CONTENTS, st.sampled_from(["", "ag-1?"]), st.lists(CONTENTS, max_size=2)
 )
 def test_a_wrong_message_or_percept_is_refused_by_name_and_never_troubles_a_cycle(
     performative: str, content: str, reply_to: str, percepts: list[str]
@@ -228,3 +230,97 @@ def test_a_wrong_message_or_percept_is_refused_by_name_and_never_troubles_a_cycl
         assert agent.cycles == 1, "refused in the middle of a cycle, not at the door"
     for cycle in range(6):
         agent.cycle(now=float(cycle))
+
+
+def test_a_plan_is_taken_apart_and_carried_out_step_by_step() -> None:
+    """A program can look into its own plans: label, event, context, body; a body is its first step and the rest."""
+    program = """ready. !start.
+        @trip[fast] +!trip(P) : ready <- pack; ?ready; drive(P).
+        +!start <- .relevant_plans({+!trip(_)}, [Plan]); Plan =.. [L,E,C,B]; E = {+!trip(Where)}; Where = uc;
+            L =.. [Name,_,_]; if (C) { named(Name); !all(B) }.
+        +!all({}) <- done.
+        +!all({First; Rest}) <- First; !all(Rest)."""
+    agent = Agent(parse_program(program))
+    assert [str(each) for _ in range(30) for each in succeeded(agent)] == ["named(trip)", "pack", "drive(uc)", "done"]
+
+
+def succeeded(agent: Agent) -> tuple[Action, ...]:
+    actions = agent.cycle().actions
+    if actions:
+        agent.cycle(None, (), [Finished(each.id) for each in actions])
+    return actions
+
+
+PATTERNS = [
+    ("{ a; !b(3); ?c } = { First; Rest }; show(First,Rest)", "show({a},{!b(3); ?c})"),
+    ("{ a } = { First; Rest }; show(First,Rest)", "show({a},{})"),
+    ("{ A1; A2; A3 } = { !g; Own; .print }; Own = x; show(A1,A2,A3)", "show({!g},x,{.print})"),
+    ("{ !a(X); b(X) } = { !a(7); R }; show(X,R)", "show(7,{b(7)})"),
+    ("{ +!go(P) : free(P) <- drive(P) } = { +!T : C <- B }; T = go(uc); show(C,B)", "show(free(uc),{drive(uc)})"),
+    ("W = { @way[fast] +!go <- b }; W = { @L +!go <- B }; show(L,B)", "show(way[fast],{b})"),
+    ("{+!go(X)[source(S)]} = {+!go(uc)[source(bob)]}; show(X,S)", "show(uc,bob)"),
+    ("{ p(X) :- q(X) & r } = { p(7) :- F }; show(F)", "show((q(7) & r))"),
+    ("{+!go(X)} = {+!go(Y)}; X = 1; show(Y)", "show(1)"),
+]
+
+
+@pytest.mark.parametrize(("step", "shown"), PATTERNS, ids=[step for step, _ in PATTERNS])
+def test_plans_and_bodies_as_values_are_patterns_too(step: str, shown: str) -> None:
+    agent = Agent(parse_program(f"!g. +!g <- {step}."))
+    assert [str(each) for _ in range(10) for each in agent.cycle().actions] == [shown]
+
+
+DIFFERENT = [
+    "{} = {A}",
+    "{ a; b } = { a }",
+    "{ a; b } = { a; !R }",
+    "{ !a } = { ?a }",
+    "{+!go} = {+?go}",
+    "{+!go} = { +!go <- a }",
+    "{ @one +!go <- a } = { @two +!go <- a }",
+    "{ +!go : b <- a } = { +!go <- a }",
+    "{ a } = a(1)",
+]
+
+
+@pytest.mark.parametrize("step", DIFFERENT)
+def test_what_differs_in_any_step_does_not_unify(step: str) -> None:
+    agent = Agent(parse_program(f"!g. +!g <- {step}; show(wrong). -!g[error(E)] <- show(E)."))
+    assert [str(each) for _ in range(10) for each in agent.cycle().actions] == ["show(constraint_failed)"]
+
+
+def test_annotations_that_are_left_over_go_to_the_tail_on_either_side() -> None:
+    text = "!g. +!g <- b(1)[x,y(1),y(2)] = b(B)[y(1)|R]; b(C)[y(1)|S] = b(1)[x,y(1),y(2)]; show(B,R,C,S)."
+    agent = Agent(parse_program(text))
+    assert [str(each) for _ in range(5) for each in agent.cycle().actions] == ["show(1,[x,y(2)],1,[x,y(2)])"]
+
+
+def test_a_negated_literal_comes_after_the_others_of_its_name() -> None:
+    agent = Agent(parse_program("!g. +!g <- .sort([c,~b(1),b(2),~a,b(1,1),a],L); show(L)."))
+    assert [str(each) for _ in range(5) for each in agent.cycle().actions] == ["show([a,~a,b(1,1),b(2),~b(1),c])"]
+
+
+def test_a_part_is_cut_out_of_a_text_that_comes_first_or_second() -> None:
+    text = """!g. +!g <- .substring("warehouse",A,4); .substring("warehouse",B,0,4); .substring(C,"warehouse",4,6);
+        .substring("use","warehouse",D); show(A,B,C,D)."""
+    agent = Agent(parse_program(text))
+    shown = ['show("house","ware","ho",6)']
+    assert [str(each) for _ in range(9) for each in agent.cycle().actions] == shown
+
+
+def test_every_source_of_a_belief_is_an_answer_of_its_own() -> None:
+    """Who votes for the same counts twice: one belief, two sources."""
+    text = """yes[source(ann),source(bob)]. at(uc)[source(gps),k(1),k(2)].
+        most(N) :- .count(yes[source(_)],N).
+        !g. +!g <- ?most(N); .findall(S,yes[source(S)],L); .findall(S-K,at(_)[source(S),k(K)],M); show(N,L,M);
+            .findall(T,at(_)[source(gps)|T],R); .count(yes[source(bob)],B); .count(yes,A); show(R,B,A);
+            for (yes[source(W)]) { show(W) }."""
+    agent = Agent(parse_program(text))
+    shown = [str(each) for _ in range(12) for each in succeeded(agent)]
+    assert shown == ["show(2,[ann,bob],[(gps-1),(gps-2)])", "show([[k(1),k(2)]],1,1)", "show(ann)", "show(bob)"]
+
+
+def test_a_list_with_an_open_end_is_a_list_in_a_rule() -> None:
+    text = """new(X,[H|T]) :- not .member(X,[H|T]) & .length([H|T],N) & N < 3.
+        !g. +!g : new(c,[a,b]) & not new(a,[a]) <- ok."""
+    assert [str(each) for each in succeeded(Agent(parse_program(text)))] == ["ok"]

@@ -1,0 +1,1 @@
+"""The commands of `python -m bdi`: run, test, step through, check and replay agent programs without a body."""
