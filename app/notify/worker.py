@@ -52,8 +52,10 @@ class OutboxWorker:
         while True:
             self._bell.clear()
             if await self.work_once() < AT_ONCE:
+                # Not `wait_for`: before Python 3.12 it loses a cancellation that comes just as the bell rings.
                 with suppress(TimeoutError):
-                    await asyncio.wait_for(self._bell.wait(), LOOK_EVERY_S)
+                    async with asyncio.timeout(LOOK_EVERY_S):
+                        await self._bell.wait()
 
     async def work_once(self) -> int:
         """Send what is due; how many sendings were tried."""
