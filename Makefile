@@ -6,12 +6,12 @@ BIN := .venv/bin
 ARGS ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help setup test check format demo serve robot bench bench-mind fuzz-mind pin clean
+.PHONY: help setup test check format demo serve robot bench bench-mind bench-body bench-paper fuzz-mind pin clean
 # A recipe that fails must not leave its stamp behind.
 .DELETE_ON_ERROR:
 
 help: ## List the verbs
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-10s %s\n", $$1, $$2 }' Makefile
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-11s %s\n", $$1, $$2 }' Makefile
 
 setup: .venv/.python-ready .venv/.pages-ready ## Make .venv and fetch every package (all other verbs do this by themselves)
 
@@ -44,6 +44,12 @@ bench: setup ## Measure: everything in benchmarks/
 
 bench-mind: setup ## Measure the mind beside python-agentspeak and, where JASON_JAR is set, Jason; prints JSON
 	@$(BIN)/python -m benchmarks.mind $(ARGS)
+
+bench-body: setup ## Measure the body in its simulated world: line, vision, stops, missions, kills; JSON and plots
+	@$(BIN)/python -m benchmarks.body $(ARGS)
+
+bench-paper: setup ## The paper's evaluation again, its own program beside ours: JSON and plots
+	@$(BIN)/python -m benchmarks.paper $(ARGS)
 
 fuzz-mind: setup ## Feed the mind 10,000 mangled programs: each is read and run, or what is wrong is named
 	@$(BIN)/python -m benchmarks.fuzz_mind $(ARGS)
