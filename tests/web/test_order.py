@@ -33,6 +33,11 @@ async def test_the_time_of_arrival_is_shown_as_an_assumption_before_anything_is_
         ada.page.get_by_text("An assumption from the map’s 6 m, not yet from measured journeys.")
     ).to_be_visible()
     assert await button.bounding_box() == place, "nothing moves under a finger"
+    time = ada.page.locator(".estimate strong")
+    await time.evaluate("time => (time.textContent = '11:58 a.m. – 12:04 p.m.')")
+    fits = "({ parentElement: box }) => box.scrollWidth <= box.clientWidth"
+    assert await time.evaluate(fits), "the time of day that takes most room has room"
+    assert await button.bounding_box() == place
     assert (await ada.api("/orders"))["items"] == []
 
 
