@@ -1,7 +1,7 @@
 """Puts a robot together from settings; for `__main__` alone. Problems are raised by name, before any wheel turns."""
 
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +26,7 @@ from .memory import Memory
 from .mind import Mind
 from .navigator import Navigator
 from .outbox import Outbox
-from .simulated import Build, CameraMount, DiodeMount, Options, Pack, SimulatedRobot
+from .simulated import Build, CameraMount, DiodeMount, Motion, Options, Pack, SimulatedRobot, World
 from .simulated_world import SavedWorld
 from .store import Store
 
@@ -42,6 +42,10 @@ class Simulation:
     seed: int = 0
     in_memory: bool = False
     """The byte machine behind an object and not behind a pseudo-terminal: quicker, for stepped time."""
+    world: World | None = None
+    """A world with a map, people and other robots, to put this one into; None: one of its own."""
+    motion: Motion = field(default_factory=Motion)
+    """How well the wheels do what they are told."""
 
 
 @dataclass
@@ -88,7 +92,7 @@ def percept_mode(settings: Settings) -> PerceptMode:
 def assemble(settings: Settings, clock: Clock, simulation: Simulation | None) -> Parts:
     """The whole robot. What was opened before something failed is closed again."""
     with ExitStack() as closing:
-        campus = find_map(settings.map)
+        campus = simulation.world.campus if simulation and simulation.world else find_map(settings.map)
         token = read_token(_token_file(settings)) if settings.server else None
         program = load_program(settings)
         _make_folder(settings.data)
@@ -148,6 +152,7 @@ def _simulated_robot(settings: Settings, campus: CampusMap, clock: Clock, simula
         build=Build(
             diodes=DiodeMount(lead_mm=settings.line.lead_mm, spacing_mm=settings.line.spacing_mm),
             pack=Pack(charger_ma=settings.battery.simulated_charger_ma),
+            motion=simulation.motion,
         ),
         camera=CameraMount(colour=False),  # grey is all that the decoder looks at
     )
@@ -160,6 +165,7 @@ def _simulated_robot(settings: Settings, campus: CampusMap, clock: Clock, simula
         options=options,
         battery_ratio=simulation.battery_ratio,
         capacity_mah=settings.battery.simulated_capacity_mah,
+        world=simulation.world,
     )
 
 

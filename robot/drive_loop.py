@@ -177,8 +177,10 @@ class DriveLoop:
             camera_age_s=self._camera_age_s + max(0.0, now - self._camera_s),
             sent=self._sent,
             motion=self._motion.skill.name if self._motion else None,
+            searching=self._motion.searching if self._motion else False,
             faults=self._faults,
             find_line_episodes=self._episodes,
+            searching=bool(self._motion and self._motion.searching),
             bumps=self._bumps,
         )
 

@@ -5,6 +5,7 @@ hand-over code in front of the camera. What is not worth drawing is a dim wall w
 """
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from random import Random
@@ -71,6 +72,8 @@ class Renderer:
         self._noise = _noise(mount.noise, seed)
         self._sheets: dict[tuple[str, int], Frame] = {}
         self._shown: dict[str, tuple[Frame, ...]] = {}
+        # Post → share of its markers that is covered, beside what the switch `dirt` covers of all of them.
+        self.dirt: Mapping[str, float] = {}
 
     def frame(self, view: View, shown: str | None = None) -> Frame:
         """640 × 480, BGR as OpenCV's cameras give it, or grey. `shown` is a text held up as a QR code."""
@@ -123,7 +126,8 @@ class Renderer:
         fitting = [size for size in PX_PER_MODULE if _page_px(post, size) <= 2 * width_px]
         key = (post, max(fitting, default=PX_PER_MODULE[0]))
         if key not in self._sheets:
-            self._sheets[key] = _page(post, key[1], self._faults.dirt, self._random)
+            dirt = max(self._faults.dirt, self.dirt.get(post, 0.0))
+            self._sheets[key] = _page(post, key[1], dirt, self._random)
         return self._sheets[key]
 
     def forget_sheets(self) -> None:

@@ -39,9 +39,13 @@ class View:
     """The speeds really sent last."""
     motion: str | None = None
     """Name of the skill that has the wheels now."""
+    searching: bool = False
+    """It has lost the line and looks for it."""
     faults: frozenset[str] = frozenset()
     """Names of the active faults (reflexes.FAULTS)."""
     find_line_episodes: int = 0
+    searching: bool = False
+    """The line is lost and looked for."""
     bumps: int = 0
     """Bumps so far."""
 
