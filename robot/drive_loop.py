@@ -180,7 +180,6 @@ class DriveLoop:
             searching=self._motion.searching if self._motion else False,
             faults=self._faults,
             find_line_episodes=self._episodes,
-            searching=bool(self._motion and self._motion.searching),
             bumps=self._bumps,
         )
 

@@ -47,17 +47,22 @@ def _cell(x_m: float, y_m: float) -> tuple[int, int]:
 
 
 def _pieces(tape: tuple[Point, ...], gap_m: float, random: Random) -> list[Piece]:
-    pieces = []
+    """The legs of one line; the gaps run on from leg to leg, or a bend of many short ones would have none."""
+    pieces, from_m = [], 0.0
+    stretches = _stretches(sum(math.dist(a, b) for a, b in pairwise(tape)), gap_m, random)
     for a, b in pairwise(tape):
         length = math.dist(a, b)
         along = ((b.x_m - a.x_m) / length, (b.y_m - a.y_m) / length)
-        for start, end in _stretches(length, gap_m, random):
-            pieces.append((a.x_m + along[0] * start, a.y_m + along[1] * start, *along, end - start))
+        for stretch in stretches:
+            start, end = max(0.0, stretch[0] - from_m), min(length, stretch[1] - from_m)
+            if start < end:
+                pieces.append((a.x_m + along[0] * start, a.y_m + along[1] * start, *along, end - start))
+        from_m += length
     return pieces
 
 
 def _stretches(length_m: float, gap_m: float, random: Random) -> list[tuple[float, float]]:
-    """From where to where tape lies on a leg of this length."""
+    """From where to where tape lies on a line of this length."""
     if not gap_m:
         return [(0.0, length_m)]
     stretches, start = [], 0.0

@@ -44,8 +44,6 @@ class View:
     faults: frozenset[str] = frozenset()
     """Names of the active faults (reflexes.FAULTS)."""
     find_line_episodes: int = 0
-    searching: bool = False
-    """The line is lost and looked for."""
     bumps: int = 0
     """Bumps so far."""
 
