@@ -36,6 +36,7 @@ def check(
     \b
       goal-without-plan       !g, and no plan +!g that could take it
       no-default-plan         all plans for a goal ask for something
+      open-failure            all plans -!g do: other failures end it all
       shadowed-plan           a plan after one that always comes first
       uncalled-plan           a plan for a goal that nothing posts
       look-alike              goTo and go_to

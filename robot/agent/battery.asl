@@ -16,6 +16,7 @@
   <- !go_to(Post);
      !dock;
      report_charge(charging).
++!charge <- .fail(no_dock, error_msg("there is no dock that it could reach")).
 
 +!dock : docked.
 +!dock <- dock; clear_fault(no_dock).

@@ -49,7 +49,7 @@ purpose(idle).
      !!decide.
 
 // Nothing a purpose runs into may leave the robot without one.
--!pursue(Purpose)[error_msg(Why)]
+-!pursue(_)[error_msg(Why)]
   <- raise_fault(trouble, Why);
      .abolish(pursuing(_));
      rest(10);

@@ -43,7 +43,7 @@
 
 // An errand given by hand: `--achieve 'visit(post4)'`.
 // The goal lasts as long as the errand, and fails with it: whoever gave it is told the truth.
-+!visit(Post)
++!visit(Post)[source(user)]
   <- +errand(Post);
      !decide;
      .wait(not errand(Post));

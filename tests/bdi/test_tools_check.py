@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner, Result
 
-from bdi import parse_program
+from bdi import Agent, Finished, parse_program
 from bdi.__main__ import app
 from bdi.tools.checks import Severity, findings_of
 
@@ -44,6 +44,14 @@ def codes(text: str, percepts: list[str] | None = None) -> list[str]:
         ("shadowed-plan", OK + "+p <- a. +p[source(bob)] <- b.", OK + "+p[source(bob)] <- b. +p <- a."),
         ("no-default-plan", "!go. +!go : p <- a. +!go : q <- b.", "!go. +!go : p <- a. +!go : not p <- b."),
         ("no-default-plan", "!go. +!go : p(X) & X > 2 <- a.", "!go. +!go : p(X) & X > 2 <- a. -!go <- b."),
+        ("open-failure", OK + "-!go[reason(late)] <- b.", OK + "-!go[reason(late)] <- b. -!go <- c."),
+        ("open-failure", OK + "-!go : p <- b.", OK + "-!go : p <- b. -!go : not p <- c."),
+        ("open-failure", "!at(1,2). +!at(_,_). -!at(X,X) <- b.", "!at(1,2). +!at(_,_). -!at(_,Y) <- b(Y)."),
+        (
+            "open-failure",
+            OK + "-!go[error_msg(M), reason(R)] <- b(M,R).",
+            OK + "-!go[error_msg(M), reason(R)] <- b(M,R). -!go[error(_), error_msg(M)] <- .fail(error_msg(M)).",
+        ),
         (
             "look-alike",
             "!go_to(1). !goTo(1). +!go_to(1). +!goTo(1).",
@@ -109,6 +117,30 @@ def test_the_programs_of_the_project_have_no_mistakes() -> None:
     assert result.exit_code == 0, result.stdout
     errors = [line for line in result.stdout.splitlines() if " error " in line]
     assert errors == []
+
+
+def test_in_the_robots_own_program_nothing_is_found_not_even_a_hint() -> None:
+    result = check(ROOT / "robot" / "agent" / "main.asl", "--strict")
+    assert (result.exit_code, result.stdout) == (0, "nothing found\n")
+
+
+def test_a_failure_that_no_plan_takes_ends_the_intention_and_check_says_so() -> None:
+    """What the warning says is what happens: the plan of the goal below is not asked."""
+    program = "!trip. +!trip <- !leg. -!trip <- saved. +!leg <- drive. -!leg[reason(blocked)] <- rest."
+    agent = Agent(parse_program(program))
+    (drive,) = [action for _ in range(5) for action in agent.cycle(None, [], [], 0.0).actions]
+    outcomes = [
+        agent.cycle(None, [], [Finished(drive.id, "lost")], 1.0),
+        *(agent.cycle(None, [], [], 2.0) for _ in "abc"),
+    ]
+    assert [action for each in outcomes for action in each.actions] == []
+    assert [failure for each in outcomes for failure in each.failures]
+    assert codes(program) == ["open-failure"]
+
+
+def test_a_plan_that_says_whose_goal_it_is_needs_nobody_to_post_it() -> None:
+    found = findings_of(parse_program("+!visit(P)[source(user)] <- go(P). +!tour[source(self)] <- go(1)."))
+    assert [(each.code, each.place.line, "tour" in each.problem) for each in found] == [("uncalled-plan", 1, True)]
 
 
 def check(*arguments: object) -> Result:

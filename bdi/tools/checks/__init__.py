@@ -3,7 +3,7 @@
 from collections.abc import Collection
 
 from bdi.syntax import Program
-from bdi.tools.checks import goals, names, plans, rules, variables
+from bdi.tools.checks import failures, goals, names, plans, rules, variables
 from bdi.tools.checks.findings import Finding, Severity
 from bdi.tools.checks.reading import read
 
@@ -12,6 +12,7 @@ __all__ = ["Finding", "Severity", "findings_of"]
 CHECKS = (
     goals.goals_without_plan,
     goals.goals_without_default,
+    failures.failures_without_plan,
     plans.shadowed_plans,
     plans.uncalled_plans,
     plans.same_labels,

@@ -40,7 +40,7 @@ def goals_without_default(reading: Reading) -> Iterator[Finding]:
     """A goal whose plans all ask for something (the paper's section 7.5)."""
     for key in sorted(reading.heads(Trigger.GOAL_ADDED), key=lambda each: each.name):
         plans = reading.plans_for(Trigger.GOAL_ADDED, key)
-        if any(_is_unconditional(plan) for plan in plans) or _leave_nothing_out(plans):
+        if any(_is_unconditional(plan) for plan in plans) or leave_nothing_out(plans):
             continue
         if reading.plans_for(Trigger.GOAL_FAILED, key) or key.name == MESSAGE:
             continue  # it is said, or known, what happens then
@@ -61,7 +61,7 @@ def _is_unconditional(plan: Plan) -> bool:
     return plan.context is None or plan.context is TRUE
 
 
-def _leave_nothing_out(plans: list[Plan]) -> bool:
+def leave_nothing_out(plans: list[Plan]) -> bool:
     """Whether one context is the opposite of another, as in `: open` and `: not open`."""
     contexts = {show(plan.context) for plan in plans if plan.context is not None}
     return any(opposite in contexts for plan in plans for opposite in _opposites(plan.context))

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from bdi.syntax import Body, Plan, Simple, Trigger
-from bdi.terms import TRUE, Term, Var, atom, show
+from bdi.terms import TRUE, Structure, Term, Var, atom, show
 from bdi.tools.checks.findings import Finding, Severity
 from bdi.tools.checks.reading import How, Reading, bodies_of
 from bdi.unify import Trail, renamed, substituted, undo, unify, variables_in
@@ -116,7 +116,7 @@ def uncalled_plans(reading: Reading) -> Iterator[Finding]:
         if plan.trigger is not Trigger.GOAL_ADDED or isinstance(plan.head, Var):
             continue
         key = plan.head.predicate
-        if key in posted or key in told or key.name == "kqml_received":
+        if key in posted or key in told or key.name == "kqml_received" or _is_for_others(plan):
             continue
         told.add(key)
         yield Finding(
@@ -126,3 +126,10 @@ def uncalled_plans(reading: Reading) -> Iterator[Finding]:
             f"nothing in the program posts !{key.name}/{key.arity}: its plans wait for a message",
             "fine for a goal that somebody else gives; otherwise post it, or take the plan out",
         )
+
+
+def _is_for_others(plan: Plan) -> bool:
+    """+!g[source(user)]: it says itself whose goal it is."""
+    annots = () if isinstance(plan.head, Var) else plan.head.annots
+    sources = [annot.args[0] for annot in annots if isinstance(annot, Structure) and annot.functor == "source"]
+    return any(source != atom("self") for source in sources)
