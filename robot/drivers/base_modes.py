@@ -1,0 +1,50 @@
+"""Who is master of the wheels: which mode was asked for, which one the base reports, and when to ask again."""
+
+from . import open_interface as oi
+from .interfaces import BaseState, Mode
+
+MODE_RETRY_S = 0.5
+MODE_KNOWN_AFTER_S = 0.06
+"""Older frames may have been on their way when the base was started."""
+OPCODES = {Mode.PASSIVE: oi.Opcode.START, Mode.SAFE: oi.Opcode.SAFE, Mode.FULL: oi.Opcode.FULL}
+
+
+class ModeKeeper:
+    """The mode that is wanted is kept up: a base that fell back to Passive is taken again."""
+
+    def __init__(self) -> None:
+        self.wanted = Mode.PASSIVE
+        self._asked_s = 0.0
+        self._offset: int | None = None
+        self._started_s = 0.0
+
+    def started(self, now: float) -> None:
+        """The base has been sent Start: it is in Passive, and has to be asked for anything else again."""
+        self._offset = None
+        self._started_s, self._asked_s = now, now - MODE_RETRY_S
+
+    def read(self, reported: int, now: float) -> Mode:
+        """Some firmware reports every mode one too high. Just after a start it must be Passive: that tells."""
+        if self._offset is None and now - self._started_s >= MODE_KNOWN_AFTER_S:
+            self._offset = 1 if reported == Mode.SAFE else 0
+        number = reported - (self._offset or 0)
+        return Mode(number) if number in OPCODES or number == Mode.OFF else Mode.UNKNOWN
+
+    @property
+    def known(self) -> bool:
+        """Whether the base has told its mode since it was started."""
+        return self._offset is not None
+
+    def asked(self, mode: Mode, now: float) -> None:
+        self.wanted, self._asked_s = mode, now
+
+    def lost(self, state: BaseState, standing: bool, now: float) -> bool:
+        """Whether to ask again: the mode is another, and the reason for its fall is gone.
+
+        An odd number says nothing: then only wheels that stand although they should turn show that the mode is lost.
+        """
+        if self.wanted is Mode.PASSIVE or not self.known or now - self._asked_s < MODE_RETRY_S:
+            return False
+        if self.wanted is Mode.SAFE and (state.cliff or state.wheel_drop or state.docked):
+            return False
+        return standing if state.mode is Mode.UNKNOWN else state.mode is not self.wanted

@@ -1,0 +1,82 @@
+"""The speeds that are latched in the base: which are possible, how long they may stay, when the wheels stand."""
+
+from .interfaces import STOP, BaseState, WheelSpeeds
+
+SPEED_CAP_MM_S = 200.0
+"""A dead computer leaves the base driving: this caps what that can do."""
+SLOWEST_MM_S = 30.0
+"""One encoder count in 15 ms; below it the base veers (field reports; the paper's prototype drove there)."""
+DEADLINE_S = 0.4
+REPEAT_S = 0.1
+"""An unchanged speed is sent again this often: a byte may have been lost."""
+STILL_FRAMES = 3
+"""So many frames with equal counts are a standstill: at 30 mm/s single frames show none either."""
+
+
+class LatchedSpeeds:
+    """Drive commands latch in the base (it has no dead-man timer): what was sent stays until something else is."""
+
+    def __init__(self, deadline_s: float = DEADLINE_S, speed_cap_mm_s: float = SPEED_CAP_MM_S) -> None:
+        self._deadline_s, self._speed_cap_mm_s = deadline_s, speed_cap_mm_s
+        self.sent, self._sent_s = STOP, 0.0
+        self._until_s: float | None = None
+        self._still_frames = STILL_FRAMES
+
+    @property
+    def still(self) -> bool:
+        """The encoders stand."""
+        return self._still_frames >= STILL_FRAMES
+
+    def heard(self, old: BaseState | None, new: BaseState) -> None:
+        moved = old is not None and (old.left_count, old.right_count) != (new.left_count, new.right_count)
+        self._still_frames = 0 if moved else self._still_frames + 1
+
+    def ask(self, wanted: WheelSpeeds, now: float) -> tuple[WheelSpeeds, bool]:
+        """What can be driven of it, and whether it has to be sent now."""
+        speeds = possible(wanted, self._speed_cap_mm_s)
+        self._until_s = now + self._deadline_s
+        settled = speeds == self.sent and (now - self._sent_s < REPEAT_S or (speeds.still and self.still))
+        if not settled:
+            self._note(speeds, now)
+        return speeds, not settled
+
+    def overdue(self, now: float) -> bool:
+        """Past the deadline stop, and again until the encoders stand: one lost byte must not leave the base driving."""
+        if self._until_s is None or now <= self._until_s:
+            return False
+        if self.sent.still and self.still:
+            self._until_s = None
+            return False
+        if self.sent.still and now - self._sent_s < REPEAT_S:
+            return False
+        self._note(STOP, now)
+        return True
+
+    def hand_over(self) -> None:
+        """Somebody else drives, or the base has been stopped by other means."""
+        self.sent, self._until_s = STOP, None
+
+    def started_anew(self) -> None:
+        """Start has stopped the wheels; a speed that is still wanted will be asked for again."""
+        self.sent = STOP
+
+    def _note(self, speeds: WheelSpeeds, now: float) -> None:
+        self.sent, self._sent_s = speeds, now
+
+
+def possible(wanted: WheelSpeeds, cap_mm_s: float = SPEED_CAP_MM_S) -> WheelSpeeds:
+    """The nearest speeds that the base does well: whole mm/s, none between 0 and 30, none above the cap.
+
+    Too fast a pair is scaled as one, so that the curve stays the same.
+    """
+    fastest = max(abs(wanted.left_mm_s), abs(wanted.right_mm_s))
+    share = min(1.0, cap_mm_s / fastest) if fastest else 1.0
+    return WheelSpeeds(_possible(wanted.left_mm_s * share), _possible(wanted.right_mm_s * share))
+
+
+def _possible(speed_mm_s: float) -> int:
+    size = abs(speed_mm_s)
+    if size < SLOWEST_MM_S / 2:
+        return 0
+    whole = round(max(size, SLOWEST_MM_S))
+    return whole if speed_mm_s > 0 else -whole
