@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from benchmarks.body.played_server import AT, PlayedServer, from_server, playing
 from protocol.both_ways import Error
 from protocol.clock import RealClock
 from protocol.envelope import TO_SERVER, parse
@@ -18,19 +19,7 @@ from robot.link import MAX_INCOMING, InsecureServer, LinkState, check_secure, re
 from robot.memory import Incoming, Memory
 from robot.outbox import Outbox
 from robot.store import Store
-from tests.robot.played_server import (
-    AT,
-    IMPATIENT,
-    MISSION,
-    QUICK,
-    PlayedServer,
-    Robot,
-    a_snapshot,
-    cleared,
-    from_server,
-    playing,
-    until,
-)
+from tests.robot.linked_robot import IMPATIENT, MISSION, QUICK, Robot, a_snapshot, cleared, until
 
 
 @pytest.fixture
