@@ -5,7 +5,7 @@ from typing import Any
 import typer
 from typer.core import TyperGroup
 
-from .commands import run
+from .commands import run, settings
 
 EPILOG = """
 A robot at home in a simulated tunnel, in real time:  python -m robot --simulated
@@ -40,6 +40,7 @@ cli = typer.Typer(
 )
 cli.callback()(lambda: None)  # a group, however few its commands
 cli.command(name="run", epilog=run.EPILOG)(run.run)
+cli.command(name="settings")(settings.settings)
 
 
 if __name__ == "__main__":

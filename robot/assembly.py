@@ -71,7 +71,12 @@ class Parts:
 
 
 def shape_of(settings: Settings) -> BodyShape:
-    return BodyShape(sensor_lead_mm=settings.line.lead_mm, diode_spacing_mm=settings.line.spacing_mm)
+    return BodyShape(
+        wheel_base_mm=settings.drive.wheel_base_mm,
+        mm_per_count=settings.drive.mm_per_count,
+        sensor_lead_mm=settings.line.lead_mm,
+        diode_spacing_mm=settings.line.spacing_mm,
+    )
 
 
 def load_program(settings: Settings) -> Program:
@@ -105,6 +110,14 @@ def assemble(settings: Settings, clock: Clock, simulation: Simulation | None) ->
             parts.link = _link(settings, settings.server, token, clock, parts)
         parts.daemon.close_devices = closing.pop_all().close
         return parts
+
+
+def check_settings(settings: Settings) -> None:
+    """Everything that can be judged without a robot. Raises what `assemble` would."""
+    _home(settings, find_map(settings.map))
+    load_program(settings)
+    if settings.server:
+        read_token(_token_file(settings))
 
 
 def _make_folder(path: Path) -> None:

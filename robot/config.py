@@ -14,12 +14,13 @@ from collections.abc import Mapping
 from difflib import get_close_matches
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated, Any, get_args
+from typing import Annotated, Any, Self, get_args
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 Ratio = Annotated[float, Field(ge=0.0, le=1.0)]
-Positive = Annotated[float, Field(gt=0.0)]
+Pin = Annotated[str, Field(pattern=r"^(BOARD|GPIO|BCM)\d{1,2}$")]
+Rate = Annotated[float, Field(ge=0.1, le=1000.0)]
 MAX_WHEEL_SPEED_MM_S = 200.0
 """A dead computer leaves the base driving (the Open Interface has no dead-man timer): this caps what that can do."""
 
@@ -48,23 +49,36 @@ class PerceptMode(StrEnum):
 class LineSettings(Section):
     """The three diodes of the line sensor (BOARD pins of the paper's robot)."""
 
-    left_pin: str = Field(default="BOARD12", description="pin of the left diode, as gpiozero spells it")
-    centre_pin: str = Field(default="BOARD10", description="pin of the centre diode")
-    right_pin: str = Field(default="BOARD8", description="pin of the right diode")
+    left_pin: Pin = Field(default="BOARD12", description="pin of the left diode, as gpiozero spells it")
+    centre_pin: Pin = Field(default="BOARD10", description="pin of the centre diode")
+    right_pin: Pin = Field(default="BOARD8", description="pin of the right diode")
     line_is_low: bool = Field(default=True, description="whether a diode over the line reads low")
-    spacing_mm: Positive = Field(default=15.0, description="distance between neighbouring diodes, mm")
+    spacing_mm: Annotated[float, Field(ge=5.0, le=60.0)] = Field(
+        default=18.0, description="distance between neighbouring diodes, mm"
+    )
     lead_mm: Annotated[float, Field(ge=0.0, le=200.0)] = Field(
         default=60.0, description="how far the diodes are ahead of the wheel axle, mm (40 to 80 follows best)"
     )
+
+    @model_validator(mode="after")
+    def three_pins(self) -> Self:
+        """Two diodes on one pin would vote as one."""
+        if len({self.left_pin, self.centre_pin, self.right_pin}) < 3:
+            raise ValueError(
+                f"three different pins are needed, not {self.left_pin}, {self.centre_pin}, {self.right_pin}"
+            )
+        return self
 
 
 class CameraSettings(Section):
     """The camera on the left side."""
 
-    device: int = Field(default=0, ge=0, description="number of the video device")
-    width_px: int = Field(default=640, gt=0, description="width of a frame, pixels")
-    height_px: int = Field(default=480, gt=0, description="height of a frame, pixels")
-    exposure_ms: Positive = Field(default=15.0, description="longest exposure, ms: more blurs a marker in passing")
+    device: int = Field(default=0, ge=0, le=63, description="number of the video device")
+    width_px: int = Field(default=640, ge=160, le=1920, description="width of a frame, pixels")
+    height_px: int = Field(default=480, ge=120, le=1080, description="height of a frame, pixels")
+    exposure_ms: Annotated[float, Field(ge=0.1, le=100.0)] = Field(
+        default=15.0, description="longest exposure, ms: more blurs a marker in passing"
+    )
     field_of_view_deg: Annotated[float, Field(gt=10.0, lt=170.0)] = Field(
         default=60.0, description="horizontal field of view, degrees"
     )
@@ -74,12 +88,21 @@ class DriveSettings(Section):
     """How the base is driven."""
 
     cruise_mm_s: Annotated[float, Field(ge=30.0, le=MAX_WHEEL_SPEED_MM_S)] = Field(
-        default=120.0, description="speed on a straight line, mm/s (never below 30: the base misbehaves there)"
+        default=180.0, description="speed on a straight line, mm/s (never below 30: the base misbehaves there)"
     )
     turn_mm_s: Annotated[float, Field(ge=30.0, le=MAX_WHEEL_SPEED_MM_S)] = Field(
         default=80.0, description="speed of each wheel when turning on the spot, mm/s"
     )
-    velocity_deadline_s: Positive = Field(default=0.4, description="a speed that is not renewed for so long stops, s")
+    velocity_deadline_s: Annotated[float, Field(ge=0.1, le=1.0)] = Field(
+        default=0.4, description="a speed that is not renewed for so long stops, s"
+    )
+    mm_per_count: Annotated[float, Field(ge=0.35, le=0.55)] = Field(
+        default=0.44456,
+        description="way of a wheel for each count of its encoder, mm; `calibrate distance` measures it",
+    )
+    wheel_base_mm: Annotated[float, Field(ge=200.0, le=270.0)] = Field(
+        default=235.0, description="distance between the wheels as turns show it, mm; `calibrate turn` measures it"
+    )
 
 
 class BatterySettings(Section):
@@ -88,24 +111,33 @@ class BatterySettings(Section):
     low_ratio: Ratio = Field(default=0.25, description="below this charge the battery is low")
     hysteresis_ratio: Ratio = Field(default=0.03, description="it counts as low until this much above low_ratio")
     full_ratio: Ratio = Field(default=0.99, description="from this charge on the battery is full")
-    full_after_s: Positive = Field(
+    full_after_s: Annotated[float, Field(ge=1.0, le=86400.0)] = Field(
         default=60.0, description="on the dock in charging state 3 or 4 for so long is full too, s"
     )
-    simulated_capacity_mah: Positive = Field(
+    simulated_capacity_mah: Annotated[float, Field(ge=100.0, le=20_000.0)] = Field(
         default=2696.0, description="capacity of the simulated pack, mAh (NiMH pack of a Create 2)"
     )
-    simulated_charger_ma: Positive = Field(default=1250.0, description="current of the simulated dock, mA")
+    simulated_charger_ma: Annotated[float, Field(ge=10.0, le=200_000.0)] = Field(
+        default=1250.0, description="current of the simulated dock, mA"
+    )
+
+    @model_validator(mode="after")
+    def low_before_full(self) -> Self:
+        """A battery that is low and full at once would charge for ever."""
+        if self.low_ratio + self.hysteresis_ratio >= self.full_ratio:
+            raise ValueError("low_ratio plus hysteresis_ratio must be below full_ratio")
+        return self
 
 
 class RateSettings(Section):
     """How often each loop of the daemon runs, per second of its clock."""
 
-    base_hz: Positive = Field(default=50.0, description="simulated world and bytes of the base")
-    drive_hz: Positive = Field(default=50.0, description="reflexes and skills")
-    line_hz: Positive = Field(default=200.0, description="samples of the line sensor (majority vote per drive tick)")
-    camera_hz: Positive = Field(default=10.0, description="frames looked at")
-    mind_hz: Positive = Field(default=10.0, description="perception and reasoning (the paper's cycle is 100 ms)")
-    snapshot_hz: Positive = Field(default=1.0, description="state sent to the server")
+    base_hz: Rate = Field(default=50.0, description="simulated world and bytes of the base")
+    drive_hz: Rate = Field(default=50.0, description="reflexes and skills")
+    line_hz: Rate = Field(default=200.0, description="samples of the line sensor (majority vote per drive tick)")
+    camera_hz: Rate = Field(default=10.0, description="frames looked at")
+    mind_hz: Rate = Field(default=10.0, description="perception and reasoning (the paper's cycle is 100 ms)")
+    snapshot_hz: Rate = Field(default=1.0, description="state sent to the server")
 
 
 class MindSettings(Section):
@@ -116,7 +148,9 @@ class MindSettings(Section):
         default=None, description="latest or drain; without it: latest for our program, drain for any other"
     )
     steps_per_tick: int = Field(default=8, ge=1, le=100, description="reasoning cycles per tick in latest mode")
-    age_limit_s: Positive = Field(default=2.0, description="a percept that is not renewed for so long is forgotten, s")
+    age_limit_s: Annotated[float, Field(ge=0.1, le=60.0)] = Field(
+        default=2.0, description="a percept that is not renewed for so long is forgotten, s"
+    )
 
 
 def _loopback_or_encrypted(url: str | None) -> str | None:
@@ -141,7 +175,14 @@ class Settings(Section):
     )
     token_file: Path | None = Field(default=None, description="file with the robot's token, mode 0600")
     data: Path = Field(default=Path("var/robot"), description="folder of the robot's memory and outbox")
-    serial_port: str = Field(default="/dev/ttyUSB0", description="port of the base, any pyserial URL")
+    serial_port: str = Field(default="/dev/ttyUSB0", min_length=1, description="port of the base, any pyserial URL")
+    wake_up: Annotated[str, Field(pattern=r"^(rts|none|(BOARD|GPIO|BCM)\d{1,2})$")] = Field(
+        default="rts", description="what pulls the base's BRC line low: rts (the USB cable), a pin, or none"
+    )
+    log_file: Path | None = Field(
+        default=None,
+        description="log into this file, 5 of 1 MB in turn; none: to stderr, which systemd's journal keeps",
+    )
     line: LineSettings = LineSettings()
     camera: CameraSettings = CameraSettings()
     drive: DriveSettings = DriveSettings()

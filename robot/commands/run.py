@@ -4,7 +4,7 @@ import sys
 import tempfile
 from contextlib import ExitStack
 from pathlib import Path
-from typing import Annotated, Any, NoReturn
+from typing import Annotated, Any
 
 import structlog
 import typer
@@ -17,8 +17,8 @@ from ..config import ConfigError, PerceptMode, Settings, load_settings
 from ..errors import RobotError
 from ..running import Wish, clock_for, run_once
 from ..simulated import SimulatedWorldError
+from .refusing import UNFINISHED, refuse
 
-UNFINISHED, MISUSE = 1, 2
 DEFAULT_LIMIT_S = 7200.0
 # A run of minutes would not see the battery of a Create 2 become low and full again: with --battery the simulated pack
 # is assumed to be small and its charger strong.
@@ -88,13 +88,8 @@ def run(  # typer reads the options from here
             simulation = _simulation(settings, start, battery, seed, clock) if simulated else None
             done = run_once(settings, clock_for(simulated, clock, wish, settings, closing), simulation, wish)
         except (ConfigError, CampusMapError, BdiError, RobotError, SimulatedWorldError) as problem:
-            _refuse(str(problem))
+            refuse(str(problem))
     raise typer.Exit(0 if done else UNFINISHED)
-
-
-def _refuse(sentence: str) -> NoReturn:
-    typer.echo(sentence, err=True)
-    raise typer.Exit(MISUSE)
 
 
 def _settings(

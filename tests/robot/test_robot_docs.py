@@ -5,16 +5,19 @@ from pathlib import Path
 import pytest
 
 from robot.action.table import ACTIONS, PAPER_ACTIONS
-from robot.config import keys, load_settings
+from robot.config import load_settings
 from robot.perception.percepts import PERCEPTS
+from robot.settings_file import SettingRow, rows
 
 MANUAL = (Path(__file__).parents[2] / "docs" / "robot.md").read_text("utf-8")
 
 
-@pytest.mark.parametrize("key", sorted(keys()))
-def test_every_setting_is_in_the_manual_with_its_meaning(key: str) -> None:
-    rows = [line for line in MANUAL.splitlines() if line.startswith(f"| `{key}` |")]
-    assert [row for row in rows if keys()[key] in row], f"docs/robot.md does not describe {key}"
+@pytest.mark.parametrize("row", list(rows()), ids=lambda row: row.key)
+def test_every_setting_is_in_the_manual_with_its_default_its_meaning_and_its_range(row: SettingRow) -> None:
+    default = "" if row.default is None else "`" + row.default.strip('"') + "`"
+    about = f"{row.about} ({row.range})" if row.range else row.about
+    wanted = f"| `{row.key}` | {default} | {about} |"
+    assert wanted in MANUAL.splitlines(), f"docs/robot.md lacks the line {wanted}"
 
 
 def test_every_action_and_percept_is_in_the_manual() -> None:
