@@ -21,7 +21,7 @@ DIRECTIONS: Mapping[str, Mapping[str, type[Part]]] = {
 
 def examples_of(name: str) -> list[Path]:
     """The example files of a message type: `<type>.json` first, then its variants `<type>_<variant>.json`."""
-    return sorted(path for path in EXAMPLES.glob(f"{name}*.json") if path.stem.split("_")[0] == name)
+    return sorted(path for path in EXAMPLES.glob(f"{name}*.json") if f"{path.stem}_".startswith(f"{name}_"))
 
 
 def messages_as_markdown() -> str:

@@ -40,11 +40,12 @@ TO_ROBOT: Final[Mapping[str, type[Part]]] = {
     "pause": to_robot.Pause,
     "resume": to_robot.Resume,
     "recall": to_robot.Recall,
+    "emergency_stop": to_robot.EmergencyStop,
     **BOTH_WAYS,
 }
-DURABLE: Final = frozenset(
-    {"event", "claim", "clear", "mission", "verifiers", "grant", "deny", "cancel", "pause", "resume", "recall"}
-)
+DURABLE: Final = frozenset({"event", "claim", "clear"}) | {
+    *("mission", "verifiers", "grant", "deny", "cancel", "pause", "resume", "recall", "emergency_stop")
+}
 """The types that are stored before they are sent, numbered, and sent again until they are acknowledged."""
 
 _TYPE_OF: Final = {message: name for name, message in {**TO_SERVER, **TO_ROBOT}.items()}

@@ -28,23 +28,25 @@ class Part(BaseModel):
 
 
 class StopAction(StrEnum):
-    """What is done at a stop."""
+    """What is done at a stop. `return`: mail that nobody took is given to its sender again, or to the mailroom."""
 
     LOAD = "load"
     RECEIVE = "receive"
+    RETURN = "return"
     DOCK = "dock"
     PARK = "park"
 
 
 class Purpose(StrEnum):
-    """What a hand-over code is good for: putting mail in, or taking it out."""
+    """What a hand-over code is good for: putting mail in, taking it out, or taking back what was not delivered."""
 
     LOAD = "load"
     RECEIVE = "receive"
+    RETURN = "return"
 
 
 class Stop(Part):
-    """A post and what is done there. `order_id` is given for load and receive."""
+    """A post and what is done there. `order_id` is given for load, receive and return."""
 
     id: Identifier
     post: PostName

@@ -70,13 +70,28 @@ class Pause(Part):
 
 
 class Resume(Part):
-    """Go on after a pause."""
+    """Go on after a pause, and after an emergency stop: whoever says so has looked."""
 
     command_id: Identifier
 
 
+class EmergencyStop(Part):
+    """Stand still at once, wherever the robot is, and stay so, through a restart as well, until a `resume`, or until
+    somebody lets it go at the robot itself.
+
+    A best effort: it takes effect when it arrives. The answer says that it has; a robot without network has not heard.
+    """
+
+    command_id: Identifier
+    reason: Sentence
+
+
 class Recall(Part):
-    """Bring what is aboard back to where it came from, then go home."""
+    """Bring what is aboard back to where it came from, then go home.
+
+    Accepted with mail aboard, too: the robot then gives itself a mission whose stops are of the kind `return`, and whose
+    id begins with `return-`; another mission takes its place.
+    """
 
     command_id: Identifier
     reason: Sentence
