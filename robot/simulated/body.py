@@ -99,7 +99,7 @@ class Body:
             self._slot()
         if moved or self.faults.floor_flip or self.faults.floor_edge_mm:
             self.pins.drive(self.base.x_m, self.base.y_m, self.base.heading_rad)
-        if self.interface.out:
+        if self.interface.has_more:
             self.line.send(spoiled(self.interface.take(), self.faults, self._line_random), self.interface.baud)
 
     # Movement ----------------------------------------------------------------------------------------------------
@@ -130,7 +130,7 @@ class Body:
         interface = self.interface
         if interface.activity is Activity.NONE:
             self._seek = None
-            return interface.left_mm_s, interface.right_mm_s
+            return interface.actuators.left_mm_s, interface.actuators.right_mm_s
         if interface.activity is Activity.CLEANING:
             return CLEANING_MM_S
         return self._dock_wheels(now)

@@ -2,6 +2,7 @@
 
 import pytest
 
+from robot.simulated.actuators import ACTUATORS
 from robot.simulated.commands import COMMANDS, SF
 from robot.simulated.open_interface import HANDLERS
 from robot.simulated.packets import GROUPS, PACKETS, Layout, Readings, stream_frame
@@ -37,9 +38,9 @@ def test_the_manuals_stream_example_comes_out_byte_by_byte():
 def test_the_manuals_led_example_lights_dock_only_in_safe_or_full(make):
     bench = make()
     bench.send(128, 139, 4, 0, 128)
-    assert bench.robot.body.interface.leds == (0, 0, 0)
+    assert bench.robot.body.interface.actuators.leds == (0, 0, 0)
     bench.send(131, 139, 4, 0, 128)
-    assert bench.robot.body.interface.leds == (4, 0, 128)
+    assert bench.robot.body.interface.actuators.leds == (4, 0, 128)
 
 
 def test_the_manuals_schedule_example_is_eaten_whole(awake):
@@ -51,7 +52,8 @@ def test_the_manuals_schedule_example_is_eaten_whole(awake):
 
 
 def test_every_command_of_the_table_has_a_handler_and_no_other():
-    assert set(HANDLERS) == set(COMMANDS)
+    assert set(HANDLERS) | set(ACTUATORS) == set(COMMANDS)
+    assert not set(HANDLERS) & set(ACTUATORS)
 
 
 @pytest.mark.parametrize("opcode", sorted(COMMANDS))
@@ -85,8 +87,9 @@ def test_an_actuator_command_in_passive_is_taken_and_does_nothing(make, opcode):
     bench.send(128, opcode, *([100] * COMMANDS[opcode].size))
     bench.run(1.0)
     interface = bench.robot.body.interface
+    done = interface.actuators
     assert interface.ignored_commands == 1
-    assert (interface.left_mm_s, interface.brushes, interface.leds) == (0, (0, 0, 0), (0, 0, 0))
+    assert (done.left_mm_s, done.brushes, done.leds) == (0, (0, 0, 0), (0, 0, 0))
     assert bench.robot.driven_mm == 0
     assert bench.ask(35) == PASSIVE
 

@@ -110,7 +110,7 @@ def test_a_song_plays_for_its_length_and_is_not_interrupted(awake):
     assert (awake.ask(36), awake.ask(37)) == (3, 1)
     awake.run(0.6)
     assert awake.ask(37) == 0
-    assert awake.robot.body.interface.songs.played == [3]
+    assert awake.robot.body.interface.actuators.songs.played == [3]
 
 
 def test_a_song_is_written_in_passive_but_plays_only_in_safe(make):

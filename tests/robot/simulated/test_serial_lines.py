@@ -52,7 +52,7 @@ def test_bytes_pass_unchanged_whatever_they_mean_to_a_terminal(robot):
         port.write(bytes((128, 140, 0, 16, *range(3, 35), 148, 1, 100)))
         robot.step_until(0.020)
         assert heard(port, 84)[:3] == bytes((19, 81, 100))
-        assert robot.body.interface.songs.songs[0][:2] == ((3, 4), (5, 6))
+        assert robot.body.interface.actuators.songs.songs[0][:2] == ((3, 4), (5, 6))
 
 
 def test_a_client_at_another_speed_hears_garbage(robot):
