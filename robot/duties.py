@@ -7,52 +7,26 @@ may be interrupted and begun again at its present stop at any time.
 
 import uuid
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field
 from datetime import datetime
 from typing import Final, Literal, Protocol
 
-from protocol.parts import Leg, MissionHeld, Part, Position, Purpose, Stop, StopAction
-from protocol.to_robot import Cancel, Deny, Grant, Mission, Pause, Recall, Resume, Verifier, Verifiers
+from protocol.parts import Leg, Part, Purpose, Stop
+from protocol.to_robot import Cancel, Deny, EmergencyStop, Grant, Mission, Pause, Recall, Resume, Verifiers
 from protocol.to_server import Charge, Claim, Clear, CommandAnswer, Event, Fault, HandoverReceipt, Progress, Step
 from robot.errors import RobotError
-from robot.memory import Incoming, Memory
+from robot.held import Held
+from robot.memory import Incoming, Loading, Memory
 from robot.outbox import Outbox
+from robot.returns import is_own, return_mission
 from robot.store import Store
 
 ChargeStep = Literal["low", "charging", "charged"]
+MAIL_ABOARD: Final = "mail_aboard"
+"""The fault of mail that nobody took, not even where it came from."""
 
 
 class NoSuchStop(RobotError):
     """A report names a stop that the mission held does not have."""
-
-
-@dataclass(frozen=True)
-class Held:
-    """Everything that is remembered through a power cut, read once and read again after a change."""
-
-    mission: Mission | None = None
-    next_stop: int = 0
-    cargo: tuple[str, ...] = ()
-    grants: tuple[Leg, ...] = ()
-    verifiers: tuple[Verifier, ...] = ()
-    position: Position = field(default_factory=Position)
-    paused: bool = False
-    cancelled: frozenset[str] = frozenset()
-    """Orders of the mission that are not to be served any more."""
-    faults: frozenset[str] = frozenset()
-    """Told and not over."""
-
-    @property
-    def stop(self) -> Stop | None:
-        """The stop that comes next."""
-        stops = self.mission.stops if self.mission else ()
-        return stops[self.next_stop] if self.next_stop < len(stops) else None
-
-    @property
-    def mission_held(self) -> MissionHeld | None:
-        if self.mission is None:
-            return None
-        return MissionHeld(id=self.mission.id, update=self.mission.update, next_stop=self.next_stop)
 
 
 class Server(Protocol):
@@ -61,6 +35,9 @@ class Server(Protocol):
     def incoming(self) -> Sequence[Incoming]: ...
 
     def wake(self) -> None: ...
+
+    @property
+    def online(self) -> bool: ...
 
 
 class Duties:
@@ -73,13 +50,16 @@ class Duties:
         outbox: Outbox,
         utc: Callable[[], datetime],
         server: Server | None = None,
+        mailroom: str | None = None,
     ) -> None:
         self._store, self.memory, self.outbox, self._utc = store, memory, outbox, utc
-        self._server = server
+        self._server, self._mailroom = server, mailroom
         self._denied: dict[str, Deny] = {}
         self._claimed: dict[tuple[Leg, ...], str] = {}
         self.rearm_asked = False
         """Somebody at the service has looked, and lets a stopped robot go again; the mind passes it on."""
+        self.stop_asked = False
+        """Somebody at the service wants it to stand still at once; the mind passes it on, if the link has not yet."""
         self.avoid: frozenset[Leg] = frozenset()
         self.revision = 0
         """Goes up with every change of what is held."""
@@ -89,6 +69,11 @@ class Duties:
     def join(self, server: Server) -> None:
         """The link is made after this, since it asks for what is held: from now on there is a server."""
         self._server = server
+
+    @property
+    def online(self) -> bool:
+        """Whether the server can be reached now; a robot that works alone misses nobody."""
+        return self._server is None or self._server.online
 
     def _changed(self) -> None:
         with self._store.transaction():
@@ -102,6 +87,8 @@ class Duties:
                 self.memory.paused(),
                 self.memory.cancelled(),
                 self.memory.faults(),
+                self.memory.charge() is not None,
+                self.memory.loadings(),
             )
         self.revision += 1
 
@@ -146,10 +133,14 @@ class Duties:
                 self._answer(message.command_id, None)
             case Resume():
                 self.memory.pause(False)
-                self.rearm_asked = True
+                self.rearm_asked, self.stop_asked = True, False
+                self._answer(message.command_id, None)
+            case EmergencyStop():
+                self.rearm_asked, self.stop_asked = False, True
                 self._answer(message.command_id, None)
             case Recall():
-                self._answer(message.command_id, self._recall())
+                self._recall()
+                self._answer(message.command_id, None)
             case Verifiers():
                 pass  # memory has taken them already
 
@@ -173,11 +164,17 @@ class Duties:
             self.memory.drop_mission()
         return None
 
-    def _recall(self) -> str | None:
-        if self.memory.cargo():
-            return "mail is aboard, and bringing it back is not built yet"
+    def _recall(self) -> None:
+        """What is aboard goes back to where it came from; without any, it is free."""
+        before = self.memory.mission()
         self.memory.drop_mission()
-        return None
+        self._bring_back(before)
+
+    def _bring_back(self, before: Mission | None) -> None:
+        mission = return_mission(self.memory.cargo(), self.memory.loadings(), self._mailroom, before)
+        if mission:
+            self.memory.hold(mission)
+            self._accepted(mission)
 
     def _tell(self, happened: Progress | HandoverReceipt | Charge | Fault | CommandAnswer) -> None:
         self.outbox.put(Event(happened=happened))
@@ -227,7 +224,7 @@ class Duties:
             self.memory.reach(max(self.memory.next_stop(), number + 1))
 
     def finish_mission(self, mission_id: str, post: str | None) -> None:
-        """All stops are done: say so once, and be free for the next mission."""
+        """All stops are done: say so once, and be free for the next mission. Mail that nobody took is brought back."""
         mission = self.held.mission
         if mission is None or mission.id != mission_id:
             return
@@ -235,16 +232,34 @@ class Duties:
             if self.memory.first_time(mission.id, Step.DONE):
                 self._tell(self._progress(Step.DONE, mission, None, post))
             self.memory.drop_mission()
+            if is_own(mission):
+                self._tell_not_taken(post)
+            else:
+                self._bring_back(mission)
         self._told()
 
+    def _tell_not_taken(self, post: str | None) -> None:
+        """Nobody took it back either: people are told which mail it is, and that it is still aboard."""
+        left, told = self.memory.cargo(), self.memory.faults()
+        if left and MAIL_ABOARD not in told:
+            self.memory.keep_faults(told | {MAIL_ABOARD})
+            reason = (
+                f"Nobody took the mail of {', '.join(left)}, at its sender's post or the mailroom. It is still aboard."
+            )
+            self._tell(Fault(name=MAIL_ABOARD, happened_at=self._utc(), post=post, reason=reason))
+
     def codes(self, order_id: str, purpose: Purpose) -> tuple[str, ...]:
-        """What opens this hand-over now, as SHA-256. For any thread, and without a look at the disk."""
+        """What opens this hand-over now, as SHA-256. For any thread, and without a look at the disk.
+
+        Mail that is brought back is given to its recipient too, and to whoever shows the code that it was loaded with.
+        """
         now = self._utc()
-        return tuple(
-            v.sha256
-            for v in self.held.verifiers
-            if (v.order_id, v.purpose) == (order_id, purpose) and now < v.expires_at
-        )
+        fit = {purpose, Purpose.RECEIVE} if purpose is Purpose.RETURN else {purpose}
+        codes = [
+            v.sha256 for v in self.held.verifiers if v.order_id == order_id and v.purpose in fit and now < v.expires_at
+        ]
+        loading = self.held.loadings.get(order_id) if purpose is Purpose.RETURN else None
+        return (*codes, loading.code_sha256) if loading and loading.code_sha256 else tuple(codes)
 
     def at_stop(self, stop_id: str) -> tuple[Mission, Stop]:
         """A stop of the mission held, with its mission. Raises NoSuchStop."""
@@ -261,7 +276,10 @@ class Duties:
         with self._store.transaction():
             if not self.memory.first_time(mission.id, f"handover:{stop_id}"):
                 return
-            (self.memory.load if purpose is Purpose.LOAD else self.memory.unload)(order_id)
+            if purpose is Purpose.LOAD:
+                self.memory.load(order_id, Loading(post=post, code_sha256=code_sha256))
+            else:
+                self.memory.unload(order_id)
             self._pass(stop_id)
             receipt = HandoverReceipt(
                 purpose=purpose,
@@ -272,12 +290,19 @@ class Duties:
                 code_sha256=code_sha256,
             )
             self._tell(receipt)
-            self.memory.forget_verifiers(order_id, None if purpose is Purpose.RECEIVE else purpose)
+            self.memory.forget_verifiers(order_id, purpose if purpose is Purpose.LOAD else None)
         self._told()
+        if not self.held.cargo:
+            self.report_fault(MAIL_ABOARD, "It was taken.", post, cleared=True)
 
     def report_charge(self, step: ChargeStep, post: str | None, ratio: float) -> None:
-        """The battery plan took over, charges, or has ended."""
-        self._tell(Charge(step=step, happened_at=self._utc(), post=post, ratio=ratio))
+        """The battery plan took over, charges, or has ended: each told once, however often it is begun again."""
+        remembered = None if step == "charged" else step
+        with self._store.transaction():
+            if self.memory.charge() == remembered:
+                return
+            self.memory.note_charge(remembered)
+            self._tell(Charge(step=step, happened_at=self._utc(), post=post, ratio=ratio))
         self._told()
 
     def report_fault(self, name: str, reason: str, post: str | None, cleared: bool = False) -> None:
@@ -335,6 +360,3 @@ class Duties:
     def heading_for(self, towards: str | None) -> None:
         self.memory.head(towards)
         self._changed()
-
-
-HANDOVERS: Final = {StopAction.LOAD: Purpose.LOAD, StopAction.RECEIVE: Purpose.RECEIVE}

@@ -33,12 +33,23 @@ _POSITION: Final = TypeAdapter(Position)
 _FLAG: Final = TypeAdapter(bool)
 _NAMES: Final = TypeAdapter(frozenset[str])
 _RECEIVED: Final = TypeAdapter(Received)
+_WORD: Final = TypeAdapter[str | None](str | None)
 
 
 class MissionConflict(ValueError):
     """Other stops under the number of the mission that is held: one of the two sides is wrong. Nothing is changed."""
 
     code = "mission_conflict"
+
+
+class Loading(Part):
+    """Where mail came aboard and by which code: None if nobody was identified (the Spot button)."""
+
+    post: str
+    code_sha256: str | None = None
+
+
+_LOADINGS: Final = TypeAdapter(dict[str, Loading])
 
 
 @dataclass(frozen=True)
@@ -124,15 +135,22 @@ class Memory:
         """The ids of the orders whose mail is aboard."""
         return self._read("cargo", _CARGO, ())
 
-    def load(self, order_id: str) -> None:
+    def loadings(self) -> dict[str, Loading]:
+        """Where the mail that is aboard came from, by order."""
+        return self._read("loadings", _LOADINGS, {})
+
+    def load(self, order_id: str, loading: Loading | None = None) -> None:
         """The mail of this order came aboard."""
         with self._store.transaction():
             self._write("cargo", _CARGO, (*_without(self.cargo(), order_id), order_id))
+            if loading:
+                self._write("loadings", _LOADINGS, {**self.loadings(), order_id: loading})
 
     def unload(self, order_id: str) -> None:
         """The mail of this order was taken out."""
         with self._store.transaction():
             self._write("cargo", _CARGO, _without(self.cargo(), order_id))
+            self._write("loadings", _LOADINGS, {one: at for one, at in self.loadings().items() if one != order_id})
 
     def verifiers(self) -> tuple[Verifier, ...]:
         """What hand-over codes are checked against."""
@@ -171,6 +189,14 @@ class Memory:
         with self._store.transaction():
             self._write("cancelled", _NAMES, self.cancelled() | {order_id})
             self.forget_verifiers(order_id)
+
+    def charge(self) -> str | None:
+        """How far the battery plan has come, as it was told last: low or charging; None when there is none."""
+        return self._read("charge", _WORD, None)
+
+    def note_charge(self, step: str | None) -> None:
+        """Put the message into the outbox in the same transaction."""
+        self._write("charge", _WORD, step)
 
     def faults(self) -> frozenset[str]:
         """The faults that were told and are not over."""

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 
-from ..duties import Held
+from ..held import Held
 from ..skills.interfaces import View
 from .battery import BatterySense
 

@@ -9,11 +9,12 @@ from typing import Any
 import pytest
 
 from protocol.parts import Leg, Part, Purpose, Stop, StopAction
-from protocol.to_robot import Cancel, Deny, Grant, Mission, Pause, Recall, Resume, Verifier, Verifiers
+from protocol.to_robot import Cancel, Deny, EmergencyStop, Grant, Mission, Pause, Recall, Resume, Verifier, Verifiers
 from protocol.to_server import Step
 from robot.duties import Duties, NoSuchStop
 from robot.memory import Incoming, Memory
 from robot.outbox import Outbox
+from robot.returns import is_own
 from robot.store import Store
 
 NOW = datetime(2026, 1, 5, 9, tzinfo=UTC)
@@ -43,6 +44,8 @@ class FakeServer:
 
     def wake(self) -> None:
         pass
+
+    online = True
 
 
 @dataclass
@@ -228,3 +231,112 @@ def test_mail_that_came_aboard_is_aboard_though_the_order_is_cancelled_in_that_m
     desk.duties.handed_over((LETTER, LOAD), Purpose.LOAD, "post1", "a" * 64)
     assert desk.duties.held.cargo == ("o1",)
     assert desk.told()[-1]["kind"] == "handover"
+
+
+def with_mail(desk: Desk, code: str | None = "a" * 64) -> None:
+    """The letter is aboard, and post4 is next."""
+    desk.duties.memory.keep_verifiers(Verifiers(verifiers=(verifier(Purpose.RECEIVE, "b"),)))
+    desk.hears(LETTER)
+    desk.duties.handed_over((LETTER, LOAD), Purpose.LOAD, "post1", code)
+
+
+def way_back(desk: Desk) -> tuple[Mission, Stop]:
+    mission = desk.duties.held.mission
+    assert mission is not None
+    assert is_own(mission)
+    return mission, mission.stops[0]
+
+
+def test_a_recalled_robot_brings_its_mail_back_to_where_it_was_loaded(desk: Desk, store: Store) -> None:
+    with_mail(desk)
+    (accepted, answer) = desk.hears(Recall(command_id="c1", reason="closing early"))
+    assert (answer["accepted"], accepted["step"]) == (True, "accepted")
+    mission, stop = way_back(desk)
+    assert (stop.post, stop.action, stop.order_id) == ("post1", "return", "o1")
+    assert again_of(store).held.mission == mission, "a power cut changes nothing"
+
+
+def test_mail_that_nobody_took_is_brought_back_when_the_mission_is_done(desk: Desk) -> None:
+    with_mail(desk)
+    desk.duties.report(Step.GAVE_UP, "s2", "post4", "no_one_came")
+    desk.duties.finish_stop("s2")
+    desk.duties.finish_mission("m1", "post4")
+    assert way_back(desk)[1].post == "post1"
+    assert [one.get("step") for one in desk.told()[-2:]] == ["done", "accepted"]
+
+
+def test_the_mailroom_takes_back_what_nobody_took(store: Store) -> None:
+    server = FakeServer(Memory(store))
+    desk = Desk(Duties(store, server.memory, Outbox(store), lambda: NOW, server, mailroom="post3"), server)
+    with_mail(desk)
+    desk.hears(Recall(command_id="c1", reason="closing early"))
+    assert way_back(desk)[1].post == "post3"
+
+
+def test_on_the_way_back_the_code_that_loaded_it_opens_and_so_does_the_recipients(desk: Desk) -> None:
+    with_mail(desk)
+    assert desk.duties.codes("o1", Purpose.RECEIVE) == ("b" * 64,), "to its recipient, the sender's code is none"
+    assert set(desk.duties.codes("o1", Purpose.RETURN)) == {"a" * 64, "b" * 64}
+    desk.hears(Recall(command_id="c1", reason="closing early"))
+    desk.duties.handed_over(way_back(desk), Purpose.RETURN, "post1", "a" * 64)
+    assert (desk.duties.held.cargo, desk.duties.codes("o1", Purpose.RETURN)) == ((), ())
+    assert desk.told()[-1] | {"happened_at": ""} == {
+        "kind": "handover",
+        "purpose": "return",
+        "order_id": "o1",
+        "stop_id": "return-o1",
+        "post": "post1",
+        "happened_at": "",
+        "code_sha256": "a" * 64,
+    }
+
+
+def test_mail_loaded_by_a_button_is_given_back_only_for_a_code(desk: Desk) -> None:
+    with_mail(desk, code=None)
+    assert desk.duties.codes("o1", Purpose.RETURN) == ("b" * 64,)
+
+
+def test_mail_that_is_not_taken_back_either_is_told_once_and_the_robot_is_free(desk: Desk) -> None:
+    with_mail(desk)
+    for _ in range(2):
+        desk.hears(Recall(command_id="c1", reason="closing early"))
+        mission, _stop = way_back(desk)
+        desk.duties.finish_mission(mission.id, "post1")
+    assert (desk.duties.held.mission, desk.duties.held.cargo) == (None, ("o1",))
+    (fault,) = [one for one in desk.told() if one["kind"] == "fault"]
+    assert (fault["name"], "o1" in fault["reason"]) == ("mail_aboard", True)
+    desk.hears(Recall(command_id="c2", reason="somebody waits now"))
+    desk.duties.handed_over(way_back(desk), Purpose.RETURN, "post1", "a" * 64)
+    assert [one["cleared"] for one in desk.told() if one["kind"] == "fault"] == [False, True]
+
+
+def test_a_new_mission_comes_before_the_way_back_which_is_taken_up_again_after_it(desk: Desk) -> None:
+    with_mail(desk)
+    desk.hears(Recall(command_id="c1", reason="closing early"))
+    other = Mission(id="m2", update=1, stops=(Stop(id="s9", post="post3", action=StopAction.LOAD, order_id="o9"),))
+    desk.hears(other)
+    assert desk.duties.held.mission == other
+    desk.duties.finish_mission("m2", "post3")
+    assert way_back(desk)[1].order_id == "o1"
+
+
+def test_charging_is_told_once_a_step_and_remembered_through_a_power_cut(desk: Desk, store: Store) -> None:
+    for step in ("low", "low", "charging"):
+        desk.duties.report_charge(step, "post5", 0.2)
+    again = again_of(store)
+    assert again.held.recharging
+    for step in ("charging", "charged", "charged"):
+        again.report_charge(step, "post5", 0.99)
+    assert [one["step"] for one in desk.told()] == ["low", "charging", "charged"]
+    assert not again_of(store).held.recharging
+
+
+def test_an_emergency_stop_is_answered_and_passed_on_and_resume_takes_it_back(desk: Desk) -> None:
+    (answer,) = desk.hears(EmergencyStop(command_id="c1", reason="a child plays there"))
+    assert (answer["command_id"], answer["accepted"], desk.duties.stop_asked) == ("c1", True, True)
+    desk.hears(Resume(command_id="c2"))
+    assert (desk.duties.stop_asked, desk.duties.rearm_asked) == (False, True)
+
+
+def test_without_a_server_nobody_is_missed(store: Store) -> None:
+    assert Duties(store, Memory(store), Outbox(store), lambda: NOW).online

@@ -8,7 +8,7 @@ from protocol.parts import Stop, StopAction
 from protocol.to_robot import Mission
 from robot.config import PerceptMode
 from robot.drivers.interfaces import BaseState
-from robot.duties import Held
+from robot.held import Held
 from robot.navigation.line_symbol import LineSymbol
 from robot.perception.battery import BatterySense, BatteryWord
 from robot.perception.percepts import PERCEPTS, atom_or_text, perceive
