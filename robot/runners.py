@@ -8,6 +8,7 @@ faster than the machine can follow; then it is this runner that slows the clock 
 import math
 import threading
 import time
+from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from heapq import heapify, heapreplace
@@ -26,6 +27,8 @@ LAG_REAL_S = 0.25
 """A clock that is ahead by more than passes in this time is slowed down."""
 LONGEST_NAP_S = 0.02
 STOP_WITHIN_S = 1.0
+KEPT_LAGS = 4000
+"""20 s of the quickest loop."""
 
 
 @dataclass(frozen=True)
@@ -42,20 +45,27 @@ class Loop:
 
 @dataclass
 class Lag:
-    """How punctual a loop is: seconds of the daemon's clock."""
+    """How punctual a loop is: seconds of the daemon's clock. Shares are of the newest `KEPT_LAGS` ticks."""
 
     ticks: int = 0
     worst_s: float = 0.0
     total_s: float = 0.0
+    newest_s: deque[float] = field(default_factory=lambda: deque(maxlen=KEPT_LAGS))
 
     def note(self, late_s: float) -> None:
         self.ticks += 1
         self.worst_s = max(self.worst_s, late_s)
         self.total_s += late_s
+        self.newest_s.append(late_s)
 
     @property
     def mean_s(self) -> float:
         return self.total_s / self.ticks if self.ticks else 0.0
+
+    def share_s(self, share: float) -> float:
+        """So late were at most this share of the ticks: 0.5 the median, 0.99 nearly all. Any thread may ask."""
+        newest_s = sorted(self.newest_s)
+        return newest_s[min(len(newest_s) - 1, math.floor(share * len(newest_s)))] if newest_s else 0.0
 
 
 class Runner(Protocol):

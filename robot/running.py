@@ -1,6 +1,7 @@
 """One run of the daemon: from settings and a wish to the last summary."""
 
 import json
+import os
 import signal
 import socket
 import sys
@@ -10,16 +11,24 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import FrameType
 
+import structlog
+
 from protocol.clock import Clock, RealClock, SharedClock, SteppedClock
 
 from .assembly import Parts, Simulation, assemble
 from .config import ConfigError, Settings
+from .control import SOCKET_NAME, Control
 from .errors import RobotError
+from .json_socket import JsonSocket
 from .link import LinkError
 from .mind import messages_from_person
 from .report import Ending, Refusal, Reporter
 from .runners import LockstepRunner, Runner, ThreadedRunner
+from .service_manager import ServiceManager, SignsOfLife
 from .simulated import Door, SimulatedRobot
+from .status import StatusBoard
+
+log = structlog.get_logger("robot.run")
 
 SWITCH_INTERVAL_S = 0.0005
 """In simulation one thread computes all the time: the link's thread must get its turn at once."""
@@ -67,12 +76,18 @@ def run_once(settings: Settings, clock: Clock, simulation: Simulation | None, wi
         parts = assemble(settings, clock, simulation)
         runner = _runner(parts, clock, simulation, wish)
         closing.callback(lambda: parts.daemon.close(runner.now_s))
-        reporter = _reporter(parts, clock, wish)
+        reporter = _reporter(parts, settings, clock, wish)
         ending = Ending(parts.mind, wish.goals, clock.now() + wish.limit_s, runner.stop)
         refusal = Refusal(parts.link, runner.stop)
         parts.daemon.watchers = (reporter.look, ending.look, refusal.look)
         if wish.door and parts.robot:
             closing.callback(_open_door(parts.robot, wish.door, reporter).close)
+        board = StatusBoard(
+            settings.name, parts.daemon, parts.mind, runner, clock, clock.now(), parts.link, settings.server
+        )
+        closing.callback(_open_control(settings.data / SOCKET_NAME, Control(parts.daemon.drive, board.tell)).close)
+        signs = SignsOfLife(ServiceManager.of_environment(os.environ), board.signs, board.sentence)
+        closing.callback(signs.close)
         if parts.link:
             parts.link.start()
         _stop_on_signals(runner)
@@ -92,6 +107,13 @@ def _open_door(robot: SimulatedRobot, path: Path, reporter: Reporter) -> Door:
         ) from None
 
 
+def _open_control(path: Path, control: Control) -> JsonSocket:
+    try:
+        return JsonSocket(path, control.answer)
+    except OSError as error:
+        raise ConfigError(str(path), "data", f"no socket can be made there: {error}", "Give another --data.") from None
+
+
 def _check_door(path: Path) -> None:
     """A path that somebody listens at is taken; one that is left over from a kill is not."""
     with socket.socket(socket.AF_UNIX) as probe:
@@ -102,8 +124,19 @@ def _check_door(path: Path) -> None:
     raise DoorTaken(path)
 
 
-def _reporter(parts: Parts, clock: Clock, wish: Wish) -> Reporter:
-    reporter = Reporter(parts.mind, parts.robot, clock.now(), lambda text: print(text, file=sys.stderr, flush=True))
+def _told_to_a_person(text: str) -> None:
+    print(text, file=sys.stderr, flush=True)
+
+
+def _told_and_logged(text: str) -> None:
+    _told_to_a_person(text)
+    log.info(text.strip())
+
+
+def _reporter(parts: Parts, settings: Settings, clock: Clock, wish: Wish) -> Reporter:
+    reporter = Reporter(
+        parts.mind, parts.robot, clock.now(), _told_to_a_person if settings.log_file is None else _told_and_logged
+    )
     parts.mind.hands.noted = reporter.note
     parts.mind.inbox.extend(messages_from_person(wish.tell, wish.goals))
     return reporter

@@ -1,12 +1,10 @@
 """`run`: the daemon, real or simulated."""
 
-import sys
 import tempfile
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Annotated, Any
 
-import structlog
 import typer
 
 from bdi import BdiError
@@ -15,6 +13,7 @@ from maps import CampusMapError, find_map
 from ..assembly import Simulation
 from ..config import ConfigError, PerceptMode, Settings, load_settings
 from ..errors import RobotError
+from ..logs import configure_logs
 from ..running import Wish, clock_for, run_once
 from ..simulated import SimulatedWorldError
 from .refusing import UNFINISHED, refuse
@@ -71,7 +70,6 @@ def run(  # typer reads the options from here
     Exit status 0: done, or nothing was to be achieved. 1: not done within --limit, given up, or stopped before.
     2: something to put right first, which is named.
     """
-    structlog.configure(logger_factory=lambda *_: structlog.PrintLogger(sys.stderr))  # stdout is for --json
     asked = {
         "map": campus,
         "name": name,
@@ -85,6 +83,7 @@ def run(  # typer reads the options from here
     with ExitStack() as closing:
         try:
             settings = _settings(config, asked, simulated, battery, closing)
+            configure_logs(settings.log_file)
             simulation = _simulation(settings, start, battery, seed, clock) if simulated else None
             done = run_once(settings, clock_for(simulated, clock, wish, settings, closing), simulation, wish)
         except (ConfigError, CampusMapError, BdiError, RobotError, SimulatedWorldError) as problem:
