@@ -10,7 +10,7 @@ from protocol.parts import Leg
 from robot.drivers.interfaces import Odometry
 from robot.duties import Duties
 from robot.navigation.directions import Way, next_post
-from robot.navigation.position import Position
+from robot.navigation.position import REACHED_MM, Position
 from robot.skills.interfaces import View
 
 RESTS_MM = 25.0
@@ -42,6 +42,10 @@ class Navigator:
         self._ignored_until_s = -math.inf
         self._arrived_mm = 0.0
         self._nearest: tuple[object, str | None] = ((), home)  # asked ten times a second, answered once per post
+        self._far_end: str | None = None  # of the corridor that it turned round in
+        self._blocked_until_s: dict[str, float] = {}
+        self.moved: str | None = None
+        """Where it found itself after somebody had moved it, until that is noted."""
 
     def look(self, view: View) -> None:
         """Take in what the body sees now."""
@@ -56,6 +60,8 @@ class Navigator:
         self._docked = docked
         self.position = after
         reached = after.current != before.current or (before.approaching is not None and after.approaching is None)
+        reached = reached or self._is_back(after)
+        self._blocked_until_s = {name: end_s for name, end_s in self._blocked_until_s.items() if view.at_s < end_s}
         if after.current and (reached or (docked and self._leaving)):
             self._note_arrival(after.current, before.current)
         elif after.has_left and not self._leaving:
@@ -82,6 +88,9 @@ class Navigator:
         self._duties.seen(post)
         if before and before != post:
             self._duties.clear([Leg(from_post=before, to_post=post)])
+        if self._far_end:
+            self._duties.clear([Leg(from_post=post, to_post=self._far_end)])
+            self._far_end = None
         if self.visited[-1:] != [post]:
             self.visited.append(post)
 
@@ -135,7 +144,23 @@ class Navigator:
             return None
 
     def _avoided(self) -> frozenset[str]:
-        return frozenset(corridor_name(leg.from_post, leg.to_post) for leg in self._duties.avoid)
+        return self.blocked | {corridor_name(leg.from_post, leg.to_post) for leg in self._duties.avoid}
+
+    @property
+    def blocked(self) -> frozenset[str]:
+        """The corridors, by name, that something stands in."""
+        return frozenset(self._blocked_until_s)
+
+    @property
+    def corridor(self) -> Leg | None:
+        """The corridor that the robot is in, in the direction in which it was granted; None at a post."""
+        end = self._far_end or self.towards
+        return Leg(from_post=self.here, to_post=end) if self._leaving and self.here and end else None
+
+    @property
+    def came_from(self) -> str | None:
+        """The post that lies behind it: the last one reached, unless it has turned round on the way."""
+        return self._far_end or self.here
 
     def legs_to(self, *posts: str) -> tuple[Leg, ...]:
         """The corridors from here to each of these posts in turn. Raises NoRoute."""
@@ -175,26 +200,28 @@ class Navigator:
     @property
     def ahead_m(self) -> float:
         """The length of the corridor it is in or about to enter; of the longest one while that is not known."""
-        if self.here and self.towards:
-            return self.campus.corridor(self.here, self.towards).length_m
+        if self.corridor:
+            return self.campus.corridor(self.corridor.from_post, self.corridor.to_post).length_m
         return max((corridor.length_m for corridor in self.campus.corridors), default=0.0)
 
     def nearest_dock(self) -> str | None:
-        """The dock with the shortest way from here; the robot's own while the place is unknown."""
-        asked = (self.here, self._duties.avoid)
+        """The dock with the shortest way from here that is open; the robot's own while the place is unknown."""
+        asked = (self.here, self._duties.avoid, self.blocked)
         if asked != self._nearest[0]:
             self._nearest = (asked, self._find_nearest_dock())
         return self._nearest[1]
 
     def _find_nearest_dock(self) -> str | None:
+        if self.here is None:
+            return self.home
         reachable: list[tuple[float, str]] = []
-        for dock in self.campus.docks() if self.here else ():
+        for dock in self.campus.docks():
             try:
-                route = shortest_route(self.campus, self.here or "", dock.name, self._avoided())
+                route = shortest_route(self.campus, self.here, dock.name, self._avoided())
             except NoRoute:
                 continue
             reachable.append((route.length_m, dock.name))
-        return min(reachable)[1] if reachable else self.home
+        return min(reachable)[1] if reachable else None
 
     # What actions tell.
 
@@ -205,14 +232,43 @@ class Navigator:
 
     def begin_turn(self) -> None:
         """After a power cut in the middle of a turn, going on along the line is the way to find out."""
-        self._duties.heading_for(self._next_post())
+        if not self._leaving:
+            self._duties.heading_for(self._next_post())
 
     def turned(self) -> None:
         """A turn has ended on the line: what was left of odometry's error is forgotten."""
+        if self._leaving:
+            self._turn_back()
+            return
         ahead = self._post_ahead()
         if ahead and self.here:
             heading_rad = self.campus.corridor(self.here, ahead).heading_leaving(self.here)
             self._looks(heading_rad)
+
+    def _turn_back(self) -> None:
+        """It has turned round between two posts: what lay behind lies ahead, as far as it was behind."""
+        leg, here = self.corridor, self.position
+        if leg is None:
+            return
+        self._far_end = None if self._far_end else leg.to_post
+        self._head_for(leg.from_post if self._far_end else leg.to_post)
+        behind_mm = self._odometry.ahead_mm - here.post_at_mm if here.post_at_mm is not None else None
+        post_at_mm = None if behind_mm is None or here.approaching else self._odometry.ahead_mm + behind_mm
+        self.position = replace(here, approaching=None, post_at_mm=post_at_mm, has_left=True)
+
+    def _is_back(self, position: Position) -> bool:
+        """It has turned round, and stands at the post that it had left."""
+        at_mm = position.post_at_mm
+        near = at_mm is not None and abs(at_mm - self._odometry.ahead_mm) <= REACHED_MM
+        return self._far_end is not None and position.approaching is None and near
+
+    def block(self, leg: Leg, until_s: float) -> None:
+        """Something stands in this corridor: no way leads through it until then."""
+        self._blocked_until_s[corridor_name(leg.from_post, leg.to_post)] = until_s
+
+    def noted_move(self) -> None:
+        """The agent knows that it was moved."""
+        self.moved = None
 
     def undocked(self) -> None:
         """The robot stands on the line at the dock's post and looks away from the dock."""

@@ -72,7 +72,7 @@ def _follow_line(hands: Hands, _: Sequence[Value], now: float) -> Run:
             navigator.turned()
         navigator.leave()
         limit_s = FOLLOW_LEAST_S + FOLLOW_TIMES * navigator.ahead_m * 1000 / hands.cruise_mm_s
-        return FollowLine(navigator.campus, navigator.here, hands.cruise_mm_s, hands.shape, limit_s)
+        return FollowLine(navigator.campus, navigator.came_from, hands.cruise_mm_s, hands.shape, limit_s)
 
     return Skills(hands.body, [straighten, follow], now)
 

@@ -148,3 +148,43 @@ def test_a_power_cut_in_the_middle_of_a_turn_is_not_taken_for_standing(walk: Wal
     walk.navigator.destination = "post4"
     walk.navigator.begin_turn()
     assert Walk(store).navigator.at is None
+
+
+def test_a_blocked_corridor_is_avoided_until_its_time_is_over(walk: Walk) -> None:
+    walk.navigator.place("post2", "post3")
+    walk.navigator.destination = "post5"
+    walk.navigator.block(Leg(from_post="post2", to_post="post3"), until_s=60.0)
+    assert (walk.navigator.way(), walk.navigator.nearest_dock()) == (None, None), "the only dock lies behind it"
+    walk.now = 60.0
+    walk.look()
+    assert (walk.navigator.way(), walk.navigator.nearest_dock()) == ("forward", "post5")
+
+
+def test_a_robot_that_turns_round_between_posts_comes_back_to_where_it_was(walk: Walk) -> None:
+    leg = Leg(from_post="post2", to_post="post3")
+    walk.duties.memory.grant([leg])
+    walk.duties.seen("post2")
+    walk.navigator.place("post2", "post3")
+    walk.navigator.leave()
+    walk.body.rolls(700.0)
+    walk.look()
+    walk.navigator.begin_turn()
+    walk.body.turns(math.pi)
+    walk.look()
+    walk.navigator.turned()
+    assert (walk.navigator.towards, walk.navigator.came_from, walk.navigator.corridor) == ("post2", "post3", leg)
+    assert walk.duties.held.grants == (leg,), "it is still in there"
+    walk.body.rolls(690.0)
+    walk.look()
+    assert (walk.navigator.at, walk.navigator.corridor, walk.duties.held.grants) == ("post2", None, ())
+    walk.navigator.destination = "post3"
+    assert walk.navigator.way() == "behind"
+
+
+def test_a_turn_between_posts_does_not_forget_the_way_it_took(walk: Walk, store: Store) -> None:
+    walk.navigator.place("post2", "post3")
+    walk.navigator.leave()
+    walk.body.rolls(700.0)
+    walk.look()
+    walk.navigator.begin_turn()
+    assert Walk(store).navigator.at is None
