@@ -8,35 +8,38 @@ from typing import ClassVar
 
 from maps import CampusMap
 
-from ..drivers.interfaces import STOP, BodyShape, Odometry, WheelSpeeds
-from ..navigation.approach import arrival_heading_rad, post_ahead_mm
+from ..drivers.interfaces import STOP, BodyShape, WheelSpeeds
 from .find_line import FindLine, over_line
 from .interfaces import Done, Failed, Running, Step, View
-from .line_estimate import LineEstimate
+from .line_estimate import LineEstimate, gains
+from .post_ahead import PostAhead
 
-LOOK_AHEAD_MM = 80.0
 SLOWEST_MM_S = 70.0
 CLOSE_MM, SLOW_BY_MM = 8.0, 25.0
 """The speed falls towards the slowest as the line ahead is off by more than the first, by so much."""
 CRAWL_MM_S = 40.0
-BRAKE_MM_S2 = 150.0
+BRAKE_MM_S2 = 250.0
 WHEEL_LAG_S = 0.06
 LOST_AFTER_MM = 70.0
 """Longer than any worn piece of tape; body.md counts the line as lost after 25 to 40 mm, from then on it coasts."""
 BLIND_BEFORE_POST_MM = 40.0
 """So near to a post (and the sensor's lead) branches and corners pass under the diodes: the robot holds its way."""
-OWN_POST_MM = 600.0
-"""A marker of the post it set out from does not count so near to it."""
+UNSEEN_BEFORE_POST_MM = 150.0
+"""From here on a post in sight is reached without the line, if need be."""
 STANDS_S = 0.2
+BEYOND_MM, BACK_MM_S = 25.0, 50.0
+"""Standing farther than this beyond the post it goes back."""
 FRUITLESS_MM = 500.0
 MOST_SEARCHES = 3
 """So many searches in a row with less than half a metre of line between them: this is where the line ends."""
 MOST_BUMPS = 3
-INNER_WHEEL_MM_S = 30.0
+INNER_WHEEL_MM_S, OUTER_WHEEL_MM_S = 30.0, 200.0
+MISSED_SHARE, MISSED_MM = 0.08, 500.0
+"""No marker so far beyond the length of the corridor: wheels and tape measures err by less, so the post was missed."""
 
 
 class FollowLine:
-    """Done(post), standing with the axle at the post; line_lost, blocked (three bumps), docked, timeout."""
+    """Done(post), standing with the axle at the post; line_lost, post_missed, blocked (three bumps), docked, timeout."""
 
     name: ClassVar[str] = "follow_line"
     moves: ClassVar[bool] = True
@@ -46,27 +49,28 @@ class FollowLine:
         self,
         campus: CampusMap,
         leaving: str | None = None,
-        cruise_mm_s: float = 150.0,
+        cruise_mm_s: float = 180.0,
         shape: BodyShape | None = None,
         limit_s: float = 600.0,
+        way_left_mm: float | None = None,
     ) -> None:
-        """`leaving`: the post it sets out from, if known: it tells which marker the next post will show."""
+        """`leaving`: the post it sets out from, if known: it tells which marker the next post will show.
+        `way_left_mm`: how far the next post is by the map, if known."""
         self._campus, self._leaving, self._cruise_mm_s = campus, leaving, cruise_mm_s
         self._shape = shape or BodyShape()
+        self._look_ahead_mm = gains(self._shape.sensor_lead_mm).look_ahead_mm
+        self._way_left_mm = way_left_mm
         self.limit_s = limit_s
 
     def start(self, view: View, now: float) -> None:
         """See `interfaces.Skill.start`."""
         self._line = LineEstimate(self._shape)
         self._last = self._begin = view.odometry
-        self._began_s = now
         self._bumps_before = view.bumps
         self._lit_mm = view.odometry.travelled_mm
         self._search: FindLine | None = None
         self._searches, self._searched_mm = 0, -FRUITLESS_MM
-        self._post: str | None = None
-        self._post_at_mm = 0.0
-        self._sighted_s = now
+        self._post = PostAhead(self._campus, self._leaving, view.odometry, now)
         self._standing_since_s: float | None = None
 
     def step(self, view: View, now: float) -> Step:
@@ -75,43 +79,45 @@ class FollowLine:
             return Failed("docked")
         if view.bumps - self._bumps_before >= MOST_BUMPS:
             return Failed("blocked")
+        self._post.look(view, self._line.heading)
         if self._search is not None:
             return self._searched(self._search, view, now)
-        self._look_for_post(view)
-        to_go_mm = self._post_at_mm - view.odometry.ahead_mm if self._post else None
+        to_go_mm = self._post.to_go_mm(view.odometry)
         self._look_at_line(view, to_go_mm)
         if to_go_mm is not None and to_go_mm <= CRAWL_MM_S * WHEEL_LAG_S:
-            return self._stop(view)
+            return self._stop(view, to_go_mm)
         self._standing_since_s = None
-        if to_go_mm is None and view.odometry.travelled_mm - self._lit_mm > LOST_AFTER_MM:
+        if to_go_mm is None and self._missed_by_mm(view) > 0:
+            return Failed("post_missed")
+        if self._has_lost(view, to_go_mm):
             return self._lost(view, now)
         return Running(self._speeds(to_go_mm))
 
     # The post
 
-    def _look_for_post(self, view: View) -> None:
-        """Every new sighting of the post ahead makes its distance better: the last ones are abreast of it."""
-        seen = view.post
-        if seen is None or seen.at_s <= self._sighted_s or seen.text not in self._campus.posts:
-            return
-        self._sighted_s = seen.at_s
-        if self._still_leaving(seen.text, view.odometry):
-            return
-        heading = arrival_heading_rad(self._campus, self._leaving, seen.text)
-        ahead_mm = post_ahead_mm(self._campus, seen, heading)
-        if ahead_mm is not None and (self._post in (None, seen.text) or ahead_mm > 0):
-            self._post, self._post_at_mm = seen.text, view.post_odometry.ahead_mm + ahead_mm
-
-    def _still_leaving(self, post: str, here: Odometry) -> bool:
-        """Near the post it set out from, and not on the way back to it."""
-        begin = self._begin
-        near = math.hypot(here.x_mm - begin.x_mm, here.y_mm - begin.y_mm) < OWN_POST_MM
-        return post == self._leaving and near and math.cos(here.heading_rad - begin.heading_rad) > 0
-
-    def _stop(self, view: View) -> Step:
+    def _stop(self, view: View, to_go_mm: float) -> Step:
         if self._standing_since_s is None:
             self._standing_since_s = view.at_s
-        return Done(self._post) if view.at_s - self._standing_since_s >= STANDS_S else Running(STOP)
+        if view.at_s - self._standing_since_s < STANDS_S:
+            return Running(STOP)
+        if to_go_mm < -BEYOND_MM:
+            return Running(WheelSpeeds(-BACK_MM_S, -BACK_MM_S))
+        # What it ran on while braking, or back, is done: a robot that stands does not begin again.
+        return Done(self._post.name) if view.sent.still else Running(STOP)
+
+    def _missed_by_mm(self, view: View) -> float:
+        """How far beyond the place of a post whose marker should have been seen; below 0 while it may still come."""
+        if self._way_left_mm is None:
+            return -math.inf
+        driven_mm = view.odometry.ahead_mm - self._begin.ahead_mm
+        return driven_mm - (1 + MISSED_SHARE) * self._way_left_mm - MISSED_MM
+
+    def _ends_at_post(self, view: View) -> bool:
+        """Whether the line may end here because the post stands here, unseen."""
+        if self._way_left_mm is None or self._post.name:
+            return False
+        driven_mm = view.odometry.ahead_mm - self._begin.ahead_mm
+        return driven_mm > (1 - MISSED_SHARE) * self._way_left_mm - self._shape.sensor_lead_mm
 
     # The line
 
@@ -126,18 +132,22 @@ class FollowLine:
             self._lit_mm = here.travelled_mm
 
     def _speeds(self, to_go_mm: float | None) -> WheelSpeeds:
-        off_mm = self._line.at(LOOK_AHEAD_MM)
+        off_mm = self._line.at(self._look_ahead_mm)
         off_share = min(1.0, max(0.0, abs(off_mm) - CLOSE_MM) / SLOW_BY_MM)
         speed = self._cruise_mm_s - (self._cruise_mm_s - SLOWEST_MM_S) * off_share
         if to_go_mm is not None:
             speed = min(speed, max(CRAWL_MM_S, math.sqrt(2 * BRAKE_MM_S2 * max(0.0, to_go_mm - 5.0))))
-        return curve(speed, 2 * off_mm / LOOK_AHEAD_MM**2, self._shape)
+        return curve(speed, 2 * off_mm / self._look_ahead_mm**2, self._shape)
+
+    def _has_lost(self, view: View, to_go_mm: float | None) -> bool:
+        near = to_go_mm is not None and to_go_mm < UNSEEN_BEFORE_POST_MM
+        return not near and view.odometry.travelled_mm - self._lit_mm > LOST_AFTER_MM
 
     def _lost(self, view: View, now: float) -> Step:
         fruitless = view.odometry.travelled_mm - self._searched_mm < FRUITLESS_MM
         self._searches = self._searches + 1 if fruitless else 1
         if self._searches > MOST_SEARCHES:
-            return Failed("line_lost")
+            return Failed("post_missed" if self._ends_at_post(view) else "line_lost")
         heading = view.odometry.heading_rad + self._line.heading
         self._search = FindLine(self._shape, side=self._line.at(self._shape.sensor_lead_mm), heading_rad=heading)
         self._search.start(view, now)
@@ -146,24 +156,27 @@ class FollowLine:
     def _searched(self, search: FindLine, view: View, now: float) -> Step:
         step = search.step(view, now)
         if isinstance(step, Failed):
-            return step
+            return Failed("post_missed") if self._ends_at_post(view) else step
         if isinstance(step, Done):
-            self._resume(view.odometry, now)
+            self._resume(view)
             return Running(STOP)
         return step
 
-    def _resume(self, here: Odometry, now: float) -> None:
-        """As at the beginning: the way searched tells nothing about the post ahead."""
-        self._search = self._post = None
-        self._sighted_s = now
+    def _resume(self, view: View) -> None:
+        """The line begins anew; a post that was in sight is where it was."""
+        self._search = None
         self._line = LineEstimate(self._shape)
-        self._last = here
-        self._lit_mm = self._searched_mm = here.travelled_mm
+        self._last = view.odometry
+        self._lit_mm = self._searched_mm = view.odometry.travelled_mm
+        self._post.after_search(view.odometry)
 
 
 def curve(speed_mm_s: float, curvature_per_mm: float, shape: BodyShape) -> WheelSpeeds:
-    """Wheels for a curve (left positive), the inner one never slower than 30 mm/s."""
+    """Wheels for a curve (left positive): so slow in it that the outer one may run at its pace, and the inner one never
+    below 30 mm/s."""
     half = shape.wheel_base_mm / 2
-    tightest = max(0.0, 1 - INNER_WHEEL_MM_S / speed_mm_s) / half
+    speed = min(speed_mm_s, OUTER_WHEEL_MM_S / (1 + abs(curvature_per_mm) * half))
+    speed = max(speed, INNER_WHEEL_MM_S)
+    tightest = max(0.0, 1 - INNER_WHEEL_MM_S / speed) / half
     bend = min(max(curvature_per_mm, -tightest), tightest) * half
-    return WheelSpeeds(speed_mm_s * (1 - bend), speed_mm_s * (1 + bend))
+    return WheelSpeeds(speed * (1 - bend), speed * (1 + bend))

@@ -6,14 +6,13 @@ is a measurement good to two millimetres.
 """
 
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from ..drivers.interfaces import BodyShape, LineReading
 
 EDGE_SIGMA_MM = 2.0
 OFFSET_NOISE_MM2_PER_MM = 0.01
 HEADING_NOISE_PER_MM = 4e-6
-CURVATURE_NOISE_PER_MM = 1e-8
-"""Tuned on bends of 250 to 600 mm radius with 1 % flipped reads and gaps of 20 mm; less of it misses tight bends."""
 INSIDE_DOUBT = 3.0
 """Reads between two edges agree with each other, not with the truth: they pull to the middle only weakly."""
 START_OFFSET_MM2, START_HEADING, START_CURVATURE = 15.0**2, 0.25**2, 0.0005**2
@@ -22,6 +21,26 @@ STEEPEST = 0.9
 MAX_CURVATURE_PER_MM = 1 / 180
 
 Interval = tuple[float, float]
+
+
+class Gains(NamedTuple):
+    """What depends on how far ahead of the axle the diodes are."""
+
+    lead_mm: float
+    look_ahead_mm: float
+    """The follower steers for the line so far ahead of the axle."""
+    curvature_noise_per_mm: float
+    """How much the line's curvature may change with every mm; less of it misses tight bends, more of it sways."""
+
+
+GAINS = (Gains(0.0, 90.0, 1e-8), Gains(30.0, 80.0, 3e-8), Gains(50.0, 70.0, 7e-8))
+"""From the lead of each row on. Tuned on bends of 200 to 600 mm radius with 1 % flipped reads and gaps of 20 mm, on
+seeds from 1000 on (benchmarks/body/line.py)."""
+
+
+def gains(lead_mm: float) -> Gains:
+    """The row for this lead."""
+    return max(row for row in GAINS if row.lead_mm <= lead_mm)
 
 
 def line_intervals(shape: BodyShape) -> dict[LineReading, Interval]:
@@ -52,6 +71,7 @@ class LineEstimate:
     def __post_init__(self) -> None:
         self._intervals = line_intervals(self.shape)
         self._before: Interval | None = None
+        self._curvature_noise = gains(self.shape.sensor_lead_mm).curvature_noise_per_mm
 
     def move(self, ahead_mm: float, turned_rad: float) -> None:
         """The robot went on: the line moves under it."""
@@ -71,7 +91,7 @@ class LineEstimate:
             new_oc,
             hh + 2 * d * hc + d * d * cc + HEADING_NOISE_PER_MM * size,
             hc + d * cc,
-            cc + CURVATURE_NOISE_PER_MM * size,
+            cc + self._curvature_noise * size,
         ]
 
     def see(self, reading: LineReading) -> None:

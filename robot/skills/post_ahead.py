@@ -1,0 +1,72 @@
+"""How far it still is to the post ahead, from every sighting of its marker on the way there."""
+
+import math
+from dataclasses import replace
+
+from maps import CampusMap
+
+from ..drivers.interfaces import Odometry
+from ..navigation.approach import arrival_heading_rad, post_ahead_mm
+from .interfaces import View
+
+OWN_POST_MM = 600.0
+"""A marker of the post it set out from does not count so near to it."""
+SHARP_MM = 40.0
+"""The nearer to abreast the marker is, the less its distance ahead depends on how the camera was mounted."""
+BESIDE_MM = 300.0
+"""A post that lies so far beside the way after a search is not ahead any more."""
+
+
+class PostAhead:
+    """`name` is the post whose marker has been seen; its place is kept in odometry's frame, through searches too."""
+
+    def __init__(self, campus: CampusMap, leaving: str | None, begin: Odometry, now: float) -> None:
+        self._campus, self._leaving, self._begin = campus, leaving, begin
+        self._sighted_s = now
+        self.name: str | None = None
+        self._at_mm = self._weight = 0.0
+        self._point = (0.0, 0.0)
+
+    def look(self, view: View, line_heading: float) -> None:
+        """Take in a new sighting. `line_heading`: where the line leads, in radians left of where the robot looks."""
+        seen = view.post
+        if seen is None or seen.at_s <= self._sighted_s or seen.text not in self._campus.posts:
+            return
+        self._sighted_s = seen.at_s
+        if self._still_leaving(seen.text, view.odometry):
+            return
+        # A robot that looks aslant sees a marker beside it too early or too late: along the line counts.
+        along_mm = seen.ahead_mm * math.cos(line_heading) + seen.left_mm * math.sin(line_heading)
+        heading = arrival_heading_rad(self._campus, self._leaving, seen.text)
+        ahead_mm = post_ahead_mm(self._campus, replace(seen, ahead_mm=along_mm), heading)
+        if ahead_mm is not None and (self.name in (None, seen.text) or ahead_mm > 0):
+            self._take(seen.text, view.post_odometry, ahead_mm, 1 / (SHARP_MM + abs(along_mm)) ** 2, line_heading)
+
+    def _take(self, post: str, here: Odometry, ahead_mm: float, weight: float, line_heading: float) -> None:
+        if post != self.name:
+            self.name, self._weight = post, 0.0
+        self._weight += weight
+        self._at_mm += (here.ahead_mm + ahead_mm - self._at_mm) * weight / self._weight
+        along_rad, to_go_mm = here.heading_rad + line_heading, self._at_mm - here.ahead_mm
+        self._point = (here.x_mm + to_go_mm * math.cos(along_rad), here.y_mm + to_go_mm * math.sin(along_rad))
+
+    def _still_leaving(self, post: str, here: Odometry) -> bool:
+        """Near the post it set out from, and not on the way back to it."""
+        begin = self._begin
+        near = math.hypot(here.x_mm - begin.x_mm, here.y_mm - begin.y_mm) < OWN_POST_MM
+        return post == self._leaving and near and math.cos(here.heading_rad - begin.heading_rad) > 0
+
+    def to_go_mm(self, here: Odometry) -> float | None:
+        """Negative when the axle is beyond it; None while no post is in sight."""
+        return self._at_mm - here.ahead_mm if self.name else None
+
+    def after_search(self, here: Odometry) -> None:
+        """The way searched was no way along the line: what is left follows from where the post lies."""
+        if self.name is None:
+            return
+        dx, dy = self._point[0] - here.x_mm, self._point[1] - here.y_mm
+        along, across = math.cos(here.heading_rad), math.sin(here.heading_rad)
+        if abs(dy * along - dx * across) > BESIDE_MM:
+            self.name, self._weight = None, 0.0
+        else:
+            self._at_mm = here.ahead_mm + dx * along + dy * across
