@@ -39,7 +39,7 @@ MISSED_SHARE, MISSED_MM = 0.08, 500.0
 
 
 class FollowLine:
-    """Done(post), standing with the axle at the post; line_lost, post_missed, blocked (three bumps), docked, timeout."""
+    """Done(post), the axle at the post; line_lost, post_missed, blocked (three bumps), docked, timeout."""
 
     name: ClassVar[str] = "follow_line"
     moves: ClassVar[bool] = True
