@@ -7,6 +7,9 @@ MODE_RETRY_S = 0.5
 MODE_KNOWN_AFTER_S = 0.06
 """Older frames may have been on their way when the base was started."""
 OPCODES = {Mode.PASSIVE: oi.Opcode.START, Mode.SAFE: oi.Opcode.SAFE, Mode.FULL: oi.Opcode.FULL}
+TELLING = {1: 0, 4: 1}
+"""Reported number → how much too high this firmware counts. A base that is Off streams nothing, so 1 is never Off plus
+one; and there is no mode 4."""
 
 
 class ModeKeeper:
@@ -23,16 +26,25 @@ class ModeKeeper:
         self._offset = None
         self._started_s, self._asked_s = now, now - MODE_RETRY_S
 
-    def read(self, reported: int, now: float) -> Mode:
-        """Some firmware reports every mode one too high. Just after a start it must be Passive: that tells."""
-        if self._offset is None and now - self._started_s >= MODE_KNOWN_AFTER_S:
+    def read(self, reported: int | None, now: float) -> Mode:
+        """Some firmware reports every mode one too high; just after a start it must be Passive: that tells.
+
+        None: the firmware does not tell its mode at all.
+        """
+        if self._offset is None and now - self._started_s < MODE_KNOWN_AFTER_S:
+            return Mode.UNKNOWN
+        if reported is None:
+            self._offset = 0
+            return Mode.UNKNOWN
+        if self._offset is None:
             self._offset = 1 if reported == Mode.SAFE else 0
-        number = reported - (self._offset or 0)
-        return Mode(number) if number in OPCODES or number == Mode.OFF else Mode.UNKNOWN
+        self._offset = TELLING.get(reported, self._offset)
+        number = reported - self._offset
+        return Mode(number) if number in OPCODES else Mode.UNKNOWN
 
     @property
     def known(self) -> bool:
-        """Whether the base has told its mode since it was started."""
+        """Whether the base can be asked for a mode: it has answered the start."""
         return self._offset is not None
 
     def asked(self, mode: Mode, now: float) -> None:

@@ -1,31 +1,33 @@
 """The Create 2 over a serial port: bytes in, states out; speeds in, bytes out. Nothing here waits.
 
-One thread owns it and calls `poll` often. The stream with its checksum is the only data path. Drive commands latch in
-the base (it has no dead-man timer), so a speed that is not renewed within its deadline is stopped here.
+One thread at a time calls it, and calls `poll` often. The stream with its checksum is the only data path. Drive
+commands latch in the base (it has no dead-man timer), so a speed that is not renewed within its deadline is stopped
+here.
 """
 
 from collections.abc import Callable
-from typing import Any
+
+import structlog
 
 from . import open_interface as oi
-from .base_frames import state_of
+from . import start_ladder as ladder
+from .base_frames import HeldButtons, state_of, together
 from .base_modes import OPCODES, ModeKeeper
-from .cable import Cable, LinkHealth
+from .cable import Cable, Chunk
+from .encoder_counts import EncoderCounts
 from .interfaces import STOP, BaseState, Mode, Note, WheelSpeeds
-from .serial_port import NoWakeUpLine, SerialPort, WakeUpLine
-from .stream_parser import StreamParser, battery_text
+from .link_health import LinkHealth
+from .serial_port import SerialPort
+from .stream_parser import StreamParser
+from .wake_up import KeepAwake, NoWakeUpLine, WakeUpLine
 from .wheel_speeds import DEADLINE_S, SPEED_CAP_MM_S, LatchedSpeeds, possible
 
 __all__ = ["Create2", "possible"]
 
+log = structlog.get_logger("robot.base")
+
 MODE_GAP_S = 0.025
 """Older manuals ask for 20 ms between a change of mode and the next command."""
-SILENT_S = 1.0
-RETRY_S = 1.0
-WAKE_UP_LOW_S = 0.5
-WAKE_UP_EVERY_S = 60.0
-LONGEST_COMMAND = 5
-"""A program that died in the middle of a drive command left the base waiting for up to four bytes, for ever."""
 
 
 class Create2:
@@ -40,48 +42,70 @@ class Create2:
     ) -> None:
         self._speeds = LatchedSpeeds(deadline_s, speed_cap_mm_s)
         self._modes = ModeKeeper()
+        self._counts, self._buttons = EncoderCounts(), HeldButtons()
         self._cable = Cable(open_port, self._lost_port)
-        self._wake_up_line = wake_up_line or NoWakeUpLine()
+        self._awake = KeepAwake(wake_up_line or NoWakeUpLine())
+        self._ladder = ladder.StartLadder()
         self._parser = StreamParser()
-        self._next_start_s = 0.0
-        self._wake_up_low, self._wake_up_s = False, 0.0
+        self._heard_s: float | None = None
+        self._silent_since_s: float | None = None
+        self._now = 0.0
         self.state: BaseState | None = None
 
     @property
     def health(self) -> LinkHealth:
         return self._cable.health
 
+    @property
+    def port(self) -> SerialPort | None:
+        """What bytes are to be waited for at; None while the cable is pulled."""
+        return self._cable.port
+
+    def listen_in(self, heard: Chunk, sent: Chunk) -> None:
+        """Be called with every piece that is read and written, and when: for the black box."""
+        self._cable.heard, self._cable.sent = heard, sent
+
     # What comes in
 
     def poll(self, now: float) -> BaseState | None:
         """See `interfaces.Base.poll`. An unplugged port is noticed here and tried again every second."""
+        self._now = now
+        was_open = self._cable.is_open
         data = self._cable.read(now)
-        newest = None
-        for values in self._parser.feed(data) if data else []:
-            newest = self._heard(values, now)
-        if self._parser.lines:
-            self._keep_text(self._parser.take_lines())
+        if self._cable.is_open and not was_open:
+            # Whatever it was told before the cable was pulled, it may still be driving.
+            self._do(ladder.Start(), now)
+        newest = self._take(data, now) if data else None
         if newest:
             self._keep_mode(newest, now)
-        self._restart_if_silent(now)
-        self._keep_awake(now)
+        self._keep_talking(now)
         if self._speeds.overdue(now):
             self._cable.send(oi.drive_direct(STOP), now)
         self._cable.flush(now)
         return newest
 
-    def _heard(self, values: tuple[Any, ...], now: float) -> BaseState:
-        raw = dict(zip(oi.FIELDS, values, strict=True))
-        new = state_of(raw, self._modes.read(raw["mode"], now), now)
-        self._speeds.heard(self.state, new)
-        self.state = new
-        self.health.frames += 1
-        return new
+    def _take(self, data: bytes, now: float) -> BaseState | None:
+        """The newest state in these bytes, with the touches of those that came along with it."""
+        newest = None
+        for raw in self._parser.feed(data):
+            counts = self._counts.accept(raw["left_count"], raw["right_count"], now)
+            if counts is None:
+                self.health.corrupt += 1
+            else:
+                newest = together(newest, self._heard(raw, counts, now))
+        self.health.corrupt += self._parser.take_corrupt()
+        if self._parser.lines:
+            self.health.take_lines(self._parser.take_lines())
+        return newest
 
-    def _keep_text(self, lines: list[str]) -> None:
-        self.health.firmware_lines = (*self.health.firmware_lines, *lines)[-20:]
-        for line in lines:
-            self.health.battery_text = battery_text(line) or self.health.battery_text
+    def _heard(self, raw: dict[str, int], counts: tuple[int, int], now: float) -> BaseState:
+        raw["buttons"] = self._buttons.seen(raw["buttons"], now)
+        new = state_of(raw, counts, self._modes.read(raw.get("mode"), now), now)
+        self._speeds.heard(self.state, new)
+        self.state, self._heard_s = new, now
+        self.health.frames += 1
+        self.health.tells_mode = "mode" in raw
+        return new
 
     def _lost_port(self) -> None:
         self._parser = StreamParser()
@@ -102,8 +126,7 @@ class Create2:
         self._cable.send(bytes((OPCODES[mode],)), now, MODE_GAP_S)
 
     def _keep_mode(self, state: BaseState, now: float) -> None:
-        standing = self._speeds.still and not self._speeds.sent.still
-        if self._modes.lost(state, standing, now):
+        if self._modes.lost(state, self._speeds.stalled(now), now):
             self._send_mode(self._modes.wanted, now)
 
     def seek_dock(self, now: float) -> None:
@@ -133,31 +156,59 @@ class Create2:
 
     def close(self) -> None:
         """See `interfaces.Base.close`."""
-        self._cable.close(oi.drive_direct(STOP) + bytes((oi.Opcode.START,)))
+        self._cable.close(oi.drive_direct(STOP) + bytes((oi.Opcode.START,)), self._now)
 
     # Starting and waking
 
-    def _restart_if_silent(self, now: float) -> None:
-        """Start, and ask for the stream: at first, after an unplug, and after a reset or sleep of the base."""
-        heard_s = self.state.at_s if self.state else -SILENT_S
-        if not self._cable.is_open or now - heard_s < SILENT_S or now < self._next_start_s:
+    def _keep_talking(self, now: float) -> None:
+        """Start a silent base again; keep one that has nothing to do from falling asleep."""
+        heard_s = self._heard_s
+        silent = heard_s is None or now - heard_s >= ladder.SILENT_S
+        if self._silent_since_s is None or not silent:
+            self._silent_since_s = now if heard_s is None else heard_s
+        self._tell_silence(now - self._silent_since_s)
+        if not silent:
+            self._speaks(now)
+        elif self._cable.is_open:
+            for act in self._ladder.due(self._awake.wired, now):
+                self._do(act, now)
+        idle = self._modes.wanted is Mode.PASSIVE and self._speeds.still and not silent
+        if self._awake.step(idle, self.state is not None and self.state.docked, now):
+            self._cable.send(bytes((oi.Opcode.SAFE,)), now, MODE_GAP_S)
+            self._cable.send(bytes((oi.Opcode.START,)), now, MODE_GAP_S)
+
+    def _tell_silence(self, silent_s: float) -> None:
+        health = self.health
+        health.silent_s, was_down = silent_s, health.down
+        health.down = silent_s > ladder.DOWN_S
+        if health.down and not was_down:
+            log.error("base_link_down", silent_s=round(silent_s), problem=health.problem)
+
+    def _speaks(self, now: float) -> None:
+        step = self._ladder.heard()
+        if step is None:
             return
-        self._next_start_s = now + RETRY_S
+        self._cable.speak_at(oi.BAUD, now)
+        self.health.awoken_by = step.name
+        if step is ladder.AT_19200:
+            self.health.spoke_at_baud = oi.SLOW_BAUD
+            log.warning("base_spoke_at_19200_baud", now_at=oi.BAUD)
+
+    def _do(self, act: ladder.Act, now: float) -> None:
+        match act:
+            case ladder.Pulse():
+                self._awake.pulse(now)
+            case ladder.Listen(baud):
+                self._cable.speak_at(baud, now)
+            case ladder.Send(data, gap_s):
+                self._cable.send(data, now, gap_s)
+            case ladder.Start(stream):
+                self._start(stream, now)
+
+    def _start(self, stream: oi.StreamLayout, now: float) -> None:
         self._modes.started(now)
         self._speeds.started_anew()
         self.health.starts += 1
-        self._pull_wake_up_line(True, now)
         self._cable.forget()
-        self._cable.send(bytes((oi.Opcode.START,)) * LONGEST_COMMAND, now, MODE_GAP_S)
-        self._cable.send(oi.start_stream(), now)
-
-    def _keep_awake(self, now: float) -> None:
-        """Left alone in Passive the base sleeps after five minutes; a pulse on BRC every minute prevents it."""
-        if self._wake_up_low and now - self._wake_up_s >= WAKE_UP_LOW_S:
-            self._pull_wake_up_line(False, now)
-        elif self._modes.wanted is Mode.PASSIVE and now - self._wake_up_s >= WAKE_UP_EVERY_S:
-            self._pull_wake_up_line(True, now)
-
-    def _pull_wake_up_line(self, low: bool, now: float) -> None:
-        self._wake_up_low, self._wake_up_s = low, now
-        self._wake_up_line.low(low)
+        self._cable.send(ladder.HALF_COMMAND + bytes((oi.Opcode.START,)), now, MODE_GAP_S)
+        self._cable.send(stream.command(), now)

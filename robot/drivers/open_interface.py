@@ -4,11 +4,14 @@ Source: iRobot Create 2 Open Interface Specification, 2016-08-10. Big-endian, tw
 """
 
 import struct
+from collections.abc import Sequence
 from enum import IntEnum
 
 from .interfaces import Note, WheelSpeeds
 
 BAUD = 115200
+SLOW_BAUD = 19200
+"""What a base speaks at when Clean was held at power-off, or BRC pulsed low three times."""
 FRAME_PERIOD_S = 0.015
 HEADER = 19
 MAX_WHEEL_MM_S = 500
@@ -19,6 +22,7 @@ class Opcode(IntEnum):
 
     RESET = 7
     START = 128
+    BAUD = 129
     SAFE = 131
     FULL = 132
     LEDS = 139
@@ -58,19 +62,58 @@ STREAMED: dict[int, tuple[str, str]] = {
 }
 """The 25 packets asked for: 33 data bytes in a frame of 61, 5.3 ms of every 15."""
 
-IDS = tuple(STREAMED)
-FIELDS = tuple(name for _, name in STREAMED.values())
-PAYLOAD = struct.Struct(">" + "".join(f"x{kind}" for kind, _ in STREAMED.values()))
-"""Everything between length byte and checksum: each value behind its id."""
-ID_OFFSETS = tuple(
-    (struct.calcsize(">" + "".join(f"x{STREAMED[before][0]}" for before in IDS[:i])), packet)
-    for i, packet in enumerate(IDS)
-)
-FRAME_LENGTH = 2 + PAYLOAD.size + 1
+LARGEST: dict[str, int] = {
+    "bumps_and_drops": 15,
+    "cliff_left": 1,
+    "cliff_front_left": 1,
+    "cliff_front_right": 1,
+    "cliff_right": 1,
+    "over_currents": 29,
+    "charging_state": 6,
+    "chargers": 3,
+    "song_playing": 1,
+    "light_bumpers": 127,
+    "stasis": 3,
+}
+"""The checksum is 8 bits: two bits turned over at the same place cancel out. What no base says is not believed."""
 
 
-def start_stream() -> bytes:
-    return bytes((Opcode.STREAM, len(IDS), *IDS))
+class StreamLayout:
+    """Which packets a stream has, compiled: each value stands behind its id."""
+
+    def __init__(self, ids: Sequence[int]) -> None:
+        codes = [f"x{STREAMED[packet][0]}" for packet in ids]
+        self.ids = tuple(ids)
+        self.fields = tuple(STREAMED[packet][1] for packet in ids)
+        self.payload = struct.Struct(">" + "".join(codes))
+        """Everything between length byte and checksum."""
+        self.frame_length = 2 + self.payload.size + 1
+        self._id_offsets = [(2 + struct.calcsize(">" + "".join(codes[:i])), packet) for i, packet in enumerate(ids)]
+        self._bounded = [(i, LARGEST[name]) for i, name in enumerate(self.fields) if name in LARGEST]
+
+    def command(self) -> bytes:
+        """Asks the base for this stream."""
+        return bytes((Opcode.STREAM, len(self.ids), *self.ids))
+
+    def read(self, data: bytearray) -> dict[str, int] | None:
+        """The values of the frame at the front of `data` by field; None if it is no sound frame of this layout."""
+        if sum(data[: self.frame_length]) & 0xFF or any(data[at] != packet for at, packet in self._id_offsets):
+            return None
+        values = self.payload.unpack_from(data, 2)
+        if any(values[i] > largest for i, largest in self._bounded):
+            return None
+        return dict(zip(self.fields, values, strict=True))
+
+
+MODE_PACKET = 35
+FULL_STREAM = StreamLayout(tuple(STREAMED))
+WITHOUT_MODE = StreamLayout([packet for packet in STREAMED if packet != MODE_PACKET])
+"""For old firmware that never answers packet 35 (pycreate2 issue 1)."""
+
+
+def baud_command(code: int = 11) -> bytes:
+    """From now on speak at this speed; 11 is 115200."""
+    return bytes((Opcode.BAUD, code))
 
 
 def drive_direct(speeds: WheelSpeeds) -> bytes:

@@ -1,18 +1,22 @@
 """The cable to the base: any pyserial URL, opened so that no write blocks for long and no second program joins in."""
 
-from contextlib import suppress
-from typing import Protocol
+import select
+import time
+from typing import Any, Protocol
 
 import serial
 
 from ..errors import PortAbsent, PortBusy
 from .open_interface import BAUD
 
-WRITE_TIMEOUT_S = 0.2
+WRITE_TIMEOUT_S = 0.02
+"""The drive loop writes: a cable that takes nothing for so long counts as lost, and the wheels' loop goes on."""
 
 
 class SerialPort(Protocol):
     """What the driver needs of a port. `read` returns what has arrived, at once."""
+
+    baudrate: int
 
     def read(self, size: int = 1) -> bytes: ...
 
@@ -21,39 +25,28 @@ class SerialPort(Protocol):
     def close(self) -> None: ...
 
 
-class WakeUpLine(Protocol):
-    """The BRC pin: the end of a low pulse of 50 ms or more wakes the base and resets its five minutes to sleep."""
-
-    def low(self, on: bool) -> None: ...
-
-
-class NoWakeUpLine:
-    """Nothing is wired to BRC (or the port has no RTS, as a pseudo-terminal)."""
-
-    def low(self, on: bool) -> None:
-        """Nothing happens, and that is known."""
-
-
-class RtsWakeUpLine:
-    """BRC on RTS, as in the official USB cable."""
-
-    def __init__(self, port: serial.SerialBase) -> None:
-        self._port = port
-
-    def low(self, on: bool) -> None:
-        """Pull the line low, or let it go. A port without RTS (ENOTTY on a pseudo-terminal) wakes nobody."""
-        with suppress(OSError):
-            self._port.rts = on
-
-
 def open_serial(url: str) -> serial.SerialBase:
     """Raises PortAbsent or PortBusy."""
     try:
-        return serial.serial_for_url(url, baudrate=BAUD, timeout=0, write_timeout=WRITE_TIMEOUT_S, exclusive=True)
+        port = serial.serial_for_url(
+            url, baudrate=BAUD, timeout=0, write_timeout=WRITE_TIMEOUT_S, exclusive=True, do_not_open=True
+        )
+        # pyserial pulls RTS on opening, and RTS is BRC: held low it would hold off the base's own buttons.
+        port.rts = False
+        port.open()
     except (OSError, ValueError) as error:
         if "exclusively lock" in str(error) or getattr(error, "errno", None) == 16:
             raise PortBusy(url) from None
         raise PortAbsent(url, _short(error)) from None
+    return port
+
+
+def wait_for_bytes(port: Any, at_most_s: float) -> None:
+    """Until something has arrived, or so long at most. A port without a descriptor is looked at every 5 ms."""
+    try:
+        select.select([port], [], [], at_most_s)
+    except (OSError, ValueError, TypeError):  # closed by now, a URL without descriptor, or no port at all
+        time.sleep(min(at_most_s, 0.005))
 
 
 def _short(error: Exception) -> str:

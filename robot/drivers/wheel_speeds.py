@@ -9,6 +9,8 @@ SLOWEST_MM_S = 30.0
 DEADLINE_S = 0.4
 REPEAT_S = 0.1
 """An unchanged speed is sent again this often: a byte may have been lost."""
+STANDING_S = 0.3
+"""Wheels that were told to turn and have not by then do not: their lag is 60 ms."""
 STILL_FRAMES = 3
 """So many frames with equal counts are a standstill: at 30 mm/s single frames show none either."""
 
@@ -21,6 +23,7 @@ class LatchedSpeeds:
         self.sent, self._sent_s = STOP, 0.0
         self._until_s: float | None = None
         self._still_frames = STILL_FRAMES
+        self._told_to_turn_s: float | None = None
 
     @property
     def still(self) -> bool:
@@ -30,6 +33,10 @@ class LatchedSpeeds:
     def heard(self, old: BaseState | None, new: BaseState) -> None:
         moved = old is not None and (old.left_count, old.right_count) != (new.left_count, new.right_count)
         self._still_frames = 0 if moved else self._still_frames + 1
+
+    def stalled(self, now: float) -> bool:
+        """The wheels stand although they were told to turn some time ago."""
+        return self.still and self._told_to_turn_s is not None and now - self._told_to_turn_s >= STANDING_S
 
     def ask(self, wanted: WheelSpeeds, now: float) -> tuple[WheelSpeeds, bool]:
         """What can be driven of it, and whether it has to be sent now."""
@@ -54,13 +61,16 @@ class LatchedSpeeds:
 
     def hand_over(self) -> None:
         """Somebody else drives, or the base has been stopped by other means."""
-        self.sent, self._until_s = STOP, None
+        self.started_anew()
+        self._until_s = None
 
     def started_anew(self) -> None:
         """Start has stopped the wheels; a speed that is still wanted will be asked for again."""
-        self.sent = STOP
+        self.sent, self._told_to_turn_s = STOP, None
 
     def _note(self, speeds: WheelSpeeds, now: float) -> None:
+        if speeds.still or self.sent.still:
+            self._told_to_turn_s = None if speeds.still else now
         self.sent, self._sent_s = speeds, now
 
 

@@ -1,6 +1,6 @@
 """A simulated robot as the daemon meets it: serial port, pins, camera, in a world that moves when it is stepped."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from random import Random
@@ -25,6 +25,7 @@ from .world import World
 BUMP_S = 0.5
 FAULT_TEXT = firmware_text.FAULT.decode()
 SIDES = {"left": ("left",), "right": ("right",), "both": ("left", "right")}
+BUTTONS = {"clean": 1, "spot": 2, "dock": 4}  # packet 18
 
 
 @dataclass(frozen=True)
@@ -140,6 +141,17 @@ class SimulatedRobot:
         for one in SIDES[side]:
             self._body.bumped_until_s[one] = self.now + for_s
 
+    def press(self, button: str) -> None:
+        """Press `clean`, `spot` or `dock`, as a finger does."""
+        if button not in BUTTONS:
+            raise WrongValue("button", button, "clean, spot or dock")
+        self._body.interface.press_buttons(bytes((BUTTONS[button],)))
+
+    def soil(self, shares: Mapping[str, float]) -> None:
+        """Cover the markers of each of these posts with dirt, to this share."""
+        self._renderer.dirt = dict(shares)
+        self._renderer.forget_sheets()
+
     def lift(self, on: bool) -> None:
         """Both wheels hang down, as when somebody picks the robot up."""
         self.set_fault("wheel_drop_left", on)
@@ -190,6 +202,13 @@ class SimulatedRobot:
     def docked(self) -> bool:
         return self._body.docked
 
+    def tunes_since(self, number: int) -> tuple[int, list[tuple[int, ...]]]:
+        """What its speaker has played since the `number` that the last call gave (0 at first), as MIDI numbers."""
+        book = self._body.interface.actuators.songs
+        number = min(number, len(book.played))  # a reset forgets all songs
+        notes = [tuple(note for note, _ in book.songs.get(song, ())) for song in book.played[number:]]
+        return len(book.played), notes
+
     def state(self) -> dict[str, Any]:
         """Everything about the robot, ready for JSON."""
         body, pose = self._body, self.pose
@@ -219,6 +238,8 @@ class SimulatedRobot:
 
 class BrcPin:
     """The BRC line of the serial plug, held low or let go, as an object that can be handed to a driver."""
+
+    wired = True
 
     def __init__(self, body: Body) -> None:
         self._body = body

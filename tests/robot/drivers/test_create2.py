@@ -1,6 +1,7 @@
 """The Create 2 driver against scripted bytes: what it sends, what it makes of what it hears."""
 
 from pathlib import Path
+from struct import calcsize
 
 import pytest
 
@@ -17,6 +18,7 @@ class ScriptedPort:
     """A port whose far end is the test."""
 
     def __init__(self) -> None:
+        self.baudrate = 115200
         self.arriving = bytearray()
         self.written = bytearray()
         self.unplugged = False
@@ -46,7 +48,7 @@ class ScriptedPort:
 def frame(**values: int) -> bytes:
     filled = {"mode": 1, "voltage_mv": 15000, "charge_mah": 2000, "capacity_mah": 2600} | values
     body = b"".join(
-        bytes((packet,)) + int(filled.get(name, 0)).to_bytes(oi.struct.calcsize(kind), "big", signed=kind in "hb")
+        bytes((packet,)) + int(filled.get(name, 0)).to_bytes(calcsize(kind), "big", signed=kind in "hb")
         for packet, (kind, name) in oi.STREAMED.items()
     )
     head = bytes((19, len(body))) + body
@@ -68,11 +70,11 @@ def test_it_starts_with_start_and_the_stream_of_all_packets():
     port = ScriptedPort()
     base = Create2(lambda: port)
     base.poll(0.0)
-    assert set(port.take()) == {128}
+    assert port.take() == bytes(40) + START, "zeros fill a command that somebody left half said"
     base.poll(0.02)
     assert port.take() == b"", "older manuals ask for 20 ms after a change of mode"
     base.poll(0.03)
-    assert port.take() == bytes((148, 25, *oi.IDS))
+    assert port.take() == bytes((148, 25, *oi.STREAMED))
 
 
 def test_a_frame_becomes_a_state_with_units():
@@ -205,7 +207,7 @@ def test_an_unplugged_cable_is_opened_again_and_the_base_started_anew():
     base.poll(now + 0.5)
     assert not ports[1].written, "it tries every second"
     base.poll(now + 1.1)
-    assert ports[1].take().startswith(START)
+    assert START in ports[1].take()
     assert base.health.reconnections == 1 and base.health.problem is None
 
 
@@ -216,7 +218,7 @@ def test_a_silent_base_is_started_again():
     base.poll(now + 0.5)
     assert port.take() == b""
     base.poll(now + 1.2)
-    assert port.take().startswith(START)
+    assert START in port.take()
 
 
 def test_seeking_the_dock_gives_the_wheels_to_the_firmware():

@@ -1,31 +1,38 @@
 """Frames out of noise: no byte sequence makes a wrong state, and one lost byte costs one frame."""
 
 import random
+from struct import pack
 
 from hypothesis import given
 from hypothesis import strategies as st
 
 from robot.drivers import open_interface as oi
-from robot.drivers.stream_parser import BatteryText, StreamParser, battery_text
+from robot.drivers.firmware_text import BatteryText, battery_text
+from robot.drivers.stream_parser import StreamParser
 
 CHARGING = "bat:   min 0  sec 4  mV 17506  mA 891  tenths-deg-C 291  mAH 2696  state 8  mode 7"
 
 
 def frame(number: int) -> bytes:
-    body = oi.PAYLOAD.pack(*([0] * 17 + [number] + [0] * 7))
-    with_ids = bytearray(body)
-    for at, packet in oi.ID_OFFSETS:
-        with_ids[at] = packet
-    head = bytes((19, len(with_ids))) + bytes(with_ids)
+    return packed(oi.FULL_STREAM, left_count=number)
+
+
+def packed(layout: oi.StreamLayout, **values: int) -> bytes:
+    """A sound frame of this layout; what is not given is 0."""
+    body = b"".join(
+        bytes((packet,)) + pack(">" + oi.STREAMED[packet][0], values.get(oi.STREAMED[packet][1], 0))
+        for packet in layout.ids
+    )
+    head = bytes((19, len(body))) + body
     return head + bytes((-sum(head) & 0xFF,))
 
 
-def counts(frames: list[tuple[int, ...]]) -> list[int]:
-    return [values[oi.FIELDS.index("left_count")] for values in frames]
+def counts(frames: list[dict[str, int]]) -> list[int]:
+    return [values["left_count"] for values in frames]
 
 
 def test_a_frame_is_61_bytes_as_in_the_fact_sheet():
-    assert len(frame(1)) == oi.FRAME_LENGTH == 61
+    assert len(frame(1)) == oi.FULL_STREAM.frame_length == 61
 
 
 def test_frames_arrive_whole_however_the_bytes_are_cut():
