@@ -4,8 +4,11 @@ RobotError
 ├── PortAbsent       no such serial port, or nobody may open it
 ├── PortBusy         another program holds the port
 ├── CameraAbsent     no such video device
+├── BlackBoxUnreadable  a file of the black box is torn or something else
 └── UnknownSkill     somebody asked for a long action that the body does not have
 """
+
+from pathlib import Path
 
 
 class RobotError(Exception):
@@ -46,3 +49,10 @@ class UnknownSkill(RobotError):
     def __init__(self, name: str, known: tuple[str, ...]) -> None:
         self.name = name
         super().__init__(f"There is no {name!r}. There are: {', '.join(known)}.")
+
+
+class BlackBoxUnreadable(RobotError):
+    """A file is no black box, or was torn when it was copied."""
+
+    def __init__(self, file: Path, line: int, reason: object) -> None:
+        super().__init__(f"{file}, after line {line}: no black box can be read there: {reason}. Copy it again.")

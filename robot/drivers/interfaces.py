@@ -39,6 +39,10 @@ class Mode(IntEnum):
     UNKNOWN = -1
 
 
+VIRTUAL_WALL_IR = 162
+"""The character that a virtual wall sends (packets 17, 52, 53)."""
+
+
 class ChargingState(IntEnum):
     """Packet 21; values outside the manual count as FAULT."""
 
@@ -117,6 +121,11 @@ class BaseState:
     @property
     def dock_pressed(self) -> bool:
         return bool(self.buttons & 0b100)
+
+    @property
+    def virtual_wall(self) -> bool:
+        """A virtual wall's beam reaches one of the receivers."""
+        return VIRTUAL_WALL_IR in (self.ir_omni, self.ir_left, self.ir_right)
 
     @property
     def docked(self) -> bool:
@@ -254,3 +263,29 @@ class CameraReport:
     posts: tuple[Sighting, ...] = ()
     codes: tuple[Sighting, ...] = field(default=())
     frame_age_s: float = 0.0
+
+
+class Host(Protocol):
+    """The computer that the robot thinks with, as far as it can fail by itself."""
+
+    def under_voltage(self) -> bool:
+        """The supply is too low now; False where the computer cannot tell."""
+        ...
+
+    def utc_s(self) -> float:
+        """The clock that records are written by, in seconds."""
+        ...
+
+    def disk_free_mb(self) -> float:
+        """Room where the robot keeps its memory."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class HostReport:
+    """What the computer said of itself at one look."""
+
+    under_voltage: bool = False
+    clock_jumped: bool = False
+    """Since the look before, its clock went otherwise than time did."""
+    disk_low: bool = False

@@ -4,6 +4,9 @@ from gpiozero import DigitalInputDevice
 
 from .interfaces import LineReading
 
+TO_CHANGE = 0.6
+"""A diode changes only with more than this share of the samples: 2 of 2, 2 of 3, 3 of 4, 7 of 10."""
+
 
 class ThreeDiodes:
     """See `interfaces.LineSensor`. Pins as gpiozero spells them (`BOARD8`); always with an explicit pin factory."""
@@ -25,15 +28,19 @@ class ThreeDiodes:
         self._samples += 1
 
     def read(self) -> LineReading:
-        """The majority of the samples since the last read; with a tie (or no sample) a diode stays as it was."""
+        """The majority of the samples since the last read; one that is no clear majority leaves a diode as it was."""
         if self._samples:
-            half = self._samples / 2
-            before = self._reading
+            left, centre, right = self._votes
+            was = self._reading
             self._reading = LineReading(
-                *(was if votes == half else votes > half for votes, was in zip(self._votes, before, strict=True))
+                self._voted(left, was.left), self._voted(centre, was.centre), self._voted(right, was.right)
             )
             self._votes, self._samples = [0, 0, 0], 0
         return self._reading
+
+    def _voted(self, votes: int, was: bool) -> bool:
+        share = votes / self._samples
+        return share > TO_CHANGE if not was else share >= 1 - TO_CHANGE
 
     def close(self) -> None:
         """Give the pins back."""

@@ -7,6 +7,7 @@ from .drive_base import Motion
 from .errors import SimulatedWorldError, UnknownStart, UnknownSwitch, WrongValue
 from .faults import SWITCHES, Faults
 from .frames import CameraMount
+from .host import SimulatedHost
 from .obstacles import Person, Wall
 from .pins import DiodeMount
 from .robot import Options, SimulatedRobot
@@ -27,6 +28,7 @@ __all__ = [
     "Pack",
     "Person",
     "Pose",
+    "SimulatedHost",
     "SimulatedRobot",
     "SimulatedWorldError",
     "UnknownStart",

@@ -110,9 +110,13 @@ class Body:
         if not (left or right or base.moving):
             self._blocked_s = 0.0
             return False
-        ahead_mm, turn_rad = base.roll(left, right)
-        if self.faults.stuck:
+        if self.faults.wheels_jammed:
+            base.jam()
             self._blocked_s += STEP_S
+            return False
+        ahead_mm, turn_rad = base.roll(left, right)
+        if self.faults.stuck or self.faults.slipping:
+            self._blocked_s = self._blocked_s + STEP_S if self.faults.stuck else 0.0
             return False
         x_m, y_m = base.ahead(ahead_mm, turn_rad)
         held = bool(ahead_mm) and self._held(x_m, y_m, ahead_mm)
@@ -216,7 +220,7 @@ class Body:
         blocked = self._blocked_s >= OVER_CURRENT_AFTER_S or self.faults.over_current
         told.over_currents = 0b11000 if blocked else 0
         left, right = base.left.speed_mm_s, base.right.speed_mm_s
-        told.stasis = int(left > 5 and right > 5 and not self._blocked_s)
+        told.stasis = int(left > 5 and right > 5 and not (self._blocked_s or self.faults.slipping))
         told.distance_mm, base.untold_mm = _told(told.distance_mm, base.untold_mm)
         turned_deg = base.untold_deg * (ANGLE_BUG if self.faults.angle_bug else 1.0)
         told.angle_deg, rest_deg = _told(told.angle_deg, turned_deg)

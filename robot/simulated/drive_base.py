@@ -121,6 +121,10 @@ class DriveBase:
         self.right.push(ahead_mm)
         self.move(*self.ahead(ahead_mm, 0.0), ahead_mm, 0.0)
 
+    def jam(self) -> None:
+        """Both wheels are held fast: they neither turn nor count."""
+        self.left.speed_mm_s = self.right.speed_mm_s = 0.0
+
     @property
     def moving(self) -> bool:
         return bool(self.left.speed_mm_s or self.right.speed_mm_s)

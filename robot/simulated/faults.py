@@ -28,6 +28,8 @@ class Faults:
     wheel_drop_right: bool = False
     over_current: bool = False
     stuck: bool = False
+    slipping: bool = False
+    wheels_jammed: bool = False
     virtual_wall: bool = False
     dock_beams_off: bool = False
     dock_unpowered: bool = False
@@ -39,6 +41,9 @@ class Faults:
     camera_dead: bool = False
     darkness: float = 0.0
     dirt: float = 0.0
+    under_voltage: bool = False
+    clock_jump: bool = False
+    disk_full: bool = False
 
     def set(self, name: object, value: Any) -> None:
         """Raises UnknownSwitch or WrongValue; a switch never takes a value that it cannot mean."""
@@ -84,6 +89,8 @@ SWITCHES: dict[str, str] = {
     "wheel_drop_right": "the right wheel hangs down",
     "over_current": "both wheel motors report over-current",
     "stuck": "the wheels turn and count, the robot does not move (stasis reads 0)",
+    "slipping": "the wheels turn freely and count, the robot does not move, no motor notices (stasis reads 0)",
+    "wheels_jammed": "no wheel turns, whatever it is told",
     "virtual_wall": "the virtual wall beam is seen",
     "dock_beams_off": "the docks send no infrared",
     "dock_unpowered": "the docks have no mains",
@@ -95,4 +102,7 @@ SWITCHES: dict[str, str] = {
     "camera_dead": "the camera gives no frame",
     "darkness": "share of the light that is missing",
     "dirt": "share of every marker that is covered by dirt",
+    "under_voltage": "the robot's computer gets too little voltage",
+    "clock_jump": "the clock of the robot's computer is an hour ahead",
+    "disk_full": "the disk of the robot's computer has hardly any room",
 }

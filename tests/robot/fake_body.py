@@ -15,6 +15,7 @@ class FakeBody:
     started: list[str] = field(default_factory=list)
     cancelled: list[str] = field(default_factory=list)
     heard_at_s: float | None = None
+    online: bool | None = None
     _ends: list[JobEnd] = field(default_factory=list)
     _numbers: int = 0
 
@@ -50,6 +51,9 @@ class FakeBody:
 
     def rearm(self) -> None:
         self.view = replace(self.view, faults=self.view.faults - {"emergency_stop"})
+
+    def link(self, online: bool) -> None:
+        self.online = online
 
     # What a test lets it see.
 

@@ -120,10 +120,15 @@ def test_a_stop_does_not_wait_for_a_thread_that_hangs(gate: threading.Event, har
     assert time.monotonic() - asked_s < 2.0
 
 
-def test_a_camera_that_hangs_is_told_and_stops_nothing(gate: threading.Event, hardware: Hardware) -> None:
+def test_a_camera_that_hangs_stops_the_wheels_until_it_gives_pictures_again(
+    gate: threading.Event, hardware: Hardware
+) -> None:
     hardware.spoil["camera"] = gate.wait
-    hardware.until(lambda: "camera_stale" in hardware.drive.view.faults, 3)
-    assert not hardware.wheels_stand
+    hardware.until(lambda: hardware.wheels_stand, WITHIN_S)
+    assert hardware.drive.view.faults == {"camera_stale"}
+    del hardware.spoil["camera"]
+    gate.set()
+    hardware.until(lambda: not hardware.wheels_stand, 5)
 
 
 def test_an_unplugged_base_is_a_fault_and_no_end(hardware: Hardware) -> None:

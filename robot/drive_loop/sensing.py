@@ -1,0 +1,69 @@
+"""What the body knows: base, line sensor, odometry, and what the camera reported; its own parts fail by name."""
+
+import math
+
+import structlog
+
+from ..drivers.interfaces import Base, BaseState, BodyShape, CameraReport, LineSensor, Odometry, Sighting, WheelSpeeds
+from ..drivers.odometry import advanced
+from ..navigation.line_symbol import LineWord
+from ..reflexes import Lasting
+from ..skills.interfaces import NOTHING_SEEN
+
+log = structlog.get_logger("robot.drive")
+
+
+class Sensing:
+    """One `sense` a tick; between ticks `sample_line` for the majority vote."""
+
+    def __init__(self, base: Base, line_sensor: LineSensor, shape: BodyShape, now: float) -> None:
+        self._base, self._line_sensor, self._shape = base, line_sensor, shape
+        self.state: BaseState | None = None
+        self.odometry = Odometry()
+        self.reading = NOTHING_SEEN
+        self.word = LineWord()
+        self.post: Sighting | None = None
+        self.post_odometry = Odometry()
+        self.code: Sighting | None = None
+        self.lasting = Lasting()
+        self.diodes_broken = False
+        self._camera_s, self._camera_age_s = now, 0.0
+
+    def sense(self, sent: WheelSpeeds, now: float) -> None:
+        """`sent`: what the wheels were told at the tick before."""
+        new = self._base.poll(now)
+        if new is not None:
+            old, self.state = self.state or new, new
+            self.odometry = advanced(self.odometry, old, new, self._shape)
+            self.lasting.feel(old, new, sent)
+        elif sent.still:
+            self.lasting.standing = False
+        self.sample_line()
+        self.reading = self._line_sensor.read()
+        travelled_mm = self.odometry.travelled_mm
+        self.word = self.word.seen(self.reading, travelled_mm)
+        self.lasting.look(self.reading, travelled_mm, self.post and self.post.text)
+
+    def sample_line(self) -> None:
+        """Pins that cannot be read are a fault of the line sensor, never the end of the loop that keeps the wheels."""
+        try:
+            self._line_sensor.sample()
+            self.diodes_broken = False
+        except Exception as error:
+            if not self.diodes_broken:
+                log.error("line_sensor_unreadable", error=repr(error))
+            self.diodes_broken = True
+
+    def take_report(self, report: CameraReport, now: float) -> None:
+        """What the camera loop read in one frame."""
+        self._camera_s, self._camera_age_s = now, report.frame_age_s
+        for sighting in report.posts:
+            self.post, self.post_odometry = sighting, self.odometry
+        for sighting in report.codes:
+            self.code = sighting
+
+    def camera_age_s(self, now: float) -> float:
+        return self._camera_age_s + max(0.0, now - self._camera_s)
+
+    def base_age_s(self, now: float) -> float:
+        return now - self.state.at_s if self.state else math.inf

@@ -1,0 +1,25 @@
+"""What the body does without asking: one table (`table`), and one pure function that reads it (`decisions`).
+
+It works when everything above is dead: it needs the newest frame of the base, a few ages, and the speeds wanted.
+"""
+
+from .decisions import BACK_OFF, Decision, ReflexState, decide
+from .lasting import Lasting
+from .senses import Senses
+from .table import FAULTS, HALTING, LATCHED, REFUSING, STOPPING, Fault, Response
+
+__all__ = [
+    "BACK_OFF",
+    "FAULTS",
+    "HALTING",
+    "LATCHED",
+    "REFUSING",
+    "STOPPING",
+    "Decision",
+    "Fault",
+    "Lasting",
+    "ReflexState",
+    "Response",
+    "Senses",
+    "decide",
+]
