@@ -7,9 +7,10 @@ from itertools import pairwise
 from maps import CampusMap, NoRoute, corridor_name, shortest_route
 from protocol import parts
 from protocol.parts import Leg
-from robot.drivers.interfaces import Odometry
+from robot.drivers.interfaces import Odometry, Sighting
 from robot.duties import Duties
 from robot.navigation.directions import Way, next_post
+from robot.navigation.moved import cannot_be_next, found_at, nowhere
 from robot.navigation.position import REACHED_MM, Position
 from robot.skills.interfaces import View
 
@@ -21,6 +22,9 @@ STRAIGHT_RAD = math.radians(12)
 """Within this the line is under the diodes, and following it straightens the robot up."""
 TURNING = frozenset({"turn", "undock", "find_line"})
 """Skills during which a marker is seen from aslant: it says nothing about the way that is left to its post."""
+LIFTED = "wheel_drop"
+"""The fault during which somebody holds the robot in their hands, perhaps to put it down elsewhere."""
+SURELY_PAST_M = 0.3
 PLAIN_TURNS = {"left": math.pi / 2, "right": -math.pi / 2, "behind": math.pi}
 
 
@@ -44,6 +48,8 @@ class Navigator:
         self._nearest: tuple[object, str | None] = ((), home)  # asked ten times a second, answered once per post
         self._far_end: str | None = None  # of the corridor that it turned round in
         self._blocked_until_s: dict[str, float] = {}
+        self._lifted = False
+        self._lifted_from: set[str] = set()
         self.moved: str | None = None
         """Where it found itself after somebody had moved it, until that is noted."""
 
@@ -54,6 +60,11 @@ class Navigator:
         if view.post and view.motion in TURNING:
             self._ignored_until_s = view.post.at_s
         post = view.post if view.post and view.post.at_s > self._ignored_until_s else None
+        if LIFTED in view.faults and not docked:
+            self._lose_place(view)
+        elif post and post.at_s != before.seen_at_s and not docked:
+            self._check_place(post, view.post_odometry)
+        before = self.position
         after = before.after(self.campus, view.odometry, post, view.post_odometry, docked)
         if docked and not self._docked:
             after = self._in_dock(after)
@@ -66,6 +77,28 @@ class Navigator:
             self._note_arrival(after.current, before.current)
         elif after.has_left and not self._leaving:
             self._set_out()
+
+    def _lose_place(self, view: View) -> None:
+        """It is being lifted: where it is put down, only a marker can say."""
+        if not self._lifted:
+            self._lifted = self._leaving = True
+            self._lifted_from = {post for post in (self.here, self.towards, self._far_end) if post}
+            self.position, self.towards, self._far_end = nowhere(self.position), None, None
+        self._ignored_until_s = view.post.at_s if view.post else self._ignored_until_s
+
+    def _check_place(self, post: Sighting, odometry: Odometry) -> None:
+        """A marker that cannot come next: somebody has moved the robot, out of whatever corridor it held."""
+        lifted, self._lifted = self._lifted, False
+        elsewhere = cannot_be_next(self.campus, self.position, post)
+        if lifted and not elsewhere and post.text in self._lifted_from and post.text != self.here:
+            return  # put back where it was, or nearly
+        if not lifted and not elsewhere:
+            return
+        self.position = found_at(self.campus, self.position, post, odometry, lifted)
+        self._leaving, self.towards, self._far_end = True, post.text, None
+        if elsewhere or post.text not in self._lifted_from:
+            self.moved = post.text
+            self._duties.clear(self._duties.held.grants)
 
     def _in_dock(self, position: Position) -> Position:
         """In a dock the robot knows its place, whatever it believed before: the last post seen, if it has a dock."""
@@ -204,6 +237,16 @@ class Navigator:
             return self.campus.corridor(self.corridor.from_post, self.corridor.to_post).length_m
         return max((corridor.length_m for corridor in self.campus.corridors), default=0.0)
 
+    @property
+    def way_left_mm(self) -> float | None:
+        """To the end of the corridor, by the map and by odometry; None where it is not known or long past."""
+        leg, at_mm, here_mm = self.corridor, self.position.post_at_mm, self._odometry.ahead_mm
+        if leg is None or at_mm is None or self.position.approaching:
+            return None
+        length_mm = 1000 * self.campus.corridor(leg.from_post, leg.to_post).length_m
+        left_mm = at_mm - here_mm if self._far_end else length_mm - (here_mm - at_mm)
+        return left_mm if left_mm > -1000 * SURELY_PAST_M else None
+
     def nearest_dock(self) -> str | None:
         """The dock with the shortest way from here that is open; the robot's own while the place is unknown."""
         asked = (self.here, self._duties.avoid, self.blocked)
@@ -269,6 +312,14 @@ class Navigator:
     def noted_move(self) -> None:
         """The agent knows that it was moved."""
         self.moved = None
+
+    def reached(self, post: str | None) -> None:
+        """follow_line has stopped there. Both go by the same marker, but the body has the last word."""
+        before = self.position
+        if post is None or (self.at == post and before.approaching is None):
+            return
+        self.position = before.stands_at(self.campus, post, self._odometry)
+        self._note_arrival(post, before.current)
 
     def undocked(self) -> None:
         """The robot stands on the line at the dock's post and looks away from the dock."""

@@ -111,6 +111,12 @@ class Position:
         previous = self.previous if came_back else self.current
         return Position(post, previous, heading, odometry.spot_turn_rad, None, self.post_at_mm, self.seen_at_s)
 
+    def stands_at(self, campus: CampusMap, post: str, odometry: Odometry) -> "Position":
+        """The body has stopped at this post, whatever the sightings from here say about the last few centimetres."""
+        if self.at == post and self.approaching is None:
+            return self
+        return replace(self, post_at_mm=odometry.ahead_mm)._reached(campus, post, odometry)
+
     @property
     def at(self) -> str | None:
         """The post where the robot stands; None on the way."""
