@@ -6,6 +6,7 @@ faster than the machine can follow; then it is this runner that slows the clock 
 """
 
 import math
+import sys
 import threading
 import time
 from collections import deque
@@ -27,6 +28,7 @@ LAG_REAL_S = 0.25
 """A clock that is ahead by more than passes in this time is slowed down."""
 LONGEST_NAP_S = 0.02
 STOP_WITHIN_S = 1.0
+SWITCH_INTERVAL_S = 0.0005
 KEPT_LAGS = 4000
 """20 s of the quickest loop."""
 
@@ -41,6 +43,8 @@ class Loop:
     tick: Callable[[float], None]
     at_end: Callable[[], None] = lambda: None
     """Done by the loop's own thread when it ends, whatever ended it: it waits for no other thread."""
+    woken_by: threading.Event | None = None
+    """On threads: tick at once when this is set, not only when the loop is due; the tick clears it."""
 
 
 @dataclass
@@ -181,14 +185,19 @@ class ThreadedRunner:
         self._clock = clock
         self._stopping = threading.Event()
         self._failure: BaseException | None = None
+        self._wakers = [loop.woken_by for loop in loops if loop.woken_by]
         self._threads = [
             threading.Thread(target=self._run_loop, args=(loop,), name=loop.name, daemon=True) for loop in loops
         ]
 
     def stop(self) -> None:
         self._stopping.set()
+        for event in self._wakers:
+            event.set()
 
     def run(self) -> None:
+        # A thread that computes hands over after so long: the wheels' loop must not wait for the mind's.
+        sys.setswitchinterval(SWITCH_INTERVAL_S)
         for thread in self._threads:
             thread.start()
         self._stopping.wait()
@@ -201,7 +210,10 @@ class ThreadedRunner:
     def _run_loop(self, loop: Loop) -> None:
         period_s, due_s = 1.0 / loop.rate_hz, self._clock.now()
         try:
-            while not self._stopping.wait(max(0.0, due_s - self._clock.now())):
+            while True:
+                (loop.woken_by or self._stopping).wait(max(0.0, due_s - self._clock.now()))
+                if self._stopping.is_set():
+                    break
                 now = self.now_s = self._clock.now()
                 self.lags[loop.name].note(max(0.0, now - due_s))
                 loop.tick(now)
@@ -210,5 +222,5 @@ class ThreadedRunner:
             log.exception("loop_failed", loop=loop.name)
             self._failure = self._failure or failure
         finally:
-            self._stopping.set()
+            self.stop()
             loop.at_end()

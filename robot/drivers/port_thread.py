@@ -23,6 +23,10 @@ LOOK_EVERY_S = 0.02
 END_WITHIN_S = 0.5
 
 
+def _alarming(state: BaseState) -> bool:
+    return state.bump or state.wheel_drop or state.cliff or state.wheel_over_current or bool(state.buttons)
+
+
 class PortThread:
     """A `Create2` behind a lock; see `interfaces.Base`."""
 
@@ -32,8 +36,10 @@ class PortThread:
         self._lock = threading.Lock()
         self._unseen: BaseState | None = None
         self._ending = threading.Event()
-        self.arrived = threading.Event()
-        """Set with every frame; whoever waits for it clears it."""
+        self._alarming = False
+        self.urgent = threading.Event()
+        """Set when a frame shows a touch, a drop, an edge or a press that the frame before did not: whoever drives
+        should look at once, and clears it."""
         self._thread = threading.Thread(target=self._listen, name="base port", daemon=True)
 
     def start(self) -> None:
@@ -56,7 +62,9 @@ class PortThread:
             if state is not None:
                 self._unseen = together(self._unseen, state)
         if state is not None:
-            self.arrived.set()
+            was_alarming, self._alarming = self._alarming, _alarming(state)
+            if self._alarming and not was_alarming:
+                self.urgent.set()
 
     def poll(self, now: float) -> BaseState | None:
         """What the thread has heard since the last call. Without the thread (not yet started) the port is read here."""
