@@ -1,11 +1,12 @@
 """The robot's commands. `python -m robot --help`."""
 
+import faulthandler
 from typing import Any
 
 import typer
 from typer.core import TyperGroup
 
-from .commands import run, settings
+from .commands import logs, run, settings, status, stop
 
 EPILOG = """
 A robot at home in a simulated tunnel, in real time:  python -m robot --simulated
@@ -40,8 +41,13 @@ cli = typer.Typer(
 )
 cli.callback()(lambda: None)  # a group, however few its commands
 cli.command(name="run", epilog=run.EPILOG)(run.run)
+cli.command(name="status")(status.status)
+cli.command(name="stop")(stop.stop)
+cli.command(name="rearm")(stop.rearm)
+cli.command(name="logs")(logs.logs)
 cli.command(name="settings")(settings.settings)
 
 
 if __name__ == "__main__":
+    faulthandler.enable()  # what every thread was doing when systemd's watchdog ended it
     cli(prog_name="python -m robot")

@@ -16,7 +16,7 @@ from ..errors import RobotError
 from ..logs import configure_logs
 from ..running import Wish, clock_for, run_once
 from ..simulated import SimulatedWorldError
-from .refusing import UNFINISHED, refuse
+from .asking import UNFINISHED, refuse
 
 DEFAULT_LIMIT_S = 7200.0
 # A run of minutes would not see the battery of a Create 2 become low and full again: with --battery the simulated pack

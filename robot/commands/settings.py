@@ -11,7 +11,7 @@ from maps import CampusMapError
 from ..assembly import check_settings
 from ..config import ConfigError, load_settings
 from ..settings_file import complete_toml
-from .refusing import refuse
+from .asking import refuse
 
 
 def settings(
