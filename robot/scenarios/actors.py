@@ -1,0 +1,62 @@
+"""A robot of a scenario from the outside: what somebody beside it sees and hears."""
+
+from dataclasses import dataclass, field
+from typing import Final
+
+from maps import CampusMap
+
+from ..assembly import Parts
+from ..simulated import SimulatedRobot
+from ..skills.tunes import TUNES
+from .places import post_at
+from .scenario import RobotRow
+from .stepped_link import SteppedLink
+
+_NAMES: Final = {tuple(number for number, _ in notes): name for name, notes in TUNES.items()}
+
+
+@dataclass
+class Actor:
+    """`look` once in a tick; the rest is what was seen."""
+
+    row: RobotRow
+    parts: Parts
+    body: SimulatedRobot
+    link: SteppedLink
+    posts: list[tuple[float, str]] = field(default_factory=list)
+    """When it was first seen at which post, in order; the truth, not its own idea."""
+    post: str | None = None
+    still_since_s: float | None = None
+    heard: list[str] = field(default_factory=list)
+    """Tunes since the last look."""
+    carried: bool = False
+    """Somebody has put it somewhere since it was last at a post."""
+    _songs: int = 0
+
+    @property
+    def name(self) -> str:
+        return self.row.name
+
+    def look(self, campus: CampusMap, now: float) -> None:
+        pose = self.body.pose
+        post = post_at(campus, pose.x_m, pose.y_m)
+        if post and post != self.post and (not self.posts or self.posts[-1][1] != post):
+            self.posts.append((now, post))
+        self.post = post
+        self.carried = self.carried and post is None
+        self._look_at_wheels(now)
+        self._listen()
+
+    def _look_at_wheels(self, now: float) -> None:
+        if self.body.body.base.moving:
+            self.still_since_s = None
+        elif self.still_since_s is None:
+            self.still_since_s = now
+
+    def _listen(self) -> None:
+        self._songs, tunes = self.body.tunes_since(self._songs)
+        self.heard = [_NAMES.get(tune, "?") for tune in tunes]
+
+    def stands_s(self, now: float) -> float:
+        """How long its wheels have been still."""
+        return 0.0 if self.still_since_s is None else now - self.still_since_s
