@@ -1,5 +1,7 @@
 """Puts a robot together from settings; for `__main__` alone. Problems are raised by name, before any wheel turns."""
 
+import os
+import tempfile
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -11,23 +13,28 @@ from protocol.clock import Clock
 
 from .action.actions import Actions, table_for
 from .action.hands import Hands
+from .black_box import BlackBox
 from .config import ConfigError, PerceptMode, Settings, read_token
-from .daemon import Daemon
+from .daemon import BodyWatch, Daemon
 from .drive_loop import DriveLoop
 from .drivers.camera import GrabbingCamera
 from .drivers.create2 import Create2
-from .drivers.interfaces import BodyShape, Camera, LineSensor
+from .drivers.interfaces import BodyShape, Camera, Host, LineSensor
 from .drivers.line_sensor import ThreeDiodes
 from .drivers.marker_reader import MarkerReader, MarkerWatch, Optics
+from .drivers.port_thread import PortThread
 from .drivers.serial_port import SerialPort, open_serial
+from .drivers.wake_up import SerialRts
 from .duties import Duties
+from .host import Computer, HostWatch
 from .link import Link
 from .memory import Memory
 from .mind import Mind
 from .navigator import Navigator
 from .outbox import Outbox
-from .simulated import Build, CameraMount, DiodeMount, Motion, Options, Pack, SimulatedRobot, World
+from .simulated import Build, CameraMount, DiodeMount, Motion, Options, Pack, SimulatedHost, SimulatedRobot, World
 from .simulated_world import SavedWorld
+from .stop_memory import StopMemory
 from .store import Store
 
 OUR_PROGRAM = Path(__file__).parent / "agent" / "main.asl"
@@ -52,9 +59,10 @@ class Simulation:
 class Devices:
     """What the daemon drives, simulated or real."""
 
-    base: Create2
+    base: Create2 | PortThread
     line_sensor: LineSensor
     camera: Camera
+    host: Host
     robot: SimulatedRobot | None = None
     world: SavedWorld | None = None
 
@@ -104,7 +112,7 @@ def assemble(settings: Settings, clock: Clock, simulation: Simulation | None) ->
         store = Store(settings.data / "robot.db")
         closing.callback(store.close)
         devices = _devices(settings, campus, clock, simulation, closing)
-        parts = _join(settings, campus, clock, store, devices, program=program)
+        parts = join(settings, campus, clock, store, devices, program=program)
         _put_down(parts, devices, simulation)
         if settings.server and token:
             parts.link = _link(settings, settings.server, token, clock, parts)
@@ -146,7 +154,7 @@ def _devices(
     settings: Settings, campus: CampusMap, clock: Clock, simulation: Simulation | None, closing: ExitStack
 ) -> Devices:
     if simulation is None:
-        return _real_devices(settings)
+        return _real_devices(settings, clock)
     robot = _simulated_robot(settings, campus, clock, simulation)
     closing.callback(robot.close)
     saved = SavedWorld(robot, settings.data / "world.json")
@@ -157,7 +165,8 @@ def _devices(
 
     base = Create2(open_port, robot.brc, settings.drive.velocity_deadline_s)
     sensor = _line_sensor(settings, robot.pin_factory)
-    return Devices(base, sensor, robot.camera, robot, saved)
+    host = SimulatedHost(robot.faults, clock.utc)
+    return Devices(base, sensor, robot.camera, host, robot, saved)
 
 
 def _simulated_robot(settings: Settings, campus: CampusMap, clock: Clock, simulation: Simulation) -> SimulatedRobot:
@@ -187,10 +196,14 @@ def _line_sensor(settings: Settings, pin_factory: Any) -> ThreeDiodes:
     return ThreeDiodes(line.left_pin, line.centre_pin, line.right_pin, pin_factory, line.line_is_low)
 
 
-def _real_devices(settings: Settings) -> Devices:
-    base = Create2(lambda: open_serial(settings.serial_port), deadline_s=settings.drive.velocity_deadline_s)
+def _real_devices(settings: Settings, clock: Clock) -> Devices:
+    rts = SerialRts(settings.serial_port)
+    base = PortThread(Create2(rts.open, rts, settings.drive.velocity_deadline_s), clock.now)
+    base.start()
     camera = settings.camera
     try:
+        # lgpio makes a pipe in the working directory unless it is told another, and that one may be read-only.
+        os.environ.setdefault("LG_WD", tempfile.gettempdir())
         from gpiozero.pins.lgpio import LGPIOFactory
 
         sensor = _line_sensor(settings, LGPIOFactory())
@@ -198,23 +211,38 @@ def _real_devices(settings: Settings) -> Devices:
         way_out = "On a Raspberry Pi: pip install 'campus-mail[pi]'; elsewhere: --simulated."
         raise ConfigError("this computer", "line", f"its pins cannot be used: {error}", way_out) from None
     frames = GrabbingCamera(camera.device, camera.width_px, camera.height_px, camera.exposure_ms)
-    return Devices(base, sensor, frames)
+    return Devices(base, sensor, frames, Computer(settings.data, clock.utc))
 
 
-def _join(
+def join(
     settings: Settings, campus: CampusMap, clock: Clock, store: Store, devices: Devices, *, program: Program
 ) -> Parts:
     """Devices, body, duties, navigator, agent: each knows only those before it."""
     shape, now = shape_of(settings), clock.now()
     duties = Duties(store, Memory(store), Outbox(store), clock.utc)
-    drive = DriveLoop(devices.base, devices.line_sensor, shape, now, duties.held.faults)
+    black_box = BlackBox(settings.data / "black_box", clock.utc)
+    devices.base.listen_in(black_box.heard, black_box.sent)
+    stops = StopMemory(settings.data / "stops.json")
+    drive = DriveLoop(
+        devices.base,
+        devices.line_sensor,
+        shape,
+        now,
+        duties.held.faults | stops.read(),
+        1 / settings.rates.drive_hz,
+        black_box,
+    )
     navigator = Navigator(campus, _home(settings, campus), duties)
     hands = Hands(drive, navigator, duties, settings.drive.cruise_mm_s, settings.drive.turn_mm_s, shape)
     mode = percept_mode(settings)
     mind = Mind(Agent(program, name=settings.name), Actions(hands, table_for(mode)), hands, settings, mode)
+    mind.note = black_box.note
     reader = MarkerReader(campus.posts, Optics(settings.camera.field_of_view_deg), shape)
     watch = MarkerWatch(devices.camera, reader, now)
-    daemon = Daemon(devices.base, drive, watch, mind, settings.rates, devices.world)
+    body = BodyWatch(HostWatch(devices.host), stops, black_box)
+    daemon = Daemon(devices.base, drive, watch, mind, settings.rates, body, devices.world)
+    if isinstance(devices.base, PortThread):
+        daemon.urgent = devices.base.urgent
     return Parts(daemon, mind, navigator, devices.robot)
 
 

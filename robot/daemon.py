@@ -8,6 +8,7 @@
 | camera | rates.camera_hz   | one frame: markers and hand-over codes              | drive (the view)           |
 | mind   | rates.mind_hz     | percepts, reasoning, actions, heartbeat             | drive (skills); outbox     |
 | tell   | rates.snapshot_hz | snapshot for the server                             | link                       |
+| host   | 2                 | supply, clock and disk of the computer; latched stops onto the disk | drive (reflexes) |
 
 Line and drive share a thread, since base and line sensor have one owner. Nothing in that thread waits for the mind, the
 network or the disk, and the last thing it does, whatever ends it, is to stop the wheels. The link is not in the table:
@@ -17,20 +18,25 @@ it lives in a thread of its own and is met through queues.
 from collections.abc import Callable
 from contextlib import ExitStack
 from dataclasses import dataclass
+from threading import Event
 from typing import Protocol
 
 from protocol.to_server import Hello, Snapshot
 
+from .black_box import BlackBox
 from .config import RateSettings
 from .drive_loop import DriveLoop
 from .drivers.interfaces import Base
 from .drivers.marker_reader import MarkerWatch
+from .host import HostWatch
 from .mind import Mind
 from .runners import Loop
+from .stop_memory import StopMemory
 
 SOFTWARE = "campus-mail robot 0.1.0"
 LAST_TICKS = 30
 TICK_S = 0.02
+HOST_HZ = 2.0
 
 
 class World(Protocol):
@@ -50,6 +56,15 @@ class Server(Protocol):
 
 
 @dataclass
+class BodyWatch:
+    """What looks after the body from outside of the drive loop, since it waits for files."""
+
+    host: HostWatch
+    stops: StopMemory
+    black_box: BlackBox
+
+
+@dataclass
 class Daemon:
     """One robot with everything that belongs to it. `world` only in simulation, `server` only with a link."""
 
@@ -58,10 +73,13 @@ class Daemon:
     camera: MarkerWatch
     mind: Mind
     rates: RateSettings
+    body: BodyWatch
     world: World | None = None
     server: Server | None = None
     close_devices: Callable[[], None] = lambda: None
     """Also closes memory and outbox, after everything that writes them."""
+    urgent: Event | None = None
+    """On threads: set when the base has felt something that must not wait for the next tick of the wheels."""
     watchers: tuple[Callable[[float], None], ...] = ()
     """Called after each tick of the mind: who prints progress, who ends the run."""
 
@@ -73,6 +91,7 @@ class Daemon:
             Loop("camera", rates.camera_hz, "markers and codes for drive", self._camera_tick),
             Loop("mind", rates.mind_hz, "skills for drive; the outbox", self._mind_tick),
             Loop("tell", rates.snapshot_hz, "the link", self._tell_tick),
+            Loop("host", HOST_HZ, "reflexes; latched stops on the disk", self._host_tick),
         )
         if rates.line_hz > rates.drive_hz:
             table = (self._line_and_drive(), *table[1:])
@@ -81,19 +100,24 @@ class Daemon:
         return (Loop("world", rates.base_hz, "every device", self.world.step_until), *table)
 
     def _line_and_drive(self) -> Loop:
-        """Both loops in one thread: a sample at every tick, the wheels at every few."""
+        """Both loops in one thread: a sample at every tick, the wheels at every few, and at once when it is urgent."""
         every = round(self.rates.line_hz / self.rates.drive_hz)
         number = 0
 
         def tick(now: float) -> None:
             nonlocal number
             number = (number + 1) % every
-            if number:
+            if self.urgent is not None and self.urgent.is_set():
+                self.urgent.clear()
+                self._drive_tick(now)
+            elif number:
                 self.drive.sample_line()
             else:
                 self._drive_tick(now)
 
-        return Loop("line and drive", self.rates.line_hz, "wheels; the view of the mind", tick, self.base.close)
+        return Loop(
+            "line and drive", self.rates.line_hz, "wheels; the view of the mind", tick, self.base.close, self.urgent
+        )
 
     def _drive_tick(self, now: float) -> None:
         self.drive.tick(now)
@@ -105,6 +129,10 @@ class Daemon:
         self.mind.tick(now)
         for watcher in self.watchers:
             watcher(now)
+
+    def _host_tick(self, now: float) -> None:
+        self.drive.report_host(self.body.host.tick(now))
+        self.body.stops.keep(self.drive.view.faults)
 
     def _tell_tick(self, now: float) -> None:
         if self.server:
@@ -126,6 +154,7 @@ class Daemon:
         """Stop the wheels, leave the base in Passive (or it would never charge), close outbox and link."""
         with ExitStack() as last:  # each of them, even if one before it fails
             last.callback(self.close_devices)
+            last.callback(self.body.black_box.close)
             if self.server:
                 last.callback(self.server.stop)
             self.base.close()

@@ -123,7 +123,7 @@ class DriveLoop:
         # A bump's reflex holds the wheels as a stop does, but leaves them to the firmware.
         held = bool(self._stopping) or "bump" in self._faults or now < self._stand_until_s
         wanted = self._jobs.step(view, held, now)
-        if wanted is not None and now < self._stand_until_s:
+        if wanted is not None and (now < self._stand_until_s or view.base is None):
             wanted = STOP
         if self._jobs.motion is None:
             self._wheels.rest(self._sensing.state, bool(self._stopping), now)

@@ -1,7 +1,5 @@
 """What the body knows: base, line sensor, odometry, and what the camera reported; its own parts fail by name."""
 
-import math
-
 import structlog
 
 from ..drivers.interfaces import Base, BaseState, BodyShape, CameraReport, LineSensor, Odometry, Sighting, WheelSpeeds
@@ -28,6 +26,7 @@ class Sensing:
         self.lasting = Lasting()
         self.diodes_broken = False
         self._camera_s, self._camera_age_s = now, 0.0
+        self._started_s = now
 
     def sense(self, sent: WheelSpeeds, now: float) -> None:
         """`sent`: what the wheels were told at the tick before."""
@@ -66,4 +65,5 @@ class Sensing:
         return self._camera_age_s + max(0.0, now - self._camera_s)
 
     def base_age_s(self, now: float) -> float:
-        return now - self.state.at_s if self.state else math.inf
+        """Before the first frame: since the start."""
+        return now - (self.state.at_s if self.state else self._started_s)

@@ -133,7 +133,7 @@ FAULTS: Final[tuple[Fault, ...]] = (
     ),
     Fault(
         "base_silent",
-        lambda s: s.base is None or s.base_age_s > BASE_SILENT_S,
+        lambda s: s.base_age_s > BASE_SILENT_S,
         Response.STOP,
         after_s=0.0,
         clears_s=0.0,
