@@ -48,7 +48,7 @@ class Dock:
 
 @dataclass(frozen=True)
 class Post:
-    """A place where a robot can stop. `bays` is how many can stand there clear of the line."""
+    """A place where a robot can stop. `bays` is how many can stand there clear of the line; `tag`: see `maps.tags`."""
 
     name: str
     title: str
@@ -58,6 +58,7 @@ class Post:
     dock: Dock | None = None
     bays: int = 1
     mailroom: bool = False
+    tag: int | None = None
 
     @property
     def point(self) -> Point:
@@ -177,7 +178,7 @@ def build_map(file: MapFile) -> CampusMap:
     """The map of a file in whose structure nothing is wrong."""
     points = {post.name: Point(post.x_m, post.y_m) for post in file.post}
     corridors = tuple(_corridor(row, points) for row in file.corridor)
-    posts = {row.name: _post(row, corridors) for row in file.post}
+    posts = {row.name: _post(row, corridors, tag) for row, tag in zip(file.post, file.tags(), strict=True)}
     return CampusMap(file.name, file.title, posts, corridors, file.note.strip())
 
 
@@ -190,10 +191,10 @@ def _corridor(row: CorridorRow, points: Mapping[str, Point]) -> Corridor:
     return Corridor(a, b, row.length_m or path_length_m(tape), row.assumed, tape)
 
 
-def _post(row: PostRow, corridors: tuple[Corridor, ...]) -> Post:
+def _post(row: PostRow, corridors: tuple[Corridor, ...], tag: int | None) -> Post:
     dock = Dock(row.dock.x_m, row.dock.y_m, math.radians(row.dock.heading_deg)) if row.dock else None
     markers = _standard_markers(row, dock, corridors) if row.markers is None else _own_markers(row.name, row.markers)
-    return Post(row.name, row.title or row.name, row.x_m, row.y_m, markers, dock, row.bays, row.mailroom)
+    return Post(row.name, row.title or row.name, row.x_m, row.y_m, markers, dock, row.bays, row.mailroom, tag)
 
 
 def _own_markers(post: str, rows: tuple[PoseRow, ...]) -> tuple[Marker, ...]:

@@ -15,6 +15,8 @@ from maps.errors import MapError
 
 Metres = Annotated[float, Field(allow_inf_nan=False)]
 Degrees = Annotated[float, Field(ge=-360, le=360)]
+LAST_TAG = 586
+"""Of the 587 in the family 36h11."""
 Side = Literal["1", "2", "3", "4"]
 
 
@@ -37,6 +39,8 @@ class PostRow(Row):
     y_m: Metres
     bays: int = Field(default=1, ge=0)
     mailroom: bool = False
+    # The number of the AprilTag on its sheets; left out: the post's place in this file, counted from 0.
+    tag: int | None = Field(default=None, ge=0, le=LAST_TAG)
     dock: PoseRow | None = None
     # Left out: the standard places, one beside every approach and one beside the dock.
     markers: tuple[PoseRow, ...] | None = None
@@ -63,6 +67,11 @@ class MapFile(Row):
     note: str = ""
     post: tuple[PostRow, ...] = Field(min_length=1)
     corridor: tuple[CorridorRow, ...] = ()
+
+    def tags(self) -> list[int | None]:
+        """The number of each post's AprilTag, in the order of the file; None beyond the last of the family."""
+        places = (place if place <= LAST_TAG else None for place in range(len(self.post)))
+        return [place if row.tag is None else row.tag for row, place in zip(self.post, places, strict=True)]
 
 
 def load_map_file(path: Path) -> MapFile:

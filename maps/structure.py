@@ -38,6 +38,11 @@ def _twice(file: MapFile) -> Iterator[Problem]:
     for name, times in Counter(post.name for post in file.post).items():
         if times > 1:
             yield error("post_twice", name, f"{times} posts have this name", "Give each post a name of its own.")
+    for tag, times in Counter(tag for tag in file.tags() if tag is not None).items():
+        if times > 1:
+            posts = " and ".join(row.name for row, its in zip(file.post, file.tags(), strict=True) if its == tag)
+            said = f"{posts} have the same tag, since a post without a tag of its own has its place in the file"
+            yield error("tag_twice", f"tag {tag}", said, "Give each of them a tag of its own.")
     for name, times in Counter(corridor.name for corridor in file.corridor).items():
         if times > 1:
             said = f"{times} corridors join these two posts"

@@ -245,6 +245,34 @@ class Odometry:
 
 
 @dataclass(frozen=True, slots=True)
+class Fix:
+    """Where a thing of the map is, as the robot sees it from its axle: that tells its own place.
+
+    Accuracies are standard deviations.
+    """
+
+    source: str
+    """marker, or dock."""
+    post: str | None
+    """Whose it is; None where the source does not say (all docks send the same)."""
+    at_s: float
+    ahead_mm: float
+    left_mm: float
+    turned_rad: float | None = None
+    """How far the robot is turned to the left of standing square before it; None where the source cannot tell."""
+    accuracy_mm: float = 10.0
+    accuracy_rad: float = 0.05
+
+
+class PositionSource(Protocol):
+    """Whatever knows now and then where the robot is: markers, the dock's infrared; beacons may come later."""
+
+    def fixes(self, now: float) -> tuple[Fix, ...]:
+        """Those not handed out before, oldest first; never waits."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
 class Sighting:
     """A marker read by the camera: its text, and where its centre is as the robot sees it (from the axle's centre)."""
 
@@ -253,7 +281,19 @@ class Sighting:
     ahead_mm: float = 0.0
     left_mm: float = 0.0
     turned_rad: float = 0.0
-    """How far the printed face is turned away from looking straight at the left side; roughly."""
+    """How far the robot is turned to the left of looking along the marker's face; see `Fix`."""
+    accuracy_mm: float = 10.0
+    accuracy_rad: float = 0.05
+
+    def __repr__(self) -> str:
+        """Without the text of a hand-over code: it opens the box, so that no log may have it."""
+        text = repr(self.text if ":" not in self.text else self.text.partition(":")[0] + ":…")
+        return f"Sighting({text}, at_s={self.at_s:.2f}, ahead_mm={self.ahead_mm:.0f}, left_mm={self.left_mm:.0f})"
+
+    @property
+    def fix(self) -> Fix:
+        place = self.at_s, self.ahead_mm, self.left_mm, self.turned_rad
+        return Fix("marker", self.text, *place, self.accuracy_mm, self.accuracy_rad)
 
 
 @dataclass(frozen=True, slots=True)

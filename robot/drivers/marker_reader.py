@@ -1,31 +1,23 @@
 """Markers out of frames: decode with guard, check against the map, and say where the marker is as the robot sees it.
 
-The camera looks to the left, so that right in the picture is ahead of the robot. Distance comes from the height of the
-printed code, which a turned sheet does not change.
+The camera looks to the left, so that right in the picture is ahead of the robot.
 """
 
-import math
 from collections import deque
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
 
-from .interfaces import BodyShape, Camera, CameraReport, Frame, Sighting
-from .qr_decoders import Decoded, Decoder, best_decoder
+from .april_tags import TagDetector
+from .interfaces import BodyShape, Camera, CameraReport, Fix, Frame, Sighting
+from .marker_pose import Optics, SheetPose, code_pose, tag_pose
+from .qr_decoders import Decoded, Decoder, best_decoder, grey_of
 
 HANDOVER_PREFIX = "CM1:"
+LONGEST_CODE = 200
+"""Characters; what is longer is none of our hand-over codes."""
 MARKER_SIZE_MM = 80.0
 AGREE, OUT_OF = 2, 3
 """Equal reads that accept, of how many looks: a torn code that reads as another post would send the robot astray."""
-
-
-@dataclass(frozen=True, slots=True)
-class Optics:
-    """A pinhole camera without distortion."""
-
-    field_of_view_deg: float = 60.0
-
-    def focal_px(self, width_px: int) -> float:
-        return width_px / 2 / math.tan(math.radians(self.field_of_view_deg) / 2)
+FIXES_KEPT = 8
 
 
 class MarkerReader:
@@ -37,44 +29,48 @@ class MarkerReader:
         optics: Optics | None = None,
         shape: BodyShape | None = None,
         decode: Decoder | None = None,
+        tags: Mapping[int, str] | None = None,
     ) -> None:
+        """With `tags` (number → post, see `maps.tags`) AprilTags are looked for where no code of ours is read."""
         self._posts = frozenset(posts)
         self._optics, self._shape = optics or Optics(), shape or BodyShape()
         self._decode = decode or best_decoder()
+        self._tags = TagDetector(tags) if tags else None
 
     def look(self, frame: Frame, now: float) -> tuple[Sighting, ...]:
         """What is in this frame; `text` is a post's name or begins with `CM1:`."""
-        known = (code for code in self._decode(frame) if self._is_known(code.text))
-        width_px = frame.shape[1]
-        return tuple(self._sighting(code, width_px, now) for code in known)
+        grey = grey_of(frame)
+        known = [code for code in self._decode(grey) if self._is_known(code.text)]
+        if known or self._tags is None:
+            return tuple(self._sighting(code, self._pose_of(grey, code), now) for code in known)
+        seen = [(tag, tag_pose(grey, tag.corners, self._tags.size_mm, self._optics)) for tag in self._tags.read(grey)]
+        return tuple(self._sighting(tag, pose, now) for tag, pose in seen if tag.text in self._posts)
 
     def _is_known(self, text: str) -> bool:
-        return text in self._posts or text.startswith(HANDOVER_PREFIX)
+        return text in self._posts or (text.startswith(HANDOVER_PREFIX) and len(text) <= LONGEST_CODE)
 
-    def _sighting(self, code: Decoded, width_px: int, now: float) -> Sighting:
-        (x0, y0), (x1, y1), (x2, y2), (x3, y3) = code.corners
-        left_px, right_px = math.dist((x0, y0), (x3, y3)), math.dist((x1, y1), (x2, y2))
-        height_px = max(1.0, (left_px + right_px) / 2)
-        focal_px = self._optics.focal_px(width_px)
-        away_mm = focal_px * MARKER_SIZE_MM / height_px
-        middle_px = (x0 + x1 + x2 + x3) / 4
-        width_seen_px = (math.dist((x0, y0), (x1, y1)) + math.dist((x3, y3), (x2, y2))) / 2
-        turned_rad = math.acos(min(1.0, width_seen_px / height_px))
-        return Sighting(
-            code.text,
-            now,
-            self._shape.camera_ahead_mm + (middle_px - width_px / 2) / focal_px * away_mm,
-            self._shape.camera_left_mm + away_mm,
-            math.copysign(turned_rad, left_px - right_px),
-        )
+    def _pose_of(self, grey: Frame, code: Decoded) -> SheetPose | None:
+        """Of a marker; where a hand-over code is held does not matter."""
+        if code.text not in self._posts:
+            return None
+        return code_pose(grey, code.text, code.corners, MARKER_SIZE_MM, self._optics)
+
+    def _sighting(self, code: Decoded, pose: SheetPose | None, now: float) -> Sighting:
+        if pose is None:
+            return Sighting(code.text, now)
+        ahead_mm = self._shape.camera_ahead_mm + pose.right_mm
+        left_mm = self._shape.camera_left_mm + pose.away_mm
+        # Turned to the left, the robot sees what is on its left from farther ahead: the right edge comes nearer.
+        return Sighting(code.text, now, ahead_mm, left_mm, pose.turned_rad, pose.accuracy_mm, pose.accuracy_rad)
 
 
 class MarkerWatch:
-    """Looks again and again; a text counts when two of the last three looks agree on it."""
+    """Looks again and again; a text counts when two of the last three looks agree on it. A position source."""
 
     def __init__(self, camera: Camera, reader: MarkerReader, now: float = 0.0) -> None:
         self._camera, self._reader = camera, reader
         self._looks: deque[frozenset[str]] = deque(maxlen=OUT_OF)
+        self._fixes: deque[Fix] = deque(maxlen=FIXES_KEPT)
         self._frame_at_s = now
 
     def tick(self, now: float) -> CameraReport:
@@ -88,7 +84,15 @@ class MarkerWatch:
         accepted = [sighting for sighting in sightings if self._agreed(sighting.text)]
         codes = tuple(sighting for sighting in accepted if sighting.text.startswith(HANDOVER_PREFIX))
         posts = tuple(sighting for sighting in accepted if not sighting.text.startswith(HANDOVER_PREFIX))
+        self._fixes.extend(sighting.fix for sighting in posts)
         return CameraReport(posts, codes)
+
+    def fixes(self, now: float) -> tuple[Fix, ...]:
+        """See `interfaces.PositionSource`; may be called from another thread than `tick`."""
+        found = []
+        while self._fixes:
+            found.append(self._fixes.popleft())
+        return tuple(found)
 
     def _agreed(self, text: str) -> bool:
         return sum(text in look for look in self._looks) >= AGREE

@@ -1,0 +1,15 @@
+"""Which AprilTag 36h11 stands for which post: the one table that sheets, robot and simulator use.
+
+A post's number is its key `tag` in the map file, or else its place there, counted from 0. Posts that are added at the
+end of a file leave the printed sheets of all others as they are; whoever sorts a file pins the numbers with `tag`.
+"""
+
+from maps.campus_map import CampusMap
+
+TAG_SIZE_MM = 40.0
+"""The black square; at 0.7 m it is still 32 pixels wide, 4 for each of its 8 cells."""
+
+
+def tag_numbers(campus: CampusMap) -> dict[int, str]:
+    """Number → name of the post."""
+    return {post.tag: post.name for post in campus.posts.values() if post.tag is not None}
