@@ -8,6 +8,7 @@ import contextlib
 import errno
 import os
 import pty
+import select
 import termios
 import tty
 from pathlib import Path
@@ -57,6 +58,11 @@ class PtyLine:
         if link:
             link.unlink(missing_ok=True)
             link.symlink_to(self.path)
+
+    def wait(self, at_most_s: float) -> None:
+        """Until the host has sent something, or so long at most."""
+        if self._open:
+            select.select([self._master], [], [], at_most_s)
 
     def receive(self, baud: int) -> bytes:
         if not self._open:
