@@ -5,8 +5,8 @@ lag, ±10 mm/s ripple and 2 % error of their size. The robot is put down on the 
 to stop at the post at its end.
 
 - *completed*: follow_line ended with this post, and the axle stands within 50 mm of it.
-- *mean speed*: way of the axle over the floor from the start of follow_line to its end, over the time between: starting,
-  braking before the post and standing there are in it.
+- *mean speed*: way of the axle over the floor from the start of follow_line to its end, over the time between: the
+  start, the braking before the post and 0.2 s of standing there are in it.
 - *lost*: one vote (of the diodes at a drive tick, 50 a second) with none of the three over the line, from the first
   movement until the axle reaches the post. Each gap in the tape costs some; the tape goes on behind the last post.
 - *slow*: a drive command on the wire with a wheel between 0 and 30 mm/s, forwards or backwards; of all that were sent.
@@ -21,6 +21,7 @@ from typing import Any
 
 from benchmarks.body.report import Samples, Wanted, say
 from benchmarks.body.tracks import TRACKS, Stepped, beside_mm, track_map
+from benchmarks.body.turns import measure_turns
 from maps import Point
 from robot.skills import Done, FollowLine
 
@@ -39,6 +40,8 @@ WANTED = (
     Wanted("lead_0.completed_share", at_least=0.95, unit="of the first two tracks"),
     Wanted("lead_0.mean_speed_mm_s", at_least=80.0, at_most=120.0, unit="mm/s"),
     Wanted("lead_0.slow_commands", at_most=0, unit="commands"),
+    Wanted("turns.test_track.completed_share", at_least=1.0, unit="of all turns at all posts"),
+    Wanted("turns.carleton.completed_share", at_least=1.0, unit="of all turns at all posts"),
 )
 
 
@@ -103,7 +106,8 @@ def measure(samples: Samples) -> dict[str, Any]:
             say(f"  lead {lead_mm:g} mm, {track}: {_line(some)}")
             rides += some
     _plot(rides, samples.plots)
-    return {f"lead_{lead:g}": _lead([one for one in rides if one.lead_mm == lead]) for lead in LEADS_MM}
+    leads = {f"lead_{lead:g}": _lead([one for one in rides if one.lead_mm == lead]) for lead in LEADS_MM}
+    return leads | {"turns": measure_turns(samples.first_seed)}
 
 
 def _lead(rides: Sequence[Ride]) -> dict[str, Any]:

@@ -99,10 +99,22 @@ class Tap:
     def close(self) -> None:
         self.port.close()
 
+    @property
+    def baudrate(self) -> int:
+        return self.port.baudrate
+
+    @baudrate.setter
+    def baudrate(self, baud: int) -> None:
+        self.port.baudrate = baud
+
     def _take(self) -> bool:
         if not self._rest:
             return False
-        command = COMMANDS[self._rest[0]]
+        command = COMMANDS.get(self._rest[0])
+        if command is None:
+            # As the base does: what it does not know it ignores, one byte at a time.
+            del self._rest[0]
+            return True
         size = command.missing(self._rest[1:]) + len(self._rest)
         if size > len(self._rest):
             return False

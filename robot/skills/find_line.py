@@ -11,12 +11,16 @@ ARC_MM = 120.0
 ARC = (45.0, 90.0)
 """Slow and fast wheel of the arc towards the side where the line was seen last, mm/s."""
 SWEEPS_RAD = tuple(math.radians(degrees) for degrees in (25, 70))
-SEARCH_MM_S = 50.0
-SWEEP_MM_S = 80.0
+SEARCH_MM_S = 60.0
+SWEEP_MM_S = 100.0
 SPIRAL_MM_S = 120.0
 SPIRAL_FROM_MM, SPIRAL_PITCH_MM, SPIRAL_TURNS = 60.0, 130.0, 3.5
 """Radius at the beginning and growth with each turn: no straight line within half a metre stays unmet."""
 ALIGN_RAD = math.radians(60)
+CLOSE_RAD, WIDEST_RAD = math.radians(25), math.radians(40)
+"""How far to the sides a line is looked for that should lie ahead. Branches are a quarter apart on our maps."""
+WORN_MM = 35.0
+"""So much farther on the tape is not worn any more."""
 
 
 def over_line(view: View) -> bool:
@@ -94,7 +98,7 @@ class FindLine(Scripted):
         if abs(off_rad) > math.radians(20):
             view = yield from roll(view, self._shape.sensor_lead_mm, WheelSpeeds(SEARCH_MM_S, SEARCH_MM_S))
             view = yield from turn_by(view, off_rad, SEARCH_MM_S, self._shape)
-        return (yield from settle(view, self._shape))
+        return (yield from settle(view, self._shape, ALIGN_RAD))
 
     def _bent(self, sign: int) -> WheelSpeeds:
         slow, fast = (sign * speed for speed in ARC)
@@ -112,12 +116,20 @@ def searching(part: Part) -> Part:
         return view
 
 
-def settle(view: View, shape: BodyShape, reach_rad: float = ALIGN_RAD) -> Part:
-    """Turn on the spot until the centre diode is over the line, looking a little to both sides for it."""
-    if not over_line(view):
-        for turn in (0.4 * reach_rad, -0.8 * reach_rad, 1.4 * reach_rad, -2 * reach_rad):
+def settle(view: View, shape: BodyShape, widest_rad: float = WIDEST_RAD) -> Part:
+    """Turn on the spot until the centre diode is over the line, looking a little to both sides for it.
+
+    A little farther on as well, before it looks wider: the tape may be worn just here, and what lies farther to the
+    side may be a branch.
+    """
+    from_rad = view.odometry.heading_rad
+    for ahead_mm, reach_rad in ((0.0, CLOSE_RAD), (WORN_MM, CLOSE_RAD), (0.0, widest_rad)):
+        if ahead_mm and not over_line(view):
+            view = yield from roll(view, ahead_mm, WheelSpeeds(SEARCH_MM_S, SEARCH_MM_S), over_line)
+        for goal_rad in (from_rad + reach_rad, from_rad - reach_rad, from_rad):
             if not over_line(view):
-                view = yield from turn_by(view, turn, SEARCH_MM_S, shape, over_line)
+                turn = goal_rad - view.odometry.heading_rad
+                view = yield from turn_by(view, turn, SWEEP_MM_S, shape, over_line)
     if over_line(view) and not view.reading.centre:
         side = 1.0 if view.reading.left else -1.0
         view = yield from turn_by(view, side * 0.5, SEARCH_MM_S, shape, lambda seen: seen.reading.centre)

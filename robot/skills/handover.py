@@ -6,7 +6,7 @@ from hmac import compare_digest
 from typing import ClassVar
 
 from .interfaces import Done, Play, Running, Step, View
-from .tunes import ACCEPTED, REFUSED
+from .tunes import REFUSED
 
 TWICE_WITHIN_S = 2.0
 FORGET_WRONG_S = 3.0
@@ -14,7 +14,10 @@ FORGET_WRONG_S = 3.0
 
 
 class WaitHandover:
-    """Done(sha256 of the code) when it matches, Done(None) when Spot was pressed twice; else no_one_came."""
+    """Done(sha256 of the code) when it matches, Done(None) when Spot was pressed twice; else no_one_came.
+
+    It does not say that a code was right: whoever starts it does, once the hand-over is written down.
+    """
 
     name: ClassVar[str] = "wait_handover"
     moves: ClassVar[bool] = False
@@ -43,10 +46,10 @@ class WaitHandover:
             self._seen_s = code.at_s
             verifier = sha256(code.text.encode("ascii", "replace")).hexdigest()
             if self._opens(verifier):
-                return Done(verifier, (Play(ACCEPTED),))
+                return Done(verifier)
             return self._refuse(code.text, now)
         if self._spot_counts and self._pressed_twice(view, now):
-            return Done(None, (Play(ACCEPTED),))
+            return Done(None)
         return Running()
 
     def _opens(self, verifier: str) -> bool:

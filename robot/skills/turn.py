@@ -11,12 +11,12 @@ SMALLEST_RAD = math.radians(5)
 
 
 class Turn(Scripted):
-    """Done when the line is under the centre diode; line_lost when there is none within 60°."""
+    """Done when the line is under the centre diode; line_lost when there is none within 40°."""
 
     name = "turn"
 
     def __init__(
-        self, angle_rad: float, shape: BodyShape | None = None, speed_mm_s: float = 80.0, limit_s: float = 30.0
+        self, angle_rad: float, shape: BodyShape | None = None, speed_mm_s: float = 140.0, limit_s: float = 30.0
     ) -> None:
         """Left is positive."""
         self._angle_rad, self._shape, self._speed_mm_s = angle_rad, shape or BodyShape(), speed_mm_s
