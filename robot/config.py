@@ -110,6 +110,7 @@ class BatterySettings(Section):
 
     low_ratio: Ratio = Field(default=0.25, description="below this charge the battery is low")
     hysteresis_ratio: Ratio = Field(default=0.03, description="it counts as low until this much above low_ratio")
+    start_ratio: Ratio = Field(default=0.5, description="with less charge no work is begun in a dock")
     full_ratio: Ratio = Field(default=0.99, description="from this charge on the battery is full")
     full_after_s: Annotated[float, Field(ge=1.0, le=86400.0)] = Field(
         default=60.0, description="on the dock in charging state 3 or 4 for so long is full too, s"
@@ -124,8 +125,8 @@ class BatterySettings(Section):
     @model_validator(mode="after")
     def low_before_full(self) -> Self:
         """A battery that is low and full at once would charge for ever."""
-        if self.low_ratio + self.hysteresis_ratio >= self.full_ratio:
-            raise ValueError("low_ratio plus hysteresis_ratio must be below full_ratio")
+        if max(self.low_ratio, self.start_ratio) + self.hysteresis_ratio >= self.full_ratio:
+            raise ValueError("low_ratio and start_ratio, each plus hysteresis_ratio, must be below full_ratio")
         return self
 
 
@@ -170,13 +171,16 @@ class Settings(Section):
     )
     map: str = Field(default="test_track", description="a built-in map by name, or a map file")
     home: str | None = Field(default=None, description="post of its own dock; without it, the first dock of the map")
+    mailroom: str | None = Field(
+        default=None, description="post that takes back mail which nobody took; without it, its sender's post"
+    )
     server: Annotated[str | None, AfterValidator(_loopback_or_encrypted)] = Field(
         default=None, description="address of the service's robot link (wss, or ws to this machine); none: alone"
     )
     token_file: Path | None = Field(default=None, description="file with the robot's token, mode 0600")
     data: Path = Field(default=Path("var/robot"), description="folder of the robot's memory and outbox")
     serial_port: str = Field(default="/dev/ttyUSB0", min_length=1, description="port of the base, any pyserial URL")
-    wake_up: Annotated[str, Field(pattern=r"^(rts|none|(BOARD|GPIO|BCM)\d{1,2})$")] = Field(
+    brc: Annotated[str, Field(pattern=r"^(rts|none|(BOARD|GPIO|BCM)\d{1,2})$")] = Field(
         default="rts", description="what pulls the base's BRC line low: rts (the USB cable), a pin, or none"
     )
     log_file: Path | None = Field(

@@ -16,19 +16,18 @@ from protocol.parts import Activity, Battery
 from protocol.to_server import Snapshot, Why
 
 from .action.actions import Actions
+from .action.corridors import WAY_BLOCKED
 from .action.hands import Hands
 from .config import PerceptMode, Settings
 from .perception.battery import BatterySense, BatteryWord
 from .perception.percepts import perceive
 from .perception.seen import Seen, Whereabouts
 from .reasons import reason
-from .reflexes import FAULTS, LATCHED
+from .reflexes import FAULTS, HALTING, LATCHED
 from .skills.interfaces import View
 
 log = structlog.get_logger("robot.mind")
 
-HALTING: Final = LATCHED | {"over_current"}
-"""Faults that a plan cannot drive out of: somebody has to see to them."""
 WATCH_S: Final = 30.0
 Ended = tuple[int, str | None]
 """The id of an action that has ended, and the atom that says why if it failed."""
@@ -51,6 +50,9 @@ class Mind:
     cycles: int = 0
     failures: list[str] = field(default_factory=list)
     """Goals that nobody could help, in words."""
+    note: Callable[[str, float, object], None] = lambda kind, at_s, data: None
+    """The black box: what changes in the percepts, and each action."""
+    _perceived: frozenset[str] = frozenset()
     _why: Why | None = None
 
     def tick(self, now: float) -> None:
@@ -61,8 +63,10 @@ class Mind:
         self.hands.duties.take_messages()
         if view.base:
             self.battery = self.battery.seen(view.base, self.settings.battery, now)
+        self.hands.body.link(self.hands.duties.online)
         self._tell_faults(view.faults)
-        self._rearm(view)
+        self._tell_open_way()
+        self._stop_or_rearm(view)
         self._reason(now, ended)
         self.hands.body.heartbeat(now)
         self._tell_why()
@@ -85,19 +89,27 @@ class Mind:
         return self.hands.duties.revision, self.hands.navigator.destination
 
     def _percepts(self, now: float) -> frozenset[str]:
-        return perceive(self.seen(now), self.mode, self.settings.mind.age_limit_s)
+        percepts = perceive(self.seen(now), self.mode, self.settings.mind.age_limit_s)
+        if percepts != self._perceived:
+            came, went = percepts - self._perceived, self._perceived - percepts
+            self.note("percepts", now, (*(f"+{one}" for one in came), *(f"-{one}" for one in went)))
+            self._perceived = percepts
+        return percepts
 
     def _cycle(self, percepts: frozenset[str] | None, now: float, ended: Sequence[Ended]) -> None:
         messages = [self.inbox.popleft()] if self.inbox else []
         outcome = self.agent.cycle(percepts, messages, [Finished(id_, failure) for id_, failure in ended], now)
         self.actions.cancel(outcome.cancelled)
         for action in outcome.actions:
+            self.note("action", now, str(action.term))
             self.actions.begin(action.id, action.term, now)
         self.failures += map(str, outcome.failures)
         for line in outcome.printed:
             self.hands.noted(line)
         for message in outcome.messages:
-            # A robot's agent has nobody to write to: people are told by actions.
+            # A robot's agent has nobody to write to: people are told by actions (decision 0016).
+            told = f"{message.performative} {message.content} to {message.receiver}"
+            self.hands.noted(f"{told} reaches nobody: a robot's agent tells people by actions (report, raise_fault)")
             log.warning(
                 "agent_message_undelivered",
                 receiver=message.receiver,
@@ -120,6 +132,7 @@ class Mind:
             navigator.destination,
             navigator.way(),
             navigator.rests_at,
+            navigator.moved,
         )
         return Seen(
             at_s=now,
@@ -139,12 +152,20 @@ class Mind:
         for name in sorted(faults ^ (duties.held.faults & _TOLD.keys())):
             duties.report_fault(name, _TOLD[name], self.hands.place, cleared=name not in faults)
 
-    def _rearm(self, view: View) -> None:
-        """A latched stop ends when somebody lets the robot go: by the Spot button, or at the service."""
-        pressed = view.base is not None and view.base.spot_pressed
-        if view.faults & LATCHED and (pressed or self.hands.duties.rearm_asked):
-            self.hands.body.rearm()
-        self.hands.duties.rearm_asked = False
+    def _tell_open_way(self) -> None:
+        """A blocked way is over when its time is, or when a restart has forgotten it: then it is tried again."""
+        duties = self.hands.duties
+        if WAY_BLOCKED in duties.held.faults and not self.hands.navigator.blocked:
+            duties.report_fault(WAY_BLOCKED, "The robot tries that way again.", self.hands.place, cleared=True)
+
+    def _stop_or_rearm(self, view: View) -> None:
+        """What the server wants. (The Spot button re-arms in the body itself.)"""
+        duties, body = self.hands.duties, self.hands.body
+        if duties.stop_asked:
+            body.emergency_stop()
+        if view.faults & LATCHED and duties.rearm_asked:
+            body.rearm()
+        duties.stop_asked = duties.rearm_asked = False
 
     def _tell_why(self) -> None:
         why = reason(
@@ -157,7 +178,7 @@ class Mind:
     @property
     def _is_charging(self) -> bool:
         """In the dock and not full: the trickle that keeps a full battery full is no charging to wait for."""
-        base = self.hands.view.base
+        base = self.hands.view.heard_base
         return base is not None and base.charging and self.battery.word is not BatteryWord.FULL
 
     @property
@@ -181,7 +202,7 @@ class Mind:
         view = self.hands.view
         if view.faults & HALTING:
             return Activity.STOPPED
-        if view.base and view.base.docked and view.motion is None:
+        if view.heard_base and view.heard_base.docked and view.motion is None:
             return Activity.CHARGING if self._is_charging else Activity.IDLE
         if view.motion:
             return Activity.DRIVING

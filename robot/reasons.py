@@ -18,6 +18,7 @@ _TOLD: Final = {fault.name: fault.told for fault in FAULTS}
 _PURPOSES: Final = {
     StopAction.LOAD: "to collect mail at {post}",
     StopAction.RECEIVE: "to deliver mail at {post}",
+    StopAction.RETURN: "to bring mail back to {post}",
     StopAction.DOCK: "to the dock at {post}",
     StopAction.PARK: "to park at {post}",
 }
@@ -36,6 +37,7 @@ _WAITS: Final[dict[str, Callable[[Navigator], tuple[str, str | None]]]] = {
     "undock": lambda n: (f"Leaving the dock at {n.here}", None),
     "claim": lambda n: (f"Waiting at {n.here} for permission to drive on", "permission from the server"),
     "wait_handover(load": lambda n: (f"Waiting for the sender at {n.here}", "the sender's code"),
+    "wait_handover(return": lambda n: (f"Waiting at {n.here} for somebody to take mail back", "a code"),
     "wait_handover(receive": lambda n: (f"Waiting for the recipient at {n.here}", "the recipient's code"),
     "rest": lambda _: ("Waiting a moment before trying again", None),
     "drive": lambda n: (_driving(n), None),
@@ -51,8 +53,11 @@ def reason(under_way: Sequence[str], view: View, navigator: Navigator, duties: D
             return Why(sentence=_TOLD[fault], goal=goal, waiting_for="a person" if fault != "bump" else "a free way")
     if under_way:
         sentence, waiting_for = _of_action(under_way[-1], navigator)
+        if under_way[-1].startswith("claim(") and not duties.online:
+            # Offline the robot goes on within its grants; the next one can only come when it is reached again.
+            sentence, waiting_for = f"Waiting at {navigator.here} for the network", "the network"
         return Why(sentence=sentence, goal=goal, waiting_for=waiting_for)
-    if view.base and view.base.docked:
+    if view.heard_base and view.heard_base.docked:
         doing = "Charging" if charging else "In its dock"
         waiting_for = "a full battery" if stop and charging else None
         return Why(sentence=f"{doing} at {navigator.here}", goal=goal, waiting_for=waiting_for)

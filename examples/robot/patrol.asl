@@ -2,16 +2,18 @@
 //
 //   python -m robot --simulated --agent examples/robot/patrol.asl --percepts latest --start post2:post1 --achieve patrol
 //
-// The actions and percepts are those of docs/robot.md.
+// The actions and percepts are those of docs/agent-program.md.
 
 rounds(3).
 
-+!patrol : rounds(0) <- .print("the patrol is over").
-+!patrol : rounds(N)
++!patrol[source(user)] <- !rounds.
+
++!rounds : rounds(N) & N > 0
   <- !visit(post1);
      !visit(post3);
      -+rounds(N - 1);
-     !patrol.
+     !rounds.
++!rounds <- .print("the patrol is over").
 
 +!visit(Post) : at(Post) <- .print("at ", Post); say(arrived).
 +!visit(Post) : direction(Post, Way) & (Way = left | Way = right | Way = behind)
@@ -30,3 +32,4 @@ rounds(3).
   <- .print("on the way to ", Post, ": ", Why);
      find_line;
      !visit(Post).
+-!visit(_)[error_msg(Why)] <- .fail(error_msg(Why)).

@@ -7,7 +7,6 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, get_args
 
-from maps import NoRoute
 from protocol.parts import Purpose
 from protocol.to_server import Step
 
@@ -26,8 +25,9 @@ from ..skills import (
 from ..skills.interfaces import Done, Skill
 from ..skills.tunes import TUNES
 from .arguments import Argument, Kind, Value, word
+from .corridors import CLOSED_BY, claim, mark_blocked, noted_move, release, set_destination
 from .hands import Hands
-from .runs import DONE, AtOnce, Ended, Rest, Run, SkillMaker, Skills, Wait
+from .runs import AtOnce, Rest, Run, SkillMaker, Skills
 
 
 @dataclass(frozen=True)
@@ -72,9 +72,10 @@ def _follow_line(hands: Hands, _: Sequence[Value], now: float) -> Run:
             navigator.turned()
         navigator.leave()
         limit_s = FOLLOW_LEAST_S + FOLLOW_TIMES * navigator.ahead_m * 1000 / hands.cruise_mm_s
-        return FollowLine(navigator.campus, navigator.came_from, hands.cruise_mm_s, hands.shape, limit_s)
+        left_mm = navigator.way_left_mm
+        return FollowLine(navigator.campus, navigator.came_from, hands.cruise_mm_s, hands.shape, limit_s, left_mm)
 
-    return Skills(hands.body, [straighten, follow], now)
+    return Skills(hands.body, [straighten, follow], now, lambda done: navigator.reached(done.result))
 
 
 def _turn(hands: Hands, arguments: Sequence[Value], now: float) -> Run:
@@ -110,46 +111,6 @@ def _station(hands: Hands, arguments: Sequence[Value], now: float) -> Run:
     return {"dock": _dock, "undock": _undock}[str(arguments[0])](hands, (), now)
 
 
-# Knowing the way.
-
-
-def _set_destination(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
-    destination = str(arguments[0])
-    try:
-        hands.navigator.legs_to(destination)
-    except NoRoute:
-        return AtOnce(Ended("no_route"))
-    hands.navigator.destination = destination
-    return AtOnce()
-
-
-def _claim(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
-    """Ask for the whole rest of the mission as well: a robot without network finishes what it is permitted."""
-    goal, duties = str(arguments[0]), hands.duties
-    mission = duties.held.mission
-    later = [stop.post for stop in (mission.stops if mission else ())[duties.held.next_stop :]]
-    if later[:1] != [goal]:
-        later = []
-    try:
-        now_needed = hands.navigator.legs_to(goal)
-        wanted = hands.navigator.legs_to(goal, *later)
-    except NoRoute:
-        return AtOnce(Ended("no_route"))
-    claim_id = duties.claim(wanted)
-
-    def ask() -> Ended | None:
-        if duties.may_enter(now_needed):
-            return DONE
-        return Ended("denied") if claim_id and duties.denial(claim_id) else None
-
-    return Wait(ask)
-
-
-def _release(hands: Hands, _: Sequence[Value], __: float) -> Run:
-    hands.duties.clear(hands.duties.held.grants)
-    return AtOnce()
-
-
 # The mission.
 
 
@@ -173,7 +134,9 @@ def _wait_handover(hands: Hands, arguments: Sequence[Value], now: float) -> Run:
     place = hands.duties.at_stop(stop_id)
 
     def custody(done: Done) -> None:
+        """Written down first, then promised: whoever hears the tune may let go of the mail."""
         hands.duties.handed_over(place, purpose, hands.place or place[1].post, done.result)
+        hands.body.start(Say("accepted"), now)
 
     # Only loading may be confirmed by the Spot button: it identifies nobody.
     waiting = WaitHandover(
@@ -223,16 +186,29 @@ ACTIONS: Final = (
     Action("find_line", (), "look for the line nearby", _find_line),
     Action("dock", (), "drive into the dock ahead, until it charges", _dock),
     Action("undock", (), "back out of the dock, onto the line", _undock),
-    Action("set_destination", (_POST,), "where `direction` leads; fails with unknown_post, no_route", _set_destination),
-    Action("claim", (_POST,), "ask to enter the corridors to a post; done when granted", _claim),
-    Action("release", (), "give back every corridor that was granted", _release),
+    Action("set_destination", (_POST,), "where `direction` leads; fails with unknown_post, no_route", set_destination),
+    Action(
+        "claim",
+        (_POST,),
+        "ask for the corridors to a post, give back all others; done when the first may be entered, "
+        "fails with denied, way_closed, no_route",
+        claim,
+    ),
+    Action("release", (), "give back every corridor that was granted, but for the one it is in", release),
+    Action(
+        "mark_blocked",
+        (word("Why", *CLOSED_BY),),
+        "tell that the corridor it is in is closed; no way leads there for ten minutes",
+        mark_blocked,
+    ),
+    Action("noted_move", (), "it knows that it was moved", noted_move),
     Action("report", (_STEP, _STOP), "tell the server how far the mission is; once for each step", _report),
     Action("report", (_STEP, _STOP, _REASON), "the same, with a reason", _report),
     Action("finish_stop", (_STOP,), "the stop is done or given up", _finish_stop),
     Action("finish_mission", (Argument("Mission", Kind.NAME),), "all stops are done", _finish_mission),
     Action(
         "wait_handover",
-        (word("Purpose", "load", "receive"), _ORDER, _STOP, Argument("Limit_s", Kind.NUMBER)),
+        (word("Purpose", *Purpose), _ORDER, _STOP, Argument("Limit_s", Kind.NUMBER)),
         "wait for a person's code; done when mail has changed hands, fails with no_one_came",
         _wait_handover,
     ),
@@ -254,7 +230,7 @@ PAPER_ACTIONS: Final = (
     Action(
         "turn", (word("Direction", "left", "right"),), "turn until the line is centred; fails after 10 s", _paper_turn
     ),
-    Action("setDestination", (_POST,), "where `direction` leads", _set_destination),
+    Action("setDestination", (_POST,), "where `direction` leads", set_destination),
     Action("station", (word("What", "dock", "undock"),), "the same as dock and undock", _station),
 )
 """The vocabulary of the paper's prototype; where a name is in both tables, a foreign program means this one."""

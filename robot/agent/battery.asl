@@ -1,29 +1,34 @@
 // When and where to charge. A percept triggers it, whatever else is going on (the paper's section 5.7.2).
 
-// "Low" is a percept with hysteresis, but low is not over until the battery is full: hence the note.
-+battery(low) : not recharging
-  <- +recharging;
-     report_charge(low);
-     !decide.
+// `recharging` holds from the first report to the last: "low" is not over until the battery is full, and a robot that is
+// switched off in its dock knows what it was there for.
++battery(low) : not recharging <- report_charge(low); !decide.
++battery(full) : recharging <- report_charge(charged).
++recharging <- !decide.
+-recharging <- !decide.
+-weak <- !decide.
 
-+battery(full) : recharging
-  <- report_charge(charged);
-     -recharging;
-     !decide.
-
-+!charge : docked <- report_charge(charging).
++!charge : docked <- release; report_charge(charging).
 +!charge : nearest_dock(Post)
-  <- !go_to(Post);
+  <- clear_fault(no_dock_open);
+     !go_to(Post);
      !dock;
+     release;
      report_charge(charging).
-+!charge <- .fail(no_dock, error_msg("there is no dock that it could reach")).
+// No way leads to a dock: it stands where it is in nobody's way, and +nearest_dock begins again.
++!charge
+  <- !reach_a_post;
+     raise_fault(no_dock_open, "no way to any dock that is open").
+
+// The nearest dock that can be reached is another one now: a corridor was blocked, or is free again.
++nearest_dock(_) : pursuing(charge) & not docked <- !decide_anew.
 
 +!dock : docked.
 +!dock <- dock; clear_fault(no_dock).
 -!dock[error_msg(Why)] <- raise_fault(no_dock, Why); .fail.
 
 // Somebody pulled the robot out of its dock.
--docked : pursuing(charge) | pursuing(idle) <- .abolish(pursuing(_)); !decide.
+-docked : pursuing(charge) | pursuing(idle) <- !decide_anew.
 
 +!fulfil(go_home) : home(Post)
   <- !go_to(Post);

@@ -7,7 +7,7 @@
 // So any purpose below may be dropped at any moment and taken up again later: everything it needs is perceived.
 //
 //   safety.asl   when to stand still           battery.asl  when and where to charge
-//   mission.asl  stops, one after another      travel.asl   from post to post
+//   mission.asl  stops, one after another      travel.asl   from post to post, and what can be in the way
 
 { include("safety.asl") }
 { include("battery.asl") }
@@ -17,11 +17,18 @@
 // What to do now: the first that holds. Safety before health before work before rest.
 purpose(stand_still)            :- halted.
 purpose(charge)                 :- battery(low) | recharging.
+purpose(idle)                   :- docked & weak & not carrying(_).   // work is begun with enough charge to end it
 purpose(hold)                   :- paused.
 purpose(mission(Id, Update))    :- mission(Id, Update).
 purpose(visit(Post))            :- errand(Post).
 purpose(go_home)                :- home(_) & not docked.
 purpose(idle).
+
+// What happens is taken up in the same order: a bump does not queue behind the mail.
+priorities([safety, health, map]).
+priority(+halted, safety).
+priority(+battery(_), health).
+priority(+moved(_), map).
 
 !decide.
 
@@ -30,7 +37,13 @@ purpose(idle).
 +!decide <- ?purpose(Purpose); !adopt(Purpose).
 
 +!adopt(Purpose) : pursuing(Purpose).
-+!adopt(Purpose)
++!adopt(Purpose) <- !begin(Purpose).
+
+// The same purpose, but from the beginning: what it was about to do is no longer right.
+@decide_anew[atomic]
++!decide_anew <- ?purpose(Purpose); !begin(Purpose).
+
++!begin(Purpose)
   <- .drop_desire(pursue(_));
      .abolish(pursuing(_));
      +pursuing(Purpose);

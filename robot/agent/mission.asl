@@ -1,11 +1,12 @@
 // A mission is an ordered list of stops with one id. `next_stop(N)` is perceived: the body remembers how far it has come.
 // Every report is made once however often a plan makes it, so a stop may be begun again after charging or a restart.
+// Mail that nobody takes, or that is recalled, is a mission too: its stops say `return`.
 
 +mission(_, _) <- !decide.
 -mission(_, _) <- !decide.
 +paused <- !decide.
 -paused <- !decide.
-+cancelled(_) <- .abolish(pursuing(_)); !decide.
++cancelled(_) <- !decide_anew.
 
 +!fulfil(mission(Id, Update)) : next_stop(N) & stop(N, Stop, Post, Do, Order, Limit_s)
   <- !serve(Stop, Post, Do, Order, Limit_s);
@@ -15,31 +16,31 @@
 +!fulfil(mission(Id, _)) <- finish_mission(Id).
 
 +!serve(_, _, _, Order, _) : cancelled(Order).
-+!serve(_, _, receive, Order, _) : not carrying(Order).   // nobody came to load it
-+!serve(_, _, load, Order, _) : carrying(Order).          // loaded just before a power cut
++!serve(_, _, load, Order, _) : carrying(Order).   // loaded just before a power cut
++!serve(_, _, Do, Order, _) : takes_out(Do) & not carrying(Order).   // nobody came to load it
 +!serve(Stop, Post, Do, Order, Limit_s)
   <- report(departed, Stop);
      !go_to(Post);
      report(arrived, Stop);
      !attend(Do, Stop, Order, Limit_s).
 
-// A stop that can never be reached is told by name, and the mission goes on with the next one.
--!serve(Stop, _, _, _, _)[reason(unknown_post)] <- report(gave_up, Stop, unknown_post).
--!serve(Stop, _, _, _, _)[reason(no_route)] <- report(gave_up, Stop, no_route).
+// A stop that cannot be served is told by name, and the mission goes on with the next one.
+-!serve(Stop, _, _, _, _)[reason(Why)] : hopeless(Why) <- report(gave_up, Stop, Why).
 // What else goes wrong is no matter of this stop: it fails with the purpose. (A failure that a plan -!serve is about, but
 // none takes care of, would end the intention.)
 -!serve(_, _, _, _, _)[error_msg(Why)] <- .fail(error_msg(Why)).
 
-// Loaded and received are confirmed by a code shown to the camera, never assumed.
-+!attend(load, Stop, Order, Limit_s) <- wait_handover(load, Order, Stop, Limit_s).
-+!attend(receive, Stop, Order, Limit_s) <- wait_handover(receive, Order, Stop, Limit_s).
+takes_out(receive).
+takes_out(return).
+
+hopeless(no_one_came).
+hopeless(unknown_post).
+hopeless(no_route).
+
 +!attend(dock, _, _, _) <- !dock.
 +!attend(park, _, _, _).
-
-// Nobody came: the robot says so and does not block.
--!attend(_, Stop, _, _)[reason(no_one_came)] <- report(gave_up, Stop, no_one_came).
--!attend(_, _, _, _)[reason(Reason), error_msg(Why)] <- .fail(reason(Reason), error_msg(Why)).
--!attend(_, _, _, _)[error_msg(Why)] <- .fail(error_msg(Why)).
+// Mail changes hands by a code shown to the camera, never by assumption. Then people get a moment to step back.
++!attend(Do, Stop, Order, Limit_s) <- wait_handover(Do, Order, Stop, Limit_s); rest(3).
 
 // An errand given by hand: `--achieve 'visit(post4)'`.
 // The goal lasts as long as the errand, and fails with it: whoever gave it is told the truth.

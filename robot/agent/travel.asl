@@ -19,11 +19,17 @@
      !tell_passed(Post);
      !go_to(Post).
 
-// Nothing enters a corridor ungranted, the way to a dock included.
-+!permission(Post) <- claim(Post).
--!permission(Post)[reason(denied)] <- rest(15); !permission(Post).
--!permission(_)[reason(Reason), error_msg(Why)] <- .fail(reason(Reason), error_msg(Why)).
--!permission(_)[error_msg(Why)] <- .fail(error_msg(Why)).
+// Nothing enters a corridor ungranted, the way to a dock included. The robot waits for that at a post, where others can
+// pass it. Where no way is open it tells people, and asks again after two minutes, then ever more rarely.
++!permission(Post) <- !permission(Post, 120).
++!permission(Post, _) <- claim(Post); clear_fault(no_way).
+-!permission(Post, Patience_s)[reason(denied)] <- rest(15); !permission(Post, Patience_s).
+-!permission(Post, Patience_s)[reason(way_closed)]
+  <- raise_fault(no_way, "every way blocked or denied");
+     rest(Patience_s);
+     !permission(Post, math.min(2 * Patience_s, 1800)).
+-!permission(_, _)[reason(Reason), error_msg(Why)] <- .fail(reason(Reason), error_msg(Why)).
+-!permission(_, _)[error_msg(Why)] <- .fail(error_msg(Why)).
 
 +!leave(Post) : direction(Post, Way) & (Way = left | Way = right | Way = behind) <- turn(Way).
 +!leave(_).
@@ -36,21 +42,39 @@
 
 // The watchdog of the way: follow_line itself gives up when no post comes where one should.
 +!follow <- !follow(1).
-+!follow(_) <- follow_line; clear_fault(way_blocked).
++!follow(_) <- follow_line; clear_fault(stuck).
 -!follow(_) : docked.   // it was put off docking at the last moment, and is in the dock: a post like any other
+-!follow(_)[reason(Why)] : closes_the_way(Why) <- !go_back(Why).
 -!follow(Try) : Try <= 3
   <- rest(3 * Try);
      !search;
      !follow(Try + 1).
--!follow(Try)[error_msg(Why)]
-  <- raise_fault(way_blocked, Why);
+-!follow(Try)[error_msg(Why)] <- !wait_for_help(Why); !follow(Try).
+
+// Three bumps, a virtual wall, no marker where the post should be: the corridor counts as closed for a while. Back to the
+// post the robot came from, and round it if there is a way.
+closes_the_way(blocked).
+closes_the_way(virtual_wall).
+closes_the_way(post_missed).
+
++!go_back(Why)
+  <- mark_blocked(Why);
+     turn(behind);
+     follow_line.
+// Shut in: on in whichever way the robot looks now, when that has become possible.
+-!go_back(_)[error_msg(Why)] <- !wait_for_help(Why); !follow.
+
++!wait_for_help(Why)
+  <- raise_fault(stuck, Why);
      say(refused);
      rest(30);
-     !search;
-     !follow(Try).
+     !search.
 
 +!search <- find_line.
 -!search.
+
+// Somebody has carried the robot elsewhere, and a marker told it where: it plans anew from there.
++moved(_) <- noted_move; !decide_anew.
 
 +!tell_passed(Post) : at(Post).
 +!tell_passed(_) : pursuing(mission(_, _)) & next_stop(N) & stop(N, Stop, _, _, _, _) <- report(passed, Stop).

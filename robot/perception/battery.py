@@ -25,6 +25,8 @@ class BatterySense:
     word: BatteryWord = BatteryWord.OK
     ratio: float | None = None
     done_since_s: float | None = None
+    weak: bool = False
+    """Less charge than work is begun with."""
 
     def seen(self, base: BaseState, settings: BatterySettings, now: float) -> "BatterySense":
         """After one more frame of the base. A base that does not know its capacity yet changes nothing.
@@ -38,7 +40,9 @@ class BatterySense:
         if ratio is None:
             return replace(self, done_since_s=since_s)
         charger_done = since_s is not None and now - since_s >= settings.full_after_s
-        return BatterySense(_word(self.word, ratio, charger_done, settings), ratio, since_s)
+        word = _word(self.word, ratio, charger_done, settings)
+        enough = settings.start_ratio + (settings.hysteresis_ratio if self.weak else 0.0)
+        return BatterySense(word, ratio, since_s, weak=ratio < enough and word is not BatteryWord.FULL)
 
 
 def _word(before: BatteryWord, ratio: float, charger_done: bool, settings: BatterySettings) -> BatteryWord:

@@ -89,6 +89,17 @@ def _mission(seen: Seen) -> Terms:
 
 PERCEPTS: Final = (
     Percept("battery", "battery(low|ok|full), with hysteresis", _battery, _base_age_s, drained=True),
+    Percept(
+        "weak",
+        "less charge than work is begun with (setting battery.start_ratio)",
+        lambda s: ["weak"] if s.battery.weak else [],
+        _base_age_s,
+    ),
+    Percept(
+        "recharging",
+        "the battery was low and is not full again yet; remembered through a power cut",
+        lambda s: ["recharging"] if s.held.recharging else [],
+    ),
     Percept("line", "line(center|left|right|across|lost)", _line, _view_age_s, drained=True),
     Percept(
         "postPoint",
@@ -100,6 +111,11 @@ PERCEPTS: Final = (
     Percept("docked", "the charging contacts of a dock are under power", _docked, _base_age_s),
     Percept("charging_dock", "the dock is charging the battery", _charging, _base_age_s),
     Percept("at", "at(Post): it stands at this post, until it leaves along the line", _at),
+    Percept(
+        "moved",
+        "moved(Post): somebody has moved it, and it found itself at this post; until noted_move",
+        lambda s: [f"moved({s.where.moved})"] if s.where.moved else [],
+    ),
     Percept("fault", "fault(Name): a fault of the reflex table", lambda s: (f"fault({f})" for f in s.view.faults)),
     Percept(
         "halted",
@@ -127,7 +143,7 @@ PERCEPTS: Final = (
     Percept("home", "home(Post): where its own dock is", lambda s: [f"home({s.home})"] if s.home else []),
     Percept(
         "nearest_dock",
-        "nearest_dock(Post): by the map, from where it was last seen",
+        "nearest_dock(Post): by the map, from where it was last seen; none where no way to a dock is open",
         lambda s: [f"nearest_dock({s.nearest_dock})"] if s.nearest_dock else [],
     ),
     Percept("watch", "watch(N): changes every half minute, for watchdogs", lambda s: [f"watch({s.watch})"]),

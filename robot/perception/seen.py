@@ -18,6 +18,8 @@ class Whereabouts:
     """forward, left, right, behind or arrived; None while it cannot be known."""
     rests_at: str | None = None
     """The post as long as the robot has not begun to roll on from there."""
+    moved: str | None = None
+    """The post where it found itself after it had been moved, until it has taken note."""
 
 
 @dataclass(frozen=True)

@@ -47,6 +47,11 @@ class View:
     bumps: int = 0
     """Bumps so far."""
 
+    @property
+    def heard_base(self) -> BaseState | None:
+        """The newest frame of a base that speaks; a silent one is never told to be charging or docked."""
+        return None if "base_silent" in self.faults else self.base
+
 
 @dataclass(frozen=True, slots=True)
 class SetMode:

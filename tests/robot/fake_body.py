@@ -1,5 +1,6 @@
 """A body that does what a test tells it, behind the same door as the drive loop (`skills.interfaces.Body`)."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 from robot.drivers.interfaces import BaseState, ChargingState, Odometry, Sighting
@@ -16,6 +17,8 @@ class FakeBody:
     cancelled: list[str] = field(default_factory=list)
     heard_at_s: float | None = None
     online: bool | None = None
+    at_start: Callable[[Skill], None] = lambda _: None
+    """Told of each skill when it begins."""
     _ends: list[JobEnd] = field(default_factory=list)
     _numbers: int = 0
 
@@ -24,6 +27,7 @@ class FakeBody:
         if skill.moves and any(other.moves for other in self.running.values()):
             self._ends.append(JobEnd(self._numbers, skill.name, Failed("busy"), now))
             return self._numbers
+        self.at_start(skill)
         self.running[self._numbers] = skill
         self.started.append(skill.name)
         return self._numbers

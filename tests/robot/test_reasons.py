@@ -12,7 +12,7 @@ from protocol.parts import Stop, StopAction
 from protocol.to_robot import Mission
 from robot.drivers.interfaces import BaseState
 from robot.duties import Duties
-from robot.memory import Memory
+from robot.memory import Incoming, Memory
 from robot.navigator import Navigator
 from robot.outbox import Outbox
 from robot.reasons import reason
@@ -47,6 +47,25 @@ def test_what_it_waits_for_is_named(robot: Robot) -> None:
     assert (sentence, waits_for) == ("Waiting for the sender at post3", "the sender's code")
     assert robot.why("wait_handover(receive,o1,s2,600)")[1] == "the recipient's code"
     assert robot.why("claim(post4)")[1] == "permission from the server"
+
+
+def test_out_of_network_it_says_that_it_waits_for_the_network(robot: Robot) -> None:
+    class Unreachable:
+        online = False
+
+        def incoming(self) -> list[Incoming]:
+            return []
+
+        def wake(self) -> None:
+            pass
+
+    robot.duties.join(Unreachable())
+    assert robot.why("claim(post4)") == ("Waiting at post3 for the network", "the network")
+
+
+def test_a_base_that_does_not_answer_is_not_said_to_be_charging(robot: Robot) -> None:
+    silent = View(base=BaseState(at_s=0.0, home_base=True), faults=frozenset({"base_silent"}))
+    assert "Charging" not in robot.why(view=silent, charging=True)[0]
 
 
 def test_on_its_way_it_says_where_to(robot: Robot) -> None:

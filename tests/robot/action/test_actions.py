@@ -17,7 +17,7 @@ from robot.action.hands import Hands
 from robot.action.table import ACTIONS, PAPER_ACTIONS
 from robot.config import PerceptMode
 from robot.duties import Duties
-from robot.memory import Memory
+from robot.memory import Incoming, Memory
 from robot.navigator import Navigator
 from robot.outbox import Outbox
 from robot.skills.interfaces import Done, Failed
@@ -33,6 +33,21 @@ MISSION = Mission(
         Stop(id="s2", post="post4", action=StopAction.RECEIVE, order_id="o1"),
     ),
 )
+
+
+TO_POST3, TO_POST4 = Leg(from_post="post2", to_post="post3"), Leg(from_post="post3", to_post="post4")
+
+
+class SilentServer:
+    """It grants nothing, and is never asked for anything else here."""
+
+    online = False
+
+    def incoming(self) -> list[Incoming]:
+        return []
+
+    def wake(self) -> None:
+        pass
 
 
 @dataclass
@@ -156,11 +171,67 @@ def test_a_dropped_intention_cancels_its_skill_before_the_next_one_starts(bench:
     assert bench.actions.finished(1.0) == [(second, None)], "nothing more is heard of the first"
 
 
-def test_a_destination_that_no_corridor_reaches_is_named(bench: Bench) -> None:
+def test_a_way_that_is_closed_for_now_is_told_from_one_that_is_not_there(bench: Bench) -> None:
     bench.navigator.place("post1", "post2")
-    assert bench.result("set_destination(post4)") is None
-    bench.duties.avoid = frozenset({Leg(from_post="post2", to_post="post3")})
-    assert bench.result("set_destination(post4)") == "no_route"
+    bench.duties.avoid = frozenset({TO_POST3})
+    assert bench.result("set_destination(post4)") is None, "it will be open again"
+    assert bench.result("claim(post4)") == "way_closed"
+    assert bench.result("claim(post4)") is None, "what was denied is asked for again"
+    bench.navigator.block(TO_POST3, until_s=60.0)
+    for _ in range(2):
+        assert bench.result("claim(post4)") == "way_closed", "what stands there does not go away by asking"
+
+
+def test_a_corridor_in_which_it_turned_back_is_told_by_name_and_closed_for_ten_minutes(bench: Bench) -> None:
+    bench.navigator.place("post2", "post3")
+    assert bench.result("mark_blocked(blocked)") == "not_in_a_corridor"
+    bench.navigator.leave()
+    assert bench.result("mark_blocked(blocked)", now=100.0) is None
+    assert "from post2 to post3. Something stands in it." in bench.told()[-1]
+    bench.body.passes_time(699.0)
+    bench.navigator.look(bench.body.view)
+    assert bench.navigator.blocked
+    bench.body.passes_time(700.0)
+    bench.navigator.look(bench.body.view)
+    assert not bench.navigator.blocked
+
+
+def with_server(bench: Bench, *granted: Leg) -> None:
+    bench.duties.join(SilentServer())
+    bench.duties.memory.grant(granted)
+    bench.duties.seen("post2")
+    bench.navigator.place("post2", "post3")
+
+
+def test_the_first_corridor_is_enough_to_go_on_and_the_rest_is_waited_for_at_the_next_post(bench: Bench) -> None:
+    with_server(bench, TO_POST3)
+    id_ = bench.ask("claim(post4)")
+    assert bench.actions.finished(0.0) == [(id_, None)]
+    assert '"post4"' in bench.told()[-1], "it asks for all of it"
+
+
+def test_a_detour_gives_back_what_it_does_not_need_and_keeps_what_it_does(bench: Bench) -> None:
+    with_server(bench, TO_POST3, TO_POST4)
+    assert bench.result("claim(post5)") is None
+    assert bench.duties.held.grants == (TO_POST3,)
+
+
+def test_the_corridor_that_it_is_in_is_never_given_back(bench: Bench) -> None:
+    with_server(bench, TO_POST3, TO_POST4)
+    bench.navigator.leave()
+    assert bench.result("release") is None
+    assert bench.duties.held.grants == (TO_POST3,)
+
+
+def test_mail_is_written_down_before_the_tune_promises_it(bench: Bench) -> None:
+    bench.duties.give(MISSION)
+    bench.ask("wait_handover(load,o1,s1,600)")
+    bench.body.end("wait_handover", Done("ab" * 32))
+    assert "say" not in bench.body.started
+    bench.body.at_start = lambda skill: cargo.append((skill.name, bench.duties.held.cargo))
+    cargo: list[tuple[str, tuple[str, ...]]] = []
+    bench.actions.finished(1.0)
+    assert cargo == [("say", ("o1",))]
 
 
 def test_rest_ends_after_its_time(bench: Bench) -> None:

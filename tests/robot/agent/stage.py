@@ -1,6 +1,7 @@
 """A stage for our agent program alone: percepts go in, actions must come out within so many cycles.
 
-No robot, no clock, no thread: plain `Agent.cycle`. What the body would do is told by the test.
+No robot, no clock, no thread: plain `Agent.cycle`. What the body would do is told by the test, but for what it always
+does: it remembers that it charges, takes note that it was moved, and ends at once what says that a trouble is over.
 """
 
 from bdi import Agent, Finished, Message, parse_program
@@ -35,6 +36,8 @@ class Stage:
             del self.waiting[names[id_]]
         for action in outcome.actions:
             self.waiting[str(action.term)] = action.id
+            if action.term.functor == "clear_fault":
+                self.succeeds(str(action.term))
         self.failures += map(str, outcome.failures)
         return [str(action.term) for action in outcome.actions]
 
@@ -65,6 +68,12 @@ class Stage:
     def succeeds(self, action: str) -> None:
         self._finished.append(Finished(self.waiting.pop(action)))
         self.done.append(action)
+        if action in ("report_charge(low)", "report_charge(charging)"):
+            self.perceives("recharging")
+        if action == "report_charge(charged)":
+            self.perceives(without=("recharging",))
+        if action == "noted_move":
+            self.percepts = {term for term in self.percepts if not term.startswith("moved(")}
 
     def fails(self, action: str, reason: str) -> None:
         self._finished.append(Finished(self.waiting.pop(action), reason))

@@ -1,4 +1,4 @@
-"""Our agent when the battery is low, when something is in the way, and when somebody stops it."""
+"""Our agent when the battery is low, when the line is lost, and when somebody stops it."""
 
 from tests.robot.agent.stage import Stage
 from tests.robot.agent.test_mission import HOME, MISSION, drive
@@ -26,16 +26,15 @@ def test_a_low_battery_interrupts_the_mission_charges_until_full_and_takes_it_up
     stage.expect_cancelled("follow_line")
     stage.expect("follow_line")  # interrupted between posts: on to the next marker
     stage.reaches("post3")
-    stage.does("clear_fault(way_blocked)", "set_destination(post5)", "claim(post5)")
+    stage.does("set_destination(post5)", "claim(post5)")
     stage.perceives("direction(post5,left)")
     stage.does("turn(left)")
     stage.expect("follow_line")
     stage.reaches("post5")
-    stage.does("clear_fault(way_blocked)")
     stage.expect("dock")
     stage.perceives("docked", "battery(ok)", without=("battery(low)",))
     stage.succeeds("dock")
-    stage.does("clear_fault(no_dock)", "report_charge(charging)")
+    stage.does("release", "report_charge(charging)")
     stage.settle()
     assert stage.waiting == {}, "ok is not full: it goes on charging"
     stage.perceives("battery(full)", without=("battery(ok)",))
@@ -64,7 +63,7 @@ def test_low_is_told_once_even_if_the_battery_trembles() -> None:
 def test_a_mission_given_while_charging_waits_without_being_busy() -> None:
     stage = Stage(*HOME, "docked", "at(post5)")
     becomes_low(stage)
-    stage.does("report_charge(low)", "report_charge(charging)")
+    stage.does("report_charge(low)", "release", "report_charge(charging)")
     stage.perceives(*MISSION, "next_stop(0)")
     stage.settle()
     assert stage.waiting == {}
@@ -84,17 +83,18 @@ def test_a_dock_that_cannot_be_found_is_told_and_tried_again() -> None:
     stage.expect("dock")
 
 
-def test_a_blocked_way_is_tried_again_with_growing_patience_then_people_are_told() -> None:
+def test_a_line_that_is_lost_is_searched_with_growing_patience_then_people_are_told() -> None:
     stage = on_its_way_with_mail()
     for patience in (3, 6, 9):
-        stage.fails("follow_line", "blocked")
+        stage.fails("follow_line", "line_lost")
         stage.does(f"rest({patience})", "find_line")
         stage.expect("follow_line")
-    stage.fails("follow_line", "blocked")
-    stage.does('raise_fault(way_blocked,"blocked")', "say(refused)", "rest(30)", "find_line")
+    stage.fails("follow_line", "line_lost")
+    stage.does('raise_fault(stuck,"line_lost")', "say(refused)", "rest(30)", "find_line")
     stage.expect("follow_line")
     stage.reaches("post3")
-    stage.does("clear_fault(way_blocked)", "report(passed,s2)", "set_destination(post4)")
+    stage.does("report(passed,s2)", "set_destination(post4)")
+    assert "clear_fault(stuck)" in stage.done
 
 
 def test_a_turn_that_finds_no_line_searches_and_goes_on() -> None:
@@ -105,15 +105,6 @@ def test_a_turn_that_finds_no_line_searches_and_goes_on() -> None:
     stage.fails("turn(right)", "line_lost")
     stage.does("find_line")
     stage.expect("follow_line")
-
-
-def test_a_denied_corridor_is_asked_for_again_after_a_while() -> None:
-    stage = Stage(*CARRYING, "at(post3)")
-    stage.does("report(departed,s2)", "set_destination(post4)")
-    stage.expect("claim(post4)")
-    stage.fails("claim(post4)", "denied")
-    stage.does("rest(15)")
-    stage.expect("claim(post4)")
 
 
 def test_an_emergency_stop_drops_everything_and_rearming_takes_it_up_again() -> None:
@@ -141,3 +132,62 @@ def test_a_robot_pulled_out_of_its_dock_drives_back() -> None:
     stage.settle()
     stage.perceives(without=("docked",))
     stage.expect("dock")
+
+
+def test_a_robot_that_was_switched_off_in_its_dock_goes_on_charging_until_it_is_full() -> None:
+    stage = Stage(*HOME, *MISSION, "next_stop(0)", "docked", "at(post5)", "recharging")
+    stage.does("release", "report_charge(charging)")
+    stage.settle()
+    assert stage.waiting == {}
+    stage.perceives("battery(full)", without=("battery(ok)",))
+    stage.does("report_charge(charged)", "report(departed,s1)")
+
+
+def test_work_is_begun_with_enough_charge_only() -> None:
+    stage = Stage(*HOME, "docked", "at(post5)", "weak")
+    stage.perceives(*MISSION, "next_stop(0)")
+    stage.settle()
+    assert (stage.waiting, stage.done) == ({}, [])
+    stage.perceives(without=("weak",))
+    stage.expect("report(departed,s1)")
+
+
+def test_mail_that_is_aboard_does_not_wait_in_a_dock_for_more_charge_than_it_takes() -> None:
+    stage = Stage(*CARRYING, "docked", "at(post5)", "weak")
+    stage.expect("report(departed,s2)")
+
+
+def test_where_no_way_leads_to_a_dock_it_stops_at_a_post_and_says_so_until_one_does() -> None:
+    stage = on_its_way_with_mail()
+    stage.perceives(without=("nearest_dock(post5)",))
+    becomes_low(stage)
+    stage.does("report_charge(low)")
+    stage.expect("follow_line")
+    stage.reaches("post3")
+    stage.does('raise_fault(no_dock_open,"no way to any dock that is open")')
+    stage.settle()
+    assert stage.waiting == {}
+    stage.perceives("nearest_dock(post5)")
+    stage.does("set_destination(post5)", "claim(post5)")
+    assert "clear_fault(no_dock_open)" in stage.done
+
+
+def test_another_dock_is_driven_to_when_the_way_to_the_first_is_closed() -> None:
+    stage = on_its_way_with_mail()
+    becomes_low(stage)
+    stage.does("report_charge(low)")
+    stage.expect("follow_line")
+    stage.reaches("post3")
+    stage.does("set_destination(post5)")
+    stage.expect("claim(post5)")
+    stage.perceives("nearest_dock(post7)", without=("nearest_dock(post5)",))
+    stage.expect_cancelled("claim(post5)")
+    stage.does("set_destination(post7)")
+
+
+def test_charging_comes_before_a_pause_and_a_pause_before_the_mission() -> None:
+    stage = Stage(*CARRYING, "at(post3)", "paused")
+    stage.settle()
+    assert stage.waiting == {}
+    becomes_low(stage)
+    stage.does("report_charge(low)", "set_destination(post5)")

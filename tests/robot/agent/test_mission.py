@@ -33,7 +33,6 @@ def drive(stage: Stage, goal: str, way: str, *posts: str) -> None:
             stage.does(f"turn({way})")
         stage.expect("follow_line")
         stage.reaches(post)
-        stage.does("clear_fault(way_blocked)")
         if post != goal:
             stage.does("report(passed,s1)" if "next_stop(0)" in stage.percepts else "report(passed,s2)")
         way = "forward"
@@ -65,6 +64,7 @@ def test_loading_is_waited_for_and_then_the_recipient_is_next() -> None:
     assert "wait_handover(load,o1,s1,600)" in stage.waiting, "nothing is assumed"
     stage.perceives("carrying(o1)")
     stage.succeeds("wait_handover(load,o1,s1,600)")
+    stage.does("rest(3)")  # people step back
     stage.expect("finish_stop(s1)")
     stage.perceives("next_stop(1)", without=("next_stop(0)",))
     stage.succeeds("finish_stop(s1)")
@@ -85,11 +85,10 @@ def test_a_finished_mission_is_reported_and_the_robot_goes_home_and_rests() -> N
     stage.does("turn(behind)")
     stage.expect("follow_line")
     stage.reaches("post5")
-    stage.does("clear_fault(way_blocked)")
     stage.expect("dock")
     stage.perceives("docked")
     stage.succeeds("dock")
-    stage.does("clear_fault(no_dock)", "release", "clear_fault(trouble)")
+    stage.does("release")
     stage.settle()
     assert (stage.waiting, stage.failures) == ({}, [])
 
@@ -117,7 +116,7 @@ def test_after_a_restart_between_posts_it_drives_on_to_the_next_marker_and_deliv
     stage.does("report(departed,s2)")
     stage.expect("follow_line")
     stage.reaches("post3")
-    stage.does("clear_fault(way_blocked)", "report(passed,s2)", "set_destination(post4)")
+    stage.does("report(passed,s2)", "set_destination(post4)")
 
 
 def test_an_unknown_post_is_given_up_by_name_and_the_mission_goes_on() -> None:
@@ -149,7 +148,7 @@ def test_a_cancelled_order_is_dropped_and_the_robot_goes_home() -> None:
     stage.expect_cancelled("follow_line")
     stage.expect("follow_line")
     stage.reaches("post1")
-    stage.does("clear_fault(way_blocked)", "set_destination(post5)")
+    stage.does("set_destination(post5)")
 
 
 def test_a_pause_is_kept_at_the_next_post_until_it_is_over() -> None:
@@ -161,7 +160,6 @@ def test_a_pause_is_kept_at_the_next_post_until_it_is_over() -> None:
     stage.settle()
     assert "follow_line" in stage.waiting, "on to the next post"
     stage.reaches("post2")
-    stage.does("clear_fault(way_blocked)")
     stage.settle()
     assert stage.waiting == {}
     stage.perceives(without=("paused",))
@@ -180,7 +178,7 @@ def test_an_errand_to_nowhere_is_told_and_forgotten() -> None:
     stage.reads("achieve", "visit(nowhere)")
     stage.expect("set_destination(nowhere)")
     stage.fails("set_destination(nowhere)", "unknown_post")
-    stage.does('raise_fault(errand,"unknown_post")', "clear_fault(trouble)")
+    stage.does('raise_fault(errand,"unknown_post")')
     stage.settle()
     assert stage.waiting == {}
 

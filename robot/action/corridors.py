@@ -1,0 +1,93 @@
+"""Knowing the way and being allowed to take it: what the actions about routes, grants and closed corridors do."""
+
+from collections.abc import Sequence
+from typing import Final
+
+from maps import NoRoute, shortest_route
+from protocol.parts import Leg
+
+from .arguments import Value
+from .hands import Hands
+from .runs import DONE, AtOnce, Ended, Run, Wait
+
+BLOCKED_S: Final = 600.0
+"""So long no way leads through a corridor in which the robot turned back; then it is tried again."""
+WAY_BLOCKED: Final = "way_blocked"
+CLOSED_BY: Final = {
+    "blocked": "Something stands in it",
+    "virtual_wall": "A virtual wall guards it",
+    "post_missed": "No marker was found at its far end",
+}
+
+
+def set_destination(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
+    destination = str(arguments[0])
+    if _why_no_way(hands, destination) == "no_route":
+        return AtOnce(Ended("no_route"))
+    hands.navigator.destination = destination
+    return AtOnce()
+
+
+def _why_no_way(hands: Hands, goal: str) -> str | None:
+    """None: there is a way. `way_closed`: not now, a corridor is blocked or denied. `no_route`: none on the map."""
+    navigator = hands.navigator
+    try:
+        navigator.legs_to(goal)
+        return None
+    except NoRoute:
+        pass
+    try:
+        shortest_route(navigator.campus, navigator.here or goal, goal)
+    except NoRoute:
+        return "no_route"
+    return "way_closed"
+
+
+def claim(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
+    """Done as soon as the first corridor of the way may be entered: from post to post it is asked again."""
+    goal, duties, navigator = str(arguments[0]), hands.duties, hands.navigator
+    if closed := _why_no_way(hands, goal):
+        duties.avoid = frozenset()  # what was denied may be open by the next time it asks
+        return AtOnce(Ended(closed))
+    wanted = _wanted(hands, goal)
+    if navigator.at:
+        duties.clear(leg for leg in duties.held.grants if leg not in wanted)
+    claim_id = duties.claim(wanted)
+    first = navigator.legs_to(goal)[:1]
+
+    def ask() -> Ended | None:
+        if duties.may_enter(first):
+            return DONE
+        return Ended("denied") if claim_id and duties.denial(claim_id) else None
+
+    return Wait(ask)
+
+
+def _wanted(hands: Hands, goal: str) -> tuple[Leg, ...]:
+    """The way to the goal and the rest of the mission: a robot without network finishes what it is permitted."""
+    held = hands.duties.held
+    later = [stop.post for stop in (held.mission.stops if held.mission else ())[held.next_stop :]]
+    try:
+        return hands.navigator.legs_to(goal, *(later if later[:1] == [goal] else []))
+    except NoRoute:
+        return hands.navigator.legs_to(goal)
+
+
+def release(hands: Hands, _: Sequence[Value], __: float) -> Run:
+    hands.duties.clear(leg for leg in hands.duties.held.grants if leg != hands.navigator.corridor)
+    return AtOnce()
+
+
+def mark_blocked(hands: Hands, arguments: Sequence[Value], now: float) -> Run:
+    leg, why = hands.navigator.corridor, str(arguments[0])
+    if leg is None:
+        return AtOnce(Ended("not_in_a_corridor"))
+    hands.navigator.block(leg, now + BLOCKED_S)
+    reason = f"The robot turned back in the corridor from {leg.from_post} to {leg.to_post}. {CLOSED_BY[why]}."
+    hands.duties.report_fault(WAY_BLOCKED, reason, hands.place)
+    return AtOnce()
+
+
+def noted_move(hands: Hands, _: Sequence[Value], __: float) -> Run:
+    hands.navigator.noted_move()
+    return AtOnce()

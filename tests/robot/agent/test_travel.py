@@ -1,0 +1,73 @@
+"""Our agent on its way: what it may enter, what is in its way, and what it does when somebody has carried it off."""
+
+import pytest
+
+from tests.robot.agent.stage import Stage
+from tests.robot.agent.test_battery_and_safety import CARRYING, on_its_way_with_mail
+
+
+def test_a_denied_corridor_is_asked_for_again_after_a_while() -> None:
+    stage = Stage(*CARRYING, "at(post3)")
+    stage.does("report(departed,s2)", "set_destination(post4)")
+    stage.expect("claim(post4)")
+    stage.fails("claim(post4)", "denied")
+    stage.does("rest(15)")
+    stage.expect("claim(post4)")
+
+
+def test_where_no_way_is_open_it_waits_at_its_post_tells_and_asks_ever_more_rarely() -> None:
+    stage = Stage(*CARRYING, "at(post3)")
+    stage.does("report(departed,s2)", "set_destination(post4)")
+    for patience_s in (120, 240, 480, 960, 1800, 1800):
+        stage.expect("claim(post4)")
+        stage.fails("claim(post4)", "way_closed")
+        stage.does('raise_fault(no_way,"every way blocked or denied")', f"rest({patience_s})")
+    stage.does("claim(post4)")
+    stage.expect("follow_line")
+    assert "clear_fault(no_way)" in stage.done
+
+
+@pytest.mark.parametrize("reason", ["blocked", "virtual_wall", "post_missed"])
+def test_from_a_blocked_corridor_it_goes_back_and_plans_another_way(reason: str) -> None:
+    stage = on_its_way_with_mail()
+    stage.fails("follow_line", reason)
+    stage.does(f"mark_blocked({reason})", "turn(behind)")
+    stage.expect("follow_line")
+    stage.reaches("post2")
+    stage.does("report(passed,s2)", "set_destination(post4)", "claim(post4)")
+    stage.perceives("direction(post4,left)")
+    stage.does("turn(left)")
+    stage.expect("follow_line")
+    assert stage.failures == []
+
+
+def test_shut_in_from_both_sides_it_tells_people_and_tries_again() -> None:
+    stage = on_its_way_with_mail()
+    for _ in range(2):
+        stage.fails("follow_line", "blocked")
+        stage.does("mark_blocked(blocked)", "turn(behind)")
+        stage.expect("follow_line")
+        stage.fails("follow_line", "blocked")
+        stage.does('raise_fault(stuck,"blocked")', "say(refused)", "rest(30)", "find_line")
+        stage.expect("follow_line")
+    assert stage.failures == []
+
+
+def test_a_robot_that_was_carried_elsewhere_takes_note_and_plans_from_there() -> None:
+    stage = on_its_way_with_mail()
+    stage.perceives("at(post6)", "moved(post6)")
+    stage.does("noted_move", "report(departed,s2)", "set_destination(post4)", "claim(post4)")
+    stage.settle()
+    assert stage.cancelled == ["follow_line"]
+    assert stage.done.count("noted_move") == 1
+
+
+def test_out_of_network_it_waits_at_a_post_for_the_next_corridor_and_hands_over_where_it_has_got_to() -> None:
+    stage = Stage(*CARRYING, "at(post3)")
+    stage.does("report(departed,s2)", "set_destination(post4)")
+    stage.expect("claim(post4)")
+    stage.settle(200)
+    assert set(stage.waiting) == {"claim(post4)"}, "it waits for the grant, and for nothing else"
+    there = Stage(*CARRYING, "at(post4)")
+    there.does("report(departed,s2)", "report(arrived,s2)")
+    there.expect("wait_handover(receive,o1,s2,600)")
