@@ -83,7 +83,7 @@ class Socket:
 
 
 class Plugged:
-    """As OpenCV on Linux: after the cable is out it is still open, and reads nothing for ever, whatever is plugged in."""
+    """As OpenCV on Linux: after the cable is out it is still open, and reads nothing for ever after."""
 
     def __init__(self, socket: Socket, robot: SimulatedRobot) -> None:
         self._socket, self._camera, self._lost = socket, robot.camera, not socket.plugged
