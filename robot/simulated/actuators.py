@@ -13,6 +13,7 @@ from .songs import SongBook
 STRAIGHT = (0x7FFF, -0x8000)
 TURN_RADIUS_OF_CLIFF_MM = 165
 PWM_TOP = 255
+BRUSH_MA = 300  # at full power [A]
 
 
 class Actuators:
@@ -29,7 +30,7 @@ class Actuators:
 
     def stop(self) -> None:
         self.roll(0, 0)
-        self.brushes = (0, 0, 0)
+        self._brush(0, 0, 0)
 
     def roll(self, left_mm_s: float, right_mm_s: float) -> None:
         """Speeds beyond the range are cut to it [A]."""
@@ -74,10 +75,15 @@ class Actuators:
         bits = data[0]
         side = 127 if bits & 1 else 0
         main = 127 if bits & 4 else 0
-        self.brushes = (-main if bits & 16 else main, -side if bits & 8 else side, 127 if bits & 2 else 0)
+        self._brush(-main if bits & 16 else main, -side if bits & 8 else side, 127 if bits & 2 else 0)
 
     def pwm_motors(self, data: bytes) -> None:
-        self.brushes = unpack(">bbb", data)
+        self._brush(*unpack(">bbb", data))
+
+    def _brush(self, main: int, side: int, vacuum: int) -> None:
+        self.brushes = (main, side, vacuum)
+        told = self._readings
+        told.main_brush_ma, told.side_brush_ma = (round(abs(pwm) / 127 * BRUSH_MA) for pwm in (main, side))
 
     def set_leds(self, data: bytes) -> None:
         self.leds = (data[0], data[1], data[2])

@@ -31,6 +31,7 @@ VIRTUAL_WALL_IR = 162
 # The directional receivers see this far to their own side and a little across [A].
 IR_SIDE_RAD, IR_ACROSS_RAD = math.radians(100), math.radians(15)
 BOUNCE_SLOTS = 8
+DISTANCE_BUG = 0.1  # before 3.3.0 millimetres were told wrong [S]; by how much is assumed [A]
 ANGLE_BUG = 0.324056  # firmware up to 3.4.0 tells angles too small by this factor [F]
 
 
@@ -214,14 +215,18 @@ class Body:
 
     def _tell_wheels(self) -> None:
         base, told = self.base, self.readings
-        told.left_encoder, told.right_encoder = base.left.encoder, base.right.encoder
+        offset = self.faults.encoder_offset
+        told.left_encoder = (base.left.encoder + offset) & 0xFFFF
+        told.right_encoder = (base.right.encoder + offset) & 0xFFFF
         told.left_motor_ma = self._motor_ma(base.left.speed_mm_s)
         told.right_motor_ma = self._motor_ma(base.right.speed_mm_s)
         blocked = self._blocked_s >= OVER_CURRENT_AFTER_S or self.faults.over_current
         told.over_currents = 0b11000 if blocked else 0
         left, right = base.left.speed_mm_s, base.right.speed_mm_s
         told.stasis = int(left > 5 and right > 5 and not (self._blocked_s or self.faults.slipping))
-        told.distance_mm, base.untold_mm = _told(told.distance_mm, base.untold_mm)
+        way_bug = DISTANCE_BUG if self.faults.distance_bug else 1.0
+        told.distance_mm, rest_mm = _told(told.distance_mm, base.untold_mm * way_bug)
+        base.untold_mm = rest_mm / way_bug
         turned_deg = base.untold_deg * (ANGLE_BUG if self.faults.angle_bug else 1.0)
         told.angle_deg, rest_deg = _told(told.angle_deg, turned_deg)
         base.untold_deg = rest_deg / (ANGLE_BUG if self.faults.angle_bug else 1.0)

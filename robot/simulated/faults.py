@@ -13,11 +13,20 @@ class Faults:
     drop_byte: float = 0.0
     flip_byte: float = 0.0
     frozen: bool = False
+    freeze_s: float = 0.0
     mode_offset: int = 0
     mode_silent: bool = False
     angle_bug: bool = False
+    distance_bug: bool = False
+    encoder_offset: int = 0
+    capacity_unknown: bool = False
+    slow_modes: bool = False
+    slow_line: bool = False
     brc_dead: bool = False
+    brc_only_wakes: bool = False
     never_sleeps: bool = False
+    sleep_after_s: float = 0.0
+    dock_mute: bool = False
     bump_left: bool = False
     bump_right: bool = False
     cliff_left: bool = False
@@ -58,15 +67,20 @@ class Faults:
         return {name: value for name, value in present.items() if value != getattr(Faults, name)}
 
 
+LARGEST = {"_mm": 10.0, "_s": 3600.0}
+"""By the unit in its name; chances and shares end at 1."""
+
+
 def _checked(name: str, kind: type, value: Any) -> Any:
     is_number = isinstance(value, int | float) and not isinstance(value, bool)
     if kind is bool and isinstance(value, bool):
         return value
     if kind is int and isinstance(value, int) and not isinstance(value, bool):
         return value
-    if kind is float and is_number and 0 <= value <= (10 if name.endswith("_mm") else 1):
+    most = next((most for ending, most in LARGEST.items() if name.endswith(ending)), 1.0)
+    if kind is float and is_number and 0 <= value <= most:
         return float(value)
-    expected = {bool: "true or false", int: "a whole number", float: "a number, a chance or share from 0 to 1"}
+    expected = {bool: "true or false", int: "a whole number", float: f"a number from 0 to {most:g}"}
     raise WrongValue(name, value, expected[kind])
 
 
@@ -74,11 +88,20 @@ SWITCHES: dict[str, str] = {
     "drop_byte": "chance that a byte from the robot is lost",
     "flip_byte": "chance that one bit of a byte from the robot is turned over",
     "frozen": "the robot neither hears nor says anything; its wheels go on",
+    "freeze_s": "the robot is frozen for so many seconds from now on",
     "mode_offset": "added to the mode that packet 35 tells (some report one more, one was seen at 32)",
-    "mode_silent": "the robot never answers a query that holds packet 35 (old firmware)",
+    "mode_silent": "no answer and no stream that holds packet 35 ever comes (old firmware)",
     "angle_bug": "packet 20 is too small by the factor of firmware up to 3.4.0",
+    "distance_bug": "packet 19 tells a tenth of the way (firmware before 3.3.0 told it wrong; how is assumed)",
+    "encoder_offset": "added to both encoder counts, as after a reset of the base",
+    "capacity_unknown": "packet 26 reads 0, as just after a start of the firmware",
+    "slow_modes": "what comes within 20 ms after a change of mode is lost (older manuals warn of it)",
+    "slow_line": "the robot speaks at 19200 baud until it is told another speed (Clean was held at power-off)",
     "brc_dead": "pulses on the BRC pin have no effect",
+    "brc_only_wakes": "pulses on the BRC pin wake, but do not keep awake (firmware 3.2.6)",
     "never_sleeps": "Passive mode does not fall asleep after five minutes",
+    "sleep_after_s": "Passive mode falls asleep after so many seconds and not after 300",
+    "dock_mute": "after 30 s on the dock the robot hears nothing but Reset (some of the 600 series)",
     "bump_left": "the left half of the bumper is pressed",
     "bump_right": "the right half of the bumper is pressed",
     "cliff_left": "the left cliff sensor sees no floor",

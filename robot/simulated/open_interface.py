@@ -14,12 +14,14 @@ from .actuators import ACTUATORS, Actuators
 from .commands import BAUD_CODES, COMMANDS, RESET, START, Mode
 from .faults import Faults
 from .packets import Readings
+from .quirks import FAST_BAUD, SLOW_BAUD, Quirks
 from .reports import Reports
 from .songs import SongBook
 from .transmitter import Transmitter
 from .wakefulness import Wakefulness
 
 BAUD_CHANGE_S = 0.1
+MODE_CHANGE_S = 0.02
 CLEAN_BUTTONS = 0b011
 DOCK_BUTTON = 0b100
 
@@ -48,17 +50,18 @@ class OpenInterface:
         self.mode = Mode.OFF
         self.activity = Activity.NONE
         self.actuators = Actuators(readings)
-        self.baud = 115200
+        self.baud = FAST_BAUD
         self.ignored_commands = 0
         self.charging_s = 0.0
         self._out = Transmitter()
         self._wakefulness = Wakefulness(faults, now)
+        self._quirks = Quirks(faults, now)
+        self._battery_lines = firmware_text.BatteryLines()
         self._reports = Reports(readings, faults)
         self._faults = faults
         self._now = now
         self._pending = bytearray()
         self._deaf_until_s = now
-        self._battery_line_at_s = now
 
     # What comes in -----------------------------------------------------------------------------------------------
 
@@ -66,9 +69,10 @@ class OpenInterface:
         """Bytes from the host. A robot that sleeps, boots or is frozen loses them."""
         self._now = now
         for byte in data:
-            if self.asleep or now < self._deaf_until_s or self._faults.frozen:
+            if self.asleep or now < self._deaf_until_s or self._quirks.is_frozen(now):
                 return
-            self._eat(byte)
+            if not self._quirks.mute or byte == RESET:
+                self._eat(byte)
 
     def _eat(self, byte: int) -> None:
         if not self._pending and (byte not in COMMANDS or self._shut_for(byte)):
@@ -92,7 +96,15 @@ class OpenInterface:
 
     def brc(self, low: bool, now: float) -> None:
         """The BRC pin is pulled low, or let go."""
+        if self._quirks.mute:
+            return
         self._out.say(self._wakefulness.brc(low, now))
+        if self._wakefulness.wants_19200():
+            self.baud = SLOW_BAUD
+
+    @property
+    def _is_silent(self) -> bool:
+        return self._quirks.mute or self._quirks.is_frozen(self._now)
 
     @property
     def asleep(self) -> bool:
@@ -113,14 +125,17 @@ class OpenInterface:
     def tick(self, now: float, on_charger: bool) -> None:
         """One slot of 15 ms: text that is due, a frame of the stream, the five minutes to sleep."""
         self._now = now
+        self.baud = self._quirks.tick(now, on_charger) or self.baud
+        self._out.begin_slot(self.baud)
         self._out.print_due(now)
-        self._out.frame(self._reports.frame(self.mode, self.actuators.songs, now))
+        if not self._is_silent:
+            self._out.frame(self._reports.frame(self.mode, self.actuators.songs, now))
         if self.mode is not Mode.PASSIVE or self.activity is not Activity.NONE or on_charger:
             self._wakefulness.stir(now)
         elif self._wakefulness.is_tired(now):
             self._sleep()
-        if on_charger and self.mode is Mode.OFF and not self.asleep:
-            self._print_battery(now)
+        if on_charger and self.mode is Mode.OFF and not self.asleep and now >= self._deaf_until_s:
+            self._out.say(self._battery_lines.due(self._reports.readings, self.charging_s, now))
 
     def _sleep(self) -> None:
         self._out.say(self._wakefulness.sleep(self._now))
@@ -130,16 +145,6 @@ class OpenInterface:
         """The battery is empty: silent until the charger wakes it."""
         if not self.asleep:
             self._sleep()
-
-    def _print_battery(self, now: float) -> None:
-        if now < self._battery_line_at_s or now < self._deaf_until_s:
-            return
-        self._battery_line_at_s = now + 1.0
-        told = self._reports.readings
-        line = firmware_text.battery_line(
-            self.charging_s, told.voltage_mv, told.current_ma, told.temperature_c, told.charge_mah
-        )
-        self._out.say(line)
 
     def finish_activity(self) -> None:
         """The dock is reached, given up, or something is in the way."""
@@ -161,7 +166,7 @@ class OpenInterface:
     def take(self) -> bytes:
         """The bytes that are on the wire since last asked; those of a frozen robot are lost."""
         data = self._out.take()
-        return data if not self._faults.frozen else b""
+        return b"" if self._is_silent else data
 
     # Modes -------------------------------------------------------------------------------------------------------
 
@@ -173,6 +178,8 @@ class OpenInterface:
             self.actuators.leds = (0, 0, 0)
         if mode is not self.mode:
             self.actuators.stop()
+            if self._faults.slow_modes:
+                self._deaf_until_s = max(self._deaf_until_s, self._now + MODE_CHANGE_S)
         self.mode = mode
 
     def _shut(self) -> None:
@@ -183,7 +190,8 @@ class OpenInterface:
 
     def reset(self, _: bytes) -> None:
         self._shut()
-        self.baud = 115200
+        self.baud = FAST_BAUD
+        self._quirks.reset()
         self.actuators.songs = SongBook()
         self._deaf_until_s = self._out.print_later(
             [(self._now + after_s, text) for after_s, text in firmware_text.BOOT]

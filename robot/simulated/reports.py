@@ -24,15 +24,16 @@ class Reports:
     def answer(self, ids: bytes, mode: Mode, songs: SongBook, now: float) -> bytes:
         """Only data, one packet after the other."""
         layout = Layout(ids, tagged=False)
-        if layout.tells_mode and self._faults.mode_silent:
-            return b""
-        return self._encode(layout, mode, songs, now)
+        return b"" if self._hides(layout) else self._encode(layout, mode, songs, now)
 
     def frame(self, mode: Mode, songs: SongBook, now: float) -> bytes:
         """The next frame of the stream; nothing while there is none."""
-        if not self._streaming or self._stream is None or self._faults.frozen:
+        if not self._streaming or self._stream is None or self._hides(self._stream):
             return b""
         return stream_frame(self._encode(self._stream, mode, songs, now))
+
+    def _hides(self, layout: Layout) -> bool:
+        return layout.tells_mode and self._faults.mode_silent
 
     def stream(self, ids: bytes) -> None:
         self._stream = Layout(ids, tagged=True)
@@ -57,6 +58,8 @@ class Reports:
         told.stream_packets = len(self._stream.ids) if self._stream else 0
         if now >= self._buttons_until_s:
             told.buttons = 0
+        if self._faults.capacity_unknown:
+            told.capacity_mah = 0
         data = layout.encode(told)
         # Reading packet 19 or 20 clears it.
         told.distance_mm = 0 if layout.takes_distance else told.distance_mm

@@ -3,23 +3,27 @@
 from collections import deque
 from collections.abc import Iterable
 
-SLOT_BYTES = 172
-"""What 115200 baud carries in one slot of 15 ms."""
+SLOT_S = 0.015
+BITS_PER_BYTE = 10
 
 
 class Transmitter:
-    """Bytes wait here until the line takes them."""
+    """Bytes wait here until the line takes them: 172 in a slot of 15 ms at 115200 baud, 28 at 19200."""
 
     def __init__(self) -> None:
         self._out = bytearray()
+        self._room = 0
         self._printing: deque[tuple[float, bytes]] = deque()
 
     def say(self, data: bytes) -> None:
         self._out += data
 
     def frame(self, data: bytes) -> None:
-        """A frame of the stream. What does not fit into its slot is lost, so that too long a list gives only noise."""
-        self._out += data[:SLOT_BYTES]
+        """A frame of the stream. What does not fit into the slot is lost, so that too long a list gives only noise."""
+        self._out += data[: max(0, self._room - len(self._out))]
+
+    def begin_slot(self, baud: int) -> None:
+        self._room = int(baud / BITS_PER_BYTE * SLOT_S)
 
     def print_later(self, texts: Iterable[tuple[float, bytes]]) -> float:
         """(time, text) each; replaces what was to be printed before. Returns the time of the last."""
@@ -32,10 +36,11 @@ class Transmitter:
 
     @property
     def waiting(self) -> bool:
-        return bool(self._out)
+        return bool(self._out) and self._room > 0
 
     def take(self) -> bytes:
-        """The bytes that are on the wire since last asked."""
-        data = bytes(self._out)
-        self._out.clear()
+        """The bytes that are on the wire since last asked: what the slot still has room for."""
+        data = bytes(self._out[: self._room])
+        del self._out[: self._room]
+        self._room -= len(data)
         return data

@@ -8,6 +8,9 @@ from .faults import Faults
 
 SLEEP_AFTER_S = 300.0
 BRC_PULSE_S = 0.05
+SHORT_PULSE_S = 0.5
+PULSES_TO_19200 = 3
+BETWEEN_PULSES_S = 2.0  # [A]
 
 
 class Wakefulness:
@@ -19,13 +22,15 @@ class Wakefulness:
         self._idle_since_s = now
         self._slept_at_s = now
         self._brc_low_since_s: float | None = None
+        self._short_pulses: list[float] = []
 
     def stir(self, now: float) -> None:
         """Something happened: the five minutes begin again."""
         self._idle_since_s = now
 
     def is_tired(self, now: float) -> bool:
-        return now - self._idle_since_s >= SLEEP_AFTER_S and not self._faults.never_sleeps
+        after_s = self._faults.sleep_after_s or SLEEP_AFTER_S
+        return now - self._idle_since_s >= after_s and not self._faults.never_sleeps
 
     def sleep(self, now: float) -> bytes:
         self.asleep, self._slept_at_s = True, now
@@ -46,5 +51,18 @@ class Wakefulness:
         since_s, self._brc_low_since_s = self._brc_low_since_s, None
         if since_s is None or now - since_s < BRC_PULSE_S or self._faults.brc_dead:
             return b""
-        self.stir(now)
+        self._count(now - since_s, now)
+        if not (self._faults.brc_only_wakes and not self.asleep):
+            self.stir(now)
         return self.wake(firmware_text.KEY_WAKEUP, now)
+
+    def _count(self, length_s: float, now: float) -> None:
+        recent = [at_s for at_s in self._short_pulses if now - at_s < BETWEEN_PULSES_S]
+        self._short_pulses = [*recent, now] if length_s <= SHORT_PULSE_S else []
+
+    def wants_19200(self) -> bool:
+        """Three short pulses in a row ask for the slow line."""
+        if len(self._short_pulses) < PULSES_TO_19200:
+            return False
+        self._short_pulses = []
+        return True

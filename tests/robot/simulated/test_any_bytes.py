@@ -29,7 +29,7 @@ def test_after_any_bytes_the_robot_can_be_started_again(lines):
     robot.step_until(robot.now + 0.1)
     robot.brc.low(False)
     port.write(bytes(LONGEST_COMMAND))  # fills whatever command is half said
-    robot.step_until(robot.now + 0.2)
+    robot.step_until(robot.now + 1.0)  # long answers take their time on the line
     port.baudrate = robot.body.interface.baud
     port.write(b"\x96\x00\x80\x8e\x23")
     robot.step_until(robot.now + 0.02)

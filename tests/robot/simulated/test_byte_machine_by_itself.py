@@ -24,7 +24,8 @@ def test_reset_prints_the_boot_text_and_hears_nothing_meanwhile(awake):
 def test_a_charging_robot_prints_a_battery_line_a_second_until_it_is_started(make):
     bench = make("dock", battery_ratio=0.5)
     bench.run(10)
-    lines = bench.heard().decode("ascii").splitlines()
+    begins, check, *lines = bench.heard().decode("ascii").splitlines()
+    assert (begins, check) == ("Performing charger self-test", "do-charging-full @ min 0")
     assert len(lines) == 10
     assert re.fullmatch(r"bat:   min 0  sec 8  mV \d+  mA 1250  tenths-deg-C \d+  mAH \d+  state 8  mode 7", lines[-1])
     bench.send(128)
