@@ -46,6 +46,7 @@ ROUTERS = (
     demo_camera.router,
 )
 RESTART_PAUSE_S = 1.0
+STOP_WITHIN_S = 2.0
 
 
 def create_app(settings: Settings, clock: Clock) -> FastAPI:
@@ -105,25 +106,34 @@ def _code_picture(key: ServerKey) -> Callable[[str, NoticeKind], tuple[str, byte
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     await bring_to_head(app.state.database)
     await app.state.fleet.begin()
-    background = [
-        asyncio.create_task(_keep_running("outbox", app.state.outbox_worker.run)),
-        asyncio.create_task(_keep_running("dispatch", app.state.dispatcher.run)),
-    ]
+    workers = {"outbox": app.state.outbox_worker, "dispatch": app.state.dispatcher}
+    background = [asyncio.create_task(_keep_running(name, worker.run)) for name, worker in workers.items()]
     try:
         yield
     finally:
         app.state.feed.close()
-        for task in background:
-            task.cancel()
-        await asyncio.gather(*background, return_exceptions=True)
+        for worker in workers.values():
+            worker.stop()
+        await _ended(background)
         await app.state.database.close()
+
+
+async def _ended(background: list[asyncio.Task[None]]) -> None:
+    """What runs in the background may finish its transaction, and is cut off only if that takes long.
+
+    A transaction that is cut off keeps SQLite's write lock until its cursor is collected, and so holds up the others.
+    """
+    await asyncio.wait(background, timeout=STOP_WITHIN_S)
+    for task in background:
+        task.cancel()
+    await asyncio.gather(*background, return_exceptions=True)
 
 
 async def _keep_running(name: str, run: Callable[[], Awaitable[None]]) -> None:
     """What runs in the background goes on after a failure, which is logged: notices and robots wait for nobody."""
     while True:
         try:
-            await run()
+            return await run()
         except Exception:
             log.exception("background work failed and starts again", name=name)
             await asyncio.sleep(RESTART_PAUSE_S)

@@ -45,6 +45,7 @@ class Dispatcher:
     def __init__(self, fleet: Fleet) -> None:
         self._fleet = fleet
         self._woken = asyncio.Event()
+        self._stopping = False
         fleet.on_change.append(self.wake)
         fleet.orders.on_change.append(self.wake)
 
@@ -52,9 +53,14 @@ class Dispatcher:
         """An order or a robot has changed: look again."""
         self._woken.set()
 
+    def stop(self) -> None:
+        """End `run` after what it is doing."""
+        self._stopping = True
+        self.wake()
+
     async def run(self) -> None:
-        """Until cancelled."""
-        while True:
+        """Until stopped or cancelled."""
+        while not self._stopping:
             self._woken.clear()
             while await self.assign_next():
                 pass

@@ -43,13 +43,19 @@ class OutboxWorker:
     clock: Clock
     code_picture: CodePicture
     _bell: asyncio.Event = field(default_factory=asyncio.Event)
+    _stopping: bool = False
 
     def wake(self) -> None:
         self._bell.set()
 
+    def stop(self) -> None:
+        """End `run` after what it is doing."""
+        self._stopping = True
+        self.wake()
+
     async def run(self) -> None:
-        """Until cancelled."""
-        while True:
+        """Until stopped or cancelled."""
+        while not self._stopping:
             self._bell.clear()
             if await self.work_once() < AT_ONCE:
                 # Not `wait_for`: before Python 3.12 it loses a cancellation that comes just as the bell rings.
