@@ -1,11 +1,8 @@
 """Puts a robot together from settings; for `__main__` alone. Problems are raised by name, before any wheel turns."""
 
-import os
-import tempfile
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 from bdi import Agent, Program, parse_program
 from maps import CampusMap, find_map
@@ -17,15 +14,14 @@ from .black_box import BlackBox
 from .config import ConfigError, PerceptMode, Settings, read_token
 from .daemon import BodyWatch, Daemon
 from .drive_loop import DriveLoop
-from .drivers.camera import GrabbingCamera
 from .drivers.create2 import Create2
 from .drivers.interfaces import BodyShape, Camera, Host, LineSensor
-from .drivers.line_sensor import ThreeDiodes
-from .drivers.marker_reader import MarkerReader, MarkerWatch, Optics
+from .drivers.marker_pose import Optics
+from .drivers.marker_reader import MarkerReader, MarkerWatch
 from .drivers.port_thread import PortThread
 from .drivers.serial_port import SerialPort, open_serial
-from .drivers.wake_up import SerialRts
 from .duties import Duties
+from .hardware import line_sensor, pin_factory, real_camera, real_port
 from .host import Computer, HostWatch
 from .link import Link
 from .memory import Memory
@@ -144,6 +140,15 @@ def _home(settings: Settings, campus: CampusMap) -> str | None:
     return settings.home
 
 
+def _mailroom(settings: Settings, campus: CampusMap) -> str | None:
+    if settings.mailroom is not None and settings.mailroom not in campus.posts:
+        posts = ", ".join(campus.posts)
+        raise ConfigError(
+            "settings", "mailroom", f"map {campus.name} has no post {settings.mailroom}", f"Posts: {posts}."
+        )
+    return settings.mailroom
+
+
 def _token_file(settings: Settings) -> Path:
     if settings.token_file is None:
         raise ConfigError("settings", "token_file", "a server needs a token", "Give --token-file FILE.")
@@ -154,7 +159,7 @@ def _devices(
     settings: Settings, campus: CampusMap, clock: Clock, simulation: Simulation | None, closing: ExitStack
 ) -> Devices:
     if simulation is None:
-        return _real_devices(settings, clock)
+        return _real_devices(settings, clock, closing)
     robot = _simulated_robot(settings, campus, clock, simulation)
     closing.callback(robot.close)
     saved = SavedWorld(robot, settings.data / "world.json")
@@ -164,7 +169,7 @@ def _devices(
         return robot.memory_port() if simulation.in_memory else open_serial(robot.port_path)
 
     base = Create2(open_port, robot.brc, settings.drive.velocity_deadline_s)
-    sensor = _line_sensor(settings, robot.pin_factory)
+    sensor = line_sensor(settings, robot.pin_factory)
     host = SimulatedHost(robot.faults, clock.utc)
     return Devices(base, sensor, robot.camera, host, robot, saved)
 
@@ -191,26 +196,16 @@ def _simulated_robot(settings: Settings, campus: CampusMap, clock: Clock, simula
     )
 
 
-def _line_sensor(settings: Settings, pin_factory: Any) -> ThreeDiodes:
-    line = settings.line
-    return ThreeDiodes(line.left_pin, line.centre_pin, line.right_pin, pin_factory, line.line_is_low)
-
-
-def _real_devices(settings: Settings, clock: Clock) -> Devices:
-    rts = SerialRts(settings.serial_port)
-    base = PortThread(Create2(rts.open, rts, settings.drive.velocity_deadline_s), clock.now)
+def _real_devices(settings: Settings, clock: Clock, closing: ExitStack) -> Devices:
+    """Each is closed again if a later one cannot be opened."""
+    wake_up_line, open_port = real_port(settings)
+    base = PortThread(Create2(open_port, wake_up_line, settings.drive.velocity_deadline_s), clock.now)
+    closing.callback(base.close)
+    sensor = line_sensor(settings, pin_factory())
+    closing.callback(sensor.close)
+    frames = real_camera(settings)
+    closing.callback(frames.close)
     base.start()
-    camera = settings.camera
-    try:
-        # lgpio makes a pipe in the working directory unless it is told another, and that one may be read-only.
-        os.environ.setdefault("LG_WD", tempfile.gettempdir())
-        from gpiozero.pins.lgpio import LGPIOFactory
-
-        sensor = _line_sensor(settings, LGPIOFactory())
-    except (ImportError, OSError) as error:
-        way_out = "On a Raspberry Pi: pip install 'campus-mail[pi]'; elsewhere: --simulated."
-        raise ConfigError("this computer", "line", f"its pins cannot be used: {error}", way_out) from None
-    frames = GrabbingCamera(camera.device, camera.width_px, camera.height_px, camera.exposure_ms)
     return Devices(base, sensor, frames, Computer(settings.data, clock.utc))
 
 
@@ -219,7 +214,7 @@ def join(
 ) -> Parts:
     """Devices, body, duties, navigator, agent: each knows only those before it."""
     shape, now = shape_of(settings), clock.now()
-    duties = Duties(store, Memory(store), Outbox(store), clock.utc)
+    duties = Duties(store, Memory(store), Outbox(store), clock.utc, mailroom=_mailroom(settings, campus))
     black_box = BlackBox(settings.data / "black_box", clock.utc)
     devices.base.listen_in(black_box.heard, black_box.sent)
     stops = StopMemory(settings.data / "stops.json")
@@ -264,6 +259,7 @@ def _link(settings: Settings, url: str, token: str, clock: Clock, parts: Parts) 
         outbox=duties.outbox,
         memory=duties.memory,
         hello_source=parts.daemon.hello,
+        stop_at_once=parts.daemon.drive.emergency_stop,
     )
     duties.join(link)
     parts.mind.said = link.say

@@ -29,7 +29,7 @@ def stop_base(port: str) -> None:
         finally:
             os.close(handle)
     except (OSError, termios.error) as error:
-        raise PortAbsent(port, error.strerror if isinstance(error, OSError) else str(error)) from None
+        raise PortAbsent(port, str(getattr(error, "strerror", None) or error)) from None
 
 
 def _set_up(handle: int) -> None:

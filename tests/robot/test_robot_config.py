@@ -51,7 +51,7 @@ def test_an_unknown_key_is_named_with_the_nearest_one(tmp_path: Path, text: str,
         ("[battery]\nlow_ratio = 0.99\n", "battery"),
         ("[rates]\ndrive_hz = 0\n", "rates.drive_hz"),
         ("[drive]\nmm_per_count = 4.4\n", "drive.mm_per_count"),
-        ("wake_up = 'dtr'\n", "wake_up"),
+        ("brc = 'dtr'\n", "brc"),
     ],
 )
 def test_a_value_that_cannot_be_is_refused_by_its_key(tmp_path: Path, text: str, key: str) -> None:
