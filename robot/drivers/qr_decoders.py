@@ -14,7 +14,7 @@ from .interfaces import Frame
 
 Corner = tuple[float, float]
 Corners = tuple[Corner, Corner, Corner, Corner]
-LADDER_BUDGET_S = 0.040
+LADDER_BUDGET_S = 0.080
 CROP_MARGIN = 0.25
 """Of a detected code's size: OpenCV's quads are often a few modules off."""
 SMALLEST_PX = 24
@@ -79,7 +79,7 @@ def zxing_decoder(zxingcpp: Any) -> Decoder:
             return list(
                 zxingcpp.read_barcodes(
                     picture,
-                    formats=zxingcpp.BarcodeFormat.QRCode,
+                    formats=zxingcpp.BarcodeFormat.QRCodeModel2,  # QRCode would be its small and oblong relatives too
                     binarizer=zxingcpp.Binarizer.LocalAverage,
                     try_rotate=False,  # turned lines only: its search for QR codes knows every direction
                     try_downscale=True,
