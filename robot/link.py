@@ -30,6 +30,7 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus, WebSocketExce
 from protocol.clock import Clock
 from protocol.envelope import MAX_MESSAGE_BYTES
 from protocol.errors import ProtocolError
+from protocol.to_robot import EmergencyStop
 from protocol.to_server import Hello, Snapshot, Why
 from robot.connection import Connection, Ends, LinkBroken, Newest, Rhythm
 from robot.errors import RobotError
@@ -88,11 +89,16 @@ class Link:
         memory: Memory,
         hello_source: Callable[[], Hello],
         rhythm: Rhythm | None = None,
+        stop_at_once: Callable[[], None] = lambda: None,
     ) -> None:
-        """Raises InsecureServer. Whatever was received before a restart and not handled is `incoming` again."""
+        """`stop_at_once` is called in the link's thread when an emergency stop comes: it waits for no reasoning.
+
+        Raises InsecureServer. Whatever was received before a restart and not handled is `incoming` again.
+        """
         check_secure(url)
         self._url, self._token, self._clock = url, token, clock
         self._rhythm = rhythm or Rhythm()
+        self._stop_at_once = stop_at_once
         self._newest = Newest()
         self._incoming: deque[Incoming] = deque(memory.unhandled())
         self._ends = Ends(robot, clock, outbox, memory, hello_source, self._newest, self._deliver, self._rhythm)
@@ -161,6 +167,8 @@ class Link:
                 self._loop.call_soon_threadsafe(call)
 
     def _deliver(self, incoming: Incoming) -> None:
+        if isinstance(incoming.message, EmergencyStop):
+            self._stop_at_once()
         self._incoming.append(incoming)
         if len(self._incoming) >= MAX_INCOMING:
             self._room.clear()

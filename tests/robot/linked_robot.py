@@ -4,7 +4,7 @@ import asyncio
 import time
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from protocol.clock import RealClock
 from protocol.parts import Activity, Battery, Leg, Position, Stop, StopAction
@@ -28,6 +28,8 @@ class Robot:
     store: Store
     outbox: Outbox
     memory: Memory
+    stops: list[float] = field(default_factory=list)
+    """When the link stopped the robot at once."""
 
     @asynccontextmanager
     async def linked(self, url: str, rhythm: Rhythm = QUICK) -> AsyncIterator[Link]:
@@ -47,6 +49,7 @@ class Robot:
                 map_version="m1",
             ),
             rhythm=rhythm,
+            stop_at_once=lambda: self.stops.append(time.monotonic()),
         )
         link.start()
         try:

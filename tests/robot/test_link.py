@@ -12,7 +12,7 @@ from protocol.both_ways import Error
 from protocol.clock import RealClock
 from protocol.envelope import TO_SERVER, parse
 from protocol.parts import Battery, Position, Received
-from protocol.to_robot import Cancel, Pause, Welcome
+from protocol.to_robot import Cancel, EmergencyStop, Pause, Welcome
 from protocol.to_server import Hello, Why
 from robot.connection import MAX_UNACKNOWLEDGED, Connection, Ends, Newest, Rhythm
 from robot.link import MAX_INCOMING, InsecureServer, LinkState, check_secure, retry_delays_s
@@ -268,6 +268,15 @@ async def test_a_daemon_that_takes_nothing_is_not_buried_and_misses_nothing(robo
         await until(lambda: server.heard[-1].ack == many)
         taken += link.incoming()
         assert [incoming.seq for incoming in taken] == list(range(1, many + 1))
+
+
+async def test_an_emergency_stop_stops_the_robot_though_its_mind_takes_no_messages(robot: Robot) -> None:
+    async with playing() as server, robot.linked(server.url) as link:
+        await until(lambda: link.online)
+        await server.send(EmergencyStop(command_id="s1", reason="a child plays there"), seq=1)
+        await until(lambda: server.heard[-1].ack == 1)
+        assert len(robot.stops) == 1
+        assert [one.message.command_id for one in link.incoming()] == ["s1"], "it is answered as any command is"
 
 
 @dataclass
