@@ -160,6 +160,8 @@ def rows(file: Path) -> Iterator[Row]:
             for line in lines:
                 number += 1
                 yield _row(json.loads(line))
+        if not number:
+            raise ValueError("it is empty")
     except (OSError, EOFError, ValueError, KeyError, TypeError) as error:
         raise BlackBoxUnreadable(file, number, error) from None
 

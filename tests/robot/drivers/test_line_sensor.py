@@ -1,12 +1,16 @@
 """Three diodes on mock pins: polarity, majority, and the pins' own strictness."""
 
 from collections.abc import Iterator
+from random import Random
 
 import pytest
 from gpiozero.pins.mock import MockFactory
 
 from robot.drivers.interfaces import LineReading
 from robot.drivers.line_sensor import ThreeDiodes
+from robot.reflexes import Lasting
+
+TICKS = 4000
 
 
 @pytest.fixture
@@ -63,3 +67,57 @@ def test_a_tie_leaves_a_diode_as_it_was(factory: MockFactory):
     assert sensor.read().pattern == "101"
     assert sensor.read().pattern == "101", "and without a new sample nothing changes"
     sensor.close()
+
+
+@pytest.mark.parametrize("samples", [4, 10], ids=["200 Hz", "500 Hz"])
+def test_five_flipped_reads_in_a_hundred_become_fewer_than_one_wrong_pattern_in_two_hundred(
+    factory: MockFactory, samples: int
+) -> None:
+    """Three diodes at 50 ticks a second, an edge of the tape every half second: 14 % of the single looks are wrong."""
+    random, sensor, true = Random(5), three(factory), "101"
+    wrong_looks = wrong_reads = 0
+    for tick in range(TICKS):
+        if tick % 25 == 0:
+            true = random.choice(("101", "001", "100", "011", "110", "111"))
+        for _ in range(samples):
+            pattern = "".join(digit if random.random() >= 0.05 else str(1 - int(digit)) for digit in true)
+            wrong_looks += pattern != true
+            light(factory, pattern)
+            sensor.sample()
+        wrong_reads += sensor.read().pattern != true
+    assert wrong_looks / (TICKS * samples) > 0.12
+    assert wrong_reads / TICKS < 0.005
+    sensor.close()
+
+
+def test_a_diode_changes_only_with_a_clear_majority(factory: MockFactory) -> None:
+    sensor = three(factory)
+    for over, changes in ((1, False), (2, False), (3, True)):
+        for sample in range(4):
+            light(factory, "011" if sample < over else "111")
+            sensor.sample()
+        assert sensor.read().left is changes
+    for sample in range(4):
+        light(factory, "111" if sample < 2 else "011")
+        sensor.sample()
+    assert sensor.read().left, "and back again no sooner"
+    sensor.close()
+
+
+def test_a_pattern_that_no_tape_makes_is_counted() -> None:
+    lasting = Lasting()
+    for step, pattern in enumerate(("101", "010", "010", "010", "001")):
+        lasting.look(LineReading(*(digit == "0" for digit in pattern)), 10.0 * step, None)
+        if step == 3:
+            assert lasting.impossible_mm == 30.0
+    assert lasting.impossible_reads == 3
+    assert lasting.impossible_mm == 0.0, "one tape that passes again speaks for the sensor"
+
+
+def test_travel_without_a_change_of_any_diode_is_measured_until_somebody_looks() -> None:
+    lasting = Lasting()
+    for travelled_mm in range(0, 3000, 10):
+        lasting.look(LineReading(False, True, False), float(travelled_mm), None)
+    assert lasting.constant_mm == 2990.0
+    lasting.start_again()
+    assert lasting.constant_mm == 0.0
