@@ -23,3 +23,13 @@ def test_the_patrol_goes_three_rounds(tmp_path: Path) -> None:
     assert run.mind.failures == []
     assert run.printed[-1] == "the patrol is over"
     run.close()
+
+
+def test_the_courier_fetches_and_brings(tmp_path: Path) -> None:
+    run = SimulatedRun(tmp_path, mind__program=EXAMPLES / "courier.asl", mind__percepts="latest")
+    run.asks("", "fetch(post3,post4)")
+    run.until(lambda: run.printed[-1:] == ["brought to post4"], 400)
+    assert run.visited == ["post5", "post3", "post4"]
+    assert "loaded at post3" in run.printed
+    assert run.mind.failures == []
+    run.close()
