@@ -8,12 +8,13 @@ import math
 from dataclasses import dataclass, field
 from random import Random
 
+from .activity import Activity, Hazards
 from .battery import Battery, Pack
 from .docking import Beside, SeekDock, Wheels, bearing_rad, ir_character
 from .drive_base import DriveBase, Motion
 from .faults import Faults
 from .obstacles import BUMPER_RADIUS_M, Contact, light_signals
-from .open_interface import Activity, Hazards, OpenInterface
+from .open_interface import OpenInterface
 from .packets import Readings
 from .pins import DiodeMount, LinePins
 from .serial_line import SerialLine, spoiled

@@ -77,3 +77,24 @@ COMMANDS: dict[int, Command] = {
 
 # Code of the Baud command → bits per second [S].
 BAUD_CODES = (300, 600, 1200, 2400, 4800, 9600, 14400, 19200, 28800, 38400, 57600, 115200)
+
+
+class CommandParser:
+    """Byte after byte into commands. What is missing is waited for, for ever [S]."""
+
+    def __init__(self) -> None:
+        self._pending = bytearray()
+
+    def eat(self, byte: int, mode: Mode) -> tuple[int, bytes] | None:
+        """The opcode and the data of a command that is complete now. In Off only Start and Reset mean anything."""
+        if not self._pending and (byte not in COMMANDS or (mode is Mode.OFF and byte not in (START, RESET))):
+            return None
+        self._pending.append(byte)
+        opcode, data = self._pending[0], bytes(self._pending[1:])
+        if COMMANDS[opcode].missing(data) > 0:
+            return None
+        self._pending.clear()
+        return opcode, data
+
+    def forget(self) -> None:
+        self._pending.clear()

@@ -6,12 +6,11 @@ after five idle minutes in Passive. Source [S] unless marked [F] (field report) 
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from enum import Enum
 
 from . import firmware_text
+from .activity import Activity, Hazards
 from .actuators import ACTUATORS, Actuators
-from .commands import BAUD_CODES, COMMANDS, RESET, START, Mode
+from .commands import BAUD_CODES, COMMANDS, RESET, START, CommandParser, Mode
 from .faults import Faults
 from .packets import Readings
 from .quirks import FAST_BAUD, SLOW_BAUD, Quirks
@@ -24,23 +23,6 @@ BAUD_CHANGE_S = 0.1
 MODE_CHANGE_S = 0.02
 CLEAN_BUTTONS = 0b011
 DOCK_BUTTON = 0b100
-
-
-class Activity(Enum):
-    """What the firmware does by itself."""
-
-    NONE = "none"
-    CLEANING = "cleaning"
-    DOCKING = "docking"
-
-
-@dataclass(frozen=True)
-class Hazards:
-    """What the firmware's own safety looks at."""
-
-    cliff: bool = False
-    wheel_drop: bool = False
-    charger: bool = False
 
 
 class OpenInterface:
@@ -60,7 +42,7 @@ class OpenInterface:
         self._reports = Reports(readings, faults)
         self._faults = faults
         self._now = now
-        self._pending = bytearray()
+        self._parser = CommandParser()
         self._deaf_until_s = now
 
     # What comes in -----------------------------------------------------------------------------------------------
@@ -75,24 +57,16 @@ class OpenInterface:
                 self._eat(byte)
 
     def _eat(self, byte: int) -> None:
-        if not self._pending and (byte not in COMMANDS or self._shut_for(byte)):
+        command = self._parser.eat(byte, self.mode)
+        if command is None:
             return
-        self._pending.append(byte)
-        opcode, data = self._pending[0], bytes(self._pending[1:])
-        command = COMMANDS[opcode]
-        if command.missing(data) > 0:
-            return
-        self._pending.clear()
-        if self.mode not in command.modes:
+        opcode, data = command
+        if self.mode not in COMMANDS[opcode].modes:
             self.ignored_commands += 1
         elif opcode in ACTUATORS:
             ACTUATORS[opcode](self.actuators, data)
         else:
             HANDLERS[opcode](self, data)
-
-    def _shut_for(self, opcode: int) -> bool:
-        """In Off mode bytes are looked at one by one, and only Start and Reset mean anything."""
-        return self.mode is Mode.OFF and opcode not in (START, RESET)
 
     def brc(self, low: bool, now: float) -> None:
         """The BRC pin is pulled low, or let go."""
@@ -185,7 +159,7 @@ class OpenInterface:
     def _shut(self) -> None:
         self.activity = Activity.NONE
         self._enter(Mode.OFF)
-        self._pending.clear()
+        self._parser.forget()
         self._reports.forget_stream()
 
     def reset(self, _: bytes) -> None:
