@@ -1,5 +1,6 @@
 """The camera as OpenCV's `VideoCapture` would offer it, with the hand-over codes that people hold up to it."""
 
+import math
 from collections.abc import Callable
 
 import cv2
@@ -8,6 +9,8 @@ from .faults import Faults
 from .frames import HEIGHT, WIDTH, Frame, Renderer, View
 
 SHOWN_FOR_S = 20.0
+STEPS_WITH_IT_M = 0.3
+"""Whoever holds a code up does not run beside a robot that drives away."""
 
 
 class SimulatedCamera:
@@ -21,12 +24,12 @@ class SimulatedCamera:
         self._clock = clock
         self._faults = faults
         self._open = True
-        self._shown: tuple[str, float] | None = None
+        self._shown: tuple[str, float, View] | None = None
         self.frames_read = 0
 
     def show(self, text: str, for_s: float = SHOWN_FOR_S) -> None:
         """Somebody holds this text up as a QR code, for so long or until `hide`."""
-        self._shown = (text, self._clock() + for_s)
+        self._shown = (text, self._clock() + for_s, self._view())
 
     def hide(self) -> None:
         self._shown = None
@@ -34,9 +37,13 @@ class SimulatedCamera:
     @property
     def shown(self) -> str | None:
         """The text held up now."""
-        if self._shown and self._clock() >= self._shown[1]:
+        if self._shown and (self._clock() >= self._shown[1] or self._has_left(self._shown[2])):
             self._shown = None
         return self._shown[0] if self._shown else None
+
+    def _has_left(self, there: View) -> bool:
+        here = self._view()
+        return math.dist((here.x_m, here.y_m), (there.x_m, there.y_m)) > STEPS_WITH_IT_M
 
     def read(self) -> tuple[bool, Frame | None]:
         """(True, 480 × 640 frame), or (False, None) after `release` and while the camera is dead."""

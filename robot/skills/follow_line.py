@@ -12,7 +12,7 @@ from ..drivers.interfaces import STOP, BodyShape, WheelSpeeds
 from .find_line import FindLine, over_line
 from .interfaces import Done, Failed, Running, Step, View
 from .line_estimate import LineEstimate, gains
-from .post_ahead import PostAhead
+from .post_ahead import LookAgain, PostAhead
 
 SLOWEST_MM_S = 70.0
 CLOSE_MM, SLOW_BY_MM = 8.0, 25.0
@@ -34,8 +34,10 @@ MOST_SEARCHES = 3
 """So many searches in a row with less than half a metre of line between them: this is where the line ends."""
 MOST_BUMPS = 3
 INNER_WHEEL_MM_S, OUTER_WHEEL_MM_S = 30.0, 200.0
-MISSED_SHARE, MISSED_MM = 0.08, 500.0
+MISSED_SHARE, MISSED_MM = 0.08, 300.0
 """No marker so far beyond the length of the corridor: wheels and tape measures err by less, so the post was missed."""
+OTHER_LINE_MM = 5.0
+"""Where an unseen post may be, tape that lies farther beside the line than this is a branch."""
 
 
 class FollowLine:
@@ -68,7 +70,8 @@ class FollowLine:
         self._last = self._begin = view.odometry
         self._bumps_before = view.bumps
         self._lit_mm = view.odometry.travelled_mm
-        self._search: FindLine | None = None
+        self._search: FindLine | LookAgain | None = None
+        self._looked_again = False
         self._searches, self._searched_mm = 0, -FRUITLESS_MM
         self._post = PostAhead(self._campus, self._leaving, view.odometry, now)
         self._standing_since_s: float | None = None
@@ -87,10 +90,10 @@ class FollowLine:
         if to_go_mm is not None and to_go_mm <= CRAWL_MM_S * WHEEL_LAG_S:
             return self._stop(view, to_go_mm)
         self._standing_since_s = None
-        if to_go_mm is None and self._missed_by_mm(view) > 0:
-            return Failed("post_missed")
+        if to_go_mm is None and self._beyond_mm(view) > MISSED_SHARE * (self._way_left_mm or 0.0) + MISSED_MM:
+            return self._missed(view, now)
         if self._has_lost(view, to_go_mm):
-            return self._lost(view, now)
+            return self._missed(view, now) if self._may_be_at_post(view) else self._lost(view, now)
         return Running(self._speeds(to_go_mm))
 
     # The post
@@ -105,19 +108,23 @@ class FollowLine:
         # What it ran on while braking, or back, is done: a robot that stands does not begin again.
         return Done(self._post.name) if view.sent.still else Running(STOP)
 
-    def _missed_by_mm(self, view: View) -> float:
-        """How far beyond the place of a post whose marker should have been seen; below 0 while it may still come."""
-        if self._way_left_mm is None:
-            return -math.inf
+    def _beyond_mm(self, view: View) -> float:
+        """How far beyond the place of the next post, by map and wheels; below 0 before it."""
         driven_mm = view.odometry.ahead_mm - self._begin.ahead_mm
-        return driven_mm - (1 + MISSED_SHARE) * self._way_left_mm - MISSED_MM
+        return -math.inf if self._way_left_mm is None else driven_mm - self._way_left_mm
 
-    def _ends_at_post(self, view: View) -> bool:
-        """Whether the line may end here because the post stands here, unseen."""
+    def _may_be_at_post(self, view: View) -> bool:
+        """Whether a post whose marker has not been read may be here: where the line ends, or branches off."""
         if self._way_left_mm is None or self._post.name:
             return False
-        driven_mm = view.odometry.ahead_mm - self._begin.ahead_mm
-        return driven_mm > (1 - MISSED_SHARE) * self._way_left_mm - self._shape.sensor_lead_mm
+        return self._beyond_mm(view) > -MISSED_SHARE * self._way_left_mm - self._shape.sensor_lead_mm
+
+    def _missed(self, view: View, now: float) -> Step:
+        """Once it looks again from a little way back, slower: most markers that are there are read then."""
+        if self._looked_again:
+            return Failed("post_missed")
+        self._looked_again = True
+        return self._begin_search(LookAgain(self._beyond_mm(view)), view, now)
 
     # The line
 
@@ -127,7 +134,7 @@ class FollowLine:
         self._line.move(here.ahead_mm - before.ahead_mm, here.heading_rad - before.heading_rad)
         blind = to_go_mm is not None and to_go_mm < self._shape.sensor_lead_mm + BLIND_BEFORE_POST_MM
         if not blind:
-            self._line.see(view.reading)
+            self._line.see(view.reading, OTHER_LINE_MM if self._may_be_at_post(view) else math.inf)
         if over_line(view):
             self._lit_mm = here.travelled_mm
 
@@ -147,16 +154,17 @@ class FollowLine:
         fruitless = view.odometry.travelled_mm - self._searched_mm < FRUITLESS_MM
         self._searches = self._searches + 1 if fruitless else 1
         if self._searches > MOST_SEARCHES:
-            return Failed("post_missed" if self._ends_at_post(view) else "line_lost")
-        heading = view.odometry.heading_rad + self._line.heading
-        self._search = FindLine(self._shape, side=self._line.at(self._shape.sensor_lead_mm), heading_rad=heading)
-        self._search.start(view, now)
-        return self._searched(self._search, view, now)
+            return Failed("line_lost")
+        heading, side = view.odometry.heading_rad + self._line.heading, self._line.at(self._shape.sensor_lead_mm)
+        return self._begin_search(FindLine(self._shape, side=side, heading_rad=heading), view, now)
 
-    def _searched(self, search: FindLine, view: View, now: float) -> Step:
+    def _begin_search(self, search: FindLine | LookAgain, view: View, now: float) -> Step:
+        self._search = search
+        search.start(view, now)
+        return self._searched(search, view, now)
+
+    def _searched(self, search: FindLine | LookAgain, view: View, now: float) -> Step:
         step = search.step(view, now)
-        if isinstance(step, Failed):
-            return Failed("post_missed") if self._ends_at_post(view) else step
         if isinstance(step, Done):
             self._resume(view)
             return Running(STOP)

@@ -5,6 +5,7 @@ The estimate is a Kalman filter of three states: between edges it only predicts,
 is a measurement good to two millimetres.
 """
 
+import math
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -94,9 +95,14 @@ class LineEstimate:
             cc + self._curvature_noise * size,
         ]
 
-    def see(self, reading: LineReading) -> None:
-        """What the diodes say: an edge that has just passed, or a side on which the estimate must not be."""
+    def see(self, reading: LineReading, within_mm: float = math.inf) -> None:
+        """What the diodes say: an edge that has just passed, or a side on which the estimate must not be.
+
+        A line farther than `within_mm` from where this one should be is another.
+        """
         interval = self._intervals.get(reading)
+        if interval and self._off_mm(interval) > within_mm:
+            return
         if interval is None:
             self._slipped_out(reading)
             self._before = None
@@ -114,6 +120,10 @@ class LineEstimate:
         else:
             sigma_mm = (high - low) / 3.5
             self._correct((low + high) / 2, sigma_mm if before is None else INSIDE_DOUBT * sigma_mm)
+
+    def _off_mm(self, interval: Interval) -> float:
+        at = self.at(self.shape.sensor_lead_mm)
+        return max(interval[0] - at, at - interval[1], 0.0)
 
     def _slipped_out(self, reading: LineReading) -> None:
         """Nothing lit just after an outer diode alone: the line went out on that side (a worn place would rather come

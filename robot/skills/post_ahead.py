@@ -5,9 +5,10 @@ from dataclasses import replace
 
 from maps import CampusMap
 
-from ..drivers.interfaces import Odometry
+from ..drivers.interfaces import Odometry, WheelSpeeds
 from ..navigation.approach import arrival_heading_rad, post_ahead_mm
-from .interfaces import View
+from .interfaces import Done, Failed, View
+from .script import Script, Scripted, roll
 
 OWN_POST_MM = 600.0
 """A marker of the post it set out from does not count so near to it."""
@@ -15,6 +16,7 @@ SHARP_MM = 40.0
 """The nearer to abreast the marker is, the less its distance ahead depends on how the camera was mounted."""
 BESIDE_MM = 300.0
 """A post that lies so far beside the way after a search is not ahead any more."""
+LOOK_BACK_MM, LOOK_BACK_MM_S = 500.0, 100.0
 
 
 class PostAhead:
@@ -70,3 +72,25 @@ class PostAhead:
             self.name, self._weight = None, 0.0
         else:
             self._at_mm = here.ahead_mm + dx * along + dy * across
+
+
+class LookAgain(Scripted):
+    """Back along the line for a marker that was not read in passing. Done when one is read, else post_missed."""
+
+    name = "look_again"
+    on_timeout = "post_missed"
+
+    def __init__(self, beyond_mm: float = 0.0) -> None:
+        """`beyond_mm`: how far past the post the robot may be."""
+        self._back_mm = LOOK_BACK_MM + max(0.0, beyond_mm)
+
+    def script(self, view: View) -> Script:
+        """Markers stand before their posts, so that one look from behind is enough."""
+        before_s = view.post.at_s if view.post else view.at_s
+        back = WheelSpeeds(-LOOK_BACK_MM_S, -LOOK_BACK_MM_S)
+        view = yield from roll(view, self._back_mm, back, lambda seen: _newer(seen, before_s))
+        return Done() if _newer(view, before_s) else Failed("post_missed")
+
+
+def _newer(view: View, than_s: float) -> bool:
+    return view.post is not None and view.post.at_s > than_s
