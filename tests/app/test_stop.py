@@ -33,7 +33,9 @@ async def _let_dispatch_wait_for_the_lock(app: FastAPI) -> "asyncio.Task[None]":
     async def hold() -> None:
         async with app.state.database.transaction() as session:
             at = app.state.clock.utc()
-            session.add(RobotRow(name="r1", enrolled_at=at, server_journal="j1", post="post5", online=True))
+            charged = RobotRow(name="r1", enrolled_at=at, server_journal="j1", post="post5", battery_ratio=1.0)
+            charged.online = True
+            session.add(charged)
             await session.flush()
             app.state.dispatcher.wake()
             has_begun.set()
