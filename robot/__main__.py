@@ -6,7 +6,7 @@ from typing import Any
 import typer
 from typer.core import TyperGroup
 
-from .commands import doctor, logs, run, settings, status, stop
+from .commands import doctor, enrol, logs, run, settings, status, stop
 
 EPILOG = """
 A robot at home in a simulated tunnel, in real time:  python -m robot --simulated
@@ -44,6 +44,7 @@ cli.command(name="run", epilog=run.EPILOG)(run.run)
 cli.command(name="status")(status.status)
 cli.command(name="stop")(stop.stop)
 cli.command(name="rearm")(stop.rearm)
+cli.command(name="enrol")(enrol.enrol)
 cli.command(name="doctor")(doctor.doctor)
 cli.command(name="logs")(logs.logs)
 cli.command(name="settings")(settings.settings)

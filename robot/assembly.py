@@ -126,7 +126,7 @@ def check_settings(settings: Settings) -> None:
 
 def _make_folder(path: Path) -> None:
     try:
-        path.mkdir(parents=True, exist_ok=True)
+        path.mkdir(mode=0o700, parents=True, exist_ok=True)  # codes and addresses of people lie there
     except OSError as error:
         raise ConfigError(str(path), "data", f"no folder can be made there: {error.strerror}", "Give --data.") from None
 

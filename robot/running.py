@@ -85,7 +85,8 @@ def run_once(settings: Settings, clock: Clock, simulation: Simulation | None, wi
         board = StatusBoard(
             settings.name, parts.daemon, parts.mind, runner, clock, clock.now(), parts.link, settings.server
         )
-        closing.callback(_open_control(settings.data / SOCKET_NAME, Control(parts.daemon.drive, board.tell)).close)
+        control = Control(parts.daemon.drive, board.tell, lambda: parts.daemon.body.black_box.write("on_demand"))
+        closing.callback(_open_control(settings.data / SOCKET_NAME, control).close)
         signs = SignsOfLife(ServiceManager.of_environment(os.environ), board.signs, board.sentence)
         closing.callback(signs.close)
         if parts.link:

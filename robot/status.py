@@ -7,6 +7,7 @@ from protocol.clock import Clock
 
 from .daemon import SOFTWARE, Daemon
 from .drivers.create2 import Create2
+from .drivers.port_thread import PortThread
 from .link import Link
 from .mind import Mind
 from .reflexes import FAULTS
@@ -70,10 +71,10 @@ class StatusBoard:
             "age_s": round(view.at_s - state.at_s, 3) if state else None,
             "wheels_mm_s": list(view.sent),
         }
-        if isinstance(base, Create2):
+        if isinstance(base, Create2 | PortThread):
             health = base.health
             told |= {"frames": health.frames, "starts": health.starts, "reconnections": health.reconnections}
-            told["problem"] = health.problem
+            told |= {"damaged": health.corrupt, "problem": health.problem, "down": health.down}
         return told
 
     def _link(self) -> dict[str, Any] | None:

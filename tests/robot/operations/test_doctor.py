@@ -3,7 +3,6 @@
 The computer's side is a made-up tree of /proc, /sys, /boot and /etc; the service is a real WebSocket server.
 """
 
-import http
 import json
 import math
 import os
@@ -17,7 +16,6 @@ from typing import Any
 
 import pytest
 from typer.testing import CliRunner
-from websockets.sync.server import ServerConnection, serve
 
 from maps import find_map
 from protocol.clock import RealClock
@@ -305,32 +303,6 @@ def test_a_computer_that_tells_nothing_is_no_fault(tmp_path: Path) -> None:
 
 
 # The service
-
-
-@pytest.fixture
-def link() -> Iterator[str]:
-    """Takes the token `good`, and hangs up on others as the service does; it tells its map, too."""
-
-    def talk(socket: ServerConnection) -> None:
-        assert socket.request
-        if socket.request.headers.get("Authorization") == "Bearer good":
-            for _ in socket:
-                pass
-        else:
-            socket.close(4401, "token refused")
-
-    def answer(connection: ServerConnection, request: Any) -> Any:
-        if request.path.endswith("/map"):
-            campus = find_map("test_track")
-            return connection.respond(http.HTTPStatus.OK, json.dumps({"name": campus.name, "version": campus.version}))
-        return None
-
-    with serve(talk, "127.0.0.1", 0, process_request=answer) as server:
-        thread = threading.Thread(target=server.serve_forever)
-        thread.start()
-        yield f"ws://127.0.0.1:{server.socket.getsockname()[1]}/api/v1/robots/link"
-        server.shutdown()
-        thread.join()
 
 
 def with_token(root: Path, link: str, secret: str, **settings: object) -> Patient:
