@@ -20,21 +20,30 @@ class ModeKeeper:
         self._asked_s = 0.0
         self._offset: int | None = None
         self._started_s = 0.0
+        self._doubted = False
+        self.doubtful = False
+        """The base is to be sent Start once more: it does not say that the last one was heard."""
 
     def started(self, now: float) -> None:
         """The base has been sent Start: it is in Passive, and has to be asked for anything else again."""
         self._offset = None
+        self._doubted = self.doubtful = False
         self._started_s, self._asked_s = now, now - MODE_RETRY_S
 
     def read(self, reported: int | None, now: float) -> Mode:
         """Some firmware reports every mode one too high; just after a start it must be Passive: that tells.
 
-        None: the firmware does not tell its mode at all.
+        Unless the start was lost on a base that was in Safe: so before that is believed it is sent a second one.
+        `reported` is None if the firmware does not tell its mode at all.
         """
         if self._offset is None and now - self._started_s < MODE_KNOWN_AFTER_S:
             return Mode.UNKNOWN
         if reported is None:
             self._offset = 0
+            return Mode.UNKNOWN
+        if self._offset is None and reported == Mode.SAFE and not self._doubted:
+            self._doubted = self.doubtful = True
+            self._started_s = now
             return Mode.UNKNOWN
         if self._offset is None:
             self._offset = 1 if reported == Mode.SAFE else 0

@@ -126,6 +126,9 @@ class Create2:
         self._cable.send(bytes((OPCODES[mode],)), now, MODE_GAP_S)
 
     def _keep_mode(self, state: BaseState, now: float) -> None:
+        if self._modes.doubtful:
+            self._modes.doubtful = False
+            self._cable.send(bytes((oi.Opcode.START,)), now, MODE_GAP_S)
         if self._modes.lost(state, self._speeds.stalled(now), now):
             self._send_mode(self._modes.wanted, now)
 

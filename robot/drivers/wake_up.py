@@ -101,7 +101,7 @@ class KeepAwake:
             self._low_since_s = None
             self._line.low(False)
         if not idle:
-            self._stirred_s = now
+            self._pulsed_s = self._stirred_s = now
             return False
         if self._line.wired:
             if self._low_since_s is None and now - self._pulsed_s >= EVERY_S:

@@ -53,15 +53,14 @@ class OpenInterface:
         for byte in data:
             if self.asleep or now < self._deaf_until_s or self._quirks.is_frozen(now):
                 return
-            if not self._quirks.mute or byte == RESET:
-                self._eat(byte)
+            self._eat(byte)
 
     def _eat(self, byte: int) -> None:
         command = self._parser.eat(byte, self.mode)
         if command is None:
             return
         opcode, data = command
-        if self.mode not in COMMANDS[opcode].modes:
+        if self.mode not in COMMANDS[opcode].modes or (self._quirks.mute and opcode != RESET):
             self.ignored_commands += 1
         elif opcode in ACTUATORS:
             ACTUATORS[opcode](self.actuators, data)
