@@ -19,6 +19,8 @@ from ..simulated import SimulatedWorldError
 from .errors import RecordingError, ScenarioError
 from .judging import Ending, shortfalls
 from .loading import load_scenario
+from .recording import Recorder
+from .replaying import write_page
 from .stage import Stage
 
 NOT_AS_EXPECTED, MISUSE = 1, 2
@@ -49,7 +51,10 @@ def run(
             stage = closing.enter_context(Stage(scenario, folder, source, _nothing if quiet else _tell))
             if real_time:
                 stage.watchers.append(lambda now: sleep(max(0.0, now - (perf_counter() - began_s))))
+            recorder = closing.enter_context(Recorder(record, stage)) if record else None
             ending = stage.run()
+            if recorder:
+                recorder.end(ending)
             ran_s = stage.clock.now()
     except (ScenarioError, RecordingError, CampusMapError, SimulatedWorldError) as error:
         _refuse(str(error))
@@ -99,6 +104,19 @@ def check(file: File) -> None:
         _refuse(str(error))
     robots, orders = len(scenario.robot), len(scenario.order)
     print(f"{file}: {scenario.title or 'a scenario'}; {robots} robot(s), {orders} order(s). Nothing is wrong with it.")
+
+
+@cli.command()
+def replay(
+    recording: Annotated[Path, typer.Argument(help="What `run --record` wrote.")],
+    target: Annotated[Path, typer.Argument(metavar="PAGE", help="The page to write, replay.html.")],
+) -> None:
+    """Make one self-contained page of a recording: open it in any browser, with no network."""
+    try:
+        write_page(recording, target)
+    except RecordingError as error:
+        _refuse(str(error))
+    print(f"{target}: {target.stat().st_size / 1e6:.1f} MB")
 
 
 def _refuse(sentence: str) -> NoReturn:
