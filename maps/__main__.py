@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import asdict
+from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
@@ -14,7 +15,7 @@ from maps.check import check_file
 from maps.errors import CampusMapError, MapError
 from maps.problem import Problem
 from maps.routes import shortest_route
-from maps.sheets import marker_sheet
+from maps.sheets import all_pages, as_pdf, marker_sheet
 
 cli = typer.Typer(help=__doc__, no_args_is_help=True, add_completion=False)
 MapArgument = Annotated[Path, typer.Argument(metavar="MAP", help="A map file, or the name of one that ships.")]
@@ -92,17 +93,46 @@ def route(where: MapArgument, start: str, goal: str) -> None:
     print(f"{' → '.join(found.posts)}: {found.length_m:.4g} m")
 
 
+class Format(StrEnum):
+    SVG = "svg"
+    PDF = "pdf"
+
+
 @cli.command()
 def markers(
     where: MapArgument,
     out: Annotated[Path, typer.Option(help="The folder that the sheets go into.")] = Path("markers"),
+    format: Annotated[Format, typer.Option(help="svg: a file for each post; pdf: everything in one.")] = Format.PDF,
+    april_tags: Annotated[
+        bool, typer.Option("--april-tags", help="With an AprilTag below each code, for robots set to read them.")
+    ] = False,
+    post: Annotated[list[str] | None, typer.Option(help="Only this post; may be repeated.")] = None,
 ) -> None:
-    """One marker sheet (SVG, print at 100 %) for each post."""
+    """Marker sheets for the printer, at 100 %: as many of each post as it has markers."""
     campus = _map_or_exit(where)
-    out.mkdir(parents=True, exist_ok=True)
-    for post in campus.posts.values():
-        (out / f"{post.name}.svg").write_text(marker_sheet(post), encoding="utf-8")
-    print(f"{len(campus.posts)} sheets in {out}")
+    posts = tuple(_posts_or_exit(campus, post))
+    sheets = sum(len(one.markers) for one in posts)
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+        if format is Format.PDF:
+            path = out / f"{campus.name}.pdf"
+            path.write_bytes(as_pdf(all_pages(campus, posts, april_tags), f"Markers of {campus.title}"))
+            print(f"{sheets} sheets for {len(posts)} posts, and a page that explains: {path}")
+        else:
+            for one in posts:
+                (out / f"{one.name}.svg").write_text(marker_sheet(one, april_tags), encoding="utf-8")
+            print(f"{len(posts)} sheets in {out}; print {sheets}, as many of each as it says")
+    except OSError as error:
+        typer.echo(f"{out}: the sheets cannot be written there: {error.strerror}. Give --out FOLDER.", err=True)
+        raise typer.Exit(UNREADABLE) from error
+
+
+def _posts_or_exit(campus: CampusMap, names: list[str] | None) -> list[Post]:
+    try:
+        return [campus.post(name) for name in names or campus.posts]
+    except CampusMapError as error:
+        typer.echo(str(error), err=True)
+        raise typer.Exit(1) from error
 
 
 def _map_or_exit(where: Path) -> CampusMap:

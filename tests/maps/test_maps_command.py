@@ -12,7 +12,7 @@ from typer.testing import CliRunner, Result
 import maps
 from maps import builtin_map
 from maps.__main__ import cli
-from maps.sheets import marker_code, marker_sheet
+from maps.sheets import marker_code
 
 CHECKOUT = Path(maps.__file__).parent.parent
 
@@ -68,11 +68,6 @@ def test_route_prints_posts_and_metres():
     assert (wrong.exit_code, "Did you mean 'post4'" in wrong.stderr) == (1, True)
 
 
-def test_a_sheet_is_written_for_every_post(tmp_path):
-    assert run("markers", "test_track", "--out", str(tmp_path / "sheets")).exit_code == 0
-    assert sorted(path.name for path in (tmp_path / "sheets").iterdir()) == [f"post{n}.svg" for n in range(1, 6)]
-
-
 @pytest.mark.parametrize("campus", ["test_track", "carleton"])
 def test_a_marker_is_read_as_its_posts_name_by_an_independent_decoder(campus):
     import numpy as np
@@ -86,9 +81,3 @@ def test_a_marker_is_read_as_its_posts_name_by_an_independent_decoder(campus):
 def test_the_papers_markers_are_of_version_1_with_error_correction_h():
     code = marker_code("post3")
     assert (code.version, code.error) == (1, "H")
-
-
-def test_a_sheet_draws_the_code_80_mm_wide():
-    sheet = marker_sheet(builtin_map("test_track").post("post3"))
-    assert 'width="148mm"' in sheet
-    assert f"scale({80 / 21:.6f})" in sheet
