@@ -1,11 +1,16 @@
 """Into the dock and out of it. In, the firmware drives by the dock's infrared; out, it does not, so we do."""
 
 import math
+from dataclasses import asdict, dataclass
+
+import structlog
 
 from ..drivers.interfaces import STOP, BodyShape, Mode, WheelSpeeds
 from .find_line import over_line
-from .interfaces import Done, Failed, Running, SeekDock, SetMode, View
+from .interfaces import Done, Failed, Outcome, Running, SeekDock, SetMode, View
 from .script import Part, Script, Scripted, roll, stand, turn_by
+
+log = structlog.get_logger("robot.dock")
 
 CHARGING_S = 3.0
 """Contacts may bounce: only charging for so long is docked."""
@@ -13,12 +18,23 @@ CONTACT_LOST_S = 1.0
 ATTEMPT_S = 60.0
 IDLE_S = 10.0
 """A firmware that has not moved for so long has given up."""
-BACK_MM_S = 100.0
-RETRY_BACK_MM = 250.0
-UNDOCK_MM = 300.0
-TO_LINE_MM = 500.0
-TO_LINE_MM_S = 70.0
+RETRY_BACK_MM, RETRY_BACK_MM_S = 250.0, 100.0
+"""Each try begins so much farther off than the one before: from too near the firmware cannot come straight."""
+UNDOCK_MM, UNDOCK_MM_S, UNDOCK_TURN_MM_S = 300.0, 150.0, 140.0
+TO_LINE_MM, TO_LINE_MM_S = 500.0, 110.0
 MODE_S = 3.0
+ASLANT_RAD = math.radians(3)
+
+
+@dataclass
+class DockMetrics:
+    """How one docking went; logged when it is over."""
+
+    tries: int = 0
+    bounces: int = 0
+    """How often the contacts lost power again before 3 s of charging were over."""
+    took_s: float = 0.0
+    docked: bool = False
 
 
 class Dock(Scripted):
@@ -27,20 +43,26 @@ class Dock(Scripted):
     name = "dock"
     on_timeout = "no_dock"
 
-    def __init__(self, tries: int = 3, limit_s: float = 300.0) -> None:
-        self._tries = tries
+    def __init__(self, tries: int = 3, shape: BodyShape | None = None, limit_s: float = 300.0) -> None:
+        self._tries, self._shape = tries, shape or BodyShape()
         self.limit_s = limit_s
+        self.metrics = DockMetrics()
 
     def script(self, view: View) -> Script:
-        """Seek, and on failure back off a little and seek again."""
-        for attempt in range(self._tries):
-            if attempt:
-                view = yield from self._back_off(view)
+        """Seek; on failure back off, look again the way the line led to the dock, and seek again."""
+        began_s, along_rad = view.at_s, view.odometry.heading_rad
+        while self.metrics.tries < self._tries:
+            self.metrics.tries += 1
             view = yield from self._seek(view)
             if _charging(view):
-                return Done()
-        view = yield from self._back_off(view)
-        return Failed("no_dock")
+                return self._over(Done(), view.at_s - began_s)
+            view = yield from self._back_off(view, along_rad)
+        return self._over(Failed("no_dock"), view.at_s - began_s)
+
+    def _over(self, outcome: Outcome, took_s: float) -> Outcome:
+        self.metrics.took_s, self.metrics.docked = took_s, isinstance(outcome, Done)
+        log.info("docking", **asdict(self.metrics))
+        return outcome
 
     def _seek(self, view: View) -> Part:
         began_s = moved_s = view.at_s
@@ -57,15 +79,19 @@ class Dock(Scripted):
                 if view.at_s - charging_since_s >= CHARGING_S:
                     return view
             elif view.at_s - charging_s > CONTACT_LOST_S:
+                self.metrics.bounces += charging_since_s is not None
                 charging_since_s = None
                 if view.at_s - moved_s > IDLE_S:
                     return view
             view = yield Running(None)
         return view
 
-    def _back_off(self, view: View) -> Part:
+    def _back_off(self, view: View, along_rad: float) -> Part:
         view = yield Running(STOP, (SetMode(Mode.SAFE),))
-        return (yield from roll(view, RETRY_BACK_MM, WheelSpeeds(-BACK_MM_S, -BACK_MM_S)))
+        back_mm = RETRY_BACK_MM * (1 + self.metrics.tries) / 2
+        view = yield from roll(view, back_mm, WheelSpeeds(-RETRY_BACK_MM_S, -RETRY_BACK_MM_S))
+        off_rad = math.remainder(along_rad - view.odometry.heading_rad, math.tau)
+        return (yield from turn_by(view, off_rad, UNDOCK_TURN_MM_S, self._shape)) if abs(off_rad) > ASLANT_RAD else view
 
 
 class Undock(Scripted):
@@ -83,10 +109,10 @@ class Undock(Scripted):
             return Failed("not_docked")
         view = yield Running(STOP, (SetMode(Mode.FULL),))
         view = yield from _until_mode(view, Mode.FULL)
-        view = yield from roll(view, UNDOCK_MM, WheelSpeeds(-BACK_MM_S, -BACK_MM_S))
+        view = yield from roll(view, UNDOCK_MM, WheelSpeeds(-UNDOCK_MM_S, -UNDOCK_MM_S))
         view = yield Running(STOP, (SetMode(Mode.SAFE),))
         view = yield from _until_mode(view, Mode.SAFE)
-        view = yield from turn_by(view, math.pi, 80.0, self._shape)
+        view = yield from turn_by(view, math.pi, UNDOCK_TURN_MM_S, self._shape)
         # The tape ends at the post, some way before the dock.
         view = yield from roll(view, TO_LINE_MM, WheelSpeeds(TO_LINE_MM_S, TO_LINE_MM_S), over_line)
         return Done() if over_line(view) else Failed("line_lost")

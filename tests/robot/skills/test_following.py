@@ -1,0 +1,103 @@
+"""The follower on the benchmark's tracks, and what it does where the line or a marker is not as the map says."""
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import pytest
+
+from benchmarks.body.line import ride
+from benchmarks.body.turns import ON_THE_LINE, cross, small_map
+from maps import CampusMap, builtin_map
+from robot.skills import Done, Failed, FollowLine, Turn
+from tests.robot.skills.track import Drive
+
+Make = Callable[..., Drive]
+TRACK = builtin_map("test_track")
+
+
+def without_marker(post: str) -> CampusMap:
+    """Somebody has torn it off."""
+    return replace(TRACK, posts=TRACK.posts | {post: replace(TRACK.post(post), markers=())})
+
+
+@pytest.mark.parametrize("track", ["straight", "s_600_400", "s_250_200"])
+def test_with_the_sensor_ahead_it_follows_tight_bends_at_speed(track: str):
+    one = ride(track, lead_mm=60.0, seed=7)
+    assert one.completed, one.outcome
+    assert one.speed_mm_s > 145
+    assert one.lost_share < 0.05
+    assert (one.searching, one.slow_commands) == (0, 0)
+
+
+@pytest.mark.parametrize("track", ["straight", "s_600_400"])
+def test_with_the_sensor_on_the_axle_it_follows_slowly(track: str):
+    one = ride(track, lead_mm=0.0, seed=7)
+    assert one.completed, one.outcome
+    assert 80 <= one.speed_mm_s <= 120
+    assert one.slow_commands == 0
+
+
+@pytest.mark.parametrize("came_from", ["post2", "post4", "post5"])
+@pytest.mark.parametrize("towards", ["post2", "post4", "post5"])
+def test_at_a_t_junction_no_turn_slips_onto_a_branch(came_from: str, towards: str):
+    crossing = cross(TRACK, came_from, "post3", towards, seed=7)
+    assert (crossing.outcome, crossing.searches) == (ON_THE_LINE, 0)
+    assert crossing.stopped_off_m < 0.03
+    assert crossing.turn_s < 5
+
+
+@pytest.mark.parametrize(
+    "turn", [("canal", "uc", "azrieli"), ("azrieli", "uc", "canal"), ("nicol", "mackenzie", "nicol")]
+)
+def test_in_the_tunnels_neither(turn: tuple[str, str, str]):
+    crossing = cross(small_map("carleton"), *turn, seed=7)
+    assert (crossing.outcome, crossing.searches) == (ON_THE_LINE, 0)
+
+
+def test_a_post_in_sight_is_not_forgotten_when_the_line_is_lost(drive: Make):
+    robot = drive("post1:post2")
+    job = robot.loop.start(FollowLine(TRACK, "post1", shape=robot.shape), robot.now)
+    robot.until(lambda: robot.loop.view.post is not None)
+    robot.steps(0.4)
+    pose = robot.robot.pose
+    robot.robot.place(replace(pose, x_m=pose.x_m + 0.1))
+    robot.robot.set_fault("darkness", 1.0)  # what it has not seen by now it does not see any more
+    robot.until(lambda: robot.loop.view.searching)
+    assert robot.end_of(job, 200) == Done("post2")
+    assert robot.distance_to_m("post2") < 0.15
+
+
+@pytest.mark.parametrize("way", [("post1", "post2"), ("post5", "post3")])
+def test_a_post_without_its_marker_is_missed_and_neither_passed_nor_turned_at(drive: Make, way: tuple[str, str]):
+    leaving, post = way
+    robot = drive(f"{leaving}:{post}", campus=without_marker(post))
+    follow = FollowLine(robot.campus, leaving, shape=robot.shape, way_left_mm=2000.0)
+    assert robot.do(follow, 60) == Failed("post_missed")
+    assert 0.3 < robot.distance_to_m(post) < 0.7, "back on the line before it, where it looked again"
+    there = TRACK.post(post)
+    beside = min(abs(robot.robot.pose.x_m - there.x_m), abs(robot.robot.pose.y_m - there.y_m))
+    assert beside < 0.06, "on the corridor that it came along"
+    assert robot.loop.view.find_line_episodes == 0
+
+
+def test_a_marker_that_was_hidden_in_passing_is_read_at_the_second_look(drive: Make):
+    robot = drive("post1:post2")
+    follow = FollowLine(TRACK, "post1", shape=robot.shape, way_left_mm=2000.0)
+    robot.robot.set_fault("darkness", 1.0)
+    job = robot.loop.start(follow, robot.now)
+    robot.until(lambda: robot.robot.pose.y_m < 2.0)
+    robot.robot.set_fault("darkness", 0.0)
+    assert robot.end_of(job) == Done("post2")
+    assert robot.distance_to_m("post2") < 0.03
+
+
+def test_turned_round_between_posts_it_comes_back_to_the_post_behind(drive: Make):
+    robot = drive("post1:post2")
+    job = robot.loop.start(FollowLine(TRACK, "post1", shape=robot.shape), robot.now)
+    robot.until(lambda: robot.robot.pose.y_m < 3.3)
+    robot.loop.cancel(job)
+    robot.steps(0.5)
+    assert robot.do(Turn(math.pi, robot.shape)) == Done()
+    assert robot.do(FollowLine(TRACK, "post2", shape=robot.shape)) == Done("post1")
+    assert robot.distance_to_m("post1") < 0.03
