@@ -37,9 +37,22 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     config.stash[NOT_RUN] = len(browser_tests)
 
 
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node: Any, error: object) -> None:
+    """Two at a time, only the workers know what they left out; each of them has left out the same."""
+    node.config.stash[NOT_RUN] = getattr(node, "workeroutput", {}).get("not_run", 0)
+
+
+def pytest_sessionfinish(session: pytest.Session) -> None:
+    if hasattr(session.config, "workeroutput"):
+        session.config.workeroutput["not_run"] = session.config.stash.get(NOT_RUN, 0)
+
+
 @pytest.hookimpl(trylast=True)
 def pytest_unconfigure(config: pytest.Config) -> None:
     """The last line of all: what did not run must not scroll away."""
+    if hasattr(config, "workeroutput"):
+        return
     count = config.stash.get(NOT_RUN, 0)
     if count:
         way_out = "no Chromium found: apt install chromium, or set CHROMIUM=/path"

@@ -12,6 +12,8 @@ from robot.config import load_settings
 from robot.mind import messages_from_person
 from robot.runners import Governor, LockstepRunner, Loop, ThreadedRunner
 
+pytestmark = pytest.mark.alone
+
 
 def test_in_lockstep_every_loop_ticks_at_its_own_time_in_the_order_of_the_table() -> None:
     seen: list[tuple[float, str]] = []

@@ -15,6 +15,8 @@ from robot.runners import Loop, ThreadedRunner
 from robot.simulated.live import Live
 from robot.store import StorageFull
 
+pytestmark = pytest.mark.alone
+
 WITHIN_S = 2.5
 """A second of silence, a fifth for the wheels to stand, and a machine that does other things, too."""
 
