@@ -1,4 +1,4 @@
-"""Marker sheets for the printer: an A5 page for each marker of each post, its codes at the exact size that robots expect.
+"""Marker sheets for the printer: an A5 page for each marker of each post, its codes at the size that robots expect.
 
 A page is drawn once, as lines, squares and words in millimetres; SVG and PDF are two ways to put the same drawing on
 paper.
@@ -18,7 +18,7 @@ from maps.tags import TAG_SIZE_MM
 PAGE_WIDTH_MM = 148
 PAGE_HEIGHT_MM = 210
 CODE_LEFT_MM, CODE_TOP_MM = 34, 50
-TAG_LEFT_MM, TAG_TOP_MM = (PAGE_WIDTH_MM - TAG_SIZE_MM) / 2, 140.0
+TAG_LEFT_MM, TAG_TOP_MM = (PAGE_WIDTH_MM - TAG_SIZE_MM) / 2, 145.5
 TAG_CELLS = 8
 CUT_MM = 8.0
 LENS_HEIGHT_MM = 254
@@ -86,12 +86,12 @@ def marker_page(post: Post, number: int | None = None, april_tag: bool = False) 
         squares += tuple(_cells(tag_cells(post.tag), TAG_LEFT_MM, TAG_TOP_MM, TAG_SIZE_MM))
     middle = PAGE_WIDTH_MM / 2
     which = f"{len(post.markers)} of these at this post" if number is None else f"sheet {number} of {len(post.markers)}"
-    ruler = Line(CODE_LEFT_MM, 186, CODE_LEFT_MM + size_mm, 186)
+    ruler = Line(CODE_LEFT_MM, 191.5, CODE_LEFT_MM + size_mm, 191.5)
     words = (
         Words(middle, 24, 10, post.title),
         Words(middle, 33, 5, f"{post.name} · {which}"),
-        Words(middle, 191, 3.5, f"This line is {size_mm:g} mm long when printed at 100 %."),
-        Words(middle, 196, 3.5, f"Middle of the code {LENS_HEIGHT_MM} mm above the floor, facing the line, upright."),
+        Words(middle, 196, 3.2, f"This line is {size_mm:g} mm long when printed at 100 %."),
+        Words(middle, 200.5, 3.2, f"Middle of the code {LENS_HEIGHT_MM} mm above the floor, facing the line, upright."),
     )
     return Page(squares, (*_cut_lines(), ruler), words)
 
@@ -104,7 +104,7 @@ def explaining_page(campus: CampusMap, posts: tuple[Post, ...], april_tags: bool
         "",
         "1. Print at 100 % (“actual size”), on white paper that does not shine.",
         f"2. Measure the line below the code: it must be {MARKER_SIZE_M * 1000:g} mm.",
-        "3. Cut along the marks at the corners. Leave the white round the code.",
+        "3. Cut at the marks in the corners. Leave the white round the code.",
         f"4. Mount it upright, the middle of the code {LENS_HEIGHT_MM} mm above the floor,",
         "    facing the line, on the LEFT of a robot that arrives:",
         f"    {MARKER_BEFORE_POST_M * 1000:g} mm before the post, {MARKER_BESIDE_LINE_M * 1000:g} mm beside the line,",
@@ -119,10 +119,10 @@ def explaining_page(campus: CampusMap, posts: tuple[Post, ...], april_tags: bool
         ),
     )
     head = Words(PAGE_WIDTH_MM / 2, 24, 8, campus.title)
-    rows = (Words(16, 38 + 6.5 * row, 4, text, centred=False) for row, text in enumerate(sentences) if text)
+    rows = (Words(14, 38 + 6.5 * row, 3.6, text, centred=False) for row, text in enumerate(sentences) if text)
     counts = [f"{post.name}: {len(post.markers)}" for post in posts]
     last_mm = 38 + 6.5 * (len(sentences) + 1)
-    table = (Words(16 + 40 * (n % 3), last_mm + 5 * (n // 3), 3.5, text, False) for n, text in enumerate(counts))
+    table = (Words(14 + 40 * (n % 3), last_mm + 5 * (n // 3), 3.2, text, False) for n, text in enumerate(counts))
     return Page((), (), (head, *rows, *table))
 
 

@@ -50,6 +50,18 @@ def test_there_is_a_page_that_explains_and_one_for_each_marker(printed):
     assert read == [[], *expected]
 
 
+@pytest.mark.parametrize("campus", ["test_track", "carleton"])
+def test_no_word_runs_off_the_paper(campus, tmp_path):
+    assert run(campus, "--out", str(tmp_path), "--april-tags").exit_code == 0
+    with pypdfium2.PdfDocument(tmp_path / f"{campus}.pdf") as document:
+        for page in document:
+            words = page.get_textpage()
+            boxes = [words.get_rect(number) for number in range(words.count_rects())]
+            assert boxes
+            assert min(left for left, *_ in boxes) > 10
+            assert max(right for _, _, right, _ in boxes) < PAGE_WIDTH_MM * POINTS_PER_MM - 10
+
+
 def test_the_code_is_80_mm_wide_and_stands_where_the_robot_expects_it(printed):
     for page in printed[1:]:
         (code,) = zxingcpp.read_barcodes(page)
