@@ -6,7 +6,7 @@ BIN := .venv/bin
 ARGS ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help setup test check format demo serve robot bench bench-mind bench-body bench-paper fuzz-mind pin clean
+.PHONY: help setup setup-robot test check format demo serve robot bench bench-mind bench-body bench-paper fuzz-mind pin clean
 # A recipe that fails must not leave its stamp behind.
 .DELETE_ON_ERROR:
 
@@ -34,6 +34,8 @@ demo: setup ## See the first letter: service, robot and one order, on this machi
 
 serve: setup ## Start the service alone
 	$(BIN)/python -m app serve $(ARGS)
+
+setup-robot: .venv/.robot-ready ## On the robot's own computer: only what its daemon needs, and its pins
 
 robot: setup ## Start one robot with a simulated body
 	$(BIN)/python -m robot --simulated $(ARGS)
@@ -81,6 +83,17 @@ clean: ## Remove what setup, tests and runs have made
 	@$(BIN)/pip install --quiet --disable-pip-version-check -r .venv/requirements.txt -c constraints.txt
 	@# So that a first start is quick, also where Python is told to leave no compiled modules behind.
 	@$(BIN)/python -m compileall -q protocol maps bdi robot app
+	@touch $@
+
+# A robot needs neither browser nor pages; lgpio, which reads the pins of a Raspberry Pi, is its alone.
+.venv/.robot-ready: pyproject.toml constraints.txt
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
+	  { echo "Python 3.11 or newer is needed (apt install python3 python3-venv), or name one: make setup-robot PYTHON=…" >&2; exit 1; }
+	@test -x $(BIN)/pip || $(PYTHON) -m venv .venv
+	@$(BIN)/python -c 'import tomllib; p = tomllib.load(open("pyproject.toml", "rb"))["project"]; \
+	  print(*p["dependencies"], *p["optional-dependencies"]["pi"], sep="\n")' > .venv/robot-requirements.txt
+	@$(BIN)/pip install --quiet --disable-pip-version-check -r .venv/robot-requirements.txt -c constraints.txt
+	@$(BIN)/python -m compileall -q protocol maps bdi robot
 	@touch $@
 
 # The pages' tools run on the system's node if its npm is recent, else on the node that a Python package has brought.

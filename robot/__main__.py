@@ -6,7 +6,7 @@ from typing import Any
 import typer
 from typer.core import TyperGroup
 
-from .commands import doctor, enrol, logs, run, settings, status, stop
+from .commands import calibrate, doctor, enrol, logs, run, settings, status, stop
 
 EPILOG = """
 A robot at home in a simulated tunnel, in real time:  python -m robot --simulated
@@ -41,6 +41,7 @@ cli = typer.Typer(
 )
 cli.callback()(lambda: None)  # a group, however few its commands
 cli.command(name="run", epilog=run.EPILOG)(run.run)
+cli.add_typer(calibrate.cli, name="calibrate")
 cli.command(name="status")(status.status)
 cli.command(name="stop")(stop.stop)
 cli.command(name="rearm")(stop.rearm)

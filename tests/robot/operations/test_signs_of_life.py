@@ -2,6 +2,8 @@
 
 import os
 import socket
+import subprocess
+import sys
 import threading
 import time
 from collections.abc import Iterator
@@ -11,6 +13,7 @@ import pytest
 
 from robot.service_manager import ServiceManager, SignsOfLife, Watchdog
 
+ROOT = Path(__file__).parents[3]
 WATCHDOG_S = 0.4
 
 
@@ -139,3 +142,21 @@ def test_an_abstract_socket_is_found_and_the_limit_read_from_the_environment() -
 def test_a_watchdog_that_is_not_meant_for_us_is_not_fed(environment: dict[str, str]) -> None:
     given = {"NOTIFY_SOCKET": "/run/notify", "WATCHDOG_USEC": "5000000", **environment}
     assert ServiceManager.of_environment(given).watchdog_s is None
+
+
+@pytest.mark.system
+def test_a_whole_daemon_says_that_it_is_ready_alive_and_ending(tmp_path: Path, systemd: Systemd) -> None:
+    environment = {**os.environ, "NOTIFY_SOCKET": systemd.address, "WATCHDOG_USEC": "1000000"}
+    command = [sys.executable, "-m", "robot", "--simulated", "--data", str(tmp_path)]
+    with subprocess.Popen(command, cwd=ROOT, env=environment, stderr=subprocess.DEVNULL) as process:
+        heard: list[str] = []
+        until_s = time.monotonic() + 20
+        while sum("WATCHDOG=1" in text for text in heard) < 3 and time.monotonic() < until_s:
+            heard += systemd.hears(0.3)
+        process.terminate()
+        assert process.wait(10) == 0
+    said = [line for text in heard for line in text.splitlines()]
+    assert said.count("READY=1") == 1
+    assert said.count("WATCHDOG=1") >= 3
+    assert any("Battery" in line for line in said)
+    assert "STOPPING=1" in systemd.hears(0.5)
