@@ -11,10 +11,11 @@ from protocol.to_server import Why
 
 from .duties import Duties
 from .navigator import Navigator
-from .reflexes import FAULTS
+from .reflexes import FAULTS, Response
 from .skills.interfaces import View
 
-_TOLD: Final = {fault.name: fault.told for fault in FAULTS}
+_STAND: Final = {fault.name: fault.told for fault in FAULTS if fault.response is not Response.NOTHING}
+"""The faults that a robot stands for; others are told, but are no reason for what it does."""
 _PURPOSES: Final = {
     StopAction.LOAD: "to collect mail at {post}",
     StopAction.RECEIVE: "to deliver mail at {post}",
@@ -48,9 +49,8 @@ def reason(under_way: Sequence[str], view: View, navigator: Navigator, duties: D
     """One sentence, the goal behind it, and what it waits for."""
     stop = duties.held.stop
     goal = _PURPOSES[stop.action].format(post=stop.post) if stop else None
-    for fault in sorted(view.faults):
-        if fault in _TOLD:
-            return Why(sentence=_TOLD[fault], goal=goal, waiting_for="a person" if fault != "bump" else "a free way")
+    for fault in sorted(view.faults & _STAND.keys()):
+        return Why(sentence=_STAND[fault], goal=goal, waiting_for="a person" if fault != "bump" else "a free way")
     if under_way:
         sentence, waiting_for = _of_action(under_way[-1], navigator)
         if under_way[-1].startswith("claim(") and not duties.online:

@@ -46,12 +46,13 @@ def _why_no_way(hands: Hands, goal: str) -> str | None:
 def claim(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
     """Done as soon as the first corridor of the way may be entered: from post to post it is asked again."""
     goal, duties, navigator = str(arguments[0]), hands.duties, hands.navigator
-    if closed := _why_no_way(hands, goal):
-        duties.avoid = frozenset()  # what was denied may be open by the next time it asks
-        return AtOnce(Ended(closed))
-    wanted = _wanted(hands, goal)
+    closed = _why_no_way(hands, goal)
+    wanted = () if closed else _wanted(hands, goal)
     if navigator.at:
         duties.clear(leg for leg in duties.held.grants if leg not in wanted)
+    if closed:
+        duties.avoid = frozenset()  # what was denied may be open by the next time it asks
+        return AtOnce(Ended(closed))
     claim_id = duties.claim(wanted)
     first = navigator.legs_to(goal)[:1]
 

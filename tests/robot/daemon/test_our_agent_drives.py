@@ -70,9 +70,10 @@ def test_a_recipient_who_never_comes_does_not_keep_the_robot(run: SimulatedRun) 
     run.until(lambda: run.waits_for("wait_handover(load"))
     run.shows(Purpose.LOAD)
     run.until(lambda: run.waits_for("wait_handover(receive"))
-    run.until(lambda: run.is_home)
+    run.until(lambda: run.is_home, 900)
+    assert run.visited.count("post1") == 2, "it tried to give the mail back to its sender"
     assert run.duties.held.cargo == ("o1",), "the mail stays aboard and is known to be"
-    assert run.told()[-2:] == ["progress gave_up", "progress done"]
+    assert run.told()[-3:] == ["progress gave_up", "progress done", "fault mail_aboard"]
 
 
 def test_killed_on_the_way_with_mail_it_wakes_up_knowing_and_delivers(tmp_path: Path) -> None:

@@ -1,0 +1,170 @@
+"""The whole robot with our agent when nobody takes the mail, the network is away, the way is closed."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from protocol.parts import Leg, Purpose
+from protocol.to_robot import EmergencyStop, Recall, Resume
+from robot.simulated.obstacles import Person
+from tests.robot.daemon.played_service import PlayedService
+from tests.robot.daemon.simulated_run import LETTER, SimulatedRun
+
+
+@pytest.fixture
+def run(tmp_path: Path) -> Iterator[SimulatedRun]:
+    run = SimulatedRun(tmp_path)
+    yield run
+    run.close()
+
+
+def with_service(run: SimulatedRun) -> PlayedService:
+    service = PlayedService(run.duties)
+    run.duties.join(service)
+    return service
+
+
+def loaded_and_at_post2(run: SimulatedRun) -> None:
+    run.given_a_letter()
+    run.until(lambda: run.waits_for("wait_handover(load"))
+    run.shows(Purpose.LOAD)
+    run.until(lambda: run.is_at("post2") and run.duties.held.cargo)
+
+
+def test_mail_that_nobody_took_is_given_back_to_who_loaded_it(run: SimulatedRun) -> None:
+    loaded_and_at_post2(run)
+    run.until(lambda: run.waits_for("wait_handover(return"), 600)
+    assert run.is_at("post1")
+    assert run.mind.why is not None
+    assert run.mind.why.sentence == "Waiting at post1 for somebody to take mail back"
+    run.shows(Purpose.LOAD)
+    run.until(lambda: not run.duties.held.cargo, 10)
+    run.until(lambda: run.is_home)
+    told = run.told()
+    assert (told.count("handover load"), told.count("handover receive"), told.count("handover return")) == (1, 0, 1)
+    assert "fault mail_aboard" not in told
+
+
+def test_a_recalled_robot_turns_round_on_its_way_and_brings_the_mail_back(run: SimulatedRun) -> None:
+    service = with_service(run)
+    loaded_and_at_post2(run)
+    service.says(Recall(command_id="c1", reason="the mailroom closes early"))
+    run.until(lambda: run.waits_for("wait_handover(return"))
+    assert run.is_at("post1")
+    run.shows(Purpose.LOAD)
+    run.until(lambda: run.is_home)
+    assert (run.duties.held.cargo, service.held) == ((), [])
+
+
+def test_a_robot_that_is_killed_in_its_dock_goes_on_charging_until_it_is_full(tmp_path: Path) -> None:
+    first = SimulatedRun(tmp_path, battery_ratio=0.2)
+    first.until(lambda: first.duties.held.recharging and first.robot.docked, 60)
+    first.until(lambda: str(first.mind.battery.word) == "ok")
+    first.kill()
+
+    second = SimulatedRun(tmp_path)
+    second.given_a_letter()
+    second.passes(5)
+    assert second.robot.docked, "it was there to be charged"
+    second.until(lambda: not second.robot.docked)
+    assert second.mind.battery.ratio is not None
+    assert second.mind.battery.ratio > 0.95
+    assert [one for one in second.told() if one.startswith("charge")] == [
+        "charge low",
+        "charge charging",
+        "charge charged",
+    ]
+    second.close()
+
+
+def test_a_robot_with_little_charge_begins_no_work_until_it_has_enough(tmp_path: Path) -> None:
+    run = SimulatedRun(tmp_path, battery_ratio=0.4)
+    run.given_a_letter()
+    run.passes(5)
+    assert run.robot.docked
+    run.until(lambda: not run.robot.docked)
+    assert run.mind.battery.ratio is not None
+    assert 0.5 < run.mind.battery.ratio < 0.6
+    run.close()
+
+
+def test_a_detour_to_the_dock_gives_back_the_corridors_of_the_mission(run: SimulatedRun) -> None:
+    service = with_service(run)
+    loaded_and_at_post2(run)
+    to_post4 = Leg(from_post="post3", to_post="post4")
+    assert to_post4 in service.held
+    run.robot.sag(0.2)
+    run.until(lambda: run.is_at("post3"))
+    run.passes(2)
+    assert to_post4 not in service.held
+    run.until(lambda: run.robot.docked)
+    assert service.held == []
+
+
+def test_out_of_network_it_goes_as_far_as_it_may_waits_there_and_says_so(run: SimulatedRun) -> None:
+    service = with_service(run)
+    run.given_a_letter()
+    run.until(lambda: run.waits_for("wait_handover(load"))
+    run.duties.clear([leg for leg in service.held if leg.to_post == "post4"])
+    run.passes(1)
+    service.online = False
+    run.shows(Purpose.LOAD)
+    run.until(lambda: run.duties.held.cargo, 10)
+    run.until(lambda: run.is_at("post3") and run.waits_for("claim"))
+    run.passes(20)
+    assert run.mind.why is not None
+    assert (run.mind.why.sentence, run.mind.why.waiting_for) == ("Waiting at post3 for the network", "the network")
+    assert "link_loss" in run.mind.hands.view.faults, "told, and no reason to stop"
+    service.online = True
+    run.until(lambda: run.waits_for("wait_handover(receive"))
+    service.online = False
+    run.shows(Purpose.RECEIVE)
+    run.until(lambda: not run.duties.held.cargo, 10)
+
+
+def test_somebody_who_does_not_make_way_closes_the_corridor(run: SimulatedRun) -> None:
+    service = with_service(run)
+    run.robot.world.obstacles.append(Person(1.0, 2.0))
+    run.asks("", "visit(post1)")
+    run.until(lambda: "fault no_way" in run.told())
+    assert run.is_at("post3")
+    assert run.visited == ["post5", "post3"]
+    assert "fault way_blocked" in run.told()
+    assert service.held == [], "it holds no corridor while it waits at a post"
+    run.robot.world.obstacles.clear()
+    run.until(lambda: run.is_at("post1"), 1200)
+    assert run.told().count("fault way_blocked") == 2, "that it is closed, and that it is open again"
+
+
+def test_a_stop_from_the_service_holds_until_resume_and_the_mission_goes_on(run: SimulatedRun) -> None:
+    service = with_service(run)
+    run.given_a_letter()
+    run.until(lambda: run.is_at("post3"))
+    run.passes(3)
+    service.says(EmergencyStop(command_id="c1", reason="a child plays there"))
+    run.passes(3)
+    assert run.mind.hands.view.sent.still
+    assert run.mind.activity() == "stopped"
+    service.says(Resume(command_id="c2"))
+    run.until(lambda: run.waits_for("wait_handover(load"))
+    assert run.duties.held.mission == LETTER
+    assert run.told().count("answer ") == 2
+
+
+def test_pressing_spot_twice_loads_but_never_hands_out(run: SimulatedRun) -> None:
+    run.given_a_letter()
+    run.until(lambda: run.waits_for("wait_handover(load"))
+    press_twice(run)
+    run.until(lambda: run.duties.held.cargo == ("o1",), 10)
+    run.until(lambda: run.waits_for("wait_handover(receive"))
+    press_twice(run)
+    run.passes(5)
+    assert run.duties.held.cargo == ("o1",)
+
+
+def press_twice(run: SimulatedRun) -> None:
+    run.passes(1)
+    for _ in range(2):
+        run.robot.press("spot")
+        run.passes(0.7)
