@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robot.drivers import open_interface as oi
-from robot.drivers.firmware_text import BatteryText, battery_text
+from robot.drivers.firmware_text import BatteryText, battery_text, firmware_version
 from robot.drivers.stream_parser import StreamParser
 
 CHARGING = "bat:   min 0  sec 4  mV 17506  mA 891  tenths-deg-C 291  mAH 2696  state 8  mode 7"
@@ -82,3 +82,59 @@ def test_no_noise_makes_it_fail_or_miss_the_next_two_frames(noise: bytes):
     parser = StreamParser()
     parser.feed(noise)
     assert counts(parser.feed(frame(5) + frame(6) + frame(7)))[-1] == 7
+
+
+PADDING = bytes(61)
+pieces = st.one_of(
+    st.binary(max_size=80),
+    st.sampled_from((b"\x13", b"\x13\x3a", b"\x13\x38", CHARGING.encode(), b"\r\n")),
+    # The beginning of a frame that was cut off: the best of all false headers.
+    st.tuples(st.integers(0, 60), st.integers(-99, -1)).map(lambda cut: frame(cut[1])[: cut[0]]),
+)
+noises = st.lists(pieces, max_size=4).map(b"".join)
+
+
+@given(st.lists(noises, max_size=12), st.randoms(use_true_random=False))
+def test_noise_between_frames_costs_no_frame_and_makes_none(between: list[bytes], cut: random.Random) -> None:
+    stream = b"".join(noise + frame(number) for number, noise in enumerate(between)) + PADDING
+    parser, found, at = StreamParser(), [], 0
+    while at < len(stream):
+        size = cut.randint(1, 100)
+        found += counts(parser.feed(stream[at : at + size]))
+        at += size
+    assert found == list(range(len(between)))
+
+
+@given(st.lists(st.tuples(st.sampled_from(["whole", "lost", "changed"]), st.integers(0, 60), st.integers(1, 255))))
+def test_damage_costs_at_most_the_frames_that_it_touches(damages: list[tuple[str, int, int]]) -> None:
+    stream, whole = b"", []
+    for number, (damage, at, bits) in enumerate(damages):
+        data = bytearray(frame(number))
+        if damage == "lost":
+            del data[at]
+        elif damage == "changed":
+            data[at] ^= bits
+        else:
+            whole.append(number)
+        stream += data
+    assert counts(StreamParser().feed(stream + PADDING)) == whole
+
+
+@given(st.sampled_from(sorted(oi.LARGEST)), st.integers(1, 120))
+def test_a_value_that_no_base_says_is_not_believed_whatever_its_checksum(name: str, more: int) -> None:
+    wrong = packed(oi.FULL_STREAM, **{name: oi.LARGEST[name] + more})
+    parser = StreamParser()
+    assert counts(parser.feed(wrong + frame(2))) == [2]
+    assert parser.corrupt == 1
+
+
+def test_a_stream_without_packet_35_is_understood_too() -> None:
+    frames = StreamParser().feed(packed(oi.WITHOUT_MODE, left_count=7) + frame(8))
+    assert counts(frames) == [7, 8]
+    assert ["mode" in values for values in frames] == [False, True]
+
+
+def test_the_version_of_the_firmware_is_in_its_boot_text() -> None:
+    assert firmware_version("r3-robot/tags/release-stm32-3.7.7:6913 CLEAN") == "3.7.7"
+    assert firmware_version("r3_robot/tags/release-3.4.2:5106 CLEAN") == "3.4.2"
+    assert firmware_version("bootloader id: #x47135160") is None

@@ -1,10 +1,7 @@
 """The cable: real pyserial on a pseudo-terminal, a foreign client, unplugging, and the port for stepped time."""
 
 import errno
-import json
 import os
-import subprocess
-import sys
 import time
 from struct import unpack
 
@@ -12,9 +9,7 @@ import pytest
 import serial
 
 from maps import builtin_map
-from protocol.clock import RealClock
 from robot.simulated import SimulatedRobot, WrongValue
-from robot.simulated.live import Live
 
 SAFE = 2
 
@@ -108,41 +103,6 @@ def test_each_kind_of_robot_has_its_own_port_and_says_so(make, robot):
         _ = make().robot.port_path
     with pytest.raises(WrongValue, match="port_path"):
         robot.memory_port()
-
-
-PYCREATE2 = """
-import json, sys, time
-from pycreate2 import Create2
-client = Create2(sys.argv[1])
-client.sleep_timer = 0.05
-client.start()
-client.safe()
-before = client.get_sensors()
-client.drive_direct(200, 200)
-time.sleep(1.0)
-client.drive_stop()
-time.sleep(0.3)
-after = client.get_sensors()
-told = [(s.open_interface_mode, s.encoder_counts_left, s.battery_capacity) for s in (before, after)]
-print(json.dumps(told))
-"""
-
-
-def test_pycreate2_unmodified_drives_the_robot_and_reads_its_sensors():
-    """An independent client in a process of its own, in real time; it ends by switching the interface off."""
-    clock = RealClock()
-    robot = SimulatedRobot(builtin_map("test_track"), clock.now(), "post1:post2")
-    command = [sys.executable, "-c", PYCREATE2, robot.port_path]
-    with Live(robot, clock):
-        ended = subprocess.run(command, capture_output=True, text=True, timeout=30, check=False)
-    assert (ended.returncode, ended.stderr) == (0, "")
-    before, after = json.loads(next(line for line in ended.stdout.splitlines() if line.startswith("[")))
-    assert before == [SAFE, 0, 2696]
-    assert after[0] == SAFE
-    assert after[1] * 0.44456 == pytest.approx(robot.driven_mm, rel=0.06)
-    assert 150 < robot.driven_mm < 300
-    assert robot.body.interface.mode == 0
-    robot.close()
 
 
 def test_a_second_of_the_world_costs_less_than_25_ms(make):
