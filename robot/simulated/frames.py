@@ -1,14 +1,15 @@
 """What the camera sees: 640 × 480 frames from the robot's left side, 254 mm above the floor, looking left.
 
-The marker sheets are those that `python -m maps markers` prints, seen in true perspective; a person may hold a
-hand-over code in front of the camera. What is not worth drawing is a dim wall with noise, drawn once.
+The marker sheets are those that `python -m maps markers` prints, seen in true perspective; people stand before them,
+or hold a hand-over code in front of the camera. What is not worth drawing is a dim wall with noise, drawn once.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from random import Random
+from typing import Any
 
 import cv2
 import numpy as np
@@ -16,20 +17,32 @@ import segno
 from numpy.typing import NDArray
 
 from maps import Marker
-from maps.sheets import PAGE_HEIGHT_MM, PAGE_WIDTH_MM, marker_code
+from maps.sheets import (
+    CODE_LEFT_MM,
+    CODE_TOP_MM,
+    PAGE_HEIGHT_MM,
+    PAGE_WIDTH_MM,
+    TAG_LEFT_MM,
+    TAG_TOP_MM,
+    marker_code,
+    tag_cells,
+)
+from maps.tags import TAG_SIZE_MM
 
 from .faults import Faults
+from .obstacles import Obstacle
 
 WIDTH, HEIGHT = 640, 480
 BACKGROUNDS = 4
 Frame = NDArray[np.uint8]
 
-CODE_LEFT_MM, CODE_TOP_MM = 34, 50  # of the marker sheet
+CODE_MM = 80
 PX_PER_MODULE = (4, 8, 16)  # textures of a sheet: the renderer takes the nearest that is not finer than twice the view
 SEEN_FROM_M, SEEN_TO_M = 0.08, 1.5
 QUIET_MODULES = 4
 SHOWN_PX_PER_MODULE = 8
-WALL, PAPER, INK = 96, 225, 25
+WALL, PAPER, INK, CLOTHES = 96, 225, 25, 55
+PEOPLE_TO_M = 2.5  # farther off they are part of the wall
 
 
 @dataclass(frozen=True)
@@ -43,6 +56,8 @@ class CameraMount:
     exposure_s: float = 0.008
     noise: float = 4.0
     colour: bool = True
+    april_tags: bool = False
+    """Whether the sheets were printed with tags."""
 
     @property
     def focal_px(self) -> float:
@@ -63,17 +78,27 @@ class View:
 class Renderer:
     """Frames of one robot's camera."""
 
-    def __init__(self, markers: tuple[Marker, ...], mount: CameraMount, faults: Faults, seed: int) -> None:
-        self._markers = markers
+    def __init__(
+        self,
+        markers: tuple[Marker, ...],
+        mount: CameraMount,
+        faults: Faults,
+        seed: int,
+        tags: Mapping[str, int] | None = None,
+        obstacles: Callable[[], Iterable[Obstacle]] = tuple,
+    ) -> None:
+        """`tags` holds the number of each post's AprilTag; people among the `obstacles` hide what is behind them."""
+        self._markers, self._tags, self._obstacles = markers, tags or {}, obstacles
+        self._seed = seed
         self._mount = mount
         self._faults = faults
         self._random = Random(f"{seed}/camera")
         self._walls = _walls(mount.noise, seed)
         self._noise = _noise(mount.noise, seed)
-        self._sheets: dict[tuple[str, int], Frame] = {}
+        self._sheets: dict[tuple[Marker | str, int], Frame] = {}
         self._shown: dict[str, tuple[Frame, ...]] = {}
-        # Post → share of its markers that is covered, beside what the switch `dirt` covers of all of them.
-        self.dirt: Mapping[str, float] = {}
+        # Post or single marker → share that is covered, beside what the switch `dirt` covers of all of them.
+        self.dirt: Mapping[Any, float] = {}
 
     def frame(self, view: View, shown: str | None = None) -> Frame:
         """640 × 480, BGR as OpenCV's cameras give it, or grey. `shown` is a text held up as a QR code."""
@@ -85,22 +110,37 @@ class Renderer:
         return grey.copy()
 
     def _marker_frame(self, view: View) -> Frame:
+        """Whatever is farther off is drawn first."""
         frame = self._random.choice(self._walls)
-        drawn = False
+        in_view: list[tuple[float, Marker, NDArray[np.float32]] | tuple[float, _Somebody, None]] = []
         for marker in self._markers:
             corners = sheet_corners(marker, view, self._mount)
             if corners is not None:
-                frame = frame if drawn else frame.copy()
-                drawn = True
-                self._draw(frame, marker, corners, view)
+                in_view.append((_seen(marker.x_m, marker.y_m, view, self._mount)[0], marker, corners))
+        in_view += [(one.away_m, one, None) for one in _people(self._obstacles(), view, self._mount)]
+        if not in_view:
+            return frame
+        frame = frame.copy()
+        for _, thing, place in sorted(in_view, key=lambda one: -one[0]):
+            if isinstance(thing, _Somebody):
+                self._draw_somebody(frame, thing)
+            elif place is not None:
+                self._draw(frame, thing, place, view)
         return frame
+
+    def _draw_somebody(self, frame: Frame, one: "_Somebody") -> None:
+        """From shoes to beyond the upper edge: the lens is at the height of a knee."""
+        part = frame[: one.floor_px, one.left_px : one.right_px]
+        row, column = self._random.randrange(64), self._random.randrange(64)
+        noise = self._noise[row : row + part.shape[0], column : column + part.shape[1]]
+        part[:] = cv2.add(np.full(part.shape, CLOTHES, np.uint8), noise, dtype=cv2.CV_8U)
 
     def _draw(self, frame: Frame, marker: Marker, corners: NDArray[np.float32], view: View) -> None:
         left, top = np.maximum(np.floor(corners.min(axis=0)).astype(int) - 8, 0)
         right, bottom = np.minimum(np.ceil(corners.max(axis=0)).astype(int) + 8, (WIDTH, HEIGHT))
         if right - left < 2 or bottom - top < 2:
             return
-        sheet = self._sheet(marker.post, float(np.linalg.norm(corners[1] - corners[0])))
+        sheet = self._sheet(marker, float(np.linalg.norm(corners[1] - corners[0])))
         height, width = sheet.shape
         texture = np.array(((0, 0), (width, 0), (width, height), (0, height)), np.float32) - 0.5
         seen = corners - np.array((left, top), np.float32) - 0.5
@@ -121,13 +161,19 @@ class Renderer:
         if smear > 1:
             cv2.blur(part, (smear, 1), dst=part)
 
-    def _sheet(self, post: str, width_px: float) -> Frame:
+    def _sheet(self, marker: Marker, width_px: float) -> Frame:
         """The printed page as a texture, coarse enough that drawing it smaller does not alias."""
+        post = marker.post
         fitting = [size for size in PX_PER_MODULE if _page_px(post, size) <= 2 * width_px]
-        key = (post, max(fitting, default=PX_PER_MODULE[0]))
+        px_per_module = max(fitting, default=PX_PER_MODULE[0])
+        dirt = max(self._faults.dirt, self.dirt.get(marker, 0.0), self.dirt.get(post, 0.0))
+        key = (marker if dirt else post, px_per_module)
         if key not in self._sheets:
-            dirt = max(self._faults.dirt, self.dirt.get(post, 0.0))
-            self._sheets[key] = _page(post, key[1], dirt, self._random)
+            page = _page(post, px_per_module, self._tags.get(post))
+            if dirt:
+                # The same spots at every size, whenever it is seen first.
+                _make_dirty(page, px_per_module, dirt, Random(f"{self._seed}/dirt/{marker}"))
+            self._sheets[key] = page
         return self._sheets[key]
 
     def forget_sheets(self) -> None:
@@ -192,23 +238,56 @@ def _page_px(post: str, px_per_module: int) -> float:
     return len(_modules(post, "h")) * px_per_module * PAGE_WIDTH_MM / 80
 
 
-def _page(post: str, px_per_module: int, dirt: float, random: Random) -> Frame:
+def _page(post: str, px_per_module: int, tag: int | None) -> Frame:
     code = _code_picture(_modules(post, "h"), px_per_module, quiet=0)
-    px_per_mm = code.shape[0] / 80
+    px_per_mm = code.shape[0] / CODE_MM
     page = np.full((round(PAGE_HEIGHT_MM * px_per_mm), round(PAGE_WIDTH_MM * px_per_mm)), PAPER, np.uint8)
     left, top = round(CODE_LEFT_MM * px_per_mm), round(CODE_TOP_MM * px_per_mm)
     page[top : top + code.shape[0], left : left + code.shape[1]] = code
-    return _dirtied(page, (left, top, code.shape[0]), dirt, random) if dirt else page
-
-
-def _dirtied(page: Frame, place: tuple[int, int, int], share: float, random: Random) -> Frame:
-    """Grey spots on the code until about this share of it is covered."""
-    left, top, size = place
-    radius = max(2, round(size * 0.05))
-    for _ in range(round(share * size * size / (math.pi * radius * radius))):
-        centre = (left + random.randrange(size), top + random.randrange(size))
-        cv2.circle(page, centre, radius, random.randrange(40, 200), -1)
+    if tag is not None:
+        left, top, size = (round(mm * px_per_mm) for mm in (TAG_LEFT_MM, TAG_TOP_MM, TAG_SIZE_MM))
+        cells = np.where(np.array(tag_cells(tag)), INK, PAPER).astype(np.uint8)
+        page[top : top + size, left : left + size] = cv2.resize(cells, (size, size), interpolation=cv2.INTER_NEAREST)
     return page
+
+
+def _make_dirty(page: Frame, px_per_module: int, share: float, random: Random) -> None:
+    """Grey spots on the code until about this share of it is covered; a spot is about two modules wide."""
+    px_per_mm = page.shape[1] / PAGE_WIDTH_MM
+    size, radius_mm = CODE_MM * px_per_mm, CODE_MM * 0.05
+    radius = max(2, round(radius_mm * px_per_mm))
+    for _ in range(round(share * CODE_MM * CODE_MM / (math.pi * radius_mm * radius_mm))):
+        x, y = CODE_LEFT_MM * px_per_mm + random.random() * size, CODE_TOP_MM * px_per_mm + random.random() * size
+        cv2.circle(page, (round(x), round(y)), radius, random.randrange(40, 200), -1)
+
+
+@dataclass(frozen=True)
+class _Somebody:
+    """A person in the picture: how far away, from which column to which, and where the shoes are."""
+
+    away_m: float
+    left_px: int
+    right_px: int
+    floor_px: int
+
+
+def _people(obstacles: Iterable[Obstacle], view: View, mount: CameraMount) -> Iterator[_Somebody]:
+    for one in obstacles:
+        x_m, y_m, radius_m = one.nearest(view.x_m, view.y_m)
+        if not radius_m:  # a wall
+            continue
+        away_m, right_m = _seen(x_m, y_m, view, mount)
+        if not radius_m + SEEN_FROM_M / 2 < away_m < PEOPLE_TO_M:
+            continue
+        middle, half = math.atan2(right_m, away_m), math.asin(radius_m / math.hypot(away_m, right_m))
+        left, right = (
+            WIDTH / 2 + mount.focal_px * math.tan(max(-1.4, min(1.4, edge))) for edge in (middle - half, middle + half)
+        )
+        if right > 0 and left < WIDTH:
+            floor_px = HEIGHT / 2 + mount.focal_px * mount.height_m / away_m
+            yield _Somebody(
+                away_m - radius_m, max(0, round(left)), min(WIDTH, round(right)), min(HEIGHT, round(floor_px))
+            )
 
 
 def _code_picture(modules: NDArray[np.uint8], px_per_module: int, quiet: int) -> Frame:

@@ -9,6 +9,7 @@ from typing import Any
 from gpiozero.pins.mock import MockFactory
 
 from maps import CampusMap
+from maps.tags import tag_numbers
 
 from . import firmware_text
 from .battery import CURRENT_MA, Battery
@@ -69,7 +70,14 @@ class SimulatedRobot:
         build = _with_pack(options.build, battery_ratio, capacity_mah)
         self._body = Body(self.world, build, self._line, faults=self.faults, seed=seed, now=clock_now)
         self._body.place(pose.x_m, pose.y_m, pose.heading_rad)
-        renderer = Renderer(self.world.markers, options.camera, self.faults, seed)
+        renderer = Renderer(
+            self.world.markers,
+            options.camera,
+            self.faults,
+            seed,
+            {post: tag for tag, post in tag_numbers(campus).items()} if options.camera.april_tags else None,
+            lambda: self.world.obstacles,
+        )
         self._renderer = renderer
         self.camera = SimulatedCamera(renderer, self._view, lambda: self._body.now, self.faults)
         self.brc = BrcPin(self._body)
