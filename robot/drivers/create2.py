@@ -81,6 +81,9 @@ class Create2:
         self._keep_talking(now)
         if self._speeds.overdue(now):
             self._cable.send(oi.drive_direct(STOP), now)
+        if self._speeds.runs_on(now):
+            # A lost byte may have left the base waiting for the data of a long command, which eats what we send.
+            self._cable.send(ladder.LONGEST_COMMAND + oi.drive_direct(STOP), now)
         self._cable.flush(now)
         return newest
 

@@ -17,6 +17,9 @@ HALF_COMMAND = bytes(40)
 """Who died in the middle of a command left the base waiting for its data, for ever. Zeros fill any command that we
 send (a drive command becomes a stop) and mean nothing by themselves."""
 
+LONGEST_COMMAND = bytes(2 + 2 * 255)
+"""As many zeros as the longest command of the base can still be waiting for: a song whose length was no length."""
+
 
 @dataclass(frozen=True)
 class Pulse:

@@ -11,8 +11,15 @@ REPEAT_S = 0.1
 """An unchanged speed is sent again this often: a byte may have been lost."""
 STANDING_S = 0.3
 """Wheels that were told to turn and have not by then do not: their lag is 60 ms."""
+RUNS_ON_S = 0.5
+"""Wheels that were told to stand and still turn by then have not heard it."""
 STILL_FRAMES = 3
 """So many frames with equal counts are a standstill: at 30 mm/s single frames show none either."""
+
+
+RISKY_BYTES = frozenset((7, 129, 132, 133, 134, 135, 136, 143, 150, 173))
+"""Reset, Baud, Full, Power, the cleaning cycles, Seek Dock, Pause, Stop: a drive command that loses its first byte must
+not become one of these. A speed with such a low byte is sent a little slower."""
 
 
 class LatchedSpeeds:
@@ -24,6 +31,7 @@ class LatchedSpeeds:
         self._until_s: float | None = None
         self._still_frames = STILL_FRAMES
         self._told_to_turn_s: float | None = None
+        self._stopped_s: float | None = None
 
     @property
     def still(self) -> bool:
@@ -59,6 +67,13 @@ class LatchedSpeeds:
         self._note(STOP, now)
         return True
 
+    def runs_on(self, now: float) -> bool:
+        """The wheels turn although they were told to stand; says so once every while."""
+        if self._stopped_s is None or self.still or now - self._stopped_s < RUNS_ON_S:
+            return False
+        self._stopped_s = now
+        return True
+
     def hand_over(self) -> None:
         """Somebody else drives, or the base has been stopped by other means."""
         self.started_anew()
@@ -66,11 +81,13 @@ class LatchedSpeeds:
 
     def started_anew(self) -> None:
         """Start has stopped the wheels; a speed that is still wanted will be asked for again."""
-        self.sent, self._told_to_turn_s = STOP, None
+        self.sent, self._told_to_turn_s, self._stopped_s = STOP, None, None
 
     def _note(self, speeds: WheelSpeeds, now: float) -> None:
         if speeds.still or self.sent.still:
             self._told_to_turn_s = None if speeds.still else now
+        if not speeds.still or self._stopped_s is None:
+            self._stopped_s = now if speeds.still else None
         self.sent, self._sent_s = speeds, now
 
 
@@ -89,4 +106,7 @@ def _possible(speed_mm_s: float) -> int:
     if size < SLOWEST_MM_S / 2:
         return 0
     whole = round(max(size, SLOWEST_MM_S))
-    return whole if speed_mm_s > 0 else -whole
+    sign = 1 if speed_mm_s > 0 else -1
+    while sign * whole & 0xFF in RISKY_BYTES:
+        whole -= 1
+    return sign * whole

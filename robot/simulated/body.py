@@ -17,7 +17,7 @@ from .obstacles import BUMPER_RADIUS_M, Contact, light_signals
 from .open_interface import OpenInterface
 from .packets import Readings
 from .pins import DiodeMount, LinePins
-from .serial_line import SerialLine, spoiled
+from .serial_line import SerialLine, spoiled, thinned
 from .world import World
 
 STEP_S = 0.005
@@ -95,7 +95,7 @@ class Body:
         now = self.now
         received = self.line.receive(self.interface.baud)
         if received:
-            self.interface.receive(received, now)
+            self.interface.receive(thinned(received, self.faults, self._line_random), now)
         moved = self._move(now)
         if self._steps % STEPS_PER_SLOT == 0:
             self._slot()

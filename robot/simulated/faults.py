@@ -12,6 +12,7 @@ class Faults:
 
     drop_byte: float = 0.0
     flip_byte: float = 0.0
+    drop_sent_byte: float = 0.0
     frozen: bool = False
     freeze_s: float = 0.0
     mode_offset: int = 0
@@ -87,6 +88,7 @@ def _checked(name: str, kind: type, value: Any) -> Any:
 SWITCHES: dict[str, str] = {
     "drop_byte": "chance that a byte from the robot is lost",
     "flip_byte": "chance that one bit of a byte from the robot is turned over",
+    "drop_sent_byte": "chance that a byte to the robot is lost",
     "frozen": "the robot neither hears nor says anything; its wheels go on",
     "freeze_s": "the robot is frozen for so many seconds from now on",
     "mode_offset": "added to the mode that packet 35 tells (some report one more, one was seen at 32)",

@@ -197,3 +197,10 @@ def spoiled(data: bytes, faults: Faults, random: Random) -> bytes:
             continue
         kept.append(byte ^ (1 << random.randrange(8)) if random.random() < faults.flip_byte else byte)
     return bytes(kept)
+
+
+def thinned(data: bytes, faults: Faults, random: Random) -> bytes:
+    """What reaches the robot: some bytes are lost."""
+    if not faults.drop_sent_byte:
+        return data
+    return bytes(byte for byte in data if random.random() >= faults.drop_sent_byte)

@@ -263,6 +263,14 @@ def test_no_wheel_is_ever_asked_for_a_speed_it_does_badly(wanted: WheelSpeeds, s
     assert possible(wanted) == sent
 
 
+def test_no_drive_command_that_loses_its_first_byte_becomes_a_dangerous_one() -> None:
+    dangerous = {7, 129, 132, 133, 134, 135, 136, 143, 173}
+    for speed in (*range(-200, -29), *range(30, 201)):
+        sent = possible(WheelSpeeds(speed, speed))
+        assert not dangerous & set(oi.drive_direct(sent)[1:])
+        assert 0 <= abs(speed) - abs(sent.left_mm_s) <= 5
+
+
 def test_the_manuals_own_song_and_light_bytes_come_out():
     assert oi.leds(0.0, 128 / 255) == bytes((139, 0, 0, 128))
     assert oi.song(((60, 0.5), (62, 0.25))) == bytes((140, 0, 2, 60, 32, 62, 16))

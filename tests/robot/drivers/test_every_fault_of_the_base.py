@@ -17,6 +17,7 @@ RESET = 7
 OF_THE_BASE = {
     "drop_byte",
     "flip_byte",
+    "drop_sent_byte",
     "frozen",
     "freeze_s",
     "mode_offset",
@@ -83,6 +84,33 @@ def test_damaged_bytes_cost_frames_and_no_false_state(join: Join, switch: str, s
         assert -3 <= counts_between(old.left_count, new.left_count) <= 140
         assert 14_000 < new.voltage_mv < 18_000 or switch == "flip_byte"
     assert one.robot.driven_mm == pytest.approx(2000, rel=0.1)
+
+
+def test_bytes_lost_on_the_way_out_make_other_commands_and_all_of_them_are_mended(join: Join) -> None:
+    """The bytes of a speed of 128 mm/s and more are opcodes, too: Full, Power, Clean, Stop, Seek Dock."""
+    one = join().started()
+    one.robot.set_fault("drop_sent_byte", 0.03)
+    modes = set()
+    for number in range(90):
+        one.run(0.5, WheelSpeeds(128 + number % 46, 128 + (number + 7) % 46))
+        modes.add(one.robot.state()["mode"])
+    assert len(modes) > 1, "bad luck enough"
+    one.robot.set_fault("drop_sent_byte", 0.0)
+    one.run(8.0, AHEAD)
+    assert one.base.state is not None and one.base.state.mode is Mode.SAFE
+    assert one.wheels_mm_s == pytest.approx([100, 100], abs=12)
+    one.run(1.0, STOP)
+    assert one.wheels_mm_s == [0, 0]
+
+
+def test_a_base_that_waits_for_the_rest_of_a_long_command_is_filled_up_and_stops(join: Join) -> None:
+    one = join().started()
+    one.run(1.0, AHEAD)
+    one.robot.memory_port().write(bytes((140, 0, 255)))  # 510 notes and lengths are to come
+    one.run(1.0, STOP)
+    assert one.wheels_mm_s == [0, 0]
+    one.run(1.0, AHEAD)
+    assert one.wheels_mm_s[0] > 80
 
 
 def test_text_between_frames_is_kept_as_text(join: Join) -> None:
