@@ -82,6 +82,7 @@ class CameraSettings(Section):
     field_of_view_deg: Annotated[float, Field(gt=10.0, lt=170.0)] = Field(
         default=60.0, description="horizontal field of view, degrees"
     )
+    april_tags: bool = Field(default=False, description="the sheets have AprilTags, read where a code is torn")
 
 
 class DriveSettings(Section):
@@ -91,7 +92,7 @@ class DriveSettings(Section):
         default=180.0, description="speed on a straight line, mm/s (never below 30: the base misbehaves there)"
     )
     turn_mm_s: Annotated[float, Field(ge=30.0, le=MAX_WHEEL_SPEED_MM_S)] = Field(
-        default=80.0, description="speed of each wheel when turning on the spot, mm/s"
+        default=140.0, description="speed of each wheel when turning on the spot, mm/s"
     )
     velocity_deadline_s: Annotated[float, Field(ge=0.1, le=1.0)] = Field(
         default=0.4, description="a speed that is not renewed for so long stops, s"

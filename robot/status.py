@@ -40,6 +40,7 @@ class StatusBoard:
             "faults": {name: TOLD.get(name, "") for name in sorted(self.mind.hands.body.view.faults)},
             "base": self._base(),
             "link": self._link(),
+            "drive": self._drive(),
             "loops": {name: _punctuality(lag) for name, lag in self.runner.lags.items()},
         }
 
@@ -76,6 +77,14 @@ class StatusBoard:
             told |= {"frames": health.frames, "starts": health.starts, "reconnections": health.reconnections}
             told |= {"damaged": health.corrupt, "problem": health.problem, "down": health.down}
         return told
+
+    def _drive(self) -> dict[str, Any]:
+        drive = self.daemon.drive
+        return {
+            "late_ticks": drive.late_ticks,
+            "worst_gap_ms": round(1000 * drive.worst_gap_s, 1),
+            "impossible_reads": drive.impossible_reads,
+        }
 
     def _link(self) -> dict[str, Any] | None:
         if self.link is None:

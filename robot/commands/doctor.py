@@ -17,7 +17,6 @@ from ..control import SOCKET_NAME
 from ..doctor.findings import Equipment, Finding, Grade, Patient
 from ..doctor.table import examine
 from ..drivers.serial_port import open_serial
-from ..drivers.wake_up import NoWakeUpLine
 from ..errors import RobotError
 from ..hardware import pin_factory, real_camera, real_port
 from ..json_socket import NobodyAnswers, ask
@@ -99,7 +98,7 @@ def _equipment(settings: Settings, simulated: bool) -> Iterator[tuple[Settings, 
     with Live(robot, clock):
         settings = settings.model_copy(update={"serial_port": robot.port_path})
         equipment = Equipment(
-            lambda: open_serial(robot.port_path), NoWakeUpLine(), lambda: robot.pin_factory, lambda: robot.camera, True
+            lambda: open_serial(robot.port_path), robot.brc, lambda: robot.pin_factory, lambda: robot.camera, True
         )
         yield settings, equipment
     robot.close()

@@ -144,8 +144,13 @@ def wake_up(patient: Patient) -> Finding:
     if patient.settings.brc == "none":
         return warn("nothing is wired to BRC (setting brc)", "A base that falls asleep must be woken by hand.")
     line = patient.equipment.wake_up_line
+    try:
+        port = patient.equipment.open_port()  # RTS belongs to an open port
+    except RobotError:
+        return skip("the port cannot be opened")
     line.low(True)
     line.low(False)
+    port.close()
     if not line.wired:
         return warn(f"no pulse can be sent over {patient.settings.brc}", "Wire BRC (docs/wiring.md), or set brc.")
     return ok(f"over {patient.settings.brc}; let it sleep once (five minutes off the dock) to see that it wakes")

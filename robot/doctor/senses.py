@@ -5,6 +5,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from ..config import ConfigError
 from ..drivers.interfaces import Frame
 from ..drivers.qr_decoders import best_decoder
 from ..errors import RobotError
@@ -26,8 +27,10 @@ def pins(patient: Patient) -> Finding:
         return skip("the running daemon holds the pins")
     try:
         devices = open_pins(patient.settings.line, patient.equipment.pin_factory())
-    except (ImportError, OSError, RobotError) as error:
-        return fail(f"the pins cannot be used: {error}", "Is lgpio installed, and are you in the group gpio?")
+    except ConfigError as problem:
+        return fail(problem.message, problem.way_out)
+    except Exception as error:  # gpiozero and lgpio have errors of their own for pins that are taken or do not exist
+        return fail(f"the pins cannot be used: {error}", "Does another program use them? Are line.…_pin right?")
     try:
         return _pushed(patient, PinWatch(devices)) if patient.push_s else _standing(PinWatch(devices))
     finally:

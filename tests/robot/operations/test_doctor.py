@@ -25,7 +25,8 @@ from robot.doctor import cable, computer, senses, service
 from robot.doctor.findings import Equipment, Finding, Grade, Patient
 from robot.doctor.table import CHECKS, examine
 from robot.drivers.serial_port import open_serial
-from robot.drivers.wake_up import NoWakeUpLine
+from robot.drivers.wake_up import NoWakeUpLine, SerialRts
+from robot.hardware import pin_factory
 from robot.simulated import Pose, SimulatedRobot
 from robot.simulated.live import Live
 
@@ -42,7 +43,7 @@ class World:
     def equipment(self) -> Equipment:
         robot = self.robot
         return Equipment(
-            lambda: open_serial(robot.port_path), NoWakeUpLine(), lambda: robot.pin_factory, lambda: robot.camera, True
+            lambda: open_serial(robot.port_path), robot.brc, lambda: robot.pin_factory, lambda: robot.camera, True
         )
 
     def close(self) -> None:
@@ -186,9 +187,20 @@ def test_a_console_is_nobodys_business_on_other_pins(tmp_path: Path) -> None:
     assert cable.console(patient(tmp_path / "other")).grade is Grade.OK
 
 
-@pytest.mark.parametrize(("brc", "grade"), [("none", Grade.WARN), ("rts", Grade.WARN)])
-def test_a_base_that_nobody_can_wake_is_told(tmp_path: Path, brc: str, grade: Grade) -> None:
-    assert graded(cable.wake_up(patient(tmp_path, brc=brc)))[0] is grade
+def test_a_base_that_nobody_can_wake_is_told(world: World, tmp_path: Path) -> None:
+    assert graded(cable.wake_up(patient(tmp_path, brc="none")))[0] is Grade.WARN
+    without = SerialRts(world.robot.port_path)  # a pseudo-terminal has no RTS
+    grade, said = graded(
+        cable.wake_up(patient(tmp_path, replace(world.equipment(), open_port=without.open, wake_up_line=without)))
+    )
+    assert (grade, "no pulse can be sent over rts" in said) == (Grade.WARN, True)
+    assert cable.wake_up(patient(tmp_path, world.equipment())).grade is Grade.OK
+
+
+def test_a_computer_without_pins_says_so(tmp_path: Path) -> None:
+    elsewhere = replace(NO_EQUIPMENT, pin_factory=pin_factory)
+    grade, said = graded(senses.pins(patient(tmp_path, elsewhere)))
+    assert (grade, "make setup-robot" in said) == (Grade.FAIL, True)
 
 
 def test_a_running_daemon_keeps_its_devices_and_tells_of_the_base(tmp_path: Path) -> None:
