@@ -50,6 +50,7 @@ class Create2:
         self._heard_s: float | None = None
         self._silent_since_s: float | None = None
         self._now = 0.0
+        self._lights = b""
         self.state: BaseState | None = None
 
     @property
@@ -127,6 +128,9 @@ class Create2:
     def _send_mode(self, mode: Mode, now: float) -> None:
         self._modes.asked(mode, now)
         self._cable.send(bytes((OPCODES[mode],)), now, MODE_GAP_S)
+        if self._lights and mode is not Mode.PASSIVE:
+            # Entering Safe or Full puts all lights out.
+            self._cable.send(self._lights, now)
 
     def _keep_mode(self, state: BaseState, now: float) -> None:
         if self._modes.doubtful:
@@ -158,7 +162,8 @@ class Create2:
 
     def show_lights(self, colour: float, brightness: float, now: float) -> None:
         """See `interfaces.Base.show_lights`."""
-        self._cable.send(oi.leds(colour, brightness), now)
+        self._lights = oi.leds(colour, brightness)
+        self._cable.send(self._lights, now)
 
     def close(self) -> None:
         """See `interfaces.Base.close`."""

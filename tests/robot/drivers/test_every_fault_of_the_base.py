@@ -218,6 +218,39 @@ def test_a_firmware_that_never_answers_packet_35_is_streamed_without_it(join: Jo
     assert one.wheels_mm_s[0] > 80, "wheels that stand show that the mode is lost"
 
 
+@pytest.mark.parametrize(
+    "half", [(145,), (145, 0, 100, 0), (137, 1), (140, 0, 16, 60), (148, 25, 7, 9), (139,), (167, 1, 2)]
+)
+def test_who_died_in_the_middle_of_a_command_leaves_no_base_that_waits(join: Join, half: tuple[int, ...]) -> None:
+    one = join()
+    one.robot.memory_port().write(bytes((128, 131, *half)))
+    one.started().run(1.0, AHEAD)
+    assert one.base.health.starts == 1
+    assert one.robot.driven_mm == pytest.approx(95, abs=15), "and the wheels never did anything else"
+
+
+def test_lights_come_back_with_the_mode(join: Join) -> None:
+    one = join().started()
+    one.base.show_lights(1.0, 0.5, one.now)
+    one.robot.lift(True)
+    one.run(0.2)
+    one.robot.lift(False)
+    one.run(1.0)
+    assert one.base.state is not None and one.base.state.mode is Mode.SAFE
+    assert one.robot.body.interface.actuators.leds == (0, 255, 128)
+
+
+@pytest.mark.parametrize("bit", [1, 2, 4])
+def test_a_short_press_is_shown_long_enough_for_whoever_looks_ten_times_a_second(join: Join, bit: int) -> None:
+    one = join().started()
+    one.states.clear()
+    one.robot.memory_port().write(bytes((165, bit)))
+    one.run(1.0)
+    pressed = [state.at_s for state in one.states if state.buttons == bit]
+    assert pressed[-1] - pressed[0] == pytest.approx(0.3, abs=0.05)
+    assert one.states[-1].buttons == 0
+
+
 def test_commands_wait_until_a_slow_firmware_has_changed_its_mode(join: Join) -> None:
     one = join()
     one.robot.set_fault("slow_modes", True)
