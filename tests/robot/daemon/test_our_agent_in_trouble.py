@@ -11,6 +11,8 @@ from robot.simulated.obstacles import Person
 from tests.robot.daemon.played_service import PlayedService
 from tests.robot.daemon.simulated_run import LETTER, SimulatedRun
 
+SQUARE = Path(__file__).parents[3] / "examples" / "maps" / "square.toml"
+
 
 @pytest.fixture
 def run(tmp_path: Path) -> Iterator[SimulatedRun]:
@@ -135,6 +137,20 @@ def test_somebody_who_does_not_make_way_closes_the_corridor(run: SimulatedRun) -
     run.robot.world.obstacles.clear()
     run.until(lambda: run.is_at("post1"), 1200)
     assert run.told().count("fault way_blocked") == 2, "that it is closed, and that it is open again"
+
+
+def test_where_there_is_another_way_it_goes_round_a_closed_corridor(tmp_path: Path) -> None:
+    run = SimulatedRun(tmp_path, map=str(SQUARE))
+    service = with_service(run)
+    run.robot.world.obstacles += [Person(1.0, 2.0), Person(2.0, 1.0)]
+    run.asks("", "visit(c)")
+    run.until(lambda: "fault way_blocked" in run.told())
+    first = run.visited[-1]
+    run.robot.world.obstacles.remove(Person(2.0, 1.0) if first == "d" else Person(1.0, 2.0))
+    run.until(lambda: run.is_at("c"))
+    assert run.visited == ["a", first, "a", {"d": "b", "b": "d"}[first], "c"]
+    assert all(leg in service.held for leg in run.duties.held.grants)
+    run.close()
 
 
 def test_a_stop_from_the_service_holds_until_resume_and_the_mission_goes_on(run: SimulatedRun) -> None:

@@ -49,3 +49,18 @@ def test_a_charger_that_is_interrupted_counts_its_minute_anew() -> None:
 def test_a_base_that_does_not_know_its_capacity_yet_changes_nothing() -> None:
     low = BatterySense().seen(frame(0.2), SETTINGS, 0.0)
     assert low.seen(BaseState(at_s=1.0, capacity_mah=0), SETTINGS, 1.0).word is BatteryWord.LOW
+
+
+def test_too_weak_to_begin_work_ends_a_little_above_where_it_began() -> None:
+    sense, weak = BatterySense(), []
+    for second, ratio in enumerate([0.51, 0.49, 0.51, 0.529, 0.531, 0.51]):
+        sense = sense.seen(frame(ratio), SETTINGS, float(second))
+        weak.append(sense.weak)
+    assert weak == [False, True, True, True, False, False]
+
+
+def test_a_worn_pack_that_its_charger_calls_full_is_enough_to_begin_work() -> None:
+    sense = BatterySense()
+    for second in (0.0, 60.0):
+        sense = sense.seen(frame(0.4, home_base=True, charging_state=ChargingState.TRICKLE), SETTINGS, second)
+    assert not sense.weak

@@ -81,3 +81,18 @@ def test_a_name_is_an_atom_where_it_can_be_one(name: str, term: str) -> None:
 
 def test_every_percept_says_what_it_means() -> None:
     assert [row.name for row in PERCEPTS if not row.about] == []
+
+
+def test_what_only_our_program_needs_is_shown_to_it_alone() -> None:
+    carried_off = seen(
+        where=Whereabouts(moved="post3"),
+        held=Held(recharging=True),
+        battery=BatterySense(BatteryWord.OK, 0.4, weak=True),
+    )
+    ours = {"moved(post3)", "recharging", "weak"}
+    assert ours <= perceive(carried_off, LATEST, 2.0)
+    assert not ours & perceive(carried_off, DRAIN, 2.0)
+
+
+def test_where_no_dock_can_be_reached_none_is_named() -> None:
+    assert not [term for term in perceive(seen(), LATEST, 2.0) if term.startswith("nearest_dock")]
