@@ -16,7 +16,8 @@ SWEEP_MM_S = 100.0
 SPIRAL_MM_S = 120.0
 SPIRAL_FROM_MM, SPIRAL_PITCH_MM, SPIRAL_TURNS = 60.0, 130.0, 3.5
 """Radius at the beginning and growth with each turn: no straight line within half a metre stays unmet."""
-ALIGN_RAD = math.radians(60)
+ALIGN_RAD = math.radians(95)
+"""With the axle over it, a line leads somewhere within a right angle of every heading."""
 CLOSE_RAD, WIDEST_RAD = math.radians(25), math.radians(40)
 """How far to the sides a line is looked for that should lie ahead. Branches are a quarter apart on our maps."""
 WORN_MM = 35.0
@@ -50,13 +51,17 @@ class FindLine(Scripted):
     def script(self, view: View) -> Script:
         """The ladder, rung by rung; the line is straightened up to on whichever rung it is found."""
         along_rad = view.odometry.heading_rad if self._heading_rad is None else self._heading_rad
-        for rung in (self._coast, self._arc, self._back, self._sweep, self._spiral):
-            if over_line(view):
-                break
+        for rung in (self._stay, self._coast, self._arc, self._back, self._sweep, self._spiral):
             view = yield from searching(rung(view))
-        if over_line(view):
-            view = yield from searching(self._align(view, along_rad))
-        return Done() if over_line(view) else Failed("line_lost")
+            if over_line(view):
+                view = yield from searching(self._align(view, along_rad))
+            if over_line(view):
+                return Done()
+        return Failed("line_lost")
+
+    def _stay(self, view: View) -> Part:
+        """Perhaps it is there already."""
+        return stand(view, 0.0)
 
     def _coast(self, view: View) -> Part:
         return roll(view, COAST_MM, WheelSpeeds(SEARCH_MM_S, SEARCH_MM_S), over_line)

@@ -2,12 +2,14 @@
 
 import math
 
-from ..drivers.interfaces import BodyShape
+from ..drivers.interfaces import BodyShape, Odometry, WheelSpeeds
 from .find_line import over_line, settle
 from .interfaces import Done, Failed, View
-from .script import Script, Scripted, turn_by
+from .script import Part, Script, Scripted, roll, turn_by
 
 SMALLEST_RAD = math.radians(5)
+PUSHED_MM = 30.0
+BACK_MM_S, ROLLS_ON_MM = 80.0, 5.0
 
 
 class Turn(Scripted):
@@ -24,7 +26,27 @@ class Turn(Scripted):
 
     def script(self, view: View) -> Script:
         """Turn, then look a little to both sides for the line."""
+        begin = view.odometry
         if abs(self._angle_rad) > SMALLEST_RAD:
             view = yield from turn_by(view, self._angle_rad, self._speed_mm_s, self._shape)
+        if _gap_mm(begin, view.odometry) > PUSHED_MM:
+            view = yield from self._back_to(begin, view)
         view = yield from settle(view, self._shape)
         return Done() if over_line(view) else Failed("line_lost")
+
+    def _back_to(self, begin: Odometry, view: View) -> Part:
+        """A bump made it back off in the middle of the turn: from beside the post no line would be met."""
+        goal_rad = begin.heading_rad + self._angle_rad
+        here = view.odometry
+        there_rad = math.atan2(begin.y_mm - here.y_mm, begin.x_mm - here.x_mm)
+        view = yield from self._towards(view, there_rad)
+        view = yield from roll(view, _gap_mm(begin, here) - ROLLS_ON_MM, WheelSpeeds(BACK_MM_S, BACK_MM_S))
+        return (yield from self._towards(view, goal_rad))
+
+    def _towards(self, view: View, heading_rad: float) -> Part:
+        angle_rad = math.remainder(heading_rad - view.odometry.heading_rad, math.tau)
+        return turn_by(view, angle_rad, self._speed_mm_s, self._shape)
+
+
+def _gap_mm(a: Odometry, b: Odometry) -> float:
+    return math.hypot(a.x_mm - b.x_mm, a.y_mm - b.y_mm)

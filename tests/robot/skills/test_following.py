@@ -9,7 +9,7 @@ import pytest
 from benchmarks.body.line import ride
 from benchmarks.body.turns import ON_THE_LINE, cross, small_map
 from maps import CampusMap, builtin_map
-from robot.skills import Done, Failed, FollowLine, Turn
+from robot.skills import Done, Failed, FindLine, FollowLine, Turn
 from tests.robot.skills.track import Drive
 
 Make = Callable[..., Drive]
@@ -101,3 +101,23 @@ def test_turned_round_between_posts_it_comes_back_to_the_post_behind(drive: Make
     assert robot.do(Turn(math.pi, robot.shape)) == Done()
     assert robot.do(FollowLine(TRACK, "post2", shape=robot.shape)) == Done("post1")
     assert robot.distance_to_m("post1") < 0.03
+
+
+def test_bumped_in_the_middle_of_a_turn_it_goes_back_to_the_post_and_finds_its_line(drive: Make):
+    robot = drive("post3:post4")
+    job = robot.loop.start(Turn(math.pi, robot.shape), robot.now)
+    robot.steps(0.8)
+    robot.robot.bump("both")
+    assert robot.end_of(job) == Done()
+    assert robot.distance_to_m("post3") < 0.04
+    assert robot.do(FollowLine(TRACK, "post3", shape=robot.shape)) == Done("post5")
+
+
+def test_a_line_that_was_met_across_is_followed_the_way_it_looked_before(drive: Make):
+    robot = drive("post1:post2")
+    pose = robot.robot.pose
+    robot.robot.place(replace(pose, x_m=pose.x_m + 0.25, y_m=pose.y_m - 0.8, heading_rad=pose.heading_rad + 0.6))
+    robot.steps(0.1)
+    assert robot.do(FindLine(robot.shape, side=-1.0), limit_s=190) == Done()
+    assert abs(robot.robot.pose.x_m) < 0.06
+    assert math.cos(robot.robot.pose.heading_rad - pose.heading_rad) > 0.5
