@@ -5,11 +5,20 @@ cancels skills, the camera loop reports what it read, and both read the latest `
 """
 
 from collections import deque
-from collections.abc import Callable, Container
+from collections.abc import Callable, Container, Iterable
 
 from .. import reflexes
 from ..black_box import BlackBox
-from ..drivers.interfaces import STOP, Base, BodyShape, CameraReport, HostReport, LineSensor, WheelSpeeds
+from ..drivers.interfaces import (
+    STOP,
+    Base,
+    BodyShape,
+    CameraReport,
+    HostReport,
+    LineSensor,
+    PositionSource,
+    WheelSpeeds,
+)
 from ..skills.interfaces import Failed, JobEnd, Skill, View
 from .jobs import Jobs
 from .sensing import Sensing
@@ -37,16 +46,17 @@ class DriveLoop:
         faults_before: Container[str] = (),
         period_s: float = PERIOD_S,
         black_box: BlackBox | None = None,
+        sources: Iterable[PositionSource] = (),
     ) -> None:
         """`faults_before`: what was wrong when the daemon last ran; an emergency stop outlives a restart."""
-        self._sensing = Sensing(base, line_sensor, shape or BodyShape(), now)
+        self._sensing = Sensing(base, line_sensor, shape or BodyShape(), now, sources)
         self._wheels = Wheels(base, now)
         self._black_box = black_box or BlackBox()
         take_wheels = lambda at_s: self._wheels.take(self._sensing.state, at_s)  # noqa: E731
         self._jobs = Jobs(self._wheels.request, take_wheels, self._black_box.note)
         self._inbox: deque[Callable[[float], None]] = deque()
         self._heartbeat_s = now
-        self._online_s: float | None = None
+        self._offline_since_s: float | None = None
         self._host = HostReport()
         self._stop_asked = self._rearm = False
         self._reflexes = reflexes.ReflexState.woken(faults_before, now)
@@ -130,7 +140,7 @@ class DriveLoop:
         else:
             self._wheels.not_at_rest(now)
         decision = reflexes.decide(self._reflexes, self._senses(now), wanted or STOP, now)
-        self._reflexes, self._rearm = decision.state, False
+        self._reflexes, self._stop_asked, self._rearm = decision.state, False, False
         if decision.faults is not self._faults:
             self._note_faults(decision, now)
         self._sent = self._drive(wanted, decision.allowed, now)
@@ -162,6 +172,7 @@ class DriveLoop:
             post=sensing.post,
             post_odometry=sensing.post_odometry,
             code=sensing.code,
+            fixes=tuple(sensing.fixes.values()),
             camera_age_s=sensing.camera_age_s(now),
             sent=self._sent,
             motion=motion.skill.name if motion else None,
@@ -182,7 +193,7 @@ class DriveLoop:
             rearm=self._rearm,
             own_wheels=self._wheels.own,
             host=self._host,
-            offline_s=0.0 if self._online_s is None else now - self._online_s,
+            offline_s=0.0 if self._offline_since_s is None else now - self._offline_since_s,
             standing=lasting.standing,
             slipping_s=lasting.slipping_s,
             constant_mm=lasting.constant_mm,
@@ -213,9 +224,14 @@ class DriveLoop:
         elif wanted is None:
             return STOP
         self._jobs.refused(self._refusing(wanted, allowed), now)
-        if self._stopping:
+        if self._stopping and (self._stopping & reflexes.LATCHED or not self._in_dock):
+            # A mind that is silent in the dock is no reason to end the charge; a hand on Clean is: it begins to clean.
             self._wheels.take(self._sensing.state, now)
         return self._wheels.drive(allowed, now)
+
+    @property
+    def _in_dock(self) -> bool:
+        return self._sensing.state is not None and self._sensing.state.docked
 
     def _refusing(self, wanted: WheelSpeeds | None, allowed: WheelSpeeds) -> str | None:
         if self._faults and wanted != allowed and not self._stopping and "bump" not in self._faults:
@@ -232,5 +248,7 @@ class DriveLoop:
         self._host = report
 
     def _take_link(self, online: bool, now: float) -> None:
-        if online or self._online_s is None:
-            self._online_s = now
+        if online:
+            self._offline_since_s = None
+        elif self._offline_since_s is None:
+            self._offline_since_s = now

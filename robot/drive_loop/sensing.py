@@ -1,8 +1,21 @@
 """What the body knows: base, line sensor, odometry, and what the camera reported; its own parts fail by name."""
 
+from collections.abc import Iterable
+
 import structlog
 
-from ..drivers.interfaces import Base, BaseState, BodyShape, CameraReport, LineSensor, Odometry, Sighting, WheelSpeeds
+from ..drivers.interfaces import (
+    Base,
+    BaseState,
+    BodyShape,
+    CameraReport,
+    Fix,
+    LineSensor,
+    Odometry,
+    PositionSource,
+    Sighting,
+    WheelSpeeds,
+)
 from ..drivers.odometry import advanced
 from ..navigation.line_symbol import LineWord
 from ..reflexes import Lasting
@@ -14,7 +27,14 @@ log = structlog.get_logger("robot.drive")
 class Sensing:
     """One `sense` a tick; between ticks `sample_line` for the majority vote."""
 
-    def __init__(self, base: Base, line_sensor: LineSensor, shape: BodyShape, now: float) -> None:
+    def __init__(
+        self,
+        base: Base,
+        line_sensor: LineSensor,
+        shape: BodyShape,
+        now: float,
+        sources: Iterable[PositionSource] = (),
+    ) -> None:
         self._base, self._line_sensor, self._shape = base, line_sensor, shape
         self.state: BaseState | None = None
         self.odometry = Odometry()
@@ -23,6 +43,8 @@ class Sensing:
         self.post: Sighting | None = None
         self.post_odometry = Odometry()
         self.code: Sighting | None = None
+        self.fixes: dict[str, tuple[Fix, Odometry]] = {}
+        self._sources = tuple(sources)
         self.lasting = Lasting()
         self.diodes_broken = False
         self._camera_s, self._camera_age_s = now, 0.0
@@ -37,11 +59,14 @@ class Sensing:
             self.lasting.feel(old, new, sent)
         elif sent.still:
             self.lasting.standing = False
+        for source in self._sources:
+            for fix in source.fixes(now):
+                self.fixes[fix.source] = fix, self.odometry
         self.sample_line()
         self.reading = self._line_sensor.read()
         travelled_mm = self.odometry.travelled_mm
         self.word = self.word.seen(self.reading, travelled_mm)
-        self.lasting.look(self.reading, travelled_mm, self.post and self.post.text)
+        self.lasting.look(self.reading, travelled_mm, self.post and self.post.text, driven=not sent.still)
 
     def sample_line(self) -> None:
         """Pins that cannot be read are a fault of the line sensor, never the end of the loop that keeps the wheels."""

@@ -43,9 +43,12 @@ class Lasting:
         elif _straight_ahead(sent) and not (left_stands or right_stands):
             self.slipping_s += new.at_s - old.at_s
 
-    def look(self, reading: LineReading, travelled_mm: float, marker: object) -> None:
-        """What the diodes and the camera saw last, and the way so far by the encoders."""
-        way_mm = travelled_mm - self._travelled_mm
+    def look(self, reading: LineReading, travelled_mm: float, marker: object, driven: bool = True) -> None:
+        """What the diodes and the camera saw last, and the way so far by the encoders.
+
+        `driven`: by us. Somebody who pushes the robot across a hall says nothing about its diodes.
+        """
+        way_mm = travelled_mm - self._travelled_mm if driven else 0.0
         self._travelled_mm = travelled_mm
         if reading != self._reading or marker is not self._seen:
             self._seen = marker

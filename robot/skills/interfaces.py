@@ -10,7 +10,7 @@ Failed("cancelled").
 from dataclasses import dataclass
 from typing import Protocol
 
-from ..drivers.interfaces import STOP, BaseState, LineReading, Mode, Note, Odometry, Sighting, WheelSpeeds
+from ..drivers.interfaces import STOP, BaseState, Fix, LineReading, Mode, Note, Odometry, Sighting, WheelSpeeds
 from ..navigation.line_symbol import LineSymbol
 
 NOTHING_SEEN = LineReading(False, False, False)
@@ -33,6 +33,8 @@ class View:
     """Where the robot was when the frame with `post` was taken."""
     code: Sighting | None = None
     """The newest hand-over code (`CM1:…`) shown to the camera."""
+    fixes: tuple[tuple[Fix, Odometry], ...] = ()
+    """The newest of each other position source, and where the robot was by odometry when it came."""
     camera_age_s: float = 0.0
     """Age of the newest frame; above 1 s perception is degraded."""
     sent: WheelSpeeds = STOP

@@ -49,6 +49,37 @@ def test_it_stops_the_wheels_in_half_a_second_whether_or_not_the_mind_lives(movi
 
 
 @pytest.mark.parametrize("door", DOORS)
+def test_the_spot_button_lets_it_go_again_whoever_stopped_it_and_whether_or_not_the_mind_lives(
+    moving: Moving, door: str
+) -> None:
+    moving.sets_off()
+    moving.mind_lives = False
+    DOORS[door](moving)
+    moving.steps(2.0)
+    moving.robot.lift(False)
+    moving.robot.press("spot")
+    moving.steps(0.5)
+    assert moving.faults == {"agent_silent"}
+    moving.mind_lives = True
+    moving.until(lambda: not moving.wheels_stand, 1.0)
+
+
+def test_clean_pressed_in_the_dock_starts_no_cleaning_and_a_dead_mind_ends_no_charge() -> None:
+    robot = Moving("dock", battery_ratio=0.5)
+    try:
+        robot.mind_lives = False
+        robot.steps(20.0)
+        assert robot.robot.state()["battery"]["charging"]
+        robot.robot.press("clean")
+        robot.steps(5.0)
+        assert robot.faults == {"agent_silent", "emergency_stop"}
+        assert robot.robot.docked
+        assert robot.wheels_stand
+    finally:
+        robot.close()
+
+
+@pytest.mark.parametrize("door", DOORS)
 def test_it_takes_the_wheels_from_a_firmware_that_docks(door: str) -> None:
     robot = Moving("dock", battery_ratio=0.6)
     try:
