@@ -213,6 +213,8 @@ class Create2:
                 self._cable.speak_at(baud, now)
             case ladder.Send(data, gap_s):
                 self._cable.send(data, now, gap_s)
+                if data == ladder.RESET_BYTES:
+                    self._counts.base_was_reset()
             case ladder.Start(stream):
                 self._start(stream, now)
 

@@ -2,9 +2,10 @@
 
 from .odometry import counts_between
 
-FASTEST_COUNTS_S = 7000.0
-"""Three metres a second: more than the base drives, less than nobody could push it."""
+FASTEST_COUNTS_S = 700.0
+"""300 mm/s: half as much again as the base is ever told, for the time of a silence."""
 SPARE_COUNTS = 120
+"""Within a frame of 15 ms: 3.5 m/s, for somebody who pushes it."""
 
 
 class EncoderCounts:
@@ -15,10 +16,19 @@ class EncoderCounts:
         self._last_s = 0.0
         self._doubted: tuple[int, int] | None = None
         self._offsets = (0, 0)
+        self._was_reset = False
+
+    def base_was_reset(self) -> None:
+        """The next counts begin anywhere, however near that looks."""
+        self._was_reset = True
 
     def accept(self, left: int, right: int, now: float) -> tuple[int, int] | None:
         """The counts to believe, 16 bits with sign; None: a leap. Two leaps to one place are a new zero."""
         counts = (left, right)
+        if self._was_reset and self._last is not None:
+            self._begin_anew(self._last, counts)
+            self._last = counts
+        self._was_reset = False
         if self._last is not None and not _near(self._last, counts, now - self._last_s):
             if self._doubted is None or not _near(self._doubted, counts, now - self._last_s):
                 self._doubted = counts

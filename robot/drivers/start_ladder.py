@@ -74,7 +74,8 @@ AT_19200 = Step(
     ),
     1.4,
 )
-RESET = Step("reset", ((0.0, Send(bytes((oi.Opcode.RESET,)))), (5.0, Start())), 6.0)
+RESET_BYTES = bytes((oi.Opcode.RESET,))
+RESET = Step("reset", ((0.0, Send(RESET_BYTES)), (5.0, Start())), 6.0)
 
 WITH_LINE = (START, WAKE, WAKE, WAKE, START_WITHOUT_MODE, AT_19200, RESET)
 WITHOUT_LINE = (START, START, START, START, START_WITHOUT_MODE, AT_19200, RESET)
