@@ -69,13 +69,13 @@ class TimedAgent:
         return getattr(self._agent, name)
 
 
-def logged(contender: Contender, seed: int) -> Log:
+def logged(contender: Contender, seed: int, limit_s: float = LIMIT_S) -> Log:
     clock = SteppedClock()
     with TemporaryDirectory(prefix="paper-") as folder:
         rate = {"rates.line_hz": SIMULATED_LINE_HZ}
         parts = contender.assembled(Path(folder), clock, seed, in_memory=True, **rate)
         runner = LockstepRunner(parts.daemon.loops(), clock)
-        logger = _Logger(contender, parts, seed, runner)
+        logger = _Logger(contender, parts, seed, runner, limit_s)
         parts.daemon.watchers = (*parts.daemon.watchers, logger.look)
         runner.run()
         parts.daemon.close(runner.now_s)
@@ -83,9 +83,9 @@ def logged(contender: Contender, seed: int) -> Log:
 
 
 class _Logger:
-    def __init__(self, contender: Contender, parts: Parts, seed: int, runner: LockstepRunner) -> None:
+    def __init__(self, contender: Contender, parts: Parts, seed: int, runner: LockstepRunner, limit_s: float) -> None:
         assert parts.robot is not None
-        self.log = Log(seed)
+        self.log, self._limit_s = Log(seed), limit_s
         self._contender, self._parts, self._robot, self._runner = contender, parts, parts.robot, runner
         self._agent = TimedAgent(parts.mind.agent, self.log.cycle_ms)
         parts.mind.agent.listen(self._heard)
@@ -116,8 +116,8 @@ class _Logger:
             self._end(now, None)
         elif self._contender.program and now - self._busy_s >= GIVEN_UP_S:
             self._end(now, f"given up: {self._parts.mind.failures[-1:]}")
-        elif now >= LIMIT_S:
-            self._end(now, f"not delivered in {LIMIT_S:.0f} s")
+        elif now >= self._limit_s:
+            self._end(now, f"not delivered in {self._limit_s:g} s")
 
     def _take_acted(self) -> list[str]:
         acted, self._agent.acted = self._agent.acted, []
