@@ -8,11 +8,13 @@
 | camera | rates.camera_hz   | one frame: markers and hand-over codes              | drive (the view)           |
 | mind   | rates.mind_hz     | percepts, reasoning, actions, heartbeat             | drive (skills); outbox     |
 | tell   | rates.snapshot_hz | snapshot for the server                             | link                       |
-| host   | 2                 | supply, clock and disk of the computer; latched stops onto the disk | drive (reflexes) |
+| host   | HOST_HZ           | the computer's supply, clock, disk; stops to disk   | drive (reflexes)           |
 
-Line and drive share a thread, since base and line sensor have one owner. Nothing in that thread waits for the mind, the
-network or the disk, and the last thing it does, whatever ends it, is to stop the wheels. The link is not in the table:
-it lives in a thread of its own and is met through queues.
+Line and drive share a thread, since base and line sensor have one owner; it is woken before its time when the base has
+felt something. Nothing in that thread waits for the mind, the network or the disk, and the last thing it does, whatever
+ends it, is to stop the wheels. What is not in the table lives in threads of its own and is met through queues or by
+looking at the newest view: the port of a real base, the grabbing camera, the link, the writer of the black box, the
+control socket and the signs of life for systemd.
 """
 
 from collections.abc import Callable

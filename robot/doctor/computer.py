@@ -62,7 +62,7 @@ def disk(patient: Patient) -> Finding:
     """Room for the robot's memory, and whether what is written reaches the disk."""
     folder = patient.settings.data
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         free_mb = shutil.disk_usage(folder).free / 1e6
         sync_ms = _sync_ms(patient)
     except OSError as error:
@@ -70,6 +70,8 @@ def disk(patient: Patient) -> Finding:
     said = f"{free_mb:.0f} MB free at {folder}; a full sync takes {sync_ms:.0f} ms"
     if free_mb < LEAST_FREE_MB:
         return fail(said, "Free some: the robot could not remember its mail.")
+    if folder.stat().st_mode & 0o077:
+        return warn(f"others may read {folder}, where codes and addresses of people lie", f"chmod 700 {folder}")
     if free_mb < LITTLE_FREE_MB:
         return warn(said, "Free some.")
     return warn(said, "The card is slow or worn: use another.") if sync_ms > SLOW_SYNC_MS else ok(said)

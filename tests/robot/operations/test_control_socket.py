@@ -6,6 +6,7 @@ import stat
 import threading
 import time
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,8 @@ from robot.assembly import Parts, Simulation, assemble
 from robot.config import load_settings
 from robot.control import SOCKET_NAME, Control
 from robot.json_socket import LONGEST_LINE, MAX_VISITORS, JsonSocket, NobodyAnswers, ask
-from robot.runners import ThreadedRunner
+from robot.runners import Loop, ThreadedRunner
+from robot.skills.interfaces import View
 from robot.status import StatusBoard
 
 
@@ -26,13 +28,26 @@ class Running:
     def __init__(self, data: Path) -> None:
         clock = RealClock()
         self.parts: Parts = assemble(load_settings(None, {"data": data}), clock, Simulation("post3:post2"))
-        self.runner = ThreadedRunner(self.parts.daemon.loops(), clock)
+        self.gate = threading.Event()
+        self.gate.set()
+        self.runner = ThreadedRunner([self._gated(loop) for loop in self.parts.daemon.loops()], clock)
         board = StatusBoard("r1", self.parts.daemon, self.parts.mind, self.runner, clock, clock.now())
         self.path = data / SOCKET_NAME
         self.socket = JsonSocket(self.path, Control(self.parts.daemon.drive, board.tell).answer)
         self._thread = threading.Thread(target=self.runner.run)
         self._thread.start()
         self.until(lambda: self.parts.daemon.drive.view.base)
+
+    def _gated(self, loop: Loop) -> Loop:
+        """The mind hangs while the gate is shut."""
+        if loop.name != "mind":
+            return loop
+
+        def tick(now: float) -> None:
+            self.gate.wait()
+            loop.tick(now)
+
+        return replace(loop, tick=tick)
 
     def until(self, wanted: Callable[[], Any], limit_s: float = 15.0) -> None:
         until_s = time.monotonic() + limit_s
@@ -61,7 +76,7 @@ def test_status_tells_what_the_robot_does_its_battery_and_how_punctual_it_is(run
     assert told["base"]["mode"] in {"passive", "safe"}
     assert told["base"]["frames"] > 0
     assert 0 < told["battery"]["ratio"] <= 1
-    assert set(told["loops"]) == {"world", "line and drive", "camera", "mind", "tell"}
+    assert set(told["loops"]) == {"world", "line and drive", "camera", "mind", "tell", "host"}
     mind = told["loops"]["mind"]
     assert 0 <= mind["late_p50_ms"] <= mind["late_p99_ms"] <= mind["late_worst_ms"]
 
@@ -72,6 +87,37 @@ def test_a_stop_is_answered_when_the_wheels_stand_and_holds_until_somebody_rearm
     assert ask(running.path, {"do": "status"})["faults"].keys() >= {"emergency_stop"}
     assert ask(running.path, {"do": "rearm"})["ok"]
     assert "emergency_stop" not in ask(running.path, {"do": "status"})["faults"]
+
+
+def test_a_robot_whose_mind_hangs_can_still_be_asked_and_stopped(running: Running) -> None:
+    running.gate.clear()
+    try:
+        running.until(lambda: "agent_silent" in ask(running.path, {"do": "status"}).get("faults", {}))
+        assert ask(running.path, {"do": "stop"})["ok"]
+    finally:
+        running.gate.set()
+    running.until(lambda: ask(running.path, {"do": "rearm"})["ok"])
+
+
+def test_the_black_box_is_written_on_demand(tmp_path: Path) -> None:
+    control = Control(StandingDrive(), dict, lambda: tmp_path / "box.jsonl.gz")
+    assert control.answer({"do": "black_box"}) == {"ok": True, "file": str(tmp_path / "box.jsonl.gz")}
+    assert Control(StandingDrive(), dict).answer({"do": "black_box"})["ok"] is False
+
+
+def test_a_stop_that_the_drive_loop_does_not_obey_is_not_called_done() -> None:
+    answer = Control(StandingDrive(), dict).answer({"do": "stop"})
+    assert (answer["ok"], "not within" in answer["error"]) == (False, True)
+
+
+class StandingDrive:
+    """A drive loop that does not run: nothing that is asked of it happens."""
+
+    view = View(at_s=0.0)
+
+    def emergency_stop(self) -> None: ...
+
+    def rearm(self) -> None: ...
 
 
 def test_a_robot_in_the_air_is_not_rearmed_and_says_why(running: Running) -> None:

@@ -283,8 +283,10 @@ def test_settings_that_do_not_fit_the_map_are_told(tmp_path: Path) -> None:
     assert (grade, "post1 has no dock" in said) == (Grade.FAIL, True)
 
 
-def test_a_disk_that_takes_nothing_is_told(tmp_path: Path) -> None:
+def test_a_disk_that_takes_nothing_and_a_folder_that_others_may_read_are_told(tmp_path: Path) -> None:
     assert "a full sync takes" in computer.disk(patient(tmp_path)).said
+    (tmp_path / "data").chmod(0o755)
+    assert "chmod 700" in graded(computer.disk(patient(tmp_path)))[1]
     grade, said = graded(computer.disk(patient(tmp_path, data=write(tmp_path / "file", "") / "data")))
     assert (grade, "cannot be written" in said) == (Grade.FAIL, True)
 
