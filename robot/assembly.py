@@ -6,6 +6,7 @@ from pathlib import Path
 
 from bdi import Agent, Program, parse_program
 from maps import CampusMap, find_map
+from maps.tags import tag_numbers
 from protocol.clock import Clock
 
 from .action.actions import Actions, table_for
@@ -15,6 +16,7 @@ from .config import ConfigError, PerceptMode, Settings, read_token
 from .daemon import BodyWatch, Daemon
 from .drive_loop import DriveLoop
 from .drivers.create2 import Create2
+from .drivers.dock_infrared import DockInfrared
 from .drivers.interfaces import BodyShape, Camera, Host, LineSensor
 from .drivers.marker_pose import Optics
 from .drivers.marker_reader import MarkerReader, MarkerWatch
@@ -181,7 +183,8 @@ def _simulated_robot(settings: Settings, campus: CampusMap, clock: Clock, simula
             pack=Pack(charger_ma=settings.battery.simulated_charger_ma),
             motion=simulation.motion,
         ),
-        camera=CameraMount(colour=False),  # grey is all that the decoder looks at
+        # Grey is all that the decoder looks at.
+        camera=CameraMount(colour=False, april_tags=settings.camera.april_tags),
     )
     return SimulatedRobot(
         campus,
@@ -226,13 +229,15 @@ def join(
         duties.held.faults | stops.read(),
         1 / settings.rates.drive_hz,
         black_box,
+        (DockInfrared(devices.base),),
     )
     navigator = Navigator(campus, _home(settings, campus), duties)
     hands = Hands(drive, navigator, duties, settings.drive.cruise_mm_s, settings.drive.turn_mm_s, shape)
     mode = percept_mode(settings)
     mind = Mind(Agent(program, name=settings.name), Actions(hands, table_for(mode)), hands, settings, mode)
     mind.note = black_box.note
-    reader = MarkerReader(campus.posts, Optics(settings.camera.field_of_view_deg), shape)
+    tags = tag_numbers(campus) if settings.camera.april_tags else None
+    reader = MarkerReader(campus.posts, Optics(settings.camera.field_of_view_deg), shape, tags=tags)
     watch = MarkerWatch(devices.camera, reader, now)
     body = BodyWatch(HostWatch(devices.host), stops, black_box)
     daemon = Daemon(devices.base, drive, watch, mind, settings.rates, body, devices.world)

@@ -9,6 +9,7 @@ from protocol import parts
 from protocol.parts import Leg
 from robot.drivers.interfaces import Odometry, Sighting
 from robot.duties import Duties
+from robot.navigation.by_fixes import near_dock
 from robot.navigation.directions import Way, next_post
 from robot.navigation.moved import cannot_be_next, found_at, nowhere
 from robot.navigation.position import REACHED_MM, Position
@@ -55,8 +56,11 @@ class Navigator:
 
     def look(self, view: View) -> None:
         """Take in what the body sees now."""
-        before, self._odometry = self.position, view.odometry
+        self._odometry = view.odometry
         docked = bool(view.base and view.base.docked)
+        if not docked:
+            self.position = near_dock(self.campus, self.position, view.fixes, self.home, view.at_s)
+        before = self.position
         if view.post and view.motion in TURNING:
             self._ignored_until_s = view.post.at_s
         post = view.post if view.post and view.post.at_s > self._ignored_until_s else None
