@@ -32,6 +32,7 @@ from .navigator import Navigator
 from .outbox import Outbox
 from .simulated import Build, CameraMount, DiodeMount, Motion, Options, Pack, SimulatedHost, SimulatedRobot, World
 from .simulated_world import SavedWorld
+from .stop_memory import FILE_NAME as STOPS
 from .stop_memory import StopMemory
 from .store import Store
 
@@ -220,7 +221,7 @@ def join(
     duties = Duties(store, Memory(store), Outbox(store), clock.utc, mailroom=_mailroom(settings, campus))
     black_box = BlackBox(settings.data / "black_box", clock.utc)
     devices.base.listen_in(black_box.heard, black_box.sent)
-    stops = StopMemory(settings.data / "stops.json")
+    stops = StopMemory(settings.data / STOPS)
     drive = DriveLoop(
         devices.base,
         devices.line_sensor,

@@ -13,6 +13,9 @@ import structlog
 
 from .reflexes import LATCHED
 
+FILE_NAME = "stops.json"
+"""In the robot's data folder."""
+
 log = structlog.get_logger("robot.drive")
 
 

@@ -9,6 +9,7 @@ from ..control import SOCKET_NAME
 from ..drivers.last_resort import stop_base
 from ..errors import RobotError
 from ..json_socket import NobodyAnswers, ask
+from ..stop_memory import FILE_NAME, StopMemory
 from .asking import UNFINISHED, ConfigOption, DataOption, settings_of
 
 PortOption = Annotated[str | None, typer.Option("--port", help="Serial port of the base, where it is another.")]
@@ -17,8 +18,8 @@ PortOption = Annotated[str | None, typer.Option("--port", help="Serial port of t
 def stop(config: ConfigOption = None, data: DataOption = None, port: PortOption = None) -> None:
     """Stop the wheels now. They stay stopped, through a restart too, until somebody re-arms the robot.
 
-    If no daemon answers, the stop goes straight to the base: the wheels stand, and the base is in Passive, but nobody
-    holds that stop: end the daemon before you start again.
+    If no daemon answers, the stop goes straight to the base, which is then in Passive; and it is written down, so that
+    a daemon that hangs and is started again (as systemd does) stays stopped.
 
     Exit status 0: the daemon has stopped the wheels. 1: no daemon answered, the stop bytes went to the base.
     2: neither could be reached: press Clean on the robot, or lift it.
@@ -29,6 +30,7 @@ def stop(config: ConfigOption = None, data: DataOption = None, port: PortOption 
         print("The wheels stand. Start again with: python -m robot rearm")
         return
     typer.echo(answer, err=True)
+    _write_down(settings)
     try:
         stop_base(port or settings.serial_port)
     except RobotError as problem:
@@ -36,6 +38,13 @@ def stop(config: ConfigOption = None, data: DataOption = None, port: PortOption 
         raise typer.Exit(2) from None
     print("The stop bytes were written to the base; nobody has confirmed that it stands. Look at it.")
     raise typer.Exit(UNFINISHED)
+
+
+def _write_down(settings: Settings) -> None:
+    """For the next start. Where there is no data folder, no robot has ever run."""
+    if settings.data.is_dir():
+        memory = StopMemory(settings.data / FILE_NAME)
+        memory.keep(memory.read() | {"emergency_stop"})
 
 
 def rearm(config: ConfigOption = None, data: DataOption = None) -> None:

@@ -112,6 +112,14 @@ def test_a_stop_that_reaches_nobody_says_so_loudly(tmp_path: Path) -> None:
     assert "The robot was NOT stopped. Press Clean on it, or lift it." in ran.output
 
 
+def test_a_stop_beside_a_dead_daemon_holds_when_the_next_one_starts(tmp_path: Path) -> None:
+    CliRunner().invoke(cli, ["stop", "--data", str(tmp_path), "--port", str(tmp_path / "tty")])
+    daemon = Daemon(tmp_path)
+    assert "FAULT        emergency_stop: " in daemon.until("FAULT").output
+    assert json.loads(daemon.types("status", "--json").output)["base"]["wheels_mm_s"] == [0, 0]
+    daemon.close()
+
+
 def test_a_stop_without_a_daemon_goes_to_the_base_itself(tmp_path: Path) -> None:
     port = tmp_path / "tty"
     with subprocess.Popen(
