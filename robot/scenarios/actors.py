@@ -8,10 +8,11 @@ from maps import CampusMap
 from ..assembly import Parts
 from ..simulated import SimulatedRobot
 from ..skills.tunes import TUNES
-from .places import post_at
+from .places import AT_POST_M, post_at
 from .scenario import RobotRow
 from .stepped_link import SteppedLink
 
+AT_DOCK_M: Final = 1.0
 _NAMES: Final = {tuple(number for number, _ in notes): name for name, notes in TUNES.items()}
 
 
@@ -39,7 +40,8 @@ class Actor:
 
     def look(self, campus: CampusMap, now: float) -> None:
         pose = self.body.pose
-        post = post_at(campus, pose.x_m, pose.y_m)
+        # In its dock it is at the dock's post for everybody who has a letter for it.
+        post = post_at(campus, pose.x_m, pose.y_m, AT_DOCK_M if self.body.docked else AT_POST_M)
         if post and post != self.post and (not self.posts or self.posts[-1][1] != post):
             self.posts.append((now, post))
         self.post = post

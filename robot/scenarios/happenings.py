@@ -58,7 +58,8 @@ class Happenings:
                 self.note(actor.name, f"service: {row.say}{f' {row.order}' if row.order else ''}")
 
     def _say(self, robot: str, row: MessageRow) -> None:
-        service, command_id = self.service, self.service.command_id()
+        service = self.service
+        command_id = service.command_id(robot, f"{row.say} {row.order}" if row.order else row.say)
         if row.say == "cancel":
             service.letters[row.order or ""].cancelled = True
         if row.say == "recall":

@@ -53,13 +53,13 @@ class Handing:
 
     def has_business(self, actor: Actor) -> bool:
         """Whether this robot may want something of this person."""
-        if self.gives:
-            return self.letter.place == WITH_SENDER and not self.letter.moved and not self.letter.cancelled
-        return self.letter.place == actor.name
+        if self.gives and not self.letter.moved:
+            return not self.letter.cancelled
+        return self.letter.place == actor.name and (not self.gives or self.letter.returning)
 
     def tick(self, actor: Actor, now: float) -> None:
         """A robot is at the post, or has just left it."""
-        waits = actor.post == self.post and actor.stands_s(now) > NOTICES_AFTER_S and not actor.body.docked
+        waits = actor.post == self.post and actor.stands_s(now) > NOTICES_AFTER_S
         if not (waits and self.has_business(actor) and self.person.comes != "never"):
             self._leave(actor)
             return
@@ -81,12 +81,12 @@ class Handing:
     def shown(self) -> str:
         """What is held up this time."""
         wrong = self.person.shows == "wrong" or (self.person.shows == "wrong_first" and self.tried == 1)
-        own = self.letter.load_code if self.gives or self.letter.returning else self.letter.receive_code
+        own = self.letter.load_code if self.gives else self.letter.receive_code
         return self.wrong_code if wrong else own
 
     def _begin(self, actor: Actor, now: float) -> None:
         self.tried += 1
-        if self.person.shows == "spot" and self.gives:
+        if self.person.shows == "spot" and self.letter.place == WITH_SENDER:
             self.presses = [now, now + PRESS_EVERY_S, now + SHOWS_S]
         else:
             self.shows_until_s = now + SHOWS_S
@@ -106,8 +106,8 @@ class Handing:
 
     def _hand_over(self, actor: Actor, now: float) -> None:
         """It said yes: in with it, or out."""
-        back = WITH_SENDER if self.letter.returning else WITH_RECIPIENT
-        self.letter.put(actor.name if self.gives else back, now)
+        taker = WITH_SENDER if self.gives else WITH_RECIPIENT
+        self.letter.put(actor.name if self.letter.place == WITH_SENDER else taker, now)
         self.shows_until_s, self.presses = -math.inf, []
         actor.body.hide_code()
 

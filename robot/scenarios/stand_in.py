@@ -61,6 +61,8 @@ class Session:
     missions: int = 0
     snapshot: Snapshot | None = None
     why: Why | None = None
+    commands: dict[str, str] = field(default_factory=dict)
+    """What was asked with which command id."""
     faults: dict[str, str] = field(default_factory=dict)
     """Told and not over, with their reasons."""
     errors: list[str] = field(default_factory=list)
@@ -133,8 +135,10 @@ class StandIn:
         session.sent.append(message)
         self._send(session, message, len(session.sent))
 
-    def command_id(self) -> str:
+    def command_id(self, robot: str, asked: str) -> str:
+        """`asked`: pause, resume, recall …, or cancel and the order."""
         self._commands += 1
+        self.sessions[robot].commands[f"c{self._commands}"] = asked
         return f"c{self._commands}"
 
     def _send(self, session: Session, message: Part, seq: int | None = None) -> None:
@@ -223,7 +227,17 @@ class StandIn:
                     session.faults[happened.name] = happened.reason
             case CommandAnswer():
                 words = "accepted" if happened.accepted else f"refused: {happened.reason}"
-                self._note(session, f"answer {happened.command_id} {words}")
+                asked = session.commands.get(happened.command_id, "?")
+                self._note(session, f"answer {asked} {words}")
+                if happened.accepted:
+                    self._end_mission(session, asked)
+
+    def _end_mission(self, session: Session, asked: str) -> None:
+        """A recall ends the mission, and so does a cancellation of all that was left of it."""
+        stops = session.mission.stops if session.mission else ()
+        left = {stop.order_id for stop in stops if not self.letters[stop.order_id or ""].cancelled}
+        if asked == "recall" or (asked.startswith("cancel") and not left):
+            session.mission = None
 
     def _note(self, session: Session, text: str) -> None:
         self.told.append(Told(self._clock.now(), session.robot, text))
