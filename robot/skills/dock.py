@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass
 import structlog
 
 from ..drivers.interfaces import STOP, BodyShape, Mode, WheelSpeeds
-from .find_line import over_line
+from .find_line import align, over_line, sweep
 from .interfaces import Done, Failed, Outcome, Running, SeekDock, SetMode, View
 from .script import Part, Script, Scripted, roll, stand, turn_by
 
@@ -21,7 +21,8 @@ IDLE_S = 10.0
 RETRY_BACK_MM, RETRY_BACK_MM_S = 250.0, 100.0
 """Each try begins so much farther off than the one before: from too near the firmware cannot come straight."""
 UNDOCK_MM, UNDOCK_MM_S, UNDOCK_TURN_MM_S = 300.0, 150.0, 140.0
-TO_LINE_MM, TO_LINE_MM_S = 500.0, 110.0
+TO_LINE_MM, TO_LINE_MM_S = (280.0, 130.0, 130.0), 110.0
+"""A robot that stood aslant in its dock comes out beside the line: after each of these it looks to both sides."""
 MODE_S = 3.0
 ASLANT_RAD = math.radians(3)
 
@@ -113,9 +114,20 @@ class Undock(Scripted):
         view = yield Running(STOP, (SetMode(Mode.SAFE),))
         view = yield from _until_mode(view, Mode.SAFE)
         view = yield from turn_by(view, math.pi, UNDOCK_TURN_MM_S, self._shape)
-        # The tape ends at the post, some way before the dock.
-        view = yield from roll(view, TO_LINE_MM, WheelSpeeds(TO_LINE_MM_S, TO_LINE_MM_S), over_line)
+        view = yield from self._to_line(view)
         return Done() if over_line(view) else Failed("line_lost")
+
+    def _to_line(self, view: View) -> Part:
+        """The tape ends at the post, some way before the dock."""
+        along_rad = view.odometry.heading_rad
+        for distance_mm in TO_LINE_MM:
+            view = yield from roll(view, distance_mm, WheelSpeeds(TO_LINE_MM_S, TO_LINE_MM_S), over_line)
+            if over_line(view):
+                break
+            view = yield from sweep(view, self._shape)
+            if over_line(view):
+                return (yield from align(view, self._shape, along_rad))
+        return view
 
 
 def _charging(view: View) -> bool:

@@ -78,12 +78,7 @@ class FindLine(Scripted):
         return view
 
     def _sweep(self, view: View) -> Part:
-        """Left and right by growing angles, the side where the line was seen first."""
-        for angle in SWEEPS_RAD:
-            for turn in (self._side * angle, -2 * self._side * angle, self._side * angle):
-                if not over_line(view):
-                    view = yield from turn_by(view, turn, SWEEP_MM_S, self._shape, over_line)
-        return view
+        return sweep(view, self._shape, self._side)
 
     def _spiral(self, view: View) -> Part:
         """Outwards, towards the side where the line was seen last."""
@@ -95,19 +90,32 @@ class FindLine(Scripted):
         return (yield from stand(view))
 
     def _align(self, view: View, along_rad: float) -> Part:
-        """Look along the line the way it was driven before; the axle comes over the tape first.
-
-        Without that, a robot that met the tape across would follow it back to where it came from.
-        """
-        off_rad = math.remainder(along_rad - view.odometry.heading_rad, math.tau)
-        if abs(off_rad) > math.radians(20):
-            view = yield from roll(view, self._shape.sensor_lead_mm, WheelSpeeds(SEARCH_MM_S, SEARCH_MM_S))
-            view = yield from turn_by(view, off_rad, SEARCH_MM_S, self._shape)
-        return (yield from settle(view, self._shape, ALIGN_RAD))
+        return align(view, self._shape, along_rad)
 
     def _bent(self, sign: int) -> WheelSpeeds:
         slow, fast = (sign * speed for speed in ARC)
         return WheelSpeeds(slow, fast) if self._side > 0 else WheelSpeeds(fast, slow)
+
+
+def sweep(view: View, shape: BodyShape, side: float = 1.0) -> Part:
+    """Left and right by growing angles, the side where the line was seen first."""
+    for angle in SWEEPS_RAD:
+        for turn in (side * angle, -2 * side * angle, side * angle):
+            if not over_line(view):
+                view = yield from turn_by(view, turn, SWEEP_MM_S, shape, over_line)
+    return view
+
+
+def align(view: View, shape: BodyShape, along_rad: float) -> Part:
+    """Look along the line the way it was driven before; the axle comes over the tape first.
+
+    Without that, a robot that met the tape across would follow it back to where it came from.
+    """
+    off_rad = math.remainder(along_rad - view.odometry.heading_rad, math.tau)
+    if abs(off_rad) > math.radians(20):
+        view = yield from roll(view, shape.sensor_lead_mm, WheelSpeeds(SEARCH_MM_S, SEARCH_MM_S))
+        view = yield from turn_by(view, off_rad, SEARCH_MM_S, shape)
+    return (yield from settle(view, shape, ALIGN_RAD))
 
 
 def searching(part: Part) -> Part:

@@ -34,7 +34,7 @@ MOST_SEARCHES = 3
 """So many searches in a row with less than half a metre of line between them: this is where the line ends."""
 MOST_BUMPS = 3
 INNER_WHEEL_MM_S, OUTER_WHEEL_MM_S = 30.0, 200.0
-MISSED_SHARE, MISSED_MM = 0.08, 300.0
+MISSED_SHARE, MISSED_MM = 0.08, 150.0
 """No marker so far beyond the length of the corridor: wheels and tape measures err by less, so the post was missed."""
 OTHER_LINE_MM = 5.0
 """Where an unseen post may be, tape that lies farther beside the line than this is a branch."""
