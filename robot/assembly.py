@@ -173,7 +173,7 @@ def _devices(
 
     base = Create2(open_port, robot.brc, settings.drive.velocity_deadline_s)
     sensor = line_sensor(settings, robot.pin_factory)
-    host = SimulatedHost(robot.faults, clock.utc)
+    host = SimulatedHost(robot.faults, clock)
     return Devices(base, sensor, robot.camera, host, robot, saved)
 
 
@@ -210,7 +210,7 @@ def _real_devices(settings: Settings, clock: Clock, closing: ExitStack) -> Devic
     frames = real_camera(settings)
     closing.callback(frames.close)
     base.start()
-    return Devices(base, sensor, frames, Computer(settings.data, clock.utc))
+    return Devices(base, sensor, frames, Computer(settings.data, clock))
 
 
 def join(

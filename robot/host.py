@@ -6,10 +6,10 @@ the answer as a `HostReport`.
 
 import shutil
 import subprocess
-from collections.abc import Callable
 from contextlib import suppress
-from datetime import datetime
 from pathlib import Path
+
+from protocol.clock import Clock
 
 from .drivers.interfaces import Host, HostReport
 
@@ -29,9 +29,9 @@ DISK_LOW_MB = 100.0
 class Computer:
     """See `interfaces.Host`: the machine that this runs on. What it does not tell counts as well."""
 
-    def __init__(self, folder: Path, utc: Callable[[], datetime], system: Path = Path("/")) -> None:
+    def __init__(self, folder: Path, clock: Clock, system: Path = Path("/")) -> None:
         """`folder`: where the robot keeps its memory; `system`: another root of /sys, for a test with real files."""
-        self._folder, self._utc = folder, utc
+        self._folder, self._clock = folder, clock
         self._throttled = system / THROTTLED_FILE.relative_to("/")
         self._alarms = sorted((system / HWMON.relative_to("/")).glob(ALARM_FILES))
         self._command = shutil.which(COMMAND) if system == Path("/") else None
@@ -55,9 +55,9 @@ class Computer:
             return int(answer.stdout.partition("=")[2], 16)
         return 0
 
-    def utc_s(self) -> float:
-        """See `interfaces.Host.utc_s`."""
-        return self._utc().timestamp()
+    def clock_ahead_s(self) -> float:
+        """See `interfaces.Host.clock_ahead_s`."""
+        return self._clock.utc().timestamp() - self._clock.now()
 
     def disk_free_mb(self) -> float:
         """See `interfaces.Host.disk_free_mb`."""
@@ -72,9 +72,12 @@ class HostWatch:
         self._ahead_s: float | None = None
         """Of the clock before time, at the last look."""
 
-    def tick(self, now: float) -> HostReport:
-        """One look. What cannot be asked is no fault: a robot must not stand because a file of the system is gone."""
-        ahead_s = self._host.utc_s() - now
+    def tick(self, _: float) -> HostReport:
+        """One look. What cannot be asked is no fault: a robot must not stand because a file of the system is gone.
+
+        The time of the tick is not asked for: a loop that is late would see a jump in it.
+        """
+        ahead_s = self._host.clock_ahead_s()
         jumped = self._ahead_s is not None and abs(ahead_s - self._ahead_s) > JUMP_S
         self._ahead_s = ahead_s
         return HostReport(self._host.under_voltage(), jumped, self._disk_low())

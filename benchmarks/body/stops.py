@@ -118,7 +118,7 @@ class Rig:
         line = settings.line
         self._centre = self._pins.pin(line.centre_pin)
         sensor = ThreeDiodes(line.left_pin, line.centre_pin, line.right_pin, self._pins, line.line_is_low)
-        host = SimulatedHost(Faults(), clock.utc)
+        host = SimulatedHost(Faults(), clock)
         self._store = Store(settings.data / "robot.db")
         devices = Devices(self.base, sensor, NoisyCamera(), host)
         parts = join(settings, builtin_map("test_track"), clock, self._store, devices, program=load_program(settings))
@@ -172,13 +172,13 @@ class Rig:
         seen: dict[str, Any] = self._connection.recv()
         return seen
 
-    def after(self, cause: str, limit_s: float = 6.0) -> dict[str, Any]:
-        """Let the world do this (`begin`, `bump soon`), and say what it saw once the wheels stood."""
+    def after(self, cause: str, until: str = "standing_s", limit_s: float = 6.0) -> dict[str, Any]:
+        """Let the world do this (`begin`, `bump soon`), and say what it saw, once it has seen what is waited for."""
         self._connection.send(cause)
         until_s = time.monotonic() + limit_s
-        while (seen := self.seen())["standing_s"] is None:
+        while (seen := self.seen())[until] is None:
             if time.monotonic() > until_s:
-                raise TimeoutError(f"the wheels do not stand after {cause}: {seen}, {self.drive.view.faults}")
+                raise TimeoutError(f"no {until} after {cause}: {seen}, {self.drive.view.faults}")
             time.sleep(0.02)
         return seen
 
@@ -220,13 +220,14 @@ def bumps(seeds: range) -> dict[str, Any]:
         made.mind_busy_s, made._began_s = 0.0, time.monotonic()
         for _ in range(BUMPS_PER_SEED * len(seeds)):
             made.until_driving()
-            seen = made.after("bump soon")
+            seen = made.after("bump soon", "stop_heard_s")
             took_ms.append(1000 * (seen["stop_heard_s"] - seen["bump_shown_s"]))
         busy = made.mind_busy_share
-        lag = made.lag_p99_ms
+        lag, gap_s = made.lag_p99_ms, made.drive.worst_gap_s
     return {
         "mind_busy_share": round(busy, 3),
         "drive_lag_p99_ms": round(lag, 2),
+        "drive_worst_gap_s": round(gap_s, 3),
         "bump": {
             "samples": len(took_ms),
             "p50_ms": round(median(took_ms), 2),
@@ -284,7 +285,7 @@ def measure(samples: Samples) -> dict[str, Any]:
     """About 4 s for each bump (a bump has to be over before the next), 2 to 5 s for each of the others."""
     structlog.configure(wrapper_class=structlog.make_filtering_bound_logger(50))  # what dies here is meant to
     figures = bumps(samples.some_seeds())
-    say(f"  bump: {figures['bump']}, mind busy {figures['mind_busy_share']}")
+    say(f"  bump: {figures}")
     few = samples.some_seeds(max(1, samples.seeds // SEEDS_PER_CAUSE))
     causes = {
         "deadline": lambda: hangs("line and drive", few),

@@ -312,8 +312,8 @@ class Host(Protocol):
         """The supply is too low now; False where the computer cannot tell."""
         ...
 
-    def utc_s(self) -> float:
-        """The clock that records are written by, in seconds."""
+    def clock_ahead_s(self) -> float:
+        """The clock that records are written by, less the time that only passes: it stays what it is, unless set."""
         ...
 
     def disk_free_mb(self) -> float:

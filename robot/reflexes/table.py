@@ -224,7 +224,8 @@ FAULTS: Final[tuple[Fault, ...]] = (
         Response.STOP,
         after_s=0.0,
         clears_s=0.0,
-        # Three metres at the slowest that it follows a line; the check is one of travel, not of time.
+        # Three metres at the slowest that it follows a line; the check is one of travel, not of time. A sensor that
+        # sees nothing at all sends the robot on its searches first.
         stands_within_s=60.0,
         cleared_by="a diode changes, or somebody re-arms the robot",
         told="The line sensor does not change over metres of travel. Please look at its diodes and its plug.",

@@ -44,7 +44,7 @@ class Moving(Drive):
     def __post_init__(self) -> None:
         self.host: HostWatch | None = None
         super().__post_init__()
-        self.host = HostWatch(SimulatedHost(self.robot.faults, self.clock.utc))
+        self.host = HostWatch(SimulatedHost(self.robot.faults, self.clock))
 
     def tick(self) -> None:
         for share in (0.25, 0.5, 0.75):
