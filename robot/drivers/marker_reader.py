@@ -18,6 +18,8 @@ MARKER_SIZE_MM = 80.0
 AGREE, OUT_OF = 2, 3
 """Equal reads that accept, of how many looks: a torn code that reads as another post would send the robot astray."""
 FIXES_KEPT = 8
+POSES_KEPT = 16
+"""Before a robot that stands a code has the same few corners again and again, and its place takes longest to find."""
 
 
 class MarkerReader:
@@ -36,6 +38,7 @@ class MarkerReader:
         self._optics, self._shape = optics or Optics(), shape or BodyShape()
         self._decode = decode or best_decoder()
         self._tags = TagDetector(tags) if tags else None
+        self._poses: dict[Decoded, SheetPose | None] = {}
 
     def look(self, frame: Frame, now: float) -> tuple[Sighting, ...]:
         """What is in this frame; `text` is a post's name or begins with `CM1:`."""
@@ -53,7 +56,11 @@ class MarkerReader:
         """Of a marker; where a hand-over code is held does not matter."""
         if code.text not in self._posts:
             return None
-        return code_pose(grey, code.text, code.corners, MARKER_SIZE_MM, self._optics)
+        if code not in self._poses:
+            if len(self._poses) >= POSES_KEPT:
+                self._poses.clear()
+            self._poses[code] = code_pose(grey, code.text, code.corners, MARKER_SIZE_MM, self._optics)
+        return self._poses[code]
 
     def _sighting(self, code: Decoded, pose: SheetPose | None, now: float) -> Sighting:
         if pose is None:

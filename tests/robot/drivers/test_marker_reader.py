@@ -156,3 +156,27 @@ def test_a_camera_that_gives_no_frame_grows_old():
     watch = MarkerWatch(Album(frame_of("post3"), None, None), MarkerReader(TRACK.posts), now=0.0)
     ages = [watch.tick(now).frame_age_s for now in (1.0, 1.5, 2.4)]
     assert ages == pytest.approx([0.0, 0.5, 1.4])
+
+
+def test_a_handover_code_is_in_no_log():
+    code = "CM1:" + "5a" * 16
+    (sighting,) = MarkerReader(TRACK.posts).look(frame_of(code, 5, (150, 60), "m"), 0.0)
+    assert sighting.text == code
+    assert "5a" not in f"{sighting!r} {sighting}"
+    assert "post3" in repr(MarkerReader(TRACK.posts).look(frame_of("post3"), 0.0))
+
+
+def test_what_is_far_too_long_for_a_code_of_ours_is_foreign():
+    frame = frame_of("CM1:" + "x" * 300, 5, (20, 20), "l")
+    assert MarkerReader(TRACK.posts, decode=zxing_decoder(zxingcpp)).look(frame, 0.0) == ()
+
+
+def test_a_watch_is_a_position_source_that_tells_each_fix_once():
+    frame = seen_from(0.05)
+    watch = MarkerWatch(Album(frame, frame, frame), MarkerReader(TRACK.posts))
+    told = []
+    for now in (1.0, 1.1, 1.2):
+        watch.tick(now)
+        told.append([(fix.source, fix.post, fix.at_s) for fix in watch.fixes(now)])
+    assert told == [[], [("marker", "post2", 1.1)], [("marker", "post2", 1.2)]]
+    assert watch.fixes(2.0) == ()
