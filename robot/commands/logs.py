@@ -1,13 +1,13 @@
 """`logs`: what the daemon has written, and what a black box holds."""
 
 import subprocess
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from ..black_box import Row, rows
+from ..black_box import rows
+from ..black_box_table import table
 from ..config import Settings
 from ..control import SOCKET_NAME
 from ..errors import RobotError
@@ -27,6 +27,7 @@ def logs(
     dump: Annotated[
         bool, typer.Option("--dump", help="Have the running robot write its black box; show the table.")
     ] = False,
+    raw: Annotated[bool, typer.Option("--raw", help="Of a black box every byte, not only what changed.")] = False,
 ) -> None:
     """The daemon's log: the file of the setting log_file, or systemd's journal.
 
@@ -37,7 +38,7 @@ def logs(
     if dump:
         black_box = _dumped(settings)
     if black_box:
-        _show(black_box)
+        _show(black_box, raw)
     else:
         raise typer.Exit(_shown(settings.log_file, lines, follow))
 
@@ -52,24 +53,12 @@ def _dumped(settings: Settings) -> Path:
     return Path(answer["file"])
 
 
-def _show(file: Path) -> None:
+def _show(file: Path, raw: bool) -> None:
     try:
-        for line in table(list(rows(file))):
+        for line in table(rows(file), raw):
             print(line)
     except RobotError as problem:
         refuse(str(problem))
-
-
-def table(found: list[Row]) -> Iterator[str]:
-    """Seconds before the end, kind, what: one line each."""
-    end_s = max((row.at_s for row in found), default=0.0)
-    for row in found:
-        what = row.data.hex(" ") if isinstance(row.data, bytes) else _words(row.data)
-        yield f"{row.at_s - end_s:9.3f} s  {row.kind:10} {what}"
-
-
-def _words(data: object) -> str:
-    return ", ".join(map(str, data)) if isinstance(data, list | tuple) else str(data)
 
 
 def _shown(file: Path | None, newest: int, follow: bool) -> int:

@@ -4,10 +4,12 @@ import json
 import os
 import re
 import signal
+import struct
 import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from itertools import chain
 from pathlib import Path
 
 import pytest
@@ -15,6 +17,7 @@ from typer.testing import CliRunner, Result
 
 from robot.__main__ import cli
 from robot.black_box import BlackBox
+from robot.drivers.open_interface import STREAMED
 
 ROOT = Path(__file__).parents[3]
 
@@ -81,15 +84,34 @@ def test_the_log_is_read_from_its_file(daemon: Daemon) -> None:
     assert all(json.loads(line)["timestamp"] for line in subprocess_output.splitlines())
 
 
-def test_a_black_box_is_shown_as_a_table(tmp_path: Path) -> None:
-    box = BlackBox(tmp_path)
+def test_a_black_box_is_shown_as_a_table_of_what_changed(tmp_path: Path) -> None:
+    box, frames = BlackBox(tmp_path), frames_of_a_bump()
+    box.heard(frames[0], 0.5)
     box.note("percepts", 1.0, ("+fault(bump)", "-line(center)"))
-    box.sent(b"\x91\x00\x00\x00\x00", 1.5)
-    file = box.write("bump")
-    shown = CliRunner().invoke(cli, ["logs", "--black-box", str(file)])
+    box.heard(frames[1] + frames[1], 1.2)
+    box.sent(b"\x91\x00\x64\xff\x9c", 1.5)
+    file = str(box.write("bump"))
+    shown = CliRunner().invoke(cli, ["logs", "--black-box", file])
     assert shown.exit_code == 0
     assert re.search(r"-0.500 s +percepts +\+fault\(bump\), -line\(center\)", shown.output)
-    assert re.search(r"0.000 s +sent +91 00 00 00 00", shown.output)
+    assert re.search(r"-0.300 s +heard +bumps_and_drops 2\n", shown.output), "only what changed"
+    assert re.search(r"0.000 s +sent +drive_direct left -100 right 100", shown.output)
+    assert "91 00 64 ff 9c" in CliRunner().invoke(cli, ["logs", "--raw", "--black-box", file]).output
+
+
+def frames_of_a_bump() -> tuple[bytes, bytes]:
+    """One frame of the stream without, one with a touch on the left."""
+
+    def frame(bumps: int) -> bytes:
+        values = [0 if name != "bumps_and_drops" else bumps for _, name in STREAMED.values()]
+        payload = struct.pack(
+            ">" + "".join(f"B{kind}" for kind, _ in STREAMED.values()),
+            *chain.from_iterable(zip(STREAMED, values, strict=True)),
+        )
+        framed = bytes((19, len(payload))) + payload
+        return framed + bytes((-sum(framed) & 0xFF,))
+
+    return frame(0), frame(2)
 
 
 def test_what_is_no_black_box_is_refused(tmp_path: Path) -> None:
