@@ -8,6 +8,7 @@ import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from statistics import median
+from textwrap import fill
 from typing import Any
 
 import cv2
@@ -168,7 +169,7 @@ def _contact_sheet(path: Path, number: int) -> None:
     figure, axes = pyplot.subplots(2, 4, figsize=(16, 6.6))
     for condition, axis in zip(CONDITIONS, axes.flat, strict=True):
         axis.imshow(shot(condition, number).frame, cmap="gray", vmin=0, vmax=255)
-        axis.set_title(f"{condition.name}: {_parameters(condition)}", fontsize=7)
+        axis.set_title(fill(f"{condition.name}: {_parameters(condition)}", 70), fontsize=7)
         axis.axis("off")
     figure.tight_layout()
     figure.savefig(path, dpi=80)
