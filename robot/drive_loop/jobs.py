@@ -104,6 +104,7 @@ class Jobs:
     def _step(self, job: Job, view: View, now: float) -> None:
         try:
             step = job.skill.step(view, now)
+            _refuse_nonsense(step)
         except Exception:
             step = _broken(job.skill)
         if not isinstance(step, Running):
@@ -127,6 +128,13 @@ class Jobs:
             job.refused_since_s = now
         elif now - job.refused_since_s >= REFUSED_S:
             self.end(job.number, Failed(by), now)
+
+
+def _refuse_nonsense(step: Outcome | Running) -> None:
+    """A speed that is no number must not get as far as the base."""
+    wheels = step.wheels if isinstance(step, Running) else None
+    if wheels is not None and not (math.isfinite(wheels.left_mm_s) and math.isfinite(wheels.right_mm_s)):
+        raise ValueError(f"wheels at {wheels}")
 
 
 def _broken(skill: Skill) -> Failed:

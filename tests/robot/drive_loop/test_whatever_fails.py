@@ -1,12 +1,13 @@
 """A drive loop that is late, fed with nonsense or broken from below: the wheels do not lurch, and stop if need be."""
 
+import math
 from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
 
 from robot.drive_loop import DriveLoop
-from robot.drivers.interfaces import CameraReport
+from robot.drivers.interfaces import CameraReport, WheelSpeeds
 from robot.skills.interfaces import Done, Failed, Running, Step, View
 from tests.robot.reflexes.moving import CRUISE, Moving, Rolls
 
@@ -42,6 +43,24 @@ def test_a_skill_that_breaks_ends_as_broken_and_the_wheels_stand(moving: Moving,
     skill = Asks(_breaks) if when == "step" else Asks(lambda _: Running(CRUISE), begins=_breaks)
     assert moving.do(skill) == Failed("broken")
     moving.steps(0.5)
+    assert moving.wheels_stand
+
+
+def test_speeds_that_are_no_numbers_end_the_skill_and_never_reach_the_base(moving: Moving) -> None:
+    assert moving.do(Asks(lambda _: Running(WheelSpeeds(math.nan, 100.0)))) == Failed("broken")
+    assert moving.do(Asks(lambda _: Running(WheelSpeeds(100.0, math.inf)))) == Failed("broken")
+    moving.steps(0.5)
+    assert moving.wheels_stand
+
+
+def test_a_report_that_cannot_be_used_ends_the_loop_and_its_last_word_stops_the_wheels(moving: Moving) -> None:
+    moving.sets_off()
+    nonsense: Any = "no report"
+    moving.loop.report(nonsense, moving.now)
+    with pytest.raises(AttributeError):
+        moving.tick()
+    moving.base.close()
+    moving.robot.step_until(moving.now + 0.6)
     assert moving.wheels_stand
 
 
