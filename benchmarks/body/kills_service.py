@@ -131,7 +131,9 @@ def _once(message: Part) -> Hashable:
 
 def _repeated_in_a_row(messages: list[Part]) -> list[str]:
     """A charge goes from step to step, a fault begins and is over: the same twice running was told twice."""
-    again, last = [], dict[str, Hashable]()
+    key: str
+    state: str
+    again, last = [], dict[str, str]()
     for message in messages:
         happened = message.happened if isinstance(message, Event) else None
         match happened:
