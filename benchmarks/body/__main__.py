@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 import typer
 
-from benchmarks.body.report import PLOTS, Part, Samples, missed, part_report, say, table
+from benchmarks.body.report import PLOTS, Part, Samples, log_to_error_stream, missed, part_report, say, table
 
 # What each shows; the modules are loaded when they are run.
 PARTS = {
@@ -45,6 +45,7 @@ def measure(
     unknown = [name for name in parts or () if name not in PARTS]
     if unknown:
         raise typer.BadParameter(f"no part is called {', '.join(unknown)}; there are {', '.join(PARTS)}")
+    log_to_error_stream()
     plots.mkdir(parents=True, exist_ok=True)
     samples = Samples(seeds, missions, kills, hour_s, first_seed, plots)
     reports = {name: _report(name, samples) for name in PARTS if not parts or name in parts}

@@ -16,6 +16,7 @@ from typing import Any
 import psutil
 
 from benchmarks.body.errands import Errands
+from benchmarks.body.report import log_to_error_stream
 from benchmarks.mind.worker import resident_mib
 from protocol.clock import RealClock
 from robot.assembly import Simulation, assemble
@@ -110,4 +111,5 @@ def _lags(loops: list[Loop], runner: ThreadedRunner) -> dict[str, dict[str, floa
 
 
 if __name__ == "__main__":
+    log_to_error_stream()
     print(json.dumps(measure(float(sys.argv[1]), int(sys.argv[2]))))

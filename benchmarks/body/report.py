@@ -10,6 +10,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol, TypeAlias
 
+import structlog
+
 PLOTS = Path(__file__).parent / "plots"
 Figures: TypeAlias = Mapping[str, Any]
 
@@ -103,6 +105,11 @@ def aligned(rows: Sequence[tuple[str, ...]]) -> str:
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     lines = ("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows)
     return "\n".join(lines)
+
+
+def log_to_error_stream() -> None:
+    """What the robot logs is no JSON: call it where a process begins whose output is read."""
+    structlog.configure(logger_factory=lambda *_: structlog.PrintLogger(sys.stderr))
 
 
 def say(line: str) -> None:

@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 import typer
 
-from benchmarks.body.report import aligned, say
+from benchmarks.body.report import aligned, log_to_error_stream, say
 from benchmarks.mind.engines import CHECKOUT
 from benchmarks.mind.workloads import RECORDED
 from benchmarks.paper.contenders import Contender, contenders
@@ -44,6 +44,7 @@ def measure(
     """
     from benchmarks.paper.plots import draw
 
+    log_to_error_stream()
     at_hand = program if program.exists() else None
     taking_part = contenders(at_hand)
     if at_hand is None:

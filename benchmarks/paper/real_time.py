@@ -12,6 +12,7 @@ from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from benchmarks.body.report import log_to_error_stream
 from benchmarks.paper.contenders import contenders
 from benchmarks.paper.logged_run import TimedAgent
 from protocol.clock import RealClock
@@ -77,5 +78,6 @@ def _watched(loop: Loop, mind: Mind, watch: dict[str, _Period]) -> Loop:
 
 
 if __name__ == "__main__":
+    log_to_error_stream()
     name, duration_s, seed = sys.argv[1], float(sys.argv[2]), int(sys.argv[3])
     print(json.dumps(measure(name, duration_s, seed, Path(sys.argv[4]) if sys.argv[4:] else None)))
