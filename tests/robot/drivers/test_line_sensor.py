@@ -10,7 +10,7 @@ from robot.drivers.interfaces import LineReading
 from robot.drivers.line_sensor import ThreeDiodes
 from robot.reflexes import Lasting
 
-TICKS = 4000
+TICKS = 2000
 
 
 @pytest.fixture
