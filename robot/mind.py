@@ -133,6 +133,7 @@ class Mind:
             navigator.way(),
             navigator.rests_at,
             navigator.moved,
+            navigator.blocked,
         )
         return Seen(
             at_s=now,

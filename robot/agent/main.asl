@@ -24,7 +24,7 @@ purpose(visit(Post))            :- errand(Post).
 purpose(go_home)                :- home(_) & not docked.
 purpose(idle).
 
-// What happens is taken up in the same order: a bump does not queue behind the mail.
+// What happens is taken up in the same order: a stop does not queue behind the mail.
 priorities([safety, health, map]).
 priority(+halted, safety).
 priority(+battery(_), health).

@@ -26,10 +26,14 @@
 -!permission(Post, Patience_s)[reason(denied)] <- rest(15); !permission(Post, Patience_s).
 -!permission(Post, Patience_s)[reason(way_closed)]
   <- raise_fault(no_way, "every way blocked or denied");
-     rest(Patience_s);
+     !wait_for_a_way(Patience_s);
      !permission(Post, math.min(2 * Patience_s, 1800)).
 -!permission(_, _)[reason(Reason), error_msg(Why)] <- .fail(reason(Reason), error_msg(Why)).
 -!permission(_, _)[error_msg(Why)] <- .fail(error_msg(Why)).
+
+// No longer than until a corridor in which it turned back counts as open again.
++!wait_for_a_way(Patience_s) <- rest(Patience_s).
+-closed(_) : .desire(wait_for_a_way(_)) <- !decide_anew.
 
 +!leave(Post) : direction(Post, Way) & (Way = left | Way = right | Way = behind) <- turn(Way).
 +!leave(_).

@@ -116,6 +116,11 @@ PERCEPTS: Final = (
         "moved(Post): somebody has moved it, and it found itself at this post; until noted_move",
         lambda s: [f"moved({s.where.moved})"] if s.where.moved else [],
     ),
+    Percept(
+        "closed",
+        "closed(Corridor): it turned back in there; no way leads through it for a while",
+        lambda s: (f"closed({atom_or_text(name)})" for name in sorted(s.where.closed)),
+    ),
     Percept("fault", "fault(Name): a fault of the reflex table", lambda s: (f"fault({f})" for f in s.view.faults)),
     Percept(
         "halted",

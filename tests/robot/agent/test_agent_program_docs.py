@@ -1,4 +1,4 @@
-"""What the page on the agent program says is what the code has: each percept and action, with its meaning, and no other."""
+"""The page on the agent program has each percept and action of the code, with its meaning, and no other."""
 
 from pathlib import Path
 

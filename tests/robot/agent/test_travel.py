@@ -71,3 +71,20 @@ def test_out_of_network_it_waits_at_a_post_for_the_next_corridor_and_hands_over_
     there = Stage(*CARRYING, "at(post4)")
     there.does("report(departed,s2)", "report(arrived,s2)")
     there.expect("wait_handover(receive,o1,s2,600)")
+
+
+def test_a_corridor_that_opens_ends_the_waiting_for_a_way_but_no_waiting_for_people() -> None:
+    stage = Stage(*CARRYING, "at(post3)", 'closed("post3-post4")')
+    stage.does("report(departed,s2)", "set_destination(post4)")
+    stage.expect("claim(post4)")
+    stage.fails("claim(post4)", "way_closed")
+    stage.does('raise_fault(no_way,"every way blocked or denied")')
+    stage.expect("rest(120)")
+    stage.perceives(without=('closed("post3-post4")',))
+    stage.does("report(departed,s2)", "set_destination(post4)", "claim(post4)")
+    there = Stage(*CARRYING, "at(post4)", 'closed("post3-post4")')
+    there.does("report(departed,s2)", "report(arrived,s2)")
+    there.expect("wait_handover(receive,o1,s2,600)")
+    there.perceives(without=('closed("post3-post4")',))
+    there.settle()
+    assert there.cancelled == []
