@@ -5,6 +5,7 @@ from dataclasses import replace
 from itertools import pairwise
 
 from maps import CampusMap, NoRoute, corridor_name, shortest_route
+from maps.geometry import wrapped
 from protocol import parts
 from protocol.parts import Leg
 from robot.drivers.interfaces import Odometry, Sighting
@@ -25,6 +26,7 @@ TURNING = frozenset({"turn", "undock", "find_line"})
 """Skills during which a marker is seen from aslant: it says nothing about the way that is left to its post."""
 LIFTED = "wheel_drop"
 """The fault during which somebody holds the robot in their hands, perhaps to put it down elsewhere."""
+STRAIGHT_ON_RAD = math.radians(30)
 SURELY_PAST_M = 0.3
 PLAIN_TURNS = {"left": math.pi / 2, "right": -math.pi / 2, "behind": math.pi}
 
@@ -324,6 +326,16 @@ class Navigator:
             return
         self.position = before.stands_at(self.campus, post, self._odometry)
         self._note_arrival(post, before.current)
+
+    def undock_way(self) -> tuple[float | None, bool]:
+        """From the dock that it stands in to the post, in mm, and whether a line leads straight on from there."""
+        here = self.campus.posts.get(self.here or "")
+        if here is None or here.dock is None:
+            return None, True
+        way_mm = 1000 * math.dist((here.dock.x_m, here.dock.y_m), here.point)
+        away_rad = here.dock.heading_rad + math.pi
+        leaving = [corridor.heading_leaving(here.name) for _, corridor in self.campus.neighbours(here.name)]
+        return way_mm, any(abs(wrapped(heading - away_rad)) < STRAIGHT_ON_RAD for heading in leaving)
 
     def undocked(self) -> None:
         """The robot stands on the line at the dock's post and looks away from the dock."""

@@ -104,7 +104,8 @@ def _dock(hands: Hands, _: Sequence[Value], now: float) -> Run:
 def _undock(hands: Hands, _: Sequence[Value], now: float) -> Run:
     """A dock stands beside the tape's end: with a wheel worn, the robot comes out a hand's breadth beside the line."""
     look_about = {"line_lost": lambda: FindLine(hands.shape)}
-    return _one(hands, Undock(hands.shape), now, lambda _: hands.navigator.undocked(), look_about)
+    undock = Undock(hands.shape, *hands.navigator.undock_way())
+    return _one(hands, undock, now, lambda _: hands.navigator.undocked(), look_about)
 
 
 def _station(hands: Hands, arguments: Sequence[Value], now: float) -> Run:

@@ -23,6 +23,8 @@ RETRY_BACK_MM, RETRY_BACK_MM_S = 250.0, 100.0
 UNDOCK_MM, UNDOCK_MM_S, UNDOCK_TURN_MM_S = 300.0, 150.0, 140.0
 TO_LINE_MM, TO_LINE_MM_S = (280.0, 130.0, 130.0), 110.0
 """A robot that stood aslant in its dock comes out beside the line: after each of these it looks to both sides."""
+ROLLS_ON_MM = 7.0
+"""What 110 mm/s still roll when the wheels are told to stop."""
 MODE_S = 3.0
 ASLANT_RAD = math.radians(3)
 
@@ -100,8 +102,16 @@ class Undock(Scripted):
 
     name = "undock"
 
-    def __init__(self, shape: BodyShape | None = None, limit_s: float = 60.0) -> None:
-        self._shape = shape or BodyShape()
+    def __init__(
+        self,
+        shape: BodyShape | None = None,
+        way_mm: float | None = None,
+        line_ahead: bool = True,
+        limit_s: float = 60.0,
+    ) -> None:
+        """`way_mm`: from the docked axle to the post, by the map. `line_ahead`: whether the line leads on from there;
+        where all lines lie across, the robot stands at the post and the turn that follows finds one."""
+        self._shape, self._way_mm, self._line_ahead = shape or BodyShape(), way_mm, line_ahead
         self.limit_s = limit_s
 
     def script(self, view: View) -> Script:
@@ -114,13 +124,18 @@ class Undock(Scripted):
         view = yield Running(STOP, (SetMode(Mode.SAFE),))
         view = yield from _until_mode(view, Mode.SAFE)
         view = yield from turn_by(view, math.pi, UNDOCK_TURN_MM_S, self._shape)
-        view = yield from self._to_line(view)
+        along_rad = view.odometry.heading_rad
+        if self._way_mm is not None:
+            rest_mm = max(0.0, self._way_mm - UNDOCK_MM - ROLLS_ON_MM)
+            view = yield from roll(view, rest_mm, WheelSpeeds(TO_LINE_MM_S, TO_LINE_MM_S))
+        if not self._line_ahead:
+            return Done()
+        view = yield from self._to_line(view, along_rad)
         return Done() if over_line(view) else Failed("line_lost")
 
-    def _to_line(self, view: View) -> Part:
+    def _to_line(self, view: View, along_rad: float) -> Part:
         """The tape ends at the post, some way before the dock."""
-        along_rad = view.odometry.heading_rad
-        for distance_mm in TO_LINE_MM:
+        for distance_mm in TO_LINE_MM if self._way_mm is None else (0.0, *TO_LINE_MM[1:]):
             view = yield from roll(view, distance_mm, WheelSpeeds(TO_LINE_MM_S, TO_LINE_MM_S), over_line)
             if over_line(view):
                 break

@@ -188,3 +188,10 @@ def test_a_turn_between_posts_does_not_forget_the_way_it_took(walk: Walk, store:
     walk.look()
     walk.navigator.begin_turn()
     assert Walk(store).navigator.at is None
+
+
+def test_the_way_out_of_a_dock_is_known_by_the_map(walk: Walk) -> None:
+    walk.navigator.place("post5", "post3")
+    assert walk.navigator.undock_way() == (pytest.approx(500.0), True)
+    walk.navigator.place("post1", "post2")
+    assert walk.navigator.undock_way() == (None, True), "no dock is there"

@@ -1,0 +1,34 @@
+"""Out of docks at the end of a line and beside one, onto the post, whatever the map says."""
+
+import math
+from collections.abc import Callable
+
+import pytest
+
+from benchmarks.body.turns import small_map
+from maps import builtin_map
+from robot.skills import Done, FollowLine, Turn, Undock
+from tests.robot.skills.track import Drive
+
+Make = Callable[..., Drive]
+
+
+@pytest.mark.parametrize("seed", [3, 4])
+def test_from_a_dock_at_the_end_of_the_line_it_comes_onto_the_line(drive: Make, seed: int):
+    robot = drive("dock", campus=builtin_map("test_track"), seed=seed)
+    began = robot.now
+    assert robot.do(Undock(robot.shape, 500.0)) == Done()
+    assert robot.now - began < 12
+    assert robot.distance_to_m("post5") < 0.05
+    assert robot.do(FollowLine(robot.campus, "post5", shape=robot.shape)) == Done("post3")
+
+
+@pytest.mark.parametrize(("turn_rad", "towards"), [(-math.pi / 2, "nicol"), (math.pi / 2, "uc")])
+def test_from_a_dock_beside_the_line_it_comes_to_the_post_and_can_turn_there(
+    drive: Make, turn_rad: float, towards: str
+):
+    robot = drive("dock:canal", campus=small_map("carleton"))
+    assert robot.do(Undock(robot.shape, 600.0, line_ahead=False)) == Done()
+    assert robot.distance_to_m("canal") < 0.03
+    assert robot.do(Turn(turn_rad, robot.shape)) == Done()
+    assert robot.do(FollowLine(robot.campus, "canal", shape=robot.shape)) == Done(towards)
