@@ -48,7 +48,9 @@ def doctor(
             refuse(str(problem))
         with _equipment(settings, simulated) as (settings, equipment):
             daemon = None if simulated else _daemon(settings)
-            patient = Patient(settings, settings_path(config), equipment, root, daemon, PUSH_S if push else 0.0, _tell)
+            patient = Patient(
+                settings, settings_path(config), equipment, root, daemon, PUSH_S if push else 0.0, tell=_tell
+            )
             found = list(_told(patient, as_json))
     if as_json:
         print(json.dumps({"ok": _fit(found), "checks": [_row(name, finding) for name, finding in found]}))

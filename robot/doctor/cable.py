@@ -95,7 +95,7 @@ def base(patient: Patient) -> Finding:
     if patient.daemon is not None:
         return _from_daemon(patient.daemon)
     try:
-        answer = watch_base(patient.equipment.open_port, patient.equipment.wake_up_line, WATCH_S)
+        answer = watch_base(patient.equipment.open_port, patient.equipment.wake_up_line, WATCH_S * patient.patience)
     except PortBusy as problem:
         return fail(str(problem), "End the other program.")
     except RobotError as problem:
@@ -106,7 +106,7 @@ def base(patient: Patient) -> Finding:
 def _judged(answer: BaseAnswer) -> Finding:
     if answer.state is None:
         way_out = "Press Clean to wake it; is it switched on, is the plug in its Mini-DIN socket, TX to RX?"
-        return fail(f"not one frame in {WATCH_S:g} s", way_out)
+        return fail("not one frame of its stream was heard", way_out)
     said = _words(answer)
     share = answer.corrupt / max(1, answer.frames + answer.corrupt)
     if share > MOST_CORRUPT_SHARE:

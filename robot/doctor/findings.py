@@ -71,6 +71,8 @@ class Patient:
     """What a running daemon says of itself; then port, pins and camera are its."""
     push_s: float = 0.0
     """So long somebody pushes the robot over the tape."""
+    patience: float = 1.0
+    """Share of the usual time that a device is listened to."""
     tell: Callable[[str], None] = field(default=lambda _: None)
     """What a person has to do now."""
 

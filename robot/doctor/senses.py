@@ -67,21 +67,21 @@ def camera(patient: Patient) -> Finding:
     except RobotError as problem:
         return fail(str(problem), "v4l2-ctl --list-devices shows what there is.")
     try:
-        frames = list(_frames(device))
+        frames = list(_frames(device, patient.patience))
     finally:
         device.close()
     return _judged(patient, frames)
 
 
-def _frames(device: object) -> Iterator[tuple[float, Frame]]:
+def _frames(device: object, patience: float) -> Iterator[tuple[float, Frame]]:
     """With the time each came. The first may take seconds."""
-    until_s = time.monotonic() + FIRST_FRAME_S
+    until_s = time.monotonic() + FIRST_FRAME_S * patience
     first = True
     while (now := time.monotonic()) < until_s:
         there_is_one, frame = device.read()  # type: ignore[attr-defined]
         if there_is_one and frame is not None:
             if first:
-                first, until_s = False, now + CAMERA_S
+                first, until_s = False, now + CAMERA_S * patience
             yield now, frame
         time.sleep(0.01)
 

@@ -33,7 +33,7 @@ def watch_base(open_port: Callable[[], SerialPort], line: WakeUpLine, for_s: flo
     """Listen, and leave it in Passive. Raises PortAbsent, PortBusy."""
     base = Create2(open_port, line)
     try:
-        _listen(base, STARTING_S)
+        _listen(base, STARTING_S, until_heard=True)
         frames, corrupt = base.health.frames, base.health.corrupt
         _listen(base, for_s)
         health = base.health
@@ -42,8 +42,8 @@ def watch_base(open_port: Callable[[], SerialPort], line: WakeUpLine, for_s: flo
         base.close()
 
 
-def _listen(base: Create2, for_s: float) -> None:
+def _listen(base: Create2, for_s: float, until_heard: bool = False) -> None:
     until_s = time.monotonic() + for_s
-    while (now := time.monotonic()) < until_s:
+    while (now := time.monotonic()) < until_s and not (until_heard and base.health.frames):
         base.poll(now)
         time.sleep(POLL_S)

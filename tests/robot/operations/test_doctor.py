@@ -67,7 +67,7 @@ NO_EQUIPMENT = Equipment(nothing, NoWakeUpLine(), nothing, nothing)
 
 def patient(root: Path, equipment: Equipment = NO_EQUIPMENT, **settings: object) -> Patient:
     dotted = {name.replace("__", "."): value for name, value in settings.items()}
-    return Patient(load_settings(None, {"data": root / "data", **dotted}), None, equipment, root)
+    return Patient(load_settings(None, {"data": root / "data", **dotted}), None, equipment, root, patience=0.2)
 
 
 def write(file: Path, text: str) -> Path:
@@ -128,7 +128,7 @@ def test_a_base_that_says_nothing_is_told_to_be_woken(world: World, tmp_path: Pa
 
 
 def test_bytes_that_are_damaged_on_the_way_are_counted_and_blamed_on_the_cable(world: World, tmp_path: Path) -> None:
-    world.robot.set_fault("flip_byte", 0.002)
+    world.robot.set_fault("flip_byte", 0.003)
     grade, said = graded(cable.base(patient(tmp_path, world.equipment())))
     assert grade is Grade.FAIL
     assert "Shorten the cable" in said
