@@ -39,8 +39,8 @@ WANTED = (
     Wanted("wrong_posts", at_most=0, unit="frames read as another post"),
 )
 
-# Decoded, of 100, and median ms, as design/body.md has them for others' decoders on its own frames: ours have to be no
-# easier. (OpenCV's QRCodeDetector, its Aruco variant, zxing-cpp as it comes.)
+# Decoded, of 100, and median ms, as the design has them for others' decoders on its own frames: what ours are compared
+# with. (OpenCV's QRCodeDetector, its Aruco variant, zxing-cpp as it comes.)
 PLANNED = {
     "clean": ((100, 8.7), (94, 7.8), (100, 0.6)),
     "small": ((65, 8.7), (52, 7.9), (100, 0.6)),
