@@ -71,12 +71,13 @@ def _outcomes(path: Path, contenders: Sequence[Contender], reports: Mapping[str,
         "missions lost, %": [100 * row["missions_lost"] / row["runs"] for row in rows],
         "of driving spent looking for the line, %": [100 * row["looking_for_line_share"] for row in rows],
         "mission without charging, s (median)": [
-            (row["mission_without_charging_s"] or {}).get("median", 0) for row in rows
+            (row["mission_without_charging_s"] or {}).get("median") for row in rows
         ],
     }
     for axis, (label, shown) in zip(axes, values.items(), strict=True):
-        bars = axis.barh(titles[::-1], shown[::-1], color=COLOURS[: len(titles)][::-1])
-        axis.bar_label(bars, fmt="%.3g", padding=3)
+        bars = axis.barh(titles[::-1], [value or 0 for value in shown[::-1]], color=COLOURS[: len(titles)][::-1])
+        said = ["none delivered" if value is None else f"{value:.3g}" for value in shown[::-1]]
+        axis.bar_label(bars, said, padding=3)
         axis.set_xlabel(label)
         axis.margins(x=0.18)
         axis.spines[["top", "right"]].set_visible(False)
@@ -87,5 +88,5 @@ def _save(figure: Any, path: Path) -> None:
     from matplotlib import pyplot
 
     figure.tight_layout()
-    figure.savefig(path, metadata={"Date": None})
+    figure.savefig(path, metadata={"Date": None}, bbox_inches="tight")
     pyplot.close(figure)
