@@ -3,6 +3,8 @@
 from collections import deque
 from collections.abc import Callable
 
+import serial
+
 from ..errors import RobotError
 from .link_health import LinkHealth
 from .open_interface import BAUD
@@ -10,6 +12,10 @@ from .serial_port import SerialPort
 
 RETRY_S = 1.0
 READ_AT_ONCE = 4096
+TIMEOUTS = 3
+"""So many writes in a row that time out are a cable that takes nothing."""
+FILLING = bytes(40)
+"""Behind a write that timed out the base may wait for the rest of a command: zeros fill it."""
 Chunk = Callable[[bytes, float], None]
 """Bytes and when they passed."""
 
@@ -28,6 +34,7 @@ class Cable:
         self._outgoing: deque[tuple[bytes, float]] = deque()
         self._quiet_until_s = 0.0
         self._next_try_s = 0.0
+        self._timeouts = 0
         self.heard: Chunk = _nobody
         self.sent: Chunk = _nobody
         self.health = LinkHealth()
@@ -65,8 +72,14 @@ class Cable:
     def _write(self, data: bytes, now: float) -> None:
         try:
             if self.port is not None:
-                self.port.write(data)
+                self.port.write(FILLING + data if self._timeouts else data)
+                self._timeouts = 0
                 self.sent(data, now)
+        except serial.SerialTimeoutException as error:
+            # It also comes when the processor was taken from us for so long, and all bytes have gone out.
+            self._timeouts += 1
+            if self._timeouts >= TIMEOUTS:
+                self._lose(str(error), now)
         except OSError as error:
             # Half a command may have gone out: the next start fills it up.
             self._lose(str(error), now)
@@ -108,7 +121,7 @@ class Cable:
     def _lose(self, problem: str, now: float) -> None:
         if self.port is not None:
             self.port.close()
-        self.port = None
+        self.port, self._timeouts = None, 0
         self._outgoing.clear()
         self.health.problem = problem
         self._next_try_s = now + RETRY_S

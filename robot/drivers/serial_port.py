@@ -9,8 +9,8 @@ import serial
 from ..errors import PortAbsent, PortBusy
 from .open_interface import BAUD
 
-WRITE_TIMEOUT_S = 0.02
-"""The drive loop writes: a cable that takes nothing for so long counts as lost, and the wheels' loop goes on."""
+WRITE_TIMEOUT_S = 0.05
+"""The drive loop writes, and must not wait for a cable that takes nothing."""
 
 
 class SerialPort(Protocol):
