@@ -19,6 +19,7 @@ from ..simulated import SimulatedWorldError
 from .errors import RecordingError, ScenarioError
 from .judging import Ending, shortfalls
 from .loading import load_scenario
+from .pictures import write_pictures
 from .recording import Recorder
 from .replaying import write_page
 from .stage import Stage
@@ -117,6 +118,20 @@ def replay(
     except RecordingError as error:
         _refuse(str(error))
     print(f"{target}: {target.stat().st_size / 1e6:.1f} MB")
+
+
+@cli.command()
+def frames(
+    recording: Annotated[Path, typer.Argument(help="What `run --record` wrote.")],
+    folder: Annotated[Path, typer.Argument(help="Where the pictures go: 00000.png, 00001.png …")],
+    every_s: Annotated[float, typer.Option("--every", min=0.1, help="One picture for so many seconds.")] = 1.0,
+) -> None:
+    """Draw the map as PNG pictures."""
+    try:
+        number = write_pictures(recording, folder, every_s)
+    except RecordingError as error:
+        _refuse(str(error))
+    print(f"{folder}: {number} pictures")
 
 
 def _refuse(sentence: str) -> NoReturn:

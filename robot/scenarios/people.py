@@ -42,6 +42,8 @@ class Handing:
     """When each robot began to stand there."""
     shows_until_s: float = -math.inf
     rests_until_s: float = -math.inf
+    busy_with: str | None = None
+    """The robot that the person attends to: one at a time."""
     tried: int = 0
     presses: list[float] = field(default_factory=list)
     _delay_s: float = 0.0
@@ -63,6 +65,9 @@ class Handing:
         if not (waits and self.has_business(actor) and self.person.comes != "never"):
             self._leave(actor)
             return
+        if self.busy_with not in (None, actor.name):
+            return
+        self.busy_with = actor.name
         came_s = self.came_s.setdefault(actor.name, now)
         if now - came_s < self._delay_s:
             return
@@ -72,6 +77,9 @@ class Handing:
             self._begin(actor, now)
 
     def _leave(self, actor: Actor) -> None:
+        if self.busy_with != actor.name:
+            return
+        self.busy_with = None
         self.came_s.pop(actor.name, None)
         if self.shows_until_s > 0 and actor.body.camera.shown == self.shown:
             actor.body.hide_code()
