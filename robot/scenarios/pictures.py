@@ -30,8 +30,9 @@ class Canvas:
     def __init__(self, head: Row) -> None:
         tapes = [point for _, tape in head["map"]["corridors"] for point in tape]
         xs, ys = [x for x, _ in tapes], [y for _, y in tapes]
-        self._left, self._top = min(xs) - EDGE_M, max(ys) + EDGE_M
-        self._scale = WIDTH_PX / (max(xs) + EDGE_M - self._left)
+        self._left: float = min(xs) - EDGE_M
+        self._top: float = max(ys) + EDGE_M
+        self._scale: float = WIDTH_PX / (max(xs) + EDGE_M - self._left)
         self.height_px = max(1, round((self._top - min(ys) + EDGE_M) * self._scale))
         self.ground = self._ground(head)
 
@@ -57,7 +58,8 @@ def write_pictures(recording: Path, folder: Path, every_s: float) -> int:
     """How many were written, as 00000.png, 00001.png … Raises RecordingError."""
     rows = read_recording(recording)
     canvas, number, due_s = Canvas(rows[0]), 0, 0.0
-    ground, people, states = canvas.ground.copy(), [], dict[str, Row]()
+    ground, states = canvas.ground.copy(), dict[str, Row]()
+    people: list[list[float]] = []
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
