@@ -40,7 +40,14 @@ hopeless(no_route).
 +!attend(dock, _, _, _) <- !dock.
 +!attend(park, _, _, _).
 // Mail changes hands by a code shown to the camera, never by assumption. Then people get a moment to step back.
-+!attend(Do, Stop, Order, Limit_s) <- wait_handover(Do, Order, Stop, Limit_s); rest(3).
++!attend(Do, Stop, Order, Limit_s)
+  <- !come_out;
+     wait_handover(Do, Order, Stop, Limit_s);
+     rest(3).
+
+// In a dock the base is passive, and no tune could say yes or no to anybody.
++!come_out : docked <- undock.
++!come_out.
 
 // An errand given by hand: `--achieve 'visit(post4)'`.
 // The goal lasts as long as the errand, and fails with it: whoever gave it is told the truth.

@@ -183,12 +183,15 @@ def test_an_errand_to_nowhere_is_told_and_forgotten() -> None:
     assert stage.waiting == {}
 
 
-def test_a_mission_that_comes_in_the_last_moment_of_docking_is_served_from_the_dock() -> None:
+def test_a_mission_that_comes_in_the_last_moment_of_docking_is_served_before_the_dock() -> None:
     stage = Stage(*HOME, "mission(m1,1)", "stop(0,s1,post5,load,o1,600)", "next_stop(0)")
     stage.does("report(departed,s1)")
     stage.expect("follow_line")
     stage.perceives("docked", "at(post5)")
     stage.fails("follow_line", "docked")
     stage.does("report(arrived,s1)")
+    stage.expect("undock")  # in a dock the base is passive: nobody would hear whether their code was right
+    stage.perceives(without=("docked",))
+    stage.succeeds("undock")
     stage.expect("wait_handover(load,o1,s1,600)")
     assert "find_line" not in stage.waiting
