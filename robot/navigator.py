@@ -24,8 +24,11 @@ STRAIGHT_RAD = math.radians(12)
 """Within this the line is under the diodes, and following it straightens the robot up."""
 TURNING = frozenset({"turn", "undock", "find_line"})
 """Skills during which a marker is seen from aslant: it says nothing about the way that is left to its post."""
+ASLANT_RAD = math.radians(30)
+"""Nor does a marker that hangs turned so far from a robot that stands."""
 LIFTED = "wheel_drop"
 """The fault during which somebody holds the robot in their hands, perhaps to put it down elsewhere."""
+MARKER_UNREAD = "marker_unread"
 STRAIGHT_ON_RAD = math.radians(30)
 SURELY_PAST_M = 0.3
 PLAIN_TURNS = {"left": math.pi / 2, "right": -math.pi / 2, "behind": math.pi}
@@ -53,6 +56,8 @@ class Navigator:
         self._blocked_until_s: dict[str, float] = {}
         self._lifted = False
         self._lifted_from: set[str] = set()
+        self.unread: set[str] = set()
+        """Posts whose marker could not be read when the robot was there last."""
         self.moved: str | None = None
         """Where it found itself after somebody had moved it, until that is noted."""
 
@@ -63,7 +68,7 @@ class Navigator:
         if not docked:
             self.position = near_dock(self.campus, self.position, view.fixes, self.home, view.at_s)
         before = self.position
-        if view.post and view.motion in TURNING:
+        if view.post and (view.motion in TURNING or _is_aslant(view.post)):
             self._ignored_until_s = view.post.at_s
         post = view.post if view.post and view.post.at_s > self._ignored_until_s else None
         if LIFTED in view.faults and not docked:
@@ -319,35 +324,56 @@ class Navigator:
         """The agent knows that it was moved."""
         self.moved = None
 
-    def reached(self, post: str | None) -> None:
-        """follow_line has stopped there. Both go by the same marker, but the body has the last word."""
+    def reached(self, post: str | None, unread: bool = False) -> None:
+        """follow_line has stopped there. Both go by the same marker, but the body has the last word; `unread`: by the
+        map alone."""
         before = self.position
+        if post is not None:
+            self._note_marker(post, unread)
         if post is None or (self.at == post and before.approaching is None):
             return
         self.position = before.stands_at(self.campus, post, self._odometry)
         self._note_arrival(post, before.current)
 
+    def _note_marker(self, post: str, unread: bool) -> None:
+        """People are told of a marker that somebody should clean, and when all can be read again."""
+        reason = f"The marker of {post} cannot be read. The robot went there by the length of the way."
+        if unread:
+            self.unread.add(post)
+            self._duties.report_fault(MARKER_UNREAD, reason, post)
+        else:
+            self.unread.discard(post)
+        if not self.unread:
+            self._duties.report_fault(MARKER_UNREAD, "Every marker has been read again.", post, cleared=True)
+
     def undock_way(self) -> tuple[float | None, bool]:
-        """From the dock that it stands in to the post, in mm, and whether a line leads straight on from there."""
+        """From the dock that it stands in to the post, in mm, and whether the line that it will follow leads straight on."""
         here = self.campus.posts.get(self.here or "")
         if here is None or here.dock is None:
             return None, True
         way_mm = 1000 * math.dist((here.dock.x_m, here.dock.y_m), here.point)
-        away_rad = here.dock.heading_rad + math.pi
-        leaving = [corridor.heading_leaving(here.name) for _, corridor in self.campus.neighbours(here.name)]
+        away_rad, towards = here.dock.heading_rad + math.pi, self._next_post()
+        ways = [corridor for post, corridor in self.campus.neighbours(here.name) if towards in (None, post.name)]
+        leaving = [corridor.heading_leaving(here.name) for corridor in ways]
         return way_mm, any(abs(wrapped(heading - away_rad)) < STRAIGHT_ON_RAD for heading in leaving)
 
     def undocked(self) -> None:
-        """The robot stands on the line at the dock's post and looks away from the dock."""
+        """The robot stands at the dock's post and looks away from the dock: along the line, or as far as it turned."""
         dock = self.campus.post(self.here).dock if self.here else None
         if dock:
-            self._looks(dock.heading_rad + math.pi)
+            away_rad, facing_rad = dock.heading_rad + math.pi, self.position.facing_now_rad(self._odometry)
+            if facing_rad is None or abs(wrapped(facing_rad - away_rad)) < STRAIGHT_RAD:
+                self._looks(away_rad)
             self.position = replace(self.position, post_at_mm=self._odometry.ahead_mm, has_left=False)
             self._leaving, self.towards = False, None
             self._arrived_mm = self._odometry.ahead_mm
 
     def _looks(self, heading_rad: float) -> None:
         self.position = replace(self.position, facing_rad=heading_rad, spot_turn_rad=self._odometry.spot_turn_rad)
+
+
+def _is_aslant(post: Sighting) -> bool:
+    return post.turned_rad is not None and abs(post.turned_rad) > ASLANT_RAD
 
 
 def remembered(campus: CampusMap, position: parts.Position) -> Position:

@@ -73,9 +73,19 @@ def _follow_line(hands: Hands, _: Sequence[Value], now: float) -> Run:
         navigator.leave()
         limit_s = FOLLOW_LEAST_S + FOLLOW_TIMES * navigator.ahead_m * 1000 / hands.cruise_mm_s
         left_mm = navigator.way_left_mm
-        return FollowLine(navigator.campus, navigator.came_from, hands.cruise_mm_s, hands.shape, limit_s, left_mm)
+        ahead = navigator.towards
+        return FollowLine(
+            navigator.campus,
+            navigator.came_from,
+            hands.cruise_mm_s,
+            hands.shape,
+            limit_s,
+            left_mm,
+            ahead,
+            ahead in navigator.unread,
+        )
 
-    return Skills(hands.body, [straighten, follow], now, lambda done: navigator.reached(done.result))
+    return Skills(hands.body, [straighten, follow], now, lambda done: navigator.reached(done.result, done.unread))
 
 
 def _turn(hands: Hands, arguments: Sequence[Value], now: float) -> Run:

@@ -14,6 +14,10 @@ SETTLES_S = 5.0
 """Somebody who hears a tune reaches into the box; the robot's receipt may be a moment earlier."""
 
 
+NOTICES = frozenset(("marker_unread", "link_loss", "clock_jump", "disk_low"))
+"""What is told of the world, and says of no mail that it will not arrive."""
+
+
 class Fate(StrEnum):
     """What became of a letter."""
 
@@ -88,9 +92,9 @@ def _aboard(letter: Letter, service: StandIn) -> Verdict:
 
 def _told_of_trouble(letter: Letter, service: StandIn, robot: str | None, where: str) -> Verdict:
     """A robot that cannot go on and says why has handed the matter to a person."""
-    faults = service.sessions[robot].faults if robot else {}
+    faults = service.sessions[robot].faults.keys() - NOTICES if robot else set()
     if faults:
-        return Verdict(letter.order.id, Fate.HANDED_OVER, f"{where}; told: {', '.join(faults)}")
+        return Verdict(letter.order.id, Fate.HANDED_OVER, f"{where}; told: {', '.join(sorted(faults))}")
     return Verdict(letter.order.id, Fate.LOST, f"{where}, and nobody was told")
 
 

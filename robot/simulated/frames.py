@@ -131,6 +131,8 @@ class Renderer:
     def _draw_somebody(self, frame: Frame, one: "_Somebody") -> None:
         """From shoes to beyond the upper edge: the lens is at the height of a knee."""
         part = frame[: one.floor_px, one.left_px : one.right_px]
+        if not part.size:
+            return
         row, column = self._random.randrange(64), self._random.randrange(64)
         noise = self._noise[row : row + part.shape[0], column : column + part.shape[1]]
         part[:] = cv2.add(np.full(part.shape, CLOTHES, np.uint8), noise, dtype=cv2.CV_8U)

@@ -33,9 +33,12 @@ FRUITLESS_MM = 500.0
 MOST_SEARCHES = 3
 """So many searches in a row with less than half a metre of line between them: this is where the line ends."""
 MOST_BUMPS = 3
+GIVES_WAY_S = (2.0, 20.0)
+"""How long it stands after each bump but the last: whoever is in the way has heard it and can step aside."""
 INNER_WHEEL_MM_S, OUTER_WHEEL_MM_S = 30.0, 200.0
 MISSED_SHARE, MISSED_MM = 0.08, 150.0
 """No marker so far beyond the length of the corridor: wheels and tape measures err by less, so the post was missed."""
+TAPE_HALF_MM = 12.0
 OTHER_LINE_MM = 5.0
 """Where an unseen post may be, tape that lies farther beside the line than this is a branch."""
 
@@ -55,26 +58,34 @@ class FollowLine:
         shape: BodyShape | None = None,
         limit_s: float = 600.0,
         way_left_mm: float | None = None,
+        ahead: str | None = None,
+        unread: bool = False,
     ) -> None:
         """`leaving`: the post it sets out from, if known: it tells which marker the next post will show.
-        `way_left_mm`: how far the next post is by the map, if known."""
+        `way_left_mm`: how far the next post is by the map, if known; `ahead`: which one that is. With both, a post
+        whose marker cannot be read is reached by map and wheels; `unread`: it could not be read the last time."""
         self._campus, self._leaving, self._cruise_mm_s = campus, leaving, cruise_mm_s
         self._shape = shape or BodyShape()
         self._look_ahead_mm = gains(self._shape.sensor_lead_mm).look_ahead_mm
-        self._way_left_mm = way_left_mm
+        self._way_left_mm, self._ahead, self._unread = way_left_mm, ahead, unread
         self.limit_s = limit_s
 
     def start(self, view: View, now: float) -> None:
         """See `interfaces.Skill.start`."""
         self._line = LineEstimate(self._shape)
         self._last = self._begin = view.odometry
-        self._bumps_before = view.bumps
+        self._bumps_before = self._bumps = view.bumps
+        self._gives_way_until_s = now
         self._lit_mm = view.odometry.travelled_mm
+        self._lit_ahead_mm = view.odometry.ahead_mm
+        self._line_end_mm: float | None = None
         self._search: FindLine | LookAgain | None = None
         self._looked_again = False
         self._searches, self._searched_mm = 0, -FRUITLESS_MM
         self._post = PostAhead(self._campus, self._leaving, view.odometry, now)
         self._standing_since_s: float | None = None
+        if self._unread:
+            self._suppose_post()
 
     def step(self, view: View, now: float) -> Step:
         """See `interfaces.Skill.step`."""
@@ -82,6 +93,8 @@ class FollowLine:
             return Failed("docked")
         if view.bumps - self._bumps_before >= MOST_BUMPS:
             return Failed("blocked")
+        if self._gives_way(view, now):
+            return Running(STOP)
         self._post.look(view, self._line.heading)
         if self._search is not None:
             return self._searched(self._search, view, now)
@@ -93,8 +106,15 @@ class FollowLine:
         if to_go_mm is None and self._beyond_mm(view) > MISSED_SHARE * (self._way_left_mm or 0.0) + MISSED_MM:
             return self._missed(view, now)
         if self._has_lost(view, to_go_mm):
-            return self._missed(view, now) if self._may_be_at_post(view) else self._lost(view, now)
+            missed = self._may_be_at_post(view) and not self._post.supposed
+            return self._missed(view, now) if missed else self._lost(view, now)
         return Running(self._speeds(to_go_mm))
+
+    def _gives_way(self, view: View, now: float) -> bool:
+        if view.bumps > self._bumps:
+            self._bumps = view.bumps
+            self._gives_way_until_s = now + GIVES_WAY_S[self._bumps - self._bumps_before - 1]
+        return now < self._gives_way_until_s
 
     # The post
 
@@ -106,7 +126,7 @@ class FollowLine:
         if to_go_mm < -BEYOND_MM:
             return Running(WheelSpeeds(-BACK_MM_S, -BACK_MM_S))
         # What it ran on while braking, or back, is done: a robot that stands does not begin again.
-        return Done(self._post.name) if view.sent.still else Running(STOP)
+        return Done(self._post.name, unread=self._post.supposed) if view.sent.still else Running(STOP)
 
     def _beyond_mm(self, view: View) -> float:
         """How far beyond the place of the next post, by map and wheels; below 0 before it."""
@@ -115,7 +135,7 @@ class FollowLine:
 
     def _may_be_at_post(self, view: View) -> bool:
         """Whether a post whose marker has not been read may be here: where the line ends, or branches off."""
-        if self._way_left_mm is None or self._post.name:
+        if self._way_left_mm is None or (self._post.name and not self._post.supposed):
             return False
         return self._beyond_mm(view) > -MISSED_SHARE * self._way_left_mm - self._shape.sensor_lead_mm
 
@@ -124,7 +144,17 @@ class FollowLine:
         if self._looked_again:
             return Failed("post_missed")
         self._looked_again = True
+        self._line_end_mm = self._lit_ahead_mm + self._shape.sensor_lead_mm if self._has_lost(view, None) else None
         return self._begin_search(LookAgain(self._beyond_mm(view)), view, now)
+
+    def _suppose_post(self) -> bool:
+        """Nobody reads its marker: it is where the map says, or where the tape has ended there. False: not known."""
+        if self._ahead is None or self._way_left_mm is None:
+            return False
+        by_map_mm = self._begin.ahead_mm + self._way_left_mm
+        by_tape_mm = None if self._line_end_mm is None else self._line_end_mm - TAPE_HALF_MM
+        self._post.suppose(self._ahead, by_map_mm if by_tape_mm is None else by_tape_mm)
+        return True
 
     # The line
 
@@ -136,7 +166,7 @@ class FollowLine:
         if not blind:
             self._line.see(view.reading, OTHER_LINE_MM if self._may_be_at_post(view) else math.inf)
         if over_line(view):
-            self._lit_mm = here.travelled_mm
+            self._lit_mm, self._lit_ahead_mm = here.travelled_mm, here.ahead_mm
 
     def _speeds(self, to_go_mm: float | None) -> WheelSpeeds:
         off_mm = self._line.at(self._look_ahead_mm)
@@ -165,7 +195,8 @@ class FollowLine:
 
     def _searched(self, search: FindLine | LookAgain, view: View, now: float) -> Step:
         step = search.step(view, now)
-        if isinstance(step, Done):
+        unread = isinstance(step, Failed) and isinstance(search, LookAgain) and self._suppose_post()
+        if isinstance(step, Done) or unread:
             self._resume(view)
             return Running(STOP)
         return step

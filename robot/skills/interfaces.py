@@ -104,6 +104,8 @@ class Done:
     pulse: WheelSpeeds | None = None
     """Speeds to keep for `pulse_s` unless another motion begins (the paper's `drive`)."""
     pulse_s: float = 0.0
+    unread: bool = False
+    """The post was reached by map and wheels alone: its marker could not be read (follow_line)."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -26,6 +26,8 @@ class PostAhead:
         self._campus, self._leaving, self._begin = campus, leaving, begin
         self._sighted_s = now
         self.name: str | None = None
+        self.supposed = False
+        """No marker tells of it: it is where the map says."""
         self._at_mm = self._weight = 0.0
         self._point = (0.0, 0.0)
 
@@ -44,9 +46,14 @@ class PostAhead:
         if ahead_mm is not None and (self.name in (None, seen.text) or ahead_mm > 0):
             self._take(seen.text, view.post_odometry, ahead_mm, 1 / (SHARP_MM + abs(along_mm)) ** 2, line_heading)
 
+    def suppose(self, post: str, at_mm: float) -> None:
+        """Its marker cannot be read. One that is read all the same counts at once, and alone."""
+        self.name, self._at_mm, self._weight, self.supposed = post, at_mm, 0.0, True
+
     def _take(self, post: str, here: Odometry, ahead_mm: float, weight: float, line_heading: float) -> None:
         if post != self.name:
             self.name, self._weight = post, 0.0
+        self.supposed = False
         self._weight += weight
         self._at_mm += (here.ahead_mm + ahead_mm - self._at_mm) * weight / self._weight
         along_rad, to_go_mm = here.heading_rad + line_heading, self._at_mm - here.ahead_mm
@@ -64,7 +71,7 @@ class PostAhead:
 
     def after_search(self, here: Odometry) -> None:
         """The way searched was no way along the line: what is left follows from where the post lies."""
-        if self.name is None:
+        if self.name is None or self.supposed:
             return
         dx, dy = self._point[0] - here.x_mm, self._point[1] - here.y_mm
         along, across = math.cos(here.heading_rad), math.sin(here.heading_rad)
