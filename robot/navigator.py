@@ -320,6 +320,10 @@ class Navigator:
         """Something stands in this corridor: no way leads through it until then."""
         self._blocked_until_s[corridor_name(leg.from_post, leg.to_post)] = until_s
 
+    def reopen(self) -> None:
+        """It has waited: whoever stood there may have gone."""
+        self._blocked_until_s = {}
+
     def noted_move(self) -> None:
         """The agent knows that it was moved."""
         self.moved = None
@@ -347,7 +351,7 @@ class Navigator:
             self._duties.report_fault(MARKER_UNREAD, "Every marker has been read again.", post, cleared=True)
 
     def undock_way(self) -> tuple[float | None, bool]:
-        """From the dock that it stands in to the post, in mm, and whether the line that it will follow leads straight on."""
+        """From the dock that it stands in to the post, in mm, and whether the line that it takes leads straight on."""
         here = self.campus.posts.get(self.here or "")
         if here is None or here.dock is None:
             return None, True

@@ -89,6 +89,11 @@ def mark_blocked(hands: Hands, arguments: Sequence[Value], now: float) -> Run:
     return AtOnce()
 
 
+def reopen(hands: Hands, _: Sequence[Value], __: float) -> Run:
+    hands.navigator.reopen()
+    return AtOnce()
+
+
 def noted_move(hands: Hands, _: Sequence[Value], __: float) -> Run:
     hands.navigator.noted_move()
     return AtOnce()

@@ -25,7 +25,7 @@ from ..skills import (
 from ..skills.interfaces import Done, Skill
 from ..skills.tunes import TUNES
 from .arguments import Argument, Kind, Value, word
-from .corridors import CLOSED_BY, claim, mark_blocked, noted_move, release, set_destination
+from .corridors import CLOSED_BY, claim, mark_blocked, noted_move, release, reopen, set_destination
 from .hands import Hands
 from .runs import AtOnce, Rest, Run, SkillMaker, Skills
 
@@ -212,6 +212,7 @@ ACTIONS: Final = (
         "tell that the corridor it is in is closed; no way leads there for ten minutes",
         mark_blocked,
     ),
+    Action("reopen", (), "corridors in which it turned back may be tried again", reopen),
     Action("noted_move", (), "it knows that it was moved", noted_move),
     Action("report", (_STEP, _STOP), "tell the server how far the mission is; once for each step", _report),
     Action("report", (_STEP, _STOP, _REASON), "the same, with a reason", _report),

@@ -1,7 +1,7 @@
 // From post to post. `at(Post)` holds from a post's marker until the robot follows the line again; between posts nothing
 // of the kind is believed: the robot is seen at posts, not tracked.
 
-+!go_to(Post) : at(Post).
++!go_to(Post) : at(Post) <- .abolish(patience(_)).
 +!go_to(Post) : docked
   <- set_destination(Post);
      !permission(Post);
@@ -20,14 +20,19 @@
      !go_to(Post).
 
 // Nothing enters a corridor ungranted, the way to a dock included. The robot waits for that at a post, where others can
-// pass it. Where no way is open it tells people, and asks again after two minutes, then ever more rarely.
+// pass it. Where no way is open it tells people, and tries again after two minutes, then ever more rarely: a corridor in
+// which it turned back is entered again when there is no other way.
++!permission(Post) : patience(Patience_s) <- !permission(Post, Patience_s).
 +!permission(Post) <- !permission(Post, 120).
 +!permission(Post, _) <- claim(Post); clear_fault(no_way).
 -!permission(Post, Patience_s)[reason(denied)] <- rest(15); !permission(Post, Patience_s).
 -!permission(Post, Patience_s)[reason(way_closed)]
   <- raise_fault(no_way, "every way blocked or denied");
      !wait_for_a_way(Patience_s);
-     !permission(Post, math.min(2 * Patience_s, 1800)).
+     reopen;
+     .abolish(patience(_));
+     +patience(math.min(2 * Patience_s, 1800));
+     !permission(Post).
 -!permission(_, _)[reason(Reason), error_msg(Why)] <- .fail(reason(Reason), error_msg(Why)).
 -!permission(_, _)[error_msg(Why)] <- .fail(error_msg(Why)).
 

@@ -21,7 +21,7 @@ def test_where_no_way_is_open_it_waits_at_its_post_tells_and_asks_ever_more_rare
     for patience_s in (120, 240, 480, 960, 1800, 1800):
         stage.expect("claim(post4)")
         stage.fails("claim(post4)", "way_closed")
-        stage.does('raise_fault(no_way,"every way blocked or denied")', f"rest({patience_s})")
+        stage.does('raise_fault(no_way,"every way blocked or denied")', f"rest({patience_s})", "reopen")
     stage.does("claim(post4)")
     stage.expect("follow_line")
     assert "clear_fault(no_way)" in stage.done
