@@ -155,6 +155,7 @@ class Daemon:
     def close(self, now: float) -> None:
         """Stop the wheels, leave the base in Passive (or it would never charge), close outbox and link."""
         with ExitStack() as last:  # each of them, even if one before it fails
+            last.callback(self.body.stops.keep, self.drive.view.faults)  # its loop may not have seen the newest
             last.callback(self.close_devices)
             last.callback(self.body.black_box.close)
             if self.server:

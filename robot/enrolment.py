@@ -6,7 +6,7 @@ import tempfile
 from pathlib import Path
 
 from .config import ConfigError
-from .settings_file import replace
+from .durable_file import replace
 
 LONGEST_TOKEN = 512
 _TOKEN = re.compile(r"[\x21-\x7e]+")

@@ -14,6 +14,7 @@ from pydantic.fields import FieldInfo
 from tomlkit.exceptions import TOMLKitError
 
 from .config import ConfigError, Section, Settings, load_settings
+from .durable_file import replace
 
 HEADER = """\
 # Every setting of a robot with its default: what is commented out has no default.
@@ -131,13 +132,3 @@ def _write_beside(path: Path, text: str) -> Path:
             os.fchmod(file.fileno(), 0o644)
         os.fsync(file.fileno())
     return Path(name)
-
-
-def replace(temporary: Path, path: Path) -> None:
-    """Rename, and let the rename itself reach the disk."""
-    temporary.replace(path)
-    folder = os.open(path.parent, os.O_RDONLY)
-    try:
-        os.fsync(folder)
-    finally:
-        os.close(folder)

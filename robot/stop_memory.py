@@ -11,6 +11,7 @@ from pathlib import Path
 
 import structlog
 
+from .durable_file import replace
 from .reflexes import LATCHED
 
 FILE_NAME = "stops.json"
@@ -30,6 +31,8 @@ class StopMemory:
         """A file that cannot be understood counts as a stop: somebody has to look anyway."""
         try:
             names = json.loads(self._path.read_text("utf-8"))
+            if not isinstance(names, list):
+                raise ValueError("it is no list of names")
             return frozenset(name for name in names if name in LATCHED)
         except FileNotFoundError:
             return frozenset()
@@ -54,4 +57,4 @@ class StopMemory:
             file.write(text)
             file.flush()
             os.fsync(file.fileno())
-        part.replace(self._path)
+        replace(part, self._path)

@@ -30,12 +30,13 @@ def stop(config: ConfigOption = None, data: DataOption = None, port: PortOption 
         print("The wheels stand. Start again with: python -m robot rearm")
         return
     typer.echo(answer, err=True)
-    _write_down(settings)
     try:
-        stop_base(port or settings.serial_port)
+        stop_base(port or settings.serial_port)  # before the disk is met, which may be what hangs
     except RobotError as problem:
         typer.echo(f"{problem}\nThe robot was NOT stopped. Press Clean on it, or lift it.", err=True)
         raise typer.Exit(2) from None
+    finally:
+        _write_down(settings)
     print("The stop bytes were written to the base; nobody has confirmed that it stands. Look at it.")
     raise typer.Exit(UNFINISHED)
 

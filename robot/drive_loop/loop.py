@@ -92,11 +92,11 @@ class DriveLoop:
 
     def emergency_stop(self) -> None:
         """See `Body.emergency_stop`."""
-        self._inbox.append(lambda _: self._take_stop(True))
+        self._inbox.append(lambda _: self._take_stop())
 
     def rearm(self) -> None:
         """See `Body.rearm`."""
-        self._inbox.append(lambda _: self._take_stop(False))
+        self._inbox.append(lambda _: self._take_rearm())
 
     def link(self, online: bool) -> None:
         """See `Body.link`."""
@@ -190,7 +190,7 @@ class DriveLoop:
             mind_age_s=now - self._heartbeat_s,
             camera_age_s=self.view.camera_age_s,
             stop_asked=self._stop_asked,
-            rearm=self._rearm,
+            rearm=self._rearm or sensing.spot_went_down,
             own_wheels=self._wheels.own,
             host=self._host,
             offline_s=0.0 if self._offline_since_s is None else now - self._offline_since_s,
@@ -201,7 +201,7 @@ class DriveLoop:
             sees_line=any(sensing.reading),
             diodes_broken=sensing.diodes_broken,
         )
-        if senses.rearmed:
+        if senses.rearm:
             lasting.start_again()
         return senses
 
@@ -241,8 +241,12 @@ class DriveLoop:
     def _begin(self, number: int, skill: Skill, now: float) -> None:
         self._jobs.begin(number, skill, self._look(now), now)
 
-    def _take_stop(self, asked: bool) -> None:
-        self._stop_asked, self._rearm = asked, not asked
+    def _take_stop(self) -> None:
+        self._stop_asked = True
+
+    def _take_rearm(self) -> None:
+        """Whoever re-arms a robot in the same tick in which another stops it did not see that stop: it holds."""
+        self._rearm = True
 
     def _take_host(self, report: HostReport) -> None:
         self._host = report

@@ -47,14 +47,18 @@ class Sensing:
         self._sources = tuple(sources)
         self.lasting = Lasting()
         self.diodes_broken = False
+        self.spot_went_down = False
+        """At this tick."""
         self._camera_s, self._camera_age_s = now, 0.0
         self._started_s = now
 
     def sense(self, sent: WheelSpeeds, now: float) -> None:
         """`sent`: what the wheels were told at the tick before."""
         new = self._base.poll(now)
+        self.spot_went_down = False
         if new is not None:
             old, self.state = self.state or new, new
+            self.spot_went_down = new.spot_pressed and not old.spot_pressed
             self.odometry = advanced(self.odometry, old, new, self._shape)
             self.lasting.feel(old, new, sent)
         elif sent.still:

@@ -81,7 +81,7 @@ def _remember(fault: Fault, memory: FaultMemory, senses: Senses, now: float) -> 
         return FaultMemory(since_s, active_s, now)
     if active_s is None:
         return _FORGOTTEN
-    cleared = senses.rearmed if fault.clears_s is None else now - memory.last_present_s >= fault.clears_s
+    cleared = senses.rearm if fault.clears_s is None else now - memory.last_present_s >= fault.clears_s
     return _FORGOTTEN if cleared else replace(memory, present_since_s=None)
 
 

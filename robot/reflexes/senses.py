@@ -20,7 +20,8 @@ class Senses:
     stop_asked: bool = False
     """An emergency stop from the command line, the service or a person's page."""
     rearm: bool = False
-    """Somebody has looked, and lets the robot go again."""
+    """Somebody has looked, and lets the robot go again: from anywhere, or by the Spot button, which works when
+    everything above is dead. For one tick: a button that is still held must not undo the next stop."""
     own_wheels: bool = True
     """False while the firmware drives (docking touches the dock, which is no accident) or the base rests in Passive."""
     host: HostReport = WELL
@@ -39,8 +40,3 @@ class Senses:
     """Some diode is over the line."""
     diodes_broken: bool = False
     """The pins cannot be read at all."""
-
-    @property
-    def rearmed(self) -> bool:
-        """From anywhere, or by the Spot button on the robot: that one works when everything above is dead."""
-        return self.rearm or (self.base is not None and self.base.spot_pressed)

@@ -64,6 +64,26 @@ def test_the_spot_button_lets_it_go_again_whoever_stopped_it_and_whether_or_not_
     moving.until(lambda: not moving.wheels_stand, 1.0)
 
 
+def test_a_stop_that_comes_while_somebody_still_presses_spot_holds(moving: Moving) -> None:
+    moving.sets_off()
+    moving.robot.press("spot")
+    moving.steps(0.1)
+    moving.loop.emergency_stop()
+    moving.steps(1.0)
+    assert moving.faults == {"emergency_stop"}
+
+
+@pytest.mark.parametrize("order", [("emergency_stop", "rearm"), ("rearm", "emergency_stop")])
+def test_a_stop_wins_over_a_rearming_by_somebody_who_cannot_have_seen_it(
+    moving: Moving, order: tuple[str, str]
+) -> None:
+    moving.sets_off()
+    for call in order:
+        getattr(moving.loop, call)()
+    moving.steps(0.5)
+    assert moving.faults == {"emergency_stop"}
+
+
 def test_clean_pressed_in_the_dock_starts_no_cleaning_and_a_dead_mind_ends_no_charge() -> None:
     robot = Moving("dock", battery_ratio=0.5)
     try:
@@ -127,7 +147,7 @@ def test_what_is_not_latched_is_not_kept_and_what_is_over_is_forgotten(tmp_path:
     assert StopMemory(tmp_path / "stops.json").read() == frozenset()
 
 
-@pytest.mark.parametrize("text", ["", "7", "{", '"cliff'])
+@pytest.mark.parametrize("text", ["", "7", "{", '"cliff', '"cliff"', "{}"])
 def test_a_memory_of_stops_that_nobody_understands_is_a_stop(tmp_path: Path, text: str) -> None:
     (tmp_path / "stops.json").write_text(text)
     assert StopMemory(tmp_path / "stops.json").read() == {"emergency_stop"}
