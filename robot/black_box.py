@@ -100,9 +100,9 @@ class BlackBox:
         while (name := self._waiting.get()) is not None:
             try:
                 log.warning("black_box_written", file=str(self.write(name)))
-            except OSError as error:
-                # A full disk must not end anything: the robot stands already, and has told why.
-                log.error("black_box_not_written", fault=name, error=str(error))
+            except Exception as error:
+                # Neither a full disk nor a row that cannot be written may end this thread: the next fault has a file.
+                log.error("black_box_not_written", fault=name, error=repr(error))
 
     def write(self, name: str) -> Path | None:
         """Write the last minute now, in the caller's thread; None without a folder. Raises OSError."""
@@ -111,6 +111,7 @@ class BlackBox:
         with self._writing:
             self._folder.mkdir(parents=True, exist_ok=True)
             moment = self._utc()
+            self._forget_old_files(self._folder)
             file = self._folder / f"{moment:%Y%m%dT%H%M%S.%f}Z-{name}.jsonl.gz"
             part = file.with_suffix(".part")
             try:
@@ -118,7 +119,6 @@ class BlackBox:
                 part.replace(file)
             finally:
                 part.unlink(missing_ok=True)
-            self._forget_old_files(self._folder)
             return file
 
     def _write_rows(self, part: Path, header: dict[str, str]) -> None:
@@ -133,7 +133,8 @@ class BlackBox:
                     time.sleep(BREATH_S)
 
     def _forget_old_files(self, folder: Path) -> None:
-        for old in sorted(folder.glob("*.jsonl.gz"))[:-KEPT_FILES]:
+        """All but the newest, with room for one more; and what a power cut left half written."""
+        for old in [*sorted(folder.glob("*.jsonl.gz"))[: 1 - KEPT_FILES], *folder.glob("*.part")]:
             with suppress(OSError):
                 old.unlink()
 

@@ -7,7 +7,8 @@
 | `{"do": "rearm"}`        | it may go again, if what stopped it is over                         |
 | `{"do": "black_box"}`    | the last minute is written into a file, which is named              |
 
-Nothing here waits for the mind, the disk or the network: a robot whose mind hangs can still be asked and stopped.
+Nothing here waits for the mind or the network, and only the black box for the disk: a robot whose mind hangs can
+still be asked and stopped.
 """
 
 import time

@@ -71,10 +71,14 @@ class _Server(socketserver.ThreadingUnixStreamServer):
         super().__init__(*arguments)
 
     def process_request(self, request: Any, client_address: Any) -> None:
-        if self.room.acquire(blocking=False):
-            super().process_request(request, client_address)
-        else:
+        if not self.room.acquire(blocking=False):
             self.shutdown_request(request)
+            return
+        try:
+            super().process_request(request, client_address)
+        except BaseException:
+            self.room.release()  # no thread could be made for this one: its place is free again
+            raise
 
     def process_request_thread(self, request: Any, client_address: Any) -> None:
         try:

@@ -53,18 +53,12 @@ class Lag:
 
     ticks: int = 0
     worst_s: float = 0.0
-    total_s: float = 0.0
     newest_s: deque[float] = field(default_factory=lambda: deque(maxlen=KEPT_LAGS))
 
     def note(self, late_s: float) -> None:
         self.ticks += 1
         self.worst_s = max(self.worst_s, late_s)
-        self.total_s += late_s
         self.newest_s.append(late_s)
-
-    @property
-    def mean_s(self) -> float:
-        return self.total_s / self.ticks if self.ticks else 0.0
 
     def share_s(self, share: float) -> float:
         """So late were at most this share of the ticks: 0.5 the median, 0.99 nearly all. Any thread may ask."""
@@ -208,19 +202,26 @@ class ThreadedRunner:
             raise self._failure
 
     def _run_loop(self, loop: Loop) -> None:
-        period_s, due_s = 1.0 / loop.rate_hz, self._clock.now()
         try:
-            while True:
-                (loop.woken_by or self._stopping).wait(max(0.0, due_s - self._clock.now()))
-                if self._stopping.is_set():
-                    break
-                now = self.now_s = self._clock.now()
-                self.lags[loop.name].note(max(0.0, now - due_s))
-                loop.tick(now)
-                due_s = max(due_s + period_s, self._clock.now())
+            self._tick_until_stopped(loop)
         except BaseException as failure:
-            log.exception("loop_failed", loop=loop.name)
             self._failure = self._failure or failure
-        finally:
-            self.stop()
-            loop.at_end()
+            self._end(loop)
+            log.exception("loop_failed", loop=loop.name)  # last: a log that hangs must not keep the wheels turning
+        else:
+            self._end(loop)
+
+    def _tick_until_stopped(self, loop: Loop) -> None:
+        period_s, due_s = 1.0 / loop.rate_hz, self._clock.now()
+        while True:
+            (loop.woken_by or self._stopping).wait(max(0.0, due_s - self._clock.now()))
+            if self._stopping.is_set():
+                return
+            now = self.now_s = self._clock.now()
+            self.lags[loop.name].note(max(0.0, now - due_s))
+            loop.tick(now)
+            due_s = max(due_s + period_s, self._clock.now())
+
+    def _end(self, loop: Loop) -> None:
+        self.stop()
+        loop.at_end()

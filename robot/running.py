@@ -23,15 +23,12 @@ from .json_socket import JsonSocket
 from .link import LinkError
 from .mind import messages_from_person
 from .report import Ending, Refusal, Reporter
-from .runners import LockstepRunner, Runner, ThreadedRunner
+from .runners import SWITCH_INTERVAL_S, LockstepRunner, Runner, ThreadedRunner
 from .service_manager import ServiceManager, SignsOfLife
 from .simulated import Door, SimulatedRobot
 from .status import StatusBoard
 
 log = structlog.get_logger("robot.run")
-
-SWITCH_INTERVAL_S = 0.0005
-"""In simulation one thread computes all the time: the link's thread must get its turn at once."""
 
 
 class DoorTaken(RobotError):
@@ -146,7 +143,7 @@ def _reporter(parts: Parts, settings: Settings, clock: Clock, wish: Wish) -> Rep
 def _runner(parts: Parts, clock: Clock, simulation: Simulation | None, wish: Wish) -> Runner:
     if simulation is None:
         return ThreadedRunner(parts.daemon.loops(), clock)
-    sys.setswitchinterval(SWITCH_INTERVAL_S)
+    sys.setswitchinterval(SWITCH_INTERVAL_S)  # one thread computes all the time: the link's must get its turn at once
     most = clock.speed if isinstance(clock, SharedClock) else 1.0
     return LockstepRunner(parts.daemon.loops(), clock, wish.speed or most)
 

@@ -88,12 +88,19 @@ class SignsOfLife:
 
     def _run(self) -> None:
         while not self._stopping.wait(self._every_s):
-            signs = self._signs()
-            silent = self._watchdog.silent(signs)
-            if self._watchdog.all_alive(signs):
-                self._feed()
-            else:
-                self._manager.say(f"STATUS=No sign of life from: {', '.join(silent)}")
+            try:
+                self._look()
+            except Exception:
+                # What cannot be asked is no sign of life; one bad look must not end the looking.
+                log.exception("signs_of_life_unread")
+
+    def _look(self) -> None:
+        signs = self._signs()
+        silent = self._watchdog.silent(signs)
+        if self._watchdog.all_alive(signs):
+            self._feed()
+        else:
+            self._manager.say(f"STATUS=No sign of life from: {', '.join(silent)}")
 
     def _feed(self) -> None:
         ready = () if self._ready else ("READY=1",)

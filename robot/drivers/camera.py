@@ -112,7 +112,7 @@ class GrabbingCamera:
     def _grab_one(self, device: Device) -> bool:
         try:
             there_is_one, frame = device.read()
-        except cv2.error:  # a torn picture of a device that is going away
+        except Exception:  # OpenCV has errors beside its own for a device that is going away; this thread outlives them
             there_is_one, frame = False, None
         if not there_is_one or frame is None:
             self._closing.wait(STARVED_S)
@@ -132,7 +132,7 @@ class GrabbingCamera:
     def _reopen(self) -> None:
         try:
             self._device = self._opened()
-        except cv2.error:
+        except Exception:  # see _grab_one
             self._device = None
         if self._device is None:
             self._closing.wait(REOPEN_EVERY_S)

@@ -2,7 +2,7 @@
 
 It wakes as soon as bytes arrive, so that a frame has its true time, and whoever drives can be woken by it. Whatever is
 sent goes out in the caller's own thread; nobody waits longer for the other than for one read or write of the port,
-which take 20 ms at worst.
+which take `serial_port.WRITE_TIMEOUT_S` at worst.
 """
 
 import threading
@@ -51,7 +51,7 @@ class PortThread:
                 wait_for_bytes(self._base.port, LOOK_EVERY_S)
                 self._look()
         except Exception:
-            # The driving thread goes on, hears nothing more, and its reflexes stop the wheels.
+            # The driving thread reads the port itself from now on; if that fails as well, its loop ends and stops.
             log.exception("port_thread_failed")
 
     def _look(self) -> None:
@@ -67,7 +67,7 @@ class PortThread:
                 self.urgent.set()
 
     def poll(self, now: float) -> BaseState | None:
-        """What the thread has heard since the last call. Without the thread (not yet started) the port is read here."""
+        """What the thread has heard since the last call. Without the thread (not started, or ended) the port is read here."""
         if not self._thread.is_alive() and not self._ending.is_set():
             self._look()
         with self._lock:

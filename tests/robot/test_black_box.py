@@ -121,6 +121,28 @@ def test_many_threads_note_while_it_is_written(tmp_path: Path) -> None:
     assert all(file is not None and len(list(rows(file))) > 1 for file in written)
 
 
+def test_a_row_that_cannot_be_written_costs_one_file_and_not_the_writer(tmp_path: Path) -> None:
+    class Unspeakable:
+        def __str__(self) -> str:
+            raise RuntimeError
+
+    box = BlackBox(tmp_path)
+    box.note("action", 0.0, Unspeakable())
+    box.write_at(0.0, "bump")
+    box.write_what_is_due(0.0)
+    for number in range(KEPT_ROWS):
+        box.note("action", 1.0, number)
+    box.write_at(1.0, "cliff")
+    box.close()
+    assert [name.partition("-")[2] for name in files(tmp_path)] == ["cliff.jsonl.gz"]
+
+
+def test_what_a_power_cut_left_half_written_goes_with_the_next_file(tmp_path: Path) -> None:
+    (tmp_path / "20260105T090000.000000Z-bump.jsonl.part").write_bytes(b"half")
+    BlackBox(tmp_path).write("on_demand")
+    assert not list(tmp_path.glob("*.part"))
+
+
 def test_a_disk_without_room_ends_nothing(tmp_path: Path) -> None:
     (tmp_path / "in the way").write_text("no folder")
     box = BlackBox(tmp_path / "in the way")
@@ -134,7 +156,11 @@ def test_without_a_folder_nothing_is_written() -> None:
     assert BlackBox().write("on_demand") is None
 
 
-@pytest.mark.parametrize("content", [b"", b"no gzip at all", gzip.compress(b'{"kind": "line"}\n'), gzip.compress(b"x")])
+@pytest.mark.parametrize(
+    "content",
+    [b"", b"no gzip at all", gzip.compress(b'{"kind": "line"}\n'), gzip.compress(b"x")],
+    ids=["empty", "no gzip", "half a row", "no row"],  # compressed bytes hold the time of day
+)
 def test_a_file_that_is_no_black_box_is_refused_by_name(tmp_path: Path, content: bytes) -> None:
     file = tmp_path / "torn.jsonl.gz"
     file.write_bytes(content)
