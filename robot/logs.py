@@ -1,12 +1,16 @@
 """Where the log goes: to stderr, which systemd's journal keeps and rotates, or into a file that rotates by itself.
 
-No loop logs its ticks: a line is written when something has changed.
+No loop logs its ticks: a line is written when something has changed. The drive loop logs as well, so that the file is
+written by a thread of its own.
 """
 
 import logging
 import sys
-from logging.handlers import RotatingFileHandler
+from contextlib import suppress
+from logging.handlers import QueueHandler, QueueListener, RotatingFileHandler
 from pathlib import Path
+from queue import Full, Queue
+from typing import Any
 
 import structlog
 
@@ -14,6 +18,8 @@ from .config import ConfigError
 
 LONGEST_FILE_BYTES = 1_000_000
 KEPT_FILES = 4
+WAITING_LINES = 1000
+"""For a card that hangs; what comes beyond that is lost, and nobody waits."""
 
 
 def configure_logs(path: Path | None) -> None:
@@ -25,7 +31,7 @@ def configure_logs(path: Path | None) -> None:
     for old in tuple(logger.handlers):
         logger.removeHandler(old)
         old.close()
-    logger.addHandler(_file(path))
+    logger.addHandler(WrittenElsewhere(_file(path)))
     logger.setLevel(logging.INFO)
     logger.propagate = False
     structlog.configure(
@@ -38,6 +44,26 @@ def configure_logs(path: Path | None) -> None:
         logger_factory=lambda *_: logger,
         wrapper_class=structlog.make_filtering_bound_logger(logging.INFO),
     )
+
+
+class WrittenElsewhere(QueueHandler):
+    """Hands lines over to a thread; closing it writes what still waits."""
+
+    def __init__(self, writer: logging.Handler) -> None:
+        waiting: Queue[Any] = Queue(WAITING_LINES)
+        super().__init__(waiting)
+        self._writer = writer
+        self._thread = QueueListener(waiting, writer)
+        self._thread.start()
+
+    def enqueue(self, record: logging.LogRecord) -> None:
+        with suppress(Full):
+            super().enqueue(record)
+
+    def close(self) -> None:
+        self._thread.stop()
+        self._writer.close()
+        super().close()
 
 
 def _file(path: Path) -> RotatingFileHandler:
