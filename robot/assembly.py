@@ -121,7 +121,9 @@ def assemble(settings: Settings, clock: Clock, simulation: Simulation | None) ->
 
 def check_settings(settings: Settings) -> None:
     """Everything that can be judged without a robot. Raises what `assemble` would."""
-    _home(settings, find_map(settings.map))
+    campus = find_map(settings.map)
+    _home(settings, campus)
+    _mailroom(settings, campus)
     load_program(settings)
     if settings.server:
         read_token(_token_file(settings))

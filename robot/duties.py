@@ -122,7 +122,7 @@ class Duties:
             case Mission():
                 self._accepted(message)
             case Deny():
-                self._denied[message.claim_id] = message
+                self._denied = {message.claim_id: message}  # one claim is out at a time: who asks for an older has gone
                 self.avoid = frozenset(message.avoid)
             case Grant():
                 self.avoid -= frozenset(message.legs)

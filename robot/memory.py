@@ -156,10 +156,14 @@ class Memory:
         """What hand-over codes are checked against."""
         return self._read("verifiers", _VERIFIERS, ())
 
-    def keep_verifiers(self, verifiers: Verifiers) -> None:
-        """Add these; one for the same order and purpose takes the place of the older one."""
+    def keep_verifiers(self, verifiers: Verifiers, at: datetime) -> None:
+        """Add these; one for the same order and purpose takes the place of the older one.
+
+        Those that have expired by then open nothing any more and are forgotten: they must not pile up for ever.
+        """
         with self._store.transaction():
-            kept = {(one.order_id, one.purpose): one for one in (*self.verifiers(), *verifiers.verifiers)}
+            lasting = (one for one in self.verifiers() if at < one.expires_at)
+            kept = {(one.order_id, one.purpose): one for one in (*lasting, *verifiers.verifiers)}
             self._write("verifiers", _VERIFIERS, tuple(kept.values()))
 
     def forget_verifiers(self, order_id: str, purpose: Purpose | None = None) -> None:
@@ -268,17 +272,17 @@ class Memory:
             self._write("received", _RECEIVED, Received(journal=envelope.journal, seq=envelope.seq))
             if isinstance(envelope.body, Mission) and (refusal := conflict(self.mission(), envelope.body)):
                 return Taken(judged, refusal)
-            self._apply(envelope.body)
+            self._apply(envelope.body, envelope.at)
             row = (envelope.journal, envelope.seq, type_of(envelope.body), envelope.body.model_dump_json())
             database.execute("INSERT INTO inbox VALUES (?, ?, ?, ?)", row)
             return Taken(judged)
 
-    def _apply(self, message: Part) -> None:
+    def _apply(self, message: Part, at: datetime) -> None:
         match message:
             case Mission():
                 self.hold(message)
             case Verifiers():
-                self.keep_verifiers(message)
+                self.keep_verifiers(message, at)
             case Grant():
                 self.grant(message.legs)
             case _:  # commands are for the daemon to carry out

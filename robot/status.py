@@ -55,11 +55,12 @@ class StatusBoard:
         }
 
     def _battery(self) -> dict[str, Any]:
-        state, sense = self.mind.hands.body.view.base, self.mind.battery
+        view, sense = self.mind.hands.body.view, self.mind.battery
+        state = view.base
         return {
             "ratio": round(sense.ratio, 3) if sense.ratio is not None else None,
             "word": str(sense.word),
-            "charging": bool(state and state.charging),
+            "charging": bool(view.heard_base and view.heard_base.charging),
             "voltage_mv": state.voltage_mv if state else None,
         }
 
@@ -68,7 +69,7 @@ class StatusBoard:
         state = view.base
         told: dict[str, Any] = {
             "mode": state.mode.name.lower() if state else None,
-            "docked": bool(state and state.docked),
+            "docked": bool(view.heard_base and view.heard_base.docked),
             "age_s": round(view.at_s - state.at_s, 3) if state else None,
             "wheels_mm_s": list(view.sent),
         }

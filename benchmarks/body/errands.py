@@ -45,7 +45,7 @@ class Errands:
         self._codes = {purpose.value: f"CM1:{self._random.randbytes(16).hex()}" for purpose in ACTIONS}
         order = f"o{number}"
         self._duties.memory.keep_verifiers(
-            Verifiers(verifiers=tuple(self._verifier(order, purpose) for purpose in ACTIONS))
+            Verifiers(verifiers=tuple(self._verifier(order, purpose) for purpose in ACTIONS)), self._clock.utc()
         )
         stops = tuple(
             Stop(id=f"s{number}{purpose}", post=post, action=ACTIONS[purpose], order_id=order)

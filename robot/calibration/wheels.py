@@ -12,6 +12,7 @@ SPIN = WheelSpeeds(-60, 60)
 SHORTEST_MM = 300.0
 LATEST_PER_TURN_S = 30.0
 CENTRE = 1
+"""Of left, centre, right."""
 
 
 def roll(rig: Rig, length_mm: float, mm_per_count: float) -> float:
@@ -64,7 +65,6 @@ class Crossings:
         self._level = level
         self._edges: list[float] = []
         self._before: int | None = None
-        self._first: int | None = None
         self.middles: list[float] = []
 
     def seen(self, counts: float) -> list[float]:

@@ -1,7 +1,7 @@
 """`calibrate`: measure this robot, and write what was found into its settings."""
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from typing import Annotated, Any, NoReturn
 
@@ -10,7 +10,7 @@ import typer
 from ..calibration.line import swing
 from ..calibration.optics import field_of_view_deg
 from ..calibration.rig import Rig
-from ..calibration.wheels import mm_per_count, roll, spin, wheel_base_mm
+from ..calibration.wheels import CENTRE, mm_per_count, roll, spin, wheel_base_mm
 from ..config import ConfigError, Settings
 from ..control import SOCKET_NAME
 from ..drivers.create2 import Create2
@@ -63,8 +63,8 @@ def turn(
     """drive.wheel_base_mm: it turns on the spot over a straight piece of the line. Calibrate the distance first."""
 
     def measure(rig: Rig, settings: Settings) -> Found:
-        devices = open_pins(settings.line, pin_factory())
-        counts = spin(rig, lambda: int(devices[1].value), turns)
+        with _pins(settings) as devices:
+            counts = spin(rig, lambda: int(devices[CENTRE].value), turns)
         return {"drive.wheel_base_mm": round(wheel_base_mm(counts, turns, settings.drive.mm_per_count), 2)}
 
     _with_wheels(config, yes, measure)
@@ -78,8 +78,8 @@ def line(config: ConfigOption = None, yes: YesOption = False) -> None:
     """
 
     def measure(rig: Rig, settings: Settings) -> Found:
-        devices = open_pins(settings.line, pin_factory())
-        found = swing(rig, lambda: [int(device.value) for device in devices])
+        with _pins(settings) as devices:
+            found = swing(rig, lambda: [int(device.value) for device in devices])
         pins = (settings.line.left_pin, settings.line.right_pin)
         left, right = reversed(pins) if found.swapped else pins
         return {"line.line_is_low": found.line_is_low, "line.left_pin": left, "line.right_pin": right}
@@ -131,6 +131,16 @@ def _with_wheels(config: Any, yes: bool, measure: Callable[[Rig, Settings], Foun
 def _wait(seconds: float) -> float:
     time.sleep(seconds)
     return time.monotonic()
+
+
+@contextmanager
+def _pins(settings: Settings) -> Iterator[Sequence[Any]]:
+    devices = open_pins(settings.line, pin_factory())
+    try:
+        yield devices
+    finally:
+        for device in devices:
+            device.close()
 
 
 @contextmanager

@@ -3,7 +3,7 @@
 import json
 import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -97,10 +97,9 @@ def _equipment(settings: Settings, simulated: bool) -> Iterator[tuple[Settings, 
         robot = SimulatedRobot(campus, clock.now(), next(iter(campus.posts)))
     except (CampusMapError, RobotError) as problem:
         refuse(str(problem))
-    with Live(robot, clock):
+    with closing(robot), Live(robot, clock):
         settings = settings.model_copy(update={"serial_port": robot.port_path})
         equipment = Equipment(
             lambda: open_serial(robot.port_path), robot.brc, lambda: robot.pin_factory, lambda: robot.camera, True
         )
         yield settings, equipment
-    robot.close()

@@ -205,7 +205,7 @@ def verifier(purpose: Purpose, text: str, expires_at: datetime = NOW + timedelta
 
 def test_only_the_code_of_this_order_and_purpose_that_has_not_expired_opens(desk: Desk) -> None:
     desk.duties.memory.keep_verifiers(
-        Verifiers(verifiers=(verifier(Purpose.LOAD, "a", NOW), verifier(Purpose.RECEIVE, "b")))
+        Verifiers(verifiers=(verifier(Purpose.LOAD, "a", NOW), verifier(Purpose.RECEIVE, "b"))), NOW
     )
     desk.hears(LETTER)
     assert desk.duties.codes("o1", Purpose.LOAD) == (), "it has just expired"
@@ -215,7 +215,7 @@ def test_only_the_code_of_this_order_and_purpose_that_has_not_expired_opens(desk
 
 def test_a_code_opens_once(desk: Desk) -> None:
     desk.duties.memory.keep_verifiers(
-        Verifiers(verifiers=(verifier(Purpose.LOAD, "a"), verifier(Purpose.RECEIVE, "b")))
+        Verifiers(verifiers=(verifier(Purpose.LOAD, "a"), verifier(Purpose.RECEIVE, "b"))), NOW
     )
     desk.hears(LETTER)
     desk.duties.handed_over((LETTER, LOAD), Purpose.LOAD, "post1", "a" * 64)
@@ -235,7 +235,7 @@ def test_mail_that_came_aboard_is_aboard_though_the_order_is_cancelled_in_that_m
 
 def with_mail(desk: Desk, code: str | None = "a" * 64) -> None:
     """The letter is aboard, and post4 is next."""
-    desk.duties.memory.keep_verifiers(Verifiers(verifiers=(verifier(Purpose.RECEIVE, "b"),)))
+    desk.duties.memory.keep_verifiers(Verifiers(verifiers=(verifier(Purpose.RECEIVE, "b"),)), NOW)
     desk.hears(LETTER)
     desk.duties.handed_over((LETTER, LOAD), Purpose.LOAD, "post1", code)
 

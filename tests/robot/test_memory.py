@@ -49,7 +49,9 @@ def test_everything_is_known_again_after_a_restart(tmp_path: Path) -> None:
         memory.hold(MISSION)
         memory.reach(1)
         memory.load("o1")
-        memory.keep_verifiers(Verifiers(verifiers=(a_verifier(Purpose.LOAD, "a"), a_verifier(Purpose.RECEIVE, "b"))))
+        memory.keep_verifiers(
+            Verifiers(verifiers=(a_verifier(Purpose.LOAD, "a"), a_verifier(Purpose.RECEIVE, "b"))), AT
+        )
         memory.grant((LEG, OTHER_LEG))
         memory.clear(LEG)
         memory.see("post1", AT, towards="post2")
@@ -98,11 +100,18 @@ def test_an_update_keeps_done_what_was_done(store: Store) -> None:
 
 def test_a_newer_code_takes_the_place_of_the_older_and_used_ones_are_forgotten(store: Store) -> None:
     memory = Memory(store)
-    memory.keep_verifiers(Verifiers(verifiers=(a_verifier(Purpose.LOAD, "a"),)))
-    memory.keep_verifiers(Verifiers(verifiers=(a_verifier(Purpose.LOAD, "c"),)))
+    memory.keep_verifiers(Verifiers(verifiers=(a_verifier(Purpose.LOAD, "a"),)), AT)
+    memory.keep_verifiers(Verifiers(verifiers=(a_verifier(Purpose.LOAD, "c"),)), AT)
     assert [verifier.sha256 for verifier in memory.verifiers()] == ["c" * 64]
     memory.forget_verifiers("o1")
     assert memory.verifiers() == ()
+
+
+def test_codes_that_have_expired_do_not_pile_up(store: Store) -> None:
+    memory = Memory(store)
+    memory.keep_verifiers(Verifiers(verifiers=(a_verifier(Purpose.LOAD, "a"),)), AT)
+    memory.keep_verifiers(Verifiers(verifiers=(a_verifier(Purpose.RECEIVE, "b"),)), AT + timedelta(seconds=1))
+    assert [verifier.sha256 for verifier in memory.verifiers()] == ["b" * 64]
 
 
 def test_mail_is_aboard_once_however_often_it_is_loaded(store: Store) -> None:

@@ -80,7 +80,7 @@ class SimulatedRun:
             )
             for purpose, text in CODES.items()
         )
-        self.duties.memory.keep_verifiers(Verifiers(verifiers=verifiers))
+        self.duties.memory.keep_verifiers(Verifiers(verifiers=verifiers), self.clock.utc())
         self.duties.give(LETTER)
 
     def shows(self, purpose: Purpose) -> None:
