@@ -8,14 +8,7 @@ from typer.core import TyperGroup
 
 from .commands import calibrate, doctor, enrol, logs, run, settings, status, stop
 
-EPILOG = """
-A robot at home in a simulated tunnel, in real time:  python -m robot --simulated
-
-Ours, sent somewhere by hand:  python -m robot --simulated --achieve 'visit(post4)'
-
-The run of the paper's section 6.3:  python -m robot --simulated --agent mail.asl --tell 'dockStation(post5)'
---achieve 'collectAndDeliverMail(post1,post4)'; with --battery 0.26 it becomes low on the way.
-
+EPILOG = f"""{run.EPILOG}
 A real one:  python -m robot run --config robot.toml; docs/robot.md lists every setting.
 
 Exit status of every command: 0 done, 1 not done, 2 something to put right first, which is named.

@@ -1,6 +1,6 @@
 """The computer's own faults: too little voltage, a clock that jumps, a disk that fills up.
 
-Looked at once a second by a loop of its own, since a question to the firmware may take a while; the drive loop gets
+Looked at by a loop of its own, since a question to the firmware may take a while; the drive loop gets
 the answer as a `HostReport`.
 """
 

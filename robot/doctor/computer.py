@@ -13,12 +13,13 @@ from maps import CampusMapError
 
 from ..assembly import check_settings
 from ..config import ConfigError
+from ..host import DISK_LOW_MB, THROTTLED_FILE
 from .findings import Finding, Patient, fail, ok, skip, warn
 
 NEEDED = ("serial", "gpiozero", "numpy", "cv2", "websockets", "pydantic", "structlog", "typer", "lark", "tomlkit")
 BETTER = {"zxingcpp": "markers are then read by OpenCV, twenty times slower and less surely"}
 ON_A_PI = "lgpio"
-LEAST_FREE_MB, LITTLE_FREE_MB = 100, 1000
+LITTLE_FREE_MB = 1000.0
 SYNCS, SLOW_SYNC_MS = 5, 500.0
 COMMAND_LIMIT_S = 3.0
 MODEL = "proc/device-tree/model"
@@ -68,7 +69,7 @@ def disk(patient: Patient) -> Finding:
     except OSError as error:
         return fail(f"{folder} cannot be written: {error.strerror}", "Give it to the robot's user, or set data.")
     said = f"{free_mb:.0f} MB free at {folder}; a full sync takes {sync_ms:.0f} ms"
-    if free_mb < LEAST_FREE_MB:
+    if free_mb < DISK_LOW_MB:
         return fail(said, "Free some: the robot could not remember its mail.")
     if folder.stat().st_mode & 0o077:
         return warn(f"others may read {folder}, where codes and addresses of people lie", f"chmod 700 {folder}")
@@ -119,7 +120,7 @@ def supply(patient: Patient) -> Finding:
 
 
 def _throttled(patient: Patient) -> int | None:
-    told = patient.text("sys/devices/platform/soc/soc:firmware/get_throttled")
+    told = patient.text(str(THROTTLED_FILE.relative_to("/")))
     if told is None:
         answer = _asked(patient, "vcgencmd", "get_throttled")
         told = answer.partition("=")[2] if answer else None

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..config import ConfigError
-from ..drivers.interfaces import Frame
+from ..drivers.interfaces import Camera, Frame
 from ..drivers.qr_decoders import best_decoder
 from ..errors import RobotError
 from ..line_pins import PIN_NAMES, PinWatch, open_pins
@@ -73,12 +73,12 @@ def camera(patient: Patient) -> Finding:
     return _judged(patient, frames)
 
 
-def _frames(device: object, patience: float) -> Iterator[tuple[float, Frame]]:
+def _frames(device: Camera, patience: float) -> Iterator[tuple[float, Frame]]:
     """With the time each came. The first may take seconds."""
     until_s = time.monotonic() + FIRST_FRAME_S * patience
     first = True
     while (now := time.monotonic()) < until_s:
-        there_is_one, frame = device.read()  # type: ignore[attr-defined]
+        there_is_one, frame = device.read()
         if there_is_one and frame is not None:
             if first:
                 first, until_s = False, now + CAMERA_S * patience

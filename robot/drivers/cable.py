@@ -7,15 +7,13 @@ import serial
 
 from ..errors import RobotError
 from .link_health import LinkHealth
-from .open_interface import BAUD
+from .open_interface import BAUD, FILLING
 from .serial_port import SerialPort
 
 RETRY_S = 1.0
 READ_AT_ONCE = 4096
 TIMEOUTS = 3
 """So many writes in a row that time out are a cable that takes nothing."""
-FILLING = bytes(40)
-"""Behind a write that timed out the base may wait for the rest of a command: zeros fill it."""
 Chunk = Callable[[bytes, float], None]
 """Bytes and when they passed."""
 
@@ -72,6 +70,7 @@ class Cable:
     def _write(self, data: bytes, now: float) -> None:
         try:
             if self.port is not None:
+                # Behind a write that timed out the base may wait for the rest of a command.
                 self.port.write(FILLING + data if self._timeouts else data)
                 self._timeouts = 0
                 self.sent(data, now)

@@ -84,7 +84,7 @@ class Create2:
             self._cable.send(oi.drive_direct(STOP), now)
         if self._speeds.runs_on(now):
             # A lost byte may have left the base waiting for the data of a long command, which eats what we send.
-            self._cable.send(ladder.LONGEST_COMMAND + oi.drive_direct(STOP), now)
+            self._cable.send(oi.LONGEST_FILLING + oi.drive_direct(STOP), now)
         self._cable.flush(now)
         return newest
 
@@ -223,5 +223,5 @@ class Create2:
         self._speeds.started_anew()
         self.health.starts += 1
         self._cable.forget()
-        self._cable.send(ladder.HALF_COMMAND + bytes((oi.Opcode.START,)), now, MODE_GAP_S)
+        self._cable.send(oi.FILLING + bytes((oi.Opcode.START,)), now, MODE_GAP_S)
         self._cable.send(stream.command(), now)

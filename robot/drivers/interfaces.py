@@ -119,10 +119,6 @@ class BaseState:
         return bool(self.buttons & 0b010)
 
     @property
-    def dock_pressed(self) -> bool:
-        return bool(self.buttons & 0b100)
-
-    @property
     def virtual_wall(self) -> bool:
         """A virtual wall's beam reaches one of the receivers."""
         return VIRTUAL_WALL_IR in (self.ir_omni, self.ir_left, self.ir_right)

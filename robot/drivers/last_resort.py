@@ -12,8 +12,8 @@ from ..errors import PortAbsent
 from .interfaces import STOP
 from .open_interface import Opcode, drive_direct
 
-LONGEST_COMMAND = 5
-STOP_BYTES = drive_direct(STOP) * 2 + bytes((Opcode.START,)) * LONGEST_COMMAND
+OUR_LONGEST_COMMAND = len(drive_direct(STOP))
+STOP_BYTES = drive_direct(STOP) * 2 + bytes((Opcode.START,)) * OUR_LONGEST_COMMAND
 """Twice stop: the first may be eaten by a command that was left half said. Then Passive, in which it may charge; often
 enough to be heard behind any half command."""
 

@@ -12,9 +12,12 @@ from .interfaces import Note, WheelSpeeds
 BAUD = 115200
 SLOW_BAUD = 19200
 """What a base speaks at when Clean was held at power-off, or BRC pulsed low three times."""
-FRAME_PERIOD_S = 0.015
 HEADER = 19
-MAX_WHEEL_MM_S = 500
+FILLING = bytes(40)
+"""Who died in the middle of a command left the base waiting for its data, for ever. Zeros fill any command that we send
+(a drive command becomes a stop) and mean nothing by themselves."""
+LONGEST_FILLING = bytes(2 + 2 * 255)
+"""As many as the longest command of the base can still be waiting for: a song whose length was no length."""
 
 
 class Opcode(IntEnum):

@@ -13,12 +13,6 @@ SILENT_S = 1.0
 """Without a frame for so long the base is started again; a stream has one every 15 ms."""
 DOWN_S = 60.0
 """Without a frame for so long the base counts as gone: people are to be told."""
-HALF_COMMAND = bytes(40)
-"""Who died in the middle of a command left the base waiting for its data, for ever. Zeros fill any command that we
-send (a drive command becomes a stop) and mean nothing by themselves."""
-
-LONGEST_COMMAND = bytes(2 + 2 * 255)
-"""As many zeros as the longest command of the base can still be waiting for: a song whose length was no length."""
 
 
 @dataclass(frozen=True)
@@ -67,7 +61,7 @@ AT_19200 = Step(
     "at 19200 baud",
     (
         (0.0, Listen(oi.SLOW_BAUD)),
-        (0.05, Send(HALF_COMMAND + bytes((oi.Opcode.START,)))),
+        (0.05, Send(oi.FILLING + bytes((oi.Opcode.START,)))),
         (0.15, Send(oi.baud_command())),
         (0.25, Listen(oi.BAUD)),
         (0.4, Start()),

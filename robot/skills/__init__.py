@@ -1,15 +1,4 @@
-"""The long actions of the body. What they are, and how they end: interfaces.py.
-
-FollowLine(campus, leaving=None, cruise_mm_s=150.0, shape=None)  Done(post) | line_lost, blocked, docked, timeout
-Turn(angle_rad, shape=None)          left is positive; ends on the line. Done() | line_lost, timeout
-FindLine(shape=None)                 Done() | line_lost
-Dock(tries=3)                        Done() | no_dock
-Undock(shape=None)                   Done(), on the line and looking along it | not_docked, line_lost, timeout
-WaitHandover(verifiers, limit_s)     Done(sha256 that matched) | Done(None) after Spot twice | no_one_came
-Say(tune)                            Done()
-DrivePulse(forward|left|right|stop|spiral)   Done() at once; the wheels go on for 0.2 s
-PaperTurn(angle_rad)                 Done() | line_lost, timeout after 10 s
-"""
+"""The long actions of the body. What one is: `interfaces`; how each ends, and by which names it fails: `ends`."""
 
 from .dock import Dock, Undock
 from .find_line import FindLine
