@@ -91,8 +91,24 @@ class Position:
             return self
         at_mm = odometry.ahead_mm + ahead_mm
         if post.text == self.current and not self.has_left:
-            return replace(self, post_at_mm=at_mm, seen_at_s=post.at_s)
+            return self._still_before(post, at_mm, odometry)
         return replace(self, approaching=post.text, post_at_mm=at_mm, seen_at_s=post.at_s)
+
+    def _still_before(self, post: Sighting, at_mm: float, odometry: Odometry) -> "Position":
+        """Standing at a post, its marker tells how exactly. Who has stopped well short of it is still on the way."""
+        if abs(at_mm - odometry.ahead_mm) <= LEFT_MM:
+            return replace(self, post_at_mm=at_mm, seen_at_s=post.at_s)
+        if at_mm < odometry.ahead_mm or self.previous is None:
+            return self
+        return replace(
+            self,
+            current=self.previous,
+            previous=None,
+            approaching=post.text,
+            post_at_mm=at_mm,
+            seen_at_s=post.at_s,
+            has_left=True,
+        )
 
     def _moved(self, campus: CampusMap, odometry: Odometry) -> "Position":
         if self.post_at_mm is None:
