@@ -25,7 +25,7 @@ ENDS: Final = (
         "the post reached",
         {
             "line_lost": "no line, after the whole ladder of find_line, or three searches within half a metre",
-            "post_missed": "the corridor is over and no marker was read, not even at a second look",
+            "post_missed": "the corridor is over, no marker was read, and which post it is is not known",
             "blocked": "three bumps",
             "docked": "it stands in a dock",
             "timeout": "no post in time",

@@ -4,6 +4,7 @@ Fifty times a second: where is the line (line_estimate.py), which curve leads ba
 """
 
 import math
+from statistics import median
 from typing import ClassVar
 
 from maps import CampusMap
@@ -12,7 +13,7 @@ from ..drivers.interfaces import STOP, BodyShape, WheelSpeeds
 from .find_line import FindLine, over_line
 from .interfaces import Done, Failed, Running, Step, View
 from .line_estimate import LineEstimate, gains
-from .post_ahead import LookAgain, PostAhead
+from .post_ahead import PostAhead
 
 SLOWEST_MM_S = 70.0
 CLOSE_MM, SLOW_BY_MM = 8.0, 25.0
@@ -33,13 +34,17 @@ FRUITLESS_MM = 500.0
 MOST_SEARCHES = 3
 """So many searches in a row with less than half a metre of line between them: this is where the line ends."""
 MOST_BUMPS = 3
-GIVES_WAY_S = (2.0, 20.0)
+GIVES_WAY_S = (4.0, 12.0)
 """How long it stands after each bump but the last: whoever is in the way has heard it and can step aside."""
 INNER_WHEEL_MM_S, OUTER_WHEEL_MM_S = 30.0, 200.0
-MISSED_SHARE, MISSED_MM = 0.08, 150.0
-"""No marker so far beyond the length of the corridor: wheels and tape measures err by less, so the post was missed."""
+MISSED_SHARE, MISSED_MM = 0.03, 40.0
+"""No marker so far beyond the length of the corridor: calibrated wheels and tape measures err by less."""
+LOOKS_FROM_MM, LOOKS_MM_S = 250.0, 90.0
+"""So near to where a post should be a marker should have been read; if not, it looks more slowly."""
 TAPE_HALF_MM = 12.0
-OTHER_LINE_MM = 5.0
+ACROSS_LOOKS = 3
+"""So often all diodes must be dark to tell where a line crosses or ends at a bar."""
+OTHER_LINE_MM = 15.0
 """Where an unseen post may be, tape that lies farther beside the line than this is a branch."""
 
 
@@ -79,8 +84,8 @@ class FollowLine:
         self._lit_mm = view.odometry.travelled_mm
         self._lit_ahead_mm = view.odometry.ahead_mm
         self._line_end_mm: float | None = None
-        self._search: FindLine | LookAgain | None = None
-        self._looked_again = False
+        self._across_mm: list[float] = []
+        self._search: FindLine | None = None
         self._searches, self._searched_mm = 0, -FRUITLESS_MM
         self._post = PostAhead(self._campus, self._leaving, view.odometry, now)
         self._standing_since_s: float | None = None
@@ -104,11 +109,12 @@ class FollowLine:
             return self._stop(view, to_go_mm)
         self._standing_since_s = None
         if to_go_mm is None and self._beyond_mm(view) > MISSED_SHARE * (self._way_left_mm or 0.0) + MISSED_MM:
-            return self._missed(view, now)
+            return self._missed(view)
         if self._has_lost(view, to_go_mm):
             missed = self._may_be_at_post(view) and not self._post.supposed
-            return self._missed(view, now) if missed else self._lost(view, now)
-        return Running(self._speeds(to_go_mm))
+            return self._missed(view) if missed else self._lost(view, now)
+        speeds = self._speeds(to_go_mm, self._cruise_mm_s if to_go_mm is not None else self._looking_mm_s(view))
+        return Running(speeds)
 
     def _gives_way(self, view: View, now: float) -> bool:
         if view.bumps > self._bumps:
@@ -139,21 +145,21 @@ class FollowLine:
             return False
         return self._beyond_mm(view) > -MISSED_SHARE * self._way_left_mm - self._shape.sensor_lead_mm
 
-    def _missed(self, view: View, now: float) -> Step:
-        """Once it looks again from a little way back, slower: most markers that are there are read then."""
-        if self._looked_again:
-            return Failed("post_missed")
-        self._looked_again = True
-        self._line_end_mm = self._lit_ahead_mm + self._shape.sensor_lead_mm if self._has_lost(view, None) else None
-        return self._begin_search(LookAgain(self._beyond_mm(view)), view, now)
+    def _missed(self, view: View) -> Step:
+        """It goes back to where the post must be, if it knows which one that is."""
+        end_mm = self._lit_ahead_mm + self._shape.sensor_lead_mm - TAPE_HALF_MM
+        self._line_end_mm = end_mm if self._has_lost(view, None) else None
+        return Running(STOP) if self._suppose_post() else Failed("post_missed")
 
     def _suppose_post(self) -> bool:
-        """Nobody reads its marker: it is where the map says, or where the tape has ended there. False: not known."""
+        """Nobody reads its marker: it is where tape lies across, or ends, else where the map says. False: not known."""
         if self._ahead is None or self._way_left_mm is None:
             return False
         by_map_mm = self._begin.ahead_mm + self._way_left_mm
-        by_tape_mm = None if self._line_end_mm is None else self._line_end_mm - TAPE_HALF_MM
-        self._post.suppose(self._ahead, by_map_mm if by_tape_mm is None else by_tape_mm)
+        if len(self._across_mm) >= ACROSS_LOOKS:
+            self._post.suppose(self._ahead, median(self._across_mm) + self._shape.sensor_lead_mm)
+        else:
+            self._post.suppose(self._ahead, by_map_mm if self._line_end_mm is None else self._line_end_mm)
         return True
 
     # The line
@@ -165,13 +171,21 @@ class FollowLine:
         blind = to_go_mm is not None and to_go_mm < self._shape.sensor_lead_mm + BLIND_BEFORE_POST_MM
         if not blind:
             self._line.see(view.reading, OTHER_LINE_MM if self._may_be_at_post(view) else math.inf)
+        if all(view.reading) and self._may_be_at_post(view):
+            self._across_mm.append(here.ahead_mm)
+            if self._post.supposed:
+                self._suppose_post()
         if over_line(view):
             self._lit_mm, self._lit_ahead_mm = here.travelled_mm, here.ahead_mm
 
-    def _speeds(self, to_go_mm: float | None) -> WheelSpeeds:
+    def _looking_mm_s(self, view: View) -> float:
+        due = self._beyond_mm(view) > -MISSED_SHARE * (self._way_left_mm or 0.0) - LOOKS_FROM_MM
+        return min(self._cruise_mm_s, LOOKS_MM_S) if due else self._cruise_mm_s
+
+    def _speeds(self, to_go_mm: float | None, most_mm_s: float) -> WheelSpeeds:
         off_mm = self._line.at(self._look_ahead_mm)
         off_share = min(1.0, max(0.0, abs(off_mm) - CLOSE_MM) / SLOW_BY_MM)
-        speed = self._cruise_mm_s - (self._cruise_mm_s - SLOWEST_MM_S) * off_share
+        speed = most_mm_s - (most_mm_s - SLOWEST_MM_S) * off_share
         if to_go_mm is not None:
             speed = min(speed, max(CRAWL_MM_S, math.sqrt(2 * BRAKE_MM_S2 * max(0.0, to_go_mm - 5.0))))
         return curve(speed, 2 * off_mm / self._look_ahead_mm**2, self._shape)
@@ -188,15 +202,14 @@ class FollowLine:
         heading, side = view.odometry.heading_rad + self._line.heading, self._line.at(self._shape.sensor_lead_mm)
         return self._begin_search(FindLine(self._shape, side=side, heading_rad=heading), view, now)
 
-    def _begin_search(self, search: FindLine | LookAgain, view: View, now: float) -> Step:
+    def _begin_search(self, search: FindLine, view: View, now: float) -> Step:
         self._search = search
         search.start(view, now)
         return self._searched(search, view, now)
 
-    def _searched(self, search: FindLine | LookAgain, view: View, now: float) -> Step:
+    def _searched(self, search: FindLine, view: View, now: float) -> Step:
         step = search.step(view, now)
-        unread = isinstance(step, Failed) and isinstance(search, LookAgain) and self._suppose_post()
-        if isinstance(step, Done) or unread:
+        if isinstance(step, Done):
             self._resume(view)
             return Running(STOP)
         return step

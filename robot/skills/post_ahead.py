@@ -5,10 +5,9 @@ from dataclasses import replace
 
 from maps import CampusMap
 
-from ..drivers.interfaces import Odometry, WheelSpeeds
+from ..drivers.interfaces import Odometry
 from ..navigation.approach import arrival_heading_rad, post_ahead_mm
-from .interfaces import Done, Failed, View
-from .script import Script, Scripted, roll
+from .interfaces import View
 
 OWN_POST_MM = 600.0
 """A marker of the post it set out from does not count so near to it."""
@@ -16,7 +15,8 @@ SHARP_MM = 40.0
 """The nearer to abreast the marker is, the less its distance ahead depends on how the camera was mounted."""
 BESIDE_MM = 300.0
 """A post that lies so far beside the way after a search is not ahead any more."""
-LOOK_BACK_MM, LOOK_BACK_MM_S = 500.0, 100.0
+ANOTHER_RAD = math.radians(35)
+"""A marker turned farther from the robot hangs beside another line to the same post, or is seen from a search."""
 
 
 class PostAhead:
@@ -37,7 +37,7 @@ class PostAhead:
         if seen is None or seen.at_s <= self._sighted_s or seen.text not in self._campus.posts:
             return
         self._sighted_s = seen.at_s
-        if self._still_leaving(seen.text, view.odometry):
+        if self._still_leaving(seen.text, view.odometry) or abs(seen.turned_rad or 0.0) > ANOTHER_RAD:
             return
         # A robot that looks aslant sees a marker beside it too early or too late: along the line counts.
         along_mm = seen.ahead_mm * math.cos(line_heading) + seen.left_mm * math.sin(line_heading)
@@ -73,31 +73,10 @@ class PostAhead:
         """The way searched was no way along the line: what is left follows from where the post lies."""
         if self.name is None or self.supposed:
             return
+        self._weight = 0.0  # the next sighting counts alone: it is nearer, and the way to it was no search
         dx, dy = self._point[0] - here.x_mm, self._point[1] - here.y_mm
         along, across = math.cos(here.heading_rad), math.sin(here.heading_rad)
         if abs(dy * along - dx * across) > BESIDE_MM:
-            self.name, self._weight = None, 0.0
+            self.name = None
         else:
             self._at_mm = here.ahead_mm + dx * along + dy * across
-
-
-class LookAgain(Scripted):
-    """Back along the line for a marker that was not read in passing. Done when one is read, else post_missed."""
-
-    name = "look_again"
-    on_timeout = "post_missed"
-
-    def __init__(self, beyond_mm: float = 0.0) -> None:
-        """`beyond_mm`: how far past the post the robot may be."""
-        self._back_mm = LOOK_BACK_MM + max(0.0, beyond_mm)
-
-    def script(self, view: View) -> Script:
-        """Markers stand before their posts, so that one look from behind is enough."""
-        before_s = view.post.at_s if view.post else view.at_s
-        back = WheelSpeeds(-LOOK_BACK_MM_S, -LOOK_BACK_MM_S)
-        view = yield from roll(view, self._back_mm, back, lambda seen: _newer(seen, before_s))
-        return Done() if _newer(view, before_s) else Failed("post_missed")
-
-
-def _newer(view: View, than_s: float) -> bool:
-    return view.post is not None and view.post.at_s > than_s

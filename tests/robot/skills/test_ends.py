@@ -8,7 +8,6 @@ import pytest
 from maps import builtin_map
 from robot.skills import Dock, FindLine, FollowLine, Say, Skill, Turn, Undock, WaitHandover
 from robot.skills.ends import ENDS, OF_ANY, Ends
-from robot.skills.post_ahead import LookAgain
 
 SKILLS: tuple[Skill, ...] = (
     FollowLine(builtin_map("test_track")),
@@ -19,7 +18,7 @@ SKILLS: tuple[Skill, ...] = (
     WaitHandover(lambda: ()),
     Say(),
 )
-PART_OF = {"follow_line": (FindLine, LookAgain)}
+PART_OF = {"follow_line": (FindLine,)}
 """Skills that another one steps itself: their reasons are its own."""
 
 
