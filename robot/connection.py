@@ -69,6 +69,14 @@ class Newest:
     snapshot: Snapshot | None = None
     why: Why | None = None
 
+    def take(self, news: Snapshot | Why) -> bool:
+        """Whether it says anything new."""
+        if isinstance(news, Snapshot):
+            before, self.snapshot = self.snapshot, news
+            return news != before
+        said, self.why = self.why, news
+        return news != said
+
 
 @dataclass(frozen=True)
 class Ends:

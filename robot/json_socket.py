@@ -38,8 +38,13 @@ class NobodyAnswers(RobotError):
 class JsonSocket:
     """Answers in threads of its own until `close`. Make it before other threads: the umask belongs to the process."""
 
-    def __init__(self, path: Path, answer: Answer, silent_limit_s: float = SILENT_LIMIT_S) -> None:
-        """Raises OSError when no socket can be made there. One that is left over from a kill is replaced."""
+    def __init__(
+        self, path: Path, answer: Answer, silent_limit_s: float | None = SILENT_LIMIT_S, name: str = "control"
+    ) -> None:
+        """Raises OSError when no socket can be made there. One that is left over from a kill is replaced.
+
+        `silent_limit_s` None: a visitor may say nothing for ever.
+        """
         self._path = path
         path.unlink(missing_ok=True)
         old_mask = os.umask(0o177)  # the socket must never be open to others, not even for a moment
@@ -49,7 +54,7 @@ class JsonSocket:
         finally:
             os.umask(old_mask)
         self._server.answer, self._server.silent_limit_s = answer, silent_limit_s
-        self._thread = threading.Thread(target=self._server.serve_forever, args=(0.1,), name="control", daemon=True)
+        self._thread = threading.Thread(target=self._server.serve_forever, args=(0.1,), name=name, daemon=True)
         self._thread.start()
 
     def close(self) -> None:
@@ -64,7 +69,7 @@ class _Server(socketserver.ThreadingUnixStreamServer):
     daemon_threads = True
     block_on_close = False
     answer: Answer
-    silent_limit_s: float
+    silent_limit_s: float | None
 
     def __init__(self, *arguments: Any) -> None:
         self.room = threading.BoundedSemaphore(MAX_VISITORS)

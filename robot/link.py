@@ -142,14 +142,12 @@ class Link:
 
     def snapshot(self, snapshot: Snapshot) -> None:
         """The state now. At most one a second is sent, always the newest; none is queued."""
-        if snapshot != self._newest.snapshot:
-            self._newest.snapshot = snapshot
+        if self._newest.take(snapshot):
             self.wake()
 
     def say(self, why: Why) -> None:
         """What the robot is doing and waiting for; sent when it changes and after every reconnect."""
-        if why != self._newest.why:
-            self._newest.why = why
+        if self._newest.take(why):
             self.wake()
 
     def incoming(self) -> list[Incoming]:

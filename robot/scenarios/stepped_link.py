@@ -125,13 +125,11 @@ class SteppedLink:
         self._wake.set()
 
     def snapshot(self, snapshot: Snapshot) -> None:
-        if snapshot != self._newest.snapshot:
-            self._newest.snapshot = snapshot
+        if self._newest.take(snapshot):
             self.wake()
 
     def say(self, why: Why) -> None:
-        if why != self._newest.why:
-            self._newest.why = why
+        if self._newest.take(why):
             self.wake()
 
     def incoming(self) -> list[Incoming]:

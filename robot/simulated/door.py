@@ -4,16 +4,13 @@ It exists in simulation alone: a demo or a test plays the people in the tunnel t
 world comes to the gap between two steps, so it never meets half a step.
 """
 
-import json
-import os
-import socketserver
-import threading
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from queue import Empty, SimpleQueue
 from typing import Any
 
+from ..json_socket import JsonSocket
 from .camera import SHOWN_FOR_S
 from .errors import SimulatedWorldError, UnknownSwitch, WrongValue
 from .faults import SWITCHES
@@ -22,7 +19,6 @@ from .robot import BUMP_S, SimulatedRobot
 from .start import Pose
 
 ANSWER_WITHIN_S = 5.0
-LONGEST_LINE = 65536
 Request = Mapping[str, Any]
 Tell = Callable[[], dict[str, Any]]
 
@@ -44,19 +40,11 @@ class Door:
         answer_within_s: float = ANSWER_WITHIN_S,
     ) -> None:
         self._robot = robot
-        self._path = path
         self._tell = tell or dict
         self._answer_within_s = answer_within_s
         self._waiting: SimpleQueue[_Waiting] = SimpleQueue()
-        path.unlink(missing_ok=True)
-        old_mask = os.umask(0o177)  # the socket must never be open to others, not even for a moment
-        try:
-            self._server = _Server(str(path), _Visitor)
-        finally:
-            os.umask(old_mask)
-        self._server.ask = self._ask
-        self._thread = threading.Thread(target=self._server.serve_forever, args=(0.1,), name="door", daemon=True)
-        self._thread.start()
+        # Whoever plays the people may say nothing for hours.
+        self._socket = JsonSocket(path, self._ask, silent_limit_s=None, name="door")
         robot.before_steps.append(self.serve)
 
     def serve(self) -> None:
@@ -68,11 +56,7 @@ class Door:
                 return
             waiting.answer.put(obey(self._robot, waiting.request, self._tell))
 
-    def _ask(self, line: bytes) -> dict[str, Any]:
-        try:
-            request = json.loads(line)
-        except ValueError as error:
-            return {"ok": False, "error": f"not JSON: {error}"}
+    def _ask(self, request: Any) -> dict[str, Any]:
         waiting = _Waiting(request)
         self._waiting.put(waiting)
         try:
@@ -85,24 +69,7 @@ class Door:
 
     def close(self) -> None:
         self._robot.before_steps.remove(self.serve)
-        self._server.shutdown()
-        self._server.server_close()
-        self._thread.join()
-        self._path.unlink(missing_ok=True)
-
-
-class _Server(socketserver.ThreadingUnixStreamServer):
-    daemon_threads = True
-    block_on_close = False
-    ask: Callable[[bytes], dict[str, Any]]
-
-
-class _Visitor(socketserver.StreamRequestHandler):
-    server: _Server
-
-    def handle(self) -> None:
-        while line := self.rfile.readline(LONGEST_LINE):
-            self.wfile.write(json.dumps(self.server.ask(line)).encode() + b"\n")
+        self._socket.close()
 
 
 def obey(robot: SimulatedRobot, request: Any, tell: Tell = dict) -> dict[str, Any]:
