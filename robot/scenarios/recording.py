@@ -7,7 +7,8 @@ Rows have `t` (s), `kind` and mostly `robot`. `state` comes five times a second;
 | `scenario` | title, about, seed, map, robots, dark places, patches without network |
 | `state` | x, y (m), heading (rad), speed (mm/s), line (0 over the tape), skill, battery, where it believes to be |
 | `people` | places: [x, y, radius] of everybody in the tunnel |
-| `why`, `doing`, `percepts` | what the robot says, its actions under way, what the agent believes |
+| `why`, `doing`, `percepts` | what the robot says, its actions under way, what the agent perceives |
+| `intentions` | [number, events and goals from the first cause to the last] of each of the agent's intentions |
 | `fault` | name, on |
 | `event` | what happened or was told, in words |
 | `mail` | order, place: who has it now |
@@ -23,6 +24,7 @@ from typing import Any, Final
 
 from maps import CampusMap
 
+from ..mind import Mind
 from ..perception.percepts import perceive
 from .actors import Actor
 from .errors import RecordingError
@@ -90,6 +92,7 @@ class Recorder:
         why = mind.why
         self._on_change(now, "why", actor.name, why.sentence if why else "")
         self._on_change(now, "doing", actor.name, list(mind.actions.under_way))
+        self._on_change(now, "intentions", actor.name, _intentions(mind))
         self._on_change(
             now, "percepts", actor.name, sorted(perceive(mind.seen(now), mind.mode, mind.settings.mind.age_limit_s))
         )
@@ -111,6 +114,11 @@ class Recorder:
         fates = {one.order: [one.fate, one.why] for one in ending.verdicts}
         missing = shortfalls(ending, self._stage.scenario.expect)
         self._write({"t": round(self._stage.clock.now(), 2), "kind": "end", "fates": fates, "not_as_expected": missing})
+
+
+def _intentions(mind: Mind) -> list[list[Any]]:
+    stacks = [[one.number, [str(means.event) for means in one.stack]] for one in mind.agent.intentions.values()]
+    return sorted(stacks, key=lambda stack: stack[0])
 
 
 def _state(actor: Actor) -> Row:

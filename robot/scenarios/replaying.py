@@ -12,11 +12,12 @@ from .errors import RecordingError
 from .recording import Row, read_recording
 
 FOLDER: Final = Path(__file__).parent / "page"
+SCRIPTS: Final = ("data.js", "map.js", "axis.js", "player.js")
 
 
 def page(rows: list[Row]) -> str:
     """The page's HTML. Its policy allows exactly this script and this style, and nothing from elsewhere."""
-    style, script = _text("replay.css"), _text("replay.js")
+    style, script = _text("replay.css"), "".join(map(_text, SCRIPTS))
     policy = f"default-src 'none'; script-src '{_hash(script)}'; style-src '{_hash(style)}'"
     title = str(rows[0].get("title") or "A run")
     parts = {

@@ -44,6 +44,8 @@ def test_the_recording_has_the_truth_the_beliefs_and_the_people(recording):
     kinds = {row["kind"] for row in rows}
     assert kinds >= {"scenario", "state", "people", "why", "doing", "percepts", "fault", "event", "mail", "end"}
     assert any("docked" in row["value"] for row in rows if row["kind"] == "percepts")
+    stacks = [stack for row in rows if row["kind"] == "intentions" for _, stack in row["value"]]
+    assert any(stack[0].startswith("+!pursue(mission") and "+!go_to(post3)" in stack for stack in stacks)
 
 
 def test_the_page_holds_every_row_and_allows_only_its_own_script(recording):
