@@ -6,7 +6,6 @@ from itertools import pairwise
 
 from maps import CampusMap, NoRoute, corridor_name, shortest_route
 from maps.geometry import wrapped
-from protocol import parts
 from protocol.parts import Leg
 from robot.drivers.interfaces import Odometry, Sighting
 from robot.duties import Duties
@@ -14,6 +13,8 @@ from robot.navigation.by_fixes import near_dock
 from robot.navigation.directions import Way, next_post
 from robot.navigation.moved import cannot_be_next, found_at, nowhere
 from robot.navigation.position import REACHED_MM, Position
+from robot.navigation.remembering import remembered
+from robot.navigation.way_scale import WayScale
 from robot.skills.interfaces import View
 
 RESTS_MM = 25.0
@@ -47,6 +48,8 @@ class Navigator:
         """The post ahead, once the robot has set out."""
         self._duties = duties
         self._odometry = Odometry()
+        self._disturbed = 0  # by searches and bumps, so far
+        self._scale = WayScale()
         self._docked = False
         self._leaving = self.position.has_left
         self._ignored_until_s = -math.inf
@@ -63,7 +66,7 @@ class Navigator:
 
     def look(self, view: View) -> None:
         """Take in what the body sees now."""
-        self._odometry = view.odometry
+        self._odometry, self._disturbed = view.odometry, view.find_line_episodes + view.bumps
         docked = bool(view.base and view.base.docked)
         if not docked:
             self.position = near_dock(self.campus, self.position, view.fixes, self.home, view.at_s)
@@ -127,6 +130,7 @@ class Navigator:
         )
 
     def _note_arrival(self, post: str, before: str | None) -> None:
+        self._learn_scale(post, before)
         self._leaving, self.towards = False, None
         self._arrived_mm = self._odometry.ahead_mm
         self._duties.seen(post)
@@ -138,8 +142,15 @@ class Navigator:
         if self.visited[-1:] != [post]:
             self.visited.append(post)
 
+    def _learn_scale(self, post: str, before: str | None) -> None:
+        beside = {other.name: corridor.length_m for other, corridor in self.campus.neighbours(post)}
+        straight = before is not None and self._far_end is None and post not in self.unread
+        self._scale.arrive(self.position.post_at_mm, beside.get(before or "") if straight else None, self._disturbed)
+
     def _set_out(self) -> None:
         self._leaving = True
+        told = self.here not in self.unread and self.position.approaching is None
+        self._scale.set_out(self.position.post_at_mm if told else None, self._disturbed)
         self._head_for(self._post_ahead())
 
     def _head_for(self, towards: str | None) -> None:
@@ -254,7 +265,7 @@ class Navigator:
         leg, at_mm, here_mm = self.corridor, self.position.post_at_mm, self._odometry.ahead_mm
         if leg is None or at_mm is None or self.position.approaching:
             return None
-        length_mm = 1000 * self.campus.corridor(leg.from_post, leg.to_post).length_m
+        length_mm = 1000 * self.campus.corridor(leg.from_post, leg.to_post).length_m / self._scale.real_per_counted
         left_mm = at_mm - here_mm if self._far_end else length_mm - (here_mm - at_mm)
         return left_mm if left_mm > -1000 * SURELY_PAST_M else None
 
@@ -378,16 +389,3 @@ class Navigator:
 
 def _is_aslant(post: Sighting) -> bool:
     return post.turned_rad is not None and abs(post.turned_rad) > ASLANT_RAD
-
-
-def remembered(campus: CampusMap, position: parts.Position) -> Position:
-    """Where the robot was when it was switched off. `towards` was written down before it left or turned."""
-    post, previous, towards = position.post, position.previous, position.towards
-    if post is None or post not in campus.posts:
-        return Position()
-    beside = {neighbour.name: corridor for neighbour, corridor in campus.neighbours(post)}
-    if towards:
-        facing_rad = beside[towards].heading_leaving(post) if towards in beside else None
-        return Position(post, previous, facing_rad, has_left=True)
-    facing_rad = beside[previous].heading_arriving(post) if previous in beside else None
-    return Position(post, previous, facing_rad, post_at_mm=0.0)
