@@ -1,5 +1,7 @@
 """The real driver against the byte machine in memory, in stepped time: what each fault does to it."""
 
+from collections.abc import Callable
+
 from maps import builtin_map
 from robot.drivers.create2 import Create2
 from robot.drivers.interfaces import BaseState, Mode, WheelSpeeds
@@ -7,6 +9,7 @@ from robot.drivers.wake_up import NoWakeUpLine, WakeUpLine
 from robot.simulated import SimulatedRobot
 
 TICK_S = 0.02
+AHEAD = WheelSpeeds(100, 100)
 
 
 class Together:
@@ -58,3 +61,7 @@ class Together:
     def close(self) -> None:
         self.base.close()
         self.robot.close()
+
+
+Join = Callable[..., Together]
+"""What the fixture `join` gives: made with the arguments of `Together`, closed when the test is over."""
