@@ -224,6 +224,15 @@ class Navigator:
             way += shortest_route(self.campus, way[-1], post, self._avoided()).posts[1:]
         return tuple(Leg(from_post=a, to_post=b) for a, b in pairwise(way))
 
+    def first_legs(self, goal: str) -> tuple[Leg, ...]:
+        """The corridors that it may be in next on the way to a post: every one here while it does not know which way it
+        looks. All markers of a post carry the same text, so after a lift only the next post tells. Raises NoRoute."""
+        first = self.legs_to(goal)[:1]
+        if not first or self.position.facing_now_rad(self._odometry) is not None:
+            return first
+        here = first[0].from_post
+        return tuple(Leg(from_post=here, to_post=post.name) for post, _ in self.campus.neighbours(here))
+
     def turn_rad(self, way: str) -> float:
         """How far to turn, left is positive: to the corridor of the destination if that lies there, else a quarter.
 

@@ -54,7 +54,7 @@ def claim(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
         duties.avoid = frozenset()  # what was denied may be open by the next time it asks
         return AtOnce(Ended(closed))
     claim_id = duties.claim(wanted)
-    first = navigator.legs_to(goal)[:1]
+    first = navigator.first_legs(goal)
 
     def ask() -> Ended | None:
         if duties.may_enter(first):
@@ -66,12 +66,13 @@ def claim(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
 
 def _wanted(hands: Hands, goal: str) -> tuple[Leg, ...]:
     """The way to the goal and the rest of the mission: a robot without network finishes what it is permitted."""
-    held = hands.duties.held
+    held, navigator = hands.duties.held, hands.navigator
     later = [stop.post for stop in (held.mission.stops if held.mission else ())[held.next_stop :]]
     try:
-        return hands.navigator.legs_to(goal, *(later if later[:1] == [goal] else []))
+        way = navigator.legs_to(goal, *(later if later[:1] == [goal] else []))
     except NoRoute:
-        return hands.navigator.legs_to(goal)
+        way = navigator.legs_to(goal)
+    return (*navigator.first_legs(goal), *way)
 
 
 def release(hands: Hands, _: Sequence[Value], __: float) -> Run:

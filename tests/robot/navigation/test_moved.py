@@ -85,6 +85,16 @@ def test_put_back_the_wrong_way_round_it_comes_to_where_it_was_and_looks_away(wa
     assert walk.navigator.way() == "behind"
 
 
+def test_put_down_before_a_crossing_it_asks_for_every_corridor_that_it_may_get_into(walk: Walk) -> None:
+    leave_and_lift(walk)
+    sees_and_rolls(walk, "post3")
+    ways = {Leg(from_post="post3", to_post=post.name) for post, _ in TRACK.neighbours("post3")}
+    assert (walk.navigator.at, len(ways)) == ("post3", 3)
+    assert set(walk.navigator.first_legs("post4")) == ways, "all its markers look the same"
+    walk.navigator.reached("post4")
+    assert walk.navigator.first_legs("post3") == (Leg(from_post="post4", to_post="post3"),)
+
+
 def test_what_the_post_itself_says_when_the_body_stands_there_counts(walk: Walk) -> None:
     walk.navigator.leave()
     walk.body.rolls(1650.0)
