@@ -13,6 +13,7 @@ class Transmitter:
     def __init__(self) -> None:
         self._out = bytearray()
         self._room = 0
+        self._part_of_a_byte = 0.0
         self._printing: deque[tuple[float, bytes]] = deque()
 
     def say(self, data: bytes) -> None:
@@ -23,7 +24,12 @@ class Transmitter:
         self._out += data[: max(0, self._room - len(self._out))]
 
     def begin_slot(self, baud: int) -> None:
-        self._room = int(baud / BITS_PER_BYTE * SLOT_S)
+        """Whole bytes only; where a byte takes longer than a slot (300 and 600 baud) its parts are added up."""
+        exact = baud / BITS_PER_BYTE * SLOT_S
+        if exact < 1:
+            exact += self._part_of_a_byte
+        self._room = int(exact)
+        self._part_of_a_byte = exact - self._room
 
     def print_later(self, texts: Iterable[tuple[float, bytes]]) -> float:
         """(time, text) each; replaces what was to be printed before. Returns the time of the last."""

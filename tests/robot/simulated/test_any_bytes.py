@@ -9,6 +9,8 @@ from robot.simulated.commands import COMMANDS
 
 PASSIVE = 1
 LONGEST_COMMAND = 2 + 2 * 255
+ANSWER_S = 0.1
+"""A byte at 300 baud takes a third of it."""
 opcodes = st.sampled_from(sorted(COMMANDS)).map(lambda opcode: bytes((opcode,)))
 chunks = st.lists(st.one_of(opcodes, st.binary(max_size=8)), max_size=30).map(b"".join)
 
@@ -29,12 +31,14 @@ def test_after_any_bytes_the_robot_can_be_started_again(lines):
     robot.step_until(robot.now + 0.1)
     robot.brc.low(False)
     port.write(bytes(LONGEST_COMMAND))  # fills whatever command is half said
-    robot.step_until(robot.now + 1.0)  # long answers take their time on the line
+    robot.step_until(robot.now + 1.0)
+    while robot.body.interface.has_more:  # long answers take their time on the line
+        robot.step_until(robot.now + 1.0)
     port.baudrate = robot.body.interface.baud
     port.write(b"\x96\x00\x80\x8e\x23")
-    robot.step_until(robot.now + 0.02)
+    robot.step_until(robot.now + ANSWER_S)
     port.reset_input_buffer()
     port.write(b"\x8e\x23")
-    robot.step_until(robot.now + 0.02)
+    robot.step_until(robot.now + ANSWER_S)
     assert port.read(99) == bytes((PASSIVE,))
     robot.close()
