@@ -29,6 +29,12 @@ from robot.scenarios.stage import Stage
 PROCESSES = 2
 MEMORY = Path("/dev/shm")  # noqa: S108  # full sync of every transaction is for real disks; a private folder is made there
 
+NEEDLESS, NOT_HOME = 0.03, 0.02
+"""Our own bounds, the issue has none. A letter that both people came for, and that was handed over all the same, was
+handed over because the robot could not: one in a hundred may meet two troubles at once (a marker that is torn, and a
+person in the way behind it), more than a few would be a weakness of the product. A robot that does not come home needs
+somebody to fetch it: that must be rarer still."""
+
 WANTED = tuple(
     wanted
     for world in WORLDS
@@ -37,6 +43,8 @@ WANTED = tuple(
         Wanted(f"{world}.lost_share", at_most=0.0),
         Wanted(f"{world}.false_share", at_most=0.0),
         Wanted(f"{world}.without_grant_share", at_most=0.0, unit="of missions"),
+        Wanted(f"{world}.handed_over_although_both_came_share", at_most=NEEDLESS, unit="of letters"),
+        Wanted(f"{world}.not_home_share", at_most=NOT_HOME, unit="of missions"),
         Wanted(f"{world}.find_line_share", at_most=0.02, unit="of drive time"),
         Wanted(f"{world}.time_ratio_mean", at_most=1.25),
     )
@@ -80,17 +88,21 @@ def summary(results: Sequence[Figures | str], world: str) -> dict[str, Any]:
     plain = [one for one in ended if one.without_faults]
     ratios = [one.time_ratio for one in ended if one.time_ratio is not None]
     broken = len(results) - len(ended)
+    needless = sum(len(one.unexpected) for one in ended)
+    not_home = sum(not one.home for one in ended)
     return {
         "missions": len(results),
         "letters": letters,
         "delivered": fates.count("delivered"),
         "handed_over": fates.count("handed_over"),
-        "handed_over_although_both_came": sum(len(one.unexpected) for one in ended),
+        "handed_over_although_both_came": needless,
+        "handed_over_although_both_came_share": needless / letters,
         "delivered_or_handed_share": (fates.count("delivered") + fates.count("handed_over")) / letters,
         "lost_share": (fates.count("lost") + broken) / letters,
         "false_share": fates.count("false") / letters,
         "without_grant_share": sum(any("without a grant" in v for v in one.violations) for one in ended) / len(results),
-        "not_home": sum(not one.home for one in ended),
+        "not_home": not_home,
+        "not_home_share": not_home / len(results),
         "find_line_share": sum(one.search_s for one in plain) / max(1.0, sum(one.drive_s for one in plain)),
         "find_line_episodes": sum(one.searches for one in plain),
         "bumps": sum(one.bumps for one in ended),
