@@ -1,9 +1,7 @@
 """What the robot owes: told once, kept on the disk, answered by name."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -63,13 +61,6 @@ class Desk:
     def told(self) -> list[dict[str, Any]]:
         messages = [kept.message for kept in self.duties.outbox.pending()]
         return [getattr(message, "happened", message).model_dump(mode="json") for message in messages]
-
-
-@pytest.fixture
-def store(tmp_path: Path) -> Iterator[Store]:
-    store = Store(tmp_path / "robot.db")
-    yield store
-    store.close()
 
 
 @pytest.fixture

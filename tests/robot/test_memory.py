@@ -5,7 +5,6 @@ import random
 import signal
 import subprocess
 import sys
-from collections.abc import Iterator
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
@@ -27,12 +26,6 @@ RECEIVE = Stop(id="s2", post="post4", action=StopAction.RECEIVE, order_id="o1")
 PARK = Stop(id="s3", post="post5", action=StopAction.PARK)
 MISSION = Mission(id="m1", update=1, stops=(LOAD, RECEIVE))
 LEG, OTHER_LEG = Leg(from_post="post1", to_post="post2"), Leg(from_post="post2", to_post="post3")
-
-
-@pytest.fixture
-def store(tmp_path: Path) -> Iterator[Store]:
-    with Store(tmp_path / "robot.db") as store:
-        yield store
 
 
 def a_verifier(purpose: Purpose, digit: str) -> Verifier:

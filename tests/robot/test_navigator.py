@@ -1,9 +1,7 @@
 """Where the robot believes to be, which way to go, and what it still knows after a power cut."""
 
 import math
-from collections.abc import Iterator
 from datetime import UTC, datetime
-from pathlib import Path
 
 import pytest
 
@@ -47,13 +45,6 @@ class Walk:
         self.body.turns(self.navigator.turn_rad(way))
         self.look()
         self.navigator.turned()
-
-
-@pytest.fixture
-def store(tmp_path: Path) -> Iterator[Store]:
-    store = Store(tmp_path / "robot.db")
-    yield store
-    store.close()
 
 
 @pytest.fixture

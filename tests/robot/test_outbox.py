@@ -1,7 +1,6 @@
 """The outbox: durable before it returns, numbered for ever, never half written."""
 
 import sqlite3
-from collections.abc import Iterator
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -16,12 +15,6 @@ from robot.outbox import NotDurable, Outbox
 from robot.store import StorageFailed, StorageFull, StorageInUse, StorageNewer, Store
 
 AT = datetime(2026, 1, 5, 9, 0, tzinfo=UTC)
-
-
-@pytest.fixture
-def store(tmp_path: Path) -> Iterator[Store]:
-    with Store(tmp_path / "robot.db") as store:
-        yield store
 
 
 def a_fault(reason: str = "") -> Event:

@@ -1,9 +1,6 @@
 """The whole robot with our agent program in the simulated world: bytes, pins and pictures, no network."""
 
-from collections.abc import Iterator
 from pathlib import Path
-
-import pytest
 
 from protocol.parts import Purpose
 from tests.robot.daemon.simulated_run import SimulatedRun
@@ -22,13 +19,6 @@ PROGRESS = [
     "handover receive",
     "progress done",
 ]
-
-
-@pytest.fixture
-def run(tmp_path: Path) -> Iterator[SimulatedRun]:
-    run = SimulatedRun(tmp_path)
-    yield run
-    run.close()
 
 
 def test_a_letter_is_fetched_delivered_and_the_robot_goes_home(run: SimulatedRun) -> None:

@@ -1,9 +1,6 @@
 """The whole robot with our agent when nobody takes the mail, the network is away, the way is closed."""
 
-from collections.abc import Iterator
 from pathlib import Path
-
-import pytest
 
 from protocol.parts import Leg, Purpose
 from protocol.to_robot import EmergencyStop, Recall, Resume
@@ -12,13 +9,6 @@ from tests.robot.daemon.played_service import PlayedService
 from tests.robot.daemon.simulated_run import LETTER, SimulatedRun
 
 SQUARE = Path(__file__).parents[3] / "examples" / "maps" / "square.toml"
-
-
-@pytest.fixture
-def run(tmp_path: Path) -> Iterator[SimulatedRun]:
-    run = SimulatedRun(tmp_path)
-    yield run
-    run.close()
 
 
 def with_service(run: SimulatedRun) -> PlayedService:

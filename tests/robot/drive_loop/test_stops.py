@@ -2,7 +2,7 @@
 
 import math
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -26,13 +26,6 @@ def _from_a_thread(loop: DriveLoop) -> None:
     thread = threading.Thread(target=loop.emergency_stop)
     thread.start()
     thread.join()
-
-
-@pytest.fixture
-def moving() -> Iterator[Moving]:
-    robot = Moving("post3:post2", battery_ratio=0.6)
-    yield robot
-    robot.close()
 
 
 @pytest.mark.parametrize("door", DOORS)

@@ -1,7 +1,7 @@
 """A drive loop that is late, fed with nonsense or broken from below: the wheels do not lurch, and stop if need be."""
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import Any
 
 import pytest
@@ -10,13 +10,6 @@ from robot.drive_loop import DriveLoop
 from robot.drivers.interfaces import CameraReport, WheelSpeeds
 from robot.skills.interfaces import Done, Failed, Running, Step, View
 from tests.robot.reflexes.moving import CRUISE, Moving, Rolls
-
-
-@pytest.fixture
-def moving() -> Iterator[Moving]:
-    robot = Moving("post3:post2", battery_ratio=0.6)
-    yield robot
-    robot.close()
 
 
 class Asks(Rolls):

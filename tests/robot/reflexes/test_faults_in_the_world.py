@@ -1,13 +1,13 @@
 """Fault by fault, from its cause in the simulated world over the real driver to wheels that stand, and back."""
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
 import pytest
 
 from robot.drivers.interfaces import WheelSpeeds
 from robot.reflexes import FAULTS, LATCHED
-from robot.simulated import Options, Person
+from robot.simulated import Person
 from robot.skills.interfaces import Failed
 from tests.robot.reflexes.moving import Moving, Rolls
 
@@ -62,13 +62,6 @@ CAUSES: dict[str, tuple[Change, Change]] = {
 STOPPING = sorted(name for name, row in ROWS.items() if row.stands_within_s is not None)
 TELLING = sorted(set(ROWS) - set(STOPPING))
 SELF_CLEARING = sorted(set(STOPPING) - LATCHED)
-
-
-@pytest.fixture
-def moving() -> Iterator[Moving]:
-    robot = Moving("post3:post2", options=Options(), battery_ratio=0.6)
-    yield robot
-    robot.close()
 
 
 def test_every_fault_of_the_table_happens_here() -> None:
