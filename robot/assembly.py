@@ -92,7 +92,8 @@ def load_program(settings: Settings) -> Program:
     try:
         text = path.read_text("utf-8")
     except (OSError, UnicodeDecodeError) as error:
-        raise ConfigError(str(path), "mind.program", f"cannot be read: {error}") from None
+        reason = getattr(error, "strerror", error)
+        raise ConfigError(str(path), "mind.program", f"cannot be read: {reason}", "Give another --agent.") from None
     return parse_program(text, source=str(path))
 
 
@@ -139,7 +140,10 @@ def _make_folder(path: Path) -> None:
 def _home(settings: Settings, campus: CampusMap) -> str | None:
     if settings.home is None:
         return next((post.name for post in campus.docks()), None)
-    if campus.post(settings.home).dock is None:
+    if settings.home not in campus.posts:
+        posts = ", ".join(campus.posts)
+        raise ConfigError("settings", "home", f"map {campus.name} has no post {settings.home}", f"Posts: {posts}.")
+    if campus.posts[settings.home].dock is None:
         docks = ", ".join(post.name for post in campus.docks()) or "none"
         raise ConfigError("settings", "home", f"{settings.home} has no dock on map {campus.name}", f"Docks: {docks}.")
     return settings.home

@@ -164,7 +164,7 @@ def rows(file: Path) -> Iterator[Row]:
         if not number:
             raise ValueError("it is empty")
     except (OSError, EOFError, ValueError, KeyError, TypeError) as error:
-        raise BlackBoxUnreadable(file, number, error) from None
+        raise BlackBoxUnreadable(file, number, getattr(error, "strerror", None) or error) from None
 
 
 def _row(raw: dict[str, Any]) -> Row:

@@ -10,13 +10,14 @@ The identity is a token in a file of its own, readable by its owner alone.
 
 import stat
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from difflib import get_close_matches
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Any, Self, get_args
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic_core import ErrorDetails
 
 Ratio = Annotated[float, Field(ge=0.0, le=1.0)]
 Pin = Annotated[str, Field(pattern=r"^(BOARD|GPIO|BCM)\d{1,2}$")]
@@ -28,9 +29,12 @@ MAX_WHEEL_SPEED_MM_S = 200.0
 class ConfigError(Exception):
     """A setting that cannot be used: where it stands, what is wrong, and what to do about it."""
 
-    def __init__(self, source: str, key: str, message: str, way_out: str = "") -> None:
+    def __init__(
+        self, source: str, key: str, message: str, way_out: str = "", more: "Sequence[ConfigError]" = ()
+    ) -> None:
+        """`more`: what else is wrong there, each on a line of its own."""
         self.source, self.key, self.message, self.way_out = source, key, message, way_out
-        super().__init__(f"{source}: {key}: {message}. {way_out}".strip())
+        super().__init__("\n".join([f"{source}: {key}: {message}. {way_out}".strip(), *map(str, more)]))
 
 
 class Section(BaseModel):
@@ -229,13 +233,20 @@ def _put(raw: dict[str, Any], path: list[str], value: object) -> None:
 
 
 def _named(source: str, error: ValidationError) -> ConfigError:
-    first = error.errors()[0]
-    key = ".".join(str(part) for part in first["loc"])
-    if first["type"] != "extra_forbidden":
-        return ConfigError(source, key, first["msg"].removeprefix("Value error, "))
-    known = sorted(keys())
-    nearest = get_close_matches(key, known, n=1, cutoff=0.4)
-    return ConfigError(source, key, "there is no such setting", f"Did you mean {nearest[0]!r}?" if nearest else "")
+    """Everything that is wrong, so that a file is put right in one go."""
+    first, *others = (_wording(problem) for problem in error.errors())
+    return ConfigError(source, *first, more=[ConfigError(source, *other) for other in others])
+
+
+def _wording(problem: ErrorDetails) -> tuple[str, str, str]:
+    """Key, what is wrong with it, way out."""
+    key = ".".join(str(part) for part in problem["loc"])
+    if problem["type"] != "extra_forbidden":
+        given = problem["input"]
+        it_is = f" (it is {given!r})" if isinstance(given, str | int | float) else ""
+        return key, problem["msg"].removeprefix("Value error, ") + it_is, ""
+    nearest = get_close_matches(key, sorted(keys()), n=1, cutoff=0.4)
+    return key, "there is no such setting", f"Did you mean {nearest[0]!r}?" if nearest else ""
 
 
 def keys(section: type[Section] = Settings, prefix: str = "") -> dict[str, str]:
@@ -255,7 +266,9 @@ def read_token(path: Path) -> str:
         token = path.read_text("ascii").strip()
     except (OSError, UnicodeDecodeError) as error:
         way_out = "`python -m app robots enrol NAME` on the server prints a token to put there."
-        raise ConfigError(str(path), "token_file", f"cannot be read: {error}", way_out) from None
+        raise ConfigError(
+            str(path), "token_file", f"cannot be read: {getattr(error, 'strerror', error)}", way_out
+        ) from None
     if mode & 0o077:
         raise ConfigError(str(path), "token_file", f"others may read it (mode {mode:04o})", f"Run: chmod 600 {path}")
     if not token:

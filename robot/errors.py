@@ -55,4 +55,6 @@ class BlackBoxUnreadable(RobotError):
     """A file is no black box, or was torn when it was copied."""
 
     def __init__(self, file: Path, line: int, reason: object) -> None:
-        super().__init__(f"{file}, after line {line}: no black box can be read there: {reason}. Copy it again.")
+        super().__init__(
+            f"{file}, after line {line}: no black box can be read there: {reason}. Check the path, or copy it again."
+        )

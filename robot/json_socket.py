@@ -129,6 +129,17 @@ def _refused(sentence: str) -> dict[str, Any]:
     return {"ok": False, "error": sentence}
 
 
+def _in_words(error: OSError) -> str:
+    match error:
+        case FileNotFoundError() | ConnectionRefusedError():
+            return "no daemon runs on this data folder"
+        case PermissionError():
+            return "only the robot's own user may ask it: sudo -u campus-mail …"
+        case TimeoutError():
+            return "it did not answer in time"
+    return error.strerror or str(error)
+
+
 def ask(path: Path, request: dict[str, Any], limit_s: float = 2.0) -> dict[str, Any]:
     """The answer to one request. Raises NobodyAnswers."""
     try:
@@ -140,7 +151,7 @@ def ask(path: Path, request: dict[str, Any], limit_s: float = 2.0) -> dict[str, 
                 line = file.readline()
         answer: dict[str, Any] = json.loads(line)
     except OSError as error:
-        raise NobodyAnswers(path, str(error)) from None
+        raise NobodyAnswers(path, _in_words(error)) from None
     except ValueError:
         raise NobodyAnswers(path, "it hung up") from None
     return answer

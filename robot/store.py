@@ -158,5 +158,7 @@ def _claim(path: Path) -> TextIO:
         fcntl.flock(lock_file, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
         lock_file.close()
-        raise StorageInUse(f"{path} is in use by another process: stop that robot daemon first") from None
+        raise StorageInUse(
+            f"{path} is in use: another process holds this robot's memory; stop that robot daemon first"
+        ) from None
     return lock_file

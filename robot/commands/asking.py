@@ -11,6 +11,8 @@ UNFINISHED, MISUSE = 1, 2
 INSTALLED = Path("/etc/campus-mail/robot.toml")
 """Where docs/operation.md puts the settings; meant when nobody says otherwise."""
 
+OTHER_FOLDER = "Start it (systemctl start campus-mail-robot), or name the folder of one that runs: --data, --config."
+
 ConfigOption = Annotated[
     Path | None,
     typer.Option("--config", envvar="CAMPUS_MAIL_ROBOT_CONFIG", help=f"Settings; default: {INSTALLED}, if there."),

@@ -15,12 +15,12 @@ from ..config import ConfigError, Settings
 from ..control import SOCKET_NAME
 from ..drivers.create2 import Create2
 from ..drivers.interfaces import Camera, Frame
-from ..errors import RobotError
+from ..errors import PortAbsent, PortBusy, RobotError
 from ..hardware import pin_factory, real_camera, real_port
 from ..json_socket import NobodyAnswers, ask
 from ..line_pins import open_pins
 from ..settings_file import write_settings
-from .asking import INSTALLED, UNFINISHED, ConfigOption, refuse, settings_of, settings_path
+from .asking import INSTALLED, MISUSE, UNFINISHED, ConfigOption, refuse, settings_of, settings_path
 
 FRAMES, FRAMES_WITHIN_S = 10, 10.0
 YesOption = Annotated[bool, typer.Option("--yes", help="Write without asking.")]
@@ -161,8 +161,9 @@ def _ready(config: Any) -> Settings:
 
 
 def _give_up(problem: Exception) -> NoReturn:
+    """What has to be put right first is told apart from a measurement that failed."""
     typer.echo(f"{problem}\nNothing was written.", err=True)
-    raise typer.Exit(UNFINISHED)
+    raise typer.Exit(MISUSE if isinstance(problem, PortAbsent | PortBusy | ConfigError) else UNFINISHED)
 
 
 def _write(config: Any, settings: Settings, found: Found, yes: bool) -> None:

@@ -12,7 +12,7 @@ from ..config import Settings
 from ..control import SOCKET_NAME
 from ..errors import RobotError
 from ..json_socket import ask
-from .asking import UNFINISHED, ConfigOption, DataOption, refuse, settings_of
+from .asking import OTHER_FOLDER, UNFINISHED, ConfigOption, DataOption, refuse, settings_of
 
 UNIT = "campus-mail-robot"
 NEWEST_LINES = 100
@@ -47,7 +47,7 @@ def _dumped(settings: Settings) -> Path:
     try:
         answer = ask(settings.data / SOCKET_NAME, {"do": "black_box"}, limit_s=15.0)
     except RobotError as nobody:
-        refuse(str(nobody))
+        refuse(f"{nobody} {OTHER_FOLDER}")
     if not answer["ok"]:
         refuse(answer["error"])
     return Path(answer["file"])

@@ -28,5 +28,6 @@ def settings(
     try:
         check_settings(load_settings(check, {}))
     except (ConfigError, CampusMapError, BdiError) as problem:
-        refuse(str(problem))
+        text = str(problem).removeprefix("settings: ")
+        refuse(text if text.startswith(str(check)) else f"{check}: {text}")
     print(f"{check} is right.")

@@ -7,7 +7,7 @@ import typer
 
 from ..control import SOCKET_NAME
 from ..json_socket import NobodyAnswers, ask
-from .asking import UNFINISHED, ConfigOption, DataOption, JsonOption, settings_of
+from .asking import OTHER_FOLDER, UNFINISHED, ConfigOption, DataOption, JsonOption, settings_of
 
 
 def status(config: ConfigOption = None, data: DataOption = None, as_json: JsonOption = False) -> None:
@@ -18,7 +18,7 @@ def status(config: ConfigOption = None, data: DataOption = None, as_json: JsonOp
     try:
         told = ask(settings_of(config, data).data / SOCKET_NAME, {"do": "status"})
     except NobodyAnswers as nobody:
-        typer.echo(f"{nobody} Is the daemon running? systemctl status campus-mail-robot", err=True)
+        typer.echo(f"{nobody} {OTHER_FOLDER}", err=True)
         raise typer.Exit(UNFINISHED) from None
     print(json.dumps(told) if as_json else "\n".join(lines(told)))
     if told.get("faults"):

@@ -64,7 +64,7 @@ def latency(patient: Patient) -> Finding:
     name = Path(patient.settings.serial_port).resolve().name
     told = patient.text(f"sys/bus/usb-serial/devices/{name}/latency_timer")
     if told is None:
-        return skip(f"{name} has no latency timer")
+        return skip(f"{patient.settings.serial_port} has no latency timer")
     if told == "1":
         return ok("latency timer 1 ms")
     return fail(

@@ -31,4 +31,4 @@ class UnknownStart(SimulatedWorldError):
     """The map has no such post, dock or corridor to start at."""
 
     def __init__(self, start: str, why: str) -> None:
-        super().__init__(f"A robot cannot start at {start!r}: {why}. Say 'dock', a post, or POST:TOWARDS.")
+        super().__init__(f"A robot cannot start at {start!r}: {why.rstrip('.')}. Say 'dock', a post, or POST:TOWARDS.")

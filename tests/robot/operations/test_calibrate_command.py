@@ -50,4 +50,4 @@ def test_without_a_base_it_says_so(tmp_path: Path) -> None:
     config = tmp_path / "robot.toml"
     config.write_text(f'serial_port = "{tmp_path}/tty"\ndata = "{tmp_path}"\n')
     ran = calibrate(config, "distance")
-    assert (ran.exit_code, "Nothing was written" in ran.output) == (1, True)
+    assert (ran.exit_code, "Nothing was written" in ran.output) == (2, True)
