@@ -23,7 +23,7 @@ from .perception.battery import BatterySense, BatteryWord
 from .perception.percepts import perceive
 from .perception.seen import Seen, Whereabouts
 from .reasons import reason
-from .reflexes import FAULTS, HALTING, LATCHED
+from .reflexes import HALTING, LATCHED, TOLD
 from .skills.interfaces import View
 
 log = structlog.get_logger("robot.mind")
@@ -31,7 +31,7 @@ log = structlog.get_logger("robot.mind")
 WATCH_S: Final = 30.0
 Ended = tuple[int, str | None]
 """The id of an action that has ended, and the atom that says why if it failed."""
-_TOLD: Final = {fault.name: fault.told for fault in FAULTS}
+KEPT_FAILURES: Final = 1000
 
 
 @dataclass
@@ -49,7 +49,7 @@ class Mind:
     battery: BatterySense = field(default_factory=BatterySense)
     cycles: int = 0
     failures: list[str] = field(default_factory=list)
-    """Goals that nobody could help, in words."""
+    """Goals that nobody could help, in words; the newest."""
     note: Callable[[str, float, object], None] = lambda kind, at_s, data: None
     """The black box: what changes in the percepts, and each action."""
     _perceived: frozenset[str] = frozenset()
@@ -103,7 +103,7 @@ class Mind:
         for action in outcome.actions:
             self.note("action", now, str(action.term))
             self.actions.begin(action.id, action.term, now)
-        self.failures += map(str, outcome.failures)
+        self.failures = [*self.failures, *map(str, outcome.failures)][-KEPT_FAILURES:]
         for line in outcome.printed:
             self.hands.noted(line)
         for message in outcome.messages:
@@ -150,8 +150,8 @@ class Mind:
     def _tell_faults(self, faults: frozenset[str]) -> None:
         """Those that a restart ended are told to be over, too."""
         duties = self.hands.duties
-        for name in sorted(faults ^ (duties.held.faults & _TOLD.keys())):
-            duties.report_fault(name, _TOLD[name], self.hands.place, cleared=name not in faults)
+        for name in sorted(faults ^ (duties.held.faults & TOLD.keys())):
+            duties.report_fault(name, TOLD[name], self.hands.place, cleared=name not in faults)
 
     def _tell_open_way(self) -> None:
         """A blocked way is over when its time is, or when a restart has forgotten it: then it is tried again."""

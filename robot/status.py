@@ -10,10 +10,8 @@ from .drivers.create2 import Create2
 from .drivers.port_thread import PortThread
 from .link import Link
 from .mind import Mind
-from .reflexes import FAULTS
+from .reflexes import TOLD
 from .runners import Lag, Runner
-
-TOLD = {fault.name: fault.told for fault in FAULTS}
 
 
 @dataclass(frozen=True)

@@ -6,10 +6,10 @@ from statistics import median
 
 from ..drivers.interfaces import Frame
 from ..drivers.marker_pose import Optics, code_pose
+from ..drivers.marker_reader import MARKER_SIZE_MM
 from ..drivers.qr_decoders import best_decoder, grey_of
 from .rig import CalibrationFailed
 
-MARKER_MM = 80.0
 FEWEST = 3
 
 
@@ -31,7 +31,7 @@ def field_of_view_deg(frames: Iterable[Frame], distance_mm: float, assumed: Opti
 def _focal_px(frame: Frame, distance_mm: float, assumed: Optics) -> tuple[float, int] | None:
     grey, width_px = grey_of(frame), frame.shape[1]
     for code in best_decoder()(frame):
-        pose = code_pose(grey, code.text, code.corners, MARKER_MM, assumed)
+        pose = code_pose(grey, code.text, code.corners, MARKER_SIZE_MM, assumed)
         if pose is not None and pose.away_mm > 0:
             return assumed.focal_px(width_px) * distance_mm / pose.away_mm, width_px
     return None

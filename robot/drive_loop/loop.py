@@ -19,6 +19,7 @@ from ..drivers.interfaces import (
     PositionSource,
     WheelSpeeds,
 )
+from ..drivers.wheel_speeds import DEADLINE_S
 from ..skills.interfaces import Failed, JobEnd, Skill, View
 from .jobs import Jobs
 from .sensing import Sensing
@@ -26,7 +27,7 @@ from .wheels import Wheels
 
 PERIOD_S = 0.02
 LATE_PERIODS = 3
-GAP_S = 0.4
+GAP_S = DEADLINE_S
 """The loop was away for longer than a speed is valid: the driver has stopped the wheels, and what a skill wants now
 rests on a leap of the encoders."""
 STAND_AFTER_GAP_S = 0.3

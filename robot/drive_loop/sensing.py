@@ -5,6 +5,7 @@ from collections.abc import Iterable
 import structlog
 
 from ..drivers.interfaces import (
+    NOTHING_SEEN,
     Base,
     BaseState,
     BodyShape,
@@ -19,7 +20,6 @@ from ..drivers.interfaces import (
 from ..drivers.odometry import advanced
 from ..navigation.line_symbol import LineWord
 from ..reflexes import Lasting
-from ..skills.interfaces import NOTHING_SEEN
 
 log = structlog.get_logger("robot.drive")
 

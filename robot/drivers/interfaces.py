@@ -190,6 +190,9 @@ class LineReading(NamedTuple):
         return "".join("0" if over else "1" for over in self)
 
 
+NOTHING_SEEN = LineReading(False, False, False)
+
+
 class LineSensor(Protocol):
     """Three diodes, sampled often and read by majority."""
 

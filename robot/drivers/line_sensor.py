@@ -2,7 +2,7 @@
 
 from gpiozero import DigitalInputDevice
 
-from .interfaces import LineReading
+from .interfaces import NOTHING_SEEN, LineReading
 
 TO_CHANGE = 0.6
 """A diode changes only with more than this share of the samples: 2 of 2, 2 of 3, 3 of 4, 7 of 10."""
@@ -18,7 +18,7 @@ class ThreeDiodes:
         )
         self._votes = [0, 0, 0]
         self._samples = 0
-        self._reading = LineReading(False, False, False)
+        self._reading = NOTHING_SEEN
 
     def sample(self) -> None:
         """See `interfaces.LineSensor.sample`."""

@@ -6,6 +6,8 @@ The camera looks to the left, so that right in the picture is ahead of the robot
 from collections import deque
 from collections.abc import Iterable, Mapping
 
+from maps.campus_map import MARKER_SIZE_M
+
 from .april_tags import TagDetector
 from .interfaces import BodyShape, Camera, CameraReport, Fix, Frame, Sighting
 from .marker_pose import Optics, SheetPose, code_pose, tag_pose
@@ -14,7 +16,7 @@ from .qr_decoders import Decoded, Decoder, best_decoder, grey_of
 HANDOVER_PREFIX = "CM1:"
 LONGEST_CODE = 200
 """Characters; what is longer is none of our hand-over codes."""
-MARKER_SIZE_MM = 80.0
+MARKER_SIZE_MM = MARKER_SIZE_M * 1000
 AGREE, OUT_OF = 2, 3
 """Equal reads that accept, of how many looks: a torn code that reads as another post would send the robot astray."""
 FIXES_KEPT = 8

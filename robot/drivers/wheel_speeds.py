@@ -1,9 +1,9 @@
 """The speeds that are latched in the base: which are possible, how long they may stay, when the wheels stand."""
 
+from ..config import MAX_WHEEL_SPEED_MM_S
 from .interfaces import STOP, BaseState, WheelSpeeds
 
-SPEED_CAP_MM_S = 200.0
-"""A dead computer leaves the base driving: this caps what that can do."""
+SPEED_CAP_MM_S = MAX_WHEEL_SPEED_MM_S
 SLOWEST_MM_S = 30.0
 """One encoder count in 15 ms; below it the base veers (field reports; the paper's prototype drove there)."""
 DEADLINE_S = 0.4

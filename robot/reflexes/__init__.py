@@ -6,7 +6,7 @@ It works when everything above is dead: it needs the newest frame of the base, a
 from .decisions import BACK_OFF, Decision, ReflexState, decide
 from .lasting import Lasting
 from .senses import Senses
-from .table import FAULTS, HALTING, LATCHED, REFUSING, STOPPING, Fault, Response
+from .table import FAULTS, HALTING, LATCHED, REFUSING, STOPPING, TOLD, Fault, Response
 
 __all__ = [
     "BACK_OFF",
@@ -15,6 +15,7 @@ __all__ = [
     "LATCHED",
     "REFUSING",
     "STOPPING",
+    "TOLD",
     "Decision",
     "Fault",
     "Lasting",

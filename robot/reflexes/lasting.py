@@ -2,13 +2,12 @@
 
 from dataclasses import dataclass
 
-from ..drivers.interfaces import STOP, BaseState, LineReading, WheelSpeeds
+from ..drivers.interfaces import NOTHING_SEEN, STOP, BaseState, LineReading, WheelSpeeds
 
 STRAIGHT = 0.8
 """Slower over faster wheel from which on it drives straight: in a turn the caster's bit is always 0 (packet 58)."""
 PROGRESS, DISABLED = 0b01, 0b10
 """Bits of packet 58: the caster turns; the sensor is dirty and says nothing."""
-NOTHING_SEEN = LineReading(False, False, False)
 
 
 def impossible(reading: LineReading) -> bool:

@@ -286,6 +286,7 @@ FAULTS: Final[tuple[Fault, ...]] = (
     ),
 )
 
+TOLD: Final = {fault.name: fault.told for fault in FAULTS}
 LATCHED: Final = frozenset(fault.name for fault in FAULTS if fault.clears_s is None)
 """Only a person ends these, not even a restart does."""
 HALTING: Final = frozenset(fault.name for fault in FAULTS if fault.halts)

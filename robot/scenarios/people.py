@@ -13,6 +13,7 @@ from typing import Final
 
 from maps import CampusMap
 
+from ..simulated.obstacles import BUMPER_RADIUS_M
 from .actors import Actor
 from .mail import WITH_RECIPIENT, WITH_SENDER, Letter, code
 from .places import stands_at
@@ -138,7 +139,11 @@ class Bystander:
 
     def gap_m(self, actor: Actor) -> float:
         """Between this person and the robot's bumper."""
-        return math.dist((self.x_m, self.y_m), (actor.body.pose.x_m, actor.body.pose.y_m)) - self.radius_m - 0.174
+        return (
+            math.dist((self.x_m, self.y_m), (actor.body.pose.x_m, actor.body.pose.y_m))
+            - self.radius_m
+            - BUMPER_RADIUS_M
+        )
 
 
 class Crowd:

@@ -7,6 +7,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from ..simulated.obstacles import BUMPER_RADIUS_M
 from .errors import RecordingError
 from .recording import Row, read_recording
 
@@ -85,7 +86,7 @@ def _picture(
     for name, state in states.items():
         place = canvas.at(state["x"], state["y"])
         ahead = (state["x"] + 0.25 * np.cos(state["heading"]), state["y"] + 0.25 * np.sin(state["heading"]))
-        cv2.circle(picture, place, canvas.px(0.174), ROBOT, -1, cv2.LINE_AA)
+        cv2.circle(picture, place, canvas.px(BUMPER_RADIUS_M), ROBOT, -1, cv2.LINE_AA)
         cv2.line(picture, place, canvas.at(*ahead), INK, 2, cv2.LINE_AA)
         cv2.putText(picture, name, (place[0] + 12, place[1] + 18), cv2.FONT_HERSHEY_SIMPLEX, 0.5, ROBOT, 1, cv2.LINE_AA)
     cv2.putText(picture, f"{at_s:.1f} s", (10, 22), cv2.FONT_HERSHEY_SIMPLEX, 0.6, INK, 1, cv2.LINE_AA)

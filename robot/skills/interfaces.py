@@ -10,10 +10,20 @@ Failed("cancelled").
 from dataclasses import dataclass
 from typing import Protocol
 
-from ..drivers.interfaces import STOP, BaseState, Fix, LineReading, Mode, Note, Odometry, Sighting, WheelSpeeds
+from ..drivers.interfaces import (
+    NOTHING_SEEN,
+    STOP,
+    BaseState,
+    Fix,
+    LineReading,
+    Mode,
+    Note,
+    Odometry,
+    Sighting,
+    WheelSpeeds,
+)
 from ..navigation.line_symbol import LineSymbol
 
-NOTHING_SEEN = LineReading(False, False, False)
 START = Odometry()
 
 
