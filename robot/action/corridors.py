@@ -65,11 +65,13 @@ def claim(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
 
 
 def _wanted(hands: Hands, goal: str) -> tuple[Leg, ...]:
-    """The way to the goal and the rest of the mission: a robot without network finishes what it is permitted."""
+    """The way to the goal, the rest of the mission and home: a robot without network finishes what it is permitted, and
+    comes back to where it can tell of it."""
     held, navigator = hands.duties.held, hands.navigator
     later = [stop.post for stop in (held.mission.stops if held.mission else ())[held.next_stop :]]
+    home = [navigator.home] if navigator.home else []
     try:
-        way = navigator.legs_to(goal, *(later if later[:1] == [goal] else []))
+        way = navigator.legs_to(goal, *(later if later[:1] == [goal] else []), *home)
     except NoRoute:
         way = navigator.legs_to(goal)
     return (*navigator.first_legs(goal), *way)

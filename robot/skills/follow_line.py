@@ -34,7 +34,7 @@ FRUITLESS_MM = 500.0
 MOST_SEARCHES = 3
 """So many searches in a row with less than half a metre of line between them: this is where the line ends."""
 MOST_BUMPS = 3
-GIVES_WAY_S = (4.0, 12.0)
+GIVES_WAY_S = (6.0, 8.0)
 """How long it stands after each bump but the last: whoever is in the way has heard it and can step aside."""
 INNER_WHEEL_MM_S, OUTER_WHEEL_MM_S = 30.0, 200.0
 MISSED_SHARE, MISSED_MM = 0.03, 40.0
