@@ -39,7 +39,7 @@ BREATH_S = 0.002
 """Between so many rows the writer lets the other threads have the interpreter."""
 CLOSE_WITHIN_S = 3.0
 
-Note = tuple[str, float, object]
+Noted = tuple[str, float, object]
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +60,7 @@ class BlackBox:
 
     def __init__(self, folder: Path | None = None, utc: Callable[[], datetime] = _utc) -> None:
         self._folder, self._utc = folder, utc
-        self._ring: deque[Note] = deque(maxlen=KEPT_ROWS)
+        self._ring: deque[Noted] = deque(maxlen=KEPT_ROWS)
         self._due: list[tuple[float, str]] = []
         self._written_s: dict[str, float] = {}
         self._waiting: SimpleQueue[str | None] = SimpleQueue()

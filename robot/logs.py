@@ -6,11 +6,11 @@ written by a thread of its own.
 
 import logging
 import sys
+import threading
 from contextlib import suppress
-from logging.handlers import QueueHandler, QueueListener, RotatingFileHandler
+from logging.handlers import RotatingFileHandler
 from pathlib import Path
 from queue import Full, Queue
-from typing import Any
 
 import structlog
 
@@ -20,6 +20,7 @@ LONGEST_FILE_BYTES = 1_000_000
 KEPT_FILES = 4
 WAITING_LINES = 1000
 """For a card that hangs; what comes beyond that is lost, and nobody waits."""
+CLOSE_WITHIN_S = 3.0
 
 
 def configure_logs(path: Path | None) -> None:
@@ -46,23 +47,29 @@ def configure_logs(path: Path | None) -> None:
     )
 
 
-class WrittenElsewhere(QueueHandler):
+class WrittenElsewhere(logging.Handler):
     """Hands lines over to a thread; closing it writes what still waits."""
 
     def __init__(self, writer: logging.Handler) -> None:
-        waiting: Queue[Any] = Queue(WAITING_LINES)
-        super().__init__(waiting)
+        super().__init__()
         self._writer = writer
-        self._thread = QueueListener(waiting, writer)
+        self._waiting: Queue[logging.LogRecord | None] = Queue(WAITING_LINES)
+        self._thread = threading.Thread(target=self._write_all, name="log", daemon=True)
         self._thread.start()
 
-    def enqueue(self, record: logging.LogRecord) -> None:
+    def emit(self, record: logging.LogRecord) -> None:
         with suppress(Full):
-            super().enqueue(record)
+            self._waiting.put_nowait(record)
+
+    def _write_all(self) -> None:
+        while (record := self._waiting.get()) is not None:
+            self._writer.handle(record)
+        self._writer.close()
 
     def close(self) -> None:
-        self._thread.stop()
-        self._writer.close()
+        with suppress(Full):
+            self._waiting.put(None, timeout=CLOSE_WITHIN_S)
+        self._thread.join(CLOSE_WITHIN_S)
         super().close()
 
 

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from robot.assembly import check_settings
 from robot.config import ConfigError, Settings, keys, load_settings, read_token
 
 
@@ -82,3 +83,8 @@ def test_a_token_that_others_may_read_is_refused_with_the_way_out(tmp_path: Path
 def test_an_absent_token_names_the_command_that_makes_one(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match="robots enrol"):
         read_token(tmp_path / "token")
+
+
+def test_a_mailroom_that_is_not_on_the_map_is_found_before_any_robot_starts(tmp_path: Path) -> None:
+    with pytest.raises(ConfigError, match="mailroom: map test_track has no post nowhere"):
+        check_settings(load_settings(None, {"data": tmp_path, "mailroom": "nowhere"}))

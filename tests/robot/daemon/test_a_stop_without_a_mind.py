@@ -72,3 +72,18 @@ def test_a_robot_that_was_stopped_leaves_its_last_minute_with_what_the_mind_saw_
     kinds = {row.kind for row in found}
     assert {"black_box", "heard", "sent", "faults", "job", "line", "percepts", "action"} <= kinds
     assert any(row.kind == "percepts" and "+fault(emergency_stop)" in row.data for row in found)
+
+
+def test_a_stop_just_before_the_end_is_remembered_though_nobody_but_the_wheels_has_heard_of_it(tmp_path: Path) -> None:
+    clock = SteppedClock()
+    parts = put_together(tmp_path, clock, "post3:post2")
+    let_pass(parts, clock, 1.0)
+    parts.daemon.drive.emergency_stop()
+    for _ in range(2):
+        clock.now_s += 0.02
+        parts.daemon.drive.tick(clock.now())
+    parts.daemon.close(clock.now())
+    again = put_together(tmp_path, clock)
+    let_pass(again, clock, 0.1)
+    assert again.daemon.drive.view.faults == {"emergency_stop"}
+    again.daemon.close(clock.now())
