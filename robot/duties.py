@@ -122,7 +122,7 @@ class Duties:
             case Mission():
                 self._accepted(message)
             case Deny():
-                self._denied = {message.claim_id: message}  # one claim is out at a time: who asks for an older has gone
+                self._denied[message.claim_id] = message
                 self.avoid = frozenset(message.avoid)
             case Grant():
                 self.avoid -= frozenset(message.legs)
@@ -328,6 +328,7 @@ class Duties:
             claim_id = str(uuid.uuid4())
             self.outbox.put(Claim(claim_id=claim_id, legs=wanted))
             self._claimed = {wanted: claim_id}
+            self._denied.clear()  # of older claims, for which nobody waits any more
             self._told()
         return self._claimed[wanted]
 
