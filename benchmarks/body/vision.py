@@ -166,12 +166,13 @@ def _plot(folder: Path, figures: Mapping[str, Any], number: int) -> None:
 def _contact_sheet(path: Path, number: int) -> None:
     from matplotlib import pyplot
 
-    figure, axes = pyplot.subplots(2, 4, figsize=(16, 6.6))
+    figure, axes = pyplot.subplots(2, 4, figsize=(16, 7.4), layout="constrained")
     for condition, axis in zip(CONDITIONS, axes.flat, strict=True):
         axis.imshow(shot(condition, number).frame, cmap="gray", vmin=0, vmax=255)
-        axis.set_title(fill(f"{condition.name}: {_parameters(condition)}", 70), fontsize=7)
+        axis.set_title(
+            f"{_words(condition.name)}\n{fill(_parameters(condition), 62)}", fontsize=8, loc="left", va="bottom"
+        )
         axis.axis("off")
-    figure.tight_layout()
     figure.savefig(path, dpi=80)
     pyplot.close(figure)
 
@@ -181,7 +182,15 @@ def _parameters(condition: Condition) -> str:
     clean = CONDITIONS[0]
     names = [name for name in Condition.__slots__ if name not in {"name", "either_way"}]
     own = [name for name in names if getattr(condition, name) != getattr(clean, name)]
-    return ", ".join(f"{name} {getattr(condition, name)}" for name in own) or "as it comes"
+    return ", ".join(f"{_words(name)} {_range(getattr(condition, name))}" for name in own) or "as it comes"
+
+
+def _words(name: str) -> str:
+    return name.replace("px_per_module", "pixels per module").replace("_", " ")
+
+
+def _range(value: object) -> str:
+    return f"{value[0]:g} to {value[1]:g}" if isinstance(value, tuple) else str(value)
 
 
 def _bars(path: Path, figures: Mapping[str, Any]) -> None:
@@ -190,17 +199,21 @@ def _bars(path: Path, figures: Mapping[str, Any]) -> None:
     names = [
         name for name in figures if isinstance(figures[name], dict) and "clean" in figures[name] and name != "planned"
     ]
-    figure, (shares, times) = pyplot.subplots(2, 1, figsize=(11, 7), sharex=True)
+    figure, (shares, times) = pyplot.subplots(2, 1, figsize=(11, 7), sharex=True, layout="constrained")
     width = 0.8 / len(names)
     for place, name in enumerate(names):
         at = [number + place * width for number in range(len(CONDITIONS))]
-        shares.bar(at, [figures[name][one.name]["decoded"] * 100 for one in CONDITIONS], width, label=name)
+        shares.bar(at, [figures[name][one.name]["decoded"] * 100 for one in CONDITIONS], width, label=_words(name))
         times.bar(at, [figures[name][one.name]["median_ms"] for one in CONDITIONS], width)
+    figure.suptitle("Generated 640×480 frames: what is read, and what that costs")
     shares.set_ylabel("decoded, %")
-    shares.legend(ncols=len(names), fontsize=8)
-    times.set_ylabel("median, ms of processor")
+    figure.legend(ncols=len(names), fontsize=9, loc="outside lower center", frameon=False)
+    times.set_ylabel("processor time per frame, median, ms")
     times.set_yscale("log")
-    times.set_xticks([number + 0.3 for number in range(len(CONDITIONS))], [one.name for one in CONDITIONS])
-    figure.tight_layout()
+    times.yaxis.set_major_formatter("{x:g}")
+    times.set_xticks([number + 0.3 for number in range(len(CONDITIONS))], [_words(one.name) for one in CONDITIONS])
+    for axis in (shares, times):
+        axis.grid(axis="y", alpha=0.3)
+        axis.set_axisbelow(True)
     figure.savefig(path)
     pyplot.close(figure)
