@@ -89,8 +89,8 @@ class EmergencyStop(Part):
 class Recall(Part):
     """Bring what is aboard back to where it came from, then go home.
 
-    Accepted with mail aboard, too: the robot then gives itself a mission whose stops are of the kind `return`, and whose
-    id begins with `return-`; another mission takes its place.
+    Accepted with mail aboard, too: the robot then gives itself a mission whose stops are of the kind `return`, and
+    whose id begins with `return-`; another mission takes its place.
     """
 
     command_id: Identifier
