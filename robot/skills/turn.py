@@ -3,13 +3,15 @@
 import math
 
 from ..drivers.interfaces import BodyShape, Odometry, WheelSpeeds
-from .find_line import over_line, settle
+from .find_line import align, over_line, settle
 from .interfaces import Done, Failed, View
 from .script import Part, Script, Scripted, roll, turn_by
 
 SMALLEST_RAD = math.radians(5)
 PUSHED_MM = 30.0
 BACK_MM_S, ROLLS_ON_MM = 80.0, 5.0
+BESIDE_RAD, BESIDE_MM = math.radians(55), 90.0
+"""How a line beside the post is looked for: up to 12 cm to each side, and never along the line it came by."""
 
 
 class Turn(Scripted):
@@ -32,7 +34,19 @@ class Turn(Scripted):
         if _gap_mm(begin, view.odometry) > PUSHED_MM:
             view = yield from self._back_to(begin, view)
         view = yield from settle(view, self._shape)
+        if not over_line(view):
+            view = yield from self._look_beside(view, begin.heading_rad + self._angle_rad)
         return Done() if over_line(view) else Failed("line_lost")
+
+    def _look_beside(self, view: View, goal_rad: float) -> Part:
+        """It stands before or beyond the post, whose marker it could not read: the line runs beside it."""
+        for side in (1, -1):
+            view = yield from self._towards(view, goal_rad + side * BESIDE_RAD)
+            view = yield from roll(view, BESIDE_MM, WheelSpeeds(BACK_MM_S, BACK_MM_S), over_line)
+            if over_line(view):
+                return (yield from align(view, self._shape, goal_rad))
+            view = yield from roll(view, BESIDE_MM, WheelSpeeds(-BACK_MM_S, -BACK_MM_S))
+        return view
 
     def _back_to(self, begin: Odometry, view: View) -> Part:
         """A bump made it back off in the middle of the turn: from beside the post no line would be met."""
