@@ -6,7 +6,7 @@ from typing import Final
 from maps import CampusMap
 
 from ..assembly import Parts
-from ..simulated import SimulatedRobot
+from ..simulated import Pose, SimulatedRobot
 from ..skills.tunes import TUNES
 from .places import AT_POST_M, post_at
 from .scenario import RobotRow
@@ -31,7 +31,8 @@ class Actor:
     heard: list[str] = field(default_factory=list)
     """Tunes since the last look."""
     carried: bool = False
-    """Somebody has put it somewhere since it was last at a post."""
+    """Somebody has put it somewhere, and it has not come to a post since: it cannot know which corridor it is in."""
+    _put_down: bool = False
     _songs: int = 0
 
     @property
@@ -45,9 +46,16 @@ class Actor:
         if post and post != self.post and (not self.posts or self.posts[-1][1] != post):
             self.posts.append((now, post))
         self.post = post
-        self.carried = self.carried and post is None
+        # Put down on a post it has the marker behind it: only the one that it comes to, or a dock, tells it anything.
+        self._put_down = self._put_down and post is not None and not self.body.docked
+        self.carried = self.carried and (post is None or self._put_down)
         self._look_at_wheels(now)
         self._listen()
+
+    def carry(self, pose: Pose) -> None:
+        """Somebody puts it there."""
+        self.body.place(pose)
+        self.carried = self._put_down = True
 
     def _look_at_wheels(self, now: float) -> None:
         if self.body.body.base.moving:

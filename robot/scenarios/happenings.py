@@ -91,8 +91,7 @@ def _message(row: MessageRow, command_id: str) -> Part:
 
 def _carry(actor: Actor, row: Deed, campus: CampusMap) -> None:
     """Picked up, put down elsewhere."""
-    actor.body.place(start_pose(campus, row.to or "dock"))
-    actor.carried = True
+    actor.carry(start_pose(campus, row.to or "dock"))
 
 
 _DEEDS: Final[dict[str, Callable[[Actor, Deed, CampusMap], None]]] = {
