@@ -210,7 +210,8 @@ class Navigator:
     def corridor(self) -> Leg | None:
         """The corridor that the robot is in, in the direction in which it was granted; None at a post."""
         end = self._far_end or self.towards
-        return Leg(from_post=self.here, to_post=end) if self._leaving and self.here and end else None
+        known = self._leaving and self.here and end and end != self.here
+        return Leg(from_post=self.here, to_post=end) if known else None
 
     @property
     def came_from(self) -> str | None:

@@ -25,6 +25,9 @@ WALKS_UP_S: Final = (1.0, 4.0)
 SHOWS_S, RESTS_S = 8.0, 4.0
 """Somebody holds a code up for so long, then looks what is the matter; others at the post get their turn."""
 PRESS_EVERY_S = 0.8
+GOES_ROUND_AFTER_S: Final = 4.0
+"""Whoever walks and finds a robot in the way stands so long before going round it."""
+ROBOT_M, ROUND_IT_M = 0.174, 0.2
 IN_FRONT_M: Final = 0.12
 """A robot so near has stopped in front of a person."""
 
@@ -152,6 +155,7 @@ class Crowd:
     def __init__(self, campus: CampusMap, walkers: Sequence[Walker], standers: Sequence[Stander]) -> None:
         self._walkers = [(row, Bystander(*row.path[0], row.radius_m)) for row in walkers]
         self._walked_m = [0.0] * len(self._walkers)
+        self._held_up_s = [0.0] * len(self._walkers)
         self._standers = [(row, Bystander(*stands_at(row, campus), row.radius_m)) for row in standers]
         self._met_s: list[float | None] = [None] * len(self._standers)
         self._gone = [False] * len(self._standers)
@@ -170,7 +174,8 @@ class Crowd:
         ]
 
     def _walks(self, number: int, row: Walker, one: Bystander, actors: list[Actor], passed_s: float) -> bool:
-        """Goes on unless a robot is in the way; gone at the end of the path."""
+        """Goes on unless a robot is in the way, and then round it after a moment, as people do: whoever walks along the
+        tape towards a robot and never gives way would hold up any robot for ever. Gone at the end of the path."""
         if self._last_s < row.at_s or (at := _on_path(row.path, self._walked_m[number])) is None:
             return False
         ahead = _on_path(row.path, self._walked_m[number] + row.speed_m_s * passed_s)
@@ -178,7 +183,14 @@ class Crowd:
         there = Bystander(x_m, y_m, row.radius_m)
         if all(there.gap_m(actor) > 0.02 or there.gap_m(actor) > one.gap_m(actor) for actor in actors):
             self._walked_m[number] += row.speed_m_s * passed_s
+            self._held_up_s[number] = 0.0
             one.x_m, one.y_m = x_m, y_m
+            return True
+        self._held_up_s[number] += passed_s
+        if self._held_up_s[number] >= GOES_ROUND_AFTER_S:
+            self._walked_m[number] += 2 * (row.radius_m + ROBOT_M) + ROUND_IT_M
+            self._held_up_s[number] = 0.0
+            one.x_m, one.y_m = _on_path(row.path, self._walked_m[number]) or row.path[-1]
         return True
 
     def _stands(self, number: int, row: Stander, one: Bystander, actors: list[Actor], now: float) -> bool:
