@@ -4,6 +4,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from benchmarks.paper.contenders import Contender
 
 COLOURS = ("#b3541e", "#e0a458", "#2d6a8e")
@@ -38,13 +40,16 @@ def _panels(contenders: Sequence[Contender], height: float) -> tuple[Any, Any]:
 
 
 def _histograms(path: Path, contenders: Sequence[Contender], samples: Mapping[str, Any], name: str, label: str) -> None:
+    """All on the same axes, or they could not be compared; what lies beyond is in the outermost bars."""
     figure, axes = _panels(contenders, 3.0)
+    low, high = np.quantile(np.concatenate([samples[one.name][name] for one in contenders]), (0.005, 0.995))
+    bins = np.linspace(low, max(high, low + 1e-6), 41)
     for axis, contender, colour in zip(axes, contenders, COLOURS, strict=False):
-        values = sorted(samples[contender.name][name])
-        shown = values[: max(1, int(0.995 * len(values)))]
-        axis.hist(shown, bins=40, color=colour)
+        values = np.clip(samples[contender.name][name], bins[0], bins[-1])
+        axis.hist(values, bins=bins, weights=np.full(len(values), 100 / len(values)), color=colour)
+        axis.set_ylim(0, 100)
         axis.set_xlabel(f"{label}, ms")
-        axis.set_ylabel("how often")
+        axis.set_ylabel("share, %")
         if name == "cycle_ms":
             left, right = PAPERS_CYCLE_MS
             note = f"the paper: {left:g} to {right:g} ms,\nthe wait for percepts included"

@@ -13,6 +13,8 @@ from .recording import Row, read_recording
 
 WIDTH_PX: Final = 960
 EDGE_M: Final = 0.7
+CARRIED_M: Final = 0.3
+"""Nobody drives as far between two rows: there the way has a gap."""
 PAPER, TAPE, WAY, ROBOT, PERSON, INK = (
     (247, 250, 251),
     (190, 185, 180),
@@ -60,25 +62,36 @@ def write_pictures(recording: Path, folder: Path, every_s: float) -> int:
     rows = read_recording(recording)
     canvas, number, due_s = Canvas(rows[0]), 0, 0.0
     ground, states = canvas.ground.copy(), dict[str, Row]()
-    people: list[list[float]] = []
+    people, said = list[list[float]](), dict[str, str]()
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise RecordingError(f"{folder}: cannot be made: {error.strerror}. Give another folder.") from None
     for row in rows[1:]:
         if row["t"] >= due_s and states:
-            _write(folder / f"{number:05}.png", _picture(canvas, ground, states, people, row["t"]))
+            _write(folder / f"{number:05}.png", _picture(canvas, ground, states, people, said, due_s))
             number, due_s = number + 1, due_s + every_s
         if row["kind"] == "people":
             people = row["value"]
+        elif row["kind"] == "why":
+            said[row["robot"]] = row["value"]
         elif row["kind"] == "state":
-            cv2.circle(ground, canvas.at(row["x"], row["y"]), 1, WAY, -1)
+            before = states.get(row["robot"], row)
+            if abs(before["x"] - row["x"]) + abs(before["y"] - row["y"]) < CARRIED_M:
+                cv2.line(
+                    ground, canvas.at(before["x"], before["y"]), canvas.at(row["x"], row["y"]), WAY, 2, cv2.LINE_AA
+                )
             states[row["robot"]] = row
     return number
 
 
 def _picture(
-    canvas: Canvas, ground: Picture, states: dict[str, Row], people: list[list[float]], at_s: float
+    canvas: Canvas,
+    ground: Picture,
+    states: dict[str, Row],
+    people: list[list[float]],
+    said: dict[str, str],
+    at_s: float,
 ) -> Picture:
     picture = ground.copy()
     for x_m, y_m, radius_m in people:
@@ -88,8 +101,12 @@ def _picture(
         ahead = (state["x"] + 0.25 * np.cos(state["heading"]), state["y"] + 0.25 * np.sin(state["heading"]))
         cv2.circle(picture, place, canvas.px(BUMPER_RADIUS_M), ROBOT, -1, cv2.LINE_AA)
         cv2.line(picture, place, canvas.at(*ahead), INK, 2, cv2.LINE_AA)
-        cv2.putText(picture, name, (place[0] + 12, place[1] + 18), cv2.FONT_HERSHEY_SIMPLEX, 0.5, ROBOT, 1, cv2.LINE_AA)
-    cv2.putText(picture, f"{at_s:.1f} s", (10, 22), cv2.FONT_HERSHEY_SIMPLEX, 0.6, INK, 1, cv2.LINE_AA)
+        beside = (place[0] + canvas.px(BUMPER_RADIUS_M) + 6, place[1] + 20)
+        cv2.putText(picture, name, beside, cv2.FONT_HERSHEY_SIMPLEX, 0.5, ROBOT, 1, cv2.LINE_AA)
+    cv2.putText(picture, f"{at_s:.1f} s", (10, 24), cv2.FONT_HERSHEY_SIMPLEX, 0.6, INK, 1, cv2.LINE_AA)
+    for number, (name, sentence) in enumerate(said.items()):
+        place = (110, 24 + 22 * number)
+        cv2.putText(picture, f"{name}: {sentence}", place, cv2.FONT_HERSHEY_SIMPLEX, 0.5, INK, 1, cv2.LINE_AA)
     return picture
 
 

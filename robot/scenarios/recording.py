@@ -194,4 +194,5 @@ def _rows(path: Path) -> Iterator[Row]:
     except EOFError:
         return  # killed while it wrote
     except (OSError, ValueError) as error:
-        raise RecordingError(f"{path}: cannot be read as a recording: {error}") from None
+        reason = getattr(error, "strerror", None) or error
+        raise RecordingError(f"{path}: cannot be read as a recording: {reason}") from None
