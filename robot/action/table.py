@@ -22,6 +22,7 @@ from ..skills import (
     Undock,
     WaitHandover,
 )
+from ..skills.find_line import WIDEST_RAD, over_line
 from ..skills.interfaces import Done, Skill
 from ..skills.tunes import TUNES
 from .arguments import Argument, Kind, Value, word
@@ -62,7 +63,8 @@ def _follow_line(hands: Hands, _: Sequence[Value], now: float) -> Run:
     aslant_rad = navigator.aslant_rad
 
     def straighten() -> Skill | None:
-        if not aslant_rad:
+        on_the_line = abs(aslant_rad) < WIDEST_RAD and over_line(hands.view)
+        if not aslant_rad or on_the_line:
             return None
         navigator.begin_turn()
         return Turn(aslant_rad, hands.shape, hands.turn_mm_s)
