@@ -30,8 +30,7 @@ ASLANT_RAD = math.radians(30)
 LIFTED = "wheel_drop"
 """The fault during which somebody holds the robot in their hands, perhaps to put it down elsewhere."""
 MARKER_UNREAD = "marker_unread"
-STRAIGHT_ON_RAD = math.radians(30)
-SURELY_PAST_M = 0.3
+STRAIGHT_ON_RAD, SURELY_PAST_M = math.radians(30), 0.3
 PLAIN_TURNS = {"left": math.pi / 2, "right": -math.pi / 2, "behind": math.pi}
 
 
