@@ -9,6 +9,7 @@ from maps.geometry import wrapped
 from protocol.parts import Leg
 from robot.drivers.interfaces import Odometry, Sighting
 from robot.duties import Duties
+from robot.navigation.approach import is_aslant
 from robot.navigation.by_fixes import near_dock
 from robot.navigation.directions import Way, next_post
 from robot.navigation.moved import cannot_be_next, found_at, nowhere
@@ -25,8 +26,6 @@ STRAIGHT_RAD = math.radians(12)
 """Within this the line is under the diodes, and following it straightens the robot up."""
 TURNING = frozenset({"turn", "undock", "find_line"})
 """Skills during which a marker is seen from aslant: it says nothing about the way that is left to its post."""
-ASLANT_RAD = math.radians(30)
-"""Nor does a marker that hangs turned so far from a robot that stands."""
 LIFTED = "wheel_drop"
 """The fault during which somebody holds the robot in their hands, perhaps to put it down elsewhere."""
 MARKER_UNREAD = "marker_unread"
@@ -70,7 +69,7 @@ class Navigator:
         if not docked:
             self.position = near_dock(self.campus, self.position, view.fixes, self.home, view.at_s)
         before = self.position
-        if view.post and (view.motion in TURNING or _is_aslant(view.post)):
+        if view.post and (view.motion in TURNING or is_aslant(view.post)):
             self._ignored_until_s = view.post.at_s
         post = view.post if view.post and view.post.at_s > self._ignored_until_s else None
         if LIFTED in view.faults and not docked:
@@ -394,7 +393,3 @@ class Navigator:
 
     def _looks(self, heading_rad: float) -> None:
         self.position = replace(self.position, facing_rad=heading_rad, spot_turn_rad=self._odometry.spot_turn_rad)
-
-
-def _is_aslant(post: Sighting) -> bool:
-    return post.turned_rad is not None and abs(post.turned_rad) > ASLANT_RAD

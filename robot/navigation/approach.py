@@ -9,6 +9,13 @@ from ..drivers.interfaces import Sighting
 
 FARTHEST_MM = 1500.0
 """A marker that puts the post farther off was misread, or hangs elsewhere than the map says."""
+ASLANT_RAD = math.radians(30)
+"""A marker that hangs turned so far from the robot says nothing about the way that is left to its post."""
+
+
+def is_aslant(sighting: Sighting) -> bool:
+    """Seen from a turn, or from beside the line that it hangs at."""
+    return sighting.turned_rad is not None and abs(sighting.turned_rad) > ASLANT_RAD
 
 
 def arrival_heading_rad(campus: CampusMap, came_from: str | None, post: str) -> float | None:
