@@ -82,7 +82,8 @@ class Navigator:
             after = self._in_dock(after)
         self._docked = docked
         self.position = after
-        reached = after.current != before.current or (before.approaching is not None and after.approaching is None)
+        reached = after.current != before.current and not after.has_left
+        reached = reached or (before.approaching is not None and after.approaching is None)
         reached = reached or self._is_back(after)
         self._blocked_until_s = {name: end_s for name, end_s in self._blocked_until_s.items() if view.at_s < end_s}
         if after.current and (reached or (docked and self._leaving)):
@@ -149,7 +150,7 @@ class Navigator:
         self._leaving = True
         told = self.here not in self.unread and self.position.approaching is None
         self._scale.set_out(self.position.post_at_mm if told else None, self._disturbed)
-        self._head_for(self._post_ahead())
+        self._head_for(self.position.approaching or self._post_ahead())
 
     def _head_for(self, towards: str | None) -> None:
         self.towards = towards

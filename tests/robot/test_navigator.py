@@ -1,12 +1,14 @@
 """Where the robot believes to be, which way to go, and what it still knows after a power cut."""
 
 import math
+from dataclasses import replace
 from datetime import UTC, datetime
 
 import pytest
 
 from maps import builtin_map
 from protocol.parts import Leg
+from robot.drivers.interfaces import Sighting
 from robot.duties import Duties
 from robot.memory import Memory
 from robot.navigator import Navigator
@@ -186,3 +188,26 @@ def test_the_way_out_of_a_dock_is_known_by_the_map(walk: Walk) -> None:
     assert walk.navigator.undock_way() == (pytest.approx(500.0), True)
     walk.navigator.place("post1", "post2")
     assert walk.navigator.undock_way() == (None, True), "no dock is there"
+
+
+def test_a_marker_seen_from_aslant_does_not_make_a_standing_robot_believe_that_it_has_left(walk: Walk) -> None:
+    walk.navigator.place("post1", "post2")
+    walk.drives_to("post2")
+    aslant = Sighting("post2", walk.now, 150.0, 390.0, turned_rad=math.radians(60))
+    walk.body.view = replace(walk.body.view, post=aslant)
+    walk.look()
+    assert walk.navigator.at == "post2"
+
+
+def test_who_has_stopped_short_of_a_post_by_its_marker_drives_on_to_it(walk: Walk) -> None:
+    walk.navigator.place("post1", "post2")
+    walk.navigator.leave()
+    walk.body.rolls(1700.0)
+    walk.look()
+    walk.navigator.reached("post2")
+    walk.body.sees("post2")
+    walk.look()
+    assert (walk.navigator.at, walk.navigator.here, walk.navigator.towards) == (None, "post1", "post2")
+    walk.body.rolls(300.0)
+    walk.look()
+    assert walk.navigator.at == "post2"
