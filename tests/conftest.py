@@ -2,9 +2,11 @@
 
 import os
 import shutil
+from collections.abc import Iterator
 from typing import Any
 
 import pytest
+import structlog
 from hypothesis import settings
 
 # A shared machine is slow at times; slowness is for the benchmarks to judge.
@@ -13,6 +15,13 @@ settings.load_profile("campus_mail")
 
 NAMES_OF_CHROMIUM = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 NOT_RUN = pytest.StashKey[int]()
+
+
+@pytest.fixture(autouse=True)
+def logs_of_its_own() -> Iterator[None]:
+    """A command that a test runs within its own process configures the logs of that process."""
+    yield
+    structlog.reset_defaults()
 
 
 def find_chromium() -> str | None:

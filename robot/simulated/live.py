@@ -8,6 +8,7 @@ from protocol.clock import Clock
 from .robot import SimulatedRobot
 
 PAUSE_S = 0.005
+LOOK_EVERY_S = 0.2
 
 
 class Live:
@@ -24,8 +25,12 @@ class Live:
             self._robot.step_until(self._clock.now())
 
     def wait(self) -> None:
-        """Until the thread ends, which it does when this block is left."""
-        self._thread.join()
+        """Until Ctrl-C, or until the thread ends.
+
+        Not by a join: in Python 3.11 one that Ctrl-C interrupts takes the thread for ended while it still runs.
+        """
+        while not self._stop.wait(LOOK_EVERY_S) and self._thread.is_alive():
+            pass
 
     def __enter__(self) -> "Live":
         self._thread.start()
