@@ -1,5 +1,6 @@
 """`python -m robot.simulated`: a simulated Create 2 on a serial port, for any client that speaks to a real one."""
 
+import signal
 from pathlib import Path
 from typing import Annotated
 
@@ -27,7 +28,7 @@ def run(
     door: Annotated[Path | None, typer.Option(help="A Unix socket for commands to the world.")] = None,
     list_faults: Annotated[bool, typer.Option("--list-faults", help="Say what can go wrong, and end.")] = False,
 ) -> None:
-    """Runs in real time until Ctrl-C. Exit status 2: no such map or start."""
+    """Runs in real time until Ctrl-C or SIGTERM. Exit status 2: no such map or start."""
     if list_faults:
         for name, meaning in SWITCHES.items():
             print(f"{name:20} {meaning}")
@@ -46,9 +47,10 @@ def _live(robot: SimulatedRobot, clock: RealClock, door: Path | None) -> None:
     print(robot.port_path, flush=True)
     try:
         with Live(robot, clock) as life:
+            # Also where a script started this in the background, which makes a program ignore Ctrl-C.
+            for number in (signal.SIGINT, signal.SIGTERM):
+                signal.signal(number, lambda *_: life.stop())
             life.wait()
-    except KeyboardInterrupt:
-        pass
     finally:
         if opened:
             opened.close()

@@ -36,7 +36,8 @@ def test_the_command_lists_its_faults():
     assert all(name in told for name in SWITCHES)
 
 
-def test_the_command_opens_a_port_and_a_door_and_ends_with_ctrl_c(tmp_path):
+@pytest.mark.parametrize("ending", [signal.SIGINT, signal.SIGTERM])
+def test_the_command_opens_a_port_and_a_door_and_ends_with_ctrl_c(tmp_path, ending):
     link, door = tmp_path / "create2", tmp_path / "door"
     options = ["--link", str(link), "--door", str(door), "--start", "post1"]
     process = subprocess.Popen([*COMMAND, *options], stdout=subprocess.PIPE, text=True, cwd=ROOT)
@@ -47,7 +48,7 @@ def test_the_command_opens_a_port_and_a_door_and_ends_with_ctrl_c(tmp_path):
     with serial.Serial(path, 115200, timeout=5) as port:
         port.write(bytes((128, 142, 35)))
         assert port.read(1) == b"\x01"
-    process.send_signal(signal.SIGINT)
+    process.send_signal(ending)
     process.stdout.close()
     assert process.wait(timeout=10) == 0
     assert not link.is_symlink()
