@@ -44,12 +44,13 @@ def run(
 
 def _live(robot: SimulatedRobot, clock: RealClock, door: Path | None) -> None:
     opened = Door(robot, door) if door else None
+    life = Live(robot, clock)
+    # Before anybody can know of the port. A script that starts this in the background makes it ignore Ctrl-C otherwise.
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: life.stop())
     print(robot.port_path, flush=True)
     try:
-        with Live(robot, clock) as life:
-            # Also where a script started this in the background, which makes a program ignore Ctrl-C.
-            for number in (signal.SIGINT, signal.SIGTERM):
-                signal.signal(number, lambda *_: life.stop())
+        with life:
             life.wait()
     finally:
         if opened:
