@@ -1,4 +1,7 @@
-"""The commands of `python -m maps`: check a map, look at it, print its markers, ask for a route."""
+"""The commands of `python -m maps`: check a map, look at it, print its markers, ask for a route.
+
+Exit status of every command: 0 done, 1 not fit or no route, 2 something to put right first, which is named.
+"""
 
 import json
 from dataclasses import asdict
@@ -12,7 +15,7 @@ from rich.table import Table
 
 from maps.campus_map import CampusMap, Post, find_map, map_path
 from maps.check import check_file
-from maps.errors import CampusMapError, MapError
+from maps.errors import MapError, NoRoute, UnknownPost
 from maps.problem import Problem
 from maps.routes import shortest_route
 from maps.sheets import all_pages, as_pdf, marker_sheet
@@ -20,7 +23,7 @@ from maps.sheets import all_pages, as_pdf, marker_sheet
 cli = typer.Typer(help=__doc__, no_args_is_help=True, add_completion=False)
 MapArgument = Annotated[Path, typer.Argument(metavar="MAP", help="A map file, or the name of one that ships.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Machine-readable output.")]
-UNREADABLE = 2
+NOT_SO, MISUSE = 1, 2
 
 
 @cli.command()
@@ -34,13 +37,13 @@ def check(where: MapArgument, as_json: AsJson = False) -> None:
         problems = check_file(path)
     except MapError as error:
         _unreadable(error, as_json)
-        raise typer.Exit(UNREADABLE) from error
+        raise typer.Exit(MISUSE) from error
     errors = sum(problem.severity == "error" for problem in problems)
     if as_json:
         print(json.dumps({"map": str(path), "problems": [asdict(problem) for problem in problems]}, indent=2))
     else:
         _print_problems(path, problems)
-    raise typer.Exit(1 if errors else 0)
+    raise typer.Exit(NOT_SO if errors else 0)
 
 
 def _unreadable(error: MapError, as_json: bool) -> None:
@@ -83,13 +86,14 @@ def _row(campus: CampusMap, post: Post) -> tuple[str, ...]:
 
 @cli.command()
 def route(where: MapArgument, start: str, goal: str) -> None:
-    """The shortest route between two posts."""
+    """The shortest route between two posts. Exit status 1: there is none."""
     campus = _map_or_exit(where)
+    _posts_or_exit(campus, [start, goal])
     try:
         found = shortest_route(campus, start, goal)
-    except CampusMapError as error:
+    except NoRoute as error:
         typer.echo(str(error), err=True)
-        raise typer.Exit(1) from error
+        raise typer.Exit(NOT_SO) from error
     print(f"{' → '.join(found.posts)}: {found.length_m:.4g} m")
 
 
@@ -124,15 +128,15 @@ def markers(
             print(f"{len(posts)} sheets in {out}; print {sheets}, as many of each as it says")
     except OSError as error:
         typer.echo(f"{out}: the sheets cannot be written there: {error.strerror}. Give --out FOLDER.", err=True)
-        raise typer.Exit(UNREADABLE) from error
+        raise typer.Exit(MISUSE) from error
 
 
 def _posts_or_exit(campus: CampusMap, names: list[str] | None) -> list[Post]:
     try:
         return [campus.post(name) for name in names or campus.posts]
-    except CampusMapError as error:
+    except UnknownPost as error:
         typer.echo(str(error), err=True)
-        raise typer.Exit(1) from error
+        raise typer.Exit(MISUSE) from error
 
 
 def _map_or_exit(where: Path) -> CampusMap:
@@ -140,7 +144,7 @@ def _map_or_exit(where: Path) -> CampusMap:
         return find_map(where)
     except MapError as error:
         typer.echo(str(error), err=True)
-        raise typer.Exit(UNREADABLE) from error
+        raise typer.Exit(MISUSE) from error
 
 
 if __name__ == "__main__":

@@ -64,8 +64,20 @@ def test_show_marks_assumed_lengths():
 
 def test_route_prints_posts_and_metres():
     assert run("route", "test_track", "post1", "post4").stdout == "post1 → post2 → post3 → post4: 6 m\n"
-    wrong = run("route", "test_track", "post1", "pots4")
-    assert (wrong.exit_code, "Did you mean 'post4'" in wrong.stderr) == (1, True)
+
+
+@pytest.mark.parametrize("question", [("route", "test_track", "post1"), ("markers", "test_track", "--post")])
+def test_a_post_that_is_not_on_the_map_is_misuse_and_the_nearest_name_is_told(question, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    wrong = run(*question, "pots4")
+    assert (wrong.exit_code, "Did you mean 'post4'" in wrong.stderr) == (2, True)
+    assert list(tmp_path.iterdir()) == [], "nothing was written"
+
+
+def test_two_posts_that_nothing_joins_end_a_route_with_exit_1(write_map):
+    apart = "".join(f'[[post]]\nname = "{name}"\nx_m = {x_m}\ny_m = 0\n' for name, x_m in (("a", 0), ("b", 5)))
+    none = run("route", str(write_map(apart)), "a", "b")
+    assert (none.exit_code, "No route from a to b" in none.stderr) == (1, True)
 
 
 @pytest.mark.parametrize("campus", ["test_track", "carleton"])
