@@ -1,8 +1,9 @@
 """`python -m robot.simulated`: a simulated Create 2 on a serial port, for any client that speaks to a real one."""
 
 import signal
+import traceback
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, NoReturn
 
 import typer
 
@@ -10,11 +11,12 @@ from maps import MapError, find_map
 from protocol.clock import RealClock
 
 from .door import Door
-from .errors import SimulatedWorldError
+from .errors import SimulatedWorldError, WorldStopped
 from .faults import SWITCHES
 from .live import Live
 from .robot import SimulatedRobot
 
+FAILED, MISUSE = 1, 2
 cli = typer.Typer(help=__doc__, add_completion=False)
 
 
@@ -28,7 +30,10 @@ def run(
     door: Annotated[Path | None, typer.Option(help="A Unix socket for commands to the world.")] = None,
     list_faults: Annotated[bool, typer.Option("--list-faults", help="Say what can go wrong, and end.")] = False,
 ) -> None:
-    """Runs in real time until Ctrl-C or SIGTERM. Exit status 2: no such map or start."""
+    """Runs in real time until Ctrl-C or SIGTERM.
+
+    Exit status 1: the world has failed. 2: something to put right first, which is named.
+    """
     if list_faults:
         for name, meaning in SWITCHES.items():
             print(f"{name:20} {meaning}")
@@ -37,13 +42,28 @@ def run(
     try:
         robot = SimulatedRobot(find_map(campus), clock.now(), start, seed, link=link)
     except (MapError, SimulatedWorldError) as error:
-        typer.echo(str(error), err=True)
-        raise typer.Exit(2) from error
-    _live(robot, clock, door)
+        _refuse(str(error))
+    except OSError as error:
+        _refuse(f"--link {link}: cannot be made: {error.strerror}. Name another place, in a folder that is there.")
+    let_live(robot, clock, _opened(robot, door))
 
 
-def _live(robot: SimulatedRobot, clock: RealClock, door: Path | None) -> None:
-    opened = Door(robot, door) if door else None
+def _opened(robot: SimulatedRobot, path: Path | None) -> Door | None:
+    try:
+        return Door(robot, path) if path else None
+    except OSError as error:
+        robot.close()
+        _refuse(
+            f"--door {path}: cannot be made: {error.strerror or error}. Name another place, in a folder that is there."
+        )
+
+
+def _refuse(sentence: str) -> NoReturn:
+    typer.echo(sentence, err=True)
+    raise typer.Exit(MISUSE)
+
+
+def let_live(robot: SimulatedRobot, clock: RealClock, door: Door | None) -> None:
     life = Live(robot, clock)
     # Before anybody can know of the port. A script that starts this in the background makes it ignore Ctrl-C otherwise.
     for number in (signal.SIGINT, signal.SIGTERM):
@@ -52,9 +72,13 @@ def _live(robot: SimulatedRobot, clock: RealClock, door: Path | None) -> None:
     try:
         with life:
             life.wait()
+    except WorldStopped as stopped:
+        traceback.print_exception(stopped.__cause__)  # where in the world: it is no mistake of whoever started it
+        typer.echo(str(stopped), err=True)
+        raise typer.Exit(FAILED) from stopped
     finally:
-        if opened:
-            opened.close()
+        if door:
+            door.close()
         robot.close()
 
 

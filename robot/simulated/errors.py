@@ -3,7 +3,8 @@
 SimulatedWorldError
 ├── UnknownSwitch   no fault or door command has this name
 ├── WrongValue      the name is right, the value is not
-└── UnknownStart    the robot cannot begin there
+├── UnknownStart    the robot cannot begin there
+└── WorldStopped    it lives no longer: a step has failed
 """
 
 from collections.abc import Iterable
@@ -32,3 +33,10 @@ class UnknownStart(SimulatedWorldError):
 
     def __init__(self, start: str, why: str) -> None:
         super().__init__(f"A robot cannot start at {start!r}: {why.rstrip('.')}. Say 'dock', a post, or POST:TOWARDS.")
+
+
+class WorldStopped(SimulatedWorldError):
+    """A step of the world has failed, and no other followed: time stands still for every client."""
+
+    def __init__(self, failure: Exception) -> None:
+        super().__init__(f"The simulated world has stopped: {failure} ({type(failure).__name__}). Start it again.")

@@ -5,6 +5,7 @@ from types import TracebackType
 
 from protocol.clock import Clock
 
+from .errors import WorldStopped
 from .robot import SimulatedRobot
 
 PAUSE_S = 0.005
@@ -12,17 +13,24 @@ LOOK_EVERY_S = 0.2
 
 
 class Live:
-    """`with Live(robot, RealClock()): …`; the robot must have been made at the clock's present time."""
+    """`with Live(robot, RealClock()): …`; the robot must have been made at the clock's present time.
+
+    Raises WorldStopped at the end of the block if the thread has failed.
+    """
 
     def __init__(self, robot: SimulatedRobot, clock: Clock) -> None:
         self._robot = robot
         self._clock = clock
         self._stop = threading.Event()
+        self._failure: Exception | None = None
         self._thread = threading.Thread(target=self._run, name="simulated world", daemon=True)
 
     def _run(self) -> None:
-        while not self._stop.wait(PAUSE_S):
-            self._robot.step_until(self._clock.now())
+        try:
+            while not self._stop.wait(PAUSE_S):
+                self._robot.step_until(self._clock.now())
+        except Exception as failure:
+            self._failure = failure  # for the thread that waits: nobody asks this one
 
     def stop(self) -> None:
         """End `wait`; a signal handler may call it."""
@@ -42,3 +50,5 @@ class Live:
     ) -> None:
         self._stop.set()
         self._thread.join()
+        if self._failure and error is None:
+            raise WorldStopped(self._failure) from self._failure

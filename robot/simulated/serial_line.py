@@ -56,7 +56,8 @@ class PtyLine:
         self._link = link
         self._open = True
         if link:
-            link.unlink(missing_ok=True)
+            if link.is_symlink():  # of a world that was killed; any other file is somebody's
+                link.unlink()
             link.symlink_to(self.path)
 
     def wait(self, at_most_s: float) -> None:

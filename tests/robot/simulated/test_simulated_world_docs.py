@@ -10,8 +10,13 @@ from pathlib import Path
 
 import pytest
 import serial
+import typer
+from typer.testing import CliRunner
 
-from robot.simulated import SWITCHES
+from maps import builtin_map
+from protocol.clock import RealClock
+from robot.simulated import SWITCHES, SimulatedRobot
+from robot.simulated.__main__ import cli, let_live
 from robot.simulated.door import COMMANDS
 
 ROOT = Path(__file__).parents[3]
@@ -56,10 +61,33 @@ def test_the_command_opens_a_port_and_a_door_and_ends_with_ctrl_c(tmp_path, endi
 
 
 @pytest.mark.parametrize(
-    ("options", "part"), [(["--map", "atlantis"], "atlantis"), (["--start", "post9"], "cannot start at 'post9'")]
+    ("options", "part"),
+    [
+        (["--map", "atlantis"], "atlantis"),
+        (["--start", "post9"], "cannot start at 'post9'"),
+        (["--door", "nowhere/door"], "--door nowhere/door: cannot be made"),
+        (["--link", "nowhere/port"], "--link nowhere/port: cannot be made"),
+        (["--link", "README.md"], "--link README.md: cannot be made: File exists"),
+    ],
 )
-def test_a_wrong_map_or_start_ends_the_command_with_a_sentence(options, part):
-    ended = subprocess.run([*COMMAND, *options], capture_output=True, text=True, check=False, cwd=ROOT)
-    assert ended.returncode == 2
-    assert part in ended.stderr
-    assert "Traceback" not in ended.stderr
+def test_a_wrong_map_start_or_place_ends_the_command_with_a_sentence(options, part):
+    ended = CliRunner().invoke(cli, options)
+    assert (ended.exit_code, part in ended.stderr) == (2, True)
+
+
+def test_a_world_that_fails_ends_the_command_with_exit_1_and_says_why(capsys):
+    def fails() -> None:
+        raise ZeroDivisionError("the floor has no length")
+
+    clock = RealClock()
+    robot = SimulatedRobot(builtin_map("test_track"), clock.now(), "post1")
+    robot.before_steps.append(fails)
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        with pytest.raises(typer.Exit) as ended:
+            let_live(robot, clock, None)
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+    assert ended.value.exit_code == 1
+    assert "The simulated world has stopped: the floor has no length (ZeroDivisionError)." in capsys.readouterr().err
