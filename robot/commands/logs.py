@@ -1,5 +1,6 @@
 """`logs`: what the daemon has written, and what a black box holds."""
 
+import shutil
 import subprocess
 from pathlib import Path
 from typing import Annotated
@@ -16,6 +17,10 @@ from .asking import OTHER_FOLDER, UNFINISHED, ConfigOption, DataOption, refuse, 
 
 UNIT = "campus-mail-robot"
 NEWEST_LINES = 100
+LOOK_THERE = "Is it installed, and has it run (systemctl status {unit})? If so, ask as root: not everybody may read every journal."
+WRITES_ELSEWHERE = (
+    "A daemon started by hand writes to its terminal, or into a file if the setting log_file names one (--config)."
+)
 
 
 def logs(
@@ -62,16 +67,31 @@ def _show(file: Path, raw: bool) -> None:
 
 
 def _shown(file: Path | None, newest: int, follow: bool) -> int:
-    """By the tools that every system has: they know rotated files and journals. Their exit status."""
+    """By the tools that every system has: they know rotated files and journals. The exit status."""
     if file is None:
-        command = ["journalctl", "--no-pager", "-u", UNIT, "-n", str(newest), *(["-f"] if follow else [])]
-        way_out = "Set log_file where there is no systemd."
-    else:
-        command = ["tail", "-n", str(newest), *(["-F"] if follow else []), "--", str(file)]
-        way_out = "Has the daemon run with these settings?"
+        return journal_of(UNIT, newest, follow)
+    if not file.exists() and not follow:
+        refuse(f"{file} (the setting log_file) is not there yet. Has the daemon run with these settings?")
+    return _run(["tail", "-n", str(newest), *(["-F"] if follow else []), "--", str(file)])
+
+
+def journal_of(unit: str, newest: int, follow: bool) -> int:
+    """What systemd's journal has of this unit. Where it has nothing, that is said; --follow then waits for more."""
+    journalctl = ["journalctl", "--no-pager", "--unit", unit]
+    if not shutil.which(journalctl[0]):
+        refuse(f"There is no journalctl here, since there is no systemd. {WRITES_ELSEWHERE}")
+    if not subprocess.run([*journalctl, "--quiet", "-n", "1"], check=False, capture_output=True).stdout:
+        nothing = (
+            f"The journal has nothing of {unit} that you may read. {LOOK_THERE.format(unit=unit)} {WRITES_ELSEWHERE}"
+        )
+        if not follow:
+            refuse(nothing)
+        typer.echo(nothing, err=True)
+    return _run([*journalctl, "-n", str(newest), *(["-f"] if follow else [])])
+
+
+def _run(command: list[str]) -> int:
     try:
         return UNFINISHED if subprocess.run(command, check=False).returncode else 0
-    except FileNotFoundError:
-        refuse(f"There is no {command[0]} here. {way_out}")
     except KeyboardInterrupt:
         return 0
