@@ -17,7 +17,7 @@ from .asking import OTHER_FOLDER, UNFINISHED, ConfigOption, DataOption, refuse, 
 
 UNIT = "campus-mail-robot"
 NEWEST_LINES = 100
-LOOK_THERE = "Is it installed, and has it run (systemctl status {unit})? If so, ask as root: not everybody may read every journal."
+LOOK_THERE = "Is it installed, and has it run (systemctl status {unit})? If so, ask as root: not everybody may read it."
 WRITES_ELSEWHERE = (
     "A daemon started by hand writes to its terminal, or into a file if the setting log_file names one (--config)."
 )
