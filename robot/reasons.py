@@ -40,6 +40,7 @@ _WAITS: Final[dict[str, Callable[[Navigator], tuple[str, str | None]]]] = {
     "wait_handover(load": lambda n: (f"Waiting for the sender at {n.here}", "the sender's code"),
     "wait_handover(return": lambda n: (f"Waiting at {n.here} for somebody to take mail back", "a code"),
     "wait_handover(receive": lambda n: (f"Waiting for the recipient at {n.here}", "the recipient's code"),
+    "rest(step_back": lambda n: (f"Giving people at {n.here} a moment to step back", None),
     "rest": lambda _: ("Waiting a moment before trying again", None),
     "drive": lambda n: (_driving(n), None),
 }

@@ -183,7 +183,7 @@ def _say(hands: Hands, arguments: Sequence[Value], now: float) -> Run:
 
 
 def _rest(_: Hands, arguments: Sequence[Value], now: float) -> Run:
-    return Rest(now + float(arguments[0]))
+    return Rest(now + float(arguments[-1]))
 
 
 _POST = Argument("Post", Kind.POST)
@@ -191,6 +191,7 @@ _STOP = Argument("Stop", Kind.NAME)
 _ORDER = Argument("Order", Kind.NAME)
 _NAME = Argument("Name", Kind.NAME)
 _REASON = Argument("Reason", Kind.TERM)
+_SECONDS = Argument("Seconds", Kind.NUMBER)
 _STEP = word("Step", *(step.value for step in Step))
 
 ACTIONS: Final = (
@@ -230,7 +231,8 @@ ACTIONS: Final = (
     Action("raise_fault", (_NAME, _REASON), "tell people of a trouble, once until it is cleared", _raise_fault),
     Action("clear_fault", (_NAME,), "it is over", _clear_fault),
     Action("say", (word("Tune", *TUNES),), "a tune and a light", _say),
-    Action("rest", (Argument("Seconds", Kind.NUMBER),), "do nothing for a while", _rest),
+    Action("rest", (_SECONDS,), "do nothing for a while, before trying again", _rest),
+    Action("rest", (word("For", "step_back"), _SECONDS), "the same, for people who should step back", _rest),
 )
 """What our own program uses."""
 

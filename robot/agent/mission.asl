@@ -43,7 +43,7 @@ hopeless(no_route).
 +!attend(Do, Stop, Order, Limit_s)
   <- !come_out;
      wait_handover(Do, Order, Stop, Limit_s);
-     rest(2).
+     rest(step_back, 2).
 
 // In a dock the base is passive, and no tune could say yes or no to anybody.
 +!come_out : docked <- undock.

@@ -49,6 +49,11 @@ def test_what_it_waits_for_is_named(robot: Robot) -> None:
     assert robot.why("claim(post4)")[1] == "permission from the server"
 
 
+def test_a_pause_is_said_to_be_for_what_it_is_for(robot: Robot) -> None:
+    assert robot.why("rest(step_back,2)") == ("Giving people at post3 a moment to step back", None)
+    assert robot.why("rest(15)") == ("Waiting a moment before trying again", None)
+
+
 def test_out_of_network_it_says_that_it_waits_for_the_network(robot: Robot) -> None:
     class Unreachable:
         online = False

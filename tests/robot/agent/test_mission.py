@@ -64,7 +64,7 @@ def test_loading_is_waited_for_and_then_the_recipient_is_next() -> None:
     assert "wait_handover(load,o1,s1,600)" in stage.waiting, "nothing is assumed"
     stage.perceives("carrying(o1)")
     stage.succeeds("wait_handover(load,o1,s1,600)")
-    stage.does("rest(2)")  # people step back
+    stage.does("rest(step_back,2)")  # people step back
     stage.expect("finish_stop(s1)")
     stage.perceives("next_stop(1)", without=("next_stop(0)",))
     stage.succeeds("finish_stop(s1)")

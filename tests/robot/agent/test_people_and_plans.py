@@ -22,7 +22,7 @@ def hand_over(stage: Stage, number: int, what: str) -> None:
     carried = f"carrying({order})"
     stage.perceives(carried) if purpose == "load" else stage.perceives(without=(carried,))
     stage.succeeds(action)
-    stage.does("rest(2)")
+    stage.does("rest(step_back,2)")
     done(stage, number, stop)
 
 
