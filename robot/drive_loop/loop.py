@@ -181,6 +181,7 @@ class DriveLoop:
             faults=self._faults,
             find_line_episodes=self._jobs.episodes,
             bumps=self._bumps,
+            something_ahead_s=sensing.something_ahead_s,
         )
 
     def _senses(self, now: float) -> reflexes.Senses:

@@ -1,5 +1,6 @@
 """What the body knows: base, line sensor, odometry, and what the camera reported; its own parts fail by name."""
 
+import math
 from collections.abc import Iterable
 
 import structlog
@@ -49,6 +50,7 @@ class Sensing:
         self.diodes_broken = False
         self.spot_went_down = False
         """At this tick."""
+        self.something_ahead_s = -math.inf
         self._camera_s, self._camera_age_s = now, 0.0
         self._started_s = now
 
@@ -61,6 +63,8 @@ class Sensing:
             self.spot_went_down = new.spot_pressed and not old.spot_pressed
             self.odometry = advanced(self.odometry, old, new, self._shape)
             self.lasting.feel(old, new, sent)
+            if new.something_ahead:
+                self.something_ahead_s = now
         elif sent.still:
             self.lasting.standing = False
         for source in self._sources:

@@ -27,6 +27,7 @@ def state_of(raw: Mapping[str, int], counts: tuple[int, int], mode: Mode, now: f
         cliff_right=bool(raw["cliff_right"]),
         over_currents=raw["over_currents"],
         buttons=raw["buttons"],
+        light_bumpers=raw["light_bumpers"],
         charging_state=_charging_state(raw["charging_state"]),
         home_base=bool(chargers & 2),
         internal_charger=bool(chargers & 1),

@@ -39,6 +39,9 @@ class Mode(IntEnum):
     UNKNOWN = -1
 
 
+AHEAD_LIGHTS = 0b011110
+# Not the outermost two: they look to the sides, and every wall that the robot passes closely shines back. The next two
+# look half ahead: a wall along the way comes into their sight only where the bumper all but scrapes it.
 VIRTUAL_WALL_IR = 162
 """The character that a virtual wall sends (packets 17, 52, 53)."""
 
@@ -77,6 +80,8 @@ class BaseState:
     """Bits: 0 side brush, 2 main brush, 3 right wheel, 4 left wheel."""
     buttons: int = 0
     """Bits: 0 Clean, 1 Spot, 2 Dock."""
+    light_bumpers: int = 0
+    """Bits: 0 left, 1 front left, 2 centre left, 3 centre right, 4 front right, 5 right."""
     charging_state: ChargingState = ChargingState.NOT_CHARGING
     home_base: bool = False
     internal_charger: bool = False
@@ -97,6 +102,11 @@ class BaseState:
     @property
     def bump(self) -> bool:
         return self.bump_left or self.bump_right
+
+    @property
+    def something_ahead(self) -> bool:
+        """The light bumpers see something close before the robot; dark things they overlook."""
+        return bool(self.light_bumpers & AHEAD_LIGHTS)
 
     @property
     def wheel_drop(self) -> bool:

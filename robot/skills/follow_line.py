@@ -11,6 +11,7 @@ from maps import CampusMap
 
 from ..drivers.interfaces import STOP, BodyShape, WheelSpeeds
 from .find_line import FindLine, over_line
+from .give_way import GiveWay, most_mm_s
 from .interfaces import Done, Failed, Running, Step, View
 from .line_estimate import LineEstimate, gains
 from .post_ahead import PostAhead
@@ -33,9 +34,6 @@ BEYOND_MM, BACK_MM_S = 25.0, 50.0
 FRUITLESS_MM = 500.0
 MOST_SEARCHES = 3
 """So many searches in a row with less than half a metre of line between them: this is where the line ends."""
-MOST_BUMPS = 3
-GIVES_WAY_S = (6.0, 8.0)
-"""How long it stands after each bump but the last: whoever is in the way has heard it and can step aside."""
 INNER_WHEEL_MM_S, OUTER_WHEEL_MM_S = 30.0, 200.0
 MISSED_SHARE, MISSED_MM = 0.03, 40.0
 """No marker so far beyond the length of the corridor: calibrated wheels and tape measures err by less."""
@@ -79,8 +77,7 @@ class FollowLine:
         """See `interfaces.Skill.start`."""
         self._line = LineEstimate(self._shape)
         self._last = self._begin = view.odometry
-        self._bumps_before = self._bumps = view.bumps
-        self._gives_way_until_s = now
+        self._give_way = GiveWay(view, now)
         self._lit_mm = view.odometry.travelled_mm
         self._lit_ahead_mm = view.odometry.ahead_mm
         self._line_end_mm: float | None = None
@@ -96,9 +93,9 @@ class FollowLine:
         """See `interfaces.Skill.step`."""
         if view.base is not None and view.base.docked:
             return Failed("docked")
-        if view.bumps - self._bumps_before >= MOST_BUMPS:
+        if self._give_way.blocked(view):
             return Failed("blocked")
-        if self._gives_way(view, now):
+        if self._give_way.stands(view, now):
             return Running(STOP)
         self._post.look(view, self._line.heading)
         if self._search is not None:
@@ -113,14 +110,8 @@ class FollowLine:
         if self._has_lost(view, to_go_mm):
             missed = self._may_be_at_post(view) and not self._post.supposed
             return self._missed(view) if missed else self._lost(view, now)
-        speeds = self._speeds(to_go_mm, self._cruise_mm_s if to_go_mm is not None else self._looking_mm_s(view))
-        return Running(speeds)
-
-    def _gives_way(self, view: View, now: float) -> bool:
-        if view.bumps > self._bumps:
-            self._bumps = view.bumps
-            self._gives_way_until_s = now + GIVES_WAY_S[self._bumps - self._bumps_before - 1]
-        return now < self._gives_way_until_s
+        wanted_mm_s = self._cruise_mm_s if to_go_mm is not None else self._looking_mm_s(view)
+        return Running(self._speeds(to_go_mm, min(wanted_mm_s, most_mm_s(view))))
 
     # The post
 

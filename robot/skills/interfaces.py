@@ -7,6 +7,7 @@ A second motion while one runs ends at once with Failed("busy"). Every job ends 
 Failed("cancelled").
 """
 
+import math
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -58,6 +59,8 @@ class View:
     find_line_episodes: int = 0
     bumps: int = 0
     """Bumps so far."""
+    something_ahead_s: float = -math.inf
+    """When the light bumpers last saw something ahead."""
 
     @property
     def heard_base(self) -> BaseState | None:

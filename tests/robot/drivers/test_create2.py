@@ -95,6 +95,19 @@ def test_a_frame_becomes_a_state_with_units():
     assert state.battery_ratio == pytest.approx(2000 / 2600)
 
 
+@pytest.mark.parametrize(
+    ("bits", "ahead"),
+    [(0b000001, False), (0b000010, True), (0b000100, True), (0b001000, True), (0b010000, True), (0b100000, False)],
+)
+def test_all_light_bumpers_but_the_outermost_tell_of_something_ahead(bits: int, ahead: bool):
+    port = ScriptedPort()
+    base = Create2(lambda: port)
+    now = started(port, base)
+    port.arriving += frame(light_bumpers=bits)
+    state = base.poll(now)
+    assert state is not None and (state.light_bumpers, state.something_ahead) == (bits, ahead)
+
+
 def test_a_capacity_of_nothing_just_after_boot_is_no_ratio():
     port = ScriptedPort()
     base = Create2(lambda: port)
