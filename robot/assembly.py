@@ -238,7 +238,7 @@ def join(
         black_box,
         (DockInfrared(devices.base),),
     )
-    navigator = Navigator(campus, _home(settings, campus), duties)
+    navigator = Navigator(campus, _home(settings, campus), duties, now)
     hands = Hands(drive, navigator, duties, settings.drive.cruise_mm_s, settings.drive.turn_mm_s, shape)
     mode = percept_mode(settings)
     mind = Mind(Agent(program, name=settings.name), Actions(hands, table_for(mode)), hands, settings, mode)

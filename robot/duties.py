@@ -6,8 +6,8 @@ may be interrupted and begun again at its present stop at any time.
 """
 
 import uuid
-from collections.abc import Callable, Iterable, Sequence
-from datetime import datetime
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from datetime import datetime, timedelta
 from typing import Final, Literal, Protocol
 
 from protocol.parts import Leg, Part, Purpose, Stop
@@ -357,6 +357,16 @@ class Duties:
         """The robot stands at a marker: remembered at once, since after a power cut nothing else tells where it is."""
         self.memory.see(post, self._utc())
         self._changed()
+
+    def closed_ages_s(self) -> dict[str, float]:
+        """The corridors in which it turned back, by name, and how long ago; just now if the clock was put back."""
+        now = self._utc()
+        return {name: max(0.0, (now - at).total_seconds()) for name, at in self.memory.closed().items()}
+
+    def keep_closed(self, ages_s: Mapping[str, float]) -> None:
+        """These instead of those that were kept."""
+        now = self._utc()
+        self.memory.keep_closed({name: now - timedelta(seconds=age_s) for name, age_s in ages_s.items()})
 
     def heading_for(self, towards: str | None) -> None:
         self.memory.head(towards)

@@ -8,7 +8,7 @@ Everything is in the database of `robot/store.py`. What belongs together is one 
         outbox.put(Event(happened=receipt))
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from typing import Any, Final, TypeVar
@@ -32,6 +32,7 @@ _LEGS: Final = TypeAdapter(tuple[Leg, ...])
 _POSITION: Final = TypeAdapter(Position)
 _FLAG: Final = TypeAdapter(bool)
 _NAMES: Final = TypeAdapter(frozenset[str])
+_TIMES: Final = TypeAdapter(dict[str, datetime])
 _RECEIVED: Final = TypeAdapter(Received)
 _WORD: Final = TypeAdapter[str | None](str | None)
 
@@ -245,6 +246,14 @@ class Memory:
             position = self.position().model_copy(update={"towards": towards})
             self._write("position", _POSITION, position)
             return position
+
+    def closed(self) -> dict[str, datetime]:
+        """The corridors in which it turned back, by name, and when."""
+        return self._read("closed", _TIMES, {})
+
+    def keep_closed(self, closed: Mapping[str, datetime]) -> None:
+        """These instead of those before."""
+        self._write("closed", _TIMES, closed)
 
     # What came from the server.
 

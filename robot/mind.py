@@ -133,7 +133,7 @@ class Mind:
             navigator.way(),
             navigator.rests_at,
             navigator.moved,
-            navigator.blocked,
+            navigator.closed.names,
         )
         return Seen(
             at_s=now,
@@ -154,9 +154,9 @@ class Mind:
             duties.report_fault(name, TOLD[name], self.hands.place, cleared=name not in faults)
 
     def _tell_open_way(self) -> None:
-        """A blocked way is over when its time is, or when a restart has forgotten it: then it is tried again."""
+        """A blocked way is over when its time is: then it is tried again."""
         duties = self.hands.duties
-        if WAY_BLOCKED in duties.held.faults and not self.hands.navigator.blocked:
+        if WAY_BLOCKED in duties.held.faults and not self.hands.navigator.closed.names:
             duties.report_fault(WAY_BLOCKED, "The robot tries that way again.", self.hands.place, cleared=True)
 
     def _stop_or_rearm(self, view: View) -> None:

@@ -11,6 +11,7 @@ from robot.drivers.interfaces import Odometry, Sighting
 from robot.duties import Duties
 from robot.navigation.approach import is_aslant
 from robot.navigation.by_fixes import near_dock
+from robot.navigation.closed import Closed
 from robot.navigation.directions import Way, next_post
 from robot.navigation.moved import cannot_be_next, found_at, nowhere
 from robot.navigation.position import REACHED_MM, Position
@@ -36,7 +37,7 @@ PLAIN_TURNS = {"left": math.pi / 2, "right": -math.pi / 2, "behind": math.pi}
 class Navigator:
     """Position and destination. Told by actions what they are about to do, and by the body what it sees."""
 
-    def __init__(self, campus: CampusMap, home: str | None, duties: Duties) -> None:
+    def __init__(self, campus: CampusMap, home: str | None, duties: Duties, now: float) -> None:
         self.campus, self.home = campus, home
         self.destination: str | None = None
         self.visited: list[str] = []
@@ -44,6 +45,7 @@ class Navigator:
         self.position = remembered(campus, duties.held.position)
         self.towards = duties.held.position.towards
         """The post ahead, once the robot has set out."""
+        self.closed = Closed(duties.closed_ages_s(), duties.keep_closed, now)
         self._duties = duties
         self._odometry = Odometry()
         self._disturbed = 0  # by searches and bumps, so far
@@ -54,7 +56,6 @@ class Navigator:
         self._arrived_mm = 0.0
         self._nearest: tuple[object, str | None] = ((), home)  # asked ten times a second, answered once per post
         self._far_end: str | None = None  # of the corridor that it turned round in
-        self._blocked_until_s: dict[str, float] = {}
         self._lifted = False
         self._lifted_from: set[str] = set()
         self.unread: set[str] = set()
@@ -85,7 +86,7 @@ class Navigator:
         reached = after.current != before.current and not after.has_left
         reached = reached or (before.approaching is not None and after.approaching is None)
         reached = reached or self._is_back(after)
-        self._blocked_until_s = {name: end_s for name, end_s in self._blocked_until_s.items() if view.at_s < end_s}
+        self.closed.pass_time(view.at_s)
         if after.current and (reached or (docked and self._leaving)):
             self._note_arrival(after.current, before.current)
         elif after.has_left and not self._leaving:
@@ -198,12 +199,7 @@ class Navigator:
             return None
 
     def _avoided(self) -> frozenset[str]:
-        return self.blocked | {corridor_name(leg.from_post, leg.to_post) for leg in self._duties.avoid}
-
-    @property
-    def blocked(self) -> frozenset[str]:
-        """The corridors, by name, that something stands in."""
-        return frozenset(self._blocked_until_s)
+        return self.closed.names | {corridor_name(leg.from_post, leg.to_post) for leg in self._duties.avoid}
 
     @property
     def corridor(self) -> Leg | None:
@@ -280,7 +276,7 @@ class Navigator:
 
     def nearest_dock(self) -> str | None:
         """The dock with the shortest way from here that is open; the robot's own while the place is unknown."""
-        asked = (self.here, self._duties.avoid, self.blocked)
+        asked = (self.here, self._duties.avoid, self.closed.names)
         if asked != self._nearest[0]:
             self._nearest = (asked, self._find_nearest_dock())
         return self._nearest[1]
@@ -335,14 +331,6 @@ class Navigator:
         at_mm = position.post_at_mm
         near = at_mm is not None and abs(at_mm - self._odometry.ahead_mm) <= REACHED_MM
         return self._far_end is not None and position.approaching is None and near
-
-    def block(self, leg: Leg, until_s: float) -> None:
-        """Something stands in this corridor: no way leads through it until then."""
-        self._blocked_until_s[corridor_name(leg.from_post, leg.to_post)] = until_s
-
-    def reopen(self) -> None:
-        """It has waited: whoever stood there may have gone."""
-        self._blocked_until_s = {}
 
     def noted_move(self) -> None:
         """The agent knows that it was moved."""

@@ -10,8 +10,6 @@ from .arguments import Value
 from .hands import Hands
 from .runs import DONE, AtOnce, Ended, Run, Wait
 
-BLOCKED_S: Final = 600.0
-"""So long no way leads through a corridor in which the robot turned back; then it is tried again."""
 WAY_BLOCKED: Final = "way_blocked"
 CLOSED_BY: Final = {
     "blocked": "Something stands in it",
@@ -86,14 +84,15 @@ def mark_blocked(hands: Hands, arguments: Sequence[Value], now: float) -> Run:
     leg, why = hands.navigator.corridor, str(arguments[0])
     if leg is None:
         return AtOnce(Ended("not_in_a_corridor"))
-    hands.navigator.block(leg, now + BLOCKED_S)
     reason = f"The robot turned back in the corridor from {leg.from_post} to {leg.to_post}. {CLOSED_BY[why]}."
     hands.duties.report_fault(WAY_BLOCKED, reason, hands.place)
+    # Last: killed in between, the robot tells after its restart that it tries this way again, and does.
+    hands.navigator.closed.close(leg, now)
     return AtOnce()
 
 
 def reopen(hands: Hands, _: Sequence[Value], __: float) -> Run:
-    hands.navigator.reopen()
+    hands.navigator.closed.open_all()
     return AtOnce()
 
 

@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import replace
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta
 
 import pytest
 
@@ -11,6 +11,7 @@ from protocol.parts import Leg
 from robot.drivers.interfaces import Sighting
 from robot.duties import Duties
 from robot.memory import Memory
+from robot.navigation.closed import CLOSED_S
 from robot.navigator import Navigator
 from robot.outbox import Outbox
 from robot.store import Store
@@ -22,11 +23,12 @@ CAMPUS = builtin_map("test_track")
 class Walk:
     """A navigator with a body that is led through the map by hand."""
 
-    def __init__(self, store: Store, home: str | None = "post5") -> None:
-        self.duties = Duties(store, Memory(store), Outbox(store), lambda: datetime(2026, 1, 5, tzinfo=UTC))
-        self.navigator = Navigator(CAMPUS, home, self.duties)
-        self.body = FakeBody()
+    def __init__(self, store: Store, home: str | None = "post5", since_midnight_s: float = 0.0) -> None:
+        utc = datetime(2026, 1, 5, tzinfo=UTC) + timedelta(seconds=since_midnight_s)
+        self.duties = Duties(store, Memory(store), Outbox(store), lambda: utc)
         self.now = 0.0
+        self.navigator = Navigator(CAMPUS, home, self.duties, self.now)
+        self.body = FakeBody()
 
     def look(self) -> None:
         self.now += 0.1
@@ -146,11 +148,29 @@ def test_a_power_cut_in_the_middle_of_a_turn_is_not_taken_for_standing(walk: Wal
 def test_a_blocked_corridor_is_avoided_until_its_time_is_over(walk: Walk) -> None:
     walk.navigator.place("post2", "post3")
     walk.navigator.destination = "post5"
-    walk.navigator.block(Leg(from_post="post2", to_post="post3"), until_s=60.0)
+    walk.navigator.closed.close(Leg(from_post="post2", to_post="post3"), walk.now)
     assert (walk.navigator.way(), walk.navigator.nearest_dock()) == (None, None), "the only dock lies behind it"
-    walk.now = 60.0
+    walk.now += CLOSED_S
     walk.look()
     assert (walk.navigator.way(), walk.navigator.nearest_dock()) == ("forward", "post5")
+
+
+@pytest.mark.parametrize(("away_s", "left_s"), [(240.0, 360.0), (CLOSED_S, 0.0), (-86_400.0, CLOSED_S)])
+def test_a_corridor_stays_closed_through_a_restart_for_as_long_as_it_had_left(
+    walk: Walk, store: Store, away_s: float, left_s: float
+) -> None:
+    walk.navigator.closed.close(Leg(from_post="post2", to_post="post3"), walk.now)
+    again = Walk(store, since_midnight_s=away_s)
+    for after_s, closed in ((left_s - 1, left_s > 0), (left_s, False)):
+        again.now = after_s
+        again.look()
+        assert bool(again.navigator.closed.names) == closed, f"{after_s:g} s after the restart"
+
+
+def test_a_corridor_that_was_opened_again_is_not_closed_by_a_restart(walk: Walk, store: Store) -> None:
+    walk.navigator.closed.close(Leg(from_post="post2", to_post="post3"), walk.now)
+    walk.navigator.closed.open_all()
+    assert not Walk(store).navigator.closed.names
 
 
 def test_a_robot_that_turns_round_between_posts_comes_back_to_where_it_was(walk: Walk) -> None:

@@ -36,7 +36,7 @@ class Robot:
 def robot(tmp_path: Path) -> Iterator[Robot]:
     store = Store(tmp_path / "robot.db")
     duties = Duties(store, Memory(store), Outbox(store), lambda: datetime(2026, 1, 5, tzinfo=UTC))
-    navigator = Navigator(builtin_map("test_track"), "post5", duties)
+    navigator = Navigator(builtin_map("test_track"), "post5", duties, now=0.0)
     navigator.place("post3", "post4")
     yield Robot(duties, navigator)
     store.close()

@@ -61,7 +61,7 @@ class Bench:
 
     def __post_init__(self) -> None:
         self.duties = Duties(self.store, Memory(self.store), Outbox(self.store), lambda: NOW)
-        self.navigator = Navigator(builtin_map("test_track"), "post5", self.duties)
+        self.navigator = Navigator(builtin_map("test_track"), "post5", self.duties, now=0.0)
         self.hands = Hands(self.body, self.navigator, self.duties, noted=self.noted.append)
         self.actions = Actions(self.hands, table_for(self.mode))
         self._next = 0
@@ -177,7 +177,7 @@ def test_a_way_that_is_closed_for_now_is_told_from_one_that_is_not_there(bench: 
     assert bench.result("set_destination(post4)") is None, "it will be open again"
     assert bench.result("claim(post4)") == "way_closed"
     assert bench.result("claim(post4)") is None, "what was denied is asked for again"
-    bench.navigator.block(TO_POST3, until_s=60.0)
+    bench.navigator.closed.close(TO_POST3, now=0.0)
     for _ in range(2):
         assert bench.result("claim(post4)") == "way_closed", "what stands there does not go away by asking"
 
@@ -190,10 +190,10 @@ def test_a_corridor_in_which_it_turned_back_is_told_by_name_and_closed_for_ten_m
     assert "from post2 to post3. Something stands in it." in bench.told()[-1]
     bench.body.passes_time(699.0)
     bench.navigator.look(bench.body.view)
-    assert bench.navigator.blocked
+    assert bench.navigator.closed.names == {"post2-post3"}
     bench.body.passes_time(700.0)
     bench.navigator.look(bench.body.view)
-    assert not bench.navigator.blocked
+    assert not bench.navigator.closed.names
 
 
 def with_server(bench: Bench, *granted: Leg) -> None:

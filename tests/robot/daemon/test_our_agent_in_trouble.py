@@ -142,6 +142,11 @@ def test_where_there_is_another_way_it_goes_round_a_closed_corridor(tmp_path: Pa
     assert all(leg in service.held for leg in run.duties.held.grants)
     run.close()
 
+    again = SimulatedRun(tmp_path, map=str(SQUARE))
+    again.passes(1)
+    assert again.told().count("fault way_blocked") == 1, "a restart does not open the corridor"
+    again.close()
+
 
 def test_a_stop_from_the_service_holds_until_resume_and_the_mission_goes_on(run: SimulatedRun) -> None:
     service = with_service(run)
