@@ -30,6 +30,8 @@ TURNING = frozenset({"turn", "undock", "find_line"})
 LIFTED = "wheel_drop"
 """The fault during which somebody holds the robot in their hands, perhaps to put it down elsewhere."""
 MARKER_UNREAD = "marker_unread"
+KEPT_POSTS = 500
+"""More than a run with a summary visits; a robot runs for months."""
 STRAIGHT_ON_RAD, SURELY_PAST_M = math.radians(30), 0.3
 PLAIN_TURNS = {"left": math.pi / 2, "right": -math.pi / 2, "behind": math.pi}
 
@@ -41,7 +43,9 @@ class Navigator:
         self.campus, self.home = campus, home
         self.destination: str | None = None
         self.visited: list[str] = []
-        """Every post reached, in order; the same one twice only after another."""
+        """The posts reached, in order, the newest ones; the same one twice only after another."""
+        self.arrivals = 0
+        """How many posts it has reached so far."""
         self.position = remembered(campus, duties.held.position)
         self.towards = duties.held.position.towards
         """The post ahead, once the robot has set out."""
@@ -141,6 +145,8 @@ class Navigator:
             self._far_end = None
         if self.visited[-1:] != [post]:
             self.visited.append(post)
+            self.arrivals += 1
+            del self.visited[:-KEPT_POSTS]
 
     def _learn_scale(self, post: str, before: str | None) -> None:
         beside = {other.name: corridor.length_m for other, corridor in self.campus.neighbours(post)}
@@ -188,6 +194,11 @@ class Navigator:
     def here(self) -> str | None:
         """The last post reached: the place to name in a report."""
         return self.position.current
+
+    def reached_after(self, arrivals: int) -> list[str]:
+        """The posts reached after so many others; of very many the newest."""
+        new = self.arrivals - arrivals
+        return self.visited[-new:] if new else []
 
     def way(self) -> Way | None:
         """The way from here to the destination; None between posts, and where no way leads."""

@@ -20,7 +20,7 @@ class Reporter:
     began_s: float
     say: Callable[[str], None]
     now_s: float = 0.0
-    _visited: int = 0
+    _arrivals: int = 0
     _told: set[str] = field(default_factory=set)
     _docked: bool = False
     _lows: int = 0
@@ -31,10 +31,10 @@ class Reporter:
     def look(self, now: float) -> None:
         """After a tick of the mind."""
         self.now_s = now
-        visited = self.mind.hands.navigator.visited
-        for post in visited[self._visited :]:
+        navigator = self.mind.hands.navigator
+        for post in navigator.reached_after(self._arrivals):
             self._line(f"at {post}")
-        self._visited = len(visited)
+        self._arrivals = navigator.arrivals
         self._look_at_actions()
         self._look_at_battery()
 

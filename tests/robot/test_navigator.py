@@ -12,7 +12,7 @@ from robot.drivers.interfaces import Sighting
 from robot.duties import Duties
 from robot.memory import Memory
 from robot.navigation.closed import CLOSED_S
-from robot.navigator import Navigator
+from robot.navigator import KEPT_POSTS, Navigator
 from robot.outbox import Outbox
 from robot.store import Store
 from tests.robot.fake_body import FakeBody
@@ -56,6 +56,16 @@ def walk(store: Store) -> Walk:
     walk = Walk(store)
     walk.look()
     return walk
+
+
+def test_of_months_of_posts_the_newest_are_kept_and_each_is_told_once() -> None:
+    with Store(None) as store:
+        walk, told = Walk(store), list[str]()
+        for number in range(KEPT_POSTS + 3):
+            walk.navigator.place(f"post{number % 2 + 1}", None)
+            told += walk.navigator.reached_after(len(told))
+        assert told[-3:] == walk.navigator.visited[-3:] == ["post1", "post2", "post1"]
+        assert (len(told), len(walk.navigator.visited)) == (KEPT_POSTS + 3, KEPT_POSTS)
 
 
 def test_the_turns_of_the_papers_track_come_from_its_geometry(walk: Walk) -> None:
