@@ -97,6 +97,9 @@ class Jobs:
                 self.end(job.number, Failed(job.skill.on_timeout), now)
             elif job is not self.motion or job.wheels is None or not held:
                 self._step(job, view, now)
+            else:
+                # What it wanted before is old when the reflex lets go: it would twitch before it has looked again.
+                job.wheels = STOP
         if self.motion is not None:
             return self.motion.wheels
         return self._pulse if now < self._pulse_until_s else STOP

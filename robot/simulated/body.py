@@ -28,6 +28,7 @@ OVER_CURRENT_AFTER_S = 1.0
 TOUCH_M = 0.002
 CLEANING_MM_S: Wheels = (120.0, 200.0)
 CLIFF_SIGNAL, FLOOR_SIGNAL = 0, 2800
+DAZZLED_SIGNAL = 1000
 VIRTUAL_WALL_IR = 162
 # The directional receivers see this far to their own side and a little across [A].
 IR_SIDE_RAD, IR_ACROSS_RAD = math.radians(100), math.radians(15)
@@ -207,8 +208,10 @@ class Body:
         self._tell_lights()
 
     def _tell_lights(self) -> None:
-        told = self.readings
-        signals = light_signals(self._contacts) if self._contacts else (0,) * 6
+        told, base = self.readings, self.base
+        signals = light_signals(self._contacts, base.x_m, base.y_m, base.heading_rad)
+        if self.faults.lights_blind or self.faults.lights_dazzled:
+            signals = (DAZZLED_SIGNAL * self.faults.lights_dazzled,) * 6
         told.light_left, told.light_front_left, told.light_centre_left = signals[:3]
         told.light_centre_right, told.light_front_right, told.light_right = signals[3:]
         told.light_bumper = sum(1 << bit for bit, signal in enumerate(signals) if signal)

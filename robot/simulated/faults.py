@@ -30,6 +30,8 @@ class Faults:
     dock_mute: bool = False
     bump_left: bool = False
     bump_right: bool = False
+    lights_blind: bool = False
+    lights_dazzled: bool = False
     cliff_left: bool = False
     cliff_front_left: bool = False
     cliff_front_right: bool = False
@@ -106,6 +108,8 @@ SWITCHES: dict[str, str] = {
     "dock_mute": "after 30 s on the dock the robot hears nothing but Reset (some of the 600 series)",
     "bump_left": "the left half of the bumper is pressed",
     "bump_right": "the right half of the bumper is pressed",
+    "lights_blind": "the light bumpers see nothing, as of dark clothes",
+    "lights_dazzled": "all light bumpers see something, as in low sun",
     "cliff_left": "the left cliff sensor sees no floor",
     "cliff_front_left": "the front left cliff sensor sees no floor",
     "cliff_front_right": "the front right cliff sensor sees no floor",

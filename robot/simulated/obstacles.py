@@ -11,7 +11,8 @@ BUMPER_RAD = math.radians(95)
 LIGHT_RANGE_M = 0.12
 # Bearing of each light bumper from straight ahead, left positive, in the order of packets 46 to 51 [A].
 LIGHTS_RAD = tuple(math.radians(angle) for angle in (65, 38, 13, -13, -38, -65))
-LIGHT_WIDTH_RAD = math.radians(20)
+LIGHT_BEAMS_RAD = tuple(math.radians(angle) for angle in (-10, 0, 10))  # how wide each looks [A]
+BEAM_ENDS_M = 0.002
 
 
 @dataclass(frozen=True)
@@ -58,6 +59,7 @@ class Contact:
 
     gap_m: float
     bearing_rad: float
+    obstacle: Obstacle
 
     @property
     def pressed(self) -> tuple[bool, bool]:
@@ -72,15 +74,29 @@ def contact(obstacle: Obstacle, x_m: float, y_m: float, heading_rad: float) -> C
     near_x, near_y, radius = obstacle.nearest(x_m, y_m)
     bearing = math.atan2(near_y - y_m, near_x - x_m) - heading_rad
     gap = math.hypot(near_x - x_m, near_y - y_m) - radius - BUMPER_RADIUS_M
-    return Contact(gap, (bearing + math.pi) % math.tau - math.pi)
+    return Contact(gap, (bearing + math.pi) % math.tau - math.pi, obstacle)
 
 
-def light_signals(contacts: list[Contact]) -> tuple[int, ...]:
-    """Packets 46 to 51: brighter the nearer, 0 to 4095 [A]."""
-    return tuple(max((_signal(one, at_rad) for one in contacts), default=0) for at_rad in LIGHTS_RAD)
+def light_signals(contacts: list[Contact], x_m: float, y_m: float, heading_rad: float) -> tuple[int, ...]:
+    """Packets 46 to 51 at this pose: brighter the nearer, 0 to 4095 [A]."""
+    within = [one.obstacle for one in contacts if one.gap_m <= LIGHT_RANGE_M]
+    if not within:
+        return (0,) * len(LIGHTS_RAD)
+    return tuple(
+        max(_signal(one, x_m, y_m, heading_rad + at_rad + beam) for one in within for beam in LIGHT_BEAMS_RAD)
+        for at_rad in LIGHTS_RAD
+    )
 
 
-def _signal(one: Contact, at_rad: float) -> int:
-    if one.gap_m > LIGHT_RANGE_M or abs(one.bearing_rad - at_rad) > LIGHT_WIDTH_RAD:
-        return 0
-    return min(4095, round(2000 * (1 - max(one.gap_m, 0.0) / LIGHT_RANGE_M)))
+def _signal(obstacle: Obstacle, x_m: float, y_m: float, beam_rad: float) -> int:
+    """Along the beam, outwards from the bumper: nothing is nearer than the nearest point, so it leaps that far."""
+    out_m = 0.0
+    while out_m <= LIGHT_RANGE_M:
+        from_m = BUMPER_RADIUS_M + out_m
+        at_x, at_y = x_m + from_m * math.cos(beam_rad), y_m + from_m * math.sin(beam_rad)
+        near_x, near_y, radius_m = obstacle.nearest(at_x, at_y)
+        free_m = math.hypot(near_x - at_x, near_y - at_y) - radius_m
+        if free_m < BEAM_ENDS_M:
+            return round(2000 * (1 - out_m / LIGHT_RANGE_M))
+        out_m += free_m
+    return 0

@@ -23,6 +23,8 @@ OF_THE_BASE = {
     "dock_mute",
     "bump_left",
     "bump_right",
+    "lights_blind",
+    "lights_dazzled",
     "cliff_left",
     "cliff_front_left",
     "cliff_front_right",

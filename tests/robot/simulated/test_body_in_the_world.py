@@ -155,6 +155,25 @@ def test_the_light_bumper_sees_somebody_before_the_touch(make):
     assert bench.ask(7) == 0
 
 
+@pytest.mark.parametrize(
+    ("beside_m", "bits"), [(0.30, 0), (0.25, 0b000001), (-0.25, 0b100000), (0.20, 0b000011), (-0.20, 0b110000)]
+)
+def test_a_wall_along_the_way_is_seen_by_the_lights_that_look_to_its_side(make, beside_m, bits):
+    """The robot looks south, so east is on its left."""
+    bench = make(options=Options(build=Build(motion=STILL), obstacles=(Wall(beside_m, 0, beside_m, 6),)))
+    bench.send(128)
+    assert bench.ask(45) == bits
+
+
+@pytest.mark.parametrize(("switch", "bits"), [("lights_blind", 0), ("lights_dazzled", 0b111111)])
+def test_light_bumpers_can_be_fooled(make, switch, bits):
+    bench = make(options=Options(build=Build(motion=STILL), obstacles=(Person(0, 3.57, 0.2),)))
+    bench.robot.set_fault(switch, True)
+    bench.send(128)
+    assert bench.ask(45) == bits
+    assert bool(bench.ask(48)) == bool(bits)
+
+
 def test_somebody_who_steps_aside_lets_the_robot_go_on(make):
     bench = make(options=Options(build=Build(motion=STILL), obstacles=(Person(0, 3.4),)))
     bench.send(128, 131)
