@@ -13,6 +13,7 @@ from robot.navigation.approach import is_aslant
 from robot.navigation.by_fixes import near_dock
 from robot.navigation.closed import Closed
 from robot.navigation.directions import Way, next_post
+from robot.navigation.docks import in_dock, nearest_dock, way_out
 from robot.navigation.moved import cannot_be_next, found_at, nowhere
 from robot.navigation.position import REACHED_MM, Position
 from robot.navigation.remembering import remembered
@@ -32,7 +33,7 @@ LIFTED = "wheel_drop"
 MARKER_UNREAD = "marker_unread"
 KEPT_POSTS = 500
 """More than a run with a summary visits; a robot runs for months."""
-STRAIGHT_ON_RAD, SURELY_PAST_M = math.radians(30), 0.3
+SURELY_PAST_M = 0.3
 PLAIN_TURNS = {"left": math.pi / 2, "right": -math.pi / 2, "behind": math.pi}
 
 
@@ -84,7 +85,7 @@ class Navigator:
         before = self.position
         after = before.after(self.campus, view.odometry, post, view.post_odometry, docked)
         if docked and not self._docked:
-            after = self._in_dock(after)
+            after = in_dock(self.campus, after, self.home, view.odometry)
         self._docked = docked
         self.position = after
         reached = after.current != before.current and not after.has_left
@@ -117,21 +118,6 @@ class Navigator:
         if elsewhere or post.text not in self._lifted_from:
             self.moved = post.text
             self._duties.clear(self._duties.held.grants)
-
-    def _in_dock(self, position: Position) -> Position:
-        """In a dock the robot knows its place, whatever it believed before: the last post seen, if it has a dock."""
-        here = self.campus.posts.get(position.current or "")
-        post = here if here and here.dock else self.campus.posts.get(self.home or "")
-        if post is None or post.dock is None:
-            return position
-        previous = position.previous if position.current == post.name else position.current
-        return Position(
-            current=post.name,
-            previous=previous,
-            facing_rad=post.dock.heading_rad,
-            spot_turn_rad=self._odometry.spot_turn_rad,
-            post_at_mm=self._odometry.ahead_mm,
-        )
 
     def _note_arrival(self, post: str, before: str | None) -> None:
         self._learn_scale(post, before)
@@ -289,20 +275,9 @@ class Navigator:
         """The dock with the shortest way from here that is open; the robot's own while the place is unknown."""
         asked = (self.here, self._duties.avoid, self.closed.names)
         if asked != self._nearest[0]:
-            self._nearest = (asked, self._find_nearest_dock())
+            near = nearest_dock(self.campus, self.here, self._avoided()) if self.here else self.home
+            self._nearest = (asked, near)
         return self._nearest[1]
-
-    def _find_nearest_dock(self) -> str | None:
-        if self.here is None:
-            return self.home
-        reachable: list[tuple[float, str]] = []
-        for dock in self.campus.docks():
-            try:
-                route = shortest_route(self.campus, self.here, dock.name, self._avoided())
-            except NoRoute:
-                continue
-            reachable.append((route.length_m, dock.name))
-        return min(reachable)[1] if reachable else None
 
     # What actions tell.
 
@@ -371,14 +346,7 @@ class Navigator:
 
     def undock_way(self) -> tuple[float | None, bool]:
         """From the dock that it stands in to the post, in mm, and whether the line that it takes leads straight on."""
-        here = self.campus.posts.get(self.here or "")
-        if here is None or here.dock is None:
-            return None, True
-        way_mm = 1000 * math.dist((here.dock.x_m, here.dock.y_m), here.point)
-        away_rad, towards = here.dock.heading_rad + math.pi, self._next_post()
-        ways = [corridor for post, corridor in self.campus.neighbours(here.name) if towards in (None, post.name)]
-        leaving = [corridor.heading_leaving(here.name) for corridor in ways]
-        return way_mm, any(abs(wrapped(heading - away_rad)) < STRAIGHT_ON_RAD for heading in leaving)
+        return way_out(self.campus, self.here, self._next_post())
 
     def undocked(self) -> None:
         """The robot stands at the dock's post and looks away from the dock: along the line, or as far as it turned."""
