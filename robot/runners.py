@@ -84,7 +84,7 @@ class LockstepRunner:
     def __init__(self, loops: Sequence[Loop], clock: Clock, max_speed: float = 1.0) -> None:
         self.lags = {loop.name: Lag() for loop in loops}
         self._loops = tuple(loops)
-        self._clock, self._max_speed = clock, max_speed
+        self._clock = clock
         self._stopping = threading.Event()
         self.now_s = clock.now()
         self._due = [(self.now_s, number) for number in range(len(loops))]

@@ -84,7 +84,7 @@ def run(  # typer reads the options from here
         try:
             settings = _settings(config, asked, simulated, battery, closing)
             configure_logs(settings.log_file)
-            simulation = _simulation(settings, start, battery, seed, clock) if simulated else None
+            simulation = _simulation(settings, start, battery, seed) if simulated else None
             done = run_once(settings, clock_for(simulated, clock, wish, settings, closing), simulation, wish)
         except (ConfigError, CampusMapError, BdiError, RobotError, SimulatedWorldError) as problem:
             refuse(str(problem))
@@ -104,9 +104,7 @@ def _settings(
     return load_settings(config, asked)
 
 
-def _simulation(
-    settings: Settings, start: str | None, battery: float | None, seed: int, clock: Path | None
-) -> Simulation:
+def _simulation(settings: Settings, start: str | None, battery: float | None, seed: int) -> Simulation:
     """A foreign program need not know that it stands in a dock: it begins on the line, on the way to the first post."""
     if start is None and settings.mind.program:
         campus = find_map(settings.map)

@@ -138,10 +138,6 @@ class Position:
         """The post where the robot stands; None on the way."""
         return None if self.has_left else self.current
 
-    def to_post_mm(self, odometry: Odometry) -> float | None:
-        """Way left to the post whose marker has been seen; None when none is in sight."""
-        return None if self.approaching is None or self.post_at_mm is None else self.post_at_mm - odometry.ahead_mm
-
     # Which way
 
     def turn_rad(self, campus: CampusMap, neighbour: str, odometry: Odometry) -> float | None:

@@ -6,8 +6,8 @@ from ..drivers.interfaces import NOTHING_SEEN, STOP, BaseState, LineReading, Whe
 
 STRAIGHT = 0.8
 """Slower over faster wheel from which on it drives straight: in a turn the caster's bit is always 0 (packet 58)."""
-PROGRESS, DISABLED = 0b01, 0b10
-"""Bits of packet 58: the caster turns; the sensor is dirty and says nothing."""
+PROGRESS = 0b01
+"""Bit 0 of packet 58: the caster turns. Bit 1: its sensor is dirty, and slipping cannot be told."""
 
 
 def impossible(reading: LineReading) -> bool:

@@ -150,12 +150,12 @@ class Renderer:
         part = frame[top:bottom, left:right]
         size = (int(right - left), int(bottom - top))
         cv2.warpPerspective(sheet, warp, size, dst=part, flags=cv2.INTER_LINEAR, borderMode=cv2.BORDER_TRANSPARENT)
-        self._soften(part, corners, marker, view)
+        self._soften(part, marker, view)
         row, column = self._random.randrange(64), self._random.randrange(64)
         noise = self._noise[row : row + size[1], column : column + size[0]]
         part[:] = cv2.add(part, noise, dtype=cv2.CV_8U)
 
-    def _soften(self, part: Frame, corners: NDArray[np.float32], marker: Marker, view: View) -> None:
+    def _soften(self, part: Frame, marker: Marker, view: View) -> None:
         """What moves while the shutter is open is smeared along the picture's rows."""
         distance_m = max(_seen(marker.x_m, marker.y_m, view, self._mount)[0], 0.05)
         px_per_s = self._mount.focal_px * (abs(view.speed_m_s) / distance_m + abs(view.turning_rad_s))
@@ -174,7 +174,7 @@ class Renderer:
             page = _page(post, px_per_module, self._tags.get(post))
             if dirt:
                 # The same spots at every size, whenever it is seen first.
-                _make_dirty(page, px_per_module, dirt, Random(f"{self._seed}/dirt/{marker}"))
+                _make_dirty(page, dirt, Random(f"{self._seed}/dirt/{marker}"))
             self._sheets[key] = page
         return self._sheets[key]
 
@@ -253,7 +253,7 @@ def _page(post: str, px_per_module: int, tag: int | None) -> Frame:
     return page
 
 
-def _make_dirty(page: Frame, px_per_module: int, share: float, random: Random) -> None:
+def _make_dirty(page: Frame, share: float, random: Random) -> None:
     """Grey spots on the code until about this share of it is covered; a spot is about two modules wide."""
     px_per_mm = page.shape[1] / PAGE_WIDTH_MM
     size, radius_mm = CODE_MM * px_per_mm, CODE_MM * 0.05

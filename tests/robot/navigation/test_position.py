@@ -65,7 +65,8 @@ def test_without_a_post_seen_nothing_is_claimed():
 def test_a_marker_in_view_is_not_yet_the_post():
     walk = Walk(Position.placed(TRACK, "post1", "post2")).ahead(1400).see("post2", ahead_mm=300.0)
     assert walk.position.current == "post1"
-    assert walk.position.to_post_mm(walk.odometry) == pytest.approx(600.0)
+    assert walk.position.approaching == "post2"
+    assert walk.position.post_at_mm == pytest.approx(walk.odometry.ahead_mm + 600.0)
     walk.ahead(590)
     assert (walk.position.current, walk.position.previous, walk.position.at) == ("post2", "post1", "post2")
 
