@@ -69,7 +69,6 @@ class Mission:
     def _begin_again(self) -> None:
         """What is counted since the last start of the daemon."""
         self._heard_before = len(self.service.heard)
-        self._told_before = set(self.service.told)
         self._shown_now: set[Purpose] = set()
         self._greeted = False
 
