@@ -71,27 +71,37 @@ class Navigator:
     def look(self, view: View) -> None:
         """Take in what the body sees now."""
         self._odometry, self._disturbed = view.odometry, view.find_line_episodes + view.bumps
+        self.closed.pass_time(view.at_s)
         docked = bool(view.base and view.base.docked)
+        post = self._sighted(view)
         if not docked:
-            self.position = near_dock(self.campus, self.position, view.fixes, self.home, view.at_s)
+            self._find_place(view, post)
         before = self.position
+        self.position = before.after(self.campus, view.odometry, post, view.post_odometry, docked)
+        if docked and not self._docked:
+            self.position = in_dock(self.campus, self.position, self.home, view.odometry)
+        self._docked = docked
+        self._note_change(before, docked)
+
+    def _sighted(self, view: View) -> Sighting | None:
+        """The marker that it has seen, unless from aslant."""
         if view.post and (view.motion in TURNING or is_aslant(view.post)):
             self._ignored_until_s = view.post.at_s
-        post = view.post if view.post and view.post.at_s > self._ignored_until_s else None
-        if LIFTED in view.faults and not docked:
+        return view.post if view.post and view.post.at_s > self._ignored_until_s else None
+
+    def _find_place(self, view: View, post: Sighting | None) -> None:
+        """Whether it is somewhere else than it believed."""
+        self.position = near_dock(self.campus, self.position, view.fixes, self.home, view.at_s)
+        if LIFTED in view.faults:
             self._lose_place(view)
-        elif post and post.at_s != before.seen_at_s and not docked:
+        elif post and post.at_s != self.position.seen_at_s:
             self._check_place(post, view.post_odometry)
-        before = self.position
-        after = before.after(self.campus, view.odometry, post, view.post_odometry, docked)
-        if docked and not self._docked:
-            after = in_dock(self.campus, after, self.home, view.odometry)
-        self._docked = docked
-        self.position = after
+
+    def _note_change(self, before: Position, docked: bool) -> None:
+        after = self.position
         reached = after.current != before.current and not after.has_left
         reached = reached or (before.approaching is not None and after.approaching is None)
         reached = reached or self._is_back(after)
-        self.closed.pass_time(view.at_s)
         if after.current and (reached or (docked and self._leaving)):
             self._note_arrival(after.current, before.current)
         elif after.has_left and not self._leaving:
