@@ -37,6 +37,7 @@ def measure(samples: Samples) -> dict[str, Any]:
         "kills": restarts,
         "moments": dict(Counter(moment.name for mission in missions for moment in mission.killed)),
         "missions": len(missions),
+        "network_breaks": sum(mission.service.breaks for mission in missions),
         "known_share": knew / restarts if restarts else 0.0,
         "told_twice": sum(len(mission.told_twice) for mission in missions),
         "handovers_lost": sum(mission.handovers_lost for mission in missions),

@@ -18,6 +18,8 @@ from protocol.sequence import Reception, reception, resume
 from protocol.to_robot import Grant
 from protocol.to_server import Charge, Claim, Clear, Event, Fault, HandoverReceipt, Hello, Progress, Step
 
+BREAKS_OF_MESSAGES = 0.05
+"""The share of durable messages with which the network breaks: sent, and never heard."""
 THINKS_S = 0.03
 """The longest a claim waits for its answer: long enough that a robot can be killed in between."""
 
@@ -36,6 +38,8 @@ class Service(PlayedServer):
     """Corridors that are granted and not reported clear, each with the number of the grant."""
     shown: set[tuple[str, Purpose]] = field(default_factory=set)
     """The codes that people have held up."""
+    broken: bool = False
+    breaks: int = 0
     wrong: list[str] = field(default_factory=list)
 
     async def say(self, *messages: Part) -> None:
@@ -49,6 +53,8 @@ class Service(PlayedServer):
                 await self.send(self.said[number - 1], number, self.received.seq)
 
     async def hear(self, envelope: Envelope) -> None:
+        if await self._is_lost(envelope):
+            return
         self.taken = max(self.taken, envelope.ack)
         match envelope.body:
             case Hello() as hello:
@@ -63,6 +69,15 @@ class Service(PlayedServer):
                 await super().hear(envelope)
                 if envelope.seq is not None:
                     await self._take(envelope, envelope.seq)
+
+    async def _is_lost(self, envelope: Envelope) -> bool:
+        """Whether the network breaks with this message, or has broken before it."""
+        if isinstance(envelope.body, Hello):
+            self.broken = False
+        elif not self.broken and envelope.seq is not None and self.random.random() < BREAKS_OF_MESSAGES:
+            self.broken, self.breaks = True, self.breaks + 1
+            await self.sockets[-1].close()
+        return self.broken
 
     async def _take(self, envelope: Envelope, number: int) -> None:
         match reception(self.received, envelope.journal, number):
