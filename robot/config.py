@@ -93,10 +93,10 @@ class DriveSettings(Section):
     """How the base is driven."""
 
     cruise_mm_s: Annotated[float, Field(ge=30.0, le=MAX_WHEEL_SPEED_MM_S)] = Field(
-        default=180.0, description="speed on a straight line, mm/s (never below 30: the base misbehaves there)"
+        default=200.0, description="speed on a straight line, mm/s (never below 30: the base misbehaves there)"
     )
     turn_mm_s: Annotated[float, Field(ge=30.0, le=MAX_WHEEL_SPEED_MM_S)] = Field(
-        default=140.0, description="speed of each wheel when turning on the spot, mm/s"
+        default=200.0, description="speed of each wheel when turning on the spot, mm/s"
     )
     velocity_deadline_s: Annotated[float, Field(ge=0.1, le=1.0)] = Field(
         default=0.4, description="a speed that is not renewed for so long stops, s"

@@ -26,7 +26,7 @@ from maps import Point
 from robot.skills import Done, FollowLine
 
 LEADS_MM = (60.0, 0.0)
-CRUISE_MM_S = {60.0: 180.0, 0.0: 100.0}
+CRUISE_MM_S = {60.0: 200.0, 0.0: 100.0}
 """With the diodes on the axle the robot sees no heading and has to go slower."""
 END_WITHIN_M = 0.05
 SLOWEST_MM_S = 30

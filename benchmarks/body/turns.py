@@ -23,7 +23,7 @@ from robot.skills import Done, FollowLine, Turn
 
 FROM_M, ON_M = 1.2, 0.7
 NEAR_M = 0.03
-TURN_MM_S = 140.0
+TURN_MM_S = 200.0
 ON_THE_LINE = "on the line"
 
 

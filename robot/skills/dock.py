@@ -20,7 +20,7 @@ IDLE_S = 10.0
 """A firmware that has not moved for so long has given up."""
 RETRY_BACK_MM, RETRY_BACK_MM_S = 250.0, 100.0
 """Each try begins so much farther off than the one before: from too near the firmware cannot come straight."""
-UNDOCK_MM, UNDOCK_MM_S, UNDOCK_TURN_MM_S = 300.0, 180.0, 140.0
+UNDOCK_MM, UNDOCK_MM_S, UNDOCK_TURN_MM_S = 300.0, 200.0, 200.0
 TO_LINE_MM, TO_LINE_MM_S = (280.0, 130.0, 130.0), 150.0
 """A robot that stood aslant in its dock comes out beside the line: after each of these it looks to both sides."""
 ROLLS_ON_MM = 9.5

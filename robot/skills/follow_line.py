@@ -4,7 +4,6 @@ Fifty times a second: where is the line (line_estimate.py), which curve leads ba
 """
 
 import math
-from statistics import median
 from typing import ClassVar
 
 from maps import CampusMap
@@ -15,6 +14,7 @@ from .give_way import GiveWay, most_mm_s
 from .interfaces import Done, Failed, Running, Step, View
 from .line_estimate import LineEstimate, gains
 from .post_ahead import PostAhead
+from .unread_post import TAPE_HALF_MM, UnreadPost
 
 SLOWEST_MM_S = 70.0
 CLOSE_MM, SLOW_BY_MM = 8.0, 25.0
@@ -35,15 +35,12 @@ FRUITLESS_MM = 500.0
 MOST_SEARCHES = 3
 """So many searches in a row with less than half a metre of line between them: this is where the line ends."""
 INNER_WHEEL_MM_S, OUTER_WHEEL_MM_S = 30.0, 200.0
-MISSED_SHARE, MISSED_MM = 0.03, 40.0
-"""No marker so far beyond the length of the corridor: calibrated wheels and tape measures err by less."""
-LOOKS_FROM_MM, LOOKS_MM_S = 250.0, 90.0
+LOOKS_FROM_MM, LOOKS_MM_S = 210.0, 90.0
 """So near to where a post should be a marker should have been read; if not, it looks more slowly."""
-TAPE_HALF_MM = 12.0
-ACROSS_LOOKS = 3
-"""So often all diodes must be dark to tell where a line crosses or ends at a bar."""
 OTHER_LINE_MM = 15.0
 """Where an unseen post may be, tape that lies farther beside the line than this is a branch."""
+BRANCH_MM = 40.0
+"""No branch is wider; what darkens an outer diode for longer is the line itself."""
 
 
 class FollowLine:
@@ -57,7 +54,7 @@ class FollowLine:
         self,
         campus: CampusMap,
         leaving: str | None = None,
-        cruise_mm_s: float = 180.0,
+        cruise_mm_s: float = 200.0,
         shape: BodyShape | None = None,
         limit_s: float = 600.0,
         way_left_mm: float | None = None,
@@ -70,7 +67,7 @@ class FollowLine:
         self._campus, self._leaving, self._cruise_mm_s = campus, leaving, cruise_mm_s
         self._shape = shape or BodyShape()
         self._look_ahead_mm = gains(self._shape.sensor_lead_mm).look_ahead_mm
-        self._way_left_mm, self._ahead, self._unread = way_left_mm, ahead, unread
+        self._way_left_mm, self._ahead, self._is_unread = way_left_mm, ahead, unread
         self.limit_s = limit_s
 
     def start(self, view: View, now: float) -> None:
@@ -81,12 +78,15 @@ class FollowLine:
         self._lit_mm = view.odometry.travelled_mm
         self._lit_ahead_mm = view.odometry.ahead_mm
         self._line_end_mm: float | None = None
-        self._across_mm: list[float] = []
+        self._branch_since_mm: float | None = None
         self._search: FindLine | None = None
         self._searches, self._searched_mm = 0, -FRUITLESS_MM
         self._post = PostAhead(self._campus, self._leaving, view.odometry, now)
+        self._unread = UnreadPost(
+            self._campus, self._leaving, self._ahead, view.odometry, self._way_left_mm, self._shape
+        )
         self._standing_since_s: float | None = None
-        if self._unread:
+        if self._is_unread and not self._unread.shows:
             self._suppose_post()
 
     def step(self, view: View, now: float) -> Step:
@@ -105,7 +105,7 @@ class FollowLine:
         if to_go_mm is not None and to_go_mm <= CRAWL_MM_S * WHEEL_LAG_S:
             return self._stop(view, to_go_mm)
         self._standing_since_s = None
-        if to_go_mm is None and self._beyond_mm(view) > MISSED_SHARE * (self._way_left_mm or 0.0) + MISSED_MM:
+        if to_go_mm is None and self._unread.beyond_mm(view.odometry) > self._unread.doubt_mm:
             return self._missed(view)
         if self._has_lost(view, to_go_mm):
             missed = self._may_be_at_post(view) and not self._post.supposed
@@ -125,16 +125,9 @@ class FollowLine:
         # What it ran on while braking, or back, is done: a robot that stands does not begin again.
         return Done(self._post.name, unread=self._post.supposed) if view.sent.still else Running(STOP)
 
-    def _beyond_mm(self, view: View) -> float:
-        """How far beyond the place of the next post, by map and wheels; below 0 before it."""
-        driven_mm = view.odometry.ahead_mm - self._begin.ahead_mm
-        return -math.inf if self._way_left_mm is None else driven_mm - self._way_left_mm
-
     def _may_be_at_post(self, view: View) -> bool:
         """Whether a post whose marker has not been read may be here: where the line ends, or branches off."""
-        if self._way_left_mm is None or (self._post.name and not self._post.supposed):
-            return False
-        return self._beyond_mm(view) > -MISSED_SHARE * self._way_left_mm - self._shape.sensor_lead_mm
+        return (self._post.name is None or self._post.supposed) and self._unread.may_be_here(view.odometry)
 
     def _missed(self, view: View) -> Step:
         """It goes back to where the post must be, if it knows which one that is."""
@@ -143,14 +136,11 @@ class FollowLine:
         return Running(STOP) if self._suppose_post() else Failed("post_missed")
 
     def _suppose_post(self) -> bool:
-        """Nobody reads its marker: it is where tape lies across, or ends, else where the map says. False: not known."""
-        if self._ahead is None or self._way_left_mm is None:
+        """Nobody reads its marker: it is where the tape shows it, else where the map says. False: not known."""
+        at_mm = self._unread.place_mm(self._line_end_mm)
+        if self._ahead is None or at_mm is None:
             return False
-        by_map_mm = self._begin.ahead_mm + self._way_left_mm
-        if len(self._across_mm) >= ACROSS_LOOKS:
-            self._post.suppose(self._ahead, median(self._across_mm) + self._shape.sensor_lead_mm)
-        else:
-            self._post.suppose(self._ahead, by_map_mm if self._line_end_mm is None else self._line_end_mm)
+        self._post.suppose(self._ahead, at_mm)
         return True
 
     # The line
@@ -159,18 +149,28 @@ class FollowLine:
         here, before = view.odometry, self._last
         self._last = here
         self._line.move(here.ahead_mm - before.ahead_mm, here.heading_rad - before.heading_rad)
-        blind = to_go_mm is not None and to_go_mm < self._shape.sensor_lead_mm + BLIND_BEFORE_POST_MM
-        if not blind:
-            self._line.see(view.reading, OTHER_LINE_MM if self._may_be_at_post(view) else math.inf)
-        if all(view.reading) and self._may_be_at_post(view):
-            self._across_mm.append(here.ahead_mm)
-            if self._post.supposed:
-                self._suppose_post()
+        near_post = to_go_mm is not None and to_go_mm < self._shape.sensor_lead_mm + BLIND_BEFORE_POST_MM
+        unread = self._may_be_at_post(view)
+        on_branch = unread and self._is_on_branch(view)
+        if not near_post and not on_branch:
+            self._line.see(view.reading, OTHER_LINE_MM if unread else math.inf)
         if over_line(view):
             self._lit_mm, self._lit_ahead_mm = here.travelled_mm, here.ahead_mm
 
+    def _is_on_branch(self, view: View) -> bool:
+        """Whether what the diodes read may be a branch beside the line; where it is tells where the post is."""
+        here, knew_mm = view.odometry, self._unread.branch_mm
+        self._unread.look(view.reading, here)
+        if self._post.supposed or self._unread.branch_mm != knew_mm:
+            self._suppose_post()
+        if not self._unread.like_branch(view.reading):
+            self._branch_since_mm = None
+        elif self._branch_since_mm is None:
+            self._branch_since_mm = here.travelled_mm
+        return self._branch_since_mm is not None and here.travelled_mm - self._branch_since_mm < BRANCH_MM
+
     def _looking_mm_s(self, view: View) -> float:
-        due = self._beyond_mm(view) > -MISSED_SHARE * (self._way_left_mm or 0.0) - LOOKS_FROM_MM
+        due = self._unread.beyond_mm(view.odometry) > -self._unread.doubt_mm - LOOKS_FROM_MM
         return min(self._cruise_mm_s, LOOKS_MM_S) if due else self._cruise_mm_s
 
     def _speeds(self, to_go_mm: float | None, most_mm_s: float) -> WheelSpeeds:

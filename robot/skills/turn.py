@@ -20,7 +20,7 @@ class Turn(Scripted):
     name = "turn"
 
     def __init__(
-        self, angle_rad: float, shape: BodyShape | None = None, speed_mm_s: float = 140.0, limit_s: float = 30.0
+        self, angle_rad: float, shape: BodyShape | None = None, speed_mm_s: float = 200.0, limit_s: float = 30.0
     ) -> None:
         """Left is positive."""
         self._angle_rad, self._shape, self._speed_mm_s = angle_rad, shape or BodyShape(), speed_mm_s
