@@ -20,10 +20,10 @@
      !go_to(Post).
 
 // Nothing enters a corridor ungranted, the way to a dock included. The robot waits for that at a post, where others can
-// pass it. Where no way is open it tells people, and tries again after two minutes, then ever more rarely: a corridor in
+// pass it. Where no way is open it tells people, and tries again after half a minute, then ever more rarely: a corridor in
 // which it turned back is entered again when there is no other way.
 +!permission(Post) : patience(Patience_s) <- !permission(Post, Patience_s).
-+!permission(Post) <- !permission(Post, 120).
++!permission(Post) <- !permission(Post, 30).
 +!permission(Post, _) <- claim(Post); clear_fault(no_way).
 -!permission(Post, Patience_s)[reason(denied)] <- rest(15); !permission(Post, Patience_s).
 -!permission(Post, Patience_s)[reason(way_closed)]

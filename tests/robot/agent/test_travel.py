@@ -18,7 +18,7 @@ def test_a_denied_corridor_is_asked_for_again_after_a_while() -> None:
 def test_where_no_way_is_open_it_waits_at_its_post_tells_and_asks_ever_more_rarely() -> None:
     stage = Stage(*CARRYING, "at(post3)")
     stage.does("report(departed,s2)", "set_destination(post4)")
-    for patience_s in (120, 240, 480, 960, 1800, 1800):
+    for patience_s in (30, 60, 120, 240, 480, 960, 1800, 1800):
         stage.expect("claim(post4)")
         stage.fails("claim(post4)", "way_closed")
         stage.does('raise_fault(no_way,"every way blocked or denied")', f"rest({patience_s})", "reopen")
@@ -79,7 +79,7 @@ def test_a_corridor_that_opens_ends_the_waiting_for_a_way_but_no_waiting_for_peo
     stage.expect("claim(post4)")
     stage.fails("claim(post4)", "way_closed")
     stage.does('raise_fault(no_way,"every way blocked or denied")')
-    stage.expect("rest(120)")
+    stage.expect("rest(30)")
     stage.perceives(without=('closed("post3-post4")',))
     stage.does("report(departed,s2)", "set_destination(post4)", "claim(post4)")
     there = Stage(*CARRYING, "at(post4)", 'closed("post3-post4")')
