@@ -133,6 +133,7 @@ class Mind:
             navigator.way(),
             navigator.rests_at,
             navigator.moved,
+            navigator.astray,
             navigator.closed.names,
         )
         return Seen(

@@ -10,6 +10,7 @@ from protocol.parts import Leg
 from robot.drivers.interfaces import Odometry, Sighting
 from robot.duties import Duties
 from robot.navigation.approach import is_aslant
+from robot.navigation.astray import FROM_MM, TO_MM, Compass, really_towards
 from robot.navigation.by_fixes import near_dock
 from robot.navigation.closed import Closed
 from robot.navigation.directions import Way, next_post
@@ -28,6 +29,7 @@ STRAIGHT_RAD = math.radians(12)
 """Within this the line is under the diodes, and following it straightens the robot up."""
 TURNING = frozenset({"turn", "undock", "find_line"})
 """Skills during which a marker is seen from aslant: it says nothing about the way that is left to its post."""
+FOLLOWING = "follow_line"
 LIFTED = "wheel_drop"
 """The fault during which somebody holds the robot in their hands, perhaps to put it down elsewhere."""
 MARKER_UNREAD = "marker_unread"
@@ -65,6 +67,9 @@ class Navigator:
         self._lifted_from: set[str] = set()
         self.unread: set[str] = set()
         """Posts whose marker could not be read when the robot was there last."""
+        self.astray: str | None = None
+        """The post that it drives towards by mistake, until it has turned round."""
+        self._compass = Compass()
         self.moved: str | None = None
         """Where it found itself after somebody had moved it, until that is noted."""
 
@@ -82,6 +87,8 @@ class Navigator:
             self.position = in_dock(self.campus, self.position, self.home, view.odometry)
         self._docked = docked
         self._note_change(before, docked)
+        if view.motion == FOLLOWING and not view.searching:
+            self._check_way()
 
     def _sighted(self, view: View) -> Sighting | None:
         """The marker that it has seen, unless from aslant."""
@@ -107,12 +114,23 @@ class Navigator:
         elif after.has_left and not self._leaving:
             self._set_out()
 
+    def _check_way(self) -> None:
+        """Whether it follows the line that it was going to."""
+        driven_mm, looks_rad = self._odometry.ahead_mm - self._arrived_mm, self._compass.looks_rad(self._odometry)
+        if not (self._leaving and FROM_MM < driven_mm < TO_MM) or self._far_end or looks_rad is None:
+            return
+        if self.here and self.towards and (really := really_towards(self.campus, self.here, self.towards, looks_rad)):
+            self.astray = really
+            self._looks(self.campus.corridor(self.here, really).heading_leaving(self.here))
+            self._head_for(really)
+
     def _lose_place(self, view: View) -> None:
         """It is being lifted: where it is put down, only a marker can say."""
         if not self._lifted:
             self._lifted = self._leaving = True
             self._lifted_from = {post for post in (self.here, self.towards, self._far_end) if post}
             self.position, self.towards, self._far_end = nowhere(self.position), None, None
+            self._compass.set(None, view.odometry)
         self._ignored_until_s = view.post.at_s if view.post else self._ignored_until_s
 
     def _check_place(self, post: Sighting, odometry: Odometry) -> None:
@@ -124,6 +142,7 @@ class Navigator:
         if not lifted and not elsewhere:
             return
         self.position = found_at(self.campus, self.position, post, odometry, lifted)
+        self._compass.set(None, odometry)
         self._leaving, self.towards, self._far_end = True, post.text, None
         if elsewhere or post.text not in self._lifted_from:
             self.moved = post.text
@@ -131,14 +150,15 @@ class Navigator:
 
     def _note_arrival(self, post: str, before: str | None) -> None:
         self._learn_scale(post, before)
-        self._leaving, self.towards = False, None
+        self._leaving, self.towards, self.astray = False, None, None
         self._arrived_mm = self._odometry.ahead_mm
+        self._compass.set(self.position.facing_now_rad(self._odometry), self._odometry)
         self._duties.seen(post)
         if before and before != post:
             self._duties.clear([Leg(from_post=before, to_post=post)])
-        if self._far_end:
-            self._duties.clear([Leg(from_post=post, to_post=self._far_end)])
-            self._far_end = None
+        self._far_end = (
+            None  # where it turned back: held until it claims another way, or it might never be let in again
+        )
         if self.visited[-1:] != [post]:
             self.visited.append(post)
             self.arrivals += 1
@@ -314,6 +334,7 @@ class Navigator:
     def _turn_back(self) -> None:
         """It has turned round between two posts: what lay behind lies ahead, as far as it was behind."""
         leg, here = self.corridor, self.position
+        self.astray = None
         if leg is None:
             return
         self._far_end = None if self._far_end else leg.to_post
@@ -371,3 +392,4 @@ class Navigator:
 
     def _looks(self, heading_rad: float) -> None:
         self.position = replace(self.position, facing_rad=heading_rad, spot_turn_rad=self._odometry.spot_turn_rad)
+        self._compass.confirm(heading_rad, self._odometry)

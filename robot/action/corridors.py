@@ -45,7 +45,7 @@ def claim(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
     """Done as soon as the first corridor of the way may be entered: from post to post it is asked again."""
     goal, duties, navigator = str(arguments[0]), hands.duties, hands.navigator
     closed = _why_no_way(hands, goal)
-    wanted = () if closed else _wanted(hands, goal)
+    wanted = _kept(hands) if closed else _wanted(hands, goal)
     if navigator.at:
         duties.clear(leg for leg in duties.held.grants if leg not in wanted)
     if closed:
@@ -73,6 +73,13 @@ def _wanted(hands: Hands, goal: str) -> tuple[Leg, ...]:
     except NoRoute:
         way = navigator.legs_to(goal)
     return (*navigator.first_legs(goal), *way)
+
+
+def _kept(hands: Hands) -> tuple[Leg, ...]:
+    """What it goes on holding while no way is open. Where another robot is in the way it lets go of everything, so that
+    this one can go on. Where something stands in a corridor it keeps what it has been granted: without network there
+    it would never be granted anything again."""
+    return () if hands.duties.avoid else hands.duties.held.grants
 
 
 def release(hands: Hands, _: Sequence[Value], __: float) -> Run:

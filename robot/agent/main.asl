@@ -29,6 +29,7 @@ priorities([safety, health, map]).
 priority(+halted, safety).
 priority(+battery(_), health).
 priority(+moved(_), map).
+priority(+astray(_), map).
 
 !decide.
 

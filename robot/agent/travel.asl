@@ -47,6 +47,7 @@
 // After a restart or an interruption between two posts: drive on, the next marker tells.
 +!reach_a_post : at(_).
 +!reach_a_post : docked.
++!reach_a_post : astray(_) <- turn(behind); !follow.
 +!reach_a_post <- !follow.
 
 // The watchdog of the way: follow_line itself gives up when no post comes where one should.
@@ -84,6 +85,9 @@ closes_the_way(post_missed).
 
 // Somebody has carried the robot elsewhere, and a marker told it where: it plans anew from there.
 +moved(_) <- noted_move; !decide_anew.
+
+// It has gone into another corridor than the one it was granted: back at once.
++astray(_) <- !decide_anew.
 
 +!tell_passed(Post) : at(Post).
 +!tell_passed(_) : pursuing(mission(_, _)) & next_stop(N) & stop(N, Stop, _, _, _, _) <- report(passed, Stop).

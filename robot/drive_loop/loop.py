@@ -145,6 +145,7 @@ class DriveLoop:
         if decision.faults is not self._faults:
             self._note_faults(decision, now)
         self._sent = self._drive(wanted, decision.allowed, now)
+        self._wheels.sound(self._sensing.state, now)
         self._black_box.write_what_is_due(now)
 
     def _note_line(self, view: View, before: View) -> None:
@@ -214,7 +215,7 @@ class DriveLoop:
         self._faults, self._stopping = decision.faults, decision.stopping
         if "bump" in new:
             self._bumps += 1
-            self._wheels.beep(now)
+            self._wheels.beep()
         for name in new & reflexes.STOPPING:
             self._black_box.write_at(now + DUMP_AFTER_S, name)
 

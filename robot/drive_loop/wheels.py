@@ -3,6 +3,7 @@
 from ..drivers.interfaces import Base, BaseState, Mode, WheelSpeeds
 from ..skills.interfaces import BaseRequest, Play, SeekDock, SetMode, ShowLights
 from ..skills.tunes import BUMPED
+from .speaker import Speaker
 
 OFF_DOCK_S = 2.0
 """Contacts bounce: only after so long without power is the robot off its dock."""
@@ -12,7 +13,7 @@ class Wheels:
     """Owns the mode. `state` in every call: the newest frame of the base, None before the first."""
 
     def __init__(self, base: Base, now: float) -> None:
-        self._base = base
+        self._base, self._speaker = base, Speaker(base)
         self._mode = Mode.PASSIVE
         self._docked_s = now
 
@@ -30,7 +31,7 @@ class Wheels:
                 self._mode = Mode.PASSIVE
                 self._base.seek_dock(now)
             case Play(notes):
-                self._base.play(notes, now)
+                self._speaker.say(notes)
             case ShowLights(colour, brightness):
                 self._base.show_lights(colour, brightness, now)
 
@@ -66,5 +67,9 @@ class Wheels:
     def not_at_rest(self, now: float) -> None:
         self._docked_s = now
 
-    def beep(self, now: float) -> None:
-        self._base.play(BUMPED, now)
+    def beep(self) -> None:
+        self._speaker.say(BUMPED)
+
+    def sound(self, state: BaseState | None, now: float) -> None:
+        """Every tick: what waits to be heard."""
+        self._speaker.tick(state, now)

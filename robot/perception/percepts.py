@@ -117,6 +117,11 @@ PERCEPTS: Final = (
         lambda s: [f"moved({s.where.moved})"] if s.where.moved else [],
     ),
     Percept(
+        "astray",
+        "astray(Post): it met the wrong line, and drives towards this post; until it has turned round",
+        lambda s: [f"astray({s.where.astray})"] if s.where.astray else [],
+    ),
+    Percept(
         "closed",
         "closed(Corridor): it turned back in there; no way leads through it for a while",
         lambda s: (f"closed({atom_or_text(name)})" for name in sorted(s.where.closed)),

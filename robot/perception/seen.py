@@ -20,6 +20,8 @@ class Whereabouts:
     """The post as long as the robot has not begun to roll on from there."""
     moved: str | None = None
     """The post where it found itself after it had been moved, until it has taken note."""
+    astray: str | None = None
+    """The post that it drives towards by mistake, until it has turned round."""
     closed: frozenset[str] = frozenset()
     """Corridors, by name, in which it turned back a short while ago."""
 

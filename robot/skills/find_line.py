@@ -139,10 +139,22 @@ def settle(view: View, shape: BodyShape, widest_rad: float = WIDEST_RAD) -> Part
     for ahead_mm, reach_rad in ((0.0, CLOSE_RAD), (WORN_MM, CLOSE_RAD), (0.0, widest_rad)):
         if ahead_mm and not over_line(view):
             view = yield from roll(view, ahead_mm, WheelSpeeds(SEARCH_MM_S, SEARCH_MM_S), over_line)
-        for goal_rad in (from_rad + reach_rad, from_rad - reach_rad, from_rad):
-            if not over_line(view):
-                turn = goal_rad - view.odometry.heading_rad
-                view = yield from turn_by(view, turn, SWEEP_MM_S, shape, over_line)
+        view = yield from _look_to_both_sides(view, shape, from_rad, reach_rad)
+        view = yield from _centre(view, shape)
+        if over_line(view):
+            break
+    return view
+
+
+def _look_to_both_sides(view: View, shape: BodyShape, from_rad: float, reach_rad: float) -> Part:
+    for goal_rad in (from_rad + reach_rad, from_rad - reach_rad, from_rad):
+        if not over_line(view):
+            view = yield from turn_by(view, goal_rad - view.odometry.heading_rad, SWEEP_MM_S, shape, over_line)
+    return view
+
+
+def _centre(view: View, shape: BodyShape) -> Part:
+    """From an outer diode to the centre one. Where that finds nothing it was the edge of a worn place."""
     if over_line(view) and not view.reading.centre:
         side = 1.0 if view.reading.left else -1.0
         view = yield from turn_by(view, side * 0.5, SEARCH_MM_S, shape, lambda seen: seen.reading.centre)

@@ -88,6 +88,12 @@ class FakeBody:
         )
         self.view = replace(self.view, odometry=turned)
 
+    def follows_line(self, bending_rad: float = 0.0) -> None:
+        """A follower has the wheels; the line bends (left positive)."""
+        old = self.view.odometry
+        odometry = replace(old, heading_rad=old.heading_rad + bending_rad)
+        self.view = replace(self.view, odometry=odometry, motion="follow_line")
+
     def sees(self, post: str) -> None:
         """The marker of a post abreast of the camera: 300 mm before the post."""
         sighting = Sighting(post, self.view.at_s, 0.0, 350.0)

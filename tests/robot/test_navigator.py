@@ -199,7 +199,8 @@ def test_a_robot_that_turns_round_between_posts_comes_back_to_where_it_was(walk:
     assert walk.duties.held.grants == (leg,), "it is still in there"
     walk.body.rolls(690.0)
     walk.look()
-    assert (walk.navigator.at, walk.navigator.corridor, walk.duties.held.grants) == ("post2", None, ())
+    assert (walk.navigator.at, walk.navigator.corridor) == ("post2", None)
+    assert walk.duties.held.grants == (leg,), "it may wish to go in again, perhaps where nobody can grant it anything"
     walk.navigator.destination = "post3"
     assert walk.navigator.way() == "behind"
 

@@ -182,6 +182,22 @@ def test_a_way_that_is_closed_for_now_is_told_from_one_that_is_not_there(bench: 
         assert bench.result("claim(post4)") == "way_closed", "what stands there does not go away by asking"
 
 
+def test_while_something_stands_in_its_way_it_keeps_what_it_was_granted(bench: Bench) -> None:
+    with_server(bench, TO_POST3, TO_POST4)
+    bench.navigator.closed.close(TO_POST3, now=0.0)
+    assert bench.result("claim(post4)") == "way_closed"
+    assert bench.duties.held.grants == (TO_POST3, TO_POST4)
+    bench.result("reopen")
+    assert bench.result("claim(post4)") is None, "it may go in again with nobody to ask"
+
+
+def test_while_another_robot_is_in_its_way_it_lets_go_of_everything(bench: Bench) -> None:
+    with_server(bench, TO_POST3, TO_POST4)
+    bench.duties.avoid = frozenset({TO_POST3})
+    assert bench.result("claim(post4)") == "way_closed"
+    assert bench.duties.held.grants == ()
+
+
 def test_a_corridor_in_which_it_turned_back_is_told_by_name_and_closed_for_ten_minutes(bench: Bench) -> None:
     bench.navigator.place("post2", "post3")
     assert bench.result("mark_blocked(blocked)") == "not_in_a_corridor"

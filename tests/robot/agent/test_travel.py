@@ -62,6 +62,19 @@ def test_a_robot_that_was_carried_elsewhere_takes_note_and_plans_from_there() ->
     assert stage.done.count("noted_move") == 1
 
 
+def test_gone_into_the_wrong_corridor_it_turns_round_and_begins_again_at_the_post() -> None:
+    stage = Stage(*CARRYING)
+    stage.does("report(departed,s2)")
+    stage.expect("follow_line")
+    stage.perceives("astray(post2)")
+    stage.does("report(departed,s2)", "turn(behind)")
+    stage.perceives(without=("astray(post2)",))
+    stage.expect("follow_line")
+    stage.reaches("post3")
+    stage.does("report(passed,s2)", "set_destination(post4)")
+    stage.expect("claim(post4)")
+
+
 def test_out_of_network_it_waits_at_a_post_for_the_next_corridor_and_hands_over_where_it_has_got_to() -> None:
     stage = Stage(*CARRYING, "at(post3)")
     stage.does("report(departed,s2)", "set_destination(post4)")

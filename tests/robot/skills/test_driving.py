@@ -10,7 +10,8 @@ import pytest
 from maps import read_map
 from robot.drivers.interfaces import STOP, Mode
 from robot.simulated import Build, DiodeMount, Options, Person, Pose
-from robot.skills import Dock, Done, Failed, FindLine, FollowLine, Turn, Undock
+from robot.skills import Dock, Done, Failed, FindLine, FollowLine, Say, Turn, Undock
+from robot.skills.tunes import TUNES
 from tests.robot.skills.track import TICK_S, Drive
 
 Make = Callable[..., Drive]
@@ -248,3 +249,30 @@ def test_bends_worn_tape_and_flipped_reads_do_not_lose_the_line(drive: Make, tmp
     assert robot.loop.view.odometry.travelled_mm / (robot.now - began) > 110
     on_the_way = robot.readings[readings:-60]
     assert sum(pattern in ("111", "010") for pattern in on_the_way) / len(on_the_way) < 0.05
+
+
+def heard(robot: Drive, for_s: float) -> list[str]:
+    """What comes out of its speaker in that time, by name."""
+    names = {tuple(note for note, _ in tune): name for name, tune in TUNES.items()}
+    number, found = 0, []
+    for _ in range(round(for_s / TICK_S)):
+        robot.tick()
+        number, tunes = robot.robot.tunes_since(number)
+        found += [names[tune] for tune in tunes]
+    return found
+
+
+def test_a_tune_is_heard_although_another_one_was_just_being_played(drive: Make):
+    robot = drive("post1:post2")
+    robot.steps(2.5)  # in Passive the base plays nothing
+    for tune in ("refused", "accepted"):
+        robot.loop.start(Say(tune), robot.now)
+    assert heard(robot, 1.5) == ["refused", "accepted"]
+
+
+def test_of_many_tunes_the_newest_are_heard(drive: Make):
+    robot = drive("post1:post2")
+    robot.steps(2.5)  # in Passive the base plays nothing
+    for tune in ("refused",) * 8 + ("accepted",):
+        robot.loop.start(Say(tune), robot.now)
+    assert heard(robot, 6.0) == ["refused", "refused", "refused", "accepted"]

@@ -1,0 +1,80 @@
+"""Gone into the wrong corridor at a crossing: noticed by the way the robot looks, before it is far in."""
+
+import math
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from maps import builtin_map
+from robot.navigation.astray import really_towards
+from robot.store import Store
+from tests.robot.test_navigator import Walk
+
+TRACK = builtin_map("test_track")
+
+
+@pytest.fixture
+def walk(tmp_path: Path) -> Iterator[Walk]:
+    """At post3, having come from post4: post5 lies ahead, post2 to the left."""
+    store = Store(tmp_path / "robot.db")
+    walk = Walk(store)
+    walk.look()
+    walk.navigator.place("post4", "post3")
+    walk.drives_to("post3")
+    walk.navigator.destination = "post2"
+    yield walk
+    store.close()
+
+
+def turn_and_follow(walk: Walk, turned_deg: float, rolled_mm: float = 200.0) -> None:
+    walk.body.turns(math.radians(turned_deg))
+    walk.look()
+    walk.navigator.turned()
+    walk.navigator.leave()
+    walk.body.follows_line()
+    walk.body.rolls(rolled_mm)
+    walk.look()
+
+
+@pytest.mark.parametrize("turned_deg", [90, 75, 110])
+def test_a_turn_as_meant_is_not_doubted(walk: Walk, turned_deg: float) -> None:
+    turn_and_follow(walk, turned_deg)
+    assert (walk.navigator.astray, walk.navigator.towards) == (None, "post2")
+
+
+def test_a_turn_that_met_the_line_ahead_is_noticed_and_the_place_is_known(walk: Walk) -> None:
+    walk.body.turns(math.radians(50))  # the tape of post5, met from beside the post: taken for that of post2
+    walk.look()
+    walk.navigator.turned()
+    walk.navigator.leave()
+    assert walk.navigator.towards == "post2"
+    walk.body.follows_line(math.radians(-45))  # straightened up along it
+    walk.body.rolls(200.0)
+    walk.look()
+    assert (walk.navigator.astray, walk.navigator.towards) == ("post5", "post5")
+
+
+def test_back_at_the_post_it_knows_which_way_it_looks(walk: Walk) -> None:
+    test_a_turn_that_met_the_line_ahead_is_noticed_and_the_place_is_known(walk)
+    walk.turns("behind")
+    assert (walk.navigator.astray, walk.navigator.towards) == (None, "post3")
+    walk.body.rolls(200.0)
+    walk.look()
+    assert walk.navigator.at == "post3"
+    assert walk.navigator.way() == "right", "from post5 it looks south, and post2 lies in the west"
+
+
+def test_without_knowing_which_way_it_looked_it_doubts_nothing(store: Store) -> None:
+    walk = Walk(store)
+    walk.look()
+    walk.navigator.place("post3", None)
+    turn_and_follow(walk, 30)
+    assert walk.navigator.astray is None
+
+
+@pytest.mark.parametrize(
+    ("looks_deg", "really"), [(180, None), (150, None), (135, None), (100, "post5"), (-80, "post4"), (0, None)]
+)
+def test_only_what_is_surely_another_corridor_counts(looks_deg: float, really: str | None) -> None:
+    assert really_towards(TRACK, "post3", "post2", math.radians(looks_deg)) == really
