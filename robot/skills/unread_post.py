@@ -40,7 +40,7 @@ class UnreadPost:
         shape: BodyShape,
     ) -> None:
         """`way_left_mm`: how far it is from `begin` to the post `ahead`, coming from `leaving`; None: not known."""
-        self.name, self._way_left_mm, self._lead_mm = ahead, way_left_mm, shape.sensor_lead_mm
+        self._way_left_mm, self._lead_mm = way_left_mm, shape.sensor_lead_mm
         self._by_map_mm = None if way_left_mm is None else begin.ahead_mm + way_left_mm
         self._left, self._right, self.leads_on = _ways(campus, leaving, ahead)
         self._across_mm: list[float] = []
