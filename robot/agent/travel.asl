@@ -36,7 +36,9 @@
 -!permission(_, _)[reason(Reason), error_msg(Why)] <- .fail(reason(Reason), error_msg(Why)).
 -!permission(_, _)[error_msg(Why)] <- .fail(error_msg(Why)).
 
-// No longer than until a corridor in which it turned back counts as open again.
+// No longer than until a corridor in which it turned back counts as open again. If it takes longer others may pass; but
+// where there is no network it keeps what it was granted, since nobody could grant it anew.
++!wait_for_a_way(Patience_s) : Patience_s > 60 & not fault(link_loss) <- release; rest(Patience_s).
 +!wait_for_a_way(Patience_s) <- rest(Patience_s).
 -closed(_) : .desire(wait_for_a_way(_)) <- !decide_anew.
 

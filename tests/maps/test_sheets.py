@@ -130,7 +130,7 @@ def test_one_post_alone_and_an_unknown_one(tmp_path):
     assert run("carleton", "--post", "uc", "--format", "svg", "--out", str(tmp_path)).exit_code == 0
     assert [path.name for path in tmp_path.iterdir()] == ["uc.svg"]
     wrong = run("carleton", "--post", "uk", "--out", str(tmp_path))
-    assert (wrong.exit_code, "Did you mean 'uc'" in wrong.stderr) == (1, True)
+    assert (wrong.exit_code, "Did you mean 'uc'" in wrong.stderr) == (2, True)
 
 
 def test_a_folder_that_cannot_be_written_is_named(tmp_path):

@@ -21,7 +21,8 @@ def test_where_no_way_is_open_it_waits_at_its_post_tells_and_asks_ever_more_rare
     for patience_s in (30, 60, 120, 240, 480, 960, 1800, 1800):
         stage.expect("claim(post4)")
         stage.fails("claim(post4)", "way_closed")
-        stage.does('raise_fault(no_way,"every way blocked or denied")', f"rest({patience_s})", "reopen")
+        stage.does('raise_fault(no_way,"every way blocked or denied")', *(("release",) if patience_s > 60 else ()))
+        stage.does(f"rest({patience_s})", "reopen")
     stage.does("claim(post4)")
     stage.expect("follow_line")
     assert "clear_fault(no_way)" in stage.done
@@ -60,6 +61,16 @@ def test_a_robot_that_was_carried_elsewhere_takes_note_and_plans_from_there() ->
     stage.settle()
     assert stage.cancelled == ["follow_line"]
     assert stage.done.count("noted_move") == 1
+
+
+def test_without_network_it_keeps_what_it_was_granted_however_long_it_waits_for_a_way() -> None:
+    stage = Stage(*CARRYING, "at(post3)", "fault(link_loss)")
+    stage.does("report(departed,s2)", "set_destination(post4)")
+    for patience_s in (30, 60, 120, 240):
+        stage.expect("claim(post4)")
+        stage.fails("claim(post4)", "way_closed")
+        stage.does('raise_fault(no_way,"every way blocked or denied")', f"rest({patience_s})", "reopen")
+    assert "release" not in stage.done
 
 
 def test_gone_into_the_wrong_corridor_it_turns_round_and_begins_again_at_the_post() -> None:
