@@ -137,13 +137,17 @@ def settle(view: View, shape: BodyShape, widest_rad: float = WIDEST_RAD) -> Part
     """
     from_rad = view.odometry.heading_rad
     for ahead_mm, reach_rad in ((0.0, CLOSE_RAD), (WORN_MM, CLOSE_RAD), (0.0, widest_rad)):
-        if ahead_mm and not over_line(view):
-            view = yield from roll(view, ahead_mm, WheelSpeeds(SEARCH_MM_S, SEARCH_MM_S), over_line)
+        if ahead_mm:
+            view = yield from roll(view, ahead_mm, WheelSpeeds(SEARCH_MM_S, SEARCH_MM_S), _centred)
         view = yield from _look_to_both_sides(view, shape, from_rad, reach_rad)
         view = yield from _centre(view, shape)
-        if over_line(view):
+        if _centred(view):
             break
     return view
+
+
+def _centred(view: View) -> bool:
+    return over_line(view) and view.reading.centre
 
 
 def _look_to_both_sides(view: View, shape: BodyShape, from_rad: float, reach_rad: float) -> Part:
@@ -155,7 +159,7 @@ def _look_to_both_sides(view: View, shape: BodyShape, from_rad: float, reach_rad
 
 def _centre(view: View, shape: BodyShape) -> Part:
     """From an outer diode to the centre one. Where that finds nothing it was the edge of a worn place."""
-    if over_line(view) and not view.reading.centre:
+    if over_line(view) and not _centred(view):
         side = 1.0 if view.reading.left else -1.0
-        view = yield from turn_by(view, side * 0.5, SEARCH_MM_S, shape, lambda seen: seen.reading.centre)
+        view = yield from turn_by(view, side * 0.5, SEARCH_MM_S, shape, _centred)
     return view
