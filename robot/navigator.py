@@ -156,9 +156,8 @@ class Navigator:
         self._duties.seen(post)
         if before and before != post:
             self._duties.clear([Leg(from_post=before, to_post=post)])
-        self._far_end = (
-            None  # where it turned back: held until it claims another way, or it might never be let in again
-        )
+        # Where it turned back is not given back here: it may wish to go in again (decision 0022).
+        self._far_end = None
         if self.visited[-1:] != [post]:
             self.visited.append(post)
             self.arrivals += 1
