@@ -8,10 +8,11 @@ from fastapi.security import APIKeyCookie
 
 from app.database import Database, DatabaseDep
 from app.errors import NotSignedIn
+from app.people.errors import RoleNeeded
 from app.people.same_origin import require_https_or_loopback, require_same_origin
 from app.people.service import person_of_session
 from app.settings import ClockDep
-from app.tables import Person
+from app.tables import Person, Role
 from protocol.clock import Clock
 
 StillSignedIn = Callable[[Person], Awaitable[bool]]
@@ -57,4 +58,19 @@ def _still_signed_in(request: Request, database: DatabaseDep, clock: ClockDep) -
 
 
 CurrentUser = Annotated[Person, Depends(_current_user)]
+
+
+def require_role(role: Role) -> Callable[..., Awaitable[Person]]:
+    """A dependency: the signed-in person, if they have this role. Raises RoleNeeded."""
+
+    async def having_role(user: CurrentUser) -> Person:
+        if not user.has_role(role):
+            raise RoleNeeded(f"This is for people with the role {role}. A maintainer can give it to you.")
+        return user
+
+    return having_role
+
+
+Dispatcher = Annotated[Person, Depends(require_role(Role.DISPATCHER))]
+Maintainer = Annotated[Person, Depends(require_role(Role.MAINTAINER))]
 StillSignedInDep = Annotated[StillSignedIn, Depends(_still_signed_in)]

@@ -3,7 +3,8 @@
 Unprocessable └── AddressNotAllowed
 NotSignedIn   ├── WrongCode
               └── CodeExpired
-Forbidden     ├── CrossSite
+Forbidden     ├── RoleNeeded
+              ├── CrossSite
               └── HttpsRequired
 """
 
@@ -26,6 +27,12 @@ class CodeExpired(NotSignedIn):
     """No code that is still good: never asked for, too old, used, or tried too often."""
 
     code = "code_expired"
+
+
+class RoleNeeded(Forbidden):
+    """Signed in, but without the role that this takes; the sentence names it."""
+
+    code = "role_needed"
 
 
 class CrossSite(Forbidden):
