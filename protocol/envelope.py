@@ -37,6 +37,7 @@ TO_ROBOT: Final[Mapping[str, type[Part]]] = {
     "grant": to_robot.Grant,
     "deny": to_robot.Deny,
     "cancel": to_robot.Cancel,
+    "confirm": to_robot.Confirm,
     "pause": to_robot.Pause,
     "resume": to_robot.Resume,
     "recall": to_robot.Recall,
@@ -44,7 +45,7 @@ TO_ROBOT: Final[Mapping[str, type[Part]]] = {
     **BOTH_WAYS,
 }
 DURABLE: Final = frozenset({"event", "claim", "clear"}) | {
-    *("mission", "verifiers", "grant", "deny", "cancel", "pause", "resume", "recall", "emergency_stop")
+    *("mission", "verifiers", "grant", "deny", "cancel", "confirm", "pause", "resume", "recall", "emergency_stop")
 }
 """The types that are stored before they are sent, numbered, and sent again until they are acknowledged."""
 

@@ -19,6 +19,8 @@ Moment = Annotated[AwareDatetime, Field(ge=datetime(1970, 1, 1, tzinfo=UTC), lt=
 """When something happened, with its zone. A device that has lost its clock says 1970: allowed, and an alarm."""
 
 Sha256Hex = Annotated[str, StringConstraints(pattern=r"^[0-9a-f]{64}$")]
+Signature = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9+/]{86}==$")]
+"""64 bytes of Ed25519 as base64."""
 
 
 class Part(BaseModel):

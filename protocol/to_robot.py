@@ -1,5 +1,7 @@
 """What the server says to a robot: one frozen class per message."""
 
+from typing import Literal
+
 from pydantic import Field
 
 from protocol.parts import Identifier, Leg, Moment, Part, Purpose, Received, Sentence, Seq, Sha256Hex, Stop
@@ -35,7 +37,11 @@ class Verifier(Part):
 
 
 class Verifiers(Part):
-    """What is needed to check the hand-over codes of a mission with no network."""
+    """What is needed to check the hand-over codes of some orders with no network.
+
+    Replaces all codes of every order that it names: a code that is not among them opens nothing any more. An order may
+    have several codes for one purpose, one for each person who may hand over.
+    """
 
     verifiers: tuple[Verifier, ...]
 
@@ -60,6 +66,21 @@ class Cancel(Part):
 
     command_id: Identifier
     order_id: Identifier
+
+
+class Confirm(Part):
+    """Hand over now: a person said so in the app, by a tap or by the six digits of a code, and the server has checked.
+
+    The robot does so if it waits at a stop for this order and purpose (`stop_id`: at this one), and its receipt names
+    `command_id` and repeats `by`: the SHA-256 of the code that this person could have shown instead. Else it refuses.
+    """
+
+    command_id: Identifier
+    order_id: Identifier
+    stop_id: Identifier | None = None
+    purpose: Purpose
+    how: Literal["tap", "digits"]
+    by: Sha256Hex | None = None
 
 
 class Pause(Part):

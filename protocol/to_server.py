@@ -1,7 +1,8 @@
 """What a robot says to the server: one frozen class per message."""
 
+from datetime import UTC
 from enum import StrEnum
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
@@ -20,6 +21,7 @@ from protocol.parts import (
     Sentence,
     Seq,
     Sha256Hex,
+    Signature,
 )
 
 
@@ -27,7 +29,7 @@ class Hello(Part):
     """The first message on every connection: where to resume from, and what the robot knows of itself.
 
     `received` is what it last had from the server, `resume_from` the lowest `seq` of its own journal that can still
-    come.
+    come. `understands` names the messages younger than the protocol that this robot knows; it is sent no others.
     """
 
     received: Received = Received()
@@ -38,6 +40,7 @@ class Hello(Part):
     battery: Battery
     software: Sentence
     map_version: Sentence
+    understands: tuple[Identifier, ...] = ()
 
 
 class Snapshot(Part):
@@ -74,10 +77,20 @@ class Progress(Part):
     reason: Sentence | None = None
 
 
+How = Literal["code", "tap", "digits", "button"]
+"""How a hand-over was confirmed: a code shown to the camera, in the app by tap or digits, or the Spot button."""
+
+
+def _how_before_it_was_told(known: dict[str, Any]) -> How:
+    return "code" if known.get("code_sha256") else "button"
+
+
 class HandoverReceipt(Part):
     """Mail changed hands. Only the robot writes custody.
 
-    `code_sha256` is the verifier that matched, None if nobody was identified (the Spot button).
+    `code_sha256` is the verifier that matched (or the `by` of the `confirm`), None if nobody was identified (the Spot
+    button). `command_id` names the `confirm`, if one led to it. `signature` is Ed25519 over `signed_by(robot)`, base64;
+    None from a robot that was enrolled without a key.
     """
 
     kind: Literal["handover"] = "handover"
@@ -87,6 +100,15 @@ class HandoverReceipt(Part):
     post: PostName
     happened_at: Moment
     code_sha256: Sha256Hex | None
+    how: How = Field(default_factory=_how_before_it_was_told)
+    command_id: Identifier | None = None
+    signature: Signature | None = None
+
+    def signed_by(self, robot: str) -> bytes:
+        """What this robot's signature is over: one value a line, `-` for none, no line end after the last."""
+        happened_at = self.happened_at.astimezone(UTC).isoformat(timespec="microseconds").replace("+00:00", "Z")
+        values = ("campus-mail receipt 1", robot, self.purpose, self.order_id, self.stop_id, self.post, happened_at)
+        return "\n".join((*values, self.code_sha256 or "-", self.how, self.command_id or "-")).encode("ascii")
 
 
 class Charge(Part):
@@ -111,7 +133,7 @@ class Fault(Part):
 
 
 class CommandAnswer(Part):
-    """What became of a cancel, pause, resume or recall: `command_id` is the one it carried."""
+    """What became of a cancel, confirm, pause, resume, recall or emergency_stop: `command_id` is the one it carried."""
 
     kind: Literal["answer"] = "answer"
     command_id: Identifier
