@@ -7,14 +7,21 @@ relationships the unit of work does not order the rows of different tables: flus
 from sqlmodel import SQLModel
 
 from app.tables.claims import ClaimRow, GrantRow
-from app.tables.handovers import Handover
+from app.tables.contacts import Contact
+from app.tables.delegates import Delegate, DigitLock
+from app.tables.enrolment_codes import EnrolmentCode
+from app.tables.handovers import Handover, RefusedReceipt
 from app.tables.idempotency_keys import IdempotencyKey
+from app.tables.identities import Identity
 from app.tables.missions import MissionRow, MissionState, StopRow
 from app.tables.notices import Notice, NoticeKind
 from app.tables.order_events import OrderEvent
+from app.tables.order_links import OrderLink
 from app.tables.orders import Order, OrderState
 from app.tables.outbox import OutgoingNotice
 from app.tables.people import Person, Role
+from app.tables.person_tokens import PersonToken
+from app.tables.robot_commands import RobotCommand
 from app.tables.robot_messages import MessageToRobot, RobotJournal, RobotMessage
 from app.tables.robots import Alarm, RobotRow, RobotToken
 from app.tables.sessions import PersonSession
@@ -25,9 +32,14 @@ metadata = SQLModel.metadata
 __all__ = [
     "Alarm",
     "ClaimRow",
+    "Contact",
+    "Delegate",
+    "DigitLock",
+    "EnrolmentCode",
     "GrantRow",
     "Handover",
     "IdempotencyKey",
+    "Identity",
     "MessageToRobot",
     "MissionRow",
     "MissionState",
@@ -35,10 +47,14 @@ __all__ = [
     "NoticeKind",
     "Order",
     "OrderEvent",
+    "OrderLink",
     "OrderState",
     "OutgoingNotice",
     "Person",
     "PersonSession",
+    "PersonToken",
+    "RefusedReceipt",
+    "RobotCommand",
     "RobotJournal",
     "RobotMessage",
     "RobotRow",

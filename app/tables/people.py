@@ -26,6 +26,7 @@ class Person(SQLModel, table=True):
     email: str = Field(unique=True, max_length=320)
     name: str = Field(max_length=200)
     language: str = Field(default="en", max_length=8)
+    usual_post: str | None = Field(default=None, max_length=64)
     roles: list[str] = Field(default_factory=lambda: [str(Role.MEMBER)], sa_type=JSON)
     created_at: datetime = Field(sa_type=UtcTime)
 

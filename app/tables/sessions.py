@@ -8,13 +8,18 @@ from app.tables.columns import UtcTime
 
 
 class PersonSession(SQLModel, table=True):
-    """`token_hash` is the SHA-256 of the cookie; `revoked_at` ends it before its time."""
+    """`token_hash` is the SHA-256 of the cookie; `revoked_at` ends it before its time.
+
+    `device` says in words what it was opened with ("Firefox, Windows"); `seen_at` is some minutes behind.
+    """
 
     __tablename__ = "sessions"
 
     id: int | None = Field(default=None, primary_key=True)
     token_hash: str = Field(unique=True, max_length=64)
     person_id: str = Field(foreign_key="people.id", index=True)
+    device: str = Field(default="", max_length=64)
     created_at: datetime = Field(sa_type=UtcTime)
+    seen_at: datetime | None = Field(default=None, sa_type=UtcTime)
     expires_at: datetime = Field(sa_type=UtcTime)
     revoked_at: datetime | None = Field(default=None, sa_type=UtcTime)
