@@ -9,7 +9,12 @@ from app.tables.columns import UtcTime
 
 
 class Handover(SQLModel, table=True):
-    """One receipt. `purpose` is load or receive; `code_sha256` is None if nobody was identified."""
+    """One receipt. `purpose` is load, receive or return; `code_sha256` is None if nobody was identified.
+
+    `how`: code, tap, digits or button by a receipt; `dispatcher` if a person fetched the mail by hand. `holder` says
+    whose code it was (one of `app.orders.codes.Holder`), `person_id` and `delegate_id` who that is, as far as known.
+    `signature` None: the robot was enrolled without a key.
+    """
 
     __tablename__ = "handovers"
     __table_args__ = (UniqueConstraint("order_id", "stop_id", "purpose"),)
@@ -23,3 +28,29 @@ class Handover(SQLModel, table=True):
     code_sha256: str | None = Field(default=None, max_length=64)
     robot_at: datetime = Field(sa_type=UtcTime)
     at: datetime = Field(sa_type=UtcTime)
+    how: str = Field(default="code", max_length=16)
+    holder: str | None = Field(default=None, max_length=16)
+    person_id: str | None = Field(default=None, foreign_key="people.id")
+    delegate_id: str | None = Field(default=None, foreign_key="delegates.id")
+    command_id: str | None = Field(default=None, max_length=64)
+    signature: str | None = Field(default=None, max_length=100)
+
+
+class RefusedReceipt(SQLModel, table=True):
+    """A receipt that proves nothing: a bad signature, or a code that is none of the order's. Custody has not moved."""
+
+    __tablename__ = "refused_receipts"
+
+    id: int | None = Field(default=None, primary_key=True)
+    robot: str = Field(foreign_key="robots.name")
+    order_id: str = Field(max_length=64, index=True)
+    stop_id: str = Field(max_length=64)
+    purpose: str = Field(max_length=16)
+    post: str = Field(max_length=64)
+    code_sha256: str | None = Field(default=None, max_length=64)
+    how: str = Field(max_length=16)
+    command_id: str | None = Field(default=None, max_length=64)
+    signature: str | None = Field(default=None, max_length=100)
+    robot_at: datetime = Field(sa_type=UtcTime)
+    at: datetime = Field(sa_type=UtcTime)
+    problem: str = Field(max_length=64)

@@ -10,7 +10,9 @@ from app.tables.columns import UtcTime
 class RobotRow(SQLModel, table=True):
     """`server_journal` is the journal of what the server sends to this robot, `last_seq` its highest number so far.
 
-    `online` says that its socket is open now; every start of the service begins with nobody online.
+    `online` says that its socket is open now; every start of the service begins with nobody online. `public_key`
+    (Ed25519, base64) is what its receipts are signed with; None: enrolled without one. `clock_off_s` is how far its
+    clock was ahead at its last hello.
     """
 
     __tablename__ = "robots"
@@ -31,6 +33,9 @@ class RobotRow(SQLModel, table=True):
     battery_ratio: float | None = None
     charging: bool = False
     why: str | None = Field(default=None, max_length=500)
+    public_key: str | None = Field(default=None, max_length=64)
+    takes_confirm: bool = False
+    clock_off_s: float = 0.0
 
 
 class RobotToken(SQLModel, table=True):
@@ -58,3 +63,5 @@ class Alarm(SQLModel, table=True):
     post: str | None = Field(default=None, max_length=64)
     at: datetime = Field(sa_type=UtcTime)
     cleared_at: datetime | None = Field(default=None, sa_type=UtcTime)
+    acknowledged_at: datetime | None = Field(default=None, sa_type=UtcTime)
+    acknowledged_by_id: str | None = Field(default=None, foreign_key="people.id")
