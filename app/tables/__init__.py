@@ -17,7 +17,7 @@ from app.tables.missions import MissionRow, MissionState, StopRow
 from app.tables.notices import Notice, NoticeKind
 from app.tables.order_events import OrderEvent
 from app.tables.order_links import OrderLink
-from app.tables.orders import Order, OrderState
+from app.tables.orders import Order, OrderState, Priority
 from app.tables.outbox import OutgoingNotice
 from app.tables.people import Person, Role
 from app.tables.person_tokens import PersonToken
@@ -26,6 +26,7 @@ from app.tables.robot_messages import MessageToRobot, RobotJournal, RobotMessage
 from app.tables.robots import Alarm, RobotRow, RobotToken
 from app.tables.sessions import PersonSession
 from app.tables.sign_in_codes import SignInCode
+from app.tables.standing_orders import StandingOrder
 
 metadata = SQLModel.metadata
 
@@ -53,6 +54,7 @@ __all__ = [
     "Person",
     "PersonSession",
     "PersonToken",
+    "Priority",
     "RefusedReceipt",
     "RobotCommand",
     "RobotJournal",
@@ -61,6 +63,7 @@ __all__ = [
     "RobotToken",
     "Role",
     "SignInCode",
+    "StandingOrder",
     "StopRow",
     "metadata",
 ]

@@ -18,13 +18,18 @@ class MissionState(StrEnum):
 
 
 class MissionRow(SQLModel, table=True):
-    """`update_number` grows by one whenever the stops change; the robot holds the newest."""
+    """`update_number` grows by one whenever the stops change; the robot is told of it when `told_update` is smaller.
+
+    A mission whose id begins with `return-` is one that the robot gave to itself (decision 0017).
+    """
 
     __tablename__ = "missions"
 
     id: str = Field(primary_key=True, max_length=64)
     robot: str = Field(foreign_key="robots.name", index=True)
     update_number: int = 1
+    told_update: int = 0
+    accepted_update: int = 0
     state: MissionState = Field(default=MissionState.ACTIVE, sa_type=WordOf(MissionState), index=True)
     created_at: datetime = Field(sa_type=UtcTime)
     accepted_at: datetime | None = Field(default=None, sa_type=UtcTime)
@@ -32,7 +37,10 @@ class MissionRow(SQLModel, table=True):
 
 
 class StopRow(SQLModel, table=True):
-    """`position` counts from 0; `action` is one of `protocol.parts.StopAction`."""
+    """`position` orders the stops; `action` is one of `protocol.parts.StopAction`.
+
+    A stop is over when it is done, given up, or dropped: taken out of the mission by a later update.
+    """
 
     __tablename__ = "stops"
 
@@ -47,3 +55,4 @@ class StopRow(SQLModel, table=True):
     arrived_at: datetime | None = Field(default=None, sa_type=UtcTime)
     done_at: datetime | None = Field(default=None, sa_type=UtcTime)
     gave_up_at: datetime | None = Field(default=None, sa_type=UtcTime)
+    dropped_at: datetime | None = Field(default=None, sa_type=UtcTime)

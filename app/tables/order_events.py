@@ -1,7 +1,7 @@
 """The life of every order, append-only: audit trail and timeline in one."""
 
 from datetime import datetime
-from typing import Any, NoReturn
+from typing import Any, Final, NoReturn
 
 from sqlalchemy import event
 from sqlmodel import Field, SQLModel
@@ -14,14 +14,21 @@ class EventsAreAppendOnly(RuntimeError):
     """Somebody tried to change or delete what has happened: write a new event instead."""
 
 
+MOVED: Final = "moved"
+
+
 class OrderEvent(SQLModel, table=True):
-    """`at` is the server's time, `robot_at` the robot's; `by` is one of `app.orders.transitions.By`."""
+    """`at` is the server's time, `robot_at` the robot's; `by` is one of `app.orders.transitions.By`.
+
+    `kind` is MOVED for a change of state; any other kind of event carries the state that the order had.
+    """
 
     __tablename__ = "order_events"
 
     order_id: str = Field(primary_key=True, foreign_key="orders.id")
     seq: int = Field(primary_key=True)
     state: OrderState = Field(sa_type=WordOf(OrderState))
+    kind: str = Field(default=MOVED, max_length=32)
     at: datetime = Field(sa_type=UtcTime)
     robot_at: datetime | None = Field(default=None, sa_type=UtcTime)
     by: str = Field(max_length=32)

@@ -3,6 +3,7 @@
 from datetime import datetime
 from enum import StrEnum
 
+from sqlalchemy import UniqueConstraint
 from sqlmodel import Field, SQLModel
 
 from app.tables.columns import UtcTime, WordOf
@@ -27,10 +28,24 @@ class OrderState(StrEnum):
     ATTENTION = "attention"
 
 
+class Priority(StrEnum):
+    """How much sooner than others an order is fetched."""
+
+    LOW = "low"
+    NORMAL = "normal"
+    HIGH = "high"
+
+
 class Order(SQLModel, table=True):
-    """`version` grows by one with every change and is the ETag; `state_before_attention` is where a fault struck."""
+    """`version` grows by one with every change and is the ETag; `state_before_attention` is where a fault struck.
+
+    Dispatch leaves it alone until `not_before`. `placed_by_id` is who placed it for the sender. `return_post` is where
+    mail that was not taken goes, `wait_until` how long the robot waits at the present stop. `…_requested_at` are wishes
+    that take effect on the robot's word. `occurs_on` is the day of its standing order (local, as 2026-01-05).
+    """
 
     __tablename__ = "orders"
+    __table_args__ = (UniqueConstraint("standing_order_id", "occurs_on"),)
 
     id: str = Field(primary_key=True, max_length=64)
     state: OrderState = Field(default=OrderState.QUEUED, sa_type=WordOf(OrderState), index=True)
@@ -51,3 +66,15 @@ class Order(SQLModel, table=True):
     state_before_attention: OrderState | None = Field(default=None, sa_type=WordOf(OrderState))
     cancel_requested_at: datetime | None = Field(default=None, sa_type=UtcTime)
     cancel_requested_by: str | None = Field(default=None, max_length=32)
+    return_requested_at: datetime | None = Field(default=None, sa_type=UtcTime)
+    reassign_requested_at: datetime | None = Field(default=None, sa_type=UtcTime)
+    wanted_robot: str | None = Field(default=None, max_length=64)
+    avoided_robot: str | None = Field(default=None, max_length=64)
+    priority: Priority = Field(default=Priority.NORMAL, sa_type=WordOf(Priority))
+    not_before: datetime | None = Field(default=None, sa_type=UtcTime)
+    placed_by_id: str | None = Field(default=None, foreign_key="people.id")
+    standing_order_id: str | None = Field(default=None, foreign_key="standing_orders.id")
+    occurs_on: str | None = Field(default=None, max_length=10)
+    return_post: str | None = Field(default=None, max_length=64)
+    wait_until: datetime | None = Field(default=None, sa_type=UtcTime)
+    delayed_at: datetime | None = Field(default=None, sa_type=UtcTime)
