@@ -10,10 +10,10 @@ from app.texts import text
 
 
 class NoticeView(BaseModel):
-    """One notice in the reader's language. Never holds a hand-over code."""
+    """One notice in the reader's language; an alarm has no order. Never holds a hand-over code."""
 
     id: int
-    order_id: str
+    order_id: str | None
     kind: str
     title: str
     body: str

@@ -22,15 +22,16 @@ async def tell(
     feed: Feed,
     *,
     person: Person,
-    order_id: str,
+    key: str,
+    order_id: str | None,
     kind: NoticeKind,
     facts: Mapping[str, str],
     now: datetime,
 ) -> bool:
-    """Tell one person one thing of an order; False if they were told before."""
-    if await _told(session, person, order_id, kind):
+    """Tell one person one thing, which `key` names; False if they were told before."""
+    if await _told(session, person, key):
         return False
-    notice = Notice(order_id=order_id, kind=kind, person_id=person.id, at=now, facts=dict(facts))
+    notice = Notice(key=key, order_id=order_id, kind=kind, person_id=person.id, at=now, facts=dict(facts))
     session.add(notice)
     await session.flush()
     for channel in CHANNELS:
@@ -40,13 +41,13 @@ async def tell(
     return True
 
 
-async def _told(session: AsyncSession, person: Person, order_id: str, kind: NoticeKind) -> bool:
-    wanted = select(Notice.id).where(Notice.order_id == order_id, Notice.kind == kind, Notice.person_id == person.id)
+async def _told(session: AsyncSession, person: Person, key: str) -> bool:
+    wanted = select(Notice.id).where(Notice.person_id == person.id, Notice.key == key)
     return (await session.exec(wanted)).first() is not None
 
 
 def _outgoing(notice: Notice, channel: str) -> OutgoingNotice:
-    key = f"{channel}.{notice.order_id}.{notice.kind}.{notice.person_id}"
+    key = f"{channel}.{notice.key}.{notice.person_id}"
     assert notice.id is not None  # noqa: S101  # flushed rows have one
     return OutgoingNotice(key=key, channel=channel, notice_id=notice.id, created_at=notice.at, next_try_at=notice.at)
 

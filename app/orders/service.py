@@ -206,7 +206,7 @@ class Orders:
         await session.flush()
         facts = (await load_facts(session, [order]))[0]
         gaps = facts_of(order, facts.people, self.campus, self.settings)
-        await tell_about(session, self.feed, order, facts.people, gaps)
+        await tell_about(session, self.feed, order, facts.people, gaps, facts.events)
         self._publish(session, facts)
         return facts
 

@@ -1,38 +1,144 @@
 """Who is told what, at which state of an order."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Final
 
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.live.feed import Feed
 from app.notify.service import tell
-from app.orders.transitions import By
+from app.orders.transitions import MAIL_ABOARD, By
 from app.settings import Settings
-from app.tables import NoticeKind, Order, OrderState, Person
+from app.tables import NoticeKind, Order, OrderEvent, OrderState, Person
+from app.tables.order_events import MOVED
 from maps import CampusMap
 
-TOLD: Final[Mapping[OrderState, tuple[tuple[By, NoticeKind], ...]]] = {
-    OrderState.QUEUED: ((By.SENDER, NoticeKind.ACCEPTED),),
-    OrderState.TO_SENDER: ((By.SENDER, NoticeKind.ROBOT_NEAR),),
-    OrderState.AT_SENDER: ((By.SENDER, NoticeKind.ROBOT_HERE),),
-    OrderState.CARRYING: ((By.RECIPIENT, NoticeKind.ON_ITS_WAY),),
-    OrderState.AT_RECIPIENT: ((By.RECIPIENT, NoticeKind.ROBOT_HERE_FOR_YOU),),
-    OrderState.DELIVERED: ((By.SENDER, NoticeKind.DELIVERED), (By.RECIPIENT, NoticeKind.DELIVERED)),
-    OrderState.CANCELLED: ((By.SENDER, NoticeKind.CANCELLED),),
-    OrderState.EXPIRED: ((By.SENDER, NoticeKind.EXPIRED),),
+SENDER: Final = By.SENDER
+RECIPIENT: Final = By.RECIPIENT
+
+
+@dataclass(frozen=True)
+class Telling:
+    """One person is told one thing, if it concerns them as things stand."""
+
+    who: By
+    kind: NoticeKind
+    concerns: Callable[[Order], bool] = lambda order: True
+
+
+def _both(kind: NoticeKind, concerns: Callable[[Order], bool] = lambda order: True) -> tuple[Telling, Telling]:
+    return Telling(SENDER, kind, concerns), Telling(RECIPIENT, kind, concerns)
+
+
+def _was_called_back(order: Order) -> bool:
+    return order.cancel_requested_at is not None
+
+
+def _was_not_taken(order: Order) -> bool:
+    return not _was_called_back(order)
+
+
+def _comes_to_the_sender(order: Order) -> bool:
+    return return_post_of(order) == order.from_post
+
+
+def _was_aboard(order: Order) -> bool:
+    """Before that a recipient has not been told of anything that could be late or go wrong."""
+    return (order.state_before_attention or order.state) in MAIL_ABOARD
+
+
+TOLD: Final[Mapping[OrderState, tuple[Telling, ...]]] = {
+    OrderState.QUEUED: (Telling(SENDER, NoticeKind.ACCEPTED),),
+    OrderState.TO_SENDER: (Telling(SENDER, NoticeKind.ROBOT_NEAR),),
+    OrderState.AT_SENDER: (Telling(SENDER, NoticeKind.ROBOT_HERE),),
+    OrderState.CARRYING: (Telling(RECIPIENT, NoticeKind.ON_ITS_WAY),),
+    OrderState.AT_RECIPIENT: (Telling(RECIPIENT, NoticeKind.ROBOT_HERE_FOR_YOU),),
+    OrderState.DELIVERED: _both(NoticeKind.DELIVERED),
+    OrderState.RETURNING: (
+        *_both(NoticeKind.NOT_TAKEN, _was_not_taken),
+        *_both(NoticeKind.CALLED_BACK, _was_called_back),
+    ),
+    # In the mailroom somebody of the mailroom takes it out.
+    OrderState.AT_RETURN: (Telling(SENDER, NoticeKind.AT_RETURN, _comes_to_the_sender),),
+    OrderState.RETURNED: _both(NoticeKind.RETURNED),
+    OrderState.HELD: _both(NoticeKind.HELD),
+    OrderState.CANCELLED: (Telling(SENDER, NoticeKind.CANCELLED),),
+    OrderState.EXPIRED: (Telling(SENDER, NoticeKind.EXPIRED),),
+    OrderState.ATTENTION: (
+        Telling(SENDER, NoticeKind.ATTENTION),
+        Telling(RECIPIENT, NoticeKind.ATTENTION, _was_aboard),
+    ),
 }
-"""Thin: "near" is told when the robot sets out for the sender; returned, delayed and attention are later issues."""
+"""Thin: "near" is told when the robot sets out for the sender."""
+LATE: Final = (Telling(SENDER, NoticeKind.DELAYED), Telling(RECIPIENT, NoticeKind.DELAYED, _was_aboard))
+
+ONCE: Final = frozenset(
+    {
+        NoticeKind.ACCEPTED,
+        NoticeKind.DELIVERED,
+        NoticeKind.RETURNED,
+        NoticeKind.HELD,
+        NoticeKind.CANCELLED,
+        NoticeKind.EXPIRED,
+    }
+)
+"""What an order goes through once at most; everything else may happen again in a later round."""
+
+
+def round_of(events: Sequence[OrderEvent]) -> int:
+    """How often the order has begun, or stopped for somebody to see to it: after that, people are told anew."""
+    again = (OrderState.QUEUED, OrderState.ATTENTION)
+    return sum(event.state in again and event.kind == MOVED for event in events)
 
 
 async def tell_about(
-    session: AsyncSession, feed: Feed, order: Order, people: Mapping[str, Person], facts: Mapping[str, str]
+    session: AsyncSession,
+    feed: Feed,
+    order: Order,
+    people: Mapping[str, Person],
+    facts: Mapping[str, str],
+    events: Sequence[OrderEvent],
 ) -> None:
-    """Tell whoever is to be told of the state that `order` is in now."""
-    ids = {By.SENDER: order.sender_id, By.RECIPIENT: order.recipient_id}
-    for who, kind in TOLD.get(order.state, ()):
-        person = people[ids[who]]
-        await tell(session, feed, person=person, order_id=order.id, kind=kind, facts=facts, now=order.updated_at)
+    """Tell whoever is to be told of the state that `order` is in now; `events` are all it has been through."""
+    await _tell(session, feed, TOLD.get(order.state, ()), order, people, facts, round_of(events))
+
+
+async def tell_of_delay(
+    session: AsyncSession,
+    feed: Feed,
+    order: Order,
+    people: Mapping[str, Person],
+    facts: Mapping[str, str],
+    events: Sequence[OrderEvent],
+) -> None:
+    """Its window is later than what people were told; once in each round."""
+    await _tell(session, feed, LATE, order, people, facts, round_of(events))
+
+
+async def _tell(
+    session: AsyncSession,
+    feed: Feed,
+    tellings: Sequence[Telling],
+    order: Order,
+    people: Mapping[str, Person],
+    facts: Mapping[str, str],
+    round_: int,
+) -> None:
+    ids = {SENDER: order.sender_id, RECIPIENT: order.recipient_id}
+    for one in tellings:
+        if one.concerns(order):
+            occasion = f".{round_}" if round_ > 1 and one.kind not in ONCE else ""
+            await tell(
+                session,
+                feed,
+                person=people[ids[one.who]],
+                key=f"{order.id}.{one.kind}{occasion}",
+                order_id=order.id,
+                kind=one.kind,
+                facts=facts,
+                now=order.updated_at,
+            )
 
 
 def facts_of(order: Order, people: Mapping[str, Person], campus: CampusMap, settings: Settings) -> dict[str, str]:
@@ -43,8 +149,14 @@ def facts_of(order: Order, people: Mapping[str, Person], campus: CampusMap, sett
         "recipient": people[order.recipient_id].name,
         "from_post": title_of(order.from_post, campus),
         "to_post": title_of(order.to_post, campus),
+        "return_post": title_of(return_post_of(order), campus),
         **{name: at.astimezone(settings.zone).strftime("%H:%M") if at else "?" for name, at in times.items()},
     }
+
+
+def return_post_of(order: Order) -> str:
+    """Where mail goes that was not taken."""
+    return order.return_post or order.from_post
 
 
 def title_of(post: str, campus: CampusMap) -> str:

@@ -1,4 +1,4 @@
-"""What people are told: each thing once per order, kind and person, however often it is reported."""
+"""What people are told: each thing once per person, however often it is reported."""
 
 from datetime import datetime
 from enum import StrEnum
@@ -10,7 +10,7 @@ from app.tables.columns import UtcTime, WordOf
 
 
 class NoticeKind(StrEnum):
-    """The things that people are told; the words are in `app/notify/texts`."""
+    """The things that people are told; the words are in the catalogues, under `notice.<kind>`."""
 
     ACCEPTED = "accepted"
     ROBOT_NEAR = "robot_near"
@@ -18,18 +18,31 @@ class NoticeKind(StrEnum):
     ON_ITS_WAY = "on_its_way"
     ROBOT_HERE_FOR_YOU = "robot_here_for_you"
     DELIVERED = "delivered"
+    NOT_TAKEN = "not_taken"
+    CALLED_BACK = "called_back"
+    AT_RETURN = "at_return"
+    RETURNED = "returned"
+    HELD = "held"
+    DELAYED = "delayed"
     CANCELLED = "cancelled"
     EXPIRED = "expired"
+    ATTENTION = "attention"
+    ALARM = "alarm"
 
 
 class Notice(SQLModel, table=True):
-    """`facts` fill the text's gaps (post titles, names, the window); a hand-over code is never among them."""
+    """`facts` fill the text's gaps (post titles, names, the window); a hand-over code is never among them.
+
+    `key` names the thing that is told: the order, the kind and, for what may happen again after somebody had to see to
+    it, the round. An alarm has no order.
+    """
 
     __tablename__ = "notices"
-    __table_args__ = (UniqueConstraint("order_id", "kind", "person_id"),)
+    __table_args__ = (UniqueConstraint("person_id", "key"),)
 
     id: int | None = Field(default=None, primary_key=True)
-    order_id: str = Field(foreign_key="orders.id")
+    key: str = Field(max_length=160)
+    order_id: str | None = Field(default=None, foreign_key="orders.id", index=True)
     kind: NoticeKind = Field(sa_type=WordOf(NoticeKind))
     person_id: str = Field(foreign_key="people.id", index=True)
     at: datetime = Field(sa_type=UtcTime)

@@ -136,7 +136,13 @@ def test_every_language_has_the_same_texts_with_the_same_gaps(language: str) -> 
 def test_every_kind_of_notice_has_its_words_and_no_title_has_room_for_a_code() -> None:
     for kind in NoticeKind:
         assert {f"notice.{kind}.title", f"notice.{kind}.body"} <= set(catalogue("en"))
-        assert gaps(catalogue("en")[f"notice.{kind}.title"]) <= {"from_post", "to_post", "sender"}
+        assert gaps(catalogue("en")[f"notice.{kind}.title"]) <= {
+            "from_post",
+            "to_post",
+            "return_post",
+            "sender",
+            "robot",
+        }
 
 
 def test_a_mail_is_written_whole_or_not_at_all_and_for_its_owner_alone(tmp_path: object, clock: SteppedClock) -> None:
