@@ -158,14 +158,14 @@ class Memory:
         return self._read("verifiers", _VERIFIERS, ())
 
     def keep_verifiers(self, verifiers: Verifiers, at: datetime) -> None:
-        """Add these; one for the same order and purpose takes the place of the older one.
+        """These take the place of all that were kept for the orders that they name.
 
         Those that have expired by then open nothing any more and are forgotten: they must not pile up for ever.
         """
+        named = {one.order_id for one in verifiers.verifiers}
         with self._store.transaction():
-            lasting = (one for one in self.verifiers() if at < one.expires_at)
-            kept = {(one.order_id, one.purpose): one for one in (*lasting, *verifiers.verifiers)}
-            self._write("verifiers", _VERIFIERS, tuple(kept.values()))
+            lasting = (one for one in self.verifiers() if at < one.expires_at and one.order_id not in named)
+            self._write("verifiers", _VERIFIERS, (*lasting, *verifiers.verifiers))
 
     def forget_verifiers(self, order_id: str, purpose: Purpose | None = None) -> None:
         """The code of this order for `purpose` is used up; without a purpose, all of its codes."""

@@ -14,13 +14,13 @@ from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.dispatch.choice import Assignment, IdleRobot, WaitingOrder, choose_robot, why_nobody_comes
+from app.fleet.commands import ask, new_command_id
 from app.fleet.greeting import stop_of
-from app.fleet.progress import CANCEL
 from app.fleet.service import Fleet
 from app.orders.service import Word
 from app.orders.transitions import MAIL_ABOARD, ROBOT_COMING, By
 from app.people.service import new_id
-from app.tables import MessageToRobot, MissionRow, MissionState, Order, OrderState, RobotRow, StopRow
+from app.tables import MissionRow, MissionState, Order, OrderState, RobotCommand, RobotRow, StopRow
 from protocol.parts import StopAction
 from protocol.to_robot import Cancel, Mission, Verifiers
 
@@ -103,7 +103,7 @@ class Dispatcher:
         word = Word(By.DISPATCHER, robot=robot.name)
         await self._fleet.orders.move(session, order.id, OrderState.ASSIGNED, word)
         # First what codes are checked against: the mission must not begin without.
-        await self._fleet.tell(session, robot, Verifiers(verifiers=self._fleet.orders.verifiers(order)))
+        await self._fleet.tell(session, robot, Verifiers(verifiers=await self._fleet.orders.verifiers(session, order)))
         await self._fleet.tell(session, robot, mission)
 
     async def _write_mission(self, session: AsyncSession, order: Order, robot: RobotRow) -> Mission:
@@ -126,7 +126,8 @@ class Dispatcher:
         for order in orders:
             async with self._fleet.database.transaction() as session:
                 robot = await session.get_one(RobotRow, order.robot)
-                await self._fleet.tell(session, robot, Cancel(command_id=CANCEL + order.id, order_id=order.id))
+                message = Cancel(command_id=new_command_id("cancel"), order_id=order.id)
+                await ask(session, self._fleet, robot, message)
 
 
 async def _look(session: AsyncSession) -> Situation:
@@ -147,5 +148,5 @@ async def _to_cancel(session: AsyncSession) -> Sequence[Order]:
 
 
 async def _was_told(session: AsyncSession, order: Order) -> bool:
-    cancels = select(MessageToRobot).where(MessageToRobot.robot == order.robot, MessageToRobot.type == "cancel")
-    return any(row.body["order_id"] == order.id for row in (await session.exec(cancels)).all())
+    told = select(RobotCommand.command_id).filter_by(kind="cancel", order_id=order.id, robot=order.robot)
+    return (await session.exec(told)).first() is not None

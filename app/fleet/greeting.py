@@ -10,9 +10,9 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.fleet import inbox, outbox, traffic
 from app.fleet.alarms import clear_alarms, raise_alarm
-from app.fleet.progress import CANCEL, active_mission
+from app.fleet.commands import unanswered
+from app.fleet.progress import active_mission
 from app.fleet.service import Fleet, note_state
-from app.orders.transitions import ROBOT_COMING
 from app.tables import MissionRow, Order, RobotRow, StopRow
 from protocol.envelope import Envelope
 from protocol.parts import Received, Stop, StopAction
@@ -46,6 +46,7 @@ async def greet(session: AsyncSession, fleet: Fleet, robot: RobotRow, envelope: 
     await _compare_maps(session, fleet, robot, hello, now)
     note_state(robot, hello.position, hello.battery)
     robot.software, robot.map_version, robot.online, robot.heard_at = hello.software, hello.map_version, True, now
+    robot.takes_confirm = "confirm" in hello.understands
     fleet.announce(session, robot)
     resume_from = await outbox.resume_from(session, robot)
     welcome = Welcome(
@@ -81,13 +82,12 @@ async def restate(session: AsyncSession, fleet: Fleet, robot: RobotRow) -> None:
     mission.update_number += 1
     stops = await undone_stops(session, mission)
     orders = await _orders_of(session, stops)
-    if verifiers := tuple(one for order in orders for one in fleet.orders.verifiers(order)):
+    if verifiers := await fleet.orders.verifiers(session, *orders):
         await fleet.tell(session, robot, Verifiers(verifiers=verifiers))
     await fleet.tell(session, robot, Mission(id=mission.id, update=mission.update_number, stops=stops))
-    for order in orders:
-        if order.cancel_requested_at is not None and order.state in ROBOT_COMING:
-            # It was told before, but who knows whether it had got round to it.
-            await fleet.tell(session, robot, Cancel(command_id=CANCEL + order.id, order_id=order.id))
+    for command in await unanswered(session, robot=robot.name, kind="cancel"):
+        # It was told before, but who knows whether it had got round to it.
+        await fleet.tell(session, robot, Cancel(command_id=command.command_id, order_id=command.order_id or ""))
 
 
 async def undone_stops(session: AsyncSession, mission: MissionRow) -> tuple[Stop, ...]:
@@ -116,6 +116,7 @@ async def _orders_of(session: AsyncSession, stops: tuple[Stop, ...]) -> Sequence
 async def _compare_clocks(session: AsyncSession, robot: RobotRow, at: datetime, now: datetime) -> None:
     """Order never depends on a robot's clock, but what people read does."""
     off = at - now
+    robot.clock_off_s = off.total_seconds()
     if abs(off) > CLOCK_TOLERANCE:
         sentence = f"the robot's clock is off by {off.total_seconds():+.0f} s"
         await raise_alarm(session, robot.name, "clock_off", sentence, now=now)

@@ -13,7 +13,8 @@ from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.fleet.alarms import clear_alarms, raise_alarm
-from app.fleet.errors import UnknownCommand, UnknownMission, UnknownStop
+from app.fleet.commands import answered
+from app.fleet.errors import UnknownMission, UnknownStop
 from app.orders.service import Orders, Word
 from app.orders.transitions import ENDED, By
 from app.tables import Handover, MissionRow, MissionState, Order, OrderState, StopRow
@@ -172,23 +173,17 @@ async def _fault(report: Report, fault: Fault) -> None:
         await raise_alarm(report.session, report.robot, fault.name, fault.reason, now=report.now, post=fault.post)
 
 
-CANCEL: Final = "cancel-"
-"""The command of a cancel is named by its order, so that it is given once and its answer finds the order again."""
-
-
 async def _answer(report: Report, answer: CommandAnswer) -> None:
-    order_id = answer.command_id.removeprefix(CANCEL)
+    command = await answered(report.session, report.robot, answer, report.now)
     if not answer.accepted:
         reason = answer.reason or f"the robot refused {answer.command_id}"
         await raise_alarm(report.session, report.robot, "command_refused", reason, now=report.now)
-    elif order_id != answer.command_id:
-        await _let_go(report, order_id, answer)
+    elif command.kind == "cancel" and command.order_id is not None:
+        await _let_go(report, command.order_id, answer)
 
 
 async def _let_go(report: Report, order_id: str, answer: CommandAnswer) -> None:
-    order = await report.session.get(Order, order_id)
-    if order is None or order.robot != report.robot or order.cancel_requested_at is None:
-        raise UnknownCommand(f"{report.robot} was not told to drop order {order_id}")
+    order = await report.session.get_one(Order, order_id)
     if order.state not in ENDED:  # else it ended while the wish was on its way
         await _move(report, order_id, (OrderState.CANCELLED,), report.word(answer.happened_at, None, answer.reason))
     await _end_missions_without_orders(report, order_id)

@@ -1,23 +1,29 @@
-"""The hand-over codes of an order: one to load, one to receive. Nothing of them is stored: they derive from the key.
+"""The hand-over codes of an order: to load, to receive, to take back. They derive from the key, stored nowhere.
 
-The robot is given the SHA-256 of each (a verifier), so that it checks a code with no network and discloses nothing if
-it is stolen. Thin: QR form only; the six digits for the app are a later issue.
+Each has a QR form and six digits. The robot is given the SHA-256 of the QR form (a verifier), so that it checks a code
+with no network and discloses nothing if it is stolen; digits are checked by the service alone.
 """
 
 import io
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from enum import StrEnum
 from hashlib import sha256
 from typing import Final
 
 import segno
+from sqlmodel import col, select
+from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.server_key import ServerKey
-from app.tables import NoticeKind, Order, OrderState
+from app.tables import Delegate, NoticeKind, Order, OrderState
 from protocol.parts import Purpose
 from protocol.to_robot import Verifier
 
 PREFIX: Final = "CM1:"
 SECRET_BYTES: Final = 16
+DIGITS: Final = 6
 
 TURNS: Final[Mapping[OrderState, Purpose]] = {
     OrderState.ASSIGNED: Purpose.LOAD,
@@ -26,36 +32,99 @@ TURNS: Final[Mapping[OrderState, Purpose]] = {
     # Before the robot has arrived too: where they meet there may be no network to fetch a code by.
     OrderState.CARRYING: Purpose.RECEIVE,
     OrderState.AT_RECIPIENT: Purpose.RECEIVE,
+    OrderState.RETURNING: Purpose.RETURN,
+    OrderState.AT_RETURN: Purpose.RETURN,
 }
 PURPOSE_OF_NOTICE: Final = {NoticeKind.ROBOT_HERE: Purpose.LOAD, NoticeKind.ROBOT_HERE_FOR_YOU: Purpose.RECEIVE}
 
 
-def code_text(key: ServerKey, order_id: str, purpose: Purpose) -> str:
-    """What the QR code says: `CM1:` and 128 bits in hex."""
-    return PREFIX + key.derive("hand-over", order_id, purpose)[:SECRET_BYTES].hex()
+class Holder(StrEnum):
+    """Whose code it is. The mailroom's is shown by any dispatcher, and only brings mail back."""
+
+    SENDER = "sender"
+    RECIPIENT = "recipient"
+    MAILROOM = "mailroom"
+    DELEGATE = "delegate"
 
 
-def verifiers(key: ServerKey, order: Order) -> tuple[Verifier, ...]:
-    """What the robot needs to check both codes of an order offline."""
+OWN_CODES: Final = (
+    (Purpose.LOAD, Holder.SENDER),
+    (Purpose.RECEIVE, Holder.RECIPIENT),
+    (Purpose.RETURN, Holder.SENDER),
+    (Purpose.RETURN, Holder.MAILROOM),
+)
+"""The codes that every order has; delegates get more."""
+
+
+@dataclass(frozen=True)
+class HandoverCode:
+    """One code of an order: what it is good for, whose it is, and until when."""
+
+    order_id: str
+    purpose: Purpose
+    holder: Holder
+    expires_at: datetime
+    delegate: Delegate | None = None
+
+    def text(self, key: ServerKey) -> str:
+        """What the QR code says."""
+        return code_text(key, self.order_id, self.purpose, self._whose)
+
+    def sha256(self, key: ServerKey) -> str:
+        """What the robot knows it by."""
+        return sha256(self.text(key).encode("ascii")).hexdigest()
+
+    def digits(self, key: ServerKey) -> str:
+        """The same in six digits, for the app."""
+        secret = key.derive("hand-over digits", self.order_id, self.purpose, *self._whose)
+        return f"{int.from_bytes(secret[:8]) % 10**DIGITS:0{DIGITS}d}"
+
+    @property
+    def _whose(self) -> tuple[str, ...]:
+        if self.delegate is not None:
+            return (Holder.DELEGATE, self.delegate.id)
+        return (Holder.MAILROOM,) if self.holder is Holder.MAILROOM else ()
+
+
+def code_text(key: ServerKey, order_id: str, purpose: Purpose, whose: tuple[str, ...] = ()) -> str:
+    """What the QR code says: `CM1:` and 128 bits in hex. `whose`: of a delegate or the mailroom; else sender's and
+    recipient's."""
+    return PREFIX + key.derive("hand-over", order_id, purpose, *whose)[:SECRET_BYTES].hex()
+
+
+def codes_of(order: Order, delegates: Iterable[Delegate] = ()) -> tuple[HandoverCode, ...]:
+    """Every code of an order that is good for something."""
+    own = (HandoverCode(order.id, purpose, holder, order.codes_expire_at) for purpose, holder in OWN_CODES)
+    more = (
+        HandoverCode(order.id, Purpose(one.purpose), Holder.DELEGATE, order.codes_expire_at, one)
+        for one in delegates
+        if one.order_id == order.id and one.revoked_at is None
+    )
+    return (*own, *more)
+
+
+async def delegates_of(session: AsyncSession, orders: Sequence[Order]) -> Sequence[Delegate]:
+    """Whoever was named for some orders, those revoked too."""
+    named = select(Delegate).where(col(Delegate.order_id).in_([order.id for order in orders]))
+    return (await session.exec(named.order_by(col(Delegate.named_at), col(Delegate.id)))).all()
+
+
+async def verifiers(session: AsyncSession, key: ServerKey, orders: Sequence[Order]) -> tuple[Verifier, ...]:
+    """What a robot needs to check every code of some orders offline."""
+    delegates = await delegates_of(session, orders) if orders else ()
     return tuple(
-        Verifier(
-            order_id=order.id,
-            purpose=purpose,
-            sha256=sha256(code_text(key, order.id, purpose).encode("ascii")).hexdigest(),
-            expires_at=order.codes_expire_at,
-        )
-        for purpose in (Purpose.LOAD, Purpose.RECEIVE)
+        Verifier(order_id=code.order_id, purpose=code.purpose, sha256=code.sha256(key), expires_at=code.expires_at)
+        for order in orders
+        for code in codes_of(order, delegates)
     )
 
 
 def turn_of(order: Order, person_id: str) -> Purpose | None:
     """Which code it is this person's turn to show, if any."""
     purpose = TURNS.get(order.state)
-    if purpose is Purpose.LOAD and person_id == order.sender_id:
-        return purpose
-    if purpose is Purpose.RECEIVE and person_id == order.recipient_id:
-        return purpose
-    return None
+    if purpose is Purpose.RECEIVE:
+        return purpose if person_id == order.recipient_id else None
+    return purpose if person_id == order.sender_id else None
 
 
 def code_svg(text: str) -> bytes:

@@ -82,7 +82,7 @@ class OrderView(BaseModel):
     robot: RobotView | None
     why: str | None
     my_role: Literal["sender", "recipient", "dispatcher"]
-    my_code: Literal["load", "receive"] | None
+    my_code: Literal["load", "receive", "return"] | None
     can_cancel: bool
     cancel_requested: bool
     events: list[EventView]
@@ -98,7 +98,7 @@ class OrderPage(BaseModel):
 class CodeView(BaseModel):
     """The hand-over code that it is this person's turn to show."""
 
-    purpose: Literal["load", "receive"]
+    purpose: Literal["load", "receive", "return"]
     text: str
     svg_url: str
     expires_at: datetime

@@ -172,9 +172,9 @@ class Orders:
             raise errors.NoCodeForYou("It is not your turn to show a code for this order.")
         return order, purpose, code_text(self.key, order.id, purpose)
 
-    def verifiers(self, order: Order) -> tuple[Verifier, ...]:
-        """What a robot needs to check the codes of this order with no network."""
-        return verifiers(self.key, order)
+    async def verifiers(self, session: AsyncSession, *orders: Order) -> tuple[Verifier, ...]:
+        """What a robot needs to check the codes of these orders, delegates' too, with no network."""
+        return await verifiers(session, self.key, orders)
 
     async def _order(self, session: AsyncSession, order_id: str) -> Order:
         order = await session.get(Order, order_id, with_for_update=True)
@@ -206,7 +206,7 @@ class Orders:
         await session.flush()
         facts = (await load_facts(session, [order]))[0]
         gaps = facts_of(order, facts.people, self.campus, self.settings)
-        await tell_about(session, self.feed, order, facts.people, gaps, facts.events)
+        await tell_about(session, self.feed, order, facts.people, gaps)
         self._publish(session, facts)
         return facts
 

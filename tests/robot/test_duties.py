@@ -279,6 +279,9 @@ def test_on_the_way_back_the_code_that_loaded_it_opens_and_so_does_the_recipient
         "post": "post1",
         "happened_at": "",
         "code_sha256": "a" * 64,
+        "how": "code",
+        "command_id": None,
+        "signature": None,
     }
 
 
