@@ -11,10 +11,9 @@ Conflict           ├── StillRunning
                    ├── TransitionRefused
                    └── NotCancellable
 PreconditionFailed └── OrderChanged
-BadRequest         └── BadCursor
 """
 
-from app.errors import BadRequest, Conflict, NotFound, PreconditionFailed, Unprocessable
+from app.errors import Conflict, NotFound, PreconditionFailed, Unprocessable
 
 
 class UnknownPost(Unprocessable):
@@ -81,9 +80,3 @@ class OrderChanged(PreconditionFailed):
     """If-Match names an older version of the order."""
 
     code = "order_changed"
-
-
-class BadCursor(BadRequest):
-    """The cursor did not come from the `next` of an earlier answer."""
-
-    code = "bad_cursor"

@@ -1,23 +1,20 @@
 """Ordering, following, cancelling, and the codes that go with it."""
 
-import base64
-import binascii
-from datetime import UTC, datetime
 from typing import Annotated, Literal
 
-from fastapi import APIRouter, Depends, Header, Path, Query, Request, Response
-from sqlalchemy import or_, tuple_
+from fastapi import APIRouter, Depends, Header, Path, Request, Response
+from sqlalchemy import or_
 from sqlmodel import col, select
 from sqlmodel.sql.expression import SelectOfScalar
 
 from app.database import ReadingDep, SessionDep
 from app.errors import problems
 from app.orders.codes import code_svg
-from app.orders.errors import BadCursor
 from app.orders.idempotency import Running, body_hash, earlier_answer
 from app.orders.schemas import CodeView, Estimate, NewOrder, OrderPage, OrderView, PostName, WindowView
 from app.orders.service import Orders
 from app.orders.views import load_facts, view_for
+from app.paging import PAGED, PageDep, Sorting
 from app.people.current_user import CurrentUser
 from app.settings import CampusDep, ClockDep
 from app.tables import IdempotencyKey, Order, Person, Role
@@ -26,7 +23,7 @@ from maps import shortest_route
 router = APIRouter(tags=["orders"])
 
 OrderId = Annotated[str, Path(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]*$", max_length=64)]
-NOT_OURS = "This cursor did not come from `next` of an earlier answer."
+NEWEST_FIRST = Sorting("orders", col(Order.created_at), col(Order.id), descending=True)
 REPLAYED = "Idempotency-Replayed"
 
 
@@ -88,25 +85,19 @@ async def place_order(
         return view
 
 
-@router.get("/orders", responses=problems(400, 401, 403, 422))
+@router.get("/orders", responses={**PAGED, **problems(400, 401, 403, 422)})
 async def list_orders(
     *,
     user: CurrentUser,
     orders: OrdersDep,
     session: ReadingDep,
+    page: PageDep,
     role: Literal["sent", "coming", "all"] = "all",
-    limit: Annotated[int, Query(ge=1, le=100)] = 20,
-    cursor: Annotated[str, Query(max_length=200)] = "",
 ) -> OrderPage:
     """This person's orders, newest first; a dispatcher's `all` is everybody's."""
-    wanted = _theirs(user, role)
-    if cursor:
-        wanted = wanted.where(tuple_(col(Order.created_at), col(Order.id)) < _place(cursor))
-    wanted = wanted.order_by(col(Order.created_at).desc(), col(Order.id).desc()).limit(limit + 1)
-    rows = list((await session.exec(wanted)).all())
-    facts = await load_facts(session, rows[:limit])
+    rows, following = await page.of(session, _theirs(user, role), NEWEST_FIRST)
+    facts = await load_facts(session, rows)
     views = [view_for(user, one, orders.campus, orders.settings) for one in facts]
-    following = _cursor(rows[limit - 1]) if len(rows) > limit else None
     return OrderPage(items=[view for view in views if view], next=following)
 
 
@@ -115,21 +106,6 @@ def _theirs(user: Person, role: str) -> SelectOfScalar[Order]:
     if role == "all" and user.has_role(Role.DISPATCHER):
         return select(Order)
     return select(Order).where({"sent": sent, "coming": coming, "all": or_(sent, coming)}[role])
-
-
-def _cursor(order: Order) -> str:
-    return base64.urlsafe_b64encode(f"{order.created_at.isoformat()} {order.id}".encode()).decode()
-
-
-def _place(cursor: str) -> tuple[datetime, str]:
-    try:
-        at, order_id = base64.urlsafe_b64decode(cursor.encode()).decode().split(" ")
-        place = datetime.fromisoformat(at)
-    except (ValueError, binascii.Error):
-        raise BadCursor(NOT_OURS) from None
-    if place.tzinfo is not UTC:
-        raise BadCursor(NOT_OURS)
-    return place, order_id
 
 
 @router.get("/orders/{order_id}", responses=problems(401, 403, 404, 422))

@@ -7,6 +7,7 @@ from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 
 from app.orders.robot_view import RobotView
 from app.orders.window import Window
+from app.paging import PageOf
 from app.people.schemas import Email
 
 PostName = Annotated[str, StringConstraints(pattern=r"^[A-Za-z][A-Za-z0-9_]*$", max_length=64)]
@@ -53,9 +54,13 @@ class Somebody(BaseModel):
 
 
 class EventView(BaseModel):
-    """One step of the timeline: when by the server, when by the robot, on whose word, where, why."""
+    """One step of the timeline: when by the server, when by the robot, on whose word, where, why.
+
+    `kind` is `moved` for a change of state; any other says what else happened, such as `wait_extended`.
+    """
 
     seq: int
+    kind: str
     state: str
     at: datetime
     robot_at: datetime | None
@@ -88,11 +93,8 @@ class OrderView(BaseModel):
     events: list[EventView]
 
 
-class OrderPage(BaseModel):
-    """Some orders, newest first; `next` is the cursor of the following page."""
-
-    items: list[OrderView]
-    next: str | None
+class OrderPage(PageOf[OrderView]):
+    """Some orders, newest first; `next` is the cursor of the following page, null on the last."""
 
 
 class CodeView(BaseModel):

@@ -51,6 +51,28 @@ ENDED: Final = frozenset(state for state, following in TRANSITIONS.items() if no
 MAIL_ABOARD: Final = frozenset({S.CARRYING, S.AT_RECIPIENT, S.RETURNING, S.AT_RETURN})
 ROBOT_COMING: Final = frozenset({S.ASSIGNED, S.TO_SENDER, S.AT_SENDER})
 
+WAY: Final = (
+    S.QUEUED,
+    S.ASSIGNED,
+    S.TO_SENDER,
+    S.AT_SENDER,
+    S.CARRYING,
+    S.AT_RECIPIENT,
+    S.RETURNING,
+    S.AT_RETURN,
+)
+"""The order in which a life goes; what has ended lies behind all of it."""
+BY_THE_WAY: Final = frozenset({S.QUEUED, S.CANCELLED, S.EXPIRED, S.ATTENTION})
+"""What a robot can say at many points of the way: never old news, but allowed or refused."""
+
+
+def is_old_news(state: OrderState, to: OrderState, before_attention: OrderState | None = None) -> bool:
+    """Whether a robot that says `to` speaks of what lies behind the order."""
+    here = before_attention or state
+    if to in BY_THE_WAY or to in ENDED:
+        return False
+    return here in ENDED or WAY.index(to) < WAY.index(here)
+
 
 def is_allowed(state: OrderState, to: OrderState, by: By, before_attention: OrderState | None = None) -> bool:
     """Whether `to` may follow `state` on the word of `by`; `before_attention` is where a fault struck, if one did."""

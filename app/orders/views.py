@@ -122,6 +122,7 @@ def _somebody(person: Person) -> Somebody:
 def _event(event: OrderEvent) -> EventView:
     return EventView(
         seq=event.seq,
+        kind=event.kind,
         state=str(event.state),
         at=event.at,
         robot_at=event.robot_at,

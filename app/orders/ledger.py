@@ -1,0 +1,175 @@
+"""The book of orders: every change is written down once and told. The only place that changes an order's state.
+
+A change is one transaction: row, event, notices; said aloud after the commit. Version and number of the event are one
+and the same, so that whoever knows the one knows the other.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from datetime import datetime
+from functools import partial
+
+from sqlmodel.ext.asyncio.session import AsyncSession
+
+from app.database import after_commit
+from app.live.feed import Feed, Happening
+from app.orders import errors
+from app.orders.schemas import OrderView
+from app.orders.telling import facts_of, tell_about
+from app.orders.transitions import By, is_allowed, is_old_news
+from app.orders.views import MyRole, OrderFacts, load_facts, order_view, role_in, view_for
+from app.people.service import SignInDesk
+from app.server_key import ServerKey
+from app.settings import Settings
+from app.tables import Order, OrderEvent, OrderState, Person, Role
+from app.tables.order_events import MOVED
+from maps import CampusMap
+from protocol.clock import Clock
+
+
+@dataclass(frozen=True)
+class Word:
+    """On whose word an order moves, and what is known of it: `robot_at` is the robot's own time of it."""
+
+    by: By
+    person_id: str | None = None
+    robot: str | None = None
+    robot_at: datetime | None = None
+    post: str | None = None
+    reason: str | None = None
+
+
+@dataclass(frozen=True)
+class Ledger:
+    """The orders of one campus. `on_change` is called with an order's id after the commit of each change."""
+
+    campus: CampusMap
+    settings: Settings
+    clock: Clock
+    feed: Feed
+    key: ServerKey
+    desk: SignInDesk
+    on_change: list[Callable[[str], None]] = field(default_factory=list)
+
+    async def order(self, session: AsyncSession, order_id: str) -> Order:
+        """The row, locked for this transaction. Raises UnknownOrder."""
+        order = await session.get(Order, order_id, with_for_update=True)
+        if order is None:
+            raise unknown(order_id)
+        return order
+
+    async def theirs(
+        self, session: AsyncSession, person: Person, order_id: str, if_match: str = ""
+    ) -> tuple[Order, MyRole]:
+        """An order that this person may see, and as what they do. Raises UnknownOrder, OrderChanged."""
+        order = await self.order(session, order_id)
+        role = role_in(order, person)
+        if role is None:
+            raise unknown(order_id)
+        if if_match and not _matches(if_match, order.version):
+            raise errors.OrderChanged(f"The order is at version {order.version} now. Read it again first.")
+        return order, role
+
+    async def move(self, session: AsyncSession, order_id: str, to: OrderState, word: Word) -> bool:
+        """Take an order to its next state; False if this has happened before and nothing changes.
+
+        A robot repeats itself after a lost acknowledgement, and may tell late what others told already: what lies
+        behind the order is no news on a robot's word. Raises UnknownOrder, TransitionRefused.
+        """
+        order = await self.order(session, order_id)
+        if order.state is to or (word.by is By.ROBOT and is_old_news(order.state, to, order.state_before_attention)):
+            return False
+        if not is_allowed(order.state, to, word.by, order.state_before_attention):
+            raise errors.TransitionRefused(f"Order {order.id} is {order.state}: {word.by} cannot make it {to}.")
+        order.state_before_attention = order.state if to is OrderState.ATTENTION else None
+        order.state = to
+        order.robot = word.robot or order.robot
+        order.why = word.reason if to is OrderState.ATTENTION else None
+        order.wait_until = None
+        await self._write(session, order, MOVED, word)
+        return True
+
+    async def note(self, session: AsyncSession, order_id: str, kind: str, word: Word) -> None:
+        """Write down what happened to an order without changing its state, such as `wait_extended`, and publish it.
+
+        Raises UnknownOrder.
+        """
+        await self._write(session, await self.order(session, order_id), kind, word)
+
+    async def explain(self, session: AsyncSession, order_id: str, why: str | None) -> None:
+        """Say in words why an order waits (or, with None, that it does not). Changes nothing else."""
+        order = await self.order(session, order_id)
+        if order.why != why:
+            order.why = why
+            self.publish(session, (await load_facts(session, [order]))[0])
+
+    async def _write(self, session: AsyncSession, order: Order, kind: str, word: Word) -> None:
+        order.version += 1
+        order.updated_at = self.clock.utc()
+        session.add(event_of(order, kind, word))
+        await session.flush()
+        facts = (await load_facts(session, [order]))[0]
+        if kind == MOVED:
+            await self._tell(session, facts)
+        self.publish(session, facts)
+
+    async def begin(self, session: AsyncSession, facts: OrderFacts) -> None:
+        """A new order, whose rows have been written: its people are told."""
+        await self._tell(session, facts)
+        self.publish(session, facts)
+
+    async def _tell(self, session: AsyncSession, facts: OrderFacts) -> None:
+        gaps = facts_of(facts.order, facts.people, self.campus, self.settings)
+        await tell_about(session, self.feed, facts.order, facts.people, gaps, facts.events)
+
+    def publish(self, session: AsyncSession, facts: OrderFacts) -> None:
+        """To sender, recipient and dispatchers, each as they may see it, and to whoever waits for changes."""
+        mine = {facts.sender.id: facts.sender, facts.recipient.id: facts.recipient}
+        for person in mine.values():
+            if view := view_for(person, facts, self.campus, self.settings):
+                self._publish_view(session, view, person_id=person.id)
+        for_all = order_view(facts, "dispatcher", "", self.campus, self.settings)
+        self._publish_view(session, for_all, role=Role.DISPATCHER, except_for=frozenset(mine))
+        after_commit(session, partial(self.changed, facts.order.id))
+
+    def changed(self, order_id: str) -> None:
+        """Wake whoever waits for changes of orders. After the commit."""
+        for call in self.on_change:
+            call(order_id)
+
+    def _publish_view(
+        self,
+        session: AsyncSession,
+        view: OrderView,
+        person_id: str | None = None,
+        role: Role | None = None,
+        except_for: frozenset[str] = frozenset(),
+    ) -> None:
+        happening = Happening("order", view.model_dump(mode="json"), person_id, role, except_for)
+        after_commit(session, lambda: self.feed.publish(happening))
+
+
+def event_of(order: Order, kind: str, word: Word) -> OrderEvent:
+    """What has just happened to `order`, as its timeline tells it."""
+    return OrderEvent(
+        order_id=order.id,
+        seq=order.version,
+        state=order.state,
+        kind=kind,
+        at=order.updated_at,
+        by=word.by,
+        person_id=word.person_id,
+        robot=word.robot,
+        robot_at=word.robot_at,
+        post=word.post,
+        reason=word.reason,
+    )
+
+
+def unknown(order_id: str) -> errors.UnknownOrder:
+    """The same sentence for what is not there and for what is not theirs."""
+    return errors.UnknownOrder(f"There is no order {order_id} among yours.")
+
+
+def _matches(if_match: str, version: int) -> bool:
+    return any(tag.strip() in {"*", f'"{version}"'} for tag in if_match.split(","))
