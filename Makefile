@@ -6,12 +6,12 @@ BIN := .venv/bin
 ARGS ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help setup setup-robot test check format demo serve robot bench bench-mind bench-body bench-paper fuzz-mind pin clean
+.PHONY: help setup setup-robot test check format demo serve robot bench bench-mind bench-body bench-service bench-paper fuzz-mind pin clean
 # A recipe that fails must not leave its stamp behind.
 .DELETE_ON_ERROR:
 
 help: ## List the verbs
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-11s %s\n", $$1, $$2 }' Makefile
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-13s %s\n", $$1, $$2 }' Makefile
 
 setup: .venv/.python-ready .venv/.pages-ready ## Make .venv and fetch every package (all other verbs do this by themselves)
 
@@ -49,6 +49,9 @@ bench-mind: setup ## Measure the mind beside python-agentspeak and, where JASON_
 
 bench-body: setup ## Measure the body in its simulated world: line, vision, stops, missions, kills; JSON and plots
 	@$(BIN)/python -m benchmarks.body $(ARGS)
+
+bench-service: setup ## Measure the service from outside, client and server on a core each: orders, robots, pages; JSON
+	@$(BIN)/python -m benchmarks.service $(ARGS)
 
 bench-paper: setup ## The paper's evaluation again, its own program beside ours: JSON and plots
 	@$(BIN)/python -m benchmarks.paper $(ARGS)
