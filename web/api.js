@@ -99,11 +99,19 @@ export const cancelOrder = (id) => ask(orderPath(id) + "/cancel", { method: "POS
 /** @param {string} id @returns {Promise<Api.HandoverCode>} */
 export const handoverCode = (id) => ask(orderPath(id) + "/code");
 
-/** @returns {Promise<Api.Robot[]>} */
-export const robots = () => ask("/robots");
+/** @returns {Promise<Api.Robot[]>} all of them, page after page */
+export async function robots() {
+  const found = [];
+  for (let cursor = ""; cursor !== null; ) {
+    const page = await ask("/robots" + query({ limit: 100, cursor }));
+    found.push(...page.items);
+    cursor = page.next;
+  }
+  return found;
+}
 
-/** @returns {Promise<Api.Inbox>} */
-export const notices = () => ask("/notices");
+/** @param {{limit?: number, cursor?: string}} [page] @returns {Promise<Api.Inbox>} newest first */
+export const notices = (page = { limit: 50 }) => ask("/notices" + query(page));
 
 /** @param {Api.Notice["id"][]} ids @returns {Promise<unknown>} */
 export const markRead = (ids) => ask("/notices/read", { method: "POST", body: { ids } });

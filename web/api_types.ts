@@ -101,4 +101,4 @@ export interface Notice {
   read: boolean;
 }
 export interface Page<Item> { items: Item[]; next: string | null }
-export interface Inbox { items: Notice[]; unread: number }
+export interface Inbox extends Page<Notice> { unread: number }

@@ -85,12 +85,12 @@ class SimulatedPerson:
         await self._ask("POST", "/demo/camera", {"order_id": order_id})
 
     async def robots(self) -> list[dict[str, Any]]:
-        robots: list[dict[str, Any]] = await self._ask("GET", "/robots")
+        robots: list[dict[str, Any]] = (await self._ask("GET", "/robots"))["items"]
         return robots
 
     async def notices(self, order_id: str) -> Counter[str]:
         """How often this person was told each kind of thing about an order."""
-        items = (await self._ask("GET", "/notices"))["items"]
+        items = (await self._ask("GET", "/notices?limit=100"))["items"]
         return Counter(str(notice["kind"]) for notice in items if notice["order_id"] == order_id)
 
     async def _ask(self, method: str, path: str, body: Any = None, headers: dict[str, str] | None = None) -> Any:

@@ -3,6 +3,7 @@
 from typing import Annotated
 
 from fastapi import APIRouter, Depends, WebSocket
+from sqlmodel import col, select
 from starlette.requests import HTTPConnection
 
 from app.database import ReadingDep
@@ -10,11 +11,15 @@ from app.errors import problems
 from app.fleet.conversation import TOKEN_REFUSED, Conversation
 from app.fleet.service import Fleet
 from app.fleet.tokens import token_of
-from app.orders.robot_view import RobotView
+from app.orders.robot_view import RobotView, robot_view
+from app.paging import PAGED, PageDep, PageOf, Sorting
 from app.people.current_user import CurrentUser
 from app.people.same_origin import travels_safely
+from app.tables import RobotRow
 
 router = APIRouter(tags=["robots"])
+
+BY_NAME = Sorting("robots", col(RobotRow.name))
 
 
 def _fleet_of(connection: HTTPConnection) -> Fleet:
@@ -25,10 +30,15 @@ def _fleet_of(connection: HTTPConnection) -> Fleet:
 FleetDep = Annotated[Fleet, Depends(_fleet_of)]
 
 
-@router.get("/robots", responses=problems(401, 403))
-async def all_robots(user: CurrentUser, session: ReadingDep, fleet: FleetDep) -> list[RobotView]:
+class RobotPage(PageOf[RobotView]):
+    """Some robots, by name; `next` is the cursor of the following page, null on the last."""
+
+
+@router.get("/robots", responses={**PAGED, **problems(400, 401, 403, 422)})
+async def all_robots(user: CurrentUser, session: ReadingDep, fleet: FleetDep, page: PageDep) -> RobotPage:
     """Where the robots were last seen and what they are doing."""
-    return list(await fleet.views(session))
+    robots, following = await page.of(session, select(RobotRow), BY_NAME)
+    return RobotPage(items=[robot_view(robot, fleet.campus, fleet.settings) for robot in robots], next=following)
 
 
 @router.websocket("/robots/link")

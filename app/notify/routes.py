@@ -6,16 +6,17 @@ from app.database import ReadingDep, SessionDep
 from app.errors import problems
 from app.notify.schemas import Inbox, NoticesRead
 from app.notify.service import inbox, mark_read
+from app.paging import PAGED, PageDep
 from app.people.current_user import CurrentUser
 from app.settings import ClockDep
 
 router = APIRouter(tags=["notices"])
 
 
-@router.get("/notices", responses=problems(401, 403))
-async def my_notices(user: CurrentUser, session: ReadingDep) -> Inbox:
+@router.get("/notices", responses={**PAGED, **problems(400, 401, 403, 422)})
+async def my_notices(user: CurrentUser, session: ReadingDep, page: PageDep) -> Inbox:
     """What this person was told, newest first."""
-    return await inbox(session, user)
+    return await inbox(session, user, page)
 
 
 @router.post("/notices/read", status_code=204, responses=problems(401, 403, 422))

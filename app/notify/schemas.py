@@ -5,6 +5,7 @@ from typing import Annotated
 
 from pydantic import BaseModel, Field
 
+from app.paging import PageOf
 from app.tables import Notice
 from app.texts import text
 
@@ -34,10 +35,9 @@ class NoticeView(BaseModel):
         )
 
 
-class Inbox(BaseModel):
+class Inbox(PageOf[NoticeView]):
     """The newest notices first; `unread` counts all, not only those shown."""
 
-    items: list[NoticeView]
     unread: int
 
 

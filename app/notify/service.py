@@ -10,11 +10,12 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 from app.database import after_commit
 from app.live.feed import Feed, Happening
 from app.notify.schemas import Inbox, NoticeView
+from app.paging import Paging, Sorting
 from app.tables import Notice, NoticeKind, OutgoingNotice, Person
 
 CHANNELS = ("mail",)
 """Besides the inbox, which is the table of notices itself."""
-INBOX_SIZE = 50
+NEWEST_FIRST = Sorting("notices", col(Notice.id), descending=True)
 
 
 async def tell(
@@ -52,13 +53,13 @@ def _outgoing(notice: Notice, channel: str) -> OutgoingNotice:
     return OutgoingNotice(key=key, channel=channel, notice_id=notice.id, created_at=notice.at, next_try_at=notice.at)
 
 
-async def inbox(session: AsyncSession, person: Person) -> Inbox:
+async def inbox(session: AsyncSession, person: Person, page: Paging) -> Inbox:
     """What a person was told, newest first."""
-    mine = select(Notice).where(Notice.person_id == person.id).order_by(col(Notice.id).desc()).limit(INBOX_SIZE)
+    notices, following = await page.of(session, select(Notice).where(Notice.person_id == person.id), NEWEST_FIRST)
     unread = select(func.count()).where(Notice.person_id == person.id, col(Notice.read_at).is_(None))
-    notices = (await session.exec(mine)).all()
     return Inbox(
         items=[NoticeView.of(notice, person.language) for notice in notices],
+        next=following,
         unread=(await session.exec(unread)).one(),
     )
 

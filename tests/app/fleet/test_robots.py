@@ -33,10 +33,10 @@ def test_everybody_who_is_signed_in_sees_all_robots(app: FastAPI, sender: TestCl
             for name in ("r2", "r1"):
                 await enrol(session, clock, name)
 
-    assert sender.get("/api/v1/robots").json() == []
+    assert sender.get("/api/v1/robots").json() == {"items": [], "next": None}
     assert sender.portal is not None
     sender.portal.call(enrol_two)
-    robots = sender.get("/api/v1/robots").json()
+    robots = sender.get("/api/v1/robots").json()["items"]
     assert [(robot["name"], robot["online"], robot["last_seen"]) for robot in robots] == [
         ("r1", False, None),
         ("r2", False, None),
