@@ -24,6 +24,7 @@ from app.orders.codes import PURPOSE_OF_NOTICE, code_png, code_text
 from app.orders.idempotency import Running
 from app.orders.service import Orders
 from app.pages import GzippedPages, SafeHeaders, add_pages, content_security_policy
+from app.people import everybody_routes, my_routes
 from app.people import routes as people_routes
 from app.people.rate_limits import RateLimits
 from app.people.service import SignInDesk
@@ -39,6 +40,10 @@ API = "/api/v1"
 ROUTERS = (
     about.api_router,
     people_routes.router,
+    my_routes.me_router,
+    my_routes.router,
+    everybody_routes.address_router,
+    everybody_routes.router,
     orders_routes.router,
     notify_routes.router,
     live_routes.router,

@@ -1,16 +1,24 @@
-"""The signed-in person as an argument: `async def my_route(user: CurrentUser)`."""
+"""Who asks, as an argument: `async def my_route(user: CurrentUser)`.
+
+`CurrentUser`: a person at a browser (cookie) or one of their scripts (token), each as far as they may.
+`Dispatcher`, `Maintainer`: the same, with that role. `AtBrowser`: at a browser, because no script may do this.
+"""
 
 from collections.abc import Awaitable, Callable
+from dataclasses import dataclass
 from typing import Annotated
 
 from fastapi import Depends, Request, Security
-from fastapi.security import APIKeyCookie
+from fastapi.security import APIKeyCookie, HTTPBearer
 
+from app.bearer_tokens import is_bearer
 from app.database import Database, DatabaseDep
 from app.errors import NotSignedIn
-from app.people.errors import RoleNeeded
+from app.people.errors import NotForScripts, RoleNeeded, ScopeNeeded
 from app.people.same_origin import require_https_or_loopback, require_same_origin
-from app.people.service import person_of_session
+from app.people.scopes import opened_by
+from app.people.sessions import find_session, is_stale, note_seen
+from app.people.tokens import find_script, note_used
 from app.settings import ClockDep
 from app.tables import Person, Role
 from protocol.clock import Clock
@@ -19,7 +27,19 @@ StillSignedIn = Callable[[Person], Awaitable[bool]]
 HTTPS_COOKIE = "__Host-session"
 LOCAL_COOKIE = "session"
 
-_documented = APIKeyCookie(name=LOCAL_COOKIE, auto_error=False, description=f"On https: `{HTTPS_COOKIE}`.")
+_cookie_documented = APIKeyCookie(name=LOCAL_COOKIE, auto_error=False, description=f"On https: `{HTTPS_COOKIE}`.")
+_token_documented = HTTPBearer(
+    scheme_name="token", bearerFormat="cmp_…", auto_error=False, description="A script's token, from `POST /tokens`."
+)
+
+
+@dataclass(frozen=True)
+class Caller:
+    """Who asks. `session_id` is the browser's session; a script has `scopes` instead."""
+
+    person: Person
+    session_id: int | None = None
+    scopes: frozenset[str] = frozenset()
 
 
 def cookie_name(request: Request) -> str:
@@ -27,45 +47,109 @@ def cookie_name(request: Request) -> str:
     return HTTPS_COOKIE if request.url.scheme == "https" else LOCAL_COOKIE
 
 
-async def _current_user(
-    request: Request, database: DatabaseDep, clock: ClockDep, cookie: Annotated[str | None, Security(_documented)]
-) -> Person:
+async def _caller(
+    request: Request,
+    database: DatabaseDep,
+    clock: ClockDep,
+    cookie: Annotated[object, Security(_cookie_documented)],
+    token: Annotated[object, Security(_token_documented)],
+) -> Caller:
     require_https_or_loopback(request)
+    caller = await _find_caller(request, database, clock)
+    if caller.session_id is not None:  # a token travels only where a program of ours puts it
+        require_same_origin(request)
+    return caller
+
+
+async def _find_caller(request: Request, database: Database, clock: Clock) -> Caller:
+    """Raises NotSignedIn."""
+    authorization = request.headers.get("Authorization", "")
+    if is_bearer(authorization):
+        return await _script(authorization, database, clock)
     token = request.cookies.get(cookie_name(request))
     if not token:
         raise NotSignedIn("Sign in first.")
-    person = await _person(database, token, clock)
-    if person is None:
-        raise NotSignedIn("This session has ended. Sign in again.")
-    require_same_origin(request)
-    return person
+    return await _browser(token, database, clock)
 
 
-async def _person(database: Database, token: str, clock: Clock) -> Person | None:
+async def _browser(token: str, database: Database, clock: Clock) -> Caller:
+    now = clock.utc()
     # A short look of its own, so that an event stream holds no session and a writer no lock while it waits.
     async with database.reading() as session:
-        return await person_of_session(session, token, clock.utc())
+        found = await find_session(session, token, now)
+    if found is None:
+        raise NotSignedIn("This session has ended. Sign in again.")
+    if is_stale(found.seen_at, now):
+        async with database.transaction() as session:
+            await note_seen(session, found.id, now)
+    return Caller(found.person, session_id=found.id)
+
+
+async def _script(authorization: str, database: Database, clock: Clock) -> Caller:
+    now = clock.utc()
+    async with database.reading() as session:
+        found = await find_script(session, authorization, now)
+    if found is None:
+        invalid = {"WWW-Authenticate": 'Bearer error="invalid_token"'}
+        raise NotSignedIn("This token is unknown, revoked or too old. Make a new one.", invalid)
+    if is_stale(found.token.used_at, now):
+        async with database.transaction() as session:
+            await note_used(session, found.token.prefix, now)
+    return Caller(found.person, scopes=frozenset(found.token.scopes))
+
+
+CallerDep = Annotated[Caller, Depends(_caller)]
+
+
+async def _current_user(request: Request, caller: CallerDep) -> Person:
+    if caller.session_id is None:
+        _require_scope(request, caller.scopes)
+    return caller.person
+
+
+def _require_scope(request: Request, held: frozenset[str]) -> None:
+    wanted = opened_by(request.scope["route"].tags, request.method)
+    if not wanted:
+        raise NotForScripts("No token opens this. Sign in at a browser.")
+    if wanted.isdisjoint(held):
+        raise ScopeNeeded(f"This takes a token with the scope {' or '.join(sorted(wanted))}.")
+
+
+async def _session_id(caller: CallerDep) -> int:
+    if caller.session_id is None:
+        raise NotForScripts("No token opens this. Sign in at a browser.")
+    return caller.session_id
+
+
+async def _at_browser(caller: CallerDep, session_id: Annotated[int, Depends(_session_id)]) -> Person:
+    return caller.person
 
 
 def _still_signed_in(request: Request, database: DatabaseDep, clock: ClockDep) -> StillSignedIn:
-    """Whether the session of this request goes on, and with it what its person may see."""
+    """Whether the session or token of this request goes on, and with it what its person may see."""
 
     async def ask(user: Person) -> bool:
-        person = await _person(database, request.cookies[cookie_name(request)], clock)
-        return person is not None and person.roles == user.roles
+        try:
+            caller = await _find_caller(request, database, clock)
+        except NotSignedIn:
+            return False
+        return caller.person.roles == user.roles
 
     return ask
 
 
 CurrentUser = Annotated[Person, Depends(_current_user)]
+AtBrowser = Annotated[Person, Depends(_at_browser)]
+ThisSession = Annotated[int, Depends(_session_id)]
+StillSignedInDep = Annotated[StillSignedIn, Depends(_still_signed_in)]
 
 
-def require_role(role: Role) -> Callable[..., Awaitable[Person]]:
-    """A dependency: the signed-in person, if they have this role. Raises RoleNeeded."""
+def require_role(*roles: Role) -> Callable[..., Awaitable[Person]]:
+    """A dependency: the signed-in person, if they have one of these roles. Raises RoleNeeded."""
 
     async def having_role(user: CurrentUser) -> Person:
-        if not user.has_role(role):
-            raise RoleNeeded(f"This is for people with the role {role}. A maintainer can give it to you.")
+        if not any(user.has_role(role) for role in roles):
+            raise RoleNeeded(f"This is for people with the role {' or '.join(roles)}. A maintainer can give it to you.")
         return user
 
     return having_role
@@ -73,4 +157,4 @@ def require_role(role: Role) -> Callable[..., Awaitable[Person]]:
 
 Dispatcher = Annotated[Person, Depends(require_role(Role.DISPATCHER))]
 Maintainer = Annotated[Person, Depends(require_role(Role.MAINTAINER))]
-StillSignedInDep = Annotated[StillSignedIn, Depends(_still_signed_in)]
+DispatcherOrMaintainer = Annotated[Person, Depends(require_role(Role.DISPATCHER, Role.MAINTAINER))]

@@ -1,14 +1,22 @@
-"""What can be wrong with who somebody says they are.
+"""What can be wrong with who somebody says they are, and with what they want to change about people.
 
-Unprocessable └── AddressNotAllowed
+Unprocessable ├── AddressNotAllowed
+              └── NoSuchPost
 NotSignedIn   ├── WrongCode
               └── CodeExpired
 Forbidden     ├── RoleNeeded
+              ├── ScopeNeeded
+              ├── NotForScripts
               ├── CrossSite
               └── HttpsRequired
+NotFound      ├── UnknownSession
+              ├── UnknownToken
+              ├── UnknownPerson
+              └── UnknownContact
+Conflict      └── LastMaintainer
 """
 
-from app.errors import Forbidden, NotSignedIn, Unprocessable
+from app.errors import Conflict, Forbidden, NotFound, NotSignedIn, Unprocessable
 
 
 class AddressNotAllowed(Unprocessable):
@@ -45,3 +53,51 @@ class HttpsRequired(Forbidden):
     """Plain http from another machine: a cookie would travel in the open."""
 
     code = "https_required"
+
+
+class ScopeNeeded(Forbidden):
+    """A token without the scope that this takes; the sentence names it."""
+
+    code = "scope_needed"
+
+
+class NotForScripts(Forbidden):
+    """A person at a browser does this, no token: making tokens, giving roles, ending sessions."""
+
+    code = "not_for_scripts"
+
+
+class NoSuchPost(Unprocessable):
+    """The campus map has no such post; the sentence offers the nearest spelling."""
+
+    code = "unknown_post"
+
+
+class UnknownSession(NotFound):
+    """No such session, or not one of this person's."""
+
+    code = "unknown_session"
+
+
+class UnknownToken(NotFound):
+    """No such token, or not one of this person's."""
+
+    code = "unknown_token"
+
+
+class UnknownPerson(NotFound):
+    """Nobody has this id."""
+
+    code = "unknown_person"
+
+
+class UnknownContact(NotFound):
+    """This address is not saved."""
+
+    code = "unknown_contact"
+
+
+class LastMaintainer(Conflict):
+    """Somebody must be able to give roles."""
+
+    code = "last_maintainer"

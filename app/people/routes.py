@@ -1,4 +1,4 @@
-"""Signing in and out, and who one is."""
+"""Signing in and out."""
 
 from typing import Annotated
 
@@ -6,16 +6,18 @@ from fastapi import APIRouter, Depends, Header, Request, Response
 
 from app.database import DatabaseDep, SessionDep
 from app.errors import problems
-from app.people.current_user import CurrentUser, cookie_name
+from app.people.current_user import AtBrowser, ThisSession, cookie_name
 from app.people.rate_limits import RateLimits
 from app.people.same_origin import refuse_other_sites, require_https_or_loopback
 from app.people.schemas import CodeMailed, CodeRequest, PersonView, SignIn
-from app.people.service import SignInDesk, close_session, language_from
+from app.people.service import SignInDesk, language_from
+from app.people.sessions import end_session
 from app.settings import ClockDep, SettingsDep
 
 router = APIRouter(tags=["people"])
 
 Language = Annotated[str, Header(alias="Accept-Language", max_length=200)]
+UserAgent = Annotated[str, Header(max_length=1000)]
 
 
 def _desk(request: Request) -> SignInDesk:
@@ -69,6 +71,7 @@ async def sign_in(
     clock: ClockDep,
     settings: SettingsDep,
     accept_language: Language = "",
+    user_agent: UserAgent = "",
 ) -> PersonView:
     """Exchange the mailed code for a session cookie."""
     async with database.transaction() as session:
@@ -77,7 +80,7 @@ async def sign_in(
         raise refusal
     async with database.transaction() as session:
         language = language_from(accept_language, settings.default_language)
-        person, token = await desk.open_session(session, wish.email, language, clock.utc())
+        person, token = await desk.open_session(session, wish.email, language, user_agent, clock.utc())
     # Browsers count real seconds; a session that ends sooner is refused here.
     _set_cookie(request, response, token, round(settings.session_lifetime_s))
     return PersonView.of(person)
@@ -85,17 +88,17 @@ async def sign_in(
 
 @router.delete("/session", status_code=204, responses=problems(401, 403))
 async def sign_out(
-    user: CurrentUser, request: Request, response: Response, session: SessionDep, clock: ClockDep
+    *,
+    user: AtBrowser,
+    this: ThisSession,
+    request: Request,
+    response: Response,
+    session: SessionDep,
+    clock: ClockDep,
 ) -> None:
     """End this session."""
-    await close_session(session, request.cookies[cookie_name(request)], clock.utc())
+    await end_session(session, user.id, this, clock.utc())
     _set_cookie(request, response, "", 0)
-
-
-@router.get("/me", responses=problems(401, 403))
-async def who_am_i(user: CurrentUser) -> PersonView:
-    """The signed-in person."""
-    return PersonView.of(user)
 
 
 def _set_cookie(request: Request, response: Response, token: str, max_age_s: int) -> None:

@@ -1,11 +1,13 @@
 """What is said about people over HTTP."""
 
 from datetime import datetime
-from typing import Annotated
+from typing import Annotated, Literal
 
-from pydantic import BaseModel, StringConstraints
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 
-from app.tables import Person
+from app.paging import PageOf
+from app.people.scopes import Scope
+from app.tables import Person, PersonSession, PersonToken, Role
 
 # The pattern of HTML's <input type=email>, with a dot in the domain.
 Email = Annotated[
@@ -38,14 +40,86 @@ class SignIn(BaseModel):
 
 
 class PersonView(BaseModel):
-    """Who is signed in."""
+    """A person: oneself, or somebody of the campus as dispatchers and maintainers see them."""
 
     id: str
     email: str
     name: str
     language: str
-    roles: list[str]
+    usual_post: str | None
+    roles: list[Role]
 
     @classmethod
     def of(cls, person: Person) -> "PersonView":
-        return cls(id=person.id, email=person.email, name=person.name, language=person.language, roles=person.roles)
+        return cls.model_validate(person, from_attributes=True)
+
+
+PeoplePage = PageOf[PersonView]
+
+
+class AboutMe(BaseModel):
+    """What somebody may change about themselves; what is absent stays as it is."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    name: Annotated[str, StringConstraints(min_length=1, max_length=200, strip_whitespace=True)] = ""
+    language: Literal["en", "fr"] = "en"
+    usual_post: Annotated[str, StringConstraints(max_length=64)] | None = None
+
+
+class SessionView(BaseModel):
+    """Where somebody is signed in; `seen_at` is some minutes behind."""
+
+    id: int
+    device: str = Field(description="Browser and system in words, such as `Firefox, Windows`; empty if unknown.")
+    created_at: datetime
+    seen_at: datetime | None
+    expires_at: datetime
+    current: bool = Field(description="The session of this very request.")
+
+    @classmethod
+    def of(cls, row: PersonSession, current: int) -> "SessionView":
+        return cls.model_validate({**row.model_dump(), "current": row.id == current})
+
+
+class Sessions(BaseModel):
+    """All of them, newest first."""
+
+    items: list[SessionView]
+
+
+class TokenWish(BaseModel):
+    """A token for a script of mine."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    name: Annotated[str, StringConstraints(min_length=1, max_length=100, strip_whitespace=True)]
+    scopes: list[Scope] = Field(min_length=1, max_length=len(Scope))
+    days: int = Field(90, ge=1, le=366, description="For how many days it is to be good.")
+
+
+class TokenView(BaseModel):
+    """A token without its secret."""
+
+    prefix: str
+    name: str
+    scopes: list[Scope]
+    created_at: datetime
+    expires_at: datetime
+    used_at: datetime | None
+
+    @classmethod
+    def of(cls, row: PersonToken) -> "TokenView":
+        return cls.model_validate(row, from_attributes=True)
+
+
+class NewTokenView(TokenView):
+    """A token as it is made: the only time that its `token` is shown."""
+
+    token: str
+
+
+class Tokens(BaseModel):
+    """All that still open something, newest first."""
+
+    items: list[TokenView]

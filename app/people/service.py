@@ -6,13 +6,13 @@ import re
 import secrets
 from dataclasses import dataclass
 from datetime import datetime, timedelta
-from hashlib import sha256
 
 from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.mail import Mail, Spool
 from app.people.errors import AddressNotAllowed, CodeExpired, WrongCode
+from app.people.sessions import new_session
 from app.server_key import ServerKey
 from app.settings import Settings
 from app.tables import Person, PersonSession, Role, SignInCode
@@ -76,7 +76,9 @@ class SignInDesk:
         row.used_at = now
         return None
 
-    async def open_session(self, session: AsyncSession, email: str, language: str, now: datetime) -> tuple[Person, str]:
+    async def open_session(
+        self, session: AsyncSession, email: str, language: str, user_agent: str, now: datetime
+    ) -> tuple[Person, str]:
         """The person, made at their first sign-in, and the secret of a new session (for the cookie alone).
 
         Whoever was only sent something so far was given the default language; what their browser speaks is nearer.
@@ -84,9 +86,7 @@ class SignInDesk:
         person = await self.person(session, email, now, language)
         if not await _has_signed_in(session, person):
             person.language = language
-        token = secrets.token_urlsafe(32)
-        lifetime = timedelta(seconds=self.settings.session_lifetime_s)
-        row = PersonSession(token_hash=hash_of(token), person_id=person.id, created_at=now, expires_at=now + lifetime)
+        row, token = new_session(person, user_agent, self.settings.session_lifetime_s, now)
         session.add(row)
         return person, token
 
@@ -119,34 +119,10 @@ async def _has_signed_in(session: AsyncSession, person: Person) -> bool:
     return (await session.exec(theirs)).first() is not None
 
 
-async def person_of_session(session: AsyncSession, token: str, now: datetime) -> Person | None:
-    """Whose session this is, if it is still open."""
-    row = await _open_session_row(session, token)
-    if row is None or row.revoked_at or row.expires_at <= now:
-        return None
-    return await session.get(Person, row.person_id)
-
-
-async def close_session(session: AsyncSession, token: str, now: datetime) -> None:
-    """Sign out: the cookie is worthless from now on."""
-    row = await _open_session_row(session, token)
-    if row and row.revoked_at is None:
-        row.revoked_at = now
-
-
-async def _open_session_row(session: AsyncSession, token: str) -> PersonSession | None:
-    return (await session.exec(select(PersonSession).where(PersonSession.token_hash == hash_of(token)))).first()
-
-
 def set_roles(person: Person, add: set[Role], remove: set[Role]) -> None:
     """Give and take roles; everybody stays a member."""
     roles = ({Role(role) for role in person.roles} | add) - remove | {Role.MEMBER}
     person.roles = sorted(str(role) for role in roles)
-
-
-def hash_of(token: str) -> str:
-    """Tokens are long and random: a plain SHA-256 gives nothing away."""
-    return sha256(token.encode()).hexdigest()
 
 
 def language_from(accept_language: str, default: str) -> str:

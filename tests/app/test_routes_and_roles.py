@@ -1,31 +1,57 @@
-"""Every route there is, asked by everybody there is. A route that is added without a line here fails the first test."""
+"""Every route there is, asked by everybody there is. A route that is added without a line here fails the first test.
+
+A line: what a stranger is answered, a member who has nothing to do with the order, its recipient, its sender, a
+dispatcher, a maintainer; then the scopes of which any one opens the route to a script. A robot's token opens nothing
+but the link; its line is the stranger's.
+"""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import httpx
 import pytest
 from fastapi import FastAPI
-from starlette.routing import BaseRoute, Mount
+from websockets.exceptions import ConnectionClosed
+from websockets.sync.client import connect
 
-from app.people.service import find_person, set_roles
-from app.tables import Role
-from tests.app.conftest import RECIPIENT, SENDER, STRANGER, Browser, Mailroom, Served, SignedIn
+from app.fleet.conversation import TOKEN_REFUSED
+from app.people.same_origin import SAFE_METHODS
+from app.people.scopes import Scope
+from tests.app.conftest import RECIPIENT, Mailroom, Served
+from tests.app.everybody import PEOPLE, Everybody, routes_of
 
-DISPATCHER: Final = "dispatcher@campus.example"
-WHO: Final = ("nobody", "other member", "recipient", "sender", "dispatcher")
-ORDER: Final = {"from_post": "post1", "to_post": "post4", "recipient": RECIPIENT}
-WISHES: Final[dict[str, dict[str, Any]]] = {
-    "/api/v1/orders": ORDER,
-    "/api/v1/sign-in/codes": {"email": "new@campus.example"},
-    "/api/v1/sign-in": {"email": "new@campus.example", "code": "00000000"},
-    "/api/v1/notices/read": {"ids": [1]},
-}
 
-OPEN: Final = (200, 200, 200, 200, 200)
-SIGNED_IN: Final = (401, 200, 200, 200, 200)
-EXPECTED: Final[dict[tuple[str, str], tuple[int, ...]]] = {
+class Line(NamedTuple):
+    """Status codes, and scopes: "" if nobody is asked who they are, "none" if no token opens it."""
+
+    stranger: int
+    member: int
+    recipient: int
+    sender: int
+    dispatcher: int
+    maintainer: int
+    scopes: str
+
+
+ASKED: Final = ("stranger", *PEOPLE)
+OPEN: Final = Line(200, 200, 200, 200, 200, 200, "")
+SCRIPTS: Final = tuple(str(scope) for scope in Scope)
+
+
+def members(scopes: str, status: int = 200) -> Line:
+    """Everybody who is signed in."""
+    return Line(401, status, status, status, status, status, scopes)
+
+
+def dispatchers(scopes: str, status: int = 200) -> Line:
+    return Line(401, 403, 403, 403, status, 403, scopes)
+
+
+def maintainers(scopes: str, status: int = 200) -> Line:
+    return Line(401, 403, 403, 403, 403, status, scopes)
+
+
+LINES: Final[dict[tuple[str, str], Line]] = {
     # The order is assigned: it is the sender's turn to show a code, and who may cancel asks the robot to let go.
     ("GET", "/healthz"): OPEN,
     ("GET", "/readyz"): OPEN,
@@ -33,109 +59,162 @@ EXPECTED: Final[dict[tuple[str, str], tuple[int, ...]]] = {
     ("GET", "/api/v1/openapi.json"): OPEN,
     ("GET", "/api/v1/about"): OPEN,
     ("GET", "/api/v1/map"): OPEN,
-    ("POST", "/api/v1/sign-in/codes"): (202, 202, 202, 202, 202),
-    ("POST", "/api/v1/sign-in"): (401, 401, 401, 401, 401),
-    ("DELETE", "/api/v1/session"): (401, 204, 204, 204, 204),
-    ("GET", "/api/v1/me"): SIGNED_IN,
-    ("GET", "/api/v1/estimate"): SIGNED_IN,
-    ("POST", "/api/v1/orders"): (401, 201, 201, 201, 201),
-    ("GET", "/api/v1/orders"): SIGNED_IN,
-    ("GET", "/api/v1/orders/{order_id}"): (401, 404, 200, 200, 200),
-    ("GET", "/api/v1/orders/{order_id}/code"): (401, 404, 404, 200, 404),
-    ("GET", "/api/v1/orders/{order_id}/code.svg"): (401, 404, 404, 200, 404),
-    ("POST", "/api/v1/orders/{order_id}/cancel"): (401, 404, 409, 200, 200),
-    ("GET", "/api/v1/notices"): SIGNED_IN,
-    ("POST", "/api/v1/notices/read"): (401, 204, 204, 204, 204),
-    ("GET", "/api/v1/live"): SIGNED_IN,
-    ("GET", "/api/v1/robots"): SIGNED_IN,
-    ("POST", "/api/v1/demo/camera"): (401, 404, 404, 404, 404),  # this is no demonstration
+    ("POST", "/api/v1/sign-in/codes"): Line(202, 202, 202, 202, 202, 202, ""),
+    ("POST", "/api/v1/sign-in"): Line(401, 401, 401, 401, 401, 401, ""),
+    ("DELETE", "/api/v1/session"): members("none", 204),
+    ("GET", "/api/v1/me"): members(" ".join(SCRIPTS)),
+    ("PATCH", "/api/v1/me"): members("none"),
+    # A session and a token of the sender's.
+    ("GET", "/api/v1/sessions"): members("none"),
+    ("DELETE", "/api/v1/sessions"): members("none", 204),
+    ("DELETE", "/api/v1/sessions/{session_id}"): Line(401, 404, 404, 204, 404, 404, "none"),
+    ("GET", "/api/v1/tokens"): members("none"),
+    ("POST", "/api/v1/tokens"): members("none", 201),
+    ("DELETE", "/api/v1/tokens/{prefix}"): Line(401, 404, 404, 204, 404, 404, "none"),
+    ("GET", "/api/v1/people"): Line(401, 403, 403, 403, 200, 200, "contacts:read"),
+    ("PUT", "/api/v1/people/{person_id}/roles/{role}"): maintainers("none"),
+    ("DELETE", "/api/v1/people/{person_id}/roles/{role}"): maintainers("none"),
+    ("GET", "/api/v1/estimate"): members("orders:read"),
+    ("POST", "/api/v1/orders"): members("orders:write", 201),
+    ("GET", "/api/v1/orders"): members("orders:read"),
+    ("GET", "/api/v1/orders/{order_id}"): Line(401, 404, 200, 200, 200, 404, "orders:read"),
+    ("GET", "/api/v1/orders/{order_id}/code"): Line(401, 404, 404, 200, 404, 404, "orders:read"),
+    ("GET", "/api/v1/orders/{order_id}/code.svg"): Line(401, 404, 404, 200, 404, 404, "orders:read"),
+    ("POST", "/api/v1/orders/{order_id}/cancel"): Line(401, 404, 409, 200, 200, 404, "orders:write"),
+    ("GET", "/api/v1/notices"): members("notices:read"),
+    ("POST", "/api/v1/notices/read"): members("notices:write", 204),
+    ("GET", "/api/v1/live"): members("live:read"),
+    ("GET", "/api/v1/robots"): members("robots:read"),
+    ("POST", "/api/v1/demo/camera"): members("none", 404),  # this is no demonstration
 }
-ELSEWHERE: Final = {
-    "/api/v1/robots/link": "a WebSocket, for robots: tests/app/fleet/test_robot_link.py",
+SOCKETS: Final = ("/api/v1/robots/link",)
+
+ORDER: Final = {"from_post": "post1", "to_post": "post4", "recipient": RECIPIENT}
+WISHES: Final[dict[tuple[str, str], dict[str, Any]]] = {
+    # the body of a request; `{order_id}` and the like are filled in as in paths
+    ("POST", "/api/v1/orders"): ORDER,
+    ("POST", "/api/v1/sign-in/codes"): {"email": "new@campus.example"},
+    ("POST", "/api/v1/sign-in"): {"email": "new@campus.example", "code": "00000000"},
+    ("PATCH", "/api/v1/me"): {"language": "en"},
+    ("POST", "/api/v1/tokens"): {"name": "script", "scopes": ["orders:read"]},
+    ("POST", "/api/v1/notices/read"): {"ids": [1]},
+    ("POST", "/api/v1/demo/camera"): {"order_id": "{order_id}"},
 }
+QUESTIONS: Final = {"/api/v1/estimate": ORDER}
 
 
-def routes_of(app: FastAPI) -> Iterator[tuple[str, str]]:
-    """Method and path of every route, those that the API document leaves out too; a socket has no method."""
-    for route, prefix in _flat(app.routes):
-        path = prefix + getattr(route, "path", "")
-        for method in getattr(route, "methods", None) or {"SOCKET"}:
-            if method != "HEAD":
-                yield method, path
+@pytest.fixture
+def everybody(app: FastAPI, mailroom: Mailroom) -> Everybody:
+    return Everybody(app, mailroom)
 
 
-def _flat(routes: list[BaseRoute], prefix: str = "") -> Iterator[tuple[BaseRoute, str]]:
-    for route in routes:
-        inner = getattr(route, "original_router", None)
-        if inner is not None:
-            yield from _flat(inner.routes, prefix + route.include_context.prefix)  # type: ignore[attr-defined]
-        elif not isinstance(route, Mount):  # files
-            yield route, prefix
+@pytest.fixture
+def browser(served: Served) -> Iterator[httpx.Client]:
+    with httpx.Client(base_url=served.url, timeout=20) as client:
+        yield client
 
 
 def test_every_route_has_its_line(app: FastAPI) -> None:
-    known = set(EXPECTED) | {("SOCKET", path) for path in ELSEWHERE}
+    known = set(LINES) | {("SOCKET", path) for path in SOCKETS}
     assert set(routes_of(app)) == known
     documented = {(m.upper(), path) for path, methods in app.openapi()["paths"].items() for m in methods}
     assert documented <= known
 
 
-@dataclass(frozen=True)
-class Everybody:
-    """The cookies of whoever asks, and the order that they ask about."""
-
-    cookies: dict[str, str]
-    order_id: str
-
-
-@pytest.fixture
-def everybody(app: FastAPI, sender: Browser, recipient: Browser, signed_in: SignedIn, mailroom: Mailroom) -> Everybody:
-    people = {"other member": signed_in(STRANGER), "recipient": recipient, "sender": sender}
-    people["dispatcher"] = signed_in(DISPATCHER)
-    mailroom.call(_make_dispatcher, app)
-    order_id = sender.order().json()["id"]
-    mailroom.move(order_id, "assigned")
-    cookies = {who: f"session={browser.cookies['session']}" for who, browser in people.items()}
-    return Everybody({"nobody": "", **cookies}, order_id)
-
-
-async def _make_dispatcher(app: FastAPI) -> None:
-    async with app.state.database.transaction() as session:
-        person = await find_person(session, DISPATCHER)
-        assert person
-        set_roles(person, {Role.DISPATCHER}, set())
+def knock(client: httpx.Client, everybody: Everybody, who: str, route: tuple[str, str]) -> tuple[int, str]:
+    """Status, and the code of the problem if it is one."""
+    method, path = route
+    changes_something = who in PEOPLE and method not in SAFE_METHODS
+    scene = everybody.fresh_scene(who) if changes_something else everybody.scene(who)
+    filled = {key: value.format_map(scene.places) if isinstance(value, str) else value for key, value in wish(route)}
+    with client.stream(
+        method,
+        path.format_map(scene.places),
+        params=QUESTIONS.get(path),
+        json=filled if route in WISHES else None,
+        headers={**scene.headers, "Idempotency-Key": "k"},
+    ) as answer:  # not read to its end: an event stream has none
+        if answer.status_code < 400:
+            return answer.status_code, ""
+        assert answer.headers["content-type"] == "application/problem+json", (who, route)
+        answer.read()
+        return answer.status_code, answer.json()["code"]
 
 
-@pytest.mark.parametrize(("method", "path"), list(EXPECTED))
-def test_everybody_may_do_what_is_theirs_and_nothing_else(
-    served: Served, everybody: Everybody, method: str, path: str
-) -> None:
-    answered = []
-    for who in WHO:
-        headers = {"Cookie": everybody.cookies[who], "Sec-Fetch-Site": "same-origin", "Idempotency-Key": "k"}
-        wish = {"order_id": everybody.order_id} if path.endswith("camera") else WISHES.get(path)
-        with httpx.stream(
-            method,
-            served.url + path.replace("{order_id}", everybody.order_id),
-            params={"from_post": "post1", "to_post": "post4"} if path.endswith("estimate") else None,
-            json=wish if method == "POST" else None,
-            headers=headers,
-        ) as answer:  # not read to its end: an event stream has none
-            answered.append(answer.status_code)
-            if answer.status_code >= 400:
-                assert answer.headers["content-type"] == "application/problem+json", (who, path)
-    assert dict(zip(WHO, answered, strict=True)) == dict(zip(WHO, EXPECTED[method, path], strict=True))
+def wish(route: tuple[str, str]) -> Any:
+    return WISHES.get(route, {}).items()
+
+
+def test_everybody_may_do_what_is_theirs_and_nothing_else(browser: httpx.Client, everybody: Everybody) -> None:
+    holes = {}
+    for route, line in LINES.items():
+        answered = {who: knock(browser, everybody, who, route) for who in ASKED}
+        expected = dict(zip(ASKED, line, strict=False))
+        if {who: status for who, (status, _) in answered.items()} != expected:
+            holes[route] = {"answered": answered, "expected": expected}
+    assert holes == {}
+
+
+def test_a_script_may_do_what_its_scopes_say_and_nothing_else(browser: httpx.Client, everybody: Everybody) -> None:
+    holes = {}
+    for route, line in LINES.items():
+        if not line.scopes:
+            continue
+        refused = {"scope_needed", "not_for_scripts"}
+        opening = {scope for scope in SCRIPTS if knock(browser, everybody, scope, route)[1] not in refused}
+        if opening != set(line.scopes.split()) - {"none"}:
+            holes[route] = opening
+    assert holes == {}
+
+
+def test_a_script_with_every_scope_may_do_what_its_person_may(browser: httpx.Client, everybody: Everybody) -> None:
+    opened = [route for route, line in LINES.items() if line.scopes not in {"", "none"}]
+    answered = {route: knock(browser, everybody, " ".join(SCRIPTS), route)[0] for route in opened}
+    assert {route: status for route, status in answered.items() if status in {401, 403}} == {}
+
+
+def test_a_robots_token_opens_no_route(browser: httpx.Client, everybody: Everybody) -> None:
+    answered = {route: knock(browser, everybody, "robot", route)[0] for route in LINES}
+    assert answered == {route: line.stranger for route, line in LINES.items()}
+
+
+def test_the_pages_are_for_everybody(browser: httpx.Client, everybody: Everybody) -> None:
+    for who in (*ASKED, "robot", "orders:read"):
+        assert browser.get("/", headers=everybody.scene(who).headers).status_code == 200
+
+
+@pytest.mark.parametrize("path", SOCKETS)
+def test_the_link_is_for_robots_alone(served: Served, everybody: Everybody, path: str) -> None:
+    for who in (*ASKED, " ".join(SCRIPTS)):
+        headers = everybody.scene(who).headers
+        with connect(served.url.replace("http", "ws") + path, additional_headers=headers, proxy=None) as socket:
+            with pytest.raises(ConnectionClosed) as closed:
+                socket.recv(timeout=5)
+            assert closed.value.rcvd is not None
+            assert closed.value.rcvd.code == TOKEN_REFUSED, who
 
 
 def test_lists_hold_what_is_ones_own_and_a_dispatchers_hold_everything(
-    served: Served, everybody: Everybody, sender: Browser
+    browser: httpx.Client, everybody: Everybody
 ) -> None:
-    def mine(who: str, path: str) -> list[str]:
-        page = httpx.get(served.url + path, headers={"Cookie": everybody.cookies[who]}).json()
-        return [one.get("order_id") or one["id"] for one in page["items"]]
+    order_id = everybody.scene("stranger").places["order_id"]
 
-    one = [everybody.order_id]
-    assert [mine(who, "/api/v1/orders") for who in WHO[1:]] == [[], one, one, one]
-    assert [mine(who, "/api/v1/orders?role=sent") for who in WHO[1:]] == [[], [], one, []]
-    assert [mine(who, "/api/v1/notices") for who in WHO[1:]] == [[], [], one, []]
-    assert {SENDER, RECIPIENT} <= {sender.get(f"/api/v1/orders/{one[0]}").json()[who]["email"] for who in WHO[2:4]}
+    def mine(who: str, path: str) -> int:
+        items = browser.get(path, headers=everybody.scene(who).headers).json()["items"]
+        return [one.get("order_id") or one["id"] for one in items].count(order_id)
+
+    def all_of(path: str) -> dict[str, int]:
+        return {who: mine(who, path) for who in PEOPLE}
+
+    nobodys = dict.fromkeys(PEOPLE, 0)
+    assert all_of("/api/v1/orders") == {**nobodys, "recipient": 1, "sender": 1, "dispatcher": 1}
+    assert all_of("/api/v1/orders?role=sent") == {**nobodys, "sender": 1}
+    assert all_of("/api/v1/notices") == {**nobodys, "sender": 1}
+
+
+def test_a_dispatchers_script_sees_others_orders_only_with_the_scope_dispatch(
+    browser: httpx.Client, everybody: Everybody
+) -> None:
+    route = ("GET", "/api/v1/orders/{order_id}")
+    assert knock(browser, everybody, "orders:read", route) == (404, "unknown_order")
+    assert knock(browser, everybody, "orders:read dispatch", route) == (200, "")

@@ -1,0 +1,47 @@
+"""The people of the campus: found by dispatchers, given roles by maintainers."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, Path, Query
+from sqlalchemy import or_
+from sqlmodel import col, select
+
+from app.database import ReadingDep, SessionDep
+from app.errors import problems
+from app.paging import PAGED, PageDep, Sorting
+from app.people.current_user import DispatcherOrMaintainer, Maintainer
+from app.people.roles import change_role
+from app.people.schemas import PeoplePage, PersonView
+from app.tables import Person, Role
+
+router = APIRouter(tags=["people"])
+address_router = APIRouter(tags=["address book"])
+
+PersonId = Annotated[str, Path(pattern=r"^[A-Za-z0-9_-]{1,64}$")]
+Search = Annotated[str, Query(max_length=100, description="Part of a name or mail address.")]
+BY_ADDRESS = Sorting("people", col(Person.email))
+
+
+@address_router.get("/people", responses={**PAGED, **problems(400, 401, 403, 422)})
+async def find_people(
+    user: DispatcherOrMaintainer, session: ReadingDep, page: PageDep, search: Search = ""
+) -> PeoplePage:
+    """Everybody, by mail address; `search` narrows it down."""
+    wanted = select(Person)
+    if search:
+        found = (col(column).icontains(search, autoescape=True) for column in (Person.name, Person.email))
+        wanted = wanted.where(or_(*found))
+    rows, following = await page.of(session, wanted, BY_ADDRESS)
+    return PeoplePage(items=[PersonView.of(row) for row in rows], next=following)
+
+
+@router.put("/people/{person_id}/roles/{role}", responses=problems(401, 403, 404, 422))
+async def give_role(person_id: PersonId, role: Role, user: Maintainer, session: SessionDep) -> PersonView:
+    """Give somebody a role."""
+    return PersonView.of(await change_role(session, person_id, role, give=True, by=user))
+
+
+@router.delete("/people/{person_id}/roles/{role}", responses=problems(401, 403, 404, 409, 422))
+async def take_role(person_id: PersonId, role: Role, user: Maintainer, session: SessionDep) -> PersonView:
+    """Take a role from somebody; everybody stays a member."""
+    return PersonView.of(await change_role(session, person_id, role, give=False, by=user))

@@ -1,0 +1,94 @@
+"""What a person sees and changes of their own: name and language, sessions, tokens of scripts."""
+
+from datetime import timedelta
+from typing import Annotated
+
+from fastapi import APIRouter, Path, Response
+
+from app.database import ReadingDep, SessionDep
+from app.errors import problems
+from app.people.current_user import AtBrowser, CurrentUser, ThisSession
+from app.people.errors import NoSuchPost
+from app.people.schemas import (
+    AboutMe,
+    NewTokenView,
+    PersonView,
+    Sessions,
+    SessionView,
+    Tokens,
+    TokenView,
+    TokenWish,
+)
+from app.people.sessions import end_others, end_session, open_sessions
+from app.people.tokens import good_tokens, issue_token, revoke_token
+from app.settings import CampusDep, ClockDep
+from app.tables import Person
+from maps import UnknownPost
+
+me_router = APIRouter(tags=["me"])
+router = APIRouter(tags=["people"])
+
+SessionId = Annotated[int, Path(ge=1, le=2**53)]
+Prefix = Annotated[str, Path(pattern=r"^[0-9a-f]{8}$")]
+
+
+@me_router.get("/me", responses=problems(401, 403))
+async def who_am_i(user: CurrentUser) -> PersonView:
+    """The signed-in person; of a script: whose it is, with the roles that its scopes leave."""
+    return PersonView.of(user)
+
+
+@me_router.patch("/me", responses=problems(401, 403, 422))
+async def change_me(wish: AboutMe, user: AtBrowser, session: SessionDep, campus: CampusDep) -> PersonView:
+    """Change one's name, language or usual post."""
+    person = await session.get_one(Person, user.id)
+    changed = wish.model_dump(include=wish.model_fields_set)
+    if post := changed.get("usual_post"):
+        try:
+            campus.post(post)
+        except UnknownPost as error:
+            raise NoSuchPost(str(error)) from None
+    for name, value in changed.items():
+        setattr(person, name, value)
+    return PersonView.of(person)
+
+
+@router.get("/sessions", responses=problems(401, 403))
+async def my_sessions(user: AtBrowser, this: ThisSession, session: ReadingDep, clock: ClockDep) -> Sessions:
+    """Where this person is signed in."""
+    rows = await open_sessions(session, user.id, clock.utc())
+    return Sessions(items=[SessionView.of(row, this) for row in rows])
+
+
+@router.delete("/sessions", status_code=204, responses=problems(401, 403))
+async def sign_out_elsewhere(user: AtBrowser, this: ThisSession, session: SessionDep, clock: ClockDep) -> None:
+    """End all of this person's sessions but this one."""
+    await end_others(session, user.id, this, clock.utc())
+
+
+@router.delete("/sessions/{session_id}", status_code=204, responses=problems(401, 403, 404, 422))
+async def end_one_session(session_id: SessionId, user: AtBrowser, session: SessionDep, clock: ClockDep) -> None:
+    """End one session, this one too."""
+    await end_session(session, user.id, session_id, clock.utc())
+
+
+@router.get("/tokens", responses=problems(401, 403))
+async def my_tokens(user: AtBrowser, session: ReadingDep, clock: ClockDep) -> Tokens:
+    """The tokens of this person's scripts."""
+    return Tokens(items=[TokenView.of(row) for row in await good_tokens(session, user.id, clock.utc())])
+
+
+@router.post("/tokens", status_code=201, responses=problems(401, 403, 422))
+async def make_token(
+    wish: TokenWish, user: AtBrowser, session: SessionDep, clock: ClockDep, response: Response
+) -> NewTokenView:
+    """Make a token for a script: `Authorization: Bearer cmp_…`. It is shown now and never again."""
+    row, text = await issue_token(session, user, wish.name, set(wish.scopes), timedelta(days=wish.days), clock.utc())
+    response.headers["Cache-Control"] = "no-store"
+    return NewTokenView(**TokenView.of(row).model_dump(), token=text)
+
+
+@router.delete("/tokens/{prefix}", status_code=204, responses=problems(401, 403, 404, 422))
+async def revoke_one_token(prefix: Prefix, user: AtBrowser, session: SessionDep, clock: ClockDep) -> None:
+    """Revoke one token: it opens nothing from now on."""
+    await revoke_token(session, user.id, prefix, clock.utc())

@@ -1,0 +1,96 @@
+"""Sessions of browsers: opened at sign-in, listed, ended. Known here by the hashes of their cookies alone."""
+
+import secrets
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+from hashlib import sha256
+from typing import Final
+
+from sqlmodel import col, select, update
+from sqlmodel.ext.asyncio.session import AsyncSession
+
+from app.people.devices import device_of
+from app.people.errors import UnknownSession
+from app.tables import Person, PersonSession
+
+SEEN_EVERY: Final = timedelta(minutes=10)
+"""How exactly it is known when a session or token was used last: each request would be a write."""
+
+
+@dataclass(frozen=True)
+class OpenSession:
+    """A cookie that was good, and whose it is."""
+
+    person: Person
+    id: int
+    seen_at: datetime | None
+
+
+def hash_of(token: str) -> str:
+    """Tokens are long and random: a plain SHA-256 gives nothing away."""
+    return sha256(token.encode()).hexdigest()
+
+
+def is_stale(seen_at: datetime | None, now: datetime) -> bool:
+    """Whether it is time to write down that somebody is here."""
+    return seen_at is None or now - seen_at >= SEEN_EVERY
+
+
+def new_session(person: Person, user_agent: str, lifetime_s: float, now: datetime) -> tuple[PersonSession, str]:
+    """A session and the secret of its cookie."""
+    token = secrets.token_urlsafe(32)
+    row = PersonSession(
+        token_hash=hash_of(token),
+        person_id=person.id,
+        device=device_of(user_agent),
+        created_at=now,
+        seen_at=now,
+        expires_at=now + timedelta(seconds=lifetime_s),
+    )
+    return row, token
+
+
+async def find_session(session: AsyncSession, token: str, now: datetime) -> OpenSession | None:
+    """The session of this cookie, if it is still open."""
+    wanted = select(PersonSession, Person).where(
+        PersonSession.token_hash == hash_of(token), PersonSession.person_id == Person.id
+    )
+    found = (await session.exec(wanted)).first()
+    if found is None:
+        return None
+    row, person = found
+    if row.id is None or row.revoked_at or row.expires_at <= now:
+        return None
+    return OpenSession(person, row.id, row.seen_at)
+
+
+async def note_seen(session: AsyncSession, session_id: int, now: datetime) -> None:
+    """Somebody was here."""
+    await session.exec(update(PersonSession).where(col(PersonSession.id) == session_id).values(seen_at=now))
+
+
+async def open_sessions(session: AsyncSession, person_id: str, now: datetime) -> Sequence[PersonSession]:
+    """Where somebody is signed in, newest first."""
+    theirs = select(PersonSession).where(
+        PersonSession.person_id == person_id, col(PersonSession.revoked_at).is_(None), PersonSession.expires_at > now
+    )
+    return (await session.exec(theirs.order_by(col(PersonSession.id).desc()))).all()
+
+
+async def end_session(session: AsyncSession, person_id: str, session_id: int, now: datetime) -> None:
+    """Its cookie is worthless from now on. Raises UnknownSession, for another's too."""
+    row = await session.get(PersonSession, session_id)
+    if row is None or row.person_id != person_id or row.revoked_at:
+        raise UnknownSession(f"There is no open session {session_id} among yours.")
+    row.revoked_at = now
+
+
+async def end_others(session: AsyncSession, person_id: str, but: int, now: datetime) -> None:
+    """End all sessions of somebody but one."""
+    others = update(PersonSession).where(
+        col(PersonSession.person_id) == person_id,
+        col(PersonSession.id) != but,
+        col(PersonSession.revoked_at).is_(None),
+    )
+    await session.exec(others.values(revoked_at=now))

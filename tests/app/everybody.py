@@ -1,0 +1,132 @@
+"""Everybody who may knock at a route, each with a fresh way in, and an order that they knock about."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from datetime import timedelta
+from typing import Any, Final
+
+from fastapi import FastAPI
+from sqlmodel.ext.asyncio.session import AsyncSession
+from starlette.routing import BaseRoute, Mount
+
+from app.fleet.service import new_token
+from app.orders.schemas import NewOrder
+from app.orders.service import Word
+from app.orders.transitions import By
+from app.people.scopes import Scope
+from app.people.service import set_roles
+from app.people.tokens import issue_token
+from app.tables import OrderState, Person, PersonSession, Role
+from tests.app.conftest import Mailroom
+
+PEOPLE: Final = {
+    # who: address, roles beyond member
+    "member": ("stranger@campus.example", set[Role]()),
+    "recipient": ("recipient@campus.example", set[Role]()),
+    "sender": ("sender@campus.example", set[Role]()),
+    "dispatcher": ("dispatcher@campus.example", {Role.DISPATCHER}),
+    "maintainer": ("maintainer@campus.example", {Role.MAINTAINER}),
+}
+EVERYTHING: Final = ("everything@campus.example", {Role.DISPATCHER, Role.MAINTAINER})
+"""Whose scripts come with tokens: what they may not do is their scopes' doing."""
+
+
+def routes_of(app: FastAPI) -> Iterator[tuple[str, str]]:
+    """Method and path of every route, those that the API document leaves out too; a socket has no method."""
+    for route, prefix in _flat(app.routes):
+        path = prefix + getattr(route, "path", "")
+        for method in getattr(route, "methods", None) or {"SOCKET"}:
+            if method != "HEAD":
+                yield method, path
+
+
+def _flat(routes: list[BaseRoute], prefix: str = "") -> Iterator[tuple[BaseRoute, str]]:
+    for route in routes:
+        inner = getattr(route, "original_router", None)
+        if inner is not None:
+            yield from _flat(inner.routes, prefix + route.include_context.prefix)  # type: ignore[attr-defined]
+        elif not isinstance(route, Mount):  # files
+            yield route, prefix
+
+
+@dataclass(frozen=True)
+class Scene:
+    """One knock: the headers of whoever knocks, and what stands in the gaps of paths."""
+
+    headers: dict[str, str]
+    places: dict[str, str]
+
+
+@dataclass
+class Everybody:
+    """Sets scenes in transactions of the running service. The order is assigned: it waits for its sender's mail."""
+
+    app: FastAPI
+    mailroom: Mailroom
+    _kept: dict[str, Scene] = field(default_factory=dict)
+
+    def scene(self, who: str) -> Scene:
+        """For what changes nothing, or is refused: the same each time."""
+        if who not in self._kept:
+            self._kept[who] = self.fresh_scene(who)
+        return self._kept[who]
+
+    def fresh_scene(self, who: str) -> Scene:
+        """For what may change something, perhaps whether somebody is signed in."""
+        self._kept.pop(who, None)
+        scene: Scene = self.mailroom.call(self._scene, who)
+        return scene
+
+    async def _scene(self, who: str) -> Scene:
+        async with self.app.state.database.transaction() as session:
+            people = {name: await self._person(session, *known) for name, known in PEOPLE.items()}
+            order_id = await self._order(session, people["sender"], people["recipient"].email)
+            sender_session, _ = await self._signed_in(session, people["sender"])
+            token, _ = await self._token(session, people["sender"], [Scope.ORDERS_READ])
+            places = {
+                "order_id": order_id,
+                "name": "r1",
+                "person_id": people["member"].id,
+                "role": "dispatcher",
+                "session_id": str(sender_session.id),
+                "prefix": token,
+                "email": "somebody@campus.example",
+            }
+            return Scene(await self._headers(session, who, people), places)
+
+    async def _headers(self, session: AsyncSession, who: str, people: dict[str, Person]) -> dict[str, str]:
+        if who == "stranger":
+            return {}
+        if who == "robot":
+            return {"Authorization": f"Bearer {await new_token(session, self.app.state.clock, 'r1')}"}
+        if who in people:
+            _, cookie = await self._signed_in(session, people[who])
+            return {"Cookie": f"session={cookie}", "Sec-Fetch-Site": "same-origin"}
+        _, text = await self._token(session, await self._person(session, *EVERYTHING), who.split())
+        return {"Authorization": f"Bearer {text}"}
+
+    async def _person(self, session: AsyncSession, email: str, roles: set[Role]) -> Person:
+        person: Person = await self.app.state.sign_in_desk.person(session, email, self.app.state.clock.utc())
+        set_roles(person, roles, set(Role) - roles)
+        return person
+
+    async def _signed_in(self, session: AsyncSession, person: Person) -> tuple[PersonSession, str]:
+        from app.people.sessions import new_session
+
+        row, cookie = new_session(person, "", 3600, self.app.state.clock.utc())
+        session.add(row)
+        await session.flush()
+        return row, cookie
+
+    async def _token(self, session: AsyncSession, person: Person, scopes: Any) -> tuple[str, str]:
+        now = self.app.state.clock.utc()
+        row, text = await issue_token(session, person, "script", scopes, timedelta(days=1), now)
+        return row.prefix, text
+
+    async def _order(self, session: AsyncSession, sender: Person, recipient: str) -> str:
+        orders = self.app.state.orders
+        wish = NewOrder(from_post="post1", to_post="post4", recipient=recipient)
+        view = await orders.create(session, sender, wish)
+        await orders.move(session, view.id, OrderState.ASSIGNED, Word(By.DISPATCHER, robot="r1"))
+        order_id: str = view.id
+        return order_id
