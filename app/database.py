@@ -17,6 +17,8 @@ from starlette.requests import HTTPConnection
 from app.errors import StartError
 
 PRAGMAS = ("journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON", "busy_timeout=10000")
+WRITERS_LOCK = 0x434D_0001
+"""PostgreSQL's advisory lock that a writing transaction holds to its end."""
 _AFTER_COMMIT = "after_commit"
 
 
@@ -33,6 +35,10 @@ class Database:
         if self.engine.dialect.name == "sqlite":
             event.listen(self.engine.sync_engine, "connect", _prepare_sqlite)
             event.listen(self.engine.sync_engine, "begin", _begin_sqlite)
+        else:
+            event.listen(self.engine.sync_engine, "begin", _begin_postgresql)
+            self.writing = self.engine.execution_options(one_writer=True)
+            self.engine = self.engine.execution_options(isolation_level="REPEATABLE READ", postgresql_readonly=True)
 
     @property
     def name(self) -> str:
@@ -90,6 +96,15 @@ def _prepare_sqlite(connection: Any, record: Any) -> None:
 
 def _begin_sqlite(connection: Connection) -> None:
     connection.exec_driver_sql(connection.get_execution_options().get("begin", "BEGIN"))
+
+
+def _begin_postgresql(connection: Connection) -> None:
+    """One writer at a time, as on SQLite: whoever decides by what it has read decides by what is true.
+
+    So no transaction has to be repeated because of another one, and nobody has to think of which rows to lock.
+    """
+    if connection.get_execution_options().get("one_writer"):
+        connection.exec_driver_sql(f"SELECT pg_advisory_xact_lock({WRITERS_LOCK})")
 
 
 def _database_of(connection: HTTPConnection) -> Database:

@@ -1,8 +1,8 @@
 """The service without a network: the application itself, its mails, and people who use it."""
 
 import asyncio
+import os
 import re
-import threading
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from email import message_from_bytes, policy
@@ -15,6 +15,7 @@ from fastapi import FastAPI
 from fastapi.testclient import TestClient
 from sqlmodel import col, select
 
+from app.commands import migrate
 from app.main import create_app
 from app.orders.service import Word
 from app.orders.transitions import By
@@ -22,6 +23,7 @@ from app.serving import Server, config_of, listen
 from app.settings import Settings
 from app.tables import OrderState, OutgoingNotice, RobotRow
 from protocol.clock import SteppedClock
+from tests.app.postgresql import TEMPLATE, PostgreSQL
 
 HERE = "http://127.0.0.1"
 SENDER, RECIPIENT, STRANGER = (f"{name}@campus.example" for name in ("sender", "recipient", "stranger"))
@@ -40,9 +42,57 @@ def pages(tmp_path: Path) -> Path:
     return folder
 
 
+ON_POSTGRESQL = os.environ.get("CAMPUS_MAIL_TEST_DATABASE") == "postgresql"
+"""The same tests run on either database."""
+sqlite_alone = pytest.mark.skipif(ON_POSTGRESQL, reason="about SQLite's own file")
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """On PostgreSQL only what touches the database is worth a second run."""
+    if not ON_POSTGRESQL:
+        return
+    here = Path(__file__).parent
+    left_out = [item for item in items if here in item.path.parents and "database_url" not in _fixtures_of(item)]
+    items[:] = [item for item in items if item not in left_out]
+    config.hook.pytest_deselected(items=left_out)
+
+
+def _fixtures_of(item: pytest.Item) -> list[str]:
+    return item.fixturenames if isinstance(item, pytest.Function) else []
+
+
+@pytest.fixture(scope="session")
+def postgresql(tmp_path_factory: pytest.TempPathFactory) -> Iterator[PostgreSQL]:
+    """One server for all tests of this process, with a database at head to copy."""
+    server = PostgreSQL()
+    server.say(f"CREATE DATABASE {TEMPLATE}")
+    data = tmp_path_factory.mktemp("template")
+    asyncio.run(migrate(Settings(data=data, database_url=server.url(TEMPLATE))))
+    yield server
+    server.stop()
+
+
 @pytest.fixture
-def settings(tmp_path: Path, pages: Path) -> Settings:
-    return Settings(data=tmp_path / "data", pages=pages, public_url="https://mail.campus.example", time_zone="")
+def database_url(request: pytest.FixtureRequest) -> Iterator[str]:
+    """Empty for SQLite in the data folder; on PostgreSQL a database of this test alone, at head already."""
+    if not ON_POSTGRESQL:
+        yield ""
+        return
+    server: PostgreSQL = request.getfixturevalue("postgresql")
+    name = server.new_database(TEMPLATE)
+    yield server.url(name)
+    server.drop(name)
+
+
+@pytest.fixture
+def settings(tmp_path: Path, pages: Path, database_url: str) -> Settings:
+    return Settings(
+        data=tmp_path / "data",
+        pages=pages,
+        public_url="https://mail.campus.example",
+        time_zone="",
+        database_url=database_url,
+    )
 
 
 @pytest.fixture
@@ -183,15 +233,14 @@ class Served:
 
 
 @pytest.fixture
-def served(app: FastAPI, nobody: object) -> Iterator[Served]:
-    """The real server; the test client runs the lifespan already."""
+def served(app: FastAPI, nobody: TestClient) -> Iterator[Served]:
+    """The real server, in the loop of the test client, which runs the lifespan already."""
     config = config_of(app)
     config.lifespan = "off"
     server = Server(app, config)
+    assert nobody.portal is not None
     with listen("127.0.0.1", 0) as listening:
-        thread = threading.Thread(target=server.run, kwargs={"sockets": [listening]})
-        thread.start()
+        serving = nobody.portal.start_task_soon(server.serve, [listening])
         yield Served(f"http://127.0.0.1:{listening.getsockname()[1]}", server)
         server.should_exit = True
-        thread.join(10)
-        assert not thread.is_alive()
+        serving.result(10)

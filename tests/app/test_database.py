@@ -11,6 +11,7 @@ from app.database import Database, after_commit, savepoint
 from app.settings import Settings
 from app.tables import Person, PersonSession
 from protocol.clock import SteppedClock
+from tests.app.conftest import sqlite_alone
 
 NOW = SteppedClock().utc()
 
@@ -88,6 +89,7 @@ async def test_a_row_that_refers_to_nobody_is_refused(database: Database) -> Non
             session.add(PersonSession(token_hash="t", person_id="nobody", created_at=NOW, expires_at=NOW))
 
 
+@sqlite_alone
 async def test_what_was_committed_survives_a_power_cut(database: Database) -> None:
     """Write-ahead log with full sync, on every connection."""
     async with database.engine.connect() as connection:

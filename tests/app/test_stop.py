@@ -1,13 +1,15 @@
 """The service ends soon and in order, whatever it is doing when it is told to."""
 
 import asyncio
-import sqlite3
+from collections.abc import Sequence
 
 from fastapi import FastAPI
 from fastapi.testclient import TestClient
+from sqlmodel import select
 
+from app.database import Database
 from app.settings import Settings
-from app.tables import RobotRow
+from app.tables import Order, OrderState, RobotRow
 from tests.app.conftest import HERE, SENDER, Browser, Mails
 
 
@@ -22,8 +24,15 @@ def test_what_dispatch_has_begun_is_finished_before_the_end(app: FastAPI, mails:
         assert client.portal is not None
         holding = client.portal.call(_let_dispatch_wait_for_the_lock, app)
     assert holding.done()
-    with sqlite3.connect(settings.data / "campus-mail.sqlite") as database:
-        assert database.execute("SELECT state FROM orders").fetchall() == [("assigned",)]
+    assert asyncio.run(_states(settings)) == [OrderState.ASSIGNED]
+
+
+async def _states(settings: Settings) -> Sequence[OrderState]:
+    database = Database(settings.url_of_database)
+    async with database.reading() as session:
+        states = (await session.exec(select(Order.state))).all()
+    await database.close()
+    return states
 
 
 async def _let_dispatch_wait_for_the_lock(app: FastAPI) -> "asyncio.Task[None]":
