@@ -44,6 +44,9 @@ TO_ROBOT: Final[Mapping[str, type[Part]]] = {
     "emergency_stop": to_robot.EmergencyStop,
     **BOTH_WAYS,
 }
+YOUNGER: Final = ("confirm",)
+"""Types to robots that came later: sent only to those that name them in `hello`; an older robot would hang up."""
+
 DURABLE: Final = frozenset({"event", "claim", "clear"}) | {
     *("mission", "verifiers", "grant", "deny", "cancel", "confirm", "pause", "resume", "recall", "emergency_stop")
 }

@@ -72,7 +72,8 @@ class Confirm(Part):
     """Hand over now: a person said so in the app, by a tap or by the six digits of a code, and the server has checked.
 
     The robot does so if it waits at a stop for this order and purpose (`stop_id`: at this one), and its receipt names
-    `command_id` and repeats `by`: the SHA-256 of the code that this person could have shown instead. Else it refuses.
+    `command_id` and repeats `by`: the SHA-256 of the code that this person could have shown instead. Else it refuses,
+    and so it does after `expires_at` by its own clock: who wanted it may have gone.
     """
 
     command_id: Identifier
@@ -81,6 +82,7 @@ class Confirm(Part):
     purpose: Purpose
     how: Literal["tap", "digits"]
     by: Sha256Hex | None = None
+    expires_at: Moment
 
 
 class Pause(Part):

@@ -30,6 +30,7 @@ from .memory import Memory
 from .mind import Mind
 from .navigator import Navigator
 from .outbox import Outbox
+from .signatures import signer
 from .simulated import Build, CameraMount, DiodeMount, Motion, Options, Pack, SimulatedHost, SimulatedRobot, World
 from .simulated_world import SavedWorld
 from .stop_memory import FILE_NAME as STOPS
@@ -128,6 +129,8 @@ def check_settings(settings: Settings) -> None:
     load_program(settings)
     if settings.server:
         read_token(_token_file(settings))
+    if settings.key_file:
+        signer(settings.key_file, settings.name)
 
 
 def _make_folder(path: Path) -> None:
@@ -224,7 +227,8 @@ def join(
 ) -> Parts:
     """Devices, body, duties, navigator, agent: each knows only those before it."""
     shape, now = shape_of(settings), clock.now()
-    duties = Duties(store, Memory(store), Outbox(store), clock.utc, mailroom=_mailroom(settings, campus))
+    sign = signer(settings.key_file, settings.name) if settings.key_file else None
+    duties = Duties(store, Memory(store), Outbox(store), clock.utc, mailroom=_mailroom(settings, campus), sign=sign)
     black_box = BlackBox(settings.data / "black_box", clock.utc)
     devices.base.listen_in(black_box.heard, black_box.sent)
     stops = StopMemory(settings.data / STOPS)

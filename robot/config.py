@@ -183,6 +183,9 @@ class Settings(Section):
         default=None, description="address of the service's robot link (wss, or ws to this machine); none: alone"
     )
     token_file: Path | None = Field(default=None, description="file with the robot's token, mode 0600")
+    key_file: Path | None = Field(
+        default=None, description="file with the key that signs receipts, mode 0600; without it they are unsigned"
+    )
     data: Path = Field(default=Path("var/robot"), description="folder of the robot's memory and outbox")
     serial_port: str = Field(default="/dev/ttyUSB0", min_length=1, description="port of the base, any pyserial URL")
     brc: Annotated[str, Field(pattern=r"^(rts|none|(BOARD|GPIO|BCM)\d{1,2})$")] = Field(

@@ -23,6 +23,7 @@ from dataclasses import dataclass
 from threading import Event
 from typing import Protocol
 
+from protocol.envelope import YOUNGER
 from protocol.to_server import Hello, Snapshot
 
 from .black_box import BlackBox
@@ -150,6 +151,7 @@ class Daemon:
             battery=state.battery,
             software=SOFTWARE,
             map_version=self.mind.hands.navigator.campus.version,
+            understands=YOUNGER,
         )
 
     def close(self, now: float) -> None:

@@ -11,11 +11,12 @@ from datetime import datetime, timedelta
 from typing import Final, Literal, Protocol
 
 from protocol.parts import Leg, Part, Purpose, Stop
-from protocol.to_robot import Cancel, Deny, EmergencyStop, Grant, Mission, Pause, Recall, Resume, Verifiers
+from protocol.to_robot import Cancel, Confirm, Deny, EmergencyStop, Grant, Mission, Pause, Recall, Resume, Verifiers
 from protocol.to_server import Charge, Claim, Clear, CommandAnswer, Event, Fault, HandoverReceipt, Progress, Step
+from robot.custody import Custody, Proof, Sign, opening
 from robot.errors import RobotError
 from robot.held import Held
-from robot.memory import Incoming, Loading, Memory
+from robot.memory import Incoming, Memory
 from robot.outbox import Outbox
 from robot.returns import is_own, return_mission
 from robot.store import Store
@@ -51,9 +52,11 @@ class Duties:
         utc: Callable[[], datetime],
         server: Server | None = None,
         mailroom: str | None = None,
+        sign: Sign | None = None,
     ) -> None:
         self._store, self.memory, self.outbox, self._utc = store, memory, outbox, utc
         self._server, self._mailroom = server, mailroom
+        self.custody = Custody(memory, outbox, utc, sign)
         self._denied: dict[str, Deny] = {}
         self._claimed: dict[tuple[Leg, ...], str] = {}
         self.rearm_asked = False
@@ -104,11 +107,18 @@ class Duties:
         messages = self._server.incoming() if self._server else ()
         for incoming in messages:
             with self._store.transaction():
-                self._take(incoming.message)
+                if self._is_new(incoming.message):
+                    self._take(incoming.message)
                 if incoming.seq is not None:
                     self.memory.handled(incoming)
         if messages:
             self._told()
+            self._tell_taken(self.held.position.post)
+
+    def _is_new(self, message: Part) -> bool:
+        """A command that comes again changes nothing: what it asked for may be over by now."""
+        command_id = getattr(message, "command_id", None)
+        return command_id is None or self.memory.first_command(command_id)
 
     def give(self, mission: Mission) -> None:
         """A mission given on the spot, without a server. Raises MissionConflict."""
@@ -128,6 +138,8 @@ class Duties:
                 self.avoid -= frozenset(message.legs)
             case Cancel():
                 self._answer(message.command_id, self._cancel(message.order_id))
+            case Confirm():
+                self._confirm(message)
             case Pause():
                 self.memory.pause(True)
                 self._answer(message.command_id, None)
@@ -152,6 +164,12 @@ class Duties:
         accepted = refusal is None
         answer = CommandAnswer(command_id=command_id, accepted=accepted, happened_at=self._utc(), reason=refusal)
         self._tell(answer)
+
+    def _confirm(self, wish: Confirm) -> None:
+        """Done, the receipt is the answer."""
+        refusal = self.custody.confirm(wish)
+        if refusal is not None:
+            self._answer(wish.command_id, refusal)
 
     def _cancel(self, order_id: str) -> str | None:
         """Why not, or None."""
@@ -214,14 +232,8 @@ class Duties:
         """The stop is done, or given up: the next one comes."""
         self._stop(stop_id)
         with self._store.transaction():
-            self._pass(stop_id)
+            self.memory.pass_stop(stop_id)
         self._changed()
-
-    def _pass(self, stop_id: str) -> None:
-        mission = self.memory.mission()
-        numbers = [number for number, stop in enumerate(mission.stops) if stop.id == stop_id] if mission else []
-        for number in numbers:
-            self.memory.reach(max(self.memory.next_stop(), number + 1))
 
     def finish_mission(self, mission_id: str, post: str | None) -> None:
         """All stops are done: say so once, and be free for the next mission. Mail that nobody took is brought back."""
@@ -249,17 +261,8 @@ class Duties:
             self._tell(Fault(name=MAIL_ABOARD, happened_at=self._utc(), post=post, reason=reason))
 
     def codes(self, order_id: str, purpose: Purpose) -> tuple[str, ...]:
-        """What opens this hand-over now, as SHA-256. For any thread, and without a look at the disk.
-
-        Mail that is brought back is given to its recipient too, and to whoever shows the code that it was loaded with.
-        """
-        now = self._utc()
-        fit = {purpose, Purpose.RECEIVE} if purpose is Purpose.RETURN else {purpose}
-        codes = [
-            v.sha256 for v in self.held.verifiers if v.order_id == order_id and v.purpose in fit and now < v.expires_at
-        ]
-        loading = self.held.loadings.get(order_id) if purpose is Purpose.RETURN else None
-        return (*codes, loading.code_sha256) if loading and loading.code_sha256 else tuple(codes)
+        """What opens this hand-over now, as SHA-256. For any thread, and without a look at the disk."""
+        return opening(self.held.verifiers, self.held.loadings, order_id, purpose, self._utc())
 
     def at_stop(self, stop_id: str) -> tuple[Mission, Stop]:
         """A stop of the mission held, with its mission. Raises NoSuchStop."""
@@ -271,27 +274,13 @@ class Duties:
         `place` is the stop as it was when the robot began to wait: mail that was taken aboard is aboard, even if the
         mission was dropped in the same moment.
         """
-        mission, stop = place
-        stop_id, order_id = stop.id, stop.order_id or ""
         with self._store.transaction():
-            if not self.memory.first_time(mission.id, f"handover:{stop_id}"):
+            if not self.custody.hand_over(place, purpose, post, Proof.seen(code_sha256)):
                 return
-            if purpose is Purpose.LOAD:
-                self.memory.load(order_id, Loading(post=post, code_sha256=code_sha256))
-            else:
-                self.memory.unload(order_id)
-            self._pass(stop_id)
-            receipt = HandoverReceipt(
-                purpose=purpose,
-                order_id=order_id,
-                stop_id=stop_id,
-                post=post,
-                happened_at=self._utc(),
-                code_sha256=code_sha256,
-            )
-            self._tell(receipt)
-            self.memory.forget_verifiers(order_id, purpose if purpose is Purpose.LOAD else None)
         self._told()
+        self._tell_taken(post)
+
+    def _tell_taken(self, post: str | None) -> None:
         if not self.held.cargo:
             self.report_fault(MAIL_ABOARD, "It was taken.", post, cleared=True)
 

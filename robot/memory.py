@@ -22,11 +22,12 @@ from protocol.sequence import Reception
 from protocol.to_robot import Grant, Mission, Verifier, Verifiers
 from robot.store import Store
 
+KEPT_COMMANDS: Final = 200
 T = TypeVar("T")
 
 _MISSION: Final = TypeAdapter[Mission | None](Mission | None)
 _NUMBER: Final = TypeAdapter(int)
-_CARGO: Final = TypeAdapter(tuple[str, ...])
+_IDS: Final = TypeAdapter(tuple[str, ...])
 _VERIFIERS: Final = TypeAdapter(tuple[Verifier, ...])
 _LEGS: Final = TypeAdapter(tuple[Leg, ...])
 _POSITION: Final = TypeAdapter(Position)
@@ -114,6 +115,14 @@ class Memory:
         """The stops before `next_stop` are done."""
         self._write("next_stop", _NUMBER, next_stop)
 
+    def pass_stop(self, stop_id: str) -> None:
+        """The stop is done, or given up, and so are those before it; nothing if the mission held has none such."""
+        with self._store.transaction():
+            mission = self.mission()
+            numbers = [number for number, stop in enumerate(mission.stops) if stop.id == stop_id] if mission else []
+            for number in numbers:
+                self.reach(max(self.next_stop(), number + 1))
+
     def drop_mission(self) -> None:
         """Nothing is to be done any more. Cargo, grants and verifiers stay what they are."""
         with self._store.transaction():
@@ -134,7 +143,7 @@ class Memory:
 
     def cargo(self) -> tuple[str, ...]:
         """The ids of the orders whose mail is aboard."""
-        return self._read("cargo", _CARGO, ())
+        return self._read("cargo", _IDS, ())
 
     def loadings(self) -> dict[str, Loading]:
         """Where the mail that is aboard came from, by order."""
@@ -143,14 +152,14 @@ class Memory:
     def load(self, order_id: str, loading: Loading | None = None) -> None:
         """The mail of this order came aboard."""
         with self._store.transaction():
-            self._write("cargo", _CARGO, (*_without(self.cargo(), order_id), order_id))
+            self._write("cargo", _IDS, (*_without(self.cargo(), order_id), order_id))
             if loading:
                 self._write("loadings", _LOADINGS, {**self.loadings(), order_id: loading})
 
     def unload(self, order_id: str) -> None:
         """The mail of this order was taken out."""
         with self._store.transaction():
-            self._write("cargo", _CARGO, _without(self.cargo(), order_id))
+            self._write("cargo", _IDS, _without(self.cargo(), order_id))
             self._write("loadings", _LOADINGS, {one: at for one, at in self.loadings().items() if one != order_id})
 
     def verifiers(self) -> tuple[Verifier, ...]:
@@ -210,6 +219,15 @@ class Memory:
     def keep_faults(self, faults: frozenset[str]) -> None:
         """These are told and not over. Put the message into the outbox in the same transaction."""
         self._write("faults", _NAMES, faults)
+
+    def first_command(self, command_id: str) -> bool:
+        """True once for each command, through restarts; only the newest are remembered."""
+        with self._store.transaction():
+            known = self._read("commands", _IDS, ())
+            if command_id in known:
+                return False
+            self._write("commands", _IDS, (*known, command_id)[-KEPT_COMMANDS:])
+            return True
 
     # Where it may drive and where it was seen.
 

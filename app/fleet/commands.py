@@ -45,8 +45,8 @@ async def ask(
         order_id=getattr(message, "order_id", None),
         asked_by_id=asked_by,
         asked_at=fleet.clock.utc(),
-        how=confirm and confirm.how,
-        code_sha256=confirm and confirm.by,
+        how=confirm.how if confirm else None,
+        code_sha256=confirm.by if confirm else None,
     )
     session.add(row)
     await fleet.tell(session, robot, message)

@@ -119,3 +119,26 @@ class Skills:
         self._waiting, self._rescue = [], {}
         if self._job is not None:
             self._body.cancel(self._job)
+
+
+class Unless:
+    """A run that ends early, and well, as soon as something else has happened. `over` hears of any end."""
+
+    def __init__(
+        self, run: Run, happened: Callable[[], bool], then: Callable[[], None], over: Callable[[], None]
+    ) -> None:
+        self._run, self._happened, self._then, self._over = run, happened, then, over
+
+    def poll(self, ends: Ends, now: float) -> Ended | None:
+        if self._happened():
+            self.cancel()
+            self._then()
+            return DONE
+        ended = self._run.poll(ends, now)
+        if ended:
+            self._over()
+        return ended
+
+    def cancel(self) -> None:
+        self._over()
+        self._run.cancel()

@@ -10,6 +10,7 @@ from typing import Final, get_args
 from protocol.parts import Purpose
 from protocol.to_server import Step
 
+from ..custody import Waiting
 from ..duties import ChargeStep
 from ..skills import (
     Dock,
@@ -28,7 +29,7 @@ from ..skills.tunes import TUNES
 from .arguments import Argument, Kind, Value, word
 from .corridors import CLOSED_BY, claim, mark_blocked, noted_move, release, reopen, set_destination
 from .hands import Hands
-from .runs import AtOnce, Rest, Run, SkillMaker, Skills
+from .runs import AtOnce, Rest, Run, SkillMaker, Skills, Unless
 
 
 @dataclass(frozen=True)
@@ -144,18 +145,22 @@ def _finish_mission(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
 
 def _wait_handover(hands: Hands, arguments: Sequence[Value], now: float) -> Run:
     purpose, order_id, stop_id, limit_s = Purpose(str(arguments[0])), str(arguments[1]), str(arguments[2]), arguments[3]
-    place = hands.duties.at_stop(stop_id)
+    duties, place = hands.duties, hands.duties.at_stop(stop_id)
+    waiting = Waiting(place, purpose, hands.place or place[1].post)
 
-    def custody(done: Done) -> None:
+    def promise() -> None:
         """Written down first, then promised: whoever hears the tune may let go of the mail."""
-        hands.duties.handed_over(place, purpose, hands.place or place[1].post, done.result)
         hands.body.start(Say("accepted"), now)
 
+    def custody(done: Done) -> None:
+        duties.handed_over(place, purpose, waiting.post, done.result)
+        promise()
+
     # Only loading may be confirmed by the Spot button: it identifies nobody.
-    waiting = WaitHandover(
-        lambda: hands.duties.codes(order_id, purpose), float(limit_s), spot_counts=purpose is Purpose.LOAD
-    )
-    return _one(hands, waiting, now, custody)
+    skill = WaitHandover(lambda: duties.codes(order_id, purpose), float(limit_s), spot_counts=purpose is Purpose.LOAD)
+    duties.custody.wait(waiting)
+    run = _one(hands, skill, now, custody)
+    return Unless(run, lambda: waiting.confirmed, promise, lambda: duties.custody.leave(waiting))
 
 
 def _report_charge(hands: Hands, arguments: Sequence[Value], _: float) -> Run:

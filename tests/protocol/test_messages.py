@@ -1,12 +1,14 @@
 """Every message has an example file, which is read, written and documented; nothing else is ever let in."""
 
 import ast
+import base64
 import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import pytest
+from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PublicKey
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -201,3 +203,20 @@ def _codes_of_link(path: Path) -> set[str]:
             assert isinstance(node.value, ast.Constant)
             found.add(str(node.value.value))
     return found - not_on_the_link
+
+
+def test_the_signatures_of_the_examples_are_those_of_the_key_in_the_documentation() -> None:
+    key = Ed25519PublicKey.from_public_bytes(base64.b64decode("A6EHv/POEL4dcN0Y50vAmWfk1jCbpQ1fHdyGZBJVMbg="))
+    for stem in ("event", "event_handover_tap"):
+        receipt = parse(TEXTS[stem], TO_SERVER).body.happened  # type: ignore[attr-defined]
+        key.verify(base64.b64decode(receipt.signature), receipt.signed_by("r1"))
+
+
+def test_a_receipt_of_a_robot_that_knows_no_signatures_is_understood() -> None:
+    raw = example("event")
+    for name in ("how", "command_id", "signature"):
+        del raw["body"]["happened"][name]
+    receipt = parse(json.dumps(raw), TO_SERVER).body.happened  # type: ignore[attr-defined]
+    assert (receipt.how, receipt.signature) == ("code", None)
+    raw["body"]["happened"]["code_sha256"] = None
+    assert parse(json.dumps(raw), TO_SERVER).body.happened.how == "button"  # type: ignore[attr-defined]

@@ -292,14 +292,14 @@ def test_mail_loaded_by_a_button_is_given_back_only_for_a_code(desk: Desk) -> No
 
 def test_mail_that_is_not_taken_back_either_is_told_once_and_the_robot_is_free(desk: Desk) -> None:
     with_mail(desk)
-    for _ in range(2):
-        desk.hears(Recall(command_id="c1", reason="closing early"))
+    for command_id in ("c1", "c2"):
+        desk.hears(Recall(command_id=command_id, reason="closing early"))
         mission, _stop = way_back(desk)
         desk.duties.finish_mission(mission.id, "post1")
     assert (desk.duties.held.mission, desk.duties.held.cargo) == (None, ("o1",))
     (fault,) = [one for one in desk.told() if one["kind"] == "fault"]
     assert (fault["name"], "o1" in fault["reason"]) == ("mail_aboard", True)
-    desk.hears(Recall(command_id="c2", reason="somebody waits now"))
+    desk.hears(Recall(command_id="c3", reason="somebody waits now"))
     desk.duties.handed_over(way_back(desk), Purpose.RETURN, "post1", "a" * 64)
     assert [one["cleared"] for one in desk.told() if one["kind"] == "fault"] == [False, True]
 
