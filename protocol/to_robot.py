@@ -62,10 +62,14 @@ class Deny(Part):
 
 
 class Cancel(Part):
-    """Drop what concerns this order. With the mail aboard the robot refuses and says so."""
+    """Drop what concerns this order. With the mail aboard the robot refuses and says so.
+
+    `by_hand`: a person has taken the mail out, it is not aboard any more whatever the robot believes.
+    """
 
     command_id: Identifier
     order_id: Identifier
+    by_hand: bool = False
 
 
 class Confirm(Part):

@@ -65,12 +65,16 @@ class Step(StrEnum):
 
 
 class Progress(Part):
-    """A step of a mission. `stop_id` is the stop it concerns, `post` the place where it happened."""
+    """A step of a mission. `stop_id` is the stop it concerns, `post` the place where it happened.
+
+    `update` is the number of the mission as the robot held it then. Each update is accepted once.
+    """
 
     kind: Literal["progress"] = "progress"
     step: Step
     happened_at: Moment
     mission_id: Identifier
+    update: Seq | None = None
     stop_id: Identifier | None = None
     order_id: Identifier | None = None
     post: PostName | None = None

@@ -137,7 +137,7 @@ class Duties:
             case Grant():
                 self.avoid -= frozenset(message.legs)
             case Cancel():
-                self._answer(message.command_id, self._cancel(message.order_id))
+                self._answer(message.command_id, self._cancel(message))
             case Confirm():
                 self._confirm(message)
             case Pause():
@@ -157,8 +157,8 @@ class Duties:
                 pass  # memory has taken them already
 
     def _accepted(self, mission: Mission) -> None:
-        if self.memory.first_time(mission.id, "accepted"):
-            self._tell(Progress(step=Step.ACCEPTED, happened_at=self._utc(), mission_id=mission.id))
+        if self.memory.first_time(mission.id, f"{Step.ACCEPTED}:{mission.update}"):
+            self._tell(self._progress(Step.ACCEPTED, mission, None, None))
 
     def _answer(self, command_id: str, refusal: str | None) -> None:
         accepted = refusal is None
@@ -171,14 +171,15 @@ class Duties:
         if refusal is not None:
             self._answer(wish.command_id, refusal)
 
-    def _cancel(self, order_id: str) -> str | None:
+    def _cancel(self, wish: Cancel) -> str | None:
         """Why not, or None."""
-        if order_id in self.memory.cargo():
+        if wish.order_id in self.memory.cargo() and not wish.by_hand:
             return "the mail is aboard"
+        self.memory.unload(wish.order_id)
         mission = self.memory.mission()
         ahead = mission.stops[self.memory.next_stop() :] if mission else ()
-        self.memory.cancel(order_id)
-        if all(stop.order_id in (order_id, None) for stop in ahead):
+        self.memory.cancel(wish.order_id)
+        if all(stop.order_id in (wish.order_id, None) for stop in ahead):
             self.memory.drop_mission()
         return None
 
@@ -215,6 +216,7 @@ class Duties:
             step=step,
             happened_at=self._utc(),
             mission_id=mission.id,
+            update=mission.update,
             stop_id=stop and stop.id,
             order_id=stop and stop.order_id,
             post=post,
@@ -277,6 +279,8 @@ class Duties:
         with self._store.transaction():
             if not self.custody.hand_over(place, purpose, post, Proof.seen(code_sha256)):
                 return
+            if purpose is Purpose.LOAD and self.memory.mission() is None:
+                self._bring_back(place[0])  # dropped while somebody loaded it: it is given back where it stands
         self._told()
         self._tell_taken(post)
 

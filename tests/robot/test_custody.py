@@ -11,8 +11,8 @@ from cryptography.exceptions import InvalidSignature
 from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PublicKey
 
 from protocol.parts import Purpose, Stop, StopAction
-from protocol.to_robot import Confirm, Mission, Verifier, Verifiers
-from protocol.to_server import HandoverReceipt
+from protocol.to_robot import Cancel, Confirm, Mission, Verifier, Verifiers
+from protocol.to_server import HandoverReceipt, Step
 from robot.config import ConfigError
 from robot.custody import Waiting
 from robot.duties import Duties
@@ -45,7 +45,7 @@ class Desk:
     store: Store
     duties: Duties
 
-    def hears(self, confirm: Confirm) -> list[dict[str, Any]]:
+    def hears(self, confirm: Cancel | Confirm) -> list[dict[str, Any]]:
         before = len(self.told())
         self.duties.join(_Saying(confirm))
         self.duties.take_messages()
@@ -63,7 +63,7 @@ class Desk:
 
 @dataclass
 class _Saying:
-    message: Confirm
+    message: Cancel | Confirm
     online: bool = True
 
     def incoming(self) -> list[Incoming]:
@@ -172,3 +172,28 @@ def test_a_key_that_others_may_read_or_that_is_none_is_named(tmp_path: Path) -> 
     path.chmod(0o644)
     with pytest.raises(ConfigError, match="others may read it"):
         signer(path, "r1")
+
+
+def test_mail_that_a_person_has_taken_out_by_hand_is_forgotten(desk: Desk) -> None:
+    desk.duties.handed_over((LETTER, LOAD), Purpose.LOAD, "post1", SENDERS)
+    (refused,) = desk.hears(Cancel(command_id="c1", order_id="o1"))
+    assert (refused["accepted"], desk.duties.held.cargo) == (False, ("o1",))
+    (done,) = desk.hears(Cancel(command_id="c2", order_id="o1", by_hand=True))
+    assert (done["accepted"], desk.duties.held.cargo, desk.duties.held.mission) == (True, (), None)
+
+
+def test_mail_loaded_while_its_mission_was_dropped_is_given_back_where_it_stands(desk: Desk) -> None:
+    desk.hears(Cancel(command_id="c1", order_id="o1"))
+    desk.duties.handed_over((LETTER, LOAD), Purpose.LOAD, "post1", SENDERS)
+    mission = desk.duties.held.mission
+    assert mission
+    assert [(stop.action, stop.post, stop.order_id) for stop in mission.stops] == [(StopAction.RETURN, "post1", "o1")]
+    assert desk.duties.codes("o1", Purpose.RETURN) == (SENDERS,)
+
+
+def test_each_update_of_a_mission_is_accepted_once_and_each_report_says_which_it_was_of(desk: Desk) -> None:
+    back = Stop(id="s3", post="post1", action=StopAction.RETURN, order_id="o1")
+    for _ in range(2):
+        desk.duties.give(LETTER.model_copy(update={"update": 2, "stops": (LOAD, back)}))
+    desk.duties.report(Step.DEPARTED, "s1", "post5")
+    assert [(one["step"], one["update"]) for one in desk.told()] == [("accepted", 1), ("accepted", 2), ("departed", 2)]
