@@ -41,6 +41,7 @@ ROUTERS = (
     about.api_router,
     people_routes.router,
     my_routes.me_router,
+    my_routes.address_router,
     my_routes.router,
     everybody_routes.address_router,
     everybody_routes.router,

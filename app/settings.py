@@ -6,10 +6,11 @@ Secrets come from files: the server key lives in its own file, and any setting m
 
 import os
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 from zoneinfo import ZoneInfo, available_timezones
 
 from fastapi import Depends
+from limits import parse
 from pydantic import Field, field_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict
 from starlette.requests import HTTPConnection
@@ -28,6 +29,10 @@ class Settings(BaseSettings):
 
     host: str = Field("127.0.0.1", description="Address to listen on.")
     port: int = Field(8000, ge=0, le=65535, description="TCP port to listen on; 0 takes a free one.")
+    tls_cert: Path | None = Field(
+        None, description="Certificate chain (PEM) to serve https and wss with; with tls_key."
+    )
+    tls_key: Path | None = Field(None, description="Private key of the certificate (PEM).")
     data: Path = Field(Path("var/service"), description="Folder for database, keys and spool; made with mode 0700.")
     database_url: str = Field("", description="SQLAlchemy URL; empty means SQLite in the data folder.")
     spool: Path | None = Field(None, description="Folder for .eml files; default: `spool` in the data folder.")
@@ -50,10 +55,47 @@ class Settings(BaseSettings):
         30, gt=0, description="How often an open event stream asks whether its person is still signed in; real time."
     )
     handover_code_lifetime_s: float = Field(7 * 86400, gt=0, description="How long the codes of an order are good for.")
+    confirm_lifetime_s: float = Field(
+        60, gt=0, description="How long a tap or digits at a hand-over are good for on their way to the robot."
+    )
+    enrolment_code_lifetime_s: float = Field(900, gt=0, description="How long a robot's enrolment code is good for.")
     sign_in_codes_per_address: str = Field("10 per 15 minutes", description="Sign-in codes mailed to one mail address.")
     sign_in_tries_per_host: str = Field("200 per 15 minutes", description="Sign-in requests from one network address.")
+    orders_per_person: str = Field("600 per hour", description="Orders that one person may place.")
+    changes_per_person: str = Field(
+        "600 per hour", description="Changes that one person may make to contacts, tokens and the like."
+    )
+    streams_per_person: int = Field(20, gt=0, description="Event streams that one person may have open at a time.")
+    digits_tries_per_host: str = Field("60 per 15 minutes", description="Six digits typed from one network address.")
+    enrolment_tries_per_host: str = Field(
+        "30 per 15 minutes", description="Robots' enrolment codes tried from one network address."
+    )
+    link_tries_per_host: str = Field("300 per 15 minutes", description="Links of mails used from one network address.")
     assumed_speed_m_s: float = Field(0.15, gt=0, description="Assumed mean speed of a robot, for arrival windows.")
     assumed_handover_s: float = Field(120, ge=0, description="Assumed time of one hand-over, for arrival windows.")
+    wait_limit_s: float = Field(600, gt=0, description="How long a robot waits for a person at a stop.")
+    wait_extension_s: float = Field(300, gt=0, description="How much more the person it waits for may ask for at once.")
+    wait_extensions: int = Field(2, ge=0, description="How often the person it waits for may ask for more.")
+    undelivered_to: Literal["sender", "mailroom"] = Field(
+        "sender",
+        description="Where mail goes that nobody took: sender, or the mailroom of the map. Robots are set alike.",
+    )
+    queue_limit_s: float = Field(86400, gt=0, description="An order that no robot has fetched for so long expires.")
+    delayed_after_s: float = Field(600, gt=0, description="So long after its window an order counts as delayed.")
+    robot_capacity: int = Field(2, ge=1, description="How many items a robot carries at once.")
+    detour_ratio: float = Field(
+        0.5,
+        ge=0,
+        description="A robot takes an order along if it lengthens its way by at most this share of the order's.",
+    )
+    priority_head_start_s: float = Field(
+        1800, ge=0, description="High priority counts like so much longer waiting, low like so much less."
+    )
+    standing_order_grace_s: float = Field(
+        21600,
+        gt=0,
+        description="An order of a standing order that could not be made in time is still made so much later.",
+    )
     clock_file: Path | None = Field(None, description="Shared scaled clock of a demonstration; default: real time.")
     demo_door: Path | None = Field(None, description="Door of a simulated robot; set by the demonstration alone.")
     log_level: str = Field("INFO", description="DEBUG, INFO, WARNING or ERROR.")
@@ -62,6 +104,23 @@ class Settings(BaseSettings):
     @classmethod
     def _lower_case(cls, domains: tuple[str, ...]) -> tuple[str, ...]:
         return tuple(domain.lower().removeprefix("@") for domain in domains)
+
+    @field_validator(
+        "sign_in_codes_per_address",
+        "sign_in_tries_per_host",
+        "orders_per_person",
+        "changes_per_person",
+        "digits_tries_per_host",
+        "enrolment_tries_per_host",
+        "link_tries_per_host",
+    )
+    @classmethod
+    def _limit_is_readable(cls, limit: str) -> str:
+        try:
+            parse(limit)
+        except ValueError:
+            raise ValueError(f"{limit!r} is no limit; one is written like 10 per 15 minutes") from None
+        return limit
 
     @field_validator("time_zone")
     @classmethod

@@ -11,6 +11,7 @@ from starlette.requests import HTTPConnection
 from app.errors import problems
 from app.live.feed import LocalFeed, Numbered
 from app.people.current_user import CurrentUser, StillSignedInDep
+from app.people.rate_limits import one_stream
 from app.settings import SettingsDep
 
 router = APIRouter(tags=["live"])
@@ -26,7 +27,7 @@ def _feed_of(connection: HTTPConnection) -> LocalFeed:
 FeedDep = Annotated[LocalFeed, Depends(_feed_of)]
 
 
-@router.get("/live", response_class=EventSourceResponse, responses=problems(401, 403))
+@router.get("/live", response_class=EventSourceResponse, dependencies=[one_stream], responses=problems(401, 403, 429))
 async def live(
     user: CurrentUser,
     feed: FeedDep,

@@ -16,6 +16,7 @@ from app.orders.service import Orders
 from app.orders.views import load_facts, view_for
 from app.paging import PAGED, PageDep, Sorting
 from app.people.current_user import CurrentUser
+from app.people.rate_limits import Door, per_person
 from app.settings import CampusDep, ClockDep
 from app.tables import IdempotencyKey, Order, Person, Role
 from maps import shortest_route
@@ -50,7 +51,9 @@ async def estimate(
     return Estimate(window=WindowView.of(window), length_m=round(length_m, 2))
 
 
-@router.post("/orders", status_code=201, responses=problems(401, 403, 409, 422))
+@router.post(
+    "/orders", status_code=201, dependencies=[per_person(Door.ORDERS)], responses=problems(401, 403, 409, 422, 429)
+)
 async def place_order(
     *,
     wish: NewOrder,

@@ -3,7 +3,6 @@
 from typing import Annotated
 
 from fastapi import APIRouter, Path, Query
-from sqlalchemy import or_
 from sqlmodel import col, select
 
 from app.database import ReadingDep, SessionDep
@@ -12,6 +11,7 @@ from app.paging import PAGED, PageDep, Sorting
 from app.people.current_user import DispatcherOrMaintainer, Maintainer
 from app.people.roles import change_role
 from app.people.schemas import PeoplePage, PersonView
+from app.people.search import says
 from app.tables import Person, Role
 
 router = APIRouter(tags=["people"])
@@ -29,8 +29,7 @@ async def find_people(
     """Everybody, by mail address; `search` narrows it down."""
     wanted = select(Person)
     if search:
-        found = (col(column).icontains(search, autoescape=True) for column in (Person.name, Person.email))
-        wanted = wanted.where(or_(*found))
+        wanted = wanted.where(says(search, Person.name, Person.email))
     rows, following = await page.of(session, wanted, BY_ADDRESS)
     return PeoplePage(items=[PersonView.of(row) for row in rows], next=following)
 

@@ -3,14 +3,20 @@
 from datetime import timedelta
 from typing import Annotated
 
-from fastapi import APIRouter, Path, Response
+from fastapi import APIRouter, Path, Query, Response
 
 from app.database import ReadingDep, SessionDep
 from app.errors import problems
+from app.people.contacts import address_book, forget_contact, save_contact
 from app.people.current_user import AtBrowser, CurrentUser, ThisSession
 from app.people.errors import NoSuchPost
+from app.people.rate_limits import Door, per_person
 from app.people.schemas import (
     AboutMe,
+    AddressBook,
+    ContactView,
+    ContactWish,
+    Email,
     NewTokenView,
     PersonView,
     Sessions,
@@ -23,11 +29,15 @@ from app.people.sessions import end_others, end_session, open_sessions
 from app.people.tokens import good_tokens, issue_token, revoke_token
 from app.settings import CampusDep, ClockDep
 from app.tables import Person
-from maps import UnknownPost
+from maps import CampusMap, UnknownPost
 
 me_router = APIRouter(tags=["me"])
 router = APIRouter(tags=["people"])
+address_router = APIRouter(tags=["address book"])
 
+CHANGES = [per_person(Door.CHANGES)]
+
+ContactEmail = Annotated[Email, Path()]
 SessionId = Annotated[int, Path(ge=1, le=2**53)]
 Prefix = Annotated[str, Path(pattern=r"^[0-9a-f]{8}$")]
 
@@ -38,19 +48,51 @@ async def who_am_i(user: CurrentUser) -> PersonView:
     return PersonView.of(user)
 
 
-@me_router.patch("/me", responses=problems(401, 403, 422))
+@me_router.patch("/me", dependencies=CHANGES, responses=problems(401, 403, 422, 429))
 async def change_me(wish: AboutMe, user: AtBrowser, session: SessionDep, campus: CampusDep) -> PersonView:
     """Change one's name, language or usual post."""
     person = await session.get_one(Person, user.id)
     changed = wish.model_dump(include=wish.model_fields_set)
-    if post := changed.get("usual_post"):
-        try:
-            campus.post(post)
-        except UnknownPost as error:
-            raise NoSuchPost(str(error)) from None
+    _require_post(campus, changed.get("usual_post"))
     for name, value in changed.items():
         setattr(person, name, value)
     return PersonView.of(person)
+
+
+def _require_post(campus: CampusMap, name: str | None) -> None:
+    if name is None:
+        return
+    try:
+        campus.post(name)
+    except UnknownPost as error:
+        raise NoSuchPost(str(error)) from None
+
+
+@address_router.get("/me/contacts", responses=problems(401, 403, 422))
+async def my_contacts(
+    user: CurrentUser,
+    session: ReadingDep,
+    search: Annotated[str, Query(max_length=100, description="Part of a name, label or mail address.")] = "",
+    limit: Annotated[int, Query(ge=1, le=100)] = 50,
+) -> AddressBook:
+    """Those one exchanged mail with, newest first, and those one saved; `search` narrows it down."""
+    known = await address_book(session, user.id, search, limit)
+    return AddressBook(items=[ContactView.of(one) for one in known])
+
+
+@address_router.put("/me/contacts/{email}", dependencies=CHANGES, responses=problems(401, 403, 422, 429))
+async def keep_contact(
+    *, email: ContactEmail, wish: ContactWish, user: AtBrowser, session: SessionDep, campus: CampusDep, clock: ClockDep
+) -> ContactView:
+    """Save somebody with a label and a post, or change them."""
+    _require_post(campus, wish.post)
+    return ContactView.of(await save_contact(session, user.id, email, wish.label, wish.post, clock.utc()))
+
+
+@address_router.delete("/me/contacts/{email}", status_code=204, responses=problems(401, 403, 404, 422))
+async def drop_contact(email: ContactEmail, user: AtBrowser, session: SessionDep) -> None:
+    """Forget a saved contact."""
+    await forget_contact(session, user.id, email)
 
 
 @router.get("/sessions", responses=problems(401, 403))
@@ -78,7 +120,7 @@ async def my_tokens(user: AtBrowser, session: ReadingDep, clock: ClockDep) -> To
     return Tokens(items=[TokenView.of(row) for row in await good_tokens(session, user.id, clock.utc())])
 
 
-@router.post("/tokens", status_code=201, responses=problems(401, 403, 422))
+@router.post("/tokens", status_code=201, dependencies=CHANGES, responses=problems(401, 403, 422, 429))
 async def make_token(
     wish: TokenWish, user: AtBrowser, session: SessionDep, clock: ClockDep, response: Response
 ) -> NewTokenView:

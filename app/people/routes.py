@@ -7,7 +7,7 @@ from fastapi import APIRouter, Depends, Header, Request, Response
 from app.database import DatabaseDep, SessionDep
 from app.errors import problems
 from app.people.current_user import AtBrowser, ThisSession, cookie_name
-from app.people.rate_limits import RateLimits
+from app.people.rate_limits import Door, LimitsDep, per_host
 from app.people.same_origin import refuse_other_sites, require_https_or_loopback
 from app.people.schemas import CodeMailed, CodeRequest, PersonView, SignIn
 from app.people.service import SignInDesk, language_from
@@ -25,22 +25,16 @@ def _desk(request: Request) -> SignInDesk:
     return desk
 
 
-def _limits(request: Request) -> RateLimits:
-    limits: RateLimits = request.app.state.rate_limits
-    return limits
-
-
-async def _door(request: Request, limits: Annotated[RateLimits, Depends(_limits)]) -> None:
+async def _door(request: Request) -> None:
     require_https_or_loopback(request)
     refuse_other_sites(request)
-    await limits.count_try(request.client.host if request.client else "unknown")
 
 
 DeskDep = Annotated[SignInDesk, Depends(_desk)]
-LimitsDep = Annotated[RateLimits, Depends(_limits)]
+DOOR = [Depends(_door), per_host(Door.SIGN_IN)]
 
 
-@router.post("/sign-in/codes", status_code=202, dependencies=[Depends(_door)], responses=problems(403, 422, 429))
+@router.post("/sign-in/codes", status_code=202, dependencies=DOOR, responses=problems(403, 422, 429))
 async def mail_code(
     *,
     wish: CodeRequest,
@@ -52,7 +46,7 @@ async def mail_code(
     accept_language: Language = "",
 ) -> CodeMailed:
     """Mail an 8-digit code to an address of the campus."""
-    await limits.count_code(wish.email)
+    await limits.count(Door.CODES, wish.email)
     language = language_from(accept_language, settings.default_language)
     async with database.transaction() as session:
         row, code = await desk.make_code(session, wish.email, clock.utc())
@@ -60,7 +54,7 @@ async def mail_code(
     return CodeMailed(expires_at=row.expires_at)
 
 
-@router.post("/sign-in", dependencies=[Depends(_door)], responses=problems(401, 403, 422, 429))
+@router.post("/sign-in", dependencies=DOOR, responses=problems(401, 403, 422, 429))
 async def sign_in(
     *,
     wish: SignIn,

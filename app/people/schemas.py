@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 
 from app.paging import PageOf
+from app.people.contacts import Known
 from app.people.scopes import Scope
 from app.tables import Person, PersonSession, PersonToken, Role
 
@@ -123,3 +124,41 @@ class Tokens(BaseModel):
     """All that still open something, newest first."""
 
     items: list[TokenView]
+
+
+class ContactWish(BaseModel):
+    """What the address book is to say of somebody."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    label: Annotated[str, StringConstraints(max_length=100, strip_whitespace=True)] = ""
+    post: Annotated[str, StringConstraints(max_length=64)] | None = None
+
+
+class ContactView(BaseModel):
+    """Somebody one knows. `post` is the saved one, else the one they call their usual post."""
+
+    email: str
+    name: str
+    label: str
+    post: str | None
+    saved: bool
+    last_mail_at: datetime | None
+
+    @classmethod
+    def of(cls, known: Known) -> "ContactView":
+        usual = known.person.usual_post if known.person else None
+        return cls(
+            email=known.email,
+            name=known.person.name if known.person else "",
+            label=known.saved.label if known.saved else "",
+            post=(known.saved.post if known.saved else None) or usual,
+            saved=known.saved is not None,
+            last_mail_at=known.last_mail_at,
+        )
+
+
+class AddressBook(BaseModel):
+    """Those with whom mail was exchanged, newest first; then the others who are saved, by label."""
+
+    items: list[ContactView]

@@ -64,6 +64,9 @@ LINES: Final[dict[tuple[str, str], Line]] = {
     ("DELETE", "/api/v1/session"): members("none", 204),
     ("GET", "/api/v1/me"): members(" ".join(SCRIPTS)),
     ("PATCH", "/api/v1/me"): members("none"),
+    ("GET", "/api/v1/me/contacts"): members("contacts:read"),
+    ("PUT", "/api/v1/me/contacts/{email}"): members("none"),
+    ("DELETE", "/api/v1/me/contacts/{email}"): members("none", 204),  # saved the line before
     # A session and a token of the sender's.
     ("GET", "/api/v1/sessions"): members("none"),
     ("DELETE", "/api/v1/sessions"): members("none", 204),
@@ -96,6 +99,7 @@ WISHES: Final[dict[tuple[str, str], dict[str, Any]]] = {
     ("POST", "/api/v1/sign-in/codes"): {"email": "new@campus.example"},
     ("POST", "/api/v1/sign-in"): {"email": "new@campus.example", "code": "00000000"},
     ("PATCH", "/api/v1/me"): {"language": "en"},
+    ("PUT", "/api/v1/me/contacts/{email}"): {"label": "Aunt"},
     ("POST", "/api/v1/tokens"): {"name": "script", "scopes": ["orders:read"]},
     ("POST", "/api/v1/notices/read"): {"ids": [1]},
     ("POST", "/api/v1/demo/camera"): {"order_id": "{order_id}"},
