@@ -8,18 +8,19 @@ from contextlib import asynccontextmanager
 from typing import Annotated, Any
 
 from fastapi import Depends
-from sqlalchemy import Connection, event
+from sqlalchemy import Connection, event, make_url
 from sqlalchemy.exc import ArgumentError
 from sqlalchemy.ext.asyncio import AsyncEngine, create_async_engine
 from sqlmodel.ext.asyncio.session import AsyncSession
 from starlette.requests import HTTPConnection
 
+from app import sqlite_driver
 from app.errors import StartError
+from app.group_commit import AFTER_COMMIT, Writers
 
 PRAGMAS = ("journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON", "busy_timeout=10000")
 WRITERS_LOCK = 0x434D_0001
 """PostgreSQL's advisory lock that a writing transaction holds to its end."""
-_AFTER_COMMIT = "after_commit"
 
 
 class Database:
@@ -28,7 +29,7 @@ class Database:
     def __init__(self, url: str) -> None:
         """Opens nothing yet. Raises StartError for a URL that leads nowhere."""
         try:
-            self.engine: AsyncEngine = create_async_engine(url)
+            self.engine: AsyncEngine = create_async_engine(url, **_options(url))
         except (ArgumentError, ImportError) as error:  # not repeated: a URL may hold a password
             raise StartError(f"CAMPUS_MAIL_DATABASE_URL cannot be used: {error}.") from None
         self.writing = self.engine.execution_options(begin="BEGIN IMMEDIATE")
@@ -40,6 +41,8 @@ class Database:
             self.writing = self.engine.execution_options(one_writer=True)
             self.engine = self.engine.execution_options(isolation_level="REPEATABLE READ", postgresql_readonly=True)
 
+        self._writers = Writers(self.writing)
+
     @property
     def name(self) -> str:
         """Which database it is, without its password."""
@@ -47,12 +50,12 @@ class Database:
 
     @asynccontextmanager
     async def transaction(self) -> AsyncIterator[AsyncSession]:
-        """One transaction: committed at the end, or rolled back by an exception; then what waits for it is said."""
-        async with AsyncSession(self.writing, expire_on_commit=False) as session:
-            async with session.begin():
-                yield session
-            for say in session.info.pop(_AFTER_COMMIT, []):
-                say()
+        """One transaction: committed at the end, or rolled back by an exception; then what waits for it is said.
+
+        Those who write at the same time share a commit (`app.group_commit`). Do not wait in here for anything slow.
+        """
+        async with self._writers.transaction() as session:
+            yield session
 
     @asynccontextmanager
     async def reading(self) -> AsyncIterator[AsyncSession]:
@@ -66,19 +69,29 @@ class Database:
 
 def after_commit(session: AsyncSession, say: Callable[[], None]) -> None:
     """Run `say` once the transaction is committed, in order of asking; never if it is rolled back."""
-    session.info.setdefault(_AFTER_COMMIT, []).append(say)
+    session.info.setdefault(AFTER_COMMIT, []).append(say)
 
 
 @asynccontextmanager
 async def savepoint(session: AsyncSession) -> AsyncIterator[None]:
     """Part of a transaction that may fail alone: what it did is undone, and what it wanted to say is not said."""
-    waiting = len(session.info.setdefault(_AFTER_COMMIT, []))
+    waiting = len(session.info.setdefault(AFTER_COMMIT, []))
     try:
         async with session.begin_nested():
             yield
     except BaseException:
-        del session.info[_AFTER_COMMIT][waiting:]
+        del session.info[AFTER_COMMIT][waiting:]
         raise
+
+
+def _options(url: str) -> dict[str, Any]:
+    """How many connections are kept, and by whom they are opened."""
+    made = make_url(url)
+    if made.get_backend_name() != "sqlite":
+        return {"pool_size": 10, "max_overflow": 10}
+    if made.database in {None, "", ":memory:"}:  # one connection is all there can be
+        return {"connect_args": {"async_creator_fn": sqlite_driver.connect}}
+    return {"pool_size": 10, "max_overflow": 10, "connect_args": {"async_creator_fn": sqlite_driver.connect}}
 
 
 def _prepare_sqlite(connection: Any, record: Any) -> None:

@@ -1,0 +1,145 @@
+"""Writers who wait for each other share a commit: nobody is told before it, and what fails is undone alone."""
+
+import asyncio
+import signal
+import sqlite3
+import sys
+from asyncio.subprocess import PIPE, create_subprocess_exec
+from collections.abc import AsyncIterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from sqlalchemy import event
+from sqlmodel.ext.asyncio.session import AsyncSession
+
+from app.database import Database, after_commit
+
+CHECKOUT = Path(__file__).parents[2]
+WRITES_AND_SAYS = """
+import asyncio, sys
+from app.database import Database
+
+async def main():
+    database = Database(sys.argv[1])
+    async def write(first):
+        for number in range(first, 10**9, 8):
+            async with database.transaction() as session:
+                connection = await session.connection()
+                await connection.exec_driver_sql("INSERT INTO words VALUES (?)", (str(number),))
+            print(number, flush=True)
+    await asyncio.gather(*(write(first) for first in range(8)))
+
+asyncio.run(main())
+"""
+
+
+@pytest.fixture
+async def database(tmp_path: Path) -> AsyncIterator[Database]:
+    database = Database(f"sqlite+aiosqlite:///{tmp_path}/words.sqlite")
+    async with database.transaction() as session:
+        await do(session, "CREATE TABLE words (word TEXT PRIMARY KEY)")
+    yield database
+    await database.close()
+
+
+async def do(session: AsyncSession, statement: str, *values: str) -> list[Any]:
+    done = await (await session.connection()).exec_driver_sql(statement, values)
+    return list(done) if done.returns_rows else []
+
+
+async def write(database: Database, word: str, before: asyncio.Event | None = None) -> None:
+    async with database.transaction() as session:
+        await do(session, "INSERT INTO words VALUES (?)", word)
+        if before is not None:
+            await before.wait()
+
+
+async def words(database: Database) -> list[str]:
+    async with database.reading() as session:
+        return [str(row[0]) for row in await do(session, "SELECT word FROM words ORDER BY rowid")]
+
+
+async def test_those_who_write_at_the_same_time_share_a_commit_in_the_order_of_asking(database: Database) -> None:
+    commits = []
+    event.listen(database.engine.sync_engine, "commit", commits.append)
+    await asyncio.gather(*(write(database, f"w{number}") for number in range(20)))
+    assert len(commits) < 5
+    assert await words(database) == [f"w{number}" for number in range(20)]
+
+
+async def test_nobody_goes_on_before_what_they_wrote_is_committed(database: Database) -> None:
+    said: list[str] = []
+
+    async def write_and_say() -> None:
+        async with database.transaction() as session:
+            await do(session, "INSERT INTO words VALUES (?)", "first")
+            after_commit(session, lambda: said.append("said"))
+        said.append("went on")
+
+    goes_on = asyncio.Event()
+    tasks = [asyncio.create_task(write_and_say()), asyncio.create_task(write(database, "second", goes_on))]
+    await asyncio.sleep(0.1)
+    assert (said, await words(database)) == ([], []), "the second has the transaction now, the first waits with it"
+    goes_on.set()
+    await asyncio.gather(*tasks)
+    assert (said, await words(database)) == (["said", "went on"], ["first", "second"])
+
+
+async def test_what_fails_is_undone_alone(database: Database) -> None:
+    writing = [write(database, word) for word in ("one", "two", "one", "three")]
+    failures = await asyncio.gather(*writing, return_exceptions=True)
+    assert [type(failure).__name__ for failure in failures] == ["NoneType", "NoneType", "IntegrityError", "NoneType"]
+    assert await words(database) == ["one", "two", "three"]
+
+
+async def test_who_is_cancelled_takes_nobody_with_them(database: Database) -> None:
+    """One in the middle of its work, one that was passed the transaction and does not want it any more."""
+    never = asyncio.Event()
+    tasks = [asyncio.create_task(write(database, word, at)) for word, at in (("one", None), ("two", never))]
+    waiting = asyncio.create_task(write(database, "three"))
+    await asyncio.sleep(0.1)
+    tasks[1].cancel()
+    waiting.cancel()
+    async with asyncio.timeout(5):
+        await asyncio.gather(*tasks, waiting, return_exceptions=True)
+        assert await words(database) == ["one"]
+        await write(database, "four")
+
+
+async def test_a_statement_that_is_cancelled_goes_to_its_end(database: Database) -> None:
+    """Its connection is not thrown away, nor what others have written with it."""
+    slow = "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < 2000000) SELECT count(*) FROM n"
+
+    async def think() -> None:
+        async with database.transaction() as session:
+            await do(session, slow)
+
+    tasks = [asyncio.create_task(write(database, "one")), asyncio.create_task(think())]
+    await asyncio.sleep(0.1)
+    tasks[1].cancel()
+    ends = await asyncio.gather(*tasks, return_exceptions=True)
+    assert ends[0] is None
+    assert isinstance(ends[1], asyncio.CancelledError)
+    assert await words(database) == ["one"]
+
+
+@pytest.mark.parametrize("after_s", [0.3, 0.5])
+async def test_a_kill_in_the_middle_loses_nothing_that_was_told(tmp_path: Path, after_s: float) -> None:
+    file = tmp_path / "words.sqlite"
+    with sqlite3.connect(file) as connection:
+        connection.execute("CREATE TABLE words (word TEXT PRIMARY KEY)")
+    connection.close()
+    url = f"sqlite+aiosqlite:///{file}"
+    child = await create_subprocess_exec(sys.executable, "-c", WRITES_AND_SAYS, url, stdout=PIPE, cwd=CHECKOUT)
+    assert child.stdout is not None
+    told = {await child.stdout.readline()}
+    await asyncio.sleep(after_s)
+    child.send_signal(signal.SIGKILL)
+    told |= set((await child.stdout.read()).splitlines(keepends=True))
+    await child.wait()
+    with sqlite3.connect(file) as connection:
+        kept = [row[0].encode() + b"\n" for row in connection.execute("SELECT word FROM words")]
+    connection.close()
+    assert len(told) > 8
+    assert {line for line in told if line.endswith(b"\n")} - set(kept) == set()
