@@ -14,9 +14,10 @@ StartError                   the service cannot start; a person at a terminal re
 Features derive their own from these: `app.orders.errors`, `app.people.errors`.
 """
 
+import inspect
 from collections.abc import Mapping
 from http import HTTPStatus
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Final
 
 import structlog
 from fastapi import FastAPI, Request
@@ -119,27 +120,52 @@ class Problem(BaseModel):
     errors: list[FieldProblem] | None = None
 
 
-CODES_OF_STATUS = {
-    400: "bad_request",
+CODES_OF_STATUS: Final[Mapping[int, str]] = {
+    400: "malformed_body",
     404: "not_found",
     405: "method_not_allowed",
     413: "too_large",
     415: "unsupported_media_type",
 }
 
-PROBLEM_ANSWERS: dict[int | str, dict[str, Any]] = {
-    status: {
-        "description": HTTPStatus(status).phrase,
-        "content": {PROBLEM_JSON: {"schema": Problem.model_json_schema()}},
-    }
-    for status in (400, 401, 403, 404, 409, 412, 422, 429)
+GENERAL: Final[Mapping[str, tuple[int, str]]] = {
+    "malformed_body": (400, "The body cannot be read as JSON."),
+    "method_not_allowed": (405, "The path is there; Allow says what can be done with it."),
+    "too_large": (413, "The body is larger than 64 KiB."),
+    "unsupported_media_type": (415, "Bodies are taken as application/json alone."),
+    "invalid_request": (422, "A field of the body, the path, the query or a header does not fit; `errors` names it."),
+    "http_error": (500, "Another refusal of the web server, by its status."),
+    "unforeseen": (500, "A mistake of the service; it is in its log."),
+    "not_ready": (503, "The service should get no requests now; `detail` says why."),
 }
-"""For the OpenAPI document: what any route may answer besides its own."""
+"""The codes that no error class has, because nobody raises them by name."""
 
 
-def problems(*statuses: int) -> dict[int | str, dict[str, Any]]:
-    """The error answers of one route, for `responses=`."""
-    return {status: PROBLEM_ANSWERS[status] for status in statuses}
+def problems(*what: int | type[ServiceError]) -> dict[int | str, dict[str, Any]]:
+    """The error answers of one route, for `responses=`: the errors that it raises, or the number of a status.
+
+    What holds for every route (who may ask, whether a body can be read) is added to the document by itself.
+    """
+    codes: dict[int, dict[str, str]] = {one: {} for one in what if isinstance(one, int)}
+    for one in what:
+        if not isinstance(one, int):
+            codes.setdefault(one.status, {})[one.code] = meaning(one)
+    return {status: described_problem(status, meanings) for status, meanings in codes.items()}
+
+
+def described_problem(status: int, meanings: Mapping[str, str]) -> dict[str, Any]:
+    """One error answer as the OpenAPI document shows it; `x-codes` says which codes it can carry."""
+    said = "".join(f"\n- `{code}`: {sentence}" for code, sentence in meanings.items())
+    return {
+        "description": HTTPStatus(status).phrase + said,
+        "content": {PROBLEM_JSON: {"schema": {"$ref": "#/components/schemas/Problem"}}},
+        "x-codes": dict(meanings),
+    }
+
+
+def meaning(error: type[ServiceError]) -> str:
+    """The first paragraph of the error's docstring."""
+    return " ".join(inspect.cleandoc(error.__doc__ or "").split("\n\n")[0].split())
 
 
 def problem_answer(
@@ -177,9 +203,20 @@ async def _answer_service_error(request: Request, error: Exception) -> JSONRespo
 
 async def _answer_invalid(request: Request, error: Exception) -> JSONResponse:
     assert isinstance(error, RequestValidationError)  # noqa: S101  # registered for this class alone
+    if unreadable := _what_is_unreadable(error):
+        return unreadable
     fields = [FieldProblem(field=_place(one["loc"]), message=str(one["msg"])) for one in error.errors()]
     detail = "; ".join(f"{one.field}: {one.message}" for one in fields)
     return problem_answer(422, "invalid_request", detail, errors=fields)
+
+
+def _what_is_unreadable(error: RequestValidationError) -> JSONResponse | None:
+    """A body of another type, or one that is no JSON: nothing in it was looked at."""
+    if any(one["type"] == "json_invalid" for one in error.errors()):
+        return problem_answer(400, "malformed_body", "The body is no JSON.")
+    if isinstance(error.body, bytes):  # left as it came, because its type is not JSON
+        return problem_answer(415, "unsupported_media_type", "Send the body as application/json.")
+    return None
 
 
 def _place(loc: tuple[Any, ...]) -> str:

@@ -8,10 +8,12 @@ import structlog
 from fastapi import FastAPI
 
 from app import about, demo_camera
+from app.api_document import DocumentedApi
 from app.body_limit import BodyLimit
 from app.database import Database
 from app.dispatch.service import Dispatcher
 from app.errors import add_error_answers
+from app.etags import ETags
 from app.fleet import routes as fleet_routes
 from app.fleet.service import Fleet
 from app.live import routes as live_routes
@@ -57,7 +59,7 @@ STOP_WITHIN_S = 2.0
 
 def create_app(settings: Settings, clock: Clock) -> FastAPI:
     """The service, ready to be served. Raises StartError."""
-    app = FastAPI(
+    app = DocumentedApi(
         title="Campus Mail",
         summary="Orders, robots and people of a campus.",
         version=about.version(),
@@ -73,6 +75,7 @@ def create_app(settings: Settings, clock: Clock) -> FastAPI:
         app.include_router(router, prefix=API)
     app.include_router(about.root_router)
     add_pages(app, settings.pages)
+    app.add_middleware(ETags)
     app.add_middleware(BodyLimit)
     app.add_middleware(GzippedPages)
     app.add_middleware(SafeHeaders, policy=content_security_policy(settings.pages))

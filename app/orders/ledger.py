@@ -172,4 +172,6 @@ def unknown(order_id: str) -> errors.UnknownOrder:
 
 
 def _matches(if_match: str, version: int) -> bool:
-    return any(tag.strip() in {"*", f'"{version}"'} for tag in if_match.split(","))
+    """The version is all that counts of a tag such as `"7-…"` (see `app.etags`)."""
+    tags = [tag.strip() for tag in if_match.split(",")]
+    return any(tag in {"*", f'"{version}"'} or tag.startswith(f'"{version}-') for tag in tags)

@@ -12,6 +12,7 @@ from app.body_limit import MAX_BODY_BYTES
 from tests.app.conftest import RECIPIENT, Browser, Served
 
 CODES = "/api/v1/sign-in/codes"
+AS_JSON = {"Content-Type": "application/json"}
 
 
 def said(answer: httpx.Response) -> tuple[int, str]:
@@ -39,20 +40,22 @@ def test_a_body_that_never_ends_is_refused_on_the_way(served: Served) -> None:
 
 
 def test_the_largest_body_that_is_taken_is_read(served: Served) -> None:
-    answer = httpx.post(served.url + CODES, content=b" " * (MAX_BODY_BYTES - 2) + b"{}")
+    answer = httpx.post(served.url + CODES, content=b" " * (MAX_BODY_BYTES - 2) + b"{}", headers=AS_JSON)
     assert said(answer) == (422, "invalid_request")
 
 
 @pytest.mark.parametrize("body", [b"[" * 20_000, b'{"from_post": "\xff"}', b"[1" + b"0" * 5000 + b"]"])
 def test_a_body_that_cannot_be_read_is_a_bad_request(served: Served, sender: Browser, body: bytes) -> None:
     headers = {**headers_of(sender), "Idempotency-Key": "k", "Content-Type": "application/json"}
-    assert said(httpx.post(f"{served.url}/api/v1/orders", content=body, headers=headers)) == (400, "bad_request")
+    assert said(httpx.post(f"{served.url}/api/v1/orders", content=body, headers=headers)) == (400, "malformed_body")
 
 
-def test_a_body_of_another_type_is_no_order(served: Served, sender: Browser) -> None:
-    headers = {**headers_of(sender), "Idempotency-Key": "k", "Content-Type": "text/plain"}
+@pytest.mark.parametrize("kind", [{"Content-Type": "text/plain"}, {"Content-Type": "application/jsonish"}, {}])
+def test_a_body_of_another_type_is_no_order(served: Served, sender: Browser, kind: dict[str, str]) -> None:
+    headers = {**headers_of(sender), "Idempotency-Key": "k", **kind}
     body = f'{{"from_post": "post1", "to_post": "post4", "recipient": "{RECIPIENT}"}}'
-    assert said(httpx.post(f"{served.url}/api/v1/orders", content=body, headers=headers)) == (422, "invalid_request")
+    answer = httpx.post(f"{served.url}/api/v1/orders", content=body, headers=headers)
+    assert said(answer) == (415, "unsupported_media_type")
     assert httpx.get(f"{served.url}/api/v1/orders", headers=headers_of(sender)).json()["items"] == []
 
 

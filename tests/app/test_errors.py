@@ -39,7 +39,7 @@ def test_what_does_not_fit_is_named_by_its_field_and_not_repeated(nobody: TestCl
 
 def test_a_body_that_is_no_json_is_a_problem(nobody: TestClient) -> None:
     answer = nobody.post("/api/v1/sign-in", content="{", headers={"Content-Type": "application/json"})
-    assert (answer.status_code, answer.json()["code"]) == (422, "invalid_request")
+    assert (answer.status_code, answer.json()["code"]) == (400, "malformed_body")
 
 
 def test_what_nobody_foresaw_is_a_problem_without_its_inside(app: FastAPI, nobody: TestClient) -> None:
