@@ -4,8 +4,10 @@ import asyncio
 from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager
 
+import httpx
 import structlog
 from fastapi import FastAPI
+from starlette.datastructures import State
 
 from app import about, demo_camera
 from app.api_document import DocumentedApi
@@ -18,13 +20,18 @@ from app.fleet import routes as fleet_routes
 from app.fleet.service import Fleet
 from app.live import routes as live_routes
 from app.live.feed import LocalFeed
-from app.mail import Spool
+from app.mail import open_mailer
 from app.notify import routes as notify_routes
+from app.notify.channels.mail import MailChannel
+from app.notify.channels.push import PushChannel
+from app.notify.channels.webhook import Address, WebhookChannel, secret_bytes
+from app.notify.push_key import open_push_key
 from app.notify.worker import OutboxWorker
 from app.orders import routes as orders_routes
 from app.orders.codes import PURPOSE_OF_NOTICE, code_png, code_text
 from app.orders.idempotency import Running
 from app.orders.service import Orders
+from app.outside import TIMEOUT_S, Outside
 from app.pages import GzippedPages, SafeHeaders, add_pages, content_security_policy
 from app.people import everybody_routes, my_routes
 from app.people import routes as people_routes
@@ -57,8 +64,8 @@ RESTART_PAUSE_S = 1.0
 STOP_WITHIN_S = 2.0
 
 
-def create_app(settings: Settings, clock: Clock) -> FastAPI:
-    """The service, ready to be served. Raises StartError."""
+def create_app(settings: Settings, clock: Clock, outside: Outside | None = None) -> FastAPI:
+    """The service, ready to be served; `outside` is given by tests alone. Raises StartError."""
     app = DocumentedApi(
         title="Campus Mail",
         summary="Orders, robots and people of a campus.",
@@ -69,6 +76,7 @@ def create_app(settings: Settings, clock: Clock) -> FastAPI:
         redoc_url=None,
     )
     app.openapi_version = "3.2.0"  # the first that can describe an event stream
+    app.state.outside = outside or Outside()
     _add_parts(app, settings, clock)
     add_error_answers(app)
     for router in ROUTERS:
@@ -91,14 +99,29 @@ def _add_parts(app: FastAPI, settings: Settings, clock: Clock) -> None:
     state.database = Database(settings.url_of_database)
     state.feed = LocalFeed()
     state.rate_limits = RateLimits(settings)
-    spool = Spool(settings.spool_folder, settings.mail_from)
-    state.sign_in_desk = SignInDesk(settings, state.server_key, spool)
+    state.mailer = open_mailer(settings)
+    state.sign_in_desk = SignInDesk(settings, state.server_key, state.mailer)
     state.orders = Orders(state.campus, settings, clock, state.feed, state.server_key, state.sign_in_desk)
     state.running = Running()
     state.fleet = Fleet(state.database, state.campus, settings, clock, state.feed, state.orders)
-    state.outbox_worker = OutboxWorker(state.database, spool, settings, clock, _code_picture(state.server_key))
+    state.outbox_worker = _outbox_worker(state, settings, clock)
     state.orders.on_change.append(lambda order_id: state.outbox_worker.wake())
     state.dispatcher = Dispatcher(state.fleet)
+
+
+def _outbox_worker(state: State, settings: Settings, clock: Clock) -> OutboxWorker:
+    """The channels that notices take. `state.http` reaches the public network alone."""
+    state.push_key, state.http = open_push_key(settings.push_key_path), state.outside.client()
+    # Its address was set by the operator, who may well have a program on the campus's own network.
+    state.service_http = httpx.AsyncClient(timeout=TIMEOUT_S, trust_env=False)
+    secret = settings.webhook_secret.get_secret_value()
+    service = Address(settings.webhook_url, secret_bytes(secret), state.service_http) if settings.webhook_url else None
+    channels = (
+        MailChannel(state.mailer, settings, _code_picture(state.server_key)),
+        PushChannel(state.database, state.http, state.push_key, settings.push_contact_or_usual, clock),
+        WebhookChannel(state.database, state.http, state.server_key, clock, service),
+    )
+    return OutboxWorker(state.database, state.feed, clock, channels, tell_service=service is not None)
 
 
 def _code_picture(key: ServerKey) -> Callable[[str, NoticeKind], tuple[str, bytes] | None]:
@@ -124,6 +147,9 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         for worker in workers.values():
             worker.stop()
         await _ended(background)
+        app.state.mailer.stop()
+        await app.state.http.aclose()
+        await app.state.service_http.aclose()
         await app.state.database.close()
 
 

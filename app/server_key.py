@@ -25,7 +25,7 @@ class ServerKey:
 def open_server_key(path: Path) -> ServerKey:
     """Read the key file, or make it (mode 0600) at the first start. Raises StartError."""
     try:
-        _make_once(path)
+        make_key_file(path, secrets.token_hex(KEY_BYTES))
         key = bytes.fromhex(path.read_text().strip())
     except (OSError, ValueError) as error:
         raise StartError(f"The server key {path} cannot be used: {error}.") from error
@@ -36,13 +36,13 @@ def open_server_key(path: Path) -> ServerKey:
     return ServerKey(key)
 
 
-def _make_once(path: Path) -> None:
-    """Whole or not at all, and never over an existing key: two processes may start at the same moment."""
+def make_key_file(path: Path, text: str) -> None:
+    """Write a key (mode 0600) whole or not at all, never over an existing one: two processes may start at once."""
     if path.exists():
         return
     unfinished = path.with_name(f"{path.name}.{os.getpid()}")
     with os.fdopen(os.open(unfinished, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w") as file:
-        file.write(secrets.token_hex(KEY_BYTES))
+        file.write(text)
     try:
         path.hardlink_to(unfinished)
     except FileExistsError:

@@ -6,12 +6,12 @@ Secrets come from files: the server key lives in its own file, and any setting m
 
 import os
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Final, Literal, Self
 from zoneinfo import ZoneInfo, available_timezones
 
 from fastapi import Depends
 from limits import parse
-from pydantic import Field, field_validator
+from pydantic import Field, SecretStr, field_validator, model_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict
 from starlette.requests import HTTPConnection
 
@@ -20,12 +20,18 @@ from maps import CampusMap, CampusMapError, find_map
 from protocol.clock import Clock, RealClock, SharedClock
 
 ROOT = Path(__file__).parents[1]
+SmtpTls = Literal["starttls", "tls", "none"]
+SMTP_PORTS: Final = {"starttls": 587, "tls": 465, "none": 25}
+THIS_MACHINE: Final = frozenset({"localhost", "127.0.0.1", "::1"})
 
 
 class Settings(BaseSettings):
     """The service's settings; `docs/service.md` lists them for people."""
 
-    model_config = SettingsConfigDict(env_prefix="CAMPUS_MAIL_", frozen=True, extra="forbid", validate_default=True)
+    # What does not fit is not repeated: it may be a secret.
+    model_config = SettingsConfigDict(
+        env_prefix="CAMPUS_MAIL_", frozen=True, extra="forbid", validate_default=True, hide_input_in_errors=True
+    )
 
     host: str = Field("127.0.0.1", description="Address to listen on.")
     port: int = Field(8000, ge=0, le=65535, description="TCP port to listen on; 0 takes a free one.")
@@ -47,6 +53,21 @@ class Settings(BaseSettings):
         ("campus.example",), description="Mail domains whose people may sign in and be sent mail (JSON list)."
     )
     mail_from: str = Field("mail@campus.example", description="Sender of the service's mails.")
+    smtp_host: str = Field("", description="Mail server; empty: mails are files in the spool folder.")
+    smtp_port: int = Field(0, ge=0, le=65535, description="Its port; 0: the usual one, 587, 465 or 25 by smtp_tls.")
+    smtp_tls: SmtpTls = Field("starttls", description="starttls, tls, or none for a server on this machine.")
+    smtp_user: str = Field("", description="Account at the mail server; empty: none is needed.")
+    smtp_password: SecretStr = Field(SecretStr(""), description="Its password; give it as a file.")
+    smtp_ca_file: Path | None = Field(None, description="Authorities to trust, if not the system's own (PEM).")
+    smtp_timeout_s: float = Field(30, gt=0, description="How long the mail server may take for each answer.")
+    push_key_file: Path | None = Field(
+        None, description="File with the key of Web Push (VAPID); default: `push.key` in the data folder."
+    )
+    push_contact: str = Field("", description="Whom a push service may write to, as mailto:…; default: mail_from.")
+    webhook_url: str = Field("", description="Address that is told of every notice, whoever it is for.")
+    webhook_secret: SecretStr = Field(
+        SecretStr(""), description="What signs them: at least 24 characters; give it as a file."
+    )
     default_language: str = Field("en", description="Language of people who have not chosen one: en or fr.")
     time_zone: str = Field("", description="Zone of times in mails, such as America/Toronto; empty: the machine's own.")
     sign_in_code_lifetime_s: float = Field(600, gt=0, description="How long a mailed sign-in code is good for.")
@@ -128,6 +149,26 @@ class Settings(BaseSettings):
         if name and name not in available_timezones():
             raise ValueError(f"there is no time zone {name!r}; zones are named like America/Toronto")
         return name
+
+    @model_validator(mode="after")
+    def _secrets_travel_encrypted(self) -> Self:
+        if self.smtp_host and self.smtp_tls == "none" and self.smtp_host not in THIS_MACHINE:
+            raise ValueError(f"smtp_tls is none, but {self.smtp_host} is another machine: set it to starttls or tls")
+        if self.webhook_url and len(self.webhook_secret.get_secret_value()) < 24:
+            raise ValueError("webhook_url needs a webhook_secret of at least 24 characters")
+        return self
+
+    @property
+    def smtp_port_or_usual(self) -> int:
+        return self.smtp_port or SMTP_PORTS[self.smtp_tls]
+
+    @property
+    def push_contact_or_usual(self) -> str:
+        return self.push_contact or f"mailto:{self.mail_from}"
+
+    @property
+    def push_key_path(self) -> Path:
+        return self.push_key_file or self.data / "push.key"
 
     @property
     def url_of_database(self) -> str:

@@ -1,26 +1,21 @@
-"""Writes notices, and what is to be sent of them, in the transaction of whatever they tell of."""
+"""Writes notices, in the transaction of whatever they tell of; the inbox is read from them."""
 
 from collections.abc import Mapping
 from datetime import datetime
 
-from sqlalchemy import func, update
+from sqlalchemy import String, cast, func, update
 from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.database import after_commit
-from app.live.feed import Feed, Happening
 from app.notify.schemas import Inbox, NoticeView
 from app.paging import Paging, Sorting
-from app.tables import Notice, NoticeKind, OutgoingNotice, Person
+from app.tables import Alarm, Notice, NoticeKind, Person, Role
 
-CHANNELS = ("mail",)
-"""Besides the inbox, which is the table of notices itself."""
 NEWEST_FIRST = Sorting("notices", col(Notice.id), descending=True)
 
 
 async def tell(
     session: AsyncSession,
-    feed: Feed,
     *,
     person: Person,
     key: str,
@@ -29,16 +24,14 @@ async def tell(
     facts: Mapping[str, str],
     now: datetime,
 ) -> bool:
-    """Tell one person one thing, which `key` names; False if they were told before."""
+    """Tell one person one thing, which `key` names; False if they were told before.
+
+    The outbox worker takes it from here to the person's channels (`app.notify.routing`).
+    """
     if await _told(session, person, key):
         return False
-    notice = Notice(key=key, order_id=order_id, kind=kind, person_id=person.id, at=now, facts=dict(facts))
-    session.add(notice)
+    session.add(Notice(key=key, order_id=order_id, kind=kind, person_id=person.id, at=now, facts=dict(facts)))
     await session.flush()
-    for channel in CHANNELS:
-        session.add(_outgoing(notice, channel))
-    view = NoticeView.of(notice, person.language).model_dump(mode="json")
-    after_commit(session, lambda: feed.publish(Happening("notice", view, person_id=person.id)))
     return True
 
 
@@ -47,10 +40,27 @@ async def _told(session: AsyncSession, person: Person, key: str) -> bool:
     return (await session.exec(wanted)).first() is not None
 
 
-def _outgoing(notice: Notice, channel: str) -> OutgoingNotice:
-    key = f"{channel}.{notice.key}.{notice.person_id}"
-    assert notice.id is not None  # noqa: S101  # flushed rows have one
-    return OutgoingNotice(key=key, channel=channel, notice_id=notice.id, created_at=notice.at, next_try_at=notice.at)
+async def tell_dispatchers(session: AsyncSession, alarm: Alarm) -> None:
+    """Tell everybody who dispatches of a new alarm. One that is acknowledged or over is silent."""
+    if alarm.acknowledged_at or alarm.cleared_at:
+        return
+    facts = {"robot": alarm.robot, "reason": alarm.reason, "post": alarm.post or ""}
+    for person in await _with_role(session, Role.DISPATCHER):
+        await tell(
+            session,
+            person=person,
+            key=f"alarm.{alarm.id}",
+            order_id=None,
+            kind=NoticeKind.ALARM,
+            facts=facts,
+            now=alarm.at,
+        )
+
+
+async def _with_role(session: AsyncSession, role: Role) -> list[Person]:
+    # Roles are a JSON list, which the two databases search in ways of their own: as text they are alike.
+    named = select(Person).where(cast(col(Person.roles), String).contains(f'"{role}"', autoescape=True))
+    return [person for person in (await session.exec(named)).all() if person.has_role(role)]
 
 
 async def inbox(session: AsyncSession, person: Person, page: Paging) -> Inbox:

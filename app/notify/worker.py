@@ -1,48 +1,55 @@
-"""Takes notices from the outbox to their channel, after the commit that wrote them and again after a failure."""
+"""Takes notices to their channels, after the commit that wrote them and again after a failure.
+
+Channels work side by side, each with places for so many letters at once: a slow mail server holds up no push. What is
+done is noted down together; a crash before that sends it again under the same key, by which whoever gets it can tell.
+"""
 
 import asyncio
-from collections.abc import Callable
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from datetime import datetime, timedelta
+from typing import Final
 
 import structlog
-from sqlmodel import col, select
+from sqlmodel import col, or_, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.database import Database
-from app.mail import Mail, Spool
-from app.settings import Settings
-from app.tables import Notice, NoticeKind, OutgoingNotice, Person
-from app.texts import text
+from app.live.feed import Feed
+from app.notify import routing
+from app.notify.channels.interface import Channel, Letter, NotSent
+from app.tables import Notice, OutgoingNotice, Person
 from protocol.clock import Clock
 
 log = structlog.get_logger(__name__)
 
-AT_ONCE = 50
-LOOK_EVERY_S = 1.0
-FIRST_PAUSE_S = 5.0
-LONGEST_PAUSE_S = 900.0
-
-CodePicture = Callable[[str, NoticeKind], tuple[str, bytes] | None]
-"""The picture of the hand-over code that goes with a notice: (order id, kind) -> (file name, PNG), or None."""
+LOOK_EVERY_S: Final = 1.0
+GATHER_S: Final = 0.02
+"""What comes within this time is routed and noted down together."""
+FIRST_PAUSE_S: Final = 5.0
+LONGEST_PAUSE_S: Final = 900.0
 
 
 def pause_s(tries: int) -> float:
     """How long to wait after the `tries`-th failure: doubling, to a quarter of an hour."""
-    return float(min(FIRST_PAUSE_S * 2 ** (tries - 1), LONGEST_PAUSE_S))
+    return float(min(FIRST_PAUSE_S * 2 ** min(tries - 1, 20), LONGEST_PAUSE_S))
 
 
 @dataclass
 class OutboxWorker:
-    """Sends in the order of writing; `wake` it after a commit, else it looks once a second."""
+    """Sends in the order of writing; `wake` it after a commit, else it looks once a second.
+
+    `tell_service`: the webhook of the whole service is set.
+    """
 
     database: Database
-    spool: Spool
-    settings: Settings
+    feed: Feed
     clock: Clock
-    code_picture: CodePicture
+    channels: Sequence[Channel]
+    tell_service: bool = False
     _bell: asyncio.Event = field(default_factory=asyncio.Event)
+    _under_way: dict[asyncio.Task[NotSent | None], OutgoingNotice] = field(default_factory=dict)
     _stopping: bool = False
 
     def wake(self) -> None:
@@ -55,64 +62,133 @@ class OutboxWorker:
 
     async def run(self) -> None:
         """Until stopped or cancelled."""
-        while not self._stopping:
-            self._bell.clear()
-            if await self.work_once() < AT_ONCE:
-                # Not `wait_for`: before Python 3.12 it loses a cancellation that comes just as the bell rings.
-                with suppress(TimeoutError):
-                    async with asyncio.timeout(LOOK_EVERY_S):
-                        await self._bell.wait()
+        try:
+            while not self._stopping:
+                self._bell.clear()
+                if not await self.work_once():
+                    # Not `wait_for`: before Python 3.12 it loses a cancellation that comes just as the bell rings.
+                    with suppress(TimeoutError):
+                        async with asyncio.timeout(LOOK_EVERY_S):
+                            await self._bell.wait()
+                await asyncio.sleep(GATHER_S)
+            await self._finish()
+        finally:
+            # Cut off: they are not noted down, and so sent again under their keys.
+            for task in self._under_way:
+                task.cancel()
+            self._under_way.clear()
 
-    async def work_once(self) -> int:
-        """Send what is due; how many sendings were tried."""
+    async def has_work(self) -> bool:
+        """Whether anything is to be routed, sent or noted down now."""
         async with self.database.reading() as session:
-            due = await self._due(session)
-        for outgoing in due:
-            await self._send(outgoing)
-        return len(due)
+            due = select(OutgoingNotice.id).where(col(OutgoingNotice.next_try_at) <= self.clock.utc()).limit(1)
+            waiting = (await session.exec(due)).first() is not None
+            return bool(self._under_way) or waiting or bool(await routing.not_routed(session, 1))
 
-    async def _due(self, session: AsyncSession) -> list[OutgoingNotice]:
-        waiting = select(OutgoingNotice).where(
-            col(OutgoingNotice.sent_at).is_(None), OutgoingNotice.next_try_at <= self.clock.utc()
+    async def work_once(self) -> bool:
+        """Note down what has ended, route what is new, begin what is due; whether there was any of it."""
+        ended = await self._note_ended()
+        routed = await self._route()
+        return await self._begin_due() or routed or ended
+
+    async def _finish(self) -> None:
+        if self._under_way:
+            await asyncio.wait(self._under_way)
+        await self._note_ended()
+
+    async def _route(self) -> bool:
+        async with self.database.reading() as session:
+            if not await routing.not_routed(session, 1):
+                return False
+        async with self.database.transaction() as session:
+            await routing.route(session, self.feed, self.clock.utc(), tell_service=self.tell_service)
+        return True
+
+    async def _begin_due(self) -> bool:
+        begun = False
+        async with self.database.reading() as session:
+            for channel in self.channels:
+                for outgoing in await self._due(session, channel):
+                    self._begin(channel, outgoing)
+                    begun = True
+        return begun
+
+    def _begin(self, channel: Channel, outgoing: OutgoingNotice) -> None:
+        task = asyncio.create_task(self._send(channel, outgoing))
+        self._under_way[task] = outgoing
+        task.add_done_callback(lambda _: self.wake())
+
+    async def _due(self, session: AsyncSession, channel: Channel) -> list[OutgoingNotice]:
+        """As many as the channel has places for; of each target the one that waits longest."""
+        busy = [one for one in self._under_way.values() if one.channel == channel.name]
+        places = channel.at_once - len(busy)
+        if places <= 0:
+            return []
+        due = select(OutgoingNotice).where(
+            OutgoingNotice.channel == channel.name,
+            col(OutgoingNotice.next_try_at) <= self.clock.utc(),
+            col(OutgoingNotice.id).not_in([one.id for one in busy]),
+            or_(
+                col(OutgoingNotice.target).is_(None),
+                col(OutgoingNotice.target).not_in([one.target for one in busy if one.target]),
+            ),
         )
-        return list((await session.exec(waiting.order_by(col(OutgoingNotice.id)).limit(AT_ONCE))).all())
+        found = (await session.exec(due.order_by(col(OutgoingNotice.id)).limit(places))).all()
+        return _one_for_each_target(found)
 
-    async def _send(self, outgoing: OutgoingNotice) -> None:
-        """Send, then note it down: a crash in between sends again under the same key, which the channel knows."""
-        problem = None
+    async def _send(self, channel: Channel, outgoing: OutgoingNotice) -> NotSent | None:
         try:
             async with self.database.reading() as session:
-                mail = await self._mail(session, outgoing)
-            await asyncio.to_thread(self.spool.send, mail)
+                notice = await session.get_one(Notice, outgoing.notice_id)
+                person = await session.get_one(Person, notice.person_id)
+            await channel.send(Letter(outgoing.key, outgoing.target, notice, person))
+        except NotSent as problem:
+            return problem
         except Exception as error:
-            # Whatever is wrong with one mail, those behind it go out.
-            problem = f"{type(error).__name__}: {error}"[:500]
-            log.warning("mail not spooled", key=outgoing.key, problem=problem)
+            # Whatever is wrong with one letter, those behind it go out.
+            return NotSent(f"{type(error).__name__}: {error}")
+        return None
+
+    async def _note_ended(self) -> bool:
+        ended = [task for task in self._under_way if task.done()]
+        if not ended:
+            return False
         async with self.database.transaction() as session:
-            session.add(outgoing)
-            _note(outgoing, problem, self.clock.utc())
+            for task in ended:
+                await self._note(session, self._under_way[task], task.result())
+        for task in ended:
+            del self._under_way[task]
+        return True
 
-    async def _mail(self, session: AsyncSession, outgoing: OutgoingNotice) -> Mail:
-        notice = await session.get_one(Notice, outgoing.notice_id)
-        person = await session.get_one(Person, notice.person_id)
-        picture = self.code_picture(notice.order_id, notice.kind)
-        title = text(person.language, f"notice.{notice.kind}.title", notice.facts)
-        return Mail(
-            outgoing.key, person.email, title, self._body(notice, person, picture is not None), notice.at, picture
-        )
-
-    def _body(self, notice: Notice, person: Person, has_code: bool) -> str:
-        url = f"{self.settings.public_url.rstrip('/')}/follow.html?order={notice.order_id}"
-        parts = [text(person.language, f"notice.{notice.kind}.body", notice.facts)]
-        parts += [text(person.language, "mail.code")] if has_code else []
-        parts += [text(person.language, "mail.link", {"url": url})] if self.settings.public_url else []
-        return "\n\n".join(parts) + "\n"
+    async def _note(self, session: AsyncSession, sent: OutgoingNotice, problem: NotSent | None) -> None:
+        outgoing = await session.get(OutgoingNotice, sent.id)
+        if outgoing is None:  # erased while it was under way
+            return
+        gives_up_after = next(one.gives_up_after for one in self.channels if one.name == outgoing.channel)
+        note(outgoing, problem, self.clock.utc(), gives_up_after)
+        if problem:
+            gave_up = outgoing.gave_up_at is not None
+            log.warning("notice not sent", key=outgoing.key, problem=outgoing.problem, gave_up=gave_up)
 
 
-def _note(outgoing: OutgoingNotice, problem: str | None, now: datetime) -> None:
+def _one_for_each_target(found: Sequence[OutgoingNotice]) -> list[OutgoingNotice]:
+    targets: set[str] = set()
+    first = []
+    for one in found:
+        if one.target is None or one.target not in targets:
+            first.append(one)
+            targets |= {one.target} if one.target else set()
+    return first
+
+
+def note(outgoing: OutgoingNotice, problem: NotSent | None, now: datetime, gives_up_after: timedelta) -> None:
+    """What becomes of a letter after a try: sent, to be tried again, or given up."""
     outgoing.tries += 1
-    outgoing.problem = problem
+    outgoing.problem = None if problem is None else str(problem)[:500]
+    outgoing.next_try_at = None
     if problem is None:
         outgoing.sent_at = now
+    elif problem.for_good or now - outgoing.created_at >= gives_up_after:
+        outgoing.gave_up_at = now
     else:
-        outgoing.next_try_at = now + timedelta(seconds=pause_s(outgoing.tries))
+        outgoing.next_try_at = now + timedelta(seconds=problem.again_after_s or pause_s(outgoing.tries))

@@ -120,7 +120,7 @@ class Ledger:
 
     async def _tell(self, session: AsyncSession, facts: OrderFacts) -> None:
         gaps = facts_of(facts.order, facts.people, self.campus, self.settings)
-        await tell_about(session, self.feed, facts.order, facts.people, gaps, facts.events)
+        await tell_about(session, facts.order, facts.people, gaps, facts.events)
 
     def publish(self, session: AsyncSession, facts: OrderFacts) -> None:
         """To sender, recipient and dispatchers, each as they may see it, and to whoever waits for changes."""

@@ -6,7 +6,6 @@ from typing import Final
 
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.live.feed import Feed
 from app.notify.service import tell
 from app.orders.transitions import MAIL_ABOARD, By
 from app.settings import Settings
@@ -94,31 +93,28 @@ def round_of(events: Sequence[OrderEvent]) -> int:
 
 async def tell_about(
     session: AsyncSession,
-    feed: Feed,
     order: Order,
     people: Mapping[str, Person],
     facts: Mapping[str, str],
     events: Sequence[OrderEvent],
 ) -> None:
     """Tell whoever is to be told of the state that `order` is in now; `events` are all it has been through."""
-    await _tell(session, feed, TOLD.get(order.state, ()), order, people, facts, round_of(events))
+    await _tell(session, TOLD.get(order.state, ()), order, people, facts, round_of(events))
 
 
 async def tell_of_delay(
     session: AsyncSession,
-    feed: Feed,
     order: Order,
     people: Mapping[str, Person],
     facts: Mapping[str, str],
     events: Sequence[OrderEvent],
 ) -> None:
     """Its window is later than what people were told; once in each round."""
-    await _tell(session, feed, LATE, order, people, facts, round_of(events))
+    await _tell(session, LATE, order, people, facts, round_of(events))
 
 
 async def _tell(
     session: AsyncSession,
-    feed: Feed,
     tellings: Sequence[Telling],
     order: Order,
     people: Mapping[str, Person],
@@ -131,7 +127,6 @@ async def _tell(
             occasion = f".{round_}" if round_ > 1 and one.kind not in ONCE else ""
             await tell(
                 session,
-                feed,
                 person=people[ids[one.who]],
                 key=f"{order.id}.{one.kind}{occasion}",
                 order_id=order.id,

@@ -1,6 +1,5 @@
 """Signing in and out. Codes and sessions are known here by their hashes alone."""
 
-import asyncio
 import hmac
 import re
 import secrets
@@ -10,7 +9,7 @@ from datetime import datetime, timedelta
 from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.mail import Mail, Spool
+from app.mail import Mail, Mailer
 from app.people.errors import AddressNotAllowed, CodeExpired, WrongCode
 from app.people.sessions import new_session
 from app.server_key import ServerKey
@@ -41,7 +40,7 @@ class SignInDesk:
 
     settings: Settings
     key: ServerKey
-    spool: Spool
+    mailer: Mailer
 
     async def make_code(self, session: AsyncSession, email: str, now: datetime) -> tuple[SignInCode, str]:
         """A new code, of which only the hash is kept, and its eight digits. Raises AddressNotAllowed."""
@@ -58,9 +57,9 @@ class SignInDesk:
     async def mail_code(self, row: SignInCode, code: str, language: str) -> None:
         """Mail a code whose row is committed: a mailed code is one that works."""
         facts = {"code": code, "minutes": str(round(self.settings.sign_in_code_lifetime_s / 60))}
-        subject, body = text(language, "sign_in.title"), text(language, "sign_in.body", facts)
+        subject, body = text(language, "mail.sign_in.title"), text(language, "mail.sign_in.body", facts)
         mail = Mail(f"sign-in.{row.id}.{new_id()}", row.email, subject, body, row.created_at)
-        await asyncio.to_thread(self.spool.send, mail)
+        await self.mailer.send_soon(mail)
 
     async def check_code(
         self, session: AsyncSession, email: str, code: str, now: datetime

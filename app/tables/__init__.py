@@ -14,6 +14,7 @@ from app.tables.handovers import Handover, RefusedReceipt
 from app.tables.idempotency_keys import IdempotencyKey
 from app.tables.identities import Identity
 from app.tables.missions import MissionRow, MissionState, StopRow
+from app.tables.notice_wishes import NoticeWishes, PushSubscription, Webhook
 from app.tables.notices import Notice, NoticeKind
 from app.tables.order_events import OrderEvent
 from app.tables.order_links import OrderLink
@@ -46,6 +47,7 @@ __all__ = [
     "MissionState",
     "Notice",
     "NoticeKind",
+    "NoticeWishes",
     "Order",
     "OrderEvent",
     "OrderLink",
@@ -55,6 +57,7 @@ __all__ = [
     "PersonSession",
     "PersonToken",
     "Priority",
+    "PushSubscription",
     "RefusedReceipt",
     "RobotCommand",
     "RobotJournal",
@@ -65,5 +68,6 @@ __all__ = [
     "SignInCode",
     "StandingOrder",
     "StopRow",
+    "Webhook",
     "metadata",
 ]

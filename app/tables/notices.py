@@ -2,11 +2,14 @@
 
 from datetime import datetime
 from enum import StrEnum
+from typing import Final
 
-from sqlalchemy import JSON, UniqueConstraint
+from sqlalchemy import JSON, Index, UniqueConstraint, text
 from sqlmodel import Field, SQLModel
 
 from app.tables.columns import UtcTime, WordOf
+
+NOT_ROUTED: Final = text("routed_at IS NULL")
 
 
 class NoticeKind(StrEnum):
@@ -34,11 +37,16 @@ class Notice(SQLModel, table=True):
     """`facts` fill the text's gaps (post titles, names, the window); a hand-over code is never among them.
 
     `key` names the thing that is told: the order, the kind and, for what may happen again after somebody had to see to
-    it, the round. An alarm has no order.
+    it, the round. An alarm has no order. `routed_at` is null until the channels have it (`outbox`) and its reader's
+    open pages.
     """
 
     __tablename__ = "notices"
-    __table_args__ = (UniqueConstraint("person_id", "key"),)
+    __table_args__ = (
+        UniqueConstraint("person_id", "key"),
+        # Of the few that wait, not of all there ever were.
+        Index("ix_notices_not_routed", "id", sqlite_where=NOT_ROUTED, postgresql_where=NOT_ROUTED),
+    )
 
     id: int | None = Field(default=None, primary_key=True)
     key: str = Field(max_length=160)
@@ -48,3 +56,4 @@ class Notice(SQLModel, table=True):
     at: datetime = Field(sa_type=UtcTime)
     facts: dict[str, str] = Field(sa_type=JSON)
     read_at: datetime | None = Field(default=None, sa_type=UtcTime)
+    routed_at: datetime | None = Field(default=None, sa_type=UtcTime)

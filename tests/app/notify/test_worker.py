@@ -17,7 +17,7 @@ def test_it_ends_when_it_is_cancelled_just_after_it_was_woken(
     portal = nobody.portal
     assert portal is not None
     state = app.state
-    worker = OutboxWorker(state.database, state.outbox_worker.spool, state.settings, state.clock, lambda *_: None)
+    worker = OutboxWorker(state.database, state.feed, state.clock, state.outbox_worker.channels)
     assert portal.call(_wake_and_cancel, worker, steps_between)
 
 

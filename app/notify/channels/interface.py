@@ -1,0 +1,54 @@
+"""What a channel is, what it is given, and how it says that something did not go out."""
+
+from dataclasses import dataclass
+from datetime import timedelta
+from typing import Protocol
+
+from app.tables import Notice, Person
+from app.texts import text
+
+
+@dataclass(frozen=True)
+class Letter:
+    """One notice to one person on one channel. `key` is the same on every try: whoever is sent it twice can tell."""
+
+    key: str
+    target: str | None
+    notice: Notice
+    person: Person
+
+    @property
+    def title(self) -> str:
+        return text(self.person.language, f"notice.{self.notice.kind}.title", self.notice.facts)
+
+    @property
+    def body(self) -> str:
+        return text(self.person.language, f"notice.{self.notice.kind}.body", self.notice.facts)
+
+
+class NotSent(Exception):
+    """It did not go out. `for_good`: nor will it next time; `again_after_s`: the other side said when to come back."""
+
+    def __init__(self, problem: str, *, for_good: bool = False, again_after_s: float | None = None) -> None:
+        super().__init__(problem)
+        self.for_good = for_good
+        self.again_after_s = again_after_s
+
+
+class Channel(Protocol):
+    """A way to people. At least once: after a crash a letter comes again with the same key."""
+
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def at_once(self) -> int:
+        """How many letters may be under way; of those to the same target one at a time."""
+        ...
+
+    @property
+    def gives_up_after(self) -> timedelta: ...
+
+    async def send(self, letter: Letter) -> None:
+        """Hand it over. Raises NotSent; anything else that is raised is tried again too."""
+        ...

@@ -1,0 +1,62 @@
+"""Notices as mail: the text, the hand-over code as a picture, and where to follow the order."""
+
+import asyncio
+from collections.abc import Awaitable, Callable
+from dataclasses import dataclass
+from datetime import timedelta
+from typing import ClassVar
+
+from app.mail import Mail, Mailer, NotMailed
+from app.notify.channels.interface import Letter, NotSent
+from app.settings import Settings
+from app.tables import Notice, NoticeKind, Person
+from app.texts import text
+
+CodePicture = Callable[[str, NoticeKind], tuple[str, bytes] | None]
+"""The picture of the hand-over code that goes with a notice: (order id, kind) -> (file name, PNG), or None."""
+LinkFor = Callable[[Person, Notice], Awaitable[str | None]]
+"""A link for somebody who has no account, by which they may follow this one order; None: they sign in."""
+
+
+async def no_link(person: Person, notice: Notice) -> str | None:
+    """Everybody signs in."""
+    return None
+
+
+@dataclass
+class MailChannel:
+    """By SMTP or into the spool, as the mailer has it."""
+
+    mailer: Mailer
+    settings: Settings
+    code_picture: CodePicture
+    link_for: LinkFor = no_link
+    name: ClassVar[str] = "mail"
+    gives_up_after: timedelta = timedelta(days=1)
+
+    @property
+    def at_once(self) -> int:
+        return self.mailer.at_once
+
+    async def send(self, letter: Letter) -> None:
+        try:
+            await self.mailer.send(await self._mail(letter))
+        except NotMailed as problem:
+            raise NotSent(str(problem), for_good=problem.for_good) from problem
+
+    async def _mail(self, letter: Letter) -> Mail:
+        notice, language = letter.notice, letter.person.language
+        picture = None
+        if notice.order_id:  # in a thread: a picture takes its time to draw
+            picture = await asyncio.to_thread(self.code_picture, notice.order_id, notice.kind)
+        url = await self._url(letter)
+        parts = [letter.body]
+        parts += [text(language, "mail.code")] if picture else []
+        parts += [text(language, "mail.link", {"url": url})] if url else []
+        return Mail(letter.key, letter.person.email, letter.title, "\n\n".join(parts) + "\n", notice.at, picture)
+
+    async def _url(self, letter: Letter) -> str | None:
+        if not self.settings.public_url or letter.notice.order_id is None:
+            return None
+        page = f"{self.settings.public_url.rstrip('/')}/follow.html?order={letter.notice.order_id}"
+        return await self.link_for(letter.person, letter.notice) or page

@@ -1,0 +1,125 @@
+"""Web Push (RFC 8030, 8291): encrypted for one browser, so that the push service in between reads nothing."""
+
+import base64
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import timedelta
+from hashlib import sha256
+from typing import ClassVar, Final
+
+import http_ece
+import httpx
+from cryptography.hazmat.primitives.asymmetric import ec
+from sqlmodel import col, delete
+
+from app.database import Database
+from app.notify.channels.interface import Letter, NotSent
+from app.notify.channels.posting import GONE, post
+from app.notify.push_key import PushKey
+from app.notify.wishes import PUSH
+from app.tables import NoticeKind, PushSubscription
+from protocol.clock import Clock
+
+WAITING_ROBOT: Final = frozenset({NoticeKind.ROBOT_HERE, NoticeKind.ROBOT_HERE_FOR_YOU, NoticeKind.AT_RETURN})
+SOON: Final = frozenset({NoticeKind.ROBOT_NEAR, NoticeKind.ATTENTION, NoticeKind.ALARM, NoticeKind.DELAYED})
+TTL_S: Final[Mapping[str, int]] = {"high": 1800, "normal": 7200, "low": 86400}
+"""After that it is told too late to be of use to anybody whose device was off."""
+
+
+def urgency_of(kind: NoticeKind) -> str:
+    """How much of a device's battery it is worth (RFC 8030, 5.3)."""
+    if kind in WAITING_ROBOT:
+        return "high"
+    return "normal" if kind in SOON else "low"
+
+
+def topic_of(letter: Letter) -> str:
+    """A second sending of the same letter takes the place of the first, if that still waits at the push service."""
+    return base64.urlsafe_b64encode(sha256(letter.key.encode()).digest()[:24]).decode()
+
+
+def payload_of(letter: Letter) -> bytes:
+    """What the page's worker shows; with the same `tag`, the browser shows it once. Never a hand-over code."""
+    notice = letter.notice
+    shown = {
+        "tag": notice.key,
+        "kind": str(notice.kind),
+        "order_id": notice.order_id,
+        "title": letter.title[:200],
+        "body": letter.body[:1000],
+        "at": notice.at.isoformat(),
+        "language": letter.person.language,
+    }
+    return json.dumps(shown, ensure_ascii=False).encode()
+
+
+def encrypted(payload: bytes, subscription: PushSubscription) -> bytes:
+    """For that browser alone, with a key of its own for each message."""
+    return bytes(
+        http_ece.encrypt(
+            payload,
+            private_key=ec.generate_private_key(ec.SECP256R1()),
+            dh=from_base64(subscription.p256dh),
+            auth_secret=from_base64(subscription.auth),
+            version="aes128gcm",
+        )
+    )
+
+
+def from_base64(text: str) -> bytes:
+    """URL-safe, with or without padding. Raises ValueError."""
+    return base64.urlsafe_b64decode(text.rstrip("=") + "=" * (-len(text.rstrip("=")) % 4))
+
+
+@dataclass
+class PushChannel:
+    """`client` reaches the public network alone (`app.outside`)."""
+
+    database: Database
+    client: httpx.AsyncClient
+    key: PushKey
+    contact: str
+    clock: Clock
+    name: ClassVar[str] = PUSH
+    at_once: int = 20
+    gives_up_after: timedelta = timedelta(hours=2)
+
+    async def send(self, letter: Letter) -> None:
+        subscription = await self._subscription(letter)
+        content = encrypted(payload_of(letter), subscription)
+        answer = await post(self.client, subscription.endpoint, content, self._headers(letter, subscription.endpoint))
+        if answer.status in GONE:
+            await self._forget(subscription)
+            raise NotSent("the device has ended its subscription", for_good=True)
+        if not answer.is_good:
+            raise NotSent(
+                f"the push service answered {answer.status}",
+                for_good=not answer.is_for_later,
+                again_after_s=answer.again_after_s,
+            )
+
+    def _headers(self, letter: Letter, endpoint: str) -> dict[str, str]:
+        url = httpx.URL(endpoint)
+        urgency = urgency_of(letter.notice.kind)
+        return {
+            "Authorization": self.key.authorization(
+                f"{url.scheme}://{url.netloc.decode()}", self.contact, self.clock.utc()
+            ),
+            "Content-Encoding": "aes128gcm",
+            "Content-Type": "application/octet-stream",
+            "TTL": str(TTL_S[urgency]),
+            "Urgency": urgency,
+            "Topic": topic_of(letter),
+        }
+
+    async def _subscription(self, letter: Letter) -> PushSubscription:
+        async with self.database.reading() as session:
+            found = await session.get(PushSubscription, letter.target)
+        if found is None or found.person_id != letter.person.id:
+            raise NotSent("the device was removed", for_good=True)
+        return found
+
+    async def _forget(self, subscription: PushSubscription) -> None:
+        async with self.database.transaction() as session:
+            await session.exec(delete(PushSubscription).where(col(PushSubscription.id) == subscription.id))
