@@ -3,17 +3,20 @@
 import asyncio
 import errno
 import socket
+import ssl
 
 import uvicorn
 from fastapi import FastAPI
 
-from app.commands import migrate
+from app.administration import migrate
 from app.errors import StartError
+from app.keeping.running import the_only_one
 from app.main import create_app
 from app.settings import Settings, open_clock
 
 # Without this an open event stream holds the server for ever. Streams end by themselves sooner (see `shutdown`).
 GRACEFUL_S = 2
+ANOTHER_FOLDER = "Stop that one, or give this one a data folder of its own: CAMPUS_MAIL_DATA."
 
 
 class PortTaken(StartError):
@@ -56,14 +59,28 @@ def listen(host: str, port: int) -> socket.socket:
 
 def serve(settings: Settings) -> None:
     """Serve until SIGINT or SIGTERM. Raises StartError before anything has been changed or answered."""
-    with listen(settings.host, settings.port) as listening:
+    check_tls(settings)
+    with listen(settings.host, settings.port) as listening, the_only_one(settings, ANOTHER_FOLDER):
         asyncio.run(migrate(settings))
         app = create_app(settings, open_clock(settings))
         Server(app, config_of(app)).run(sockets=[listening])
 
 
+def check_tls(settings: Settings) -> None:
+    """Both files or neither, and they fit together. Raises StartError."""
+    if (settings.tls_cert is None) != (settings.tls_key is None):
+        raise StartError("For https both are needed: --tls-cert and --tls-key.")
+    if settings.tls_cert is None:
+        return
+    try:
+        ssl.create_default_context(ssl.Purpose.CLIENT_AUTH).load_cert_chain(settings.tls_cert, settings.tls_key)
+    except OSError as error:  # SSLError is one
+        raise StartError(f"The certificate {settings.tls_cert} and its key cannot be used: {error}.") from error
+
+
 def config_of(app: FastAPI) -> uvicorn.Config:
     """How uvicorn serves the application."""
+    settings: Settings = app.state.settings
     return uvicorn.Config(
         app,
         log_config=None,
@@ -78,4 +95,6 @@ def config_of(app: FastAPI) -> uvicorn.Config:
         # A proxy on this machine ends TLS and says so in X-Forwarded-Proto; nobody else is believed.
         proxy_headers=True,
         forwarded_allow_ips="127.0.0.1",
+        ssl_certfile=settings.tls_cert,
+        ssl_keyfile=settings.tls_key,
     )

@@ -10,7 +10,7 @@ from typing import Any
 
 import httpx
 
-from app.commands import enrol
+from app.administration import enrol
 from app.demo.children import Children
 from app.demo.people import Spool
 from app.demo.screen import Screen

@@ -14,7 +14,7 @@ import pytest
 from fastapi import FastAPI
 from fastapi.testclient import TestClient
 
-from app.commands import migrate
+from app.administration import migrate
 from app.main import create_app
 from app.orders.service import Word
 from app.orders.transitions import By

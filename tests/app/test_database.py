@@ -6,7 +6,7 @@ from collections.abc import AsyncIterator
 import pytest
 from sqlalchemy.exc import IntegrityError
 
-from app.commands import migrate
+from app.administration import migrate
 from app.database import Database, after_commit, savepoint
 from app.settings import Settings
 from app.tables import Person, PersonSession

@@ -19,7 +19,7 @@ from sqlalchemy.exc import StatementError
 from typer.testing import CliRunner
 
 from app.__main__ import app as commands
-from app.commands import migrate
+from app.administration import migrate
 from app.database import Database
 from app.errors import StartError
 from app.logs import redact
@@ -244,11 +244,11 @@ def test_a_robot_is_enrolled_once_and_given_a_new_token_on_demand(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("CAMPUS_MAIL_DATA", str(tmp_path / "data"))
-    first = CliRunner().invoke(commands, ["robots", "enrol", "r1"])
+    first = CliRunner().invoke(commands, ["robots", "enrol", "r1", "--token"])
     assert first.stdout.startswith("cmr_")
-    refused = CliRunner().invoke(commands, ["robots", "enrol", "r1"])
+    refused = CliRunner().invoke(commands, ["robots", "enrol", "r1", "--token"])
     assert (refused.exit_code, refused.stdout) == (2, "")
-    again = CliRunner().invoke(commands, ["robots", "enrol", "r1", "--again"])
+    again = CliRunner().invoke(commands, ["robots", "enrol", "r1", "--token", "--again"])
     assert again.stdout.startswith("cmr_")
     assert again.stdout != first.stdout
 

@@ -2,14 +2,17 @@
 
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from datetime import datetime
 
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.database import Database
+from app.enrolment.service import EnrolmentDesk
 from app.errors import StartError
 from app.fleet import service as fleet
 from app.people.service import find_person, make_person, set_roles
 from app.schema_version import bring_to_head
+from app.server_key import open_server_key
 from app.settings import Settings, make_data_folder, open_clock
 from app.tables import Role
 
@@ -55,8 +58,25 @@ def _roles(names: list[str]) -> set[Role]:
         raise UnknownRole(f"{error}. There are: {', '.join(Role)}.") from None
 
 
+async def make_enrolment_code(settings: Settings, name: str) -> tuple[str, datetime]:
+    """A one-time code for a robot of this name, and until when it is good. Raises RobotNameInvalid."""
+    async with database_at_head(settings) as session:
+        desk = EnrolmentDesk(settings, open_server_key(settings.server_key_path), open_clock(settings))
+        row, code = await desk.make_code(session, name)
+        return code, row.expires_at
+
+
 async def enrol(settings: Settings, name: str, again: bool) -> str:
-    """Make a robot known, or give it a new token; the token, which is shown once."""
+    """Make a robot known, or give it a new token; the token, which is shown once. Its receipts will be unsigned."""
     clock = open_clock(settings)
     async with database_at_head(settings) as session:
-        return await (fleet.new_token if again else fleet.enrol)(session, clock, name)
+        token = await (fleet.new_token if again else fleet.enrol)(session, clock, name)
+        (await fleet.known_robot(session, name)).public_key = None
+        return token
+
+
+async def revoke(settings: Settings, name: str) -> int:
+    """Make all tokens of a robot worthless; how many that were. Raises UnknownRobot."""
+    clock = open_clock(settings)
+    async with database_at_head(settings) as session:
+        return await fleet.revoke_tokens(session, clock, name)

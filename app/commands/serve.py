@@ -1,0 +1,49 @@
+"""`serve` and `migrate`: the service itself, and its database."""
+
+import asyncio
+import contextlib
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from app.administration import migrate as bring_up_to_date
+from app.commands.speaking import Refused, errors_in_words, settings_with
+from app.logs import set_up_logs
+from app.settings import load_settings
+
+
+def serve(
+    host: Annotated[str | None, typer.Option(help="Address to listen on.")] = None,
+    port: Annotated[int | None, typer.Option(help="TCP port to listen on; 0 takes a free one.")] = None,
+    tls_cert: Annotated[Path | None, typer.Option(help="Certificate chain (PEM): serve https and wss.")] = None,
+    tls_key: Annotated[Path | None, typer.Option(help="Private key of the certificate (PEM).")] = None,
+    workers: Annotated[int, typer.Option(help="Processes; 1 is all there can be, see below.")] = 1,
+) -> None:
+    """Serve pages and API until Ctrl-C or SIGTERM. The database is made or brought up to date first.
+
+    Robots' sockets, event streams and rate limits live in the memory of one process, and one dispatcher assigns:
+    `--workers` is there to say so. One process serves a campus; what it was measured to carry is in docs/measured.md.
+    """
+    from app.serving import serve as serve_until_stopped
+
+    with errors_in_words(), contextlib.suppress(KeyboardInterrupt):
+        if workers != 1:
+            raise Refused(
+                f"--workers {workers}: one process serves. Robots' sockets, event streams and rate limits live in its "
+                "memory, so that a second one would not know of them. Leave the option out."
+            )
+        settings = settings_with(host=host, port=port, tls_cert=tls_cert, tls_key=tls_key)
+        set_up_logs(settings.log_level)
+        serve_until_stopped(settings)
+
+
+def migrate() -> None:
+    """Bring the database to the schema of this version and do nothing else.
+
+    `serve` does so too. Take a backup first if it matters: there is no way back from a newer schema.
+    """
+    with errors_in_words():
+        settings = load_settings()
+        set_up_logs(settings.log_level)
+        asyncio.run(bring_up_to_date(settings))

@@ -1,0 +1,69 @@
+"""How every command speaks: errors in sentences, tables for people, JSON for programs.
+
+Exit status of every command: 0 done, 1 looked and found something wrong, 2 could not be done, and why is on stderr.
+"""
+
+import contextlib
+import json
+import sys
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Annotated, Any
+
+import typer
+from rich.console import Console
+from rich.table import Table
+
+from app.errors import ServiceError, StartError
+from app.settings import Settings, load_settings
+
+FOUND_WRONG, CANNOT = 1, 2
+# Whatever is piped somewhere is not cut to the width of a terminal that is not there.
+WIDTH_WITHOUT_TERMINAL = 160
+
+AsJson = Annotated[bool, typer.Option("--json", help="One JSON document on stdout, for programs.")]
+Email = Annotated[str, typer.Argument(help="Mail address of the person.")]
+
+
+class Refused(StartError):
+    """A command will not do this; the sentence says why and what to do instead."""
+
+
+@contextlib.contextmanager
+def errors_in_words() -> Iterator[None]:
+    """A named error is a sentence on stderr and exit code 2, never a traceback."""
+    try:
+        yield
+    except (StartError, ServiceError) as error:
+        typer.echo(f"campus-mail: {error}", err=True)
+        raise typer.Exit(CANNOT) from None
+
+
+def settings_with(**given: object) -> Settings:
+    """The settings of the environment, and what was given as an option. Raises StartError."""
+    settings = load_settings()
+    wanted = {name: value for name, value in given.items() if value is not None}
+    try:
+        return Settings.model_validate({**settings.model_dump(), **wanted})
+    except ValueError as error:
+        raise StartError(f"The options cannot be used. {error}") from error
+
+
+def console() -> Console:
+    """stdout, as wide as its terminal."""
+    return Console() if sys.stdout.isatty() else Console(width=WIDTH_WITHOUT_TERMINAL)
+
+
+def say_json(document: object) -> None:
+    """What a program reads."""
+    print(json.dumps(document, indent=2, ensure_ascii=False, default=str))
+
+
+def say_table(columns: Sequence[str], rows: Iterable[Sequence[Any]], nothing: str) -> None:
+    """What a person reads; `nothing` is the sentence for no rows."""
+    table = Table(*columns, box=None, pad_edge=False)
+    for row in rows:
+        table.add_row(*("–" if value is None else str(value) for value in row))
+    if table.row_count:
+        console().print(table, markup=False)
+    else:
+        typer.echo(nothing)
