@@ -33,6 +33,7 @@ TAGS: Final[Mapping[str, str]] = {
     "notices": "What a person was told.",
     "live": "Changes as they happen, as server-sent events.",
     "robots": "Where the robots were last seen and what they are doing. Their own link is `docs/protocol.md`.",
+    "enrolment": "How a robot becomes known: one-time codes, its key, its tokens.",
     "demo": "Only while a demonstration runs: the simulated robot's camera.",
     "health": "For whoever watches over the service.",
 }

@@ -14,6 +14,8 @@ from app.api_document import DocumentedApi
 from app.body_limit import BodyLimit
 from app.database import Database
 from app.dispatch.service import Dispatcher
+from app.enrolment import routes as enrolment_routes
+from app.enrolment.service import EnrolmentDesk
 from app.errors import add_error_answers
 from app.etags import ETags
 from app.fleet import routes as fleet_routes
@@ -58,6 +60,7 @@ ROUTERS = (
     notify_routes.router,
     live_routes.router,
     fleet_routes.router,
+    enrolment_routes.router,
     demo_camera.router,
 )
 RESTART_PAUSE_S = 1.0
@@ -103,6 +106,7 @@ def _add_parts(app: FastAPI, settings: Settings, clock: Clock) -> None:
     state.sign_in_desk = SignInDesk(settings, state.server_key, state.mailer)
     state.orders = Orders(state.campus, settings, clock, state.feed, state.server_key, state.sign_in_desk)
     state.running = Running()
+    state.enrolment_desk = EnrolmentDesk(settings, state.server_key, clock)
     state.fleet = Fleet(state.database, state.campus, settings, clock, state.feed, state.orders)
     state.outbox_worker = _outbox_worker(state, settings, clock)
     state.orders.on_change.append(lambda order_id: state.outbox_worker.wake())

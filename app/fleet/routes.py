@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, Depends, WebSocket
+from fastapi import APIRouter, Depends, Path, WebSocket
 from sqlmodel import col, select
 from starlette.requests import HTTPConnection
 
@@ -28,6 +28,7 @@ def _fleet_of(connection: HTTPConnection) -> Fleet:
 
 
 FleetDep = Annotated[Fleet, Depends(_fleet_of)]
+RobotName = Annotated[str, Path(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]*$", max_length=64)]
 
 
 class RobotPage(PageOf[RobotView]):

@@ -31,10 +31,23 @@ from protocol.to_server import Claim, Clear, Event, Snapshot, Why
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,63}")
 
 
-async def enrol(session: AsyncSession, clock: Clock, name: str) -> str:
-    """Make a robot known; returns its token, which is shown once. Raises RobotNameInvalid, RobotExists."""
+def check_name(name: str) -> None:
+    """Raises RobotNameInvalid."""
     if not _NAME.fullmatch(name):
         raise RobotNameInvalid(f"{name!r} is no name for a robot: letters, digits, - and _, at most 64.")
+
+
+async def known_robot(session: AsyncSession, name: str) -> RobotRow:
+    """The row of an enrolled robot. Raises UnknownRobot."""
+    robot = await session.get(RobotRow, name)
+    if robot is None:
+        raise UnknownRobot(f"No robot named {name!r} is enrolled.")
+    return robot
+
+
+async def enrol(session: AsyncSession, clock: Clock, name: str) -> str:
+    """Make a robot known; returns its token, which is shown once. Raises RobotNameInvalid, RobotExists."""
+    check_name(name)
     if await session.get(RobotRow, name) is not None:
         raise RobotExists(f"A robot named {name!r} is enrolled already. Revoke its token for a new one.")
     session.add(RobotRow(name=name, enrolled_at=clock.utc(), server_journal=str(uuid4())))
@@ -44,13 +57,18 @@ async def enrol(session: AsyncSession, clock: Clock, name: str) -> str:
 
 async def new_token(session: AsyncSession, clock: Clock, name: str) -> str:
     """Another token for an enrolled robot; the ones it had are revoked. Raises UnknownRobot."""
-    if await session.get(RobotRow, name) is None:
-        raise UnknownRobot(f"No robot named {name!r} is enrolled.")
-    theirs = update(RobotToken).where(col(RobotToken.robot) == name, col(RobotToken.revoked_at).is_(None))
-    await session.exec(theirs.values(revoked_at=clock.utc()))
+    await known_robot(session, name)
+    await revoke_tokens(session, clock, name)
     token = make_token()
     session.add(RobotToken(prefix=token.prefix, secret_hash=token.secret_hash, robot=name, created_at=clock.utc()))
     return token.text
+
+
+async def revoke_tokens(session: AsyncSession, clock: Clock, name: str) -> int:
+    """Make all tokens of a robot worthless; how many that were. Raises UnknownRobot."""
+    await known_robot(session, name)
+    theirs = update(RobotToken).where(col(RobotToken.robot) == name, col(RobotToken.revoked_at).is_(None))
+    return (await session.exec(theirs.values(revoked_at=clock.utc()))).rowcount
 
 
 @dataclass(frozen=True)

@@ -29,6 +29,7 @@ OPENED_BY: Final[Mapping[str, tuple[frozenset[Scope], frozenset[Scope]]]] = {
     # tag of the route: any of these to read, any of these to change
     "orders": (frozenset({Scope.ORDERS_READ}), frozenset({Scope.ORDERS_WRITE})),
     "robots": (frozenset({Scope.ROBOTS_READ}), frozenset({Scope.DISPATCH, Scope.MAINTAIN})),
+    "enrolment": (frozenset({Scope.MAINTAIN}), frozenset({Scope.MAINTAIN})),
     "notices": (frozenset({Scope.NOTICES_READ}), frozenset({Scope.NOTICES_WRITE})),
     "address book": (frozenset({Scope.CONTACTS_READ}), NOTHING),
     "live": (frozenset({Scope.LIVE_READ}), NOTHING),

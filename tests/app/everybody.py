@@ -90,6 +90,7 @@ class Everybody:
                 "role": "dispatcher",
                 "session_id": str(sender_session.id),
                 "prefix": token,
+                "token_prefix": (await new_token(session, self.app.state.clock, "r1")).split("_")[1],
                 "email": "somebody@campus.example",
             }
             return Scene(await self._headers(session, who, people), places)

@@ -88,6 +88,11 @@ LINES: Final[dict[tuple[str, str], Line]] = {
     ("POST", "/api/v1/notices/read"): members("notices:write", 204),
     ("GET", "/api/v1/live"): members("live:read"),
     ("GET", "/api/v1/robots"): members("robots:read"),
+    # Nobody has a code; the token is one of the robot's.
+    ("POST", "/api/v1/robots/enrol"): Line(401, 401, 401, 401, 401, 401, ""),
+    ("POST", "/api/v1/robots/{name}/enrolment-codes"): maintainers("maintain", 201),
+    ("GET", "/api/v1/robots/{name}/tokens"): maintainers("maintain"),
+    ("DELETE", "/api/v1/robots/{name}/tokens/{token_prefix}"): maintainers("maintain", 204),
     ("POST", "/api/v1/demo/camera"): members("none", 404),  # this is no demonstration
 }
 SOCKETS: Final = ("/api/v1/robots/link",)
@@ -102,6 +107,7 @@ WISHES: Final[dict[tuple[str, str], dict[str, Any]]] = {
     ("PUT", "/api/v1/me/contacts/{email}"): {"label": "Aunt"},
     ("POST", "/api/v1/tokens"): {"name": "script", "scopes": ["orders:read"]},
     ("POST", "/api/v1/notices/read"): {"ids": [1]},
+    ("POST", "/api/v1/robots/enrol"): {"name": "r1", "code": "AAAA-AAAA", "public_key": 43 * "A" + "="},
     ("POST", "/api/v1/demo/camera"): {"order_id": "{order_id}"},
 }
 QUESTIONS: Final = {"/api/v1/estimate": ORDER}

@@ -1,0 +1,89 @@
+"""Enrolling robots, and looking after their tokens."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, Depends, Path, Request
+from sqlmodel import col, select
+
+from app.database import DatabaseDep, ReadingDep, SessionDep, after_commit
+from app.enrolment.errors import UnknownRobotToken
+from app.enrolment.schemas import Enrolled, Enrolment, EnrolmentCodeView, RobotTokenView
+from app.enrolment.service import EnrolmentDesk
+from app.errors import problems
+from app.fleet.routes import FleetDep, RobotName
+from app.fleet.service import known_robot
+from app.paging import PAGED, PageDep, PageOf, Sorting
+from app.people.current_user import Maintainer
+from app.people.rate_limits import Door, per_host
+from app.people.same_origin import refuse_other_sites, require_https_or_loopback
+from app.settings import ClockDep
+from app.tables import RobotToken
+
+router = APIRouter(tags=["enrolment"])
+
+NEWEST_FIRST = Sorting("robot_tokens", col(RobotToken.created_at), col(RobotToken.prefix), descending=True)
+Prefix = Annotated[str, Path(pattern=r"^[0-9a-f]{8}$")]
+
+
+def _desk(request: Request) -> EnrolmentDesk:
+    desk: EnrolmentDesk = request.app.state.enrolment_desk
+    return desk
+
+
+async def _door(request: Request) -> None:
+    require_https_or_loopback(request)
+    refuse_other_sites(request)
+
+
+DeskDep = Annotated[EnrolmentDesk, Depends(_desk)]
+
+
+class RobotTokenPage(PageOf[RobotTokenView]):
+    """Some tokens of a robot, newest first."""
+
+
+@router.post("/robots/{name}/enrolment-codes", status_code=201, responses=problems(401, 403, 422))
+async def make_enrolment_code(
+    name: RobotName, maintainer: Maintainer, desk: DeskDep, session: SessionDep
+) -> EnrolmentCodeView:
+    """Make a one-time code by which a robot of this name enrols itself, for the first time or again."""
+    row, code = await desk.make_code(session, name, maintainer.id)
+    return EnrolmentCodeView(robot=name, code=code, expires_at=row.expires_at)
+
+
+@router.post(
+    "/robots/enrol",
+    status_code=201,
+    dependencies=[Depends(_door), per_host(Door.ENROLMENT)],
+    responses=problems(401, 403, 422, 429),
+)
+async def enrol_robot(wish: Enrolment, desk: DeskDep, database: DatabaseDep) -> Enrolled:
+    """Exchange a one-time code for a robot's token; its receipts are checked by the key that it brings."""
+    async with database.transaction() as session:
+        refusal = await desk.use_code(session, wish.name, wish.code)
+        token = "" if refusal else await desk.admit(session, wish.name, wish.public_key)
+    if refusal:
+        raise refusal
+    return Enrolled(name=wish.name, token=token)
+
+
+@router.get("/robots/{name}/tokens", responses={**PAGED, **problems(400, 401, 403, 404, 422)})
+async def list_robot_tokens(
+    name: RobotName, maintainer: Maintainer, session: ReadingDep, page: PageDep
+) -> RobotTokenPage:
+    """List the tokens that a robot has had, newest first: prefix, when made, used and taken back."""
+    await known_robot(session, name)
+    rows, following = await page.of(session, select(RobotToken).where(RobotToken.robot == name), NEWEST_FIRST)
+    return RobotTokenPage(items=[RobotTokenView.of(row) for row in rows], next=following)
+
+
+@router.delete("/robots/{name}/tokens/{token_prefix}", status_code=204, responses=problems(401, 403, 404, 422))
+async def revoke_robot_token(
+    name: RobotName, token_prefix: Prefix, maintainer: Maintainer, session: SessionDep, fleet: FleetDep, clock: ClockDep
+) -> None:
+    """Take a robot's token back: whoever is connected by it is cut off, and nobody signs in by it again."""
+    row = await session.get(RobotToken, token_prefix)
+    if row is None or row.robot != name:
+        raise UnknownRobotToken(f"Robot {name} has no token {token_prefix}.")
+    row.revoked_at = row.revoked_at or clock.utc()
+    after_commit(session, lambda: fleet.connections.wake(name))
