@@ -89,6 +89,7 @@ class Rig:
     def __init__(self, folder: Path, speed: float) -> None:
         self.folder = folder
         self.clock_file = folder / "clock"
+        self.settings_file = folder / "robot.toml"
         SharedClock.create(self.clock_file, speed)
         self.port = free_port()
         self.base_url = f"http://127.0.0.1:{self.port}"
@@ -100,19 +101,24 @@ class Rig:
     def __enter__(self) -> "Rig":
         self.wire.__enter__()
         self.start_service()
-        token = subprocess.run(
-            [sys.executable, "-m", "app", "robots", "enrol", "r1"],
-            cwd=ROOT,
-            env=self._service_env(),
-            capture_output=True,
-            text=True,
-            check=True,
-        ).stdout.strip()
-        self.token_file = self.folder / "r1.token"
-        self.token_file.touch(mode=0o600)
-        self.token_file.write_text(token)
+        self.enrol()
         self.start_robot()
         return self
+
+    def enrol(self) -> None:
+        """As a maintainer and whoever stands at the robot do it: one makes a code, the other types it."""
+        code = self._command(["app", "robots", "enrol", "r1"], self._service_env())
+        server = f"ws://127.0.0.1:{self.port}/api/v1/robots/link"
+        enrol = ["robot", "enrol", "r1", server, "--config", str(self.settings_file), "--code-stdin"]
+        self._command(enrol, dict(os.environ), code)
+        settings = self.settings_file.read_text()  # the robot speaks through the wire that can be cut
+        self.settings_file.write_text(settings.replace(f":{self.port}/", f":{self.wire.port}/"))
+
+    def _command(self, arguments: list[str], env: dict[str, str], typed: str = "") -> str:
+        command = [sys.executable, "-m", *arguments]
+        ran = subprocess.run(command, check=False, cwd=ROOT, env=env, input=typed, capture_output=True, text=True)
+        assert ran.returncode == 0, ran.stderr
+        return ran.stdout.strip()
 
     def __exit__(self, *_: object) -> None:
         for person in self.people:
@@ -158,9 +164,7 @@ class Rig:
         return False
 
     def start_robot(self) -> None:
-        server = f"ws://127.0.0.1:{self.wire.port}/api/v1/robots/link"
-        arguments = ["robot", "--simulated", "--map", "test_track", "--name", "r1", "--server", server]
-        arguments += ["--token-file", str(self.token_file), "--data", str(self.folder / "robot")]
+        arguments = ["robot", "--simulated", "--config", str(self.settings_file), "--data", str(self.folder / "robot")]
         arguments += ["--clock", str(self.clock_file), "--door", str(self.door)]
         self._start("robot", arguments, dict(os.environ))
 

@@ -97,7 +97,7 @@ async def test_the_command_prints_the_token_once_and_says_what_is_wrong_in_words
     env = {**environ, "CAMPUS_MAIL_DATA": str(settings.data), "PYTHONPATH": str(ROOT)}
 
     async def command(name: str) -> tuple[int, str, str]:
-        arguments = ("-m", "app", "robots", "enrol", name)
+        arguments = ("-m", "app", "robots", "enrol", name, "--token")
         process = await create_subprocess_exec(sys.executable, *arguments, env=env, cwd=ROOT, stdout=PIPE, stderr=PIPE)
         said, complained = await process.communicate()
         return process.returncode or 0, said.decode().strip(), complained.decode()
