@@ -2,7 +2,7 @@
 
 import typer
 
-from app.commands import demo, map, orders, people, personal, robots, serve
+from app.commands import backup, demo, map, orders, people, personal, robots, serve
 
 HELP = """Campus Mail: the service.
 
@@ -16,6 +16,8 @@ app.add_typer(people.cli, name="people")
 app.add_typer(robots.cli, name="robots")
 app.add_typer(orders.cli, name="orders")
 app.add_typer(map.cli, name="map")
+app.command()(backup.backup)
+app.command()(backup.restore)
 app.command()(personal.export)
 app.command()(personal.erase)
 app.command()(demo.demo)

@@ -49,7 +49,7 @@ async def bring_to_head(database: Database) -> None:
 async def is_at_head(database: Database) -> bool:
     """Whether the schema is the one of this code."""
     async with database.engine.connect() as connection:
-        return await connection.run_sync(_revision) == _scripts().get_current_head()
+        return await connection.run_sync(revision_of) == _scripts().get_current_head()
 
 
 def _open(url: URL) -> None:
@@ -62,22 +62,24 @@ def _open(url: URL) -> None:
 
 
 def _bring_to_head(connection: Connection) -> None:
-    revision = _revision(connection)
+    revision = revision_of(connection)
     if revision is not None:
-        _refuse_unknown(revision)
+        refuse_unknown(revision)
     config = Config(INI)
     config.attributes["connection"] = connection
     command.upgrade(config, "head")
 
 
-def _refuse_unknown(revision: str) -> None:
+def refuse_unknown(revision: str) -> None:
+    """Raises NewerDatabase for a revision that this code has no migration of."""
     try:
         _scripts().get_revision(revision)
     except CommandError:
         raise NewerDatabase(revision) from None
 
 
-def _revision(connection: Connection) -> str | None:
+def revision_of(connection: Connection) -> str | None:
+    """The schema that a database is at; None if it has none of ours."""
     return MigrationContext.configure(connection).get_current_revision()
 
 

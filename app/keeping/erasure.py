@@ -50,14 +50,17 @@ FATES: Final[Mapping[str, Fate]] = {
     "handovers": Fate.STAYS,
     "idempotency_keys": Fate.GOES,
     "identities": Fate.GOES,
+    "notice_wishes": Fate.GOES,
     "notices": Fate.GOES,
     "order_events": Fate.STAYS,
     "order_links": Fate.GOES,
     "orders": Fate.STAYS,
     "person_tokens": Fate.GOES,
+    "push_subscriptions": Fate.GOES,
     "robot_commands": Fate.STAYS,
     "sessions": Fate.GOES,
     "standing_orders": Fate.STAYS,
+    "webhooks": Fate.GOES,
 }
 """Every table that refers to people, so that a new one cannot be forgotten: a test compares."""
 

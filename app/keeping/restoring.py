@@ -1,0 +1,81 @@
+"""Putting a backup in the place of what is there; what was there is kept aside, never overwritten."""
+
+import shutil
+from collections.abc import Callable
+from datetime import datetime
+from pathlib import Path
+from typing import Final
+
+from sqlalchemy import make_url
+from sqlalchemy.engine import URL
+
+from app.errors import StartError
+from app.keeping.backup import Manifest, keys_of, opened
+from app.keeping.database_copy import POSTGRESQL_COPY, SQLITE_COPY, dump_postgresql, load_postgresql
+from app.keeping.running import the_only_one
+from app.settings import Settings
+
+STOP_IT: Final = "Stop it first (systemctl stop campus-mail): nobody may write while the database is exchanged."
+
+
+class RestoreRefused(StartError):
+    """Something is in the way that a restore would put aside; nothing has been changed."""
+
+
+def restore(
+    settings: Settings, archive: Path, now: datetime, *, replace: bool, is_empty: Callable[[], bool]
+) -> tuple[Manifest, Path | None]:
+    """The manifest of what is in place now, and the folder with what was there before.
+
+    `is_empty` says of a PostgreSQL database whether anything is in it. Raises AlreadyRunning, RestoreRefused,
+    BackupUnusable, CopyUnsound, NewerDatabase, having changed nothing.
+    """
+    with the_only_one(settings, STOP_IT), opened(archive, settings.data) as (folder, manifest):
+        url = make_url(settings.url_of_database)
+        _refuse_another_kind(url, manifest)
+        in_the_way = _in_the_way(settings, url, manifest)
+        if (in_the_way or not is_empty()) and not replace:
+            named = ", ".join(path.name for path in in_the_way) or "a database"
+            raise RestoreRefused(f"{settings.data} has {named} already. To put it aside and go on: --replace.")
+        aside = _put_aside(settings, in_the_way, now) if replace else None
+        if manifest.database == "postgresql":
+            if aside is not None:
+                dump_postgresql(url, aside / POSTGRESQL_COPY)
+            load_postgresql(url, folder / POSTGRESQL_COPY)
+        _put_in_place(settings, url, folder, manifest)
+        return manifest, aside
+
+
+def _refuse_another_kind(url: URL, manifest: Manifest) -> None:
+    here = url.get_backend_name()
+    if here != manifest.database:
+        raise RestoreRefused(
+            f"The backup is of a {manifest.database} database, and CAMPUS_MAIL_DATABASE_URL names {here}. "
+            "Set the URL to a database of the backup's kind."
+        )
+
+
+def _in_the_way(settings: Settings, url: URL, manifest: Manifest) -> list[Path]:
+    """The database with its log, and the keys that the backup would write over."""
+    held = {file.name for file in manifest.files}
+    keys = [path for name, path in keys_of(settings).items() if name in held and path.exists()]
+    if manifest.database != "sqlite":
+        return keys
+    database = Path(url.database or "")
+    files = [database.with_name(database.name + ending) for ending in ("", "-wal", "-shm")]
+    return [*(path for path in files if path.exists()), *keys]
+
+
+def _put_aside(settings: Settings, files: list[Path], now: datetime) -> Path:
+    aside = settings.data / f"before-restore-{now:%Y%m%dT%H%M%SZ}"
+    aside.mkdir(mode=0o700)
+    for path in files:
+        shutil.move(path, aside / path.name)
+    return aside
+
+
+def _put_in_place(settings: Settings, url: URL, folder: Path, manifest: Manifest) -> None:
+    places = {SQLITE_COPY: Path(url.database or ""), **keys_of(settings)}
+    for file in manifest.files:
+        if file.name in places and file.name != POSTGRESQL_COPY:
+            shutil.move(folder / file.name, places[file.name])
