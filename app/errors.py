@@ -25,8 +25,10 @@ from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
 from pydantic import BaseModel
 from starlette.exceptions import HTTPException
+from starlette.routing import Match
 
 PROBLEM_JSON = "application/problem+json"
+METHODS = ("GET", "POST", "PUT", "PATCH", "DELETE")
 log = structlog.get_logger(__name__)
 
 
@@ -226,7 +228,15 @@ def _place(loc: tuple[Any, ...]) -> str:
 async def _answer_http(request: Request, error: Exception) -> JSONResponse:
     assert isinstance(error, HTTPException)  # noqa: S101  # registered for this class alone
     code = CODES_OF_STATUS.get(error.status_code, "http_error")
-    return problem_answer(error.status_code, code, str(error.detail), error.headers)
+    headers = {"Allow": _allowed(request)} if error.status_code == HTTPStatus.METHOD_NOT_ALLOWED else error.headers
+    return problem_answer(error.status_code, code, str(error.detail), headers)
+
+
+def _allowed(request: Request) -> str:
+    """Everything that can be done with a path: the router itself names the methods of one route alone."""
+    routes = request.app.router.routes
+    scopes = {method: {**request.scope, "method": method} for method in METHODS}
+    return ", ".join(m for m, scope in scopes.items() if any(r.matches(scope)[0] is Match.FULL for r in routes))
 
 
 async def _answer_unforeseen(request: Request, error: Exception) -> JSONResponse:
