@@ -1,7 +1,8 @@
 """The OpenAPI document: what FastAPI finds in the routes, and what holds for all of them.
 
 The name of a route's function is its `operationId`, and so the name of the client's method; its docstring is the
-description, the first sentence of it the summary. Error answers list their codes; headers, tags and examples come from the tables here.
+description, the first sentence of it the summary. Error answers list their codes; what headers and tags mean stands in
+the tables here, examples in `app.api_examples`.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -11,8 +12,19 @@ from fastapi import FastAPI
 from fastapi.routing import APIRoute
 
 from app.api_examples import EXAMPLES
-from app.errors import GENERAL, PROBLEM_JSON, Forbidden, NotSignedIn, Problem, ServiceError, described_problem, meaning
-from app.people.errors import CrossSite, HttpsRequired, NotForScripts, ScopeNeeded
+from app.errors import (
+    GENERAL,
+    PROBLEM_JSON,
+    NotSignedIn,
+    Problem,
+    ServiceError,
+    TooManyRequests,
+    described_problem,
+    meaning,
+)
+from app.paging import BadCursor
+from app.people.errors import CrossSite, HttpsRequired, NotForScripts, RoleNeeded, ScopeNeeded
+from app.people.scopes import opened_by
 
 Document = dict[str, Any]
 Codes = Mapping[str, str]
@@ -31,6 +43,8 @@ TAGS: Final[Mapping[str, str]] = {
     "people": "Signing in and out, who one is, sessions, tokens, other people.",
     "orders": "Ordering, following and cancelling, and the codes that go with an order.",
     "notices": "What a person was told.",
+    "me": "The signed-in person.",
+    "address book": "People one exchanges mail with; everybody, for dispatchers.",
     "live": "Changes as they happen, as server-sent events.",
     "robots": "Where the robots were last seen and what they are doing. Their own link is `docs/protocol.md`.",
     "enrolment": "How a robot becomes known: one-time codes, its key, its tokens.",
@@ -96,7 +110,10 @@ def complete(document: Document) -> None:
     document["servers"] = [{"url": "/", "description": "The service that this document comes from."}]
     for method, path, operation in operations(document):
         operation["summary"] = _first_sentence(operation["description"])
+        _name_parameters(operation)
         _add_general_problems(operation)
+        if "security" in operation:
+            operation["security"] = _ways_in(operation, method)
         if method == "get" and path.startswith("/api/") and operation["operationId"] not in NEVER_KEPT:
             _add_etag(operation)
         for status, answer in operation["responses"].items():
@@ -111,6 +128,18 @@ def complete(document: Document) -> None:
         if name in schemas:
             schemas[name]["examples"] = list(examples)
     document["info"]["x-complete"] = True
+
+
+def _name_parameters(operation: Document) -> None:
+    for parameter in operation.get("parameters", []):
+        if parameter["in"] == "header":
+            parameter["name"] = parameter["name"].title()
+
+
+def _ways_in(operation: Document, method: str) -> list[Document]:
+    """A browser's session; a script's token too, if it has one of the scopes that are named."""
+    scopes = opened_by(operation.get("tags", ()), method.upper())
+    return [{"session": []}, *({"token": [scope]} for scope in sorted(scopes))]
 
 
 def _general_problems(operation: Document) -> dict[int, dict[str, str]]:
@@ -143,10 +172,25 @@ def _is_closed(operation: Document) -> bool:
     return bool(operation.get("security"))
 
 
+def _is_open_and_changes(operation: Document) -> bool:
+    return _has_body(operation) and not _is_closed(operation)
+
+
+def _is_paged(operation: Document) -> bool:
+    return "Link" in operation["responses"].get("200", {}).get("headers", {})
+
+
+def _is_limited(operation: Document) -> bool:
+    return "429" in operation["responses"]
+
+
 GENERAL_PROBLEMS: Final[tuple[tuple[Callable[[Document], bool], tuple[str | type[ServiceError], ...]], ...]] = (
-    (_is_closed, (NotSignedIn, Forbidden, CrossSite, HttpsRequired, NotForScripts, ScopeNeeded)),
+    (_is_closed, (NotSignedIn, CrossSite, HttpsRequired, NotForScripts, RoleNeeded, ScopeNeeded)),
+    (_is_open_and_changes, (CrossSite, HttpsRequired)),
     (_has_body, ("malformed_body", "too_large", "unsupported_media_type")),
     (_has_parameters, ("invalid_request",)),
+    (_is_paged, (BadCursor,)),
+    (_is_limited, (TooManyRequests,)),
 )
 
 

@@ -26,7 +26,7 @@ EXAMPLES: Final[Mapping[str, tuple[Mapping[str, Any], ...]]] = {
     "Problem": (
         {
             "type": "urn:campus-mail:problem:unknown_post",
-            "title": "Unprocessable Content",
+            "title": "Unprocessable Entity",
             "status": 422,
             "detail": "There is no post 'pots4' on the map. Did you mean 'post4'?",
             "code": "unknown_post",

@@ -10,6 +10,7 @@ from pydantic import BaseModel, StringConstraints
 
 from app.database import ReadingDep
 from app.errors import Conflict, NotFound, problems
+from app.orders.errors import NoCodeForYou, UnknownOrder
 from app.orders.routes import OrdersDep
 from app.people.current_user import CurrentUser
 from app.settings import SettingsDep
@@ -43,7 +44,9 @@ class Shown(BaseModel):
     purpose: str
 
 
-@router.post("/demo/camera", status_code=202, responses=problems(401, 403, 404, 409, 422))
+@router.post(
+    "/demo/camera", status_code=202, responses=problems(NotADemonstration, DoorClosed, UnknownOrder, NoCodeForYou)
+)
 async def show_code(
     wish: ShowCode, user: CurrentUser, orders: OrdersDep, session: ReadingDep, settings: SettingsDep
 ) -> Shown:

@@ -155,6 +155,11 @@ def problems(*what: int | type[ServiceError]) -> dict[int | str, dict[str, Any]]
     return {status: described_problem(status, meanings) for status, meanings in codes.items()}
 
 
+def answering(status: int, *headers: str) -> dict[int | str, dict[str, Any]]:
+    """The headers that go with an answer, for `responses=`; what they mean is in `app.api_document`."""
+    return {status: {"headers": {name: {} for name in headers}}}
+
+
 def described_problem(status: int, meanings: Mapping[str, str]) -> dict[str, Any]:
     """One error answer as the OpenAPI document shows it; `x-codes` says which codes it can carry."""
     said = "".join(f"\n- `{code}`: {sentence}" for code, sentence in meanings.items())
@@ -228,8 +233,8 @@ def _place(loc: tuple[Any, ...]) -> str:
 async def _answer_http(request: Request, error: Exception) -> JSONResponse:
     assert isinstance(error, HTTPException)  # noqa: S101  # registered for this class alone
     code = CODES_OF_STATUS.get(error.status_code, "http_error")
-    headers = {"Allow": _allowed(request)} if error.status_code == HTTPStatus.METHOD_NOT_ALLOWED else error.headers
-    return problem_answer(error.status_code, code, str(error.detail), headers)
+    allowed = _allowed(request) if error.status_code == HTTPStatus.METHOD_NOT_ALLOWED else ""
+    return problem_answer(error.status_code, code, str(error.detail), {"Allow": allowed} if allowed else error.headers)
 
 
 def _allowed(request: Request) -> str:

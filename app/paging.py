@@ -3,7 +3,7 @@ goes between two pages doubles no row and hides none.
 
     NEWEST = Sorting("orders", col(Order.created_at), col(Order.id), descending=True)
 
-    @router.get("/orders", responses={**PAGED, **problems(400, 401, 403, 422)})
+    @router.get("/orders", responses=PAGED)
     async def list_orders(page: PageDep, session: ReadingDep) -> OrderPage:
         rows, following = await page.of(session, select(Order), NEWEST)
 """
@@ -24,20 +24,11 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 from sqlmodel.sql.expression import SelectOfScalar
 from starlette.datastructures import URL
 
-from app.errors import BadRequest
+from app.errors import BadRequest, answering
 from app.server_key import ServerKey
 
 SEAL_BYTES: Final = 9
-PAGED: Final[dict[int | str, dict[str, Any]]] = {
-    200: {
-        "headers": {
-            "Link": {
-                "description": 'The address of the following page, `rel="next"`; absent on the last.',
-                "schema": {"type": "string"},
-            }
-        }
-    }
-}
+PAGED: Final = answering(200, "Link")
 """For `responses=`: what every paged list answers besides its body."""
 
 Row = TypeVar("Row", bound=SQLModel)

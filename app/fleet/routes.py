@@ -7,7 +7,6 @@ from sqlmodel import col, select
 from starlette.requests import HTTPConnection
 
 from app.database import ReadingDep
-from app.errors import problems
 from app.fleet.conversation import TOKEN_REFUSED, Conversation
 from app.fleet.service import Fleet
 from app.fleet.tokens import token_of
@@ -35,7 +34,7 @@ class RobotPage(PageOf[RobotView]):
     """Some robots, by name; `next` is the cursor of the following page, null on the last."""
 
 
-@router.get("/robots", responses={**PAGED, **problems(400, 401, 403, 422)})
+@router.get("/robots", responses=PAGED)
 async def all_robots(user: CurrentUser, session: ReadingDep, fleet: FleetDep, page: PageDep) -> RobotPage:
     """Where the robots were last seen and what they are doing."""
     robots, following = await page.of(session, select(RobotRow), BY_NAME)

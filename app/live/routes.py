@@ -8,7 +8,7 @@ from fastapi import APIRouter, Depends, Header
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 from starlette.requests import HTTPConnection
 
-from app.errors import problems
+from app.errors import TooManyRequests, problems
 from app.live.feed import LocalFeed, Numbered
 from app.people.current_user import CurrentUser, StillSignedInDep
 from app.people.rate_limits import one_stream
@@ -27,7 +27,12 @@ def _feed_of(connection: HTTPConnection) -> LocalFeed:
 FeedDep = Annotated[LocalFeed, Depends(_feed_of)]
 
 
-@router.get("/live", response_class=EventSourceResponse, dependencies=[one_stream], responses=problems(401, 403, 429))
+@router.get(
+    "/live",
+    response_class=EventSourceResponse,
+    dependencies=[one_stream],
+    responses=problems(TooManyRequests),
+)
 async def live(
     user: CurrentUser,
     feed: FeedDep,

@@ -13,7 +13,7 @@ from app.settings import ClockDep
 router = APIRouter(tags=["notices"])
 
 
-@router.get("/notices", responses={**PAGED, **problems(400, 401, 403, 422)})
+@router.get("/notices", responses=PAGED)
 async def my_notices(user: CurrentUser, session: ReadingDep, page: PageDep) -> Inbox:
     """What this person was told, newest first."""
     return await inbox(session, user, page)

@@ -8,7 +8,8 @@ from sqlmodel import col, select
 from sqlmodel.sql.expression import SelectOfScalar
 
 from app.database import ReadingDep, SessionDep
-from app.errors import problems
+from app.errors import TooManyRequests, answering, problems
+from app.orders import errors
 from app.orders.codes import code_svg
 from app.orders.idempotency import Running, body_hash, earlier_answer
 from app.orders.schemas import CodeView, Estimate, NewOrder, OrderPage, OrderView, PostName, WindowView
@@ -26,6 +27,12 @@ router = APIRouter(tags=["orders"])
 OrderId = Annotated[str, Path(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]*$", max_length=64)]
 NEWEST_FIRST = Sorting("orders", col(Order.created_at), col(Order.id), descending=True)
 REPLAYED = "Idempotency-Replayed"
+REFUSED = (errors.UnknownPost, errors.SamePost, errors.NoWay, errors.UnknownRecipient, errors.KeyReused)
+PLACED = {
+    **answering(201, "Location", "ETag", REPLAYED),
+    **problems(*REFUSED, errors.StillRunning, TooManyRequests),
+}
+CHANGED = {**answering(200, "ETag"), **problems(errors.UnknownOrder, errors.NotCancellable, errors.OrderChanged)}
 
 
 def _orders(request: Request) -> Orders:
@@ -41,7 +48,7 @@ def _running(request: Request) -> Running:
 OrdersDep = Annotated[Orders, Depends(_orders)]
 
 
-@router.get("/estimate", responses=problems(401, 403, 422))
+@router.get("/estimate", responses=problems(errors.UnknownPost, errors.SamePost, errors.NoWay))
 async def estimate(
     user: CurrentUser, orders: OrdersDep, campus: CampusDep, from_post: PostName, to_post: PostName
 ) -> Estimate:
@@ -51,9 +58,7 @@ async def estimate(
     return Estimate(window=WindowView.of(window), length_m=round(length_m, 2))
 
 
-@router.post(
-    "/orders", status_code=201, dependencies=[per_person(Door.ORDERS)], responses=problems(401, 403, 409, 422, 429)
-)
+@router.post("/orders", status_code=201, dependencies=[per_person(Door.ORDERS)], responses=PLACED)
 async def place_order(
     *,
     wish: NewOrder,
@@ -88,7 +93,7 @@ async def place_order(
         return view
 
 
-@router.get("/orders", responses={**PAGED, **problems(400, 401, 403, 422)})
+@router.get("/orders", responses=PAGED)
 async def list_orders(
     *,
     user: CurrentUser,
@@ -111,7 +116,7 @@ def _theirs(user: Person, role: str) -> SelectOfScalar[Order]:
     return select(Order).where({"sent": sent, "coming": coming, "all": or_(sent, coming)}[role])
 
 
-@router.get("/orders/{order_id}", responses=problems(401, 403, 404, 422))
+@router.get("/orders/{order_id}", responses=problems(errors.UnknownOrder))
 async def one_order(
     order_id: OrderId, user: CurrentUser, orders: OrdersDep, session: ReadingDep, response: Response
 ) -> OrderView:
@@ -121,7 +126,7 @@ async def one_order(
     return view
 
 
-@router.post("/orders/{order_id}/cancel", responses=problems(401, 403, 404, 409, 412, 422))
+@router.post("/orders/{order_id}/cancel", responses=CHANGED)
 async def cancel_order(
     *,
     order_id: OrderId,
@@ -137,7 +142,7 @@ async def cancel_order(
     return view
 
 
-@router.get("/orders/{order_id}/code", responses=problems(401, 403, 404, 422))
+@router.get("/orders/{order_id}/code", responses=problems(errors.UnknownOrder, errors.NoCodeForYou))
 async def my_code(
     order_id: OrderId, user: CurrentUser, orders: OrdersDep, session: ReadingDep, response: Response
 ) -> CodeView:
@@ -151,7 +156,10 @@ async def my_code(
 @router.get(
     "/orders/{order_id}/code.svg",
     response_class=Response,
-    responses={200: {"content": {"image/svg+xml": {"schema": {"type": "string"}}}}, **problems(401, 403, 404, 422)},
+    responses={
+        200: {"content": {"image/svg+xml": {"schema": {"type": "string"}}}},
+        **problems(errors.UnknownOrder, errors.NoCodeForYou),
+    },
 )
 async def my_code_picture(order_id: OrderId, user: CurrentUser, orders: OrdersDep, session: ReadingDep) -> Response:
     """The same code as a picture."""

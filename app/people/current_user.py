@@ -27,7 +27,12 @@ StillSignedIn = Callable[[Person], Awaitable[bool]]
 HTTPS_COOKIE = "__Host-session"
 LOCAL_COOKIE = "session"
 
-_cookie_documented = APIKeyCookie(name=LOCAL_COOKIE, auto_error=False, description=f"On https: `{HTTPS_COOKIE}`.")
+_cookie_documented = APIKeyCookie(
+    scheme_name="session",
+    name=LOCAL_COOKIE,
+    auto_error=False,
+    description=f"From `POST /sign-in`; on https `{HTTPS_COOKIE}`. Changes need `Sec-Fetch-Site` or `Origin` too.",
+)
 _token_documented = HTTPBearer(
     scheme_name="token", bearerFormat="cmp_…", auto_error=False, description="A script's token, from `POST /tokens`."
 )
