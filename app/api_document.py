@@ -41,6 +41,9 @@ Any answer may be a problem document (RFC 9457) whose `code` never changes; each
 TAGS: Final[Mapping[str, str]] = {
     "about": "What the service says of itself before anybody has signed in: name, time, languages, the map.",
     "people": "Signing in and out, who one is, sessions, tokens, other people.",
+    "me": "Who one is: name, language, usual post.",
+    "address book": "Whom one exchanged mail with or saved; for dispatchers everybody.",
+    "one order": "What a recipient without account reaches by the link in their mail: this one order and nothing else.",
     "orders": "Ordering, following and cancelling, and the codes that go with an order.",
     "notices": "What a person was told.",
     "me": "The signed-in person.",

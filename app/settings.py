@@ -52,6 +52,9 @@ class Settings(BaseSettings):
     allowed_domains: tuple[str, ...] = Field(
         ("campus.example",), description="Mail domains whose people may sign in and be sent mail (JSON list)."
     )
+    allow_outside_recipients: bool = Field(
+        False, description="Whether mail may be sent to people of other domains; they follow it by the link they get."
+    )
     mail_from: str = Field("mail@campus.example", description="Sender of the service's mails.")
     smtp_host: str = Field("", description="Mail server; empty: mails are files in the spool folder.")
     smtp_port: int = Field(0, ge=0, le=65535, description="Its port; 0: the usual one, 587, 465 or 25 by smtp_tls.")
@@ -80,6 +83,9 @@ class Settings(BaseSettings):
         60, gt=0, description="How long a tap or digits at a hand-over are good for on their way to the robot."
     )
     enrolment_code_lifetime_s: float = Field(900, gt=0, description="How long a robot's enrolment code is good for.")
+    link_lifetime_s: float = Field(
+        14 * 86400, gt=0, description="How long the link to one order, in mails to people without account, is good for."
+    )
     sign_in_codes_per_address: str = Field("10 per 15 minutes", description="Sign-in codes mailed to one mail address.")
     sign_in_tries_per_host: str = Field("200 per 15 minutes", description="Sign-in requests from one network address.")
     orders_per_person: str = Field("600 per hour", description="Orders that one person may place.")

@@ -3,7 +3,8 @@
 Unprocessable ├── AddressNotAllowed
               └── NoSuchPost
 NotSignedIn   ├── WrongCode
-              └── CodeExpired
+              ├── CodeExpired
+              └── LinkRefused
 Forbidden     ├── RoleNeeded
               ├── ScopeNeeded
               ├── NotForScripts
@@ -35,6 +36,12 @@ class CodeExpired(NotSignedIn):
     """No code that is still good: never asked for, too old, used, or tried too often."""
 
     code = "code_expired"
+
+
+class LinkRefused(NotSignedIn):
+    """The link of a mail is unknown, too old or was taken back."""
+
+    code = "link_refused"
 
 
 class RoleNeeded(Forbidden):

@@ -7,8 +7,9 @@ from sqlmodel import col, select
 
 from app.database import ReadingDep, SessionDep
 from app.errors import problems
-from app.paging import PAGED, PageDep, Sorting
+from app.paging import PAGED, BadCursor, PageDep, Sorting
 from app.people.current_user import DispatcherOrMaintainer, Maintainer
+from app.people.errors import LastMaintainer, RoleNeeded, UnknownPerson
 from app.people.roles import change_role
 from app.people.schemas import PeoplePage, PersonView
 from app.people.search import says
@@ -22,7 +23,7 @@ Search = Annotated[str, Query(max_length=100, description="Part of a name or mai
 BY_ADDRESS = Sorting("people", col(Person.email))
 
 
-@address_router.get("/people", responses={**PAGED, **problems(400, 401, 403, 422)})
+@address_router.get("/people", responses={**PAGED, **problems(BadCursor, RoleNeeded)})
 async def find_people(
     user: DispatcherOrMaintainer, session: ReadingDep, page: PageDep, search: Search = ""
 ) -> PeoplePage:
@@ -34,13 +35,13 @@ async def find_people(
     return PeoplePage(items=[PersonView.of(row) for row in rows], next=following)
 
 
-@router.put("/people/{person_id}/roles/{role}", responses=problems(401, 403, 404, 422))
+@router.put("/people/{person_id}/roles/{role}", responses=problems(UnknownPerson, RoleNeeded))
 async def give_role(person_id: PersonId, role: Role, user: Maintainer, session: SessionDep) -> PersonView:
     """Give somebody a role."""
     return PersonView.of(await change_role(session, person_id, role, give=True, by=user))
 
 
-@router.delete("/people/{person_id}/roles/{role}", responses=problems(401, 403, 404, 409, 422))
+@router.delete("/people/{person_id}/roles/{role}", responses=problems(UnknownPerson, LastMaintainer, RoleNeeded))
 async def take_role(person_id: PersonId, role: Role, user: Maintainer, session: SessionDep) -> PersonView:
     """Take a role from somebody; everybody stays a member."""
     return PersonView.of(await change_role(session, person_id, role, give=False, by=user))

@@ -4,12 +4,14 @@ from datetime import timedelta
 from typing import Annotated
 
 from fastapi import APIRouter, Path, Query, Response
+from sqlmodel import col
 
 from app.database import ReadingDep, SessionDep
 from app.errors import problems
+from app.paging import PAGED, BadCursor, PageDep, Sorting
 from app.people.contacts import address_book, forget_contact, save_contact
 from app.people.current_user import AtBrowser, CurrentUser, ThisSession
-from app.people.errors import NoSuchPost
+from app.people.errors import NoSuchPost, UnknownContact, UnknownSession, UnknownToken
 from app.people.rate_limits import Door, per_person
 from app.people.schemas import (
     AboutMe,
@@ -19,22 +21,24 @@ from app.people.schemas import (
     Email,
     NewTokenView,
     PersonView,
-    Sessions,
+    SessionPage,
     SessionView,
-    Tokens,
+    TokenPage,
     TokenView,
     TokenWish,
 )
 from app.people.sessions import end_others, end_session, open_sessions
 from app.people.tokens import good_tokens, issue_token, revoke_token
 from app.settings import CampusDep, ClockDep
-from app.tables import Person
+from app.tables import Person, PersonSession, PersonToken
 from maps import CampusMap, UnknownPost
 
 me_router = APIRouter(tags=["me"])
 router = APIRouter(tags=["people"])
 address_router = APIRouter(tags=["address book"])
 
+NEWEST_SESSIONS = Sorting("sessions", col(PersonSession.id), descending=True)
+NEWEST_TOKENS = Sorting("tokens", col(PersonToken.created_at), col(PersonToken.prefix), descending=True)
 CHANGES = [per_person(Door.CHANGES)]
 
 ContactEmail = Annotated[Email, Path()]
@@ -42,13 +46,13 @@ SessionId = Annotated[int, Path(ge=1, le=2**53)]
 Prefix = Annotated[str, Path(pattern=r"^[0-9a-f]{8}$")]
 
 
-@me_router.get("/me", responses=problems(401, 403))
+@me_router.get("/me")
 async def who_am_i(user: CurrentUser) -> PersonView:
     """The signed-in person; of a script: whose it is, with the roles that its scopes leave."""
     return PersonView.of(user)
 
 
-@me_router.patch("/me", dependencies=CHANGES, responses=problems(401, 403, 422, 429))
+@me_router.patch("/me", dependencies=CHANGES, responses=problems(NoSuchPost, 429))
 async def change_me(wish: AboutMe, user: AtBrowser, session: SessionDep, campus: CampusDep) -> PersonView:
     """Change one's name, language or usual post."""
     person = await session.get_one(Person, user.id)
@@ -68,7 +72,7 @@ def _require_post(campus: CampusMap, name: str | None) -> None:
         raise NoSuchPost(str(error)) from None
 
 
-@address_router.get("/me/contacts", responses=problems(401, 403, 422))
+@address_router.get("/me/contacts")
 async def my_contacts(
     user: CurrentUser,
     session: ReadingDep,
@@ -80,7 +84,7 @@ async def my_contacts(
     return AddressBook(items=[ContactView.of(one) for one in known])
 
 
-@address_router.put("/me/contacts/{email}", dependencies=CHANGES, responses=problems(401, 403, 422, 429))
+@address_router.put("/me/contacts/{email}", dependencies=CHANGES, responses=problems(NoSuchPost, 429))
 async def keep_contact(
     *, email: ContactEmail, wish: ContactWish, user: AtBrowser, session: SessionDep, campus: CampusDep, clock: ClockDep
 ) -> ContactView:
@@ -89,38 +93,41 @@ async def keep_contact(
     return ContactView.of(await save_contact(session, user.id, email, wish.label, wish.post, clock.utc()))
 
 
-@address_router.delete("/me/contacts/{email}", status_code=204, responses=problems(401, 403, 404, 422))
+@address_router.delete("/me/contacts/{email}", status_code=204, responses=problems(UnknownContact))
 async def drop_contact(email: ContactEmail, user: AtBrowser, session: SessionDep) -> None:
     """Forget a saved contact."""
     await forget_contact(session, user.id, email)
 
 
-@router.get("/sessions", responses=problems(401, 403))
-async def my_sessions(user: AtBrowser, this: ThisSession, session: ReadingDep, clock: ClockDep) -> Sessions:
-    """Where this person is signed in."""
-    rows = await open_sessions(session, user.id, clock.utc())
-    return Sessions(items=[SessionView.of(row, this) for row in rows])
+@router.get("/sessions", responses={**PAGED, **problems(BadCursor)})
+async def my_sessions(
+    user: AtBrowser, this: ThisSession, session: ReadingDep, page: PageDep, clock: ClockDep
+) -> SessionPage:
+    """Where this person is signed in, newest first."""
+    rows, following = await page.of(session, open_sessions(user.id, clock.utc()), NEWEST_SESSIONS)
+    return SessionPage(items=[SessionView.of(row, this) for row in rows], next=following)
 
 
-@router.delete("/sessions", status_code=204, responses=problems(401, 403))
+@router.delete("/sessions", status_code=204)
 async def sign_out_elsewhere(user: AtBrowser, this: ThisSession, session: SessionDep, clock: ClockDep) -> None:
     """End all of this person's sessions but this one."""
     await end_others(session, user.id, this, clock.utc())
 
 
-@router.delete("/sessions/{session_id}", status_code=204, responses=problems(401, 403, 404, 422))
+@router.delete("/sessions/{session_id}", status_code=204, responses=problems(UnknownSession))
 async def end_one_session(session_id: SessionId, user: AtBrowser, session: SessionDep, clock: ClockDep) -> None:
     """End one session, this one too."""
     await end_session(session, user.id, session_id, clock.utc())
 
 
-@router.get("/tokens", responses=problems(401, 403))
-async def my_tokens(user: AtBrowser, session: ReadingDep, clock: ClockDep) -> Tokens:
-    """The tokens of this person's scripts."""
-    return Tokens(items=[TokenView.of(row) for row in await good_tokens(session, user.id, clock.utc())])
+@router.get("/tokens", responses={**PAGED, **problems(BadCursor)})
+async def my_tokens(user: AtBrowser, session: ReadingDep, page: PageDep, clock: ClockDep) -> TokenPage:
+    """The tokens of this person's scripts, newest first."""
+    rows, following = await page.of(session, good_tokens(user.id, clock.utc()), NEWEST_TOKENS)
+    return TokenPage(items=[TokenView.of(row) for row in rows], next=following)
 
 
-@router.post("/tokens", status_code=201, dependencies=CHANGES, responses=problems(401, 403, 422, 429))
+@router.post("/tokens", status_code=201, dependencies=CHANGES, responses=problems(429))
 async def make_token(
     wish: TokenWish, user: AtBrowser, session: SessionDep, clock: ClockDep, response: Response
 ) -> NewTokenView:
@@ -130,7 +137,7 @@ async def make_token(
     return NewTokenView(**TokenView.of(row).model_dump(), token=text)
 
 
-@router.delete("/tokens/{prefix}", status_code=204, responses=problems(401, 403, 404, 422))
+@router.delete("/tokens/{prefix}", status_code=204, responses=problems(UnknownToken))
 async def revoke_one_token(prefix: Prefix, user: AtBrowser, session: SessionDep, clock: ClockDep) -> None:
     """Revoke one token: it opens nothing from now on."""
     await revoke_token(session, user.id, prefix, clock.utc())

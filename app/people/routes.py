@@ -7,6 +7,7 @@ from fastapi import APIRouter, Depends, Header, Request, Response
 from app.database import DatabaseDep, SessionDep
 from app.errors import problems
 from app.people.current_user import AtBrowser, ThisSession, cookie_name
+from app.people.errors import AddressNotAllowed, CodeExpired, WrongCode
 from app.people.rate_limits import Door, LimitsDep, per_host
 from app.people.same_origin import refuse_other_sites, require_https_or_loopback
 from app.people.schemas import CodeMailed, CodeRequest, PersonView, SignIn
@@ -34,7 +35,7 @@ DeskDep = Annotated[SignInDesk, Depends(_desk)]
 DOOR = [Depends(_door), per_host(Door.SIGN_IN)]
 
 
-@router.post("/sign-in/codes", status_code=202, dependencies=DOOR, responses=problems(403, 422, 429))
+@router.post("/sign-in/codes", status_code=202, dependencies=DOOR, responses=problems(AddressNotAllowed, 429))
 async def mail_code(
     *,
     wish: CodeRequest,
@@ -54,7 +55,7 @@ async def mail_code(
     return CodeMailed(expires_at=row.expires_at)
 
 
-@router.post("/sign-in", dependencies=DOOR, responses=problems(401, 403, 422, 429))
+@router.post("/sign-in", dependencies=DOOR, responses=problems(WrongCode, CodeExpired, 429))
 async def sign_in(
     *,
     wish: SignIn,
@@ -80,7 +81,7 @@ async def sign_in(
     return PersonView.of(person)
 
 
-@router.delete("/session", status_code=204, responses=problems(401, 403))
+@router.delete("/session", status_code=204)
 async def sign_out(
     *,
     user: AtBrowser,

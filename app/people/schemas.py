@@ -55,7 +55,8 @@ class PersonView(BaseModel):
         return cls.model_validate(person, from_attributes=True)
 
 
-PeoplePage = PageOf[PersonView]
+class PeoplePage(PageOf[PersonView]):
+    """Some people, by mail address."""
 
 
 class AboutMe(BaseModel):
@@ -83,10 +84,8 @@ class SessionView(BaseModel):
         return cls.model_validate({**row.model_dump(), "current": row.id == current})
 
 
-class Sessions(BaseModel):
-    """All of them, newest first."""
-
-    items: list[SessionView]
+class SessionPage(PageOf[SessionView]):
+    """Some sessions, newest first."""
 
 
 class TokenWish(BaseModel):
@@ -120,10 +119,8 @@ class NewTokenView(TokenView):
     token: str
 
 
-class Tokens(BaseModel):
-    """All that still open something, newest first."""
-
-    items: list[TokenView]
+class TokenPage(PageOf[TokenView]):
+    """Some tokens that still open something, newest first."""
 
 
 class ContactWish(BaseModel):

@@ -28,6 +28,11 @@ def is_allowed(email: str, settings: Settings) -> bool:
     return email.rpartition("@")[2] in settings.allowed_domains
 
 
+def may_be_sent_mail(email: str, settings: Settings) -> bool:
+    """Whether a new address may be an order's recipient."""
+    return settings.allow_outside_recipients or is_allowed(email, settings)
+
+
 def name_from(email: str) -> str:
     """`ada.king@…` is presumably Ada King."""
     words = re.split(r"[._+-]+", email.partition("@")[0])

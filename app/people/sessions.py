@@ -1,7 +1,6 @@
 """Sessions of browsers: opened at sign-in, listed, ended. Known here by the hashes of their cookies alone."""
 
 import secrets
-from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from hashlib import sha256
@@ -9,6 +8,7 @@ from typing import Final
 
 from sqlmodel import col, select, update
 from sqlmodel.ext.asyncio.session import AsyncSession
+from sqlmodel.sql.expression import SelectOfScalar
 
 from app.people.devices import device_of
 from app.people.errors import UnknownSession
@@ -70,12 +70,11 @@ async def note_seen(session: AsyncSession, session_id: int, now: datetime) -> No
     await session.exec(update(PersonSession).where(col(PersonSession.id) == session_id).values(seen_at=now))
 
 
-async def open_sessions(session: AsyncSession, person_id: str, now: datetime) -> Sequence[PersonSession]:
-    """Where somebody is signed in, newest first."""
-    theirs = select(PersonSession).where(
+def open_sessions(person_id: str, now: datetime) -> SelectOfScalar[PersonSession]:
+    """Where somebody is signed in."""
+    return select(PersonSession).where(
         PersonSession.person_id == person_id, col(PersonSession.revoked_at).is_(None), PersonSession.expires_at > now
     )
-    return (await session.exec(theirs.order_by(col(PersonSession.id).desc()))).all()
 
 
 async def end_session(session: AsyncSession, person_id: str, session_id: int, now: datetime) -> None:

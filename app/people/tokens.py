@@ -1,12 +1,13 @@
 """Scripts sign in with `cmp_<prefix>_<secret>`: for some of what their person may do, for some time."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from typing import Final
 
 from sqlmodel import col, select, update
 from sqlmodel.ext.asyncio.session import AsyncSession
+from sqlmodel.sql.expression import SelectOfScalar
 
 from app.bearer_tokens import make_token, read_token
 from app.people.errors import UnknownToken
@@ -54,12 +55,11 @@ async def issue_token(
     return row, new.text
 
 
-async def good_tokens(session: AsyncSession, person_id: str, now: datetime) -> Sequence[PersonToken]:
-    """The tokens of somebody that still open something, newest first."""
-    theirs = select(PersonToken).where(
+def good_tokens(person_id: str, now: datetime) -> SelectOfScalar[PersonToken]:
+    """The tokens of somebody that still open something."""
+    return select(PersonToken).where(
         PersonToken.person_id == person_id, col(PersonToken.revoked_at).is_(None), PersonToken.expires_at > now
     )
-    return (await session.exec(theirs.order_by(col(PersonToken.created_at).desc(), col(PersonToken.prefix)))).all()
 
 
 async def revoke_token(session: AsyncSession, person_id: str, prefix: str, now: datetime) -> None:

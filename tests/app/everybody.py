@@ -27,6 +27,7 @@ PEOPLE: Final = {
     "dispatcher": ("dispatcher@campus.example", {Role.DISPATCHER}),
     "maintainer": ("maintainer@campus.example", {Role.MAINTAINER}),
 }
+GUEST: Final = "guest@campus.example"
 EVERYTHING: Final = ("everything@campus.example", {Role.DISPATCHER, Role.MAINTAINER})
 """Whose scripts come with tokens: what they may not do is their scopes' doing."""
 
@@ -64,6 +65,7 @@ class Everybody:
     app: FastAPI
     mailroom: Mailroom
     _kept: dict[str, Scene] = field(default_factory=dict)
+    _link: str = ""
 
     def scene(self, who: str) -> Scene:
         """For what changes nothing, or is refused: the same each time."""
@@ -75,7 +77,18 @@ class Everybody:
         """For what may change something, perhaps whether somebody is signed in."""
         self._kept.pop(who, None)
         scene: Scene = self.mailroom.call(self._scene, who)
+        self._link = self._link or self.mailroom.call(self._mailed_link)
+        scene.places["link"] = self._link
         return scene
+
+    async def _mailed_link(self) -> str:
+        """What stands behind the # of the link to an order, in the mail to its recipient without account."""
+        async with self.app.state.database.transaction() as session:
+            sender, guest = [await self._person(session, email, set()) for email in (PEOPLE["sender"][0], GUEST)]
+            order_id = await self._order(session, sender, GUEST)
+        url = await self.app.state.links.url_for(guest, order_id)
+        assert url
+        return str(url.partition("#")[2])
 
     async def _scene(self, who: str) -> Scene:
         async with self.app.state.database.transaction() as session:

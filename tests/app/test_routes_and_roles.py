@@ -77,6 +77,8 @@ LINES: Final[dict[tuple[str, str], Line]] = {
     ("GET", "/api/v1/people"): Line(401, 403, 403, 403, 200, 200, "contacts:read"),
     ("PUT", "/api/v1/people/{person_id}/roles/{role}"): maintainers("none"),
     ("DELETE", "/api/v1/people/{person_id}/roles/{role}"): maintainers("none"),
+    # By the link that the order's recipient was mailed, whoever brings it.
+    ("POST", "/api/v1/link/order"): OPEN,
     ("GET", "/api/v1/estimate"): members("orders:read"),
     ("POST", "/api/v1/orders"): members("orders:write", 201),
     ("GET", "/api/v1/orders"): members("orders:read"),
@@ -103,6 +105,7 @@ WISHES: Final[dict[tuple[str, str], dict[str, Any]]] = {
     ("POST", "/api/v1/orders"): ORDER,
     ("POST", "/api/v1/sign-in/codes"): {"email": "new@campus.example"},
     ("POST", "/api/v1/sign-in"): {"email": "new@campus.example", "code": "00000000"},
+    ("POST", "/api/v1/link/order"): {"token": "{link}"},
     ("PATCH", "/api/v1/me"): {"language": "en"},
     ("PUT", "/api/v1/me/contacts/{email}"): {"label": "Aunt"},
     ("POST", "/api/v1/tokens"): {"name": "script", "scopes": ["orders:read"]},

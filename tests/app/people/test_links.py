@@ -1,0 +1,103 @@
+"""A recipient without account follows their one order by the link in their mail, and opens nothing else with it."""
+
+import re
+from email.message import EmailMessage
+from typing import Any
+
+import pytest
+from fastapi import FastAPI
+from fastapi.testclient import TestClient
+
+from app.settings import Settings
+from protocol.clock import SteppedClock
+from tests.app.conftest import RECIPIENT, Browser, Mailroom, Mails, SignedIn
+
+OUTSIDE = "guest@elsewhere.example"
+ORDER = "/api/v1/link/order"
+
+
+@pytest.fixture
+def settings(settings: Settings) -> Settings:
+    return settings.model_copy(update={"allow_outside_recipients": True})
+
+
+def link_in(mail: EmailMessage) -> str:
+    body = mail.get_body(("plain",))
+    assert body
+    found = re.search(r"https://mail\.campus\.example/one-order\.html#([A-Za-z0-9_-]{43})\b", body.get_content())
+    assert found, body.get_content()
+    return found[1]
+
+
+def on_its_way(sender: Browser, mailroom: Mailroom, to: str) -> str:
+    """An order whose mail is aboard: its recipient has been told."""
+    order_id: str = sender.order(recipient=to).json()["id"]
+    mailroom.move(order_id, "assigned", "to_sender", "at_sender", "carrying")
+    mailroom.send_mails()
+    return order_id
+
+
+def said(answer: Any) -> tuple[int, str]:
+    return answer.status_code, answer.json()["code"]
+
+
+def test_the_mail_to_somebody_outside_holds_a_link_to_their_order(
+    nobody: TestClient, sender: Browser, mailroom: Mailroom, mails: Mails, settings: Settings
+) -> None:
+    order_id = on_its_way(sender, mailroom, OUTSIDE)
+    token = link_in(mails.to(OUTSIDE)[0])
+    opened = nobody.post(ORDER, json={"token": token})
+    assert opened.status_code == 200
+    assert (opened.json()["id"], opened.json()["my_role"]) == (order_id, "recipient")
+    assert nobody.get("/api/v1/orders", headers={"Authorization": f"Bearer {token}"}).status_code == 401
+    assert nobody.get("/api/v1/orders", headers={"Cookie": f"session={token}"}).status_code == 401
+    stored = b"".join(file.read_bytes() for file in settings.data.glob("campus-mail.sqlite*"))
+    assert token.encode() not in stored, "only its hash is kept"
+
+
+def test_each_order_has_its_own_link_and_every_mail_about_it_the_same(
+    sender: Browser, mailroom: Mailroom, mails: Mails
+) -> None:
+    first = on_its_way(sender, mailroom, OUTSIDE)
+    mailroom.move(first, "at_recipient")
+    mailroom.send_mails()
+    again = on_its_way(sender, mailroom, OUTSIDE)
+    links = [link_in(mail) for mail in mails.to(OUTSIDE)]
+    assert (first != again, len(links), len(set(links))) == (True, 3, 2)
+
+
+def test_a_wrong_or_old_link_opens_nothing(
+    nobody: TestClient, sender: Browser, mailroom: Mailroom, mails: Mails, clock: SteppedClock
+) -> None:
+    on_its_way(sender, mailroom, OUTSIDE)
+    token = link_in(mails.to(OUTSIDE)[0])
+    assert said(nobody.post(ORDER, json={"token": "A" * 43})) == (401, "link_refused")
+    assert nobody.post(ORDER, json={"token": token[:-1]}).status_code == 422
+    assert nobody.get(ORDER, params={"token": token}).status_code == 405, "it acts by POST alone: scanners open links"
+    clock.advance(14 * 86400)
+    assert said(nobody.post(ORDER, json={"token": token})) == (401, "link_refused")
+
+
+def test_another_site_cannot_use_a_link_and_neither_does_plain_http(app: FastAPI, nobody: TestClient) -> None:
+    wish = {"token": "A" * 43}
+    assert said(nobody.post(ORDER, json=wish, headers={"Origin": "https://evil.example"})) == (403, "cross_site")
+    remote = TestClient(app, base_url="http://mail.campus.example")
+    remote.portal = nobody.portal
+    assert said(remote.post(ORDER, json=wish)) == (403, "https_required")
+
+
+def test_whoever_has_an_account_signs_in_and_gets_no_link(
+    signed_in: SignedIn, sender: Browser, mailroom: Mailroom, mails: Mails
+) -> None:
+    signed_in(RECIPIENT)
+    on_its_way(sender, mailroom, RECIPIENT)
+    (mail,) = [mail for mail in mails.to(RECIPIENT) if not mail["Message-ID"].startswith("<sign-in")]
+    body = mail.get_body(("plain",))
+    assert body
+    assert "one-order.html" not in body.get_content()
+    assert "follow.html" in body.get_content()
+
+
+def test_somebody_outside_can_be_sent_mail_and_still_not_sign_in(nobody: TestClient, sender: Browser) -> None:
+    assert sender.order(recipient=OUTSIDE).status_code == 201
+    assert said(nobody.post("/api/v1/sign-in/codes", json={"email": OUTSIDE})) == (422, "address_not_allowed")
