@@ -1,8 +1,11 @@
 """What robots say, taken once and in order: the same rules as on the robot's side (`protocol/sequence.py`)."""
 
+from collections.abc import Sequence
 from datetime import datetime
+from typing import Any, Final
 
-from sqlmodel import select
+from sqlalchemy import bindparam, insert, update
+from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.fleet.errors import MessageGap
@@ -31,28 +34,64 @@ async def knows_another_journal(session: AsyncSession, robot: str, journal: str)
     return bool(journals) and journal not in journals
 
 
-async def take(session: AsyncSession, robot: str, envelope: Envelope, now: datetime) -> bool:
-    """Write down a durable message; False if it was handled before. Raises MessageGap."""
+async def write_down(session: AsyncSession, said: Sequence[Envelope], now: datetime) -> list[bool | MessageGap]:
+    """Judge durable messages of some robots in order, and write down the new ones.
+
+    For each: True if it is new, False if it was handled before, a MessageGap if one before it is missing.
+    """
+    if not said:
+        return []
+    received = await _received(session, {envelope.robot for envelope in said})
+    before = dict(received)
+    verdicts = [_judge(received, envelope) for envelope in said]
+    new = [envelope for envelope, verdict in zip(said, verdicts, strict=True) if verdict is True]
+    if new:
+        connection = await session.connection()
+        await connection.execute(insert(RobotMessage), [_row(envelope, now) for envelope in new])
+        moved = [
+            {"of": robot, "in_journal": journal, "up_to": seq}
+            for (robot, journal), seq in received.items()
+            if seq != before[robot, journal]
+        ]
+        await connection.execute(_MOVE_ON, moved)
+    return verdicts
+
+
+_MOVE_ON: Final = (
+    update(RobotJournal)
+    .where(col(RobotJournal.robot) == bindparam("of"), col(RobotJournal.journal) == bindparam("in_journal"))
+    .values(received_seq=bindparam("up_to"))
+)
+
+
+async def _received(session: AsyncSession, robots: set[str]) -> dict[tuple[str, str], int]:
+    """The highest number taken so far, by robot and journal."""
+    wanted = select(RobotJournal.robot, RobotJournal.journal, RobotJournal.received_seq)
+    rows = await session.exec(wanted.where(col(RobotJournal.robot).in_(robots)))
+    return {(robot, journal): seq for robot, journal, seq in rows.all()}
+
+
+def _judge(received: dict[tuple[str, str], int], envelope: Envelope) -> bool | MessageGap:
     assert envelope.seq is not None  # noqa: S101  # the parser lets no durable message pass without
-    row = await session.get(RobotJournal, (robot, envelope.journal))
-    received = Received(journal=row.journal, seq=row.received_seq) if row else Received()
-    judged = sequence.reception(received, envelope.journal, envelope.seq)
-    if judged is Reception.GAP or row is None:
-        sentence = f"message {envelope.seq} came, {received.seq + 1} was next: connect again and resume"
-        raise MessageGap(sentence, envelope.seq)
-    if judged is Reception.REPEATED:
-        return False
-    row.received_seq = envelope.seq
-    session.add(
-        RobotMessage(
-            robot=robot,
-            journal=envelope.journal,
-            seq=envelope.seq,
-            type=envelope.type,
-            body=envelope.body.model_dump(mode="json"),
-            sent_at=envelope.at,
-            received_at=now,
-        )
-    )
-    await session.flush()
-    return True
+    place = (envelope.robot, envelope.journal)
+    last = received.get(place)
+    so_far = Received() if last is None else Received(journal=envelope.journal, seq=last)
+    judged = sequence.reception(so_far, envelope.journal, envelope.seq)
+    if judged is Reception.GAP:
+        sentence = f"message {envelope.seq} came, {so_far.seq + 1} was next: connect again and resume"
+        return MessageGap(sentence, envelope.seq)
+    if judged is Reception.NEW:
+        received[place] = envelope.seq
+    return judged is Reception.NEW
+
+
+def _row(envelope: Envelope, now: datetime) -> dict[str, Any]:
+    return {
+        "robot": envelope.robot,
+        "journal": envelope.journal,
+        "seq": envelope.seq,
+        "type": envelope.type,
+        "body": envelope.body.model_dump(mode="json"),
+        "sent_at": envelope.at,
+        "received_at": now,
+    }

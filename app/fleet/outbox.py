@@ -1,13 +1,16 @@
 """What robots are to be told, kept until they have it. Written in the transaction of whatever it follows from."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from datetime import datetime
+from typing import Any, Final
 from uuid import uuid4
 
+from sqlalchemy import bindparam, exists
 from sqlmodel import col, func, select, update
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.tables import MessageToRobot, RobotRow
+from app.tables import MessageToRobot, RobotRow, RobotToken
 from protocol.envelope import type_of
 from protocol.parts import Part, Received
 
@@ -22,23 +25,48 @@ async def keep(session: AsyncSession, robot: RobotRow, message: Part, now: datet
     return robot.last_seq
 
 
-async def pending(session: AsyncSession, robot: str, after: int, limit: int) -> Sequence[MessageToRobot]:
-    """What the robot has not acknowledged, beyond `after`, in order."""
+@dataclass(frozen=True, slots=True)
+class Waiting:
+    """A message that is to go out. `may_hear` is false once the token of the connection is revoked."""
+
+    seq: int
+    type: str
+    body: Mapping[str, Any]
+    may_hear: bool
+
+
+async def pending(session: AsyncSession, robot: str, prefix: str, after: int, limit: int) -> Sequence[Waiting]:
+    """What the robot has not acknowledged, beyond `after`, in order; `prefix` is the token that it came in with."""
+    good = exists().where(col(RobotToken.prefix) == prefix, col(RobotToken.revoked_at).is_(None))
     wanted = (
-        select(MessageToRobot)
+        select(MessageToRobot.seq, MessageToRobot.type, MessageToRobot.body, good)
         .where(MessageToRobot.robot == robot, MessageToRobot.seq > after, col(MessageToRobot.acked_at).is_(None))
         .order_by(col(MessageToRobot.seq))
         .limit(limit)
     )
-    return (await session.exec(wanted)).all()
+    return [Waiting(*row) for row in (await session.exec(wanted)).all()]
+
+
+async def acknowledged_by(session: AsyncSession, up_to: Mapping[str, int], now: datetime) -> None:
+    """These robots have stored everything up to these numbers."""
+    rows = [{"of": robot, "up_to": seq, "at": now} for robot, seq in up_to.items()]
+    await (await session.connection()).execute(_HAVE, rows)
+
+
+_HAVE: Final = (
+    update(MessageToRobot)
+    .where(
+        col(MessageToRobot.robot) == bindparam("of"),
+        col(MessageToRobot.seq) <= bindparam("up_to"),
+        col(MessageToRobot.acked_at).is_(None),
+    )
+    .values(acked_at=bindparam("at"))
+)
 
 
 async def acknowledged(session: AsyncSession, robot: str, seq: int, now: datetime) -> None:
     """The robot has stored everything up to `seq`."""
-    have = update(MessageToRobot).where(
-        col(MessageToRobot.robot) == robot, col(MessageToRobot.seq) <= seq, col(MessageToRobot.acked_at).is_(None)
-    )
-    await session.exec(have.values(acked_at=now))
+    await acknowledged_by(session, {robot: seq}, now)
 
 
 async def resume_from(session: AsyncSession, robot: RobotRow) -> int:

@@ -8,6 +8,7 @@ from starlette.requests import HTTPConnection
 
 from app.database import ReadingDep
 from app.fleet.conversation import TOKEN_REFUSED, Conversation
+from app.fleet.intake import Intake
 from app.fleet.service import Fleet
 from app.fleet.tokens import token_of
 from app.orders.robot_view import RobotView, robot_view
@@ -26,7 +27,13 @@ def _fleet_of(connection: HTTPConnection) -> Fleet:
     return fleet
 
 
+def _intake_of(connection: HTTPConnection) -> Intake:
+    intake: Intake = connection.app.state.intake
+    return intake
+
+
 FleetDep = Annotated[Fleet, Depends(_fleet_of)]
+IntakeDep = Annotated[Intake, Depends(_intake_of)]
 RobotName = Annotated[str, Path(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]*$", max_length=64)]
 
 
@@ -42,7 +49,7 @@ async def all_robots(user: CurrentUser, session: ReadingDep, fleet: FleetDep, pa
 
 
 @router.websocket("/robots/link")
-async def robot_link(socket: WebSocket, fleet: FleetDep) -> None:
+async def robot_link(socket: WebSocket, fleet: FleetDep, intake: IntakeDep) -> None:
     """The link of one robot (docs/protocol.md), signed in by its token."""
     async with fleet.database.transaction() as session:
         token = await token_of(session, socket.headers.get("Authorization"), fleet.clock.utc())
@@ -51,4 +58,4 @@ async def robot_link(socket: WebSocket, fleet: FleetDep) -> None:
         reason = "token refused" if token is None else "a token is taken over wss alone"
         await socket.close(TOKEN_REFUSED, reason)
         return
-    await Conversation(fleet, token, socket).run()
+    await Conversation(intake, token, socket).run()

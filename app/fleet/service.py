@@ -8,12 +8,10 @@ from uuid import uuid4
 from sqlmodel import col, select, update
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.database import Database, after_commit, savepoint
-from app.errors import ServiceError
-from app.fleet import inbox, outbox, traffic
-from app.fleet.alarms import raise_alarm
+from app.database import Database, after_commit
+from app.fleet import outbox, traffic
 from app.fleet.connections import Connections
-from app.fleet.errors import FleetError, RobotExists, RobotNameInvalid, UnknownRobot
+from app.fleet.errors import RobotExists, RobotNameInvalid, UnknownRobot
 from app.fleet.progress import Report, follow
 from app.fleet.tokens import make_token
 from app.live.feed import Feed, Happening
@@ -22,9 +20,7 @@ from app.orders.service import Orders
 from app.settings import Settings
 from app.tables import RobotRow, RobotToken
 from maps import CampusMap
-from protocol.both_ways import Error
 from protocol.clock import Clock
-from protocol.envelope import Envelope
 from protocol.parts import Activity, Battery, Part, Position
 from protocol.to_server import Claim, Clear, Event, Snapshot, Why
 
@@ -95,25 +91,8 @@ class Fleet:
         after_commit(session, lambda: self.connections.wake(robot.name))
         return seq
 
-    async def take(self, session: AsyncSession, robot: RobotRow, envelope: Envelope) -> Error | None:
-        """Write down a durable message from a robot and do what follows from it, once. Raises MessageGap.
-
-        What cannot be followed is written down all the same, so that it does not come again for ever: people get an
-        alarm, the robot the returned error.
-        """
-        if not await inbox.take(session, robot.name, envelope, self.clock.utc()):
-            return None
-        try:
-            async with savepoint(session):
-                await self._follow(session, robot, envelope.body)
-        except (FleetError, ServiceError) as problem:
-            sentence = str(problem)[:500]
-            await raise_alarm(session, robot.name, problem.code, sentence, now=self.clock.utc())
-            return Error(code=problem.code, message=sentence, seq=envelope.seq)
-        self.announce(session, robot)
-        return None
-
-    async def _follow(self, session: AsyncSession, robot: RobotRow, message: Part) -> None:
+    async def follow(self, session: AsyncSession, robot: RobotRow, message: Part) -> None:
+        """Do what follows from a durable message. Raises FleetError or ServiceError; undo what it has done then."""
         now = self.clock.utc()
         match message:
             case Event():
@@ -125,22 +104,21 @@ class Fleet:
             case Clear():
                 await traffic.clear(session, self.campus, robot.name, message, now)
 
-    def note(self, session: AsyncSession, robot: RobotRow, message: Snapshot | Why) -> None:
+    def note(self, robot: RobotRow, message: Snapshot | Why) -> None:
         """Take over what a robot says of its present state."""
-        robot.heard_at = self.clock.utc()
         if isinstance(message, Why):
             robot.why = message.sentence
         else:
             note_state(robot, message.position, message.battery)
             robot.activity = message.activity
-        self.announce(session, robot)
 
-    def announce(self, session: AsyncSession, robot: RobotRow) -> None:
-        """After the commit: pages see the robot as it is now, and whoever waits for robots looks again."""
-        view = robot_view(robot, self.campus, self.settings).model_dump(mode="json")
+    def announce(self, session: AsyncSession, robot: RobotRow, is_seen: bool = True) -> None:
+        """After the commit: whoever waits for robots looks again, and pages see it as it is now, if that is news."""
+        view = robot_view(robot, self.campus, self.settings) if is_seen else None
 
         def say() -> None:
-            self.feed.publish(Happening("robot", view))
+            if view is not None:
+                self.feed.publish(Happening("robot", view.model_dump(mode="json")))
             for call in self.on_change:
                 call(robot.name)
 

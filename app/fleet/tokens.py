@@ -2,6 +2,7 @@
 
 from datetime import datetime
 
+from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.bearer_tokens import NewToken, read_token
@@ -26,7 +27,7 @@ async def token_of(session: AsyncSession, authorization: str | None, now: dateti
     return row
 
 
-async def is_revoked(session: AsyncSession, prefix: str) -> bool:
-    """Whether a token that let somebody in is worthless by now."""
-    row = await session.get(RobotToken, prefix)
-    return row is None or row.revoked_at is not None
+async def still_good(session: AsyncSession, prefixes: set[str]) -> set[str]:
+    """Which of these tokens, that let somebody in, are worth something still."""
+    good = select(RobotToken.prefix).where(col(RobotToken.prefix).in_(prefixes), col(RobotToken.revoked_at).is_(None))
+    return set((await session.exec(good)).all())

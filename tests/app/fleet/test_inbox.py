@@ -9,7 +9,6 @@ from sqlmodel import SQLModel, select
 
 from app.database import Database
 from app.fleet import inbox
-from app.fleet.errors import MessageGap
 from app.tables import RobotMessage, RobotRow
 from protocol.envelope import Envelope
 from protocol.parts import Leg
@@ -38,11 +37,8 @@ async def everything_taken(arriving: list[tuple[str, int]]) -> tuple[list[tuple[
             if seq == 0:
                 await inbox.resume(session, "r1", journal, 1, AT)
                 continue
-            try:
-                if await inbox.take(session, "r1", message(journal, seq), AT):
-                    new.append((journal, seq))
-            except MessageGap:
-                pass
+            (verdict,) = await inbox.write_down(session, [message(journal, seq)], AT)
+            new += [(journal, seq)] if verdict is True else []
     async with database.reading() as session:
         rows = (await session.exec(select(RobotMessage))).all()
     await database.close()

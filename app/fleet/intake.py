@@ -1,0 +1,209 @@
+"""What robots say, taken in for all of them together: one transaction for whatever has come meanwhile.
+
+The messages of one robot keep their order, and each connection hears of them after the commit alone. If anything in a
+transaction fails, all of it is undone and each robot's messages are taken by themselves, so that a mistake in one of
+them costs the others nothing but time.
+"""
+
+import asyncio
+from collections import deque
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Final, Protocol
+
+from sqlalchemy import update
+from sqlalchemy.orm.attributes import set_committed_value
+from sqlmodel import col, select
+from sqlmodel.ext.asyncio.session import AsyncSession
+
+from app.database import savepoint
+from app.errors import ServiceError
+from app.fleet import inbox, outbox
+from app.fleet.alarms import raise_alarm
+from app.fleet.errors import FleetError, MessageGap
+from app.fleet.foresight import look_ahead
+from app.fleet.service import Fleet
+from app.fleet.tokens import still_good
+from app.tables import RobotRow
+from protocol.both_ways import Error
+from protocol.envelope import Envelope
+from protocol.to_server import Snapshot, Why
+
+AT_ONCE: Final = 64
+"""Messages in one transaction, so that the first of them does not wait long for the last."""
+UNSEEN: Final = frozenset({"heard_at", "last_seq"})
+"""What may change of a robot without anything to tell pages."""
+
+
+class TokenRevoked(Exception):
+    """The token that opened this connection is worthless by now."""
+
+
+class Speaker(Protocol):
+    """One robot's connection, as far as it is listened to. Neither call waits."""
+
+    robot: str
+    token_prefix: str
+    acknowledged: int
+
+    def taken(self, envelope: Envelope, problem: Error | None) -> None:
+        """On the disk, with what could not be followed of it."""
+        ...
+
+    def failed(self, error: Exception) -> None:
+        """Not on the disk, nor anything after it: this connection cannot go on."""
+        ...
+
+
+@dataclass
+class Said:
+    """One message of one connection, and what has become of it."""
+
+    speaker: Speaker
+    envelope: Envelope
+    problem: Error | None = None
+    failure: Exception | None = None
+
+
+@dataclass
+class Intake:
+    """Takes what has come since the last transaction, for as long as anything comes."""
+
+    fleet: Fleet
+    _waiting: deque[Said] = field(default_factory=deque)
+    _over: set[Speaker] = field(default_factory=set)
+    _work: asyncio.Task[None] | None = None
+
+    def hear(self, speaker: Speaker, envelope: Envelope) -> None:
+        """Take this message in, soon; the speaker is told when it is done."""
+        self._waiting.append(Said(speaker, envelope))
+        if self._work is None or self._work.done():
+            self._work = asyncio.create_task(self._take_all())
+
+    async def _take_all(self) -> None:
+        while self._waiting:
+            some = [self._waiting.popleft() for _ in range(min(AT_ONCE, len(self._waiting)))]
+            await self._take(some)
+        self._over.clear()
+
+    async def _take(self, some: Sequence[Said]) -> None:
+        # Nothing after a failure is taken: there would be a gap.
+        said = [one for one in some if one.speaker not in self._over]
+        try:
+            await self._in_one_transaction(said)
+        except Exception:
+            await asyncio.gather(*(self._by_itself(theirs) for theirs in _by_speaker(said)))
+        for one in said:
+            self._tell(one)
+
+    async def _in_one_transaction(self, said: Sequence[Said], careful: bool = False) -> None:
+        for one in said:
+            one.problem = one.failure = None
+        async with self.fleet.database.transaction() as session:
+            await self._take_in(session, said, careful)
+
+    async def _by_itself(self, theirs: Sequence[Said]) -> None:
+        for number, one in enumerate(theirs):
+            try:
+                await self._in_one_transaction([one], careful=True)
+            except Exception as error:
+                one.failure = error
+            if one.failure is not None:
+                for later in theirs[number:]:
+                    later.failure = one.failure
+                return
+
+    def _tell(self, one: Said) -> None:
+        if one.speaker in self._over:
+            return
+        if one.failure is None:
+            one.speaker.taken(one.envelope, one.problem)
+        else:
+            self._over.add(one.speaker)
+            one.speaker.failed(one.failure)
+
+    # In the transaction.
+
+    async def _take_in(self, session: AsyncSession, said: Sequence[Said], careful: bool) -> None:
+        now = self.fleet.clock.utc()
+        said = await self._from_good_tokens(session, said)
+        robots = await _rows(session, {one.speaker.robot for one in said})
+        before = {name: _seen(robot) for name, robot in robots.items()}
+        await self._note_acknowledged(session, said)
+        durable = [one for one in said if one.envelope.seq is not None]
+        verdicts = await inbox.write_down(session, [one.envelope for one in durable], now)
+        new = {id(one) for one, verdict in zip(durable, verdicts, strict=True) if verdict is True}
+        for one, verdict in zip(durable, verdicts, strict=True):
+            one.failure = verdict if isinstance(verdict, MessageGap) else None
+        # Kept until the end: the session forgets rows that nobody holds.
+        ahead = await look_ahead(session, [one.envelope.body for one in durable if id(one) in new])
+        for one in said:
+            if one.envelope.seq is None or id(one) in new:
+                one.problem = await self._follow(session, robots[one.speaker.robot], one.envelope, careful)
+        await _heard(session, robots.values(), now)
+        for name, robot in robots.items():
+            self.fleet.announce(session, robot, is_seen=_seen(robot) != before[name])
+        del ahead
+
+    async def _from_good_tokens(self, session: AsyncSession, said: Sequence[Said]) -> Sequence[Said]:
+        """With every message: what was stolen must not go on being heard once it is found out."""
+        good = await still_good(session, {one.speaker.token_prefix for one in said})
+        for one in said:
+            one.failure = None if one.speaker.token_prefix in good else TokenRevoked()
+        return [one for one in said if one.failure is None]
+
+    async def _note_acknowledged(self, session: AsyncSession, said: Sequence[Said]) -> None:
+        news = {one.speaker.robot: one.envelope.ack for one in said if one.envelope.ack > one.speaker.acknowledged}
+        if news:
+            await outbox.acknowledged_by(session, news, self.fleet.clock.utc())
+
+    async def _follow(self, session: AsyncSession, robot: RobotRow, envelope: Envelope, careful: bool) -> Error | None:
+        """Do what follows. What cannot be followed is written down all the same, or it would come again for ever:
+        people get an alarm, the robot the returned error."""
+        match envelope.body:
+            case Snapshot() | Why() as news:
+                self.fleet.note(robot, news)
+            case Error(code=code, message=message):
+                now = self.fleet.clock.utc()
+                await raise_alarm(session, robot.name, "robot_reports_error", f"{code}: {message}", now=now)
+            case body if envelope.seq is not None and not careful:
+                await self.fleet.follow(session, robot, body)
+            case body if envelope.seq is not None:
+                return await self._follow_carefully(session, robot, envelope)
+        return None
+
+    async def _follow_carefully(self, session: AsyncSession, robot: RobotRow, envelope: Envelope) -> Error | None:
+        try:
+            async with savepoint(session):
+                await self.fleet.follow(session, robot, envelope.body)
+        except (FleetError, ServiceError) as problem:
+            sentence = str(problem)[:500]
+            await raise_alarm(session, robot.name, problem.code, sentence, now=self.fleet.clock.utc())
+            return Error(code=problem.code, message=sentence, seq=envelope.seq)
+        return None
+
+
+def _by_speaker(said: Iterable[Said]) -> Iterable[Sequence[Said]]:
+    theirs: dict[Speaker, list[Said]] = {}
+    for one in said:
+        theirs.setdefault(one.speaker, []).append(one)
+    return theirs.values()
+
+
+async def _rows(session: AsyncSession, names: set[str]) -> dict[str, RobotRow]:
+    # In the order of their names: two transactions that lock the same rows never wait for each other.
+    wanted = select(RobotRow).where(col(RobotRow.name).in_(names)).order_by(col(RobotRow.name)).with_for_update()
+    return {row.name: row for row in (await session.exec(wanted)).all()}
+
+
+def _seen(robot: RobotRow) -> dict[str, Any]:
+    return {name: value for name, value in robot.__dict__.items() if name not in UNSEEN and name[0] != "_"}
+
+
+async def _heard(session: AsyncSession, robots: Iterable[RobotRow], now: Any) -> None:
+    """One statement for all of them."""
+    rows = list(robots)
+    theirs = update(RobotRow).where(col(RobotRow.name).in_([row.name for row in rows]))
+    await (await session.connection()).execute(theirs.values(heard_at=now))
+    for row in rows:
+        set_committed_value(row, "heard_at", now)
