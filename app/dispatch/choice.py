@@ -1,26 +1,34 @@
 """Which robot fetches which order: a pure function of what waits, who is free, and the map.
 
-Thin: the oldest order first, the nearest idle robot, one order per mission. Predicted charge, several items per robot
-and timetables come later behind the same function.
+Thin: who has waited longest first (priority counts like waiting), the nearest idle robot. Predicted charge and
+timetables come later behind the same function; what is taken along on the way is `insertion.py`.
 """
 
-import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from datetime import datetime, timedelta
 from typing import Final
 
-from maps import CampusMap, CampusMapError, shortest_route
+from app.dispatch.ways import Ways
+from app.tables import Priority
 
 ENOUGH_CHARGE: Final = 0.30
 """Above the ratio at which a robot's own battery plan would take it back to the dock at once (0.25 and hysteresis)."""
+HEAD_STARTS: Final = {Priority.LOW: -1, Priority.NORMAL: 0, Priority.HIGH: 1}
 
 
 @dataclass(frozen=True)
 class WaitingOrder:
-    """An order that no robot has been given yet."""
+    """An order that no robot has been given yet. `wanted` is the only robot that may fetch it, `avoided` may not."""
 
     id: str
     from_post: str
+    to_post: str = ""
+    wanted: str | None = None
+    avoided: str | None = None
+
+    def may_go_with(self, robot: str) -> bool:
+        return robot == self.wanted if self.wanted is not None else robot != self.avoided
 
 
 @dataclass(frozen=True)
@@ -40,14 +48,24 @@ class Assignment:
     robot: str
 
 
-def choose_robot(waiting: Sequence[WaitingOrder], robots: Sequence[IdleRobot], campus: CampusMap) -> Assignment | None:
-    """The next assignment, for the first of `waiting` (longest first); None if there is none to make."""
-    able = [robot for robot in robots if has_enough_charge(robot)]
-    if not waiting or not able:
-        return None
-    order = waiting[0]
-    nearest = min(able, key=lambda robot: (_way_m(robot, order, campus), robot.name))
-    return Assignment(order.id, nearest.name)
+def counts_since(created_at: datetime, priority: Priority, head_start_s: float) -> datetime:
+    """Since when an order counts as waiting: so the important go first, and nobody waits for ever."""
+    return created_at - timedelta(seconds=HEAD_STARTS[priority] * head_start_s)
+
+
+def choose_robots(waiting: Iterable[WaitingOrder], robots: Sequence[IdleRobot], ways: Ways) -> list[Assignment]:
+    """Who fetches what: the first of `waiting` (longest first) chooses first, the nearest of those who may."""
+    free = {robot.name: robot for robot in robots if has_enough_charge(robot)}
+    chosen = []
+    for order in waiting:
+        if not free:
+            break
+        able = [robot for robot in free.values() if order.may_go_with(robot.name)]
+        if able:
+            nearest = min(able, key=lambda robot: (ways.length_m(robot.post, order.from_post), robot.name))
+            chosen.append(Assignment(order.id, nearest.name))
+            del free[nearest.name]
+    return chosen
 
 
 def has_enough_charge(robot: IdleRobot) -> bool:
@@ -61,14 +79,6 @@ def why_nobody_comes(robots: Sequence[IdleRobot], connected: int) -> str:
         return "No robot is connected at the moment."
     if not robots:
         return "Every robot is busy."
-    return "The free robots are charging first."
-
-
-def _way_m(robot: IdleRobot, order: WaitingOrder, campus: CampusMap) -> float:
-    """A robot that has not been seen yet, or where our map does not reach, is the last choice."""
-    if robot.post is None:
-        return math.inf
-    try:
-        return shortest_route(campus, robot.post, order.from_post).length_m
-    except CampusMapError:
-        return math.inf
+    if not any(has_enough_charge(robot) for robot in robots):
+        return "The free robots are charging first."
+    return "The robot that is to fetch it is busy."

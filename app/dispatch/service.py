@@ -1,42 +1,37 @@
-"""Gives waiting orders to robots. Woken after commits, by orders and robots alike, and at the start of the service.
+"""Gives waiting orders to robots, and tells robots what has changed for them. Woken after commits, by orders and robots
+alike, and at the start of the service.
 
 Everything it needs to know is in the database and everything it decides is one transaction, so that it can be stopped
 at any moment: a mission that was decided on is in the robot's outbox and is sent until it is acknowledged.
 """
 
 import asyncio
-from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Final
 
 import structlog
 from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
+from sqlmodel.sql.expression import SelectOfScalar
 
-from app.dispatch.choice import Assignment, IdleRobot, WaitingOrder, choose_robot, why_nobody_comes
-from app.fleet.commands import ask, new_command_id
-from app.fleet.greeting import stop_of
+from app.dispatch.choice import Assignment, choose_robots, has_enough_charge, why_nobody_comes
+from app.dispatch.missions import begin_mission, take_along
+from app.dispatch.situation import Situation, anything_waits, look, tours
+from app.dispatch.ways import Ways
+from app.fleet.commands import ask, new_command_id, unanswered
+from app.fleet.mission_updates import tell_mission
 from app.fleet.service import Fleet
 from app.orders.service import Word
-from app.orders.transitions import MAIL_ABOARD, ROBOT_COMING, By
-from app.people.service import new_id
-from app.tables import MissionRow, MissionState, Order, OrderState, RobotCommand, RobotRow, StopRow
-from protocol.parts import StopAction
-from protocol.to_robot import Cancel, Mission, Verifiers
+from app.orders.transitions import By
+from app.tables import MissionRow, MissionState, Order, OrderState, RobotRow
+from protocol.to_robot import Cancel
 
 LOOK_AGAIN_S: Final = 30.0
 """Real seconds. Nothing should be missed between two wakes; if it is after all, it does not wait for ever."""
+AT_ONCE: Final = 20
+"""So many orders in one transaction: what is behind them waits no longer than that takes."""
+TAKEN_ALONG_AT_ONCE: Final = 5
 
 log = structlog.get_logger(__name__)
-
-
-@dataclass(frozen=True)
-class Situation:
-    """What dispatch looks at."""
-
-    waiting: Sequence[Order]
-    idle: Sequence[IdleRobot]
-    connected: int
 
 
 class Dispatcher:
@@ -44,6 +39,7 @@ class Dispatcher:
 
     def __init__(self, fleet: Fleet) -> None:
         self._fleet = fleet
+        self._ways = Ways(fleet.campus)
         self._woken = asyncio.Event()
         self._stopping = False
         fleet.on_change.append(self.wake)
@@ -62,91 +58,107 @@ class Dispatcher:
         """Until stopped or cancelled."""
         while not self._stopping:
             self._woken.clear()
-            while await self.assign_next():
+            await self.pass_on()
+            while await self.assign():
                 pass
-            await self.pass_on_cancels()
             try:
                 async with asyncio.timeout(LOOK_AGAIN_S):
                     await self._woken.wait()
             except TimeoutError:
                 pass
 
-    async def assign_next(self) -> bool:
-        """Give one waiting order to a robot, if there are both; False if not."""
-        if not await self._anything_waits():
-            return False
-        async with self._fleet.database.transaction() as session:
-            situation = await _look(session)
-            waiting = [WaitingOrder(order.id, order.from_post) for order in situation.waiting]
-            assignment = choose_robot(waiting, situation.idle, self._fleet.campus)
-            if assignment is None:
-                await self._explain(session, situation)
+    # Who fetches what.
+
+    async def assign(self) -> bool:
+        """Give waiting orders to robots, as many as there are robots for; False if there was none to give."""
+        now = self._fleet.clock.utc()
+        async with self._fleet.database.reading() as session:
+            if not await anything_waits(session, now):
                 return False
-            await self._assign(session, assignment)
-        log.info("assigned", order=assignment.order_id, robot=assignment.robot)
-        return True
+        async with self._fleet.database.transaction() as session:
+            situation = await look(session, now, self._fleet.settings.priority_head_start_s)
+            assignments = choose_robots(situation.waiting, situation.idle, self._ways)[:AT_ONCE]
+            touched = [await self._assign(session, one) for one in assignments]
+            given = {one.order_id for one in assignments}
+            if sum(has_enough_charge(robot) for robot in situation.idle) <= len(assignments):
+                given |= await self._take_along(session, situation, given, touched)
+            await self._tell(session, touched)
+            await self._explain(session, situation, given)
+        return bool(given)
 
-    async def _anything_waits(self) -> bool:
-        async with self._fleet.database.reading() as session:
-            queued = select(Order.id).where(Order.state == OrderState.QUEUED)
-            return (await session.exec(queued.limit(1))).first() is not None
-
-    async def _explain(self, session: AsyncSession, situation: Situation) -> None:
-        why = why_nobody_comes(situation.idle, situation.connected)
-        for order in situation.waiting:
-            await self._fleet.orders.explain(session, order.id, why)
-
-    async def _assign(self, session: AsyncSession, assignment: Assignment) -> None:
+    async def _assign(self, session: AsyncSession, assignment: Assignment) -> MissionRow:
         order = await session.get_one(Order, assignment.order_id)
-        robot = await session.get_one(RobotRow, assignment.robot)
-        mission = await self._write_mission(session, order, robot)
-        word = Word(By.DISPATCHER, robot=robot.name)
-        await self._fleet.orders.move(session, order.id, OrderState.ASSIGNED, word)
-        # First what codes are checked against: the mission must not begin without.
-        await self._fleet.tell(session, robot, Verifiers(verifiers=await self._fleet.orders.verifiers(session, order)))
-        await self._fleet.tell(session, robot, mission)
+        mission = await begin_mission(session, self._fleet, order, assignment.robot)
+        await self._give(session, order, assignment.robot)
+        return mission
 
-    async def _write_mission(self, session: AsyncSession, order: Order, robot: RobotRow) -> Mission:
-        row = MissionRow(id=new_id(), robot=robot.name, created_at=self._fleet.clock.utc())
-        session.add(row)
-        await session.flush()
-        places = ((StopAction.LOAD, order.from_post), (StopAction.RECEIVE, order.to_post))
-        stops = [
-            StopRow(id=new_id(), mission_id=row.id, position=position, post=post, action=action, order_id=order.id)
-            for position, (action, post) in enumerate(places)
-        ]
-        session.add_all(stops)
-        await session.flush()
-        return Mission(id=row.id, update=row.update_number, stops=tuple(stop_of(stop) for stop in stops))
+    async def _give(self, session: AsyncSession, order: Order, robot: str) -> None:
+        await self._fleet.orders.move(session, order.id, OrderState.ASSIGNED, Word(By.DISPATCHER, robot=robot))
+        log.info("assigned", order=order.id, robot=robot)
 
-    async def pass_on_cancels(self) -> None:
-        """Ask robots to drop the orders that somebody wants to cancel; each is asked once and answers by an event."""
+    async def _take_along(
+        self, session: AsyncSession, situation: Situation, given: set[str], touched: list[MissionRow]
+    ) -> set[str]:
+        """Nobody is free any more: what lies on the way of a robot under way goes with it."""
+        taken: set[str] = set()
+        under_way = await tours(session) if self._fleet.settings.robot_capacity > 1 else []
+        for order in [one for one in situation.waiting if one.id not in given][:TAKEN_ALONG_AT_ONCE]:
+            mission = await take_along(session, self._fleet, order, under_way, self._ways)
+            if mission is not None:
+                await self._give(session, await session.get_one(Order, order.id), mission.robot)
+                taken.add(order.id)
+                touched[:] = [*(one for one in touched if one.id != mission.id), mission]
+                under_way = await tours(session)
+        return taken
+
+    async def _tell(self, session: AsyncSession, missions: list[MissionRow]) -> None:
+        for mission in missions:
+            robot = await session.get_one(RobotRow, mission.robot, with_for_update=True)
+            await tell_mission(session, self._fleet, robot, mission)
+
+    async def _explain(self, session: AsyncSession, situation: Situation, given: set[str]) -> None:
+        """Only to those who were told something else so far."""
+        waiting = [order.id for order in situation.waiting if order.id not in given]
+        if waiting:
+            why = why_nobody_comes(situation.idle, situation.connected)
+            told = select(Order.id).where(col(Order.id).in_(waiting), col(Order.why).is_distinct_from(why))
+            for order_id in (await session.exec(told)).all():
+                await self._fleet.orders.explain(session, order_id, why)
+
+    # What has changed for robots.
+
+    async def pass_on(self) -> None:
+        """Tell robots what to drop, and missions that have changed; each is told once, in a transaction of its own."""
         async with self._fleet.database.reading() as session:
-            orders = [order for order in await _to_cancel(session) if not await _was_told(session, order)]
-        for order in orders:
-            async with self._fleet.database.transaction() as session:
-                robot = await session.get_one(RobotRow, order.robot)
-                message = Cancel(command_id=new_command_id("cancel"), order_id=order.id)
-                await ask(session, self._fleet, robot, message)
+            dropped = (await session.exec(select(Order.id).where(col(Order.let_go_by).is_not(None)))).all()
+            changed = (await session.exec(_changed_missions())).all()
+        for order_id in dropped:
+            await self._tell_to_drop(order_id)
+        for mission_id in changed:
+            await self._tell_change(mission_id)
+
+    async def _tell_to_drop(self, order_id: str) -> None:
+        async with self._fleet.database.transaction() as session:
+            order = await self._fleet.orders.order(session, order_id)
+            robot = await session.get(RobotRow, order.let_go_by or "", with_for_update=True)
+            order.let_go_by = None
+            if robot is not None:
+                # What a person has taken out by hand, the robot only has to forget.
+                by_hand = order.state is OrderState.HELD
+                drop = Cancel(command_id=new_command_id("cancel"), order_id=order.id, by_hand=by_hand)
+                await ask(session, self._fleet, robot, drop)
+
+    async def _tell_change(self, mission_id: str) -> None:
+        async with self._fleet.database.transaction() as session:
+            mission = await session.get_one(MissionRow, mission_id, with_for_update=True)
+            # After a recall it has no mission, until its answer has come in: an update would be a new one to it.
+            if await unanswered(session, robot=mission.robot, kind="recall"):
+                return
+            robot = await session.get_one(RobotRow, mission.robot, with_for_update=True)
+            await tell_mission(session, self._fleet, robot, mission)
 
 
-async def _look(session: AsyncSession) -> Situation:
-    queued = select(Order).where(Order.state == OrderState.QUEUED).order_by(col(Order.created_at), col(Order.id))
-    waiting = (await session.exec(queued)).all()
-    connected = (await session.exec(select(RobotRow).where(col(RobotRow.online)))).all()
-    on_mission = await session.exec(select(MissionRow.robot).where(MissionRow.state == MissionState.ACTIVE))
-    # A robot that has mail aboard and no mission any more is no free robot: its mail comes first.
-    carrying = await session.exec(select(Order.robot).where(col(Order.state).in_(MAIL_ABOARD)))
-    busy = {*on_mission.all(), *carrying.all()}
-    idle = [IdleRobot(row.name, row.post, row.battery_ratio) for row in connected if row.name not in busy]
-    return Situation(waiting, idle, len(connected))
-
-
-async def _to_cancel(session: AsyncSession) -> Sequence[Order]:
-    wanted = select(Order).where(col(Order.cancel_requested_at).is_not(None), col(Order.state).in_(ROBOT_COMING))
-    return (await session.exec(wanted.where(col(Order.robot).is_not(None)))).all()
-
-
-async def _was_told(session: AsyncSession, order: Order) -> bool:
-    told = select(RobotCommand.command_id).filter_by(kind="cancel", order_id=order.id, robot=order.robot)
-    return (await session.exec(told)).first() is not None
+def _changed_missions() -> SelectOfScalar[str]:
+    return select(MissionRow.id).where(
+        MissionRow.state == MissionState.ACTIVE, col(MissionRow.told_update) < col(MissionRow.update_number)
+    )

@@ -1,22 +1,21 @@
 """The beginning of a connection: both sides learn where the other stands, and nothing is lost or done twice."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from typing import Final
 
-from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.fleet import inbox, outbox, traffic
 from app.fleet.alarms import clear_alarms, raise_alarm
 from app.fleet.commands import unanswered
-from app.fleet.progress import active_mission
+from app.fleet.mission_updates import tell_mission
 from app.fleet.service import Fleet, note_state
-from app.tables import MissionRow, Order, RobotRow, StopRow
+from app.orders.stops import active_mission
+from app.tables import RobotRow
 from protocol.envelope import Envelope
-from protocol.parts import Received, Stop, StopAction
-from protocol.to_robot import Cancel, Grant, Mission, Verifiers, Welcome
+from protocol.parts import Received
+from protocol.to_robot import Cancel, Grant, Welcome
 from protocol.to_server import Hello
 
 CLOCK_TOLERANCE: Final = timedelta(minutes=5)
@@ -80,37 +79,10 @@ async def restate(session: AsyncSession, fleet: Fleet, robot: RobotRow) -> None:
         session, robot.name, "memory_lost", "the robot came back without its memory in a mission", now=now
     )
     mission.update_number += 1
-    stops = await undone_stops(session, mission)
-    orders = await _orders_of(session, stops)
-    if verifiers := await fleet.orders.verifiers(session, *orders):
-        await fleet.tell(session, robot, Verifiers(verifiers=verifiers))
-    await fleet.tell(session, robot, Mission(id=mission.id, update=mission.update_number, stops=stops))
+    await tell_mission(session, fleet, robot, mission, anew=True)
     for command in await unanswered(session, robot=robot.name, kind="cancel"):
         # It was told before, but who knows whether it had got round to it.
         await fleet.tell(session, robot, Cancel(command_id=command.command_id, order_id=command.order_id or ""))
-
-
-async def undone_stops(session: AsyncSession, mission: MissionRow) -> tuple[Stop, ...]:
-    """What is left to do."""
-    left = select(StopRow).where(StopRow.mission_id == mission.id, col(StopRow.done_at).is_(None))
-    rows = (await session.exec(left.order_by(col(StopRow.position)))).all()
-    return tuple(stop_of(row) for row in rows)
-
-
-def stop_of(row: StopRow) -> Stop:
-    """A stop as the robot is told it."""
-    return Stop(
-        id=row.id,
-        post=row.post,
-        action=StopAction(row.action),
-        order_id=row.order_id,
-        wait_limit_s=row.wait_limit_s,
-    )
-
-
-async def _orders_of(session: AsyncSession, stops: tuple[Stop, ...]) -> Sequence[Order]:
-    order_ids = {stop.order_id for stop in stops if stop.order_id}
-    return (await session.exec(select(Order).where(col(Order.id).in_(order_ids)).order_by(col(Order.id)))).all()
 
 
 async def _compare_clocks(session: AsyncSession, robot: RobotRow, at: datetime, now: datetime) -> None:

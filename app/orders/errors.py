@@ -4,12 +4,18 @@ Unprocessable      ├── UnknownPost
                    ├── SamePost
                    ├── NoWay
                    ├── UnknownRecipient
+                   ├── UnknownRobotWanted
                    └── KeyReused
 NotFound           ├── UnknownOrder
                    └── NoCodeForYou
 Conflict           ├── StillRunning
                    ├── TransitionRefused
-                   └── NotCancellable
+                   ├── NotCancellable
+                   ├── NotRecallable
+                   ├── NotWaiting
+                   ├── WaitedLongEnough
+                   ├── NotReassignable
+                   └── NothingToResume
 PreconditionFailed └── OrderChanged
 """
 
@@ -32,6 +38,12 @@ class NoWay(Unprocessable):
     """Both posts exist, but no corridors join them."""
 
     code = "no_way"
+
+
+class UnknownRobotWanted(Unprocessable):
+    """The robot that is to fetch the order is not enrolled."""
+
+    code = "unknown_robot"
 
 
 class UnknownRecipient(Unprocessable):
@@ -71,9 +83,39 @@ class TransitionRefused(Conflict):
 
 
 class NotCancellable(Conflict):
-    """Ended already, or the mail is aboard (bringing it back is a later issue)."""
+    """Ended already, or waiting for a dispatcher."""
 
     code = "not_cancellable"
+
+
+class NotRecallable(Conflict):
+    """There is no mail aboard that could turn back, or it is not this person's to call back."""
+
+    code = "not_recallable"
+
+
+class NotWaiting(Conflict):
+    """No robot is waiting, or not for this person."""
+
+    code = "not_waiting"
+
+
+class WaitedLongEnough(Conflict):
+    """The robot's other passengers are waiting, too."""
+
+    code = "waited_long_enough"
+
+
+class NotReassignable(Conflict):
+    """The mail is aboard, or the order has ended."""
+
+    code = "not_reassignable"
+
+
+class NothingToResume(Conflict):
+    """The order's robot has dropped it: there is nothing to go on with."""
+
+    code = "nothing_to_resume"
 
 
 class OrderChanged(PreconditionFailed):

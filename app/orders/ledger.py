@@ -70,11 +70,14 @@ class Ledger:
             raise errors.OrderChanged(f"The order is at version {order.version} now. Read it again first.")
         return order, role
 
-    async def move(self, session: AsyncSession, order_id: str, to: OrderState, word: Word) -> bool:
+    async def move(
+        self, session: AsyncSession, order_id: str, to: OrderState, word: Word, wait_until: datetime | None = None
+    ) -> bool:
         """Take an order to its next state; False if this has happened before and nothing changes.
 
         A robot repeats itself after a lost acknowledgement, and may tell late what others told already: what lies
-        behind the order is no news on a robot's word. Raises UnknownOrder, TransitionRefused.
+        behind the order is no news on a robot's word. `wait_until` is how long the robot waits there. Raises
+        UnknownOrder, TransitionRefused.
         """
         order = await self.order(session, order_id)
         if order.state is to or (word.by is By.ROBOT and is_old_news(order.state, to, order.state_before_attention)):
@@ -85,7 +88,9 @@ class Ledger:
         order.state = to
         order.robot = word.robot or order.robot
         order.why = word.reason if to is OrderState.ATTENTION else None
-        order.wait_until = None
+        order.wait_until = wait_until
+        if to is OrderState.QUEUED:
+            _begin_anew(order)
         await self._write(session, order, MOVED, word)
         return True
 
@@ -147,6 +152,13 @@ class Ledger:
     ) -> None:
         happening = Happening("order", view.model_dump(mode="json"), person_id, role, except_for)
         after_commit(session, lambda: self.feed.publish(happening))
+
+
+def _begin_anew(order: Order) -> None:
+    """Back in the queue: what was wished of the robot that it had is over."""
+    order.robot = None
+    order.cancel_requested_at = order.cancel_requested_by = None
+    order.return_requested_at = order.reassign_requested_at = None
 
 
 def event_of(order: Order, kind: str, word: Word) -> OrderEvent:

@@ -10,8 +10,7 @@ from app.orders.schemas import NewOrder, OrderView
 from app.orders.transitions import By
 from app.orders.views import OrderFacts, order_view
 from app.orders.window import Window, arrival_window
-from app.people.service import find_person, new_id
-from app.people.service import is_allowed as is_allowed_address
+from app.people.service import find_person, may_be_sent_mail, new_id
 from app.tables import Order, Person
 from app.tables.order_events import MOVED
 from maps import NoRoute, UnknownPost
@@ -62,7 +61,7 @@ class Placing(Ledger):
 
     async def _recipient(self, session: AsyncSession, email: str) -> Person:
         known = await find_person(session, email)
-        if known is None and not is_allowed_address(email, self.settings):
+        if known is None and not may_be_sent_mail(email, self.settings):
             domains = ", ".join(self.settings.allowed_domains)
             raise errors.UnknownRecipient(f"Nobody here has the address {email}. New addresses are those of {domains}.")
         return known or await self.desk.person(session, email, self.clock.utc())

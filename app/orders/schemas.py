@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 
+from app.orders.custody import Held
 from app.orders.robot_view import RobotView
 from app.orders.window import Window
 from app.paging import PageOf
@@ -70,6 +71,26 @@ class EventView(BaseModel):
     reason: str | None
 
 
+class CustodyView(BaseModel):
+    """One link of the chain of custody: who held the mail, from when to when (null: to this day).
+
+    `holder` is sender, robot, recipient, delegate or mailroom, `name` the robot's. `how` says how they came to have it:
+    code, tap, digits or button by a robot's receipt, `dispatcher` by a dispatcher's word, null for the sender's own.
+    """
+
+    model_config = ConfigDict(validate_by_name=True, validate_by_alias=True, serialize_by_alias=True)
+
+    holder: str
+    name: str | None
+    from_: datetime = Field(alias="from")
+    to: datetime | None
+    how: str | None
+
+    @classmethod
+    def of(cls, held: Held) -> "CustodyView":
+        return cls(holder=held.holder, name=held.name, from_=held.since, to=held.until, how=held.how)
+
+
 class OrderView(BaseModel):
     """An order as one person may see it."""
 
@@ -90,6 +111,14 @@ class OrderView(BaseModel):
     my_code: Literal["load", "receive", "return"] | None
     can_cancel: bool
     cancel_requested: bool
+    return_requested: bool
+    priority: Literal["low", "normal", "high"]
+    not_before: datetime | None
+    wait_until: datetime | None
+    return_post: str | None
+    standing_order_id: str | None
+    placed_by: Somebody | None
+    custody: list[CustodyView]
     events: list[EventView]
 
 

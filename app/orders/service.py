@@ -7,10 +7,12 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 from app.orders import errors
 from app.orders.cancelling import Cancelling
 from app.orders.codes import code_text, turn_of, verifiers
+from app.orders.intervening import Intervening
 from app.orders.ledger import Word, unknown
 from app.orders.placing import Placing
 from app.orders.schemas import OrderView
 from app.orders.views import load_facts, role_in, view_for
+from app.orders.waiting import Waiting
 from app.tables import Order, Person
 from protocol.parts import Purpose
 from protocol.to_robot import Verifier
@@ -19,7 +21,7 @@ __all__ = ["Orders", "Word"]
 
 
 @dataclass(frozen=True)
-class Orders(Placing, Cancelling):
+class Orders(Placing, Cancelling, Intervening, Waiting):
     """The orders of one campus."""
 
     async def view(self, session: AsyncSession, person: Person, order_id: str) -> OrderView:

@@ -1,10 +1,12 @@
 """Which state of an order may follow which, and on whose word. Whatever is not here is refused by name.
 
 queued → assigned → to_sender → at_sender → carrying → at_recipient → delivered
-                                   │            │           └→ returning → at_return → returned | held
-                                   └→ expired   └→ (fault, mail aboard) attention
+   │                               │            └───────────┴→ returning → at_return → returned | held | delivered
+   └→ expired                      └→ expired
 queued | assigned | to_sender | at_sender → cancelled
-any fault → attention → (dispatcher) the state it left, or returning
+assigned | to_sender | at_sender → queued (the robot was told to let go)
+a fault → attention → the state it left
+                    → queued | cancelled (nothing aboard), returning | held (mail aboard), on a dispatcher's word
 """
 
 from collections.abc import Mapping
@@ -27,19 +29,27 @@ class By(StrEnum):
 S = OrderState
 SENDER, RECIPIENT, ROBOT, DISPATCHER, TIMER = By.SENDER, By.RECIPIENT, By.ROBOT, By.DISPATCHER, By.TIMER
 FAULT: Final = {S.ATTENTION: {ROBOT, DISPATCHER}}
+LET_GO: Final = {S.QUEUED: {ROBOT}, S.CANCELLED: {ROBOT, DISPATCHER}}
+"""From the moment a robot is on its way a wish takes effect on its word: it drops the order, whatever for."""
 
 TRANSITIONS: Final[Mapping[OrderState, Mapping[OrderState, set[By]]]] = {
-    S.QUEUED: {S.ASSIGNED: {DISPATCHER}, S.CANCELLED: {SENDER, DISPATCHER}},
-    # From here on a robot is on its way: a wish to cancel takes effect on its answer.
-    S.ASSIGNED: {S.TO_SENDER: {ROBOT}, S.CANCELLED: {ROBOT, DISPATCHER}, **FAULT},
-    S.TO_SENDER: {S.AT_SENDER: {ROBOT}, S.CANCELLED: {ROBOT, DISPATCHER}, **FAULT},
-    S.AT_SENDER: {S.CARRYING: {ROBOT}, S.EXPIRED: {ROBOT, TIMER}, S.CANCELLED: {ROBOT, DISPATCHER}, **FAULT},
+    S.QUEUED: {
+        S.ASSIGNED: {DISPATCHER},
+        S.CANCELLED: {SENDER, DISPATCHER},
+        S.EXPIRED: {TIMER},
+        # A robot out of network had the mail already when a dispatcher gave the order to another.
+        S.CARRYING: {ROBOT},
+    },
+    S.ASSIGNED: {S.TO_SENDER: {ROBOT}, **LET_GO, **FAULT},
+    S.TO_SENDER: {S.AT_SENDER: {ROBOT}, **LET_GO, **FAULT},
+    S.AT_SENDER: {S.CARRYING: {ROBOT}, S.EXPIRED: {ROBOT, TIMER}, **LET_GO, **FAULT},
     S.CARRYING: {S.AT_RECIPIENT: {ROBOT}, S.RETURNING: {ROBOT, DISPATCHER}, **FAULT},
     S.AT_RECIPIENT: {S.DELIVERED: {ROBOT}, S.RETURNING: {ROBOT, DISPATCHER, TIMER}, **FAULT},
     S.RETURNING: {S.AT_RETURN: {ROBOT}, **FAULT},
-    S.AT_RETURN: {S.RETURNED: {ROBOT}, S.HELD: {ROBOT, DISPATCHER}, **FAULT},
-    # Out of attention leads back to the state that was left (see `is_allowed`), or home with what is aboard.
-    S.ATTENTION: {S.RETURNING: {DISPATCHER}},
+    # On the way back the recipient's code opens too: what they have taken is delivered.
+    S.AT_RETURN: {S.RETURNED: {ROBOT}, S.HELD: {ROBOT, DISPATCHER}, S.DELIVERED: {ROBOT}, **FAULT},
+    # Out of attention also leads back to the state that was left; which of these, depends on it (see `is_allowed`).
+    S.ATTENTION: {S.RETURNING: {DISPATCHER}, S.HELD: {DISPATCHER}, S.QUEUED: {DISPATCHER}, S.CANCELLED: {DISPATCHER}},
     S.DELIVERED: {},
     S.RETURNED: {},
     S.HELD: {},
@@ -48,9 +58,13 @@ TRANSITIONS: Final[Mapping[OrderState, Mapping[OrderState, set[By]]]] = {
 }
 
 ENDED: Final = frozenset(state for state, following in TRANSITIONS.items() if not following)
-MAIL_ABOARD: Final = frozenset({S.CARRYING, S.AT_RECIPIENT, S.RETURNING, S.AT_RETURN})
+CARRIED: Final = frozenset({S.CARRYING, S.AT_RECIPIENT})
+TURNED_BACK: Final = frozenset({S.RETURNING, S.AT_RETURN})
+MAIL_ABOARD: Final = CARRIED | TURNED_BACK
 ROBOT_COMING: Final = frozenset({S.ASSIGNED, S.TO_SENDER, S.AT_SENDER})
 
+LOADED: Final = frozenset(S) - {S.QUEUED, S.EXPIRED} - ROBOT_COMING
+"""Where mail may have changed hands; of a cancelled one only if the robot contradicts."""
 WAY: Final = (
     S.QUEUED,
     S.ASSIGNED,
@@ -75,9 +89,13 @@ def is_old_news(state: OrderState, to: OrderState, before_attention: OrderState 
 
 
 def is_allowed(state: OrderState, to: OrderState, by: By, before_attention: OrderState | None = None) -> bool:
-    """Whether `to` may follow `state` on the word of `by`; `before_attention` is where a fault struck, if one did."""
-    if state is S.ATTENTION and to is S.RETURNING:
-        return by in TRANSITIONS[state][to] and before_attention in MAIL_ABOARD
-    if state is S.ATTENTION:
-        return by is DISPATCHER and to is before_attention
-    return by in TRANSITIONS[state].get(to, set())
+    """Whether `to` may follow `state` on the word of `by`; `before_attention` is where a fault struck, if one did.
+
+    Back to the state that was left: a dispatcher who has looked says so, or the robot, which has gone on by itself.
+    """
+    if state is not S.ATTENTION:
+        return by in TRANSITIONS[state].get(to, set())
+    if to is before_attention:
+        return by in (DISPATCHER, ROBOT)
+    ways_out = {S.RETURNING, S.HELD} if before_attention in MAIL_ABOARD else {S.QUEUED, S.CANCELLED}
+    return to in ways_out and by in TRANSITIONS[state][to]

@@ -1,6 +1,7 @@
 """Orders as one person may see them."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, TypeVar
 
@@ -8,15 +9,17 @@ from sqlmodel import SQLModel, col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.orders.codes import turn_of
+from app.orders.custody import custody_of
 from app.orders.robot_view import robot_view
-from app.orders.schemas import EventView, OrderView, Somebody, WindowView
-from app.orders.transitions import ENDED, ROBOT_COMING
+from app.orders.schemas import CustodyView, EventView, OrderView, Somebody, WindowView
+from app.orders.transitions import CARRIED, ENDED, LOADED, ROBOT_COMING
 from app.settings import Settings
-from app.tables import Order, OrderEvent, OrderState, Person, RobotRow, Role
+from app.tables import Handover, Order, OrderEvent, OrderState, Person, RobotRow, Role
 from maps import CampusMap
 
 MyRole = Literal["sender", "recipient", "dispatcher"]
 Row = TypeVar("Row", bound=SQLModel)
+OfOrder = TypeVar("OfOrder", OrderEvent, Handover)
 
 
 @dataclass(frozen=True)
@@ -27,6 +30,7 @@ class OrderFacts:
     events: Sequence[OrderEvent]
     people: Mapping[str, Person]
     robot: RobotRow | None
+    handovers: Sequence[Handover] = ()
 
     @property
     def sender(self) -> Person:
@@ -38,15 +42,35 @@ class OrderFacts:
 
 
 async def load_facts(session: AsyncSession, orders: Sequence[Order]) -> list[OrderFacts]:
-    """The rows around some orders, in the same order, in three queries."""
+    """The rows around some orders, in the same order, in four queries at most."""
     ids = [order.id for order in orders]
     events = select(OrderEvent).where(col(OrderEvent.order_id).in_(ids)).order_by(col(OrderEvent.seq))
-    all_events = (await session.exec(events)).all()
-    people = await _by_key(session, Person, Person.id, {one for o in orders for one in (o.sender_id, o.recipient_id)})
+    events_of = _by_order((await session.exec(events)).all())
+    people = await _by_key(session, Person, Person.id, {one for order in orders for one in _people_of(order)})
     robots = await _by_key(session, RobotRow, RobotRow.name, {o.robot for o in orders if o.robot})
-    return [
-        OrderFacts(o, [e for e in all_events if e.order_id == o.id], people, robots.get(o.robot or "")) for o in orders
-    ]
+    handovers_of = _by_order(await _handovers(session, [order.id for order in orders if order.state in LOADED]))
+    return [OrderFacts(o, events_of[o.id], people, robots.get(o.robot or ""), handovers_of[o.id]) for o in orders]
+
+
+def _by_order(rows: Iterable[OfOrder]) -> defaultdict[str, list[OfOrder]]:
+    sorted_out: defaultdict[str, list[OfOrder]] = defaultdict(list)
+    for row in rows:
+        sorted_out[row.order_id].append(row)
+    return sorted_out
+
+
+def _people_of(order: Order) -> Iterator[str]:
+    yield from (order.sender_id, order.recipient_id)
+    if order.placed_by_id:
+        yield order.placed_by_id
+
+
+async def _handovers(session: AsyncSession, order_ids: Sequence[str]) -> Sequence[Handover]:
+    """Of what has never been loaded there are none to be looked for."""
+    if not order_ids:
+        return ()
+    wanted = select(Handover).where(col(Handover.order_id).in_(order_ids)).order_by(col(Handover.id))
+    return (await session.exec(wanted)).all()
 
 
 async def _by_key(session: AsyncSession, table: type[Row], key: Any, wanted: Iterable[str]) -> dict[str, Row]:
@@ -90,23 +114,34 @@ def order_view(facts: OrderFacts, role: MyRole, person_id: str, campus: CampusMa
         why=order.why or (robot.why if robot else None),
         my_role=role,
         my_code=None if turn is None else turn.value,
-        can_cancel=role != "recipient" and is_cancellable(order),
+        can_cancel=is_cancellable(order, role),
         cancel_requested=is_cancel_under_way(order) and order.state not in ENDED,
+        return_requested=order.return_requested_at is not None and order.state in CARRIED,
+        priority=order.priority.value,
+        not_before=order.not_before,
+        wait_until=order.wait_until,
+        return_post=order.return_post,
+        standing_order_id=order.standing_order_id,
+        placed_by=_somebody(facts.people[order.placed_by_id]) if order.placed_by_id else None,
+        custody=[CustodyView.of(held) for held in custody_of(order, facts.handovers)],
         events=[_event(event) for event in facts.events],
     )
 
 
-def is_cancellable(order: Order) -> bool:
-    """Until the mail is aboard, and once."""
-    waiting = order.state is OrderState.QUEUED or order.state in ROBOT_COMING
-    return waiting and order.cancel_requested_at is None
+def is_cancellable(order: Order, role: MyRole) -> bool:
+    """Until it has ended or turned back, and once. What waits for a dispatcher is resolved otherwise."""
+    if role == "recipient" or is_cancel_under_way(order):
+        return False
+    return order.state is OrderState.QUEUED or order.state in ROBOT_COMING or order.state in CARRIED
 
 
 def is_cancel_under_way(order: Order) -> bool:
-    """Cancelled, or asked for with the robot's answer still to come: asking again changes nothing."""
+    """Cancelled, turned back, or asked for with the robot's answer still to come: asking again changes nothing."""
     if order.state in ROBOT_COMING:
         return order.cancel_requested_at is not None
-    return order.state is OrderState.CANCELLED
+    if order.state in CARRIED:
+        return order.return_requested_at is not None
+    return order.state in {OrderState.CANCELLED, OrderState.RETURNING, OrderState.AT_RETURN}
 
 
 def _window(order: Order) -> WindowView | None:

@@ -41,7 +41,8 @@ class Order(SQLModel, table=True):
 
     Dispatch leaves it alone until `not_before`. `placed_by_id` is who placed it for the sender. `return_post` is where
     mail that was not taken goes, `wait_until` how long the robot waits at the present stop. `…_requested_at` are wishes
-    that take effect on the robot's word. `occurs_on` is the day of its standing order (local, as 2026-01-05).
+    that take effect on the robot's word; `let_go_by` is a robot that is still to be told to drop this order.
+    `occurs_on` is the day of its standing order (local, as 2026-01-05).
     """
 
     __tablename__ = "orders"
@@ -68,6 +69,7 @@ class Order(SQLModel, table=True):
     cancel_requested_by: str | None = Field(default=None, max_length=32)
     return_requested_at: datetime | None = Field(default=None, sa_type=UtcTime)
     reassign_requested_at: datetime | None = Field(default=None, sa_type=UtcTime)
+    let_go_by: str | None = Field(default=None, max_length=64, index=True)
     wanted_robot: str | None = Field(default=None, max_length=64)
     avoided_robot: str | None = Field(default=None, max_length=64)
     priority: Priority = Field(default=Priority.NORMAL, sa_type=WordOf(Priority))

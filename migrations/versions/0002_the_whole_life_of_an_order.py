@@ -12,6 +12,7 @@ branch_labels = None
 depends_on = None
 
 WISHES = ("return_requested_at", "reassign_requested_at", "not_before", "wait_until", "delayed_at")
+NAMES = ("let_go_by", "wanted_robot", "avoided_robot", "return_post", "placed_by_id", "standing_order_id")
 
 
 def upgrade() -> None:
@@ -19,10 +20,11 @@ def upgrade() -> None:
     with op.batch_alter_table("orders", schema=None) as batch_op:
         for name in WISHES:
             batch_op.add_column(sa.Column(name, sa.DateTime(), nullable=True))
-        for name in ("wanted_robot", "avoided_robot", "return_post", "placed_by_id", "standing_order_id"):
+        for name in NAMES:
             batch_op.add_column(sa.Column(name, sa.String(64), nullable=True))
         batch_op.add_column(sa.Column("occurs_on", sa.String(10), nullable=True))
         batch_op.add_column(sa.Column("priority", sa.String(32), nullable=False, server_default="normal"))
+        batch_op.create_index(batch_op.f("ix_orders_let_go_by"), ["let_go_by"], unique=False)
         batch_op.create_foreign_key(batch_op.f("fk_orders_placed_by_id"), "people", ["placed_by_id"], ["id"])
         batch_op.create_foreign_key(
             batch_op.f("fk_orders_standing_order_id"), "standing_orders", ["standing_order_id"], ["id"]
@@ -40,6 +42,7 @@ def upgrade() -> None:
     op.execute("UPDATE missions SET accepted_update = 1 WHERE accepted_at IS NOT NULL")
     with op.batch_alter_table("stops", schema=None) as batch_op:
         batch_op.add_column(sa.Column("dropped_at", sa.DateTime(), nullable=True))
+        batch_op.add_column(sa.Column("since_update", sa.Integer(), nullable=False, server_default="1"))
 
 
 def _standing_orders() -> None:
@@ -75,6 +78,7 @@ def _standing_orders() -> None:
 
 def downgrade() -> None:
     with op.batch_alter_table("stops", schema=None) as batch_op:
+        batch_op.drop_column("since_update")
         batch_op.drop_column("dropped_at")
     with op.batch_alter_table("missions", schema=None) as batch_op:
         batch_op.drop_column("accepted_update")
@@ -85,7 +89,8 @@ def downgrade() -> None:
         batch_op.drop_constraint(batch_op.f("uq_orders_standing_order_id_occurs_on"), type_="unique")
         batch_op.drop_constraint(batch_op.f("fk_orders_standing_order_id"), type_="foreignkey")
         batch_op.drop_constraint(batch_op.f("fk_orders_placed_by_id"), type_="foreignkey")
-        for name in (*WISHES, "wanted_robot", "avoided_robot", "return_post", "placed_by_id", "standing_order_id"):
+        batch_op.drop_index(batch_op.f("ix_orders_let_go_by"))
+        for name in (*WISHES, *NAMES):
             batch_op.drop_column(name)
         batch_op.drop_column("occurs_on")
         batch_op.drop_column("priority")

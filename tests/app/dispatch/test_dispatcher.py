@@ -65,17 +65,58 @@ async def test_each_robot_has_one_mission_and_the_nearer_one_gets_the_first_orde
     async with far.connected(service.url, far_token), near.connected(service.url, near_token):
         await far.greet("post4")
         await near.greet("post2")
-        first, second, third = [await an_order(service, clock) for _ in range(3)]
+        first, second = [await an_order(service, clock) for _ in range(2)]
         assert (await near.mission()).stops[0].order_id == first
         assert (await far.mission()).stops[0].order_id == second
-        await waits_because(service, third, "Every robot is busy.")
     assert [row.robot for row in await service.rows(MissionRow)] == ["near", "far"]
+
+
+async def test_what_waits_is_taken_along_where_it_is_on_the_way_and_only_as_much_as_a_robot_can_carry(
+    service: Service, clock: SteppedClock
+) -> None:
+    robot = PlayedRobot(clock)
+    token = await service.enrol("r1")
+    first, second, third = [await an_order(service, clock) for _ in range(3)]
+    async with robot.connected(service.url, token):
+        await robot.greet("post1")
+        mission = await robot.mission()
+        assert [stop.action for stop in mission.stops] == ["load", "load", "receive", "receive"]
+        assert [{stop.order_id for stop in both} for both in (mission.stops[:2], mission.stops[2:])] == [
+            {first, second},
+            {first, second},
+        ]
+        assert mission.update == 1
+        await waits_because(service, third, "Every robot is busy.")
+    assert await service.states(second) == ["queued", "assigned"]
+
+
+async def test_a_robot_under_way_gets_one_more_order_by_the_next_update_of_its_mission(
+    service: Service, clock: SteppedClock
+) -> None:
+    robot = PlayedRobot(clock)
+    token = await service.enrol("r1")
+    async with robot.connected(service.url, token):
+        await robot.greet("post1")
+        first = await an_order(service, clock)
+        mission = await robot.mission()
+        load, receive = mission.stops
+        await robot.report(mission, Step.ARRIVED, load)
+        await service.reaches(first, "at_sender")
+        second = await service.order("post2", "post3")
+        await waits_because(service, second, "Every robot is busy.")  # somebody is loading: nothing changes meanwhile
+        await robot.say(robot.receipt(load))
+        update = await robot.mission()
+    assert (update.id, update.update) == (mission.id, 2)
+    assert [stop.order_id for stop in update.stops] == [second, second, first], "post2 and post3 lie on the way"
+    assert update.stops[-1] == receive
+    sent = [one.body for one in robot.heard if one.type == "verifiers"]
+    assert {verifier.order_id for verifier in sent[-1].verifiers} == {second}, "the codes of the new one alone"
 
 
 async def test_a_robot_that_delivered_is_given_the_next_order(service: Service, clock: SteppedClock) -> None:
     robot = PlayedRobot(clock)
     token = await service.enrol("r1")
-    first, second = await an_order(service, clock), await an_order(service, clock)
+    first, second = await an_order(service, clock), await service.order("post4", "post1")
     async with robot.connected(service.url, token):
         await robot.greet()
         mission = await robot.mission()

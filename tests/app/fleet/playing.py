@@ -23,7 +23,7 @@ from app.tables import Order, OrderEvent
 from protocol.clock import Clock
 from protocol.envelope import DURABLE, TO_ROBOT, Envelope, parse, type_of
 from protocol.parts import Battery, Part, Position, Received, Stop
-from protocol.to_robot import Mission, Welcome
+from protocol.to_robot import Mission, Verifiers, Welcome
 from protocol.to_server import Event, HandoverReceipt, Hello, Progress, Step
 
 
@@ -75,7 +75,7 @@ class Service:
 
     async def states(self, order_id: str) -> list[str]:
         """What the order has been through."""
-        events = await self.rows(OrderEvent, order_id=order_id)
+        events = await self.rows(OrderEvent, order_id=order_id, kind="moved")
         return [str(event.state) for event in sorted(events, key=lambda event: event.seq)]
 
     async def reaches(self, order_id: str, state: str) -> None:
@@ -125,6 +125,7 @@ class PlayedRobot:
     seq: int = 0
     heard: list[Envelope] = field(default_factory=list)
     socket: ClientConnection | None = None
+    token: str = ""
 
     @asynccontextmanager
     async def connected(self, url: str, token: str) -> AsyncIterator["PlayedRobot"]:
@@ -191,17 +192,23 @@ class PlayedRobot:
         happened = Progress(step=step, happened_at=self.clock.utc(), mission_id=mission.id, **{**place, **facts})
         return Event(happened=happened)
 
-    def receipt(self, stop: Stop) -> Event:
-        assert stop.order_id is not None
-        receipt = HandoverReceipt(
-            purpose=stop.action.value,
-            order_id=stop.order_id,
-            stop_id=stop.id,
-            post=stop.post,
-            happened_at=self.clock.utc(),
-            code_sha256="a" * 64,
-        )
-        return Event(happened=receipt)
+    def receipt(self, stop: Stop, **facts: Any) -> Event:
+        """Mail changed hands there, for the code that the server has told of; for none, a button was pressed."""
+        receipt = {
+            "purpose": stop.action.value,
+            "order_id": stop.order_id,
+            "stop_id": stop.id,
+            "post": stop.post,
+            "happened_at": self.clock.utc(),
+            "code_sha256": next(iter(self.codes(stop)), None),
+        }
+        return Event(happened=HandoverReceipt.model_validate({**receipt, **facts}))
+
+    def codes(self, stop: Stop) -> list[str]:
+        """What opens there, as the server has told."""
+        told = [one.body for one in self.heard if isinstance(one.body, Verifiers)]
+        known = told[-1].verifiers if told else ()
+        return [one.sha256 for one in known if (one.order_id, one.purpose) == (stop.order_id, stop.action.value)]
 
     async def ends(self, seq: int) -> None:
         """Wait until everything up to `seq` is acknowledged."""

@@ -1,15 +1,16 @@
 """What becomes of an order when it does not go as ordered: cancelled, not fetched, not taken; and of a stolen token."""
 
 import socket
+from dataclasses import dataclass
 
 import pytest
 from websockets.asyncio.client import connect
 
 from app.fleet.service import new_token
-from app.tables import Alarm, MessageToRobot, MissionRow, Order
+from app.tables import Alarm, MessageToRobot, Order
 from protocol.clock import SteppedClock
-from protocol.parts import Leg
-from protocol.to_robot import Cancel, Grant
+from protocol.parts import Leg, Stop, StopAction
+from protocol.to_robot import Cancel, Grant, Mission
 from protocol.to_server import Claim, CommandAnswer, Event, Step
 from tests.app.fleet.playing import PlayedRobot, Service
 
@@ -47,25 +48,68 @@ async def test_a_robot_that_cannot_get_to_the_sender_is_free_and_the_order_says_
     assert (await service.states(order_id))[-2:] == ["to_sender", "attention"]
 
 
-async def test_mail_that_nobody_took_is_not_lost_sight_of(service: Service, robot: PlayedRobot) -> None:
-    """Thin: there is no way back yet. The order and an alarm say where the mail is; its robot gets nothing else."""
-    token = await service.enrol("r1")
+async def test_mail_that_nobody_took_is_brought_back_by_the_robots_own_mission(
+    service: Service, robot: PlayedRobot
+) -> None:
+    order_id, receive = await carrying(service, robot)
+    async with robot.connected(service.url, robot.token):
+        await robot.greet()
+        await robot.report(receive.mission, Step.ARRIVED, receive.stop)
+        await robot.report(receive.mission, Step.GAVE_UP, receive.stop, reason="no_one_came")
+        await robot.report(receive.mission, Step.DONE)
+        await service.order("post2", "post3")
+        own, back = own_mission(order_id, "post1")
+        await robot.report(own, Step.ACCEPTED)
+        await robot.report(own, Step.DEPARTED, back)
+        await robot.report(own, Step.ARRIVED, back)
+        await service.reaches(order_id, "at_return")
+        assert not await service.app.state.dispatcher.assign(), "its mail comes first"
+        await robot.say(robot.receipt(back))
+        await robot.ends(await robot.report(own, Step.DONE))
+        await service.reaches(order_id, "returned")
+        assert (await robot.mission()).stops[0].post == "post2", "free again"
+    assert (await service.states(order_id))[-4:] == ["at_recipient", "returning", "at_return", "returned"]
+
+
+async def test_mail_that_nobody_takes_back_either_waits_for_a_person(service: Service, robot: PlayedRobot) -> None:
+    order_id, receive = await carrying(service, robot)
+    async with robot.connected(service.url, robot.token):
+        await robot.greet()
+        await robot.report(receive.mission, Step.GAVE_UP, receive.stop, reason="no_route")
+        await robot.report(receive.mission, Step.DONE)
+        own, back = own_mission(order_id, "post1")
+        for step in (Step.ARRIVED, Step.GAVE_UP):
+            await robot.report(own, step, back, reason="no_one_came")
+        await robot.ends(await robot.report(own, Step.DONE))
+        await service.reaches(order_id, "attention")
+        await service.order("post2", "post3")
+        assert not await service.app.state.dispatcher.assign(), "the mail is still aboard"
+    assert "still in robot r1" in (await service.row(Order, id=order_id)).why
+
+
+@dataclass
+class Ahead:
+    mission: Mission
+    stop: Stop
+
+
+async def carrying(service: Service, robot: PlayedRobot) -> tuple[str, Ahead]:
+    """An order whose mail is aboard, and what its robot has still to do."""
+    robot.token = await service.enrol("r1")
     order_id = await service.order()
-    async with robot.connected(service.url, token):
+    async with robot.connected(service.url, robot.token):
         await robot.greet()
         mission = await robot.mission()
         load, receive = mission.stops
-        await robot.say(robot.receipt(load))
-        await robot.report(mission, Step.ARRIVED, receive)
-        await robot.report(mission, Step.GAVE_UP, receive, reason="no_one_came")
-        await service.order("post2", "post3")
-        await robot.ends(await robot.report(mission, Step.DONE))
-        assert not await service.app.state.dispatcher.assign_next()
-    order = await service.row(Order, id=order_id)
-    assert (str(order.state), order.robot) == ("returning", "r1")
-    assert "still in robot r1" in order.why
-    assert order_id in (await service.row(Alarm, name="mail_not_taken")).reason
-    assert len(await service.rows(MissionRow)) == 1
+        await robot.report(mission, Step.ACCEPTED, update=1)
+        await robot.ends(await robot.say(robot.receipt(load)))
+    return order_id, Ahead(mission, receive)
+
+
+def own_mission(order_id: str, post: str) -> tuple[Mission, Stop]:
+    """What a robot gives to itself (decision 0017)."""
+    stop = Stop(id=f"return-{order_id}", post=post, action=StopAction.RETURN, order_id=order_id)
+    return Mission(id="return-0123456789abcdef", update=1, stops=(stop,)), stop
 
 
 async def test_a_robot_drops_only_what_it_was_told_to_drop(service: Service, robot: PlayedRobot) -> None:

@@ -100,11 +100,24 @@ def test_with_a_robot_on_its_way_cancelling_waits_for_its_answer(
     assert seen(sender, order_id)["state"] == "cancelled"
 
 
-@pytest.mark.parametrize("steps", [4, 5, 6])
-def test_with_the_mail_aboard_nothing_is_cancelled(
+@pytest.mark.parametrize("steps", [4, 5])
+def test_with_the_mail_aboard_a_wish_to_cancel_calls_it_back_on_the_robots_word(
     sender: Browser, mailroom: Mailroom, order_id: str, steps: int
 ) -> None:
     mailroom.move(order_id, *WAY[:steps])
+    assert seen(sender, order_id)["can_cancel"] is True
+    order = sender.post(f"/api/v1/orders/{order_id}/cancel").json()
+    assert (order["state"], order["cancel_requested"], order["return_requested"]) == (WAY[steps - 1], True, True)
+    assert order["return_post"] == "post1"
+    assert sender.post(f"/api/v1/orders/{order_id}/cancel").json()["version"] == order["version"], "asked for once"
+    mailroom.move(order_id, "returning", "at_return", "returned")
+    order = seen(sender, order_id)
+    assert (order["state"], order["can_cancel"], order["cancel_requested"]) == ("returned", False, False)
+    assert "called_back" in kinds(sender)
+
+
+def test_what_was_delivered_is_not_cancelled(sender: Browser, mailroom: Mailroom, order_id: str) -> None:
+    mailroom.move(order_id, *WAY)
     answer = sender.post(f"/api/v1/orders/{order_id}/cancel")
     assert (answer.status_code, answer.json()["code"]) == (409, "not_cancellable")
     assert seen(sender, order_id)["can_cancel"] is False
@@ -119,6 +132,7 @@ def test_a_wish_to_cancel_that_came_too_late_is_not_said_to_be_granted(
     assert sender.post(cancel).json()["version"] == seen(sender, order_id)["version"], "asked for once"
     mailroom.move(order_id, *WAY[2:4])
     assert seen(sender, order_id)["cancel_requested"] is False
+    mailroom.move(order_id, *WAY[4:])
     assert sender.post(cancel).json()["code"] == "not_cancellable"
 
 

@@ -3,7 +3,7 @@
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, rule
 
-from app.orders.transitions import ENDED, MAIL_ABOARD, TRANSITIONS, By, is_allowed
+from app.orders.transitions import ENDED, MAIL_ABOARD, TRANSITIONS, By, is_allowed, is_old_news
 from app.tables import OrderState as S
 
 WORDS = st.sampled_from(By)
@@ -80,8 +80,18 @@ def test_only_the_robot_writes_custody() -> None:
             assert following.get(custody, {By.ROBOT}) == {By.ROBOT}, state
 
 
-def test_out_of_attention_leads_only_back_or_home_with_what_is_aboard() -> None:
+def test_out_of_attention_leads_back_or_home_or_into_hands_as_far_as_the_mail_allows() -> None:
     for before in S:
-        allowed = {to for to in S if is_allowed(S.ATTENTION, to, By.DISPATCHER, before)}
-        assert allowed == ({before, S.RETURNING} if before in MAIL_ABOARD else {before})
-    assert not any(is_allowed(S.ATTENTION, to, By.ROBOT, before) for to in S for before in S)
+        out = {S.RETURNING, S.HELD} if before in MAIL_ABOARD else {S.QUEUED, S.CANCELLED}
+        assert {to for to in S if is_allowed(S.ATTENTION, to, By.DISPATCHER, before)} == {before} | out
+        assert {to for to in S if is_allowed(S.ATTENTION, to, By.ROBOT, before)} == {before}, "it went on by itself"
+    for by in (By.SENDER, By.RECIPIENT, By.TIMER):
+        assert not any(is_allowed(S.ATTENTION, to, by, before) for to in S for before in S)
+
+
+def test_what_lies_behind_an_order_is_old_news_and_what_lies_ahead_is_not() -> None:
+    assert is_old_news(S.CARRYING, S.AT_SENDER)
+    assert not is_old_news(S.AT_SENDER, S.CARRYING)
+    assert is_old_news(S.ATTENTION, S.AT_SENDER, S.CARRYING)
+    assert is_old_news(S.DELIVERED, S.AT_RECIPIENT)
+    assert not is_old_news(S.CANCELLED, S.DELIVERED), "a contradiction, to be refused by name"

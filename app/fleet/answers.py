@@ -1,0 +1,64 @@
+"""What follows from the answers that robots give to commands."""
+
+from typing import Final
+
+from sqlmodel import col, select
+
+from app.fleet.alarms import raise_alarm
+from app.fleet.commands import answered
+from app.fleet.missions import drop_order, drop_stops, let_go_of
+from app.fleet.reports import Report
+from app.orders.service import Word
+from app.orders.stops import is_own
+from app.orders.transitions import ROBOT_COMING, By
+from app.tables import MissionRow, MissionState, OrderState, RobotCommand
+from protocol.to_server import CommandAnswer
+
+RECALLED: Final = "The robot was recalled."
+
+
+async def follow_answer(report: Report, answer: CommandAnswer) -> None:
+    """Raises UnknownCommand."""
+    command = await answered(report.session, report.robot, answer, report.now)
+    if command.kind == "cancel" and command.order_id is not None:
+        await _let_go(report, answer, command.order_id)
+    elif command.kind == "recall" and answer.accepted:
+        await _recalled(report, answer, command)
+    elif not answer.accepted:
+        await _refused(report, answer)
+
+
+async def _let_go(report: Report, answer: CommandAnswer, order_id: str) -> None:
+    order = await report.orders.order(report.session, order_id)
+    is_theirs = order.robot == report.robot
+    if answer.accepted:
+        await drop_stops(report, order_id)
+        wished = order.cancel_requested_at or order.reassign_requested_at
+        if is_theirs and order.state in ROBOT_COMING and wished:
+            await drop_order(report, order, report.word(answer.happened_at, None, answer.reason))
+    elif is_theirs and order.cancel_requested_at is not None and order.state in CARRIED:
+        # The wish came too late to leave the mail where it was: now it is brought back.
+        await report.orders.ask_back(report.session, order, Word(By.ROBOT, robot=report.robot, reason=answer.reason))
+    else:
+        order.reassign_requested_at = None
+        await _refused(report, answer)
+
+
+CARRIED: Final = (OrderState.CARRYING, OrderState.AT_RECIPIENT)
+
+
+async def _refused(report: Report, answer: CommandAnswer) -> None:
+    reason = answer.reason or f"the robot refused {answer.command_id}"
+    await raise_alarm(report.session, report.robot, "command_refused", reason, now=report.now)
+
+
+async def _recalled(report: Report, answer: CommandAnswer, command: RobotCommand) -> None:
+    """It has dropped the mission that it had; with mail aboard it has told of its own before this answer."""
+    wanted = select(MissionRow).where(
+        MissionRow.robot == report.robot,
+        MissionRow.state == MissionState.ACTIVE,
+        MissionRow.created_at <= command.asked_at,
+    )
+    for mission in (await report.session.exec(wanted.order_by(col(MissionRow.created_at)))).all():
+        if not is_own(mission.id):
+            await let_go_of(report, mission, report.word(answer.happened_at, None, RECALLED))

@@ -1,0 +1,120 @@
+"""What follows from a receipt: mail has changed hands. It is written down whatever the order's state says: only the
+robot writes custody, and what it proves has happened. Refused is only what no chain of custody could contain."""
+
+from collections.abc import Mapping
+from typing import Final
+
+from sqlmodel import col, select
+
+from app.database import savepoint
+from app.fleet.alarms import clear_alarms, raise_alarm
+from app.fleet.errors import UnknownStop
+from app.fleet.missions import end_if_nothing_is_left
+from app.fleet.receipts import judged
+from app.fleet.reports import Report
+from app.orders.codes import Holder, codes_of, delegates_of
+from app.orders.errors import TransitionRefused
+from app.tables import Handover, MissionRow, Order, OrderState, StopRow
+from protocol.parts import Purpose
+from protocol.to_server import HandoverReceipt
+
+HANDED_OVER: Final[Mapping[Purpose, tuple[OrderState, ...]]] = {
+    Purpose.LOAD: (OrderState.TO_SENDER, OrderState.AT_SENDER, OrderState.CARRYING),
+    Purpose.RECEIVE: (OrderState.AT_RECIPIENT, OrderState.DELIVERED),
+    Purpose.RETURN: (OrderState.RETURNING, OrderState.AT_RETURN),
+}
+"""Custody is proved by the receipt alone; steps before it that were not reported are caught up with."""
+
+TAKEN_BACK_BY: Final[Mapping[Holder, OrderState]] = {
+    Holder.SENDER: OrderState.RETURNED,
+    Holder.MAILROOM: OrderState.HELD,
+    Holder.RECIPIENT: OrderState.DELIVERED,
+}
+CONTRADICTION: Final = "custody_contradicts_order"
+
+
+async def follow_receipt(report: Report, receipt: HandoverReceipt) -> None:
+    """Raises UnknownStop, and TransitionRefused for what would break the chain of custody."""
+    stop = await _stop(report, receipt)
+    if await _is_receipted(report, receipt):
+        return
+    order = await report.orders.order(report.session, receipt.order_id)
+    handover = await judged(report.session, report.orders.key, report.robot, order, receipt, report.now)
+    if handover is None:
+        return  # it proves nothing: custody does not move
+    await _check_chain(report, receipt)
+    stop.done_at = stop.done_at or receipt.happened_at
+    report.session.add(handover)
+    await _move(report, receipt)
+    await end_if_nothing_is_left(report, await report.session.get_one(MissionRow, stop.mission_id))
+
+
+async def _check_chain(report: Report, receipt: HandoverReceipt) -> None:
+    """A robot gives what it was given, and mail comes aboard once."""
+    before = select(Handover).where(Handover.order_id == receipt.order_id).order_by(col(Handover.id).desc())
+    last = (await report.session.exec(before.limit(1))).first()
+    has_it = last is not None and (last.purpose, last.robot) == (Purpose.LOAD, report.robot)
+    if receipt.purpose == Purpose.LOAD and last is not None:
+        raise TransitionRefused(f"The mail of order {receipt.order_id} has been loaded before.")
+    if receipt.purpose != Purpose.LOAD and not has_it:
+        raise TransitionRefused(f"Robot {report.robot} does not have the mail of order {receipt.order_id}.")
+
+
+async def _stop(report: Report, receipt: HandoverReceipt) -> StopRow:
+    stop = await report.session.get(StopRow, receipt.stop_id)
+    mission = await report.session.get(MissionRow, stop.mission_id) if stop else None
+    if stop is None or mission is None or mission.robot != report.robot:
+        raise UnknownStop(f"{report.robot} was given no stop {receipt.stop_id}")
+    if (stop.order_id, stop.action) != (receipt.order_id, receipt.purpose):
+        raise UnknownStop(f"stop {stop.id} is not to {receipt.purpose} order {receipt.order_id}")
+    return stop
+
+
+async def _move(report: Report, receipt: HandoverReceipt) -> None:
+    """The order follows its mail. An order that has ended otherwise stays ended, and a person has to look."""
+    order = await report.orders.order(report.session, receipt.order_id)
+    if order.robot not in (None, report.robot):
+        order.let_go_by = order.robot  # it was given to another, but this one had the mail already
+    word = report.word(receipt.happened_at, receipt.post)
+    states = await _states(report, order, receipt)
+    try:
+        async with savepoint(report.session):
+            await report.along(order.id, states, word)
+    except TransitionRefused as refused:
+        await _contradiction(report, receipt, refused)
+
+
+async def _contradiction(report: Report, receipt: HandoverReceipt, refused: TransitionRefused) -> None:
+    """The robot brings such mail back by itself; when it is out again, nobody has to look any more."""
+    if receipt.purpose != Purpose.LOAD:
+        await clear_alarms(report.session, report.robot, CONTRADICTION, report.now)
+        return
+    sentence = f"{refused} But its mail changed hands ({receipt.purpose}) at {receipt.post}."
+    await raise_alarm(report.session, report.robot, CONTRADICTION, sentence, now=report.now, post=receipt.post)
+
+
+async def _states(report: Report, order: Order, receipt: HandoverReceipt) -> tuple[OrderState, ...]:
+    purpose = Purpose(receipt.purpose)
+    if purpose is Purpose.LOAD and order.state is OrderState.QUEUED:
+        return (OrderState.CARRYING,)
+    if purpose is not Purpose.RETURN:
+        return HANDED_OVER[purpose]
+    return (*HANDED_OVER[purpose], await _taken_back(report, order, receipt))
+
+
+async def _taken_back(report: Report, order: Order, receipt: HandoverReceipt) -> OrderState:
+    """Who took it is told by the code; with none, by the place."""
+    for code in codes_of(order, await delegates_of(report.session, [order])):
+        if code.sha256(report.orders.key) == receipt.code_sha256:
+            of_delegate = Holder.RECIPIENT if code.purpose is Purpose.RECEIVE else Holder.SENDER
+            return TAKEN_BACK_BY[of_delegate if code.holder is Holder.DELEGATE else code.holder]
+    return OrderState.RETURNED if receipt.post == order.from_post else OrderState.HELD
+
+
+async def _is_receipted(report: Report, receipt: HandoverReceipt) -> bool:
+    same = select(Handover.id).where(
+        Handover.order_id == receipt.order_id,
+        Handover.stop_id == receipt.stop_id,
+        Handover.purpose == receipt.purpose,
+    )
+    return (await report.session.exec(same)).first() is not None

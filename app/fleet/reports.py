@@ -1,0 +1,51 @@
+"""One report of one robot, and how an order comes along with what it says."""
+
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+
+from sqlmodel import col, select
+from sqlmodel.ext.asyncio.session import AsyncSession
+
+from app.orders.service import Orders, Word
+from app.orders.transitions import By, is_old_news
+from app.tables import Order, OrderState
+
+
+@dataclass(frozen=True)
+class Report:
+    """One event of one robot, and the time of the service."""
+
+    session: AsyncSession
+    orders: Orders
+    robot: str
+    now: datetime
+
+    def word(self, robot_at: datetime, post: str | None, reason: str | None = None) -> Word:
+        return Word(By.ROBOT, robot=self.robot, robot_at=robot_at, post=post, reason=reason)
+
+    def until(self, since: datetime, limit_s: float) -> datetime:
+        """When a wait ends that the robot says began at `since`; its clock may be wrong, but nothing began later."""
+        return min(since, self.now) + timedelta(seconds=limit_s)
+
+    async def aboard(self, *states: OrderState) -> list[Order]:
+        """The orders of this robot in one of these states."""
+        wanted = select(Order).where(Order.robot == self.robot, col(Order.state).in_(states)).order_by(col(Order.id))
+        return list((await self.session.exec(wanted)).all())
+
+    async def along(
+        self, order_id: str, states: tuple[OrderState, ...], word: Word, wait_until: datetime | None = None
+    ) -> None:
+        """Take an order through `states`, from wherever it is among them. Raises TransitionRefused.
+
+        A robot that was given up on and goes on by itself takes its order out of attention: what it does is the truth.
+        """
+        order = await self.orders.order(self.session, order_id)
+        before = order.state_before_attention
+        goes_on = order.state not in states and states and not is_old_news(order.state, states[-1], before)
+        if before is not None and goes_on:
+            await self.orders.move(self.session, order_id, before, word)
+        if order.state in states:
+            states = states[states.index(order.state) :]
+        for state in states:
+            last = state is states[-1]
+            await self.orders.move(self.session, order_id, state, word, wait_until if last else None)

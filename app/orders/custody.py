@@ -1,0 +1,57 @@
+"""Who had the mail, from when to when, and how each hand-over was confirmed: a chain without gaps.
+
+It derives from the receipts of robots alone (and from a dispatcher's word, where mail was fetched by hand), never from
+the order's state. Each hand-over ends one link and begins the next, so that at any time exactly one holds the mail.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from datetime import datetime
+
+from app.orders.codes import Holder
+from app.tables import Handover, Order
+from protocol.parts import Purpose
+
+
+@dataclass(frozen=True)
+class Held:
+    """One link: who held it (sender, robot, recipient, delegate or mailroom), and until when; None: to this day.
+
+    `how` tells how they came to have it: code, tap, digits or button by a robot's receipt, `dispatcher` by a
+    dispatcher's word, None for the sender's own.
+    """
+
+    holder: str
+    name: str | None
+    since: datetime
+    until: datetime | None
+    how: str | None
+
+
+def custody_of(order: Order, handovers: Iterable[Handover]) -> tuple[Held, ...]:
+    """The links of an order's chain, oldest first; `handovers` in the order in which they were written down."""
+    chain = [Held(Holder.SENDER, None, order.created_at, None, None)]
+    for one in handovers:
+        last, holder = chain[-1], _holder(order, one)
+        if holder == (last.holder, last.name):
+            continue  # the same pair of hands again: a robot that lost its memory tells what is known
+        at = max(one.robot_at if _is_plausible(one) else one.at, last.since)
+        chain[-1] = Held(last.holder, last.name, last.since, at, last.how)
+        chain.append(Held(*holder, at, None, one.how))
+    return tuple(chain)
+
+
+def _holder(order: Order, one: Handover) -> tuple[str, str | None]:
+    """Who has it after this hand-over."""
+    if one.purpose == Purpose.LOAD:
+        return ("robot", one.robot)
+    if one.holder is not None:
+        return (one.holder, None)
+    if one.purpose == Purpose.RECEIVE:
+        return (Holder.RECIPIENT, None)
+    return (Holder.SENDER if one.post == order.from_post else Holder.MAILROOM, None)
+
+
+def _is_plausible(one: Handover) -> bool:
+    """Whether the robot's own time of it can be shown: nothing is reported before it has happened."""
+    return one.robot_at <= one.at

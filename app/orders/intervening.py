@@ -1,0 +1,153 @@
+"""What a dispatcher does when something is stuck, or is wanted otherwise than the rules would have it."""
+
+from typing import Final, Literal
+
+from sqlmodel.ext.asyncio.session import AsyncSession
+
+from app.orders import errors, stops
+from app.orders.ledger import Word
+from app.orders.returning import Returning
+from app.orders.schemas import OrderView
+from app.orders.transitions import ENDED, ROBOT_COMING, By
+from app.orders.views import load_facts, order_view
+from app.tables import Handover, Order, OrderState, Person, Priority, RobotRow
+from protocol.parts import Purpose, StopAction
+
+WayOut = Literal["resume", "returning", "held", "queued", "cancelled"]
+PRIORITY_CHANGED: Final = "priority_changed"
+REASSIGNED: Final = "reassigned"
+DESTINATION: Final = {
+    OrderState.CARRYING: StopAction.RECEIVE,
+    OrderState.AT_RECIPIENT: StopAction.RECEIVE,
+    OrderState.RETURNING: StopAction.RETURN,
+    OrderState.AT_RETURN: StopAction.RETURN,
+}
+
+
+class Intervening(Returning):
+    """On a dispatcher's word. The routes let nobody else in."""
+
+    async def stop_for_attention(
+        self, session: AsyncSession, person: Person, order_id: str, reason: str, if_match: str = ""
+    ) -> OrderView:
+        """A person has to see to it: what its robot does not say any more is decided by hand."""
+        order = await self._theirs(session, person, order_id, if_match)
+        await self.move(session, order.id, OrderState.ATTENTION, _word(person, reason))
+        return await self._shown(session, order, person)
+
+    async def resolve(
+        self, session: AsyncSession, person: Person, order_id: str, to: WayOut, reason: str | None, if_match: str = ""
+    ) -> OrderView:
+        """Out of attention: on as before, back, into the mailroom's hands, into the queue again, or not at all.
+
+        Raises UnknownOrder, OrderChanged, TransitionRefused, NothingToResume.
+        """
+        order = await self._theirs(session, person, order_id, if_match)
+        before = order.state_before_attention
+        if before is None:
+            raise errors.TransitionRefused(f"Order {order.id} is {order.state}: it needs no attention.")
+        word = _word(person, reason)
+        await _WAYS_OUT[to](self, session, order, before, word)
+        return await self._shown(session, order, person)
+
+    async def _resume(self, session: AsyncSession, order: Order, before: OrderState, word: Word) -> None:
+        left = await stops.stops_of_order(session, order.id, order.robot or "")
+        if not left and before in ROBOT_COMING:
+            raise errors.NothingToResume("Its robot does not come for it any more. Queue the order again.")
+        if not left:  # the robot has given up; with the mail aboard it can be sent once more
+            action = DESTINATION[before]
+            post = order.to_post if action is StopAction.RECEIVE else self.return_post(order)
+            await stops.bring(session, order, action, post, self.settings.wait_limit_s, self.clock.utc())
+        await self.move(session, order.id, before, word)
+
+    async def _return(self, session: AsyncSession, order: Order, before: OrderState, word: Word) -> None:
+        await self.bring_back(session, order)
+        await self.move(session, order.id, OrderState.RETURNING, word)
+
+    async def _hold(self, session: AsyncSession, order: Order, before: OrderState, word: Word) -> None:
+        await self.take_into_hands(session, order, word)
+
+    async def _queue(self, session: AsyncSession, order: Order, before: OrderState, word: Word) -> None:
+        order.let_go_by, order.avoided_robot = order.robot, order.robot
+        await self.move(session, order.id, OrderState.QUEUED, word)
+
+    async def _cancel_by_hand(self, session: AsyncSession, order: Order, before: OrderState, word: Word) -> None:
+        order.let_go_by = order.robot
+        await self.move(session, order.id, OrderState.CANCELLED, word)
+
+    async def hold(
+        self, session: AsyncSession, person: Person, order_id: str, reason: str | None, if_match: str = ""
+    ) -> OrderView:
+        """Somebody of the mailroom has taken the mail out of the robot by hand. Raises TransitionRefused."""
+        order = await self._theirs(session, person, order_id, if_match)
+        await self.take_into_hands(session, order, _word(person, reason))
+        return await self._shown(session, order, person)
+
+    async def take_into_hands(self, session: AsyncSession, order: Order, word: Word) -> None:
+        """Custody by a dispatcher's word, the only one that no robot has written; the robot is told to forget it."""
+        if order.robot is not None:
+            order.let_go_by = order.robot
+            session.add(self._taken_by_hand(order, word))
+        await self.move(session, order.id, OrderState.HELD, word)
+
+    def _taken_by_hand(self, order: Order, word: Word) -> Handover:
+        return Handover(
+            order_id=order.id,
+            stop_id=f"held-{order.id}"[:64],
+            purpose=Purpose.RETURN,
+            robot=order.robot or "",
+            post=self.return_post(order),
+            how="dispatcher",
+            holder="mailroom",
+            person_id=word.person_id,
+            robot_at=self.clock.utc(),
+            at=self.clock.utc(),
+        )
+
+    async def reassign(
+        self, session: AsyncSession, person: Person, order_id: str, robot: str | None, if_match: str = ""
+    ) -> OrderView:
+        """Another robot fetches it: this one if named, else any other. Raises NotReassignable, UnknownRobotWanted."""
+        order = await self._theirs(session, person, order_id, if_match)
+        if order.state is not OrderState.QUEUED and order.state not in ROBOT_COMING:
+            raise errors.NotReassignable(f"The order is {order.state}: only mail that is not aboard can change robots.")
+        if robot is not None and await session.get(RobotRow, robot) is None:
+            raise errors.UnknownRobotWanted(f"No robot named {robot!r} is enrolled.")
+        order.wanted_robot = robot
+        order.avoided_robot = order.robot if robot is None else None
+        if order.state in ROBOT_COMING and order.robot != robot:
+            order.reassign_requested_at, order.let_go_by = self.clock.utc(), order.robot
+        await self.note(session, order.id, REASSIGNED, _word(person, f"to {robot}" if robot else None))
+        return await self._shown(session, order, person)
+
+    async def prioritise(
+        self, session: AsyncSession, person: Person, order_id: str, priority: Priority, if_match: str = ""
+    ) -> OrderView:
+        """Fetch it sooner, or later, than others. Raises TransitionRefused for an order that has ended."""
+        order = await self._theirs(session, person, order_id, if_match)
+        if order.state in ENDED:
+            raise errors.TransitionRefused(f"Order {order.id} is {order.state}: its priority means nothing any more.")
+        if order.priority is not priority:
+            order.priority = priority
+            await self.note(session, order.id, PRIORITY_CHANGED, _word(person, priority))
+        return await self._shown(session, order, person)
+
+    async def _theirs(self, session: AsyncSession, person: Person, order_id: str, if_match: str) -> Order:
+        return (await self.theirs(session, person, order_id, if_match))[0]
+
+    async def _shown(self, session: AsyncSession, order: Order, person: Person) -> OrderView:
+        facts = (await load_facts(session, [order]))[0]
+        return order_view(facts, "dispatcher", person.id, self.campus, self.settings)
+
+
+_WAYS_OUT: Final = {
+    "resume": Intervening._resume,
+    "returning": Intervening._return,
+    "held": Intervening._hold,
+    "queued": Intervening._queue,
+    "cancelled": Intervening._cancel_by_hand,
+}
+
+
+def _word(person: Person, reason: str | None) -> Word:
+    return Word(By.DISPATCHER, person_id=person.id, reason=reason)
