@@ -9,7 +9,7 @@ import structlog
 from fastapi import FastAPI
 from starlette.datastructures import State
 
-from app import about, demo_camera
+from app import about, demo_camera, one_order
 from app.api_document import DocumentedApi
 from app.body_limit import BodyLimit
 from app.database import Database
@@ -25,7 +25,7 @@ from app.live import routes as live_routes
 from app.live.feed import LocalFeed
 from app.mail import open_mailer
 from app.notify import routes as notify_routes
-from app.notify.channels.mail import MailChannel
+from app.notify.channels.mail import LinkFor, MailChannel
 from app.notify.channels.push import PushChannel
 from app.notify.channels.webhook import Address, WebhookChannel, secret_bytes
 from app.notify.push_key import open_push_key
@@ -38,12 +38,13 @@ from app.outside import TIMEOUT_S, Outside
 from app.pages import GzippedPages, SafeHeaders, add_pages, content_security_policy
 from app.people import everybody_routes, my_routes
 from app.people import routes as people_routes
+from app.people.links import Links
 from app.people.rate_limits import RateLimits
 from app.people.service import SignInDesk
 from app.schema_version import bring_to_head
 from app.server_key import ServerKey, open_server_key
 from app.settings import Settings, make_data_folder, open_map
-from app.tables import NoticeKind
+from app.tables import Notice, NoticeKind, Person
 from protocol.clock import Clock
 
 log = structlog.get_logger(__name__)
@@ -58,6 +59,7 @@ ROUTERS = (
     everybody_routes.address_router,
     everybody_routes.router,
     orders_routes.router,
+    one_order.router,
     notify_routes.router,
     live_routes.router,
     fleet_routes.router,
@@ -107,6 +109,7 @@ def _add_parts(app: FastAPI, settings: Settings, clock: Clock) -> None:
     state.sign_in_desk = SignInDesk(settings, state.server_key, state.mailer)
     state.orders = Orders(state.campus, settings, clock, state.feed, state.server_key, state.sign_in_desk)
     state.running = Running()
+    state.links = Links(state.database, state.server_key, settings, clock)
     state.enrolment_desk = EnrolmentDesk(settings, state.server_key, clock)
     state.fleet = Fleet(state.database, state.campus, settings, clock, state.feed, state.orders)
     state.intake = Intake(state.fleet)
@@ -123,11 +126,20 @@ def _outbox_worker(state: State, settings: Settings, clock: Clock) -> OutboxWork
     secret = settings.webhook_secret.get_secret_value()
     service = Address(settings.webhook_url, secret_bytes(secret), state.service_http) if settings.webhook_url else None
     channels = (
-        MailChannel(state.mailer, settings, _code_picture(state.server_key)),
+        MailChannel(state.mailer, settings, _code_picture(state.server_key), _link_for(state.links)),
         PushChannel(state.database, state.http, state.push_key, settings.push_contact_or_usual, clock),
         WebhookChannel(state.database, state.http, state.server_key, clock, service),
     )
     return OutboxWorker(state.database, state.feed, clock, channels, tell_service=service is not None)
+
+
+def _link_for(links: Links) -> LinkFor:
+    """The link that goes with a mail to somebody who has no account."""
+
+    async def link(person: Person, notice: Notice) -> str | None:
+        return await links.url_for(person, notice.order_id) if notice.order_id else None
+
+    return link
 
 
 def _code_picture(key: ServerKey) -> Callable[[str, NoticeKind], tuple[str, bytes] | None]:
