@@ -1,14 +1,16 @@
-"""`python -m protocol` prints the messages as docs/protocol.md shows them; `--write` puts them there."""
+"""`python -m protocol` prints the messages as docs/protocol.md shows them, `--asyncapi` as an AsyncAPI document;
+`--write` puts both where they belong."""
 
 import inspect
 import sys
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
+from protocol import asyncapi
 from protocol.envelope import BOTH_WAYS, DURABLE, TO_ROBOT, TO_SERVER, parse
+from protocol.example_files import examples_of
 from protocol.parts import Part
 
-EXAMPLES = Path(__file__).parent / "examples"
 PAGE = Path(__file__).parents[1] / "docs" / "protocol.md"
 BEGIN, END = "<!-- messages: python -m protocol --write -->\n", "<!-- end of messages -->\n"
 
@@ -17,11 +19,6 @@ DIRECTIONS: Mapping[str, Mapping[str, type[Part]]] = {
     "Server to robot": {name: kind for name, kind in TO_ROBOT.items() if name not in BOTH_WAYS},
     "Both ways": BOTH_WAYS,
 }
-
-
-def examples_of(name: str) -> list[Path]:
-    """The example files of a message type: `<type>.json` first, then its variants `<type>_<variant>.json`."""
-    return sorted(path for path in EXAMPLES.glob(f"{name}*.json") if f"{path.stem}_".startswith(f"{name}_"))
 
 
 def messages_as_markdown() -> str:
@@ -49,10 +46,13 @@ def _kept(name: str) -> str:
 def _write() -> None:
     before, _, rest = PAGE.read_text().partition(BEGIN)
     PAGE.write_text(before + BEGIN + messages_as_markdown() + END + rest.partition(END)[2])
+    asyncapi.FILE.write_text(asyncapi.as_text())
 
 
 if __name__ == "__main__":
     if sys.argv[1:] == ["--write"]:
         _write()
+    elif sys.argv[1:] == ["--asyncapi"]:
+        print(asyncapi.as_text(), end="")
     else:
         print(messages_as_markdown(), end="")

@@ -12,10 +12,11 @@ from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PublicKey
 from hypothesis import given
 from hypothesis import strategies as st
 
-from protocol.__main__ import BEGIN, END, EXAMPLES, PAGE, examples_of, messages_as_markdown
+from protocol.__main__ import BEGIN, END, PAGE, messages_as_markdown
 from protocol.both_ways import Error
 from protocol.envelope import DURABLE, MAX_MESSAGE_BYTES, TO_ROBOT, TO_SERVER, Envelope, parse, type_of
 from protocol.errors import MalformedMessage, MessageTooLarge, NewerVersion, ProtocolError, UnknownMessage
+from protocol.example_files import EXAMPLES, examples_of
 from protocol.parts import Part
 
 ROOT = Path(__file__).parents[2]
