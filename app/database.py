@@ -10,7 +10,7 @@ from typing import Annotated, Any
 from fastapi import Depends
 from sqlalchemy import Connection, event, make_url
 from sqlalchemy.exc import ArgumentError
-from sqlalchemy.ext.asyncio import AsyncEngine, create_async_engine
+from sqlalchemy.ext.asyncio import AsyncConnection, AsyncEngine, create_async_engine
 from sqlmodel.ext.asyncio.session import AsyncSession
 from starlette.requests import HTTPConnection
 
@@ -63,6 +63,21 @@ class Database:
         async with AsyncSession(self.engine, expire_on_commit=False) as session:
             yield session
 
+    @asynccontextmanager
+    async def rebuilding(self) -> AsyncIterator[AsyncConnection]:
+        """One transaction in which tables may be written anew, as SQLite has to for most changes of a schema.
+
+        It would take the rows that refer to a table for orphans as soon as the old one is dropped: whoever rebuilds
+        looks for orphans at the end (`PRAGMA foreign_key_check`).
+        """
+        async with self.writing.connect() as connection:
+            await connection.run_sync(_heed_foreign_keys, "OFF")
+            try:
+                async with connection.begin():
+                    yield connection
+            finally:
+                await connection.run_sync(_heed_foreign_keys, "ON")
+
     async def close(self) -> None:
         await self.engine.dispose()
 
@@ -105,6 +120,14 @@ def _prepare_sqlite(connection: Any, record: Any) -> None:
     except BaseException:  # no database of ours; nobody else knows this connection yet
         connection.close()
         raise
+
+
+def _heed_foreign_keys(connection: Connection, wanted: str) -> None:
+    """Past SQLAlchemy: within a transaction, which it would begin, the word has no effect."""
+    if connection.dialect.name == "sqlite":
+        cursor = connection.connection.cursor()
+        cursor.execute(f"PRAGMA foreign_keys={wanted}")
+        cursor.close()
 
 
 def _begin_sqlite(connection: Connection) -> None:

@@ -39,7 +39,7 @@ async def bring_to_head(database: Database) -> None:
     """
     try:
         await asyncio.to_thread(_open, database.engine.url)
-        async with database.writing.begin() as connection:
+        async with database.rebuilding() as connection:
             await connection.run_sync(_bring_to_head)
     except (DBAPIError, OSError, sqlite3.Error) as error:
         why = error.orig if isinstance(error, DBAPIError) else error
@@ -68,6 +68,13 @@ def _bring_to_head(connection: Connection) -> None:
     config = Config(INI)
     config.attributes["connection"] = connection
     command.upgrade(config, "head")
+    if connection.dialect.name == "sqlite" and (
+        orphans := connection.exec_driver_sql("PRAGMA foreign_key_check").all()
+    ):
+        tables = ", ".join(sorted({str(row[0]) for row in orphans}))
+        raise DatabaseUnusable(
+            f"The schema was not changed: rows of {tables} refer to rows that are not there. Restore a backup."
+        )
 
 
 def refuse_unknown(revision: str) -> None:

@@ -41,7 +41,7 @@ async def run_on_the_database_of_the_settings() -> None:
     settings = load_settings()
     make_data_folder(settings)
     database = Database(settings.url_of_database)
-    async with database.writing.begin() as connection:
+    async with database.rebuilding() as connection:
         await connection.run_sync(run_on)
     await database.close()
 
