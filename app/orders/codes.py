@@ -92,13 +92,15 @@ def code_text(key: ServerKey, order_id: str, purpose: Purpose, whose: tuple[str,
     return PREFIX + key.derive("hand-over", order_id, purpose, *whose)[:SECRET_BYTES].hex()
 
 
-def codes_of(order: Order, delegates: Iterable[Delegate] = ()) -> tuple[HandoverCode, ...]:
-    """Every code of an order that is good for something."""
+def codes_of(
+    order: Order, delegates: Iterable[Delegate] = (), *, with_revoked: bool = False
+) -> tuple[HandoverCode, ...]:
+    """Every code of an order that is good for something; `with_revoked`: or was once."""
     own = (HandoverCode(order.id, purpose, holder, order.codes_expire_at) for purpose, holder in OWN_CODES)
     more = (
         HandoverCode(order.id, Purpose(one.purpose), Holder.DELEGATE, order.codes_expire_at, one)
         for one in delegates
-        if one.order_id == order.id and one.revoked_at is None
+        if one.order_id == order.id and (with_revoked or one.revoked_at is None)
     )
     return (*own, *more)
 

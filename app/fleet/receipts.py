@@ -1,0 +1,161 @@
+"""What a robot's receipt proves: that this robot wrote it, and whose code opened. Else custody does not move."""
+
+import base64
+import binascii
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import datetime
+from typing import Final
+
+from cryptography.exceptions import InvalidSignature
+from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PublicKey
+from sqlmodel.ext.asyncio.session import AsyncSession
+
+from app.fleet.alarms import raise_alarm
+from app.orders.codes import HandoverCode, Holder, codes_of, delegates_of
+from app.server_key import ServerKey
+from app.tables import Handover, Order, RefusedReceipt, RobotCommand, RobotRow
+from protocol.parts import Purpose
+from protocol.to_server import HandoverReceipt
+
+REFUSED: Final = "receipt_refused"
+REVOKED: Final = "revoked_code_used"
+
+OPENED_BY: Final[Mapping[Purpose, frozenset[Purpose]]] = {
+    Purpose.LOAD: frozenset({Purpose.LOAD}),
+    Purpose.RECEIVE: frozenset({Purpose.RECEIVE}),
+    # Mail that is brought back is given to its recipient too, and for the code that it was loaded with.
+    Purpose.RETURN: frozenset(Purpose),
+}
+PROBLEMS: Final[Mapping[str, str]] = {
+    "unsigned": "it is not signed, although this robot has a key",
+    "bad_signature": "its signature is not this robot's",
+    "unknown_code": "its code is none of this order's",
+    "no_code": "it names no code",
+    "unknown_command": "nobody asked this robot for it",
+}
+
+
+class _Refused(Exception):
+    """`problem` is one of PROBLEMS."""
+
+    def __init__(self, problem: str) -> None:
+        super().__init__(problem)
+        self.problem = problem
+
+
+@dataclass(frozen=True)
+class _Judge:
+    """One receipt of one robot, and what it is held against."""
+
+    session: AsyncSession
+    key: ServerKey
+    robot: RobotRow
+    order: Order
+    receipt: HandoverReceipt
+    now: datetime
+
+    async def handover(self) -> Handover:
+        """The link of the chain of custody that the receipt proves. Raises _Refused."""
+        receipt = self.receipt
+        _check_signature(self.robot, receipt)
+        command = await self._command()
+        code = await self._code()
+        return Handover(
+            order_id=receipt.order_id,
+            stop_id=receipt.stop_id,
+            purpose=receipt.purpose,
+            robot=self.robot.name,
+            post=receipt.post,
+            code_sha256=receipt.code_sha256,
+            robot_at=receipt.happened_at,
+            at=self.now,
+            how=receipt.how,
+            holder=code.holder if code else None,
+            person_id=_person(self.order, code, command),
+            delegate_id=code.delegate.id if code and code.delegate else None,
+            command_id=receipt.command_id,
+            signature=receipt.signature if self.robot.public_key else None,
+        )
+
+    async def _command(self) -> RobotCommand | None:
+        receipt = self.receipt
+        if receipt.how not in ("tap", "digits"):
+            return None
+        command = await self.session.get(RobotCommand, receipt.command_id or "")
+        asked = command and (command.robot, command.order_id, command.how, command.code_sha256)
+        if command is None or asked != (self.robot.name, receipt.order_id, receipt.how, receipt.code_sha256):
+            raise _Refused("unknown_command")
+        command.answered_at, command.accepted = command.answered_at or self.now, True
+        return command
+
+    async def _code(self) -> HandoverCode | None:
+        """Whose it was; None for the Spot button, which loads only."""
+        receipt = self.receipt
+        if receipt.code_sha256 is None:
+            if receipt.purpose is not Purpose.LOAD:
+                raise _Refused("no_code")
+            return None
+        delegates = await delegates_of(self.session, [self.order])
+        for code in codes_of(self.order, delegates, with_revoked=True):
+            if code.purpose in OPENED_BY[receipt.purpose] and code.sha256(self.key) == receipt.code_sha256:
+                await self._tell_if_revoked(code)
+                return code
+        raise _Refused("unknown_code")
+
+    async def _tell_if_revoked(self, code: HandoverCode) -> None:
+        """It was taken back, but this robot had not heard of it yet: the mail is gone all the same."""
+        if code.delegate is not None and code.delegate.revoked_at is not None:
+            sentence = f"order {self.order.id} was handed over to {code.delegate.name}, whose code had been revoked"
+            await raise_alarm(self.session, self.robot.name, REVOKED, sentence, now=self.now, post=self.receipt.post)
+
+
+async def judged(
+    session: AsyncSession, key: ServerKey, robot: str, order: Order, receipt: HandoverReceipt, now: datetime
+) -> Handover | None:
+    """The link of the chain that a receipt proves; None if it proves nothing: then it is written down and an alarm."""
+    row = await session.get_one(RobotRow, robot)
+    try:
+        return await _Judge(session, key, row, order, receipt, now).handover()
+    except _Refused as refused:
+        session.add(_refused(robot, receipt, now, refused.problem))
+        sentence = f"a receipt ({receipt.purpose}) for order {order.id} counts for nothing: {PROBLEMS[refused.problem]}"
+        await raise_alarm(session, robot, REFUSED, sentence, now=now, post=receipt.post)
+        return None
+
+
+def _check_signature(robot: RobotRow, receipt: HandoverReceipt) -> None:
+    if robot.public_key is None:
+        return  # enrolled without a key; whatever it signs cannot be told from anything else
+    if receipt.signature is None:
+        raise _Refused("unsigned")
+    try:
+        key = Ed25519PublicKey.from_public_bytes(base64.b64decode(robot.public_key, validate=True))
+        key.verify(base64.b64decode(receipt.signature, validate=True), receipt.signed_by(robot.name))
+    except (InvalidSignature, ValueError, binascii.Error):
+        raise _Refused("bad_signature") from None
+
+
+def _person(order: Order, code: HandoverCode | None, command: RobotCommand | None) -> str | None:
+    if code is None or code.holder is Holder.DELEGATE:
+        return None
+    if code.holder is Holder.MAILROOM:
+        return command.asked_by_id if command else None
+    return order.sender_id if code.holder is Holder.SENDER else order.recipient_id
+
+
+def _refused(robot: str, receipt: HandoverReceipt, now: datetime, problem: str) -> RefusedReceipt:
+    return RefusedReceipt(
+        robot=robot,
+        order_id=receipt.order_id,
+        stop_id=receipt.stop_id,
+        purpose=receipt.purpose,
+        post=receipt.post,
+        code_sha256=receipt.code_sha256,
+        how=receipt.how,
+        command_id=receipt.command_id,
+        signature=receipt.signature,
+        robot_at=receipt.happened_at,
+        at=now,
+        problem=problem,
+    )
