@@ -6,6 +6,7 @@ at any moment: a mission that was decided on is in the robot's outbox and is sen
 """
 
 import asyncio
+from collections.abc import Sequence
 from typing import Final
 
 import structlog
@@ -42,12 +43,19 @@ class Dispatcher:
         self._ways = Ways(fleet.campus)
         self._woken = asyncio.Event()
         self._stopping = False
-        fleet.on_change.append(self.wake)
+        self._needs_robots = True
+        self._left = 0
+        fleet.on_change.append(self.wake_for_robot)
         fleet.orders.on_change.append(self.wake)
 
     def wake(self, _changed: str = "") -> None:
-        """An order or a robot has changed: look again."""
+        """An order has changed: look again."""
         self._woken.set()
+
+    def wake_for_robot(self, _changed: str = "") -> None:
+        """A robot has changed: look again, if anything was left for which no robot was there."""
+        if self._needs_robots:
+            self._woken.set()
 
     def stop(self) -> None:
         """End `run` after what it is doing."""
@@ -58,23 +66,31 @@ class Dispatcher:
         """Until stopped or cancelled."""
         while not self._stopping:
             self._woken.clear()
-            await self.pass_on()
-            while await self.assign():
-                pass
+            self._needs_robots = True  # what changes from here on may come too late for this look
+            self._needs_robots = await self._look_round()
             try:
                 async with asyncio.timeout(LOOK_AGAIN_S):
                     await self._woken.wait()
             except TimeoutError:
                 pass
 
+    async def _look_round(self) -> bool:
+        """Do what there is to do; whether anything is left that waits for a robot."""
+        async with self._fleet.database.reading() as session:
+            dropped = (await session.exec(select(Order.id).where(col(Order.let_go_by).is_not(None)))).all()
+            changed = (await session.exec(_changed_missions())).all()
+            waits = await anything_waits(session, self._fleet.clock.utc())
+        await self._pass_on(dropped, changed)
+        if waits:
+            while await self.assign():
+                pass
+        return (waits and self._left > 0) or bool(changed)
+
     # Who fetches what.
 
     async def assign(self) -> bool:
-        """Give waiting orders to robots, as many as there are robots for; False if there was none to give."""
+        """Give waiting orders to robots, as many as there are robots for; whether there may be more to give."""
         now = self._fleet.clock.utc()
-        async with self._fleet.database.reading() as session:
-            if not await anything_waits(session, now):
-                return False
         async with self._fleet.database.transaction() as session:
             situation = await look(session, now, self._fleet.settings.priority_head_start_s)
             assignments = choose_robots(situation.waiting, situation.idle, self._ways)[:AT_ONCE]
@@ -84,7 +100,8 @@ class Dispatcher:
                 given |= await self._take_along(session, situation, given, touched)
             await self._tell(session, touched)
             await self._explain(session, situation, given)
-        return bool(given)
+        self._left = len(situation.waiting) - len(given)
+        return bool(given) and self._left > 0
 
     async def _assign(self, session: AsyncSession, assignment: Assignment) -> MissionRow:
         order = await session.get_one(Order, assignment.order_id)
@@ -127,11 +144,8 @@ class Dispatcher:
 
     # What has changed for robots.
 
-    async def pass_on(self) -> None:
+    async def _pass_on(self, dropped: Sequence[str], changed: Sequence[str]) -> None:
         """Tell robots what to drop, and missions that have changed; each is told once, in a transaction of its own."""
-        async with self._fleet.database.reading() as session:
-            dropped = (await session.exec(select(Order.id).where(col(Order.let_go_by).is_not(None)))).all()
-            changed = (await session.exec(_changed_missions())).all()
         for order_id in dropped:
             await self._tell_to_drop(order_id)
         for mission_id in changed:

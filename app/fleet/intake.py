@@ -29,6 +29,8 @@ from protocol.both_ways import Error
 from protocol.envelope import Envelope
 from protocol.to_server import Snapshot, Why
 
+GATHER_S: Final = 0.01
+"""Real seconds for which the first message waits for others: a transaction costs more than what is in it."""
 AT_ONCE: Final = 64
 """Messages in one transaction, so that the first of them does not wait long for the last."""
 UNSEEN: Final = frozenset({"heard_at", "last_seq"})
@@ -82,6 +84,8 @@ class Intake:
 
     async def _take_all(self) -> None:
         while self._waiting:
+            if len(self._waiting) < AT_ONCE:
+                await asyncio.sleep(GATHER_S)
             some = [self._waiting.popleft() for _ in range(min(AT_ONCE, len(self._waiting)))]
             await self._take(some)
         self._over.clear()

@@ -19,7 +19,7 @@ NOT_REPORTED: Final = "The robot has ended its mission and did not say what beca
 
 async def mission_of(report: Report, progress: Progress) -> MissionRow:
     """The mission that a robot speaks of; its own is taken over when first heard of. Raises UnknownMission."""
-    mission = await report.session.get(MissionRow, progress.mission_id, with_for_update=True)
+    mission = await report.session.get(MissionRow, progress.mission_id)
     if mission is None and is_own(progress.mission_id):
         return await _adopt(report, progress)
     if mission is None or mission.robot != report.robot:
