@@ -41,6 +41,7 @@ class About(BaseModel):
     now: datetime
     languages: list[str]
     allowed_domains: list[str]
+    campus_sign_in: bool
     map: str
 
 
@@ -89,6 +90,7 @@ async def about(settings: SettingsDep, clock: ClockDep, campus: CampusDep) -> Ab
         now=clock.utc(),
         languages=list(LANGUAGES),
         allowed_domains=list(settings.allowed_domains),
+        campus_sign_in=bool(settings.oidc_issuer),
         map=campus.name,
     )
 

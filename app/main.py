@@ -36,9 +36,10 @@ from app.orders.idempotency import Running
 from app.orders.service import Orders
 from app.outside import TIMEOUT_S, Outside
 from app.pages import GzippedPages, SafeHeaders, add_pages, content_security_policy
-from app.people import everybody_routes, my_routes
+from app.people import everybody_routes, my_routes, oidc_routes
 from app.people import routes as people_routes
 from app.people.links import Links
+from app.people.oidc import Provider
 from app.people.rate_limits import RateLimits
 from app.people.service import SignInDesk
 from app.schema_version import bring_to_head
@@ -53,6 +54,7 @@ API = "/api/v1"
 ROUTERS = (
     about.api_router,
     people_routes.router,
+    oidc_routes.router,
     my_routes.me_router,
     my_routes.address_router,
     my_routes.router,
@@ -107,6 +109,7 @@ def _add_parts(app: FastAPI, settings: Settings, clock: Clock) -> None:
     state.rate_limits = RateLimits(settings)
     state.mailer = open_mailer(settings)
     state.sign_in_desk = SignInDesk(settings, state.server_key, state.mailer)
+    state.provider = Provider(settings, state.server_key)
     state.orders = Orders(state.campus, settings, clock, state.feed, state.server_key, state.sign_in_desk)
     state.running = Running()
     state.links = Links(state.database, state.server_key, settings, clock)

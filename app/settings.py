@@ -7,6 +7,7 @@ Secrets come from files: the server key lives in its own file, and any setting m
 import os
 from pathlib import Path
 from typing import Annotated, Final, Literal, Self
+from urllib.parse import urlsplit
 from zoneinfo import ZoneInfo, available_timezones
 
 from fastapi import Depends
@@ -83,6 +84,11 @@ class Settings(BaseSettings):
         60, gt=0, description="How long a tap or digits at a hand-over are good for on their way to the robot."
     )
     enrolment_code_lifetime_s: float = Field(900, gt=0, description="How long a robot's enrolment code is good for.")
+    oidc_issuer: str = Field(
+        "", description="Issuer of the campus's OpenID Connect sign-in, such as https://login.campus.example."
+    )
+    oidc_client_id: str = Field("", description="What this service is called there.")
+    oidc_client_secret: SecretStr = Field(SecretStr(""), description="Its secret there; give it as a file.")
     link_lifetime_s: float = Field(
         14 * 86400, gt=0, description="How long the link to one order, in mails to people without account, is good for."
     )
@@ -148,6 +154,14 @@ class Settings(BaseSettings):
         except ValueError:
             raise ValueError(f"{limit!r} is no limit; one is written like 10 per 15 minutes") from None
         return limit
+
+    @field_validator("oidc_issuer")
+    @classmethod
+    def _issuer_is_https(cls, issuer: str) -> str:
+        url = urlsplit(issuer)
+        if issuer and url.scheme != "https" and url.hostname not in {"localhost", "127.0.0.1", "::1"}:
+            raise ValueError("the issuer's address begins with https://")
+        return issuer
 
     @field_validator("time_zone")
     @classmethod

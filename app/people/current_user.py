@@ -14,6 +14,7 @@ from fastapi.security import APIKeyCookie, HTTPBearer
 from app.bearer_tokens import is_bearer
 from app.database import Database, DatabaseDep
 from app.errors import NotSignedIn
+from app.people.cookies import read_cookie
 from app.people.errors import NotForScripts, RoleNeeded, ScopeNeeded
 from app.people.same_origin import require_https_or_loopback, require_same_origin
 from app.people.scopes import opened_by
@@ -24,14 +25,13 @@ from app.tables import Person, Role
 from protocol.clock import Clock
 
 StillSignedIn = Callable[[Person], Awaitable[bool]]
-HTTPS_COOKIE = "__Host-session"
-LOCAL_COOKIE = "session"
+SESSION_COOKIE = "session"
 
 _cookie_documented = APIKeyCookie(
     scheme_name="session",
-    name=LOCAL_COOKIE,
+    name=SESSION_COOKIE,
     auto_error=False,
-    description=f"From `POST /sign-in`; on https `{HTTPS_COOKIE}`. Changes need `Sec-Fetch-Site` or `Origin` too.",
+    description="From `POST /sign-in`; on https `__Host-session`. Changes need `Sec-Fetch-Site` or `Origin` too.",
 )
 _token_documented = HTTPBearer(
     scheme_name="token", bearerFormat="cmp_…", auto_error=False, description="A script's token, from `POST /tokens`."
@@ -45,11 +45,6 @@ class Caller:
     person: Person
     session_id: int | None = None
     scopes: frozenset[str] = frozenset()
-
-
-def cookie_name(request: Request) -> str:
-    """`__Host-` cookies exist on https alone; localhost makes do with a plain one."""
-    return HTTPS_COOKIE if request.url.scheme == "https" else LOCAL_COOKIE
 
 
 async def _caller(
@@ -71,7 +66,7 @@ async def _find_caller(request: Request, database: Database, clock: Clock) -> Ca
     authorization = request.headers.get("Authorization", "")
     if is_bearer(authorization):
         return await _script(authorization, database, clock)
-    token = request.cookies.get(cookie_name(request))
+    token = read_cookie(request, SESSION_COOKIE)
     if not token:
         raise NotSignedIn("Sign in first.")
     return await _browser(token, database, clock)

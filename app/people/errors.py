@@ -4,20 +4,26 @@ Unprocessable ├── AddressNotAllowed
               └── NoSuchPost
 NotSignedIn   ├── WrongCode
               ├── CodeExpired
-              └── LinkRefused
+              ├── LinkRefused
+              ├── WrongState
+              ├── OidcRefused
+              ├── OidcUntrusted
+              └── EmailNotVerified
 Forbidden     ├── RoleNeeded
               ├── ScopeNeeded
               ├── NotForScripts
               ├── CrossSite
               └── HttpsRequired
-NotFound      ├── UnknownSession
+NotFound      ├── NoCampusSignIn
+              ├── UnknownSession
               ├── UnknownToken
               ├── UnknownPerson
               └── UnknownContact
 Conflict      └── LastMaintainer
+ServiceError  └── ProviderFailed
 """
 
-from app.errors import Conflict, Forbidden, NotFound, NotSignedIn, Unprocessable
+from app.errors import Conflict, Forbidden, NotFound, NotSignedIn, ServiceError, Unprocessable
 
 
 class AddressNotAllowed(Unprocessable):
@@ -42,6 +48,43 @@ class LinkRefused(NotSignedIn):
     """The link of a mail is unknown, too old or was taken back."""
 
     code = "link_refused"
+
+
+class WrongState(NotSignedIn):
+    """Somebody came back from the provider who was not sent there by this browser, or too long ago."""
+
+    code = "wrong_state"
+
+
+class OidcRefused(NotSignedIn):
+    """The provider did not let somebody in, or did not take the code that they came back with."""
+
+    code = "oidc_refused"
+
+
+class OidcUntrusted(NotSignedIn):
+    """The provider's answer is not to this question, not for this service or not signed by the provider."""
+
+    code = "oidc_untrusted"
+
+
+class EmailNotVerified(NotSignedIn):
+    """The provider knows who it is, but not whether the address is theirs."""
+
+    code = "email_not_verified"
+
+
+class NoCampusSignIn(NotFound):
+    """No identity provider is configured."""
+
+    code = "no_campus_sign_in"
+
+
+class ProviderFailed(ServiceError):
+    """The identity provider cannot be reached, or is not what was configured."""
+
+    status = 502
+    code = "provider_failed"
 
 
 class RoleNeeded(Forbidden):

@@ -6,7 +6,8 @@ from fastapi import APIRouter, Depends, Header, Request, Response
 
 from app.database import DatabaseDep, SessionDep
 from app.errors import problems
-from app.people.current_user import AtBrowser, ThisSession, cookie_name
+from app.people.cookies import set_cookie
+from app.people.current_user import SESSION_COOKIE, AtBrowser, ThisSession
 from app.people.errors import AddressNotAllowed, CodeExpired, WrongCode
 from app.people.rate_limits import Door, LimitsDep, per_host
 from app.people.same_origin import refuse_other_sites, require_https_or_loopback
@@ -75,9 +76,10 @@ async def sign_in(
         raise refusal
     async with database.transaction() as session:
         language = language_from(accept_language, settings.default_language)
-        person, token = await desk.open_session(session, wish.email, language, user_agent, clock.utc())
+        person = await desk.newcomer(session, wish.email, language, clock.utc())
+        token = desk.open_session(session, person, user_agent, clock.utc())
     # Browsers count real seconds; a session that ends sooner is refused here.
-    _set_cookie(request, response, token, round(settings.session_lifetime_s))
+    set_cookie(request, response, SESSION_COOKIE, token, round(settings.session_lifetime_s))
     return PersonView.of(person)
 
 
@@ -93,16 +95,4 @@ async def sign_out(
 ) -> None:
     """End this session."""
     await end_session(session, user.id, this, clock.utc())
-    _set_cookie(request, response, "", 0)
-
-
-def _set_cookie(request: Request, response: Response, token: str, max_age_s: int) -> None:
-    response.set_cookie(
-        cookie_name(request),
-        token,
-        max_age=max_age_s,
-        path="/",
-        httponly=True,
-        samesite="lax",
-        secure=request.url.scheme == "https",
-    )
+    set_cookie(request, response, SESSION_COOKIE, "", 0)

@@ -28,6 +28,8 @@ WHATEVER: Final = frozenset(Scope)
 OPENED_BY: Final[Mapping[str, tuple[frozenset[Scope], frozenset[Scope]]]] = {
     # tag of the route: any of these to read, any of these to change
     "orders": (frozenset({Scope.ORDERS_READ}), frozenset({Scope.ORDERS_WRITE})),
+    "standing orders": (frozenset({Scope.ORDERS_READ}), frozenset({Scope.ORDERS_WRITE})),
+    "dispatch": (frozenset({Scope.DISPATCH}), frozenset({Scope.DISPATCH})),
     "robots": (frozenset({Scope.ROBOTS_READ}), frozenset({Scope.DISPATCH, Scope.MAINTAIN})),
     "enrolment": (frozenset({Scope.MAINTAIN}), frozenset({Scope.MAINTAIN})),
     "notices": (frozenset({Scope.NOTICES_READ}), frozenset({Scope.NOTICES_WRITE})),

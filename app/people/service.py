@@ -80,19 +80,21 @@ class SignInDesk:
         row.used_at = now
         return None
 
-    async def open_session(
-        self, session: AsyncSession, email: str, language: str, user_agent: str, now: datetime
-    ) -> tuple[Person, str]:
-        """The person, made at their first sign-in, and the secret of a new session (for the cookie alone).
+    async def newcomer(self, session: AsyncSession, email: str, language: str, now: datetime) -> Person:
+        """Whoever signs in with this address, made at their first sign-in.
 
         Whoever was only sent something so far was given the default language; what their browser speaks is nearer.
         """
         person = await self.person(session, email, now, language)
         if not await _has_signed_in(session, person):
             person.language = language
+        return person
+
+    def open_session(self, session: AsyncSession, person: Person, user_agent: str, now: datetime) -> str:
+        """The secret of a new session, for the cookie alone."""
         row, token = new_session(person, user_agent, self.settings.session_lifetime_s, now)
         session.add(row)
-        return person, token
+        return token
 
     async def person(self, session: AsyncSession, email: str, now: datetime, language: str | None = None) -> Person:
         """Whoever has this address; a new row if nobody yet."""

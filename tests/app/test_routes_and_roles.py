@@ -35,6 +35,7 @@ class Line(NamedTuple):
 
 ASKED: Final = ("stranger", *PEOPLE)
 OPEN: Final = Line(200, 200, 200, 200, 200, 200, "")
+NOT_SET_UP: Final = Line(404, 404, 404, 404, 404, 404, "")
 SCRIPTS: Final = tuple(str(scope) for scope in Scope)
 
 
@@ -61,6 +62,8 @@ LINES: Final[dict[tuple[str, str], Line]] = {
     ("GET", "/api/v1/map"): OPEN,
     ("POST", "/api/v1/sign-in/codes"): Line(202, 202, 202, 202, 202, 202, ""),
     ("POST", "/api/v1/sign-in"): Line(401, 401, 401, 401, 401, 401, ""),
+    ("GET", "/api/v1/sign-in/oidc"): NOT_SET_UP,
+    ("GET", "/api/v1/sign-in/oidc/callback"): NOT_SET_UP,
     ("DELETE", "/api/v1/session"): members("none", 204),
     ("GET", "/api/v1/me"): members(" ".join(SCRIPTS)),
     ("PATCH", "/api/v1/me"): members("none"),
@@ -86,6 +89,22 @@ LINES: Final[dict[tuple[str, str], Line]] = {
     ("GET", "/api/v1/orders/{order_id}/code"): Line(401, 404, 404, 200, 404, 404, "orders:read"),
     ("GET", "/api/v1/orders/{order_id}/code.svg"): Line(401, 404, 404, 200, 404, 404, "orders:read"),
     ("POST", "/api/v1/orders/{order_id}/cancel"): Line(401, 404, 409, 200, 200, 404, "orders:write"),
+    # No mail is aboard, no robot waits, nothing needs attention.
+    ("POST", "/api/v1/orders/{order_id}/recall"): Line(401, 404, 409, 409, 409, 404, "orders:write"),
+    ("POST", "/api/v1/orders/{order_id}/not-now"): Line(401, 404, 409, 409, 409, 404, "orders:write"),
+    ("POST", "/api/v1/orders/{order_id}/wait"): Line(401, 404, 409, 409, 409, 404, "orders:write"),
+    ("POST", "/api/v1/orders/{order_id}/attention"): dispatchers("dispatch"),
+    ("POST", "/api/v1/orders/{order_id}/resolve"): dispatchers("dispatch", 409),
+    ("POST", "/api/v1/orders/{order_id}/hold"): dispatchers("dispatch", 409),
+    ("POST", "/api/v1/orders/{order_id}/reassign"): dispatchers("dispatch"),
+    ("PUT", "/api/v1/orders/{order_id}/priority"): dispatchers("dispatch"),
+    # The sender's.
+    ("POST", "/api/v1/standing-orders"): members("orders:write", 201),
+    ("GET", "/api/v1/standing-orders"): members("orders:read"),
+    ("GET", "/api/v1/standing-orders/{standing_order_id}"): Line(401, 404, 404, 200, 200, 404, "orders:read"),
+    ("POST", "/api/v1/standing-orders/{standing_order_id}/pause"): Line(401, 404, 404, 200, 200, 404, "orders:write"),
+    ("POST", "/api/v1/standing-orders/{standing_order_id}/resume"): Line(401, 404, 404, 200, 200, 404, "orders:write"),
+    ("POST", "/api/v1/standing-orders/{standing_order_id}/end"): Line(401, 404, 404, 200, 200, 404, "orders:write"),
     ("GET", "/api/v1/notices"): members("notices:read"),
     ("POST", "/api/v1/notices/read"): members("notices:write", 204),
     ("GET", "/api/v1/live"): members("live:read"),
@@ -103,6 +122,13 @@ ORDER: Final = {"from_post": "post1", "to_post": "post4", "recipient": RECIPIENT
 WISHES: Final[dict[tuple[str, str], dict[str, Any]]] = {
     # the body of a request; `{order_id}` and the like are filled in as in paths
     ("POST", "/api/v1/orders"): ORDER,
+    ("POST", "/api/v1/orders/{order_id}/wait"): {},
+    ("POST", "/api/v1/orders/{order_id}/attention"): {"reason": "It does not move."},
+    ("POST", "/api/v1/orders/{order_id}/resolve"): {"to": "queued"},
+    ("POST", "/api/v1/orders/{order_id}/hold"): {},
+    ("POST", "/api/v1/orders/{order_id}/reassign"): {},
+    ("PUT", "/api/v1/orders/{order_id}/priority"): {"priority": "high"},
+    ("POST", "/api/v1/standing-orders"): {**ORDER, "weekdays": [0], "at": "09:30", "zone": "America/Toronto"},
     ("POST", "/api/v1/sign-in/codes"): {"email": "new@campus.example"},
     ("POST", "/api/v1/sign-in"): {"email": "new@campus.example", "code": "00000000"},
     ("POST", "/api/v1/link/order"): {"token": "{link}"},
