@@ -45,6 +45,8 @@ TAGS: Final[Mapping[str, str]] = {
     "address book": "Whom one exchanged mail with or saved; for dispatchers everybody.",
     "one order": "What a recipient without account reaches by the link in their mail: this one order and nothing else.",
     "orders": "Ordering, following and cancelling, and the codes that go with an order.",
+    "standing orders": "Orders that come again on some weekdays.",
+    "dispatch": "What dispatchers do with an order that is stuck, or is wanted otherwise.",
     "notices": "What a person was told.",
     "me": "The signed-in person.",
     "address book": "People one exchanges mail with; everybody, for dispatchers.",

@@ -21,6 +21,9 @@ from app.etags import ETags
 from app.fleet import routes as fleet_routes
 from app.fleet.intake import Intake
 from app.fleet.service import Fleet
+from app.handover import routes as handover_routes
+from app.handover.delegates import Delegating
+from app.handover.service import HandOvers
 from app.live import routes as live_routes
 from app.live.feed import LocalFeed
 from app.mail import open_mailer
@@ -30,10 +33,13 @@ from app.notify.channels.push import PushChannel
 from app.notify.channels.webhook import Address, WebhookChannel, secret_bytes
 from app.notify.push_key import open_push_key
 from app.notify.worker import OutboxWorker
+from app.orders import changing_routes, standing_routes
 from app.orders import routes as orders_routes
 from app.orders.codes import PURPOSE_OF_NOTICE, code_png, code_text
 from app.orders.idempotency import Running
 from app.orders.service import Orders
+from app.orders.standing import StandingOrders
+from app.orders.timer import Timer
 from app.outside import TIMEOUT_S, Outside
 from app.pages import GzippedPages, SafeHeaders, add_pages, content_security_policy
 from app.people import everybody_routes, my_routes, oidc_routes
@@ -61,11 +67,15 @@ ROUTERS = (
     everybody_routes.address_router,
     everybody_routes.router,
     orders_routes.router,
+    changing_routes.router,
+    changing_routes.dispatch_router,
+    standing_routes.router,
     one_order.router,
     notify_routes.router,
     live_routes.router,
     fleet_routes.router,
     enrolment_routes.router,
+    handover_routes.router,
     demo_camera.router,
 )
 RESTART_PAUSE_S = 1.0
@@ -111,10 +121,13 @@ def _add_parts(app: FastAPI, settings: Settings, clock: Clock) -> None:
     state.sign_in_desk = SignInDesk(settings, state.server_key, state.mailer)
     state.provider = Provider(settings, state.server_key)
     state.orders = Orders(state.campus, settings, clock, state.feed, state.server_key, state.sign_in_desk)
+    state.standing_orders = StandingOrders(state.orders)
+    state.timer = Timer(state.database, state.orders, state.standing_orders)
     state.running = Running()
     state.links = Links(state.database, state.server_key, settings, clock)
     state.enrolment_desk = EnrolmentDesk(settings, state.server_key, clock)
     state.fleet = Fleet(state.database, state.campus, settings, clock, state.feed, state.orders)
+    state.hand_overs, state.delegating = HandOvers(state.fleet), Delegating(state.fleet)
     state.intake = Intake(state.fleet)
     state.outbox_worker = _outbox_worker(state, settings, clock)
     state.orders.on_change.append(lambda order_id: state.outbox_worker.wake())
@@ -159,7 +172,7 @@ def _code_picture(key: ServerKey) -> Callable[[str, NoticeKind], tuple[str, byte
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     await bring_to_head(app.state.database)
     await app.state.fleet.begin()
-    workers = {"outbox": app.state.outbox_worker, "dispatch": app.state.dispatcher}
+    workers = {"outbox": app.state.outbox_worker, "dispatch": app.state.dispatcher, "timer": app.state.timer}
     background = [asyncio.create_task(_keep_running(name, worker.run)) for name, worker in workers.items()]
     try:
         yield

@@ -4,9 +4,12 @@ Unprocessable      ├── UnknownPost
                    ├── SamePost
                    ├── NoWay
                    ├── UnknownRecipient
+                   ├── UnknownSender
                    ├── UnknownRobotWanted
                    └── KeyReused
+Forbidden          └── ForDispatchers
 NotFound           ├── UnknownOrder
+                   ├── UnknownStandingOrder
                    └── NoCodeForYou
 Conflict           ├── StillRunning
                    ├── TransitionRefused
@@ -15,11 +18,12 @@ Conflict           ├── StillRunning
                    ├── NotWaiting
                    ├── WaitedLongEnough
                    ├── NotReassignable
-                   └── NothingToResume
+                   ├── NothingToResume
+                   └── StandingOrderEnded
 PreconditionFailed └── OrderChanged
 """
 
-from app.errors import Conflict, NotFound, PreconditionFailed, Unprocessable
+from app.errors import Conflict, Forbidden, NotFound, PreconditionFailed, Unprocessable
 
 
 class UnknownPost(Unprocessable):
@@ -38,6 +42,30 @@ class NoWay(Unprocessable):
     """Both posts exist, but no corridors join them."""
 
     code = "no_way"
+
+
+class UnknownSender(Unprocessable):
+    """Nobody with the address of `on_behalf_of` is known, and its domain is not the campus's."""
+
+    code = "unknown_sender"
+
+
+class ForDispatchers(Forbidden):
+    """A member ordered for somebody else, or with high priority."""
+
+    code = "for_dispatchers"
+
+
+class UnknownStandingOrder(NotFound):
+    """No such standing order, or not one of this person's."""
+
+    code = "unknown_standing_order"
+
+
+class StandingOrderEnded(Conflict):
+    """A standing order that has ended does not come round again: make a new one."""
+
+    code = "standing_order_ended"
 
 
 class UnknownRobotWanted(Unprocessable):

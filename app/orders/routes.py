@@ -1,4 +1,4 @@
-"""Ordering, following, cancelling, and the codes that go with it."""
+"""Ordering, following, cancelling."""
 
 from typing import Annotated, Literal
 
@@ -10,9 +10,8 @@ from sqlmodel.sql.expression import SelectOfScalar
 from app.database import ReadingDep, SessionDep
 from app.errors import TooManyRequests, answering, problems
 from app.orders import errors
-from app.orders.codes import code_svg
 from app.orders.idempotency import Running, body_hash, earlier_answer
-from app.orders.schemas import CodeView, Estimate, NewOrder, OrderPage, OrderView, PostName, WindowView
+from app.orders.schemas import Estimate, NewOrder, OrderPage, OrderView, PostName, WindowView
 from app.orders.service import Orders
 from app.orders.views import load_facts, view_for
 from app.paging import PAGED, PageDep, Sorting
@@ -27,7 +26,15 @@ router = APIRouter(tags=["orders"])
 OrderId = Annotated[str, Path(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]*$", max_length=64)]
 NEWEST_FIRST = Sorting("orders", col(Order.created_at), col(Order.id), descending=True)
 REPLAYED = "Idempotency-Replayed"
-REFUSED = (errors.UnknownPost, errors.SamePost, errors.NoWay, errors.UnknownRecipient, errors.KeyReused)
+REFUSED = (
+    errors.UnknownPost,
+    errors.SamePost,
+    errors.NoWay,
+    errors.UnknownRecipient,
+    errors.UnknownSender,
+    errors.ForDispatchers,
+    errors.KeyReused,
+)
 PLACED = {
     **answering(201, "Location", "ETag", REPLAYED),
     **problems(*REFUSED, errors.StillRunning, TooManyRequests),
@@ -78,7 +85,7 @@ async def place_order(
             response.headers.update({**earlier.headers, REPLAYED: "true"})
             return OrderView.model_validate(earlier.answer)
         view = await orders.create(session, user, wish)
-        headers = {"Location": f"/api/v1/orders/{view.id}", "ETag": _etag(view)}
+        headers = {"Location": f"/api/v1/orders/{view.id}", "ETag": etag_of(view)}
         kept = IdempotencyKey(
             person_id=user.id,
             key=idempotency_key,
@@ -122,7 +129,7 @@ async def one_order(
 ) -> OrderView:
     """One order with its timeline."""
     view = await orders.view(session, user, order_id)
-    response.headers["ETag"] = _etag(view)
+    response.headers["ETag"] = etag_of(view)
     return view
 
 
@@ -138,34 +145,10 @@ async def cancel_order(
 ) -> OrderView:
     """Cancel, at once or (with a robot on its way) as soon as the robot answers."""
     view = await orders.cancel(session, user, order_id, if_match)
-    response.headers["ETag"] = _etag(view)
+    response.headers["ETag"] = etag_of(view)
     return view
 
 
-@router.get("/orders/{order_id}/code", responses=problems(errors.UnknownOrder, errors.NoCodeForYou))
-async def my_code(
-    order_id: OrderId, user: CurrentUser, orders: OrdersDep, session: ReadingDep, response: Response
-) -> CodeView:
-    """The hand-over code, for the one person whose turn it is to show it."""
-    order, purpose, text = await orders.code(session, user, order_id)
-    response.headers["Cache-Control"] = "no-store"
-    svg_url = f"/api/v1/orders/{order.id}/code.svg"
-    return CodeView(purpose=purpose.value, text=text, svg_url=svg_url, expires_at=order.codes_expire_at)
-
-
-@router.get(
-    "/orders/{order_id}/code.svg",
-    response_class=Response,
-    responses={
-        200: {"content": {"image/svg+xml": {"schema": {"type": "string"}}}},
-        **problems(errors.UnknownOrder, errors.NoCodeForYou),
-    },
-)
-async def my_code_picture(order_id: OrderId, user: CurrentUser, orders: OrdersDep, session: ReadingDep) -> Response:
-    """The same code as a picture."""
-    _, _, text = await orders.code(session, user, order_id)
-    return Response(code_svg(text), media_type="image/svg+xml", headers={"Cache-Control": "no-store"})
-
-
-def _etag(view: OrderView) -> str:
+def etag_of(view: OrderView) -> str:
+    """The version of an order, for If-Match."""
     return f'"{view.version}"'

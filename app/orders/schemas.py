@@ -1,21 +1,29 @@
 """Orders over HTTP and in the event stream."""
 
-from datetime import datetime
+from datetime import UTC, date, datetime
 from typing import Annotated, Literal
+from zoneinfo import available_timezones
 
-from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+from pydantic import AwareDatetime, BaseModel, ConfigDict, Field, StringConstraints, field_validator
 
 from app.orders.custody import Held
 from app.orders.robot_view import RobotView
 from app.orders.window import Window
 from app.paging import PageOf
 from app.people.schemas import Email
+from app.tables import Priority
 
 PostName = Annotated[str, StringConstraints(pattern=r"^[A-Za-z][A-Za-z0-9_]*$", max_length=64)]
 
 
-class NewOrder(BaseModel):
-    """What the order form says."""
+EmailOfSomebody = Annotated[
+    Email | None, Field(description="For dispatchers: whose order this is, if somebody else's (a walk-up order).")
+]
+LaterMoment = Annotated[AwareDatetime, Field(ge=datetime(2020, 1, 1, tzinfo=UTC), lt=datetime(2100, 1, 1, tzinfo=UTC))]
+
+
+class Wish(BaseModel):
+    """What is to be carried, from where to where and to whom."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -23,6 +31,51 @@ class NewOrder(BaseModel):
     to_post: PostName
     recipient: Email
     description: Annotated[str, StringConstraints(max_length=500, strip_whitespace=True)] | None = None
+    priority: Annotated[Priority, Field(description="`high` is for dispatchers.")] = Priority.NORMAL
+    on_behalf_of: EmailOfSomebody = None
+
+
+class NewOrder(Wish):
+    """What the order form says."""
+
+    not_before: Annotated[LaterMoment | None, Field(description="Not to be fetched before this.")] = None
+
+
+class NewStandingOrder(Wish):
+    """An order that comes again on some weekdays (0 is Monday) at a local time, until a last local day or for ever."""
+
+    weekdays: Annotated[list[Annotated[int, Field(ge=0, le=6)]], Field(min_length=1, max_length=7)]
+    at: Annotated[str, StringConstraints(pattern=r"^([01][0-9]|2[0-3]):[0-5][0-9]$")]
+    zone: Annotated[str, StringConstraints(max_length=64), Field(description="Such as America/Toronto.")]
+    until: date | None = None
+
+    @field_validator("zone")
+    @classmethod
+    def _zone_is_known(cls, name: str) -> str:
+        if name not in available_timezones():
+            raise ValueError(f"there is no time zone {name!r}; zones are named like America/Toronto")
+        return name
+
+
+class StandingOrderView(BaseModel):
+    """A standing order. `next_at` is when its next order is made: null while it is paused, and once it has ended."""
+
+    id: str
+    from_post: str
+    to_post: str
+    sender: "Somebody"
+    recipient: "Somebody"
+    description: str | None
+    priority: Literal["low", "normal", "high"]
+    weekdays: list[int]
+    at: str
+    zone: str
+    until: date | None
+    created_at: datetime
+    next_at: datetime | None
+    paused: bool
+    ended: bool
+    why: str | None
 
 
 class WindowView(BaseModel):
@@ -91,6 +144,14 @@ class CustodyView(BaseModel):
         return cls(holder=held.holder, name=held.name, from_=held.since, to=held.until, how=held.how)
 
 
+class HandoverRequested(BaseModel):
+    """Somebody has tapped or typed digits, and the robot has not answered yet; after `expires_at` it will not."""
+
+    how: str
+    at: datetime
+    expires_at: datetime
+
+
 class OrderView(BaseModel):
     """An order as one person may see it."""
 
@@ -109,6 +170,7 @@ class OrderView(BaseModel):
     why: str | None
     my_role: Literal["sender", "recipient", "dispatcher"]
     my_code: Literal["load", "receive", "return"] | None
+    handover_requested: HandoverRequested | None
     can_cancel: bool
     cancel_requested: bool
     return_requested: bool
@@ -122,14 +184,9 @@ class OrderView(BaseModel):
     events: list[EventView]
 
 
+class StandingOrderPage(PageOf[StandingOrderView]):
+    """Some standing orders, newest first; `next` is the cursor of the following page, null on the last."""
+
+
 class OrderPage(PageOf[OrderView]):
     """Some orders, newest first; `next` is the cursor of the following page, null on the last."""
-
-
-class CodeView(BaseModel):
-    """The hand-over code that it is this person's turn to show."""
-
-    purpose: Literal["load", "receive", "return"]
-    text: str
-    svg_url: str
-    expires_at: datetime

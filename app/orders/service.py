@@ -4,17 +4,15 @@ from dataclasses import dataclass
 
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.orders import errors
 from app.orders.cancelling import Cancelling
-from app.orders.codes import code_text, turn_of, verifiers
+from app.orders.codes import verifiers
 from app.orders.intervening import Intervening
 from app.orders.ledger import Word, unknown
 from app.orders.placing import Placing
 from app.orders.schemas import OrderView
-from app.orders.views import load_facts, role_in, view_for
+from app.orders.views import load_facts, view_for
 from app.orders.waiting import Waiting
 from app.tables import Order, Person
-from protocol.parts import Purpose
 from protocol.to_robot import Verifier
 
 __all__ = ["Orders", "Word"]
@@ -31,16 +29,6 @@ class Orders(Placing, Cancelling, Intervening, Waiting):
         if view is None:
             raise unknown(order_id)
         return view
-
-    async def code(self, session: AsyncSession, person: Person, order_id: str) -> tuple[Order, Purpose, str]:
-        """The code that it is this person's turn to show. Raises UnknownOrder, NoCodeForYou."""
-        order = await self.order(session, order_id)
-        if role_in(order, person) is None:
-            raise unknown(order_id)
-        purpose = turn_of(order, person.id)
-        if purpose is None:
-            raise errors.NoCodeForYou("It is not your turn to show a code for this order.")
-        return order, purpose, code_text(self.key, order.id, purpose)
 
     async def verifiers(self, session: AsyncSession, *orders: Order) -> tuple[Verifier, ...]:
         """What a robot needs to check the codes of these orders, delegates' too, with no network."""

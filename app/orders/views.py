@@ -3,7 +3,8 @@
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal, TypeVar
+from datetime import timedelta
+from typing import Any, Final, Literal, TypeVar
 
 from sqlmodel import SQLModel, col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
@@ -11,12 +12,13 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 from app.orders.codes import turn_of
 from app.orders.custody import custody_of
 from app.orders.robot_view import robot_view
-from app.orders.schemas import CustodyView, EventView, OrderView, Somebody, WindowView
+from app.orders.schemas import CustodyView, EventView, HandoverRequested, OrderView, Somebody, WindowView
 from app.orders.transitions import CARRIED, ENDED, LOADED, ROBOT_COMING
 from app.settings import Settings
 from app.tables import Handover, Order, OrderEvent, OrderState, Person, RobotRow, Role
 from maps import CampusMap
 
+CONFIRM_REQUESTED: Final = "confirm_requested"
 MyRole = Literal["sender", "recipient", "dispatcher"]
 Row = TypeVar("Row", bound=SQLModel)
 OfOrder = TypeVar("OfOrder", OrderEvent, Handover)
@@ -114,6 +116,7 @@ def order_view(facts: OrderFacts, role: MyRole, person_id: str, campus: CampusMa
         why=order.why or (robot.why if robot else None),
         my_role=role,
         my_code=None if turn is None else turn.value,
+        handover_requested=_handover_requested(facts.events, settings),
         can_cancel=is_cancellable(order, role),
         cancel_requested=is_cancel_under_way(order) and order.state not in ENDED,
         return_requested=order.return_requested_at is not None and order.state in CARRIED,
@@ -142,6 +145,15 @@ def is_cancel_under_way(order: Order) -> bool:
     if order.state in CARRIED:
         return order.return_requested_at is not None
     return order.state in {OrderState.CANCELLED, OrderState.RETURNING, OrderState.AT_RETURN}
+
+
+def _handover_requested(events: Sequence[OrderEvent], settings: Settings) -> HandoverRequested | None:
+    """The newest thing that happened to the order, if that is what it was."""
+    last = events[-1] if events else None
+    if last is None or last.kind != CONFIRM_REQUESTED:
+        return None
+    expires_at = last.at + timedelta(seconds=settings.confirm_lifetime_s)
+    return HandoverRequested(how=last.reason or "tap", at=last.at, expires_at=expires_at)
 
 
 def _window(order: Order) -> WindowView | None:

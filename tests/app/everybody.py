@@ -10,7 +10,7 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 from starlette.routing import BaseRoute, Mount
 
 from app.fleet.service import new_token
-from app.orders.schemas import NewOrder
+from app.orders.schemas import NewOrder, NewStandingOrder
 from app.orders.service import Word
 from app.orders.transitions import By
 from app.people.scopes import Scope
@@ -98,6 +98,7 @@ class Everybody:
             token, _ = await self._token(session, people["sender"], [Scope.ORDERS_READ])
             places = {
                 "order_id": order_id,
+                "standing_order_id": await self._standing_order(session, people["sender"]),
                 "name": "r1",
                 "person_id": people["member"].id,
                 "role": "dispatcher",
@@ -136,6 +137,11 @@ class Everybody:
         now = self.app.state.clock.utc()
         row, text = await issue_token(session, person, "script", scopes, timedelta(days=1), now)
         return row.prefix, text
+
+    async def _standing_order(self, session: AsyncSession, sender: Person) -> str:
+        order = {"from_post": "post1", "to_post": "post4", "recipient": PEOPLE["recipient"][0]}
+        wish = NewStandingOrder(**order, weekdays=[0], at="09:30", zone="America/Toronto")
+        return str((await self.app.state.standing_orders.create(session, sender, wish)).id)
 
     async def _order(self, session: AsyncSession, sender: Person, recipient: str) -> str:
         orders = self.app.state.orders

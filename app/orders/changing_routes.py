@@ -1,0 +1,198 @@
+"""What people do with an order under way, and dispatchers with one that is stuck."""
+
+from typing import Annotated, Final, Literal
+
+from fastapi import APIRouter, Header, Response
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+
+from app.database import SessionDep
+from app.errors import Conflict, answering, problems
+from app.orders import errors
+from app.orders.routes import OrderId, OrdersDep, etag_of
+from app.orders.schemas import OrderView
+from app.people.current_user import CurrentUser, Dispatcher
+from app.tables import Priority
+
+router = APIRouter(tags=["orders"])
+dispatch_router = APIRouter(tags=["dispatch"])
+
+IfMatch = Annotated[str, Header(max_length=200)]
+Reason = Annotated[str, StringConstraints(max_length=400, strip_whitespace=True)]
+KNOWN: Final = (errors.UnknownOrder, errors.OrderChanged)
+LONGEST_WAIT_S: Final = 7200
+
+
+def _answers(*refusals: type[Conflict]) -> dict[int | str, dict[str, object]]:
+    return {**answering(200, "ETag"), **problems(*KNOWN, *refusals)}
+
+
+class Body(BaseModel):
+    """Exactly what is declared."""
+
+    model_config = ConfigDict(extra="forbid")
+
+
+class LongerWait(Body):
+    """How much longer the robot waits; null: as much as one may ask for at once."""
+
+    extend_s: Annotated[float, Field(gt=0, le=LONGEST_WAIT_S)] | None = None
+
+
+class Attention(Body):
+    """Why a person has to see to the order."""
+
+    reason: Annotated[Reason, StringConstraints(min_length=1)]
+
+
+class Resolution(Body):
+    """What becomes of an order that needed attention: on as before, with mail aboard back or into the mailroom's hands,
+    without into the queue again or not at all."""
+
+    to: Literal["resume", "returning", "held", "queued", "cancelled"]
+    reason: Reason | None = None
+
+
+class IntoHands(Body):
+    """Somebody has taken the mail out by hand."""
+
+    reason: Reason | None = None
+
+
+class Reassignment(Body):
+    """Which robot shall fetch it; null: any other."""
+
+    robot: Annotated[str, StringConstraints(max_length=64)] | None = None
+
+
+class PriorityChange(Body):
+    """How much sooner than others it is fetched."""
+
+    priority: Priority
+
+
+@router.post("/orders/{order_id}/recall", responses=_answers(errors.NotRecallable))
+async def recall_order(
+    *,
+    order_id: OrderId,
+    user: CurrentUser,
+    orders: OrdersDep,
+    session: SessionDep,
+    response: Response,
+    if_match: IfMatch = "",
+) -> OrderView:
+    """Call mail back that is aboard. It turns round on the robot's word; until then the order goes on."""
+    return _tagged(response, await orders.recall(session, user, order_id, if_match))
+
+
+@router.post("/orders/{order_id}/not-now", responses=_answers(errors.NotRecallable))
+async def say_not_now(
+    *,
+    order_id: OrderId,
+    user: CurrentUser,
+    orders: OrdersDep,
+    session: SessionDep,
+    response: Response,
+    if_match: IfMatch = "",
+) -> OrderView:
+    """Say as the recipient that it does not suit now. The mail goes back, on the robot's word."""
+    return _tagged(response, await orders.not_now(session, user, order_id, if_match))
+
+
+@router.post("/orders/{order_id}/wait", responses=_answers(errors.NotWaiting, errors.WaitedLongEnough))
+async def extend_wait(
+    *,
+    order_id: OrderId,
+    longer: LongerWait,
+    user: CurrentUser,
+    orders: OrdersDep,
+    session: SessionDep,
+    response: Response,
+    if_match: IfMatch = "",
+) -> OrderView:
+    """Let the robot wait longer. The person it waits for may ask a few times, a dispatcher for as much as is needed."""
+    return _tagged(response, await orders.extend_wait(session, user, order_id, longer.extend_s, if_match))
+
+
+@dispatch_router.post("/orders/{order_id}/attention", responses=_answers(errors.TransitionRefused))
+async def stop_order_for_attention(
+    *,
+    order_id: OrderId,
+    attention: Attention,
+    user: Dispatcher,
+    orders: OrdersDep,
+    session: SessionDep,
+    response: Response,
+    if_match: IfMatch = "",
+) -> OrderView:
+    """Take an order out of its robot's hands, as far as words go. What becomes of it is decided by `resolve`."""
+    return _tagged(response, await orders.stop_for_attention(session, user, order_id, attention.reason, if_match))
+
+
+@dispatch_router.post(
+    "/orders/{order_id}/resolve", responses=_answers(errors.TransitionRefused, errors.NothingToResume)
+)
+async def resolve_order(
+    *,
+    order_id: OrderId,
+    resolution: Resolution,
+    user: Dispatcher,
+    orders: OrdersDep,
+    session: SessionDep,
+    response: Response,
+    if_match: IfMatch = "",
+) -> OrderView:
+    """Decide what becomes of an order that needed attention."""
+    view = await orders.resolve(session, user, order_id, resolution.to, resolution.reason, if_match)
+    return _tagged(response, view)
+
+
+@dispatch_router.post("/orders/{order_id}/hold", responses=_answers(errors.TransitionRefused))
+async def hold_order(
+    *,
+    order_id: OrderId,
+    into_hands: IntoHands,
+    user: Dispatcher,
+    orders: OrdersDep,
+    session: SessionDep,
+    response: Response,
+    if_match: IfMatch = "",
+) -> OrderView:
+    """Say that the mail was taken out of the robot by hand and is held in the mailroom."""
+    return _tagged(response, await orders.hold(session, user, order_id, into_hands.reason, if_match))
+
+
+@dispatch_router.post(
+    "/orders/{order_id}/reassign", responses=_answers(errors.NotReassignable) | problems(errors.UnknownRobotWanted)
+)
+async def reassign_order(
+    *,
+    order_id: OrderId,
+    reassignment: Reassignment,
+    user: Dispatcher,
+    orders: OrdersDep,
+    session: SessionDep,
+    response: Response,
+    if_match: IfMatch = "",
+) -> OrderView:
+    """Let another robot fetch the mail. The one that is on its way lets go on its own word."""
+    return _tagged(response, await orders.reassign(session, user, order_id, reassignment.robot, if_match))
+
+
+@dispatch_router.put("/orders/{order_id}/priority", responses=_answers(errors.TransitionRefused))
+async def prioritise_order(
+    *,
+    order_id: OrderId,
+    change: PriorityChange,
+    user: Dispatcher,
+    orders: OrdersDep,
+    session: SessionDep,
+    response: Response,
+    if_match: IfMatch = "",
+) -> OrderView:
+    """Fetch an order sooner than others, or later."""
+    return _tagged(response, await orders.prioritise(session, user, order_id, change.priority, if_match))
+
+
+def _tagged(response: Response, view: OrderView) -> OrderView:
+    response.headers["ETag"] = etag_of(view)
+    return view

@@ -1,0 +1,113 @@
+"""What time alone decides: orders that wait too long expire, late ones are told of, standing orders come round.
+
+Each thing is a transaction of its own that looks again before it acts, so that the service may stop at any moment.
+"""
+
+import asyncio
+from contextlib import suppress
+from dataclasses import dataclass, field
+from datetime import datetime, timedelta
+from typing import Final
+
+from sqlalchemy import ColumnElement, and_, or_
+from sqlmodel import col, select
+
+from app.database import Database
+from app.errors import ServiceError
+from app.orders.ledger import Word
+from app.orders.service import Orders
+from app.orders.standing import StandingOrders
+from app.orders.telling import facts_of, tell_of_delay
+from app.orders.transitions import ENDED, By
+from app.orders.views import load_facts
+from app.tables import Order, OrderState
+
+LOOK_EVERY_S: Final = 1.0
+"""Real seconds."""
+AT_ONCE: Final = 50
+NOBODY_CAME: Final = "No robot has fetched it in time."
+DELAYED: Final = "delayed"
+NOT_ON_ITS_WAY: Final = ENDED | {OrderState.ATTENTION}
+"""What waits for a dispatcher is late for a reason that its people have been told."""
+
+
+@dataclass
+class Timer:
+    """Runs in the background of the service."""
+
+    database: Database
+    orders: Orders
+    standing: StandingOrders
+    _woken: asyncio.Event = field(default_factory=asyncio.Event)
+    _stopping: bool = False
+    _looked_at: datetime | None = None
+
+    def stop(self) -> None:
+        """End `run` after what it is doing."""
+        self._stopping = True
+        self._woken.set()
+
+    async def run(self) -> None:
+        """Until stopped or cancelled."""
+        while not self._stopping:
+            await self.tick()
+            with suppress(TimeoutError):
+                async with asyncio.timeout(LOOK_EVERY_S):
+                    await self._woken.wait()
+
+    async def tick(self) -> None:
+        """Everything that is due now, once."""
+        now = self.orders.clock.utc()
+        async with self.database.reading() as session:
+            expired = (await session.exec(select(Order.id).where(self._waits_too_long(now)).limit(AT_ONCE))).all()
+            late = (await session.exec(select(Order.id).where(self._is_late(now)).limit(AT_ONCE))).all()
+            due = await self.standing.due(session)
+            begun = (await session.exec(select(Order.id).where(self._begins(now)).limit(1))).all()
+        for order_id in expired:
+            await self._expire(order_id)
+        for order_id in late:
+            await self._tell_of_delay(order_id)
+        for standing_id in due:
+            async with self.database.transaction() as session:
+                await self.standing.make_next(session, standing_id)
+        self._looked_at = now
+        for order_id in begun:
+            self.orders.changed(order_id)
+
+    def _waits_too_long(self, now: datetime) -> ColumnElement[bool]:
+        since = now - timedelta(seconds=self.orders.settings.queue_limit_s)
+        begun = or_(col(Order.not_before).is_(None), col(Order.not_before) < since)
+        return and_(col(Order.state) == OrderState.QUEUED, col(Order.created_at) < since, begun)
+
+    def _is_late(self, now: datetime) -> ColumnElement[bool]:
+        since = now - timedelta(seconds=self.orders.settings.delayed_after_s)
+        return and_(col(Order.window_to) < since, col(Order.state).not_in(NOT_ON_ITS_WAY))
+
+    def _begins(self, now: datetime) -> ColumnElement[bool]:
+        """Left for later, and this is later: dispatch has to look."""
+        before = self._looked_at or now
+        return and_(col(Order.state) == OrderState.QUEUED, col(Order.not_before) > before, col(Order.not_before) <= now)
+
+    async def _expire(self, order_id: str) -> None:
+        async with self.database.transaction() as session:
+            order = await self.orders.order(session, order_id)
+            if order.state is OrderState.QUEUED:  # else a robot has come after all
+                await self.orders.move(session, order_id, OrderState.EXPIRED, Word(By.TIMER, reason=NOBODY_CAME))
+
+    async def _tell_of_delay(self, order_id: str) -> None:
+        """With the window that it has now, as if it were fetched from here on: rather too late than wrong again."""
+        async with self.database.transaction() as session:
+            order = await self.orders.order(session, order_id)
+            if order.state in NOT_ON_ITS_WAY:
+                return
+            now = self.orders.clock.utc()
+            with suppress(ServiceError):  # a post that the map has lost since: nothing better is known
+                window = self.orders.window(order.from_post, order.to_post)
+                order.window_from, order.window_to = window.begins_at, window.ends_at
+            order.delayed_at = now
+            if order.window_to is not None and order.window_to < now:
+                order.window_to = now  # so that it is told of now and then, not with every tick
+            await self.orders.note(session, order_id, DELAYED, Word(By.TIMER))
+            facts = (await load_facts(session, [order]))[0]
+            gaps = facts_of(order, facts.people, self.orders.campus, self.orders.settings)
+            await tell_of_delay(session, order, facts.people, gaps, facts.events)
