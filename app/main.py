@@ -27,6 +27,7 @@ from app.handover.service import HandOvers
 from app.live import routes as live_routes
 from app.live.feed import LocalFeed
 from app.mail import open_mailer
+from app.notify import outbox_routes, wish_routes
 from app.notify import routes as notify_routes
 from app.notify.channels.mail import LinkFor, MailChannel
 from app.notify.channels.push import PushChannel
@@ -72,6 +73,8 @@ ROUTERS = (
     standing_routes.router,
     one_order.router,
     notify_routes.router,
+    wish_routes.router,
+    outbox_routes.router,
     live_routes.router,
     fleet_routes.router,
     enrolment_routes.router,

@@ -1,14 +1,15 @@
 """Which channels a notice takes: what there is, what its reader wants, and what they have to be told all the same."""
 
 from collections.abc import Collection, Mapping, Sequence
-from typing import Final
+from typing import Final, Literal
 
 from app.tables import NoticeKind
 
+ChannelName = Literal["mail", "push", "webhook"]
 MAIL: Final = "mail"
 PUSH: Final = "push"
 WEBHOOK: Final = "webhook"
-CHANNELS: Final = (MAIL, PUSH, WEBHOOK)
+CHANNELS: Final[tuple[ChannelName, ...]] = (MAIL, PUSH, WEBHOOK)
 """Besides the inbox, which has everything."""
 
 MUTED_AT_FIRST: Final[Mapping[str, frozenset[NoticeKind]]] = {

@@ -1,11 +1,15 @@
 """Notices on their way through a channel: written with what they tell of, sent after it."""
 
 from datetime import datetime
+from typing import Final
 
-from sqlalchemy import Index
+from sqlalchemy import Index, text
 from sqlmodel import Field, SQLModel
 
 from app.tables.columns import UtcTime
+
+DUE: Final = text("next_try_at IS NOT NULL")
+GIVEN_UP: Final = text("gave_up_at IS NOT NULL")
 
 
 class OutgoingNotice(SQLModel, table=True):
@@ -16,7 +20,11 @@ class OutgoingNotice(SQLModel, table=True):
     """
 
     __tablename__ = "outbox"
-    __table_args__ = (Index("ix_outbox_channel_next_try_at", "channel", "next_try_at"),)
+    # Of the few that wait or were given up, not of all there ever were.
+    __table_args__ = (
+        Index("ix_outbox_due", "channel", "next_try_at", sqlite_where=DUE, postgresql_where=DUE),
+        Index("ix_outbox_given_up", "channel", sqlite_where=GIVEN_UP, postgresql_where=GIVEN_UP),
+    )
 
     id: int | None = Field(default=None, primary_key=True)
     key: str = Field(unique=True, max_length=255)

@@ -12,6 +12,8 @@ branch_labels = None
 depends_on = None
 
 NOT_ROUTED = sa.text("routed_at IS NULL")
+DUE = sa.text("next_try_at IS NOT NULL")
+GIVEN_UP = sa.text("gave_up_at IS NOT NULL")
 
 
 def upgrade() -> None:
@@ -23,7 +25,12 @@ def upgrade() -> None:
         batch_op.add_column(sa.Column("gave_up_at", sa.DateTime(), nullable=True))
         batch_op.alter_column("next_try_at", existing_type=sa.DateTime(), nullable=True)
         batch_op.create_index(batch_op.f("ix_outbox_notice_id"), ["notice_id"], unique=False)
-        batch_op.create_index("ix_outbox_channel_next_try_at", ["channel", "next_try_at"], unique=False)
+        batch_op.create_index(
+            "ix_outbox_due", ["channel", "next_try_at"], unique=False, sqlite_where=DUE, postgresql_where=DUE
+        )
+        batch_op.create_index(
+            "ix_outbox_given_up", ["channel"], unique=False, sqlite_where=GIVEN_UP, postgresql_where=GIVEN_UP
+        )
     op.execute("UPDATE outbox SET next_try_at = NULL WHERE sent_at IS NOT NULL")
 
 
@@ -92,7 +99,8 @@ def downgrade() -> None:
     op.execute("DELETE FROM notices WHERE order_id IS NULL OR key <> order_id || '.' || kind")
     op.execute("UPDATE outbox SET next_try_at = created_at WHERE next_try_at IS NULL")
     with op.batch_alter_table("outbox", schema=None) as batch_op:
-        batch_op.drop_index("ix_outbox_channel_next_try_at")
+        batch_op.drop_index("ix_outbox_given_up")
+        batch_op.drop_index("ix_outbox_due")
         batch_op.drop_index(batch_op.f("ix_outbox_notice_id"))
         batch_op.alter_column("next_try_at", existing_type=sa.DateTime(), nullable=False)
         batch_op.drop_column("gave_up_at")

@@ -6,17 +6,20 @@ from datetime import timedelta
 from typing import Any, Final
 
 from fastapi import FastAPI
+from sqlmodel import select
 from sqlmodel.ext.asyncio.session import AsyncSession
 from starlette.routing import BaseRoute, Mount
 
 from app.fleet.service import new_token
+from app.notify.devices import add_device, set_webhook
+from app.notify.wish_schemas import NewDevice, SubscriptionKeys
 from app.orders.schemas import NewOrder, NewStandingOrder
 from app.orders.service import Word
 from app.orders.transitions import By
 from app.people.scopes import Scope
 from app.people.service import set_roles
 from app.people.tokens import issue_token
-from app.tables import OrderState, Person, PersonSession, Role
+from app.tables import Notice, OrderState, OutgoingNotice, Person, PersonSession, Role
 from tests.app.conftest import Mailroom
 
 PEOPLE: Final = {
@@ -106,8 +109,22 @@ class Everybody:
                 "prefix": token,
                 "token_prefix": (await new_token(session, self.app.state.clock, "r1")).split("_")[1],
                 "email": "somebody@campus.example",
+                "file": "none.eml",
+                **await self._of_notices(session, people["sender"], order_id),
             }
             return Scene(await self._headers(session, who, people), places)
+
+    async def _of_notices(self, session: AsyncSession, sender: Person, order_id: str) -> dict[str, str]:
+        """A browser and a webhook of the sender's, and a letter that no channel takes."""
+        now = self.app.state.clock.utc()
+        keys = NewDevice(endpoint="https://push.example/sender", keys=SubscriptionKeys(p256dh="AA", auth="AA"))
+        device = await add_device(session, sender, keys, now)
+        await set_webhook(session, sender, "https://hook.example/sender", now)
+        notice = (await session.exec(select(Notice.id).where(Notice.order_id == order_id))).one()
+        letter = OutgoingNotice(key=order_id, channel="none", notice_id=notice, created_at=now)
+        session.add(letter)
+        await session.flush()
+        return {"device_id": device.id, "letter_id": str(letter.id)}
 
     async def _headers(self, session: AsyncSession, who: str, people: dict[str, Person]) -> dict[str, str]:
         if who == "stranger":

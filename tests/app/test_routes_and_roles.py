@@ -107,6 +107,16 @@ LINES: Final[dict[tuple[str, str], Line]] = {
     ("POST", "/api/v1/standing-orders/{standing_order_id}/end"): Line(401, 404, 404, 200, 200, 404, "orders:write"),
     ("GET", "/api/v1/notices"): members("notices:read"),
     ("POST", "/api/v1/notices/read"): members("notices:write", 204),
+    ("GET", "/api/v1/me/notices"): members("notices:read"),
+    ("PUT", "/api/v1/me/notices"): members("notices:write"),
+    ("POST", "/api/v1/me/devices"): members("none", 422),  # this page's keys are no browser's
+    ("DELETE", "/api/v1/me/devices/{device_id}"): Line(401, 404, 404, 204, 404, 404, "none"),
+    ("PUT", "/api/v1/me/webhook"): members("none", 422),  # to a machine behind the walls
+    ("DELETE", "/api/v1/me/webhook"): Line(401, 404, 404, 204, 404, 404, "none"),
+    ("GET", "/api/v1/outbox"): dispatchers("none"),
+    ("POST", "/api/v1/outbox/{letter_id}/retry"): dispatchers("none", 202),
+    ("GET", "/api/v1/spool"): dispatchers("none"),
+    ("GET", "/api/v1/spool/{file}"): dispatchers("none", 404),
     ("GET", "/api/v1/live"): members("live:read"),
     ("GET", "/api/v1/robots"): members("robots:read"),
     # Nobody has a code; the token is one of the robot's.
@@ -137,6 +147,9 @@ WISHES: Final[dict[tuple[str, str], dict[str, Any]]] = {
     ("POST", "/api/v1/tokens"): {"name": "script", "scopes": ["orders:read"]},
     ("POST", "/api/v1/notices/read"): {"ids": [1]},
     ("POST", "/api/v1/robots/enrol"): {"name": "r1", "code": "AAAA-AAAA", "public_key": 43 * "A" + "="},
+    ("PUT", "/api/v1/me/notices"): {"muted": {}},
+    ("POST", "/api/v1/me/devices"): {"endpoint": "https://push.example/1", "keys": {"p256dh": "AA", "auth": "AA"}},
+    ("PUT", "/api/v1/me/webhook"): {"url": "https://127.0.0.1/"},
     ("POST", "/api/v1/demo/camera"): {"order_id": "{order_id}"},
 }
 QUESTIONS: Final = {"/api/v1/estimate": ORDER}
