@@ -4,12 +4,16 @@ One process with everything in memory (thin: a broker behind the same `Feed` whe
 """
 
 import asyncio
+import json
 import secrets
 from collections import deque
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Final, Protocol
+
+from fastapi.sse import format_sse_event
 
 from app.tables import Person, Role
 
@@ -45,6 +49,11 @@ class Numbered:
 
     id: str
     happening: Happening
+
+    @cached_property
+    def wire(self) -> bytes:
+        """As it goes out: written once, however many listen, and never if nobody does."""
+        return format_sse_event(data_str=json.dumps(self.happening.data), event=self.happening.event, id=self.id)
 
 
 class Feed(Protocol):

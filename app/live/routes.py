@@ -5,18 +5,42 @@ from collections.abc import AsyncIterator, Awaitable, Callable
 from typing import Annotated
 
 from fastapi import APIRouter, Depends, Header
-from fastapi.sse import EventSourceResponse, ServerSentEvent
+from fastapi.sse import KEEPALIVE_COMMENT, format_sse_event
 from starlette.requests import HTTPConnection
+from starlette.responses import StreamingResponse
 
 from app.errors import TooManyRequests, problems
 from app.live.feed import LocalFeed, Numbered
 from app.people.current_user import CurrentUser, StillSignedInDep
 from app.people.rate_limits import one_stream
 from app.settings import SettingsDep
+from app.tables import Person
 
 router = APIRouter(tags=["live"])
 
 RETRY_MS = 1000
+KEEP_ALIVE_S = 15.0
+"""Real seconds. A proxy closes what is silent for long."""
+UNBUFFERED = {"Cache-Control": "no-cache", "X-Accel-Buffering": "no"}
+
+EVENT = {
+    "type": "object",
+    "properties": {
+        "event": {"type": "string", "enum": ["order", "robot", "notice", "resync"]},
+        "data": {"type": "string", "contentMediaType": "application/json"},
+        "id": {"type": "string"},
+        "retry": {"type": "integer", "minimum": 0},
+    },
+}
+"""One event, for the document. FastAPI's own streams would encode each anew for each listener."""
+
+MayListen = Callable[[], Awaitable[bool]]
+
+
+class EventStream(StreamingResponse):
+    """Pieces that are on the wire's form already."""
+
+    media_type = "text/event-stream"
 
 
 def _feed_of(connection: HTTPConnection) -> LocalFeed:
@@ -29,9 +53,9 @@ FeedDep = Annotated[LocalFeed, Depends(_feed_of)]
 
 @router.get(
     "/live",
-    response_class=EventSourceResponse,
+    response_class=EventStream,
     dependencies=[one_stream],
-    responses=problems(TooManyRequests),
+    responses={200: {"content": {"text/event-stream": {"itemSchema": EVENT}}}, **problems(TooManyRequests)},
 )
 async def live(
     user: CurrentUser,
@@ -39,38 +63,58 @@ async def live(
     still_signed_in: StillSignedInDep,
     settings: SettingsDep,
     last_event_id: Annotated[str, Header(max_length=64)] = "",
-) -> AsyncIterator[ServerSentEvent]:
+) -> EventStream:
     """Events `order`, `robot` and `notice` as they happen, as this person may see them; `resync`: fetch anew."""
+    pieces = _pieces(user, feed, last_event_id, settings.session_check_s, lambda: still_signed_in(user))
+    return EventStream(pieces, headers=UNBUFFERED)
+
+
+async def _pieces(
+    user: Person, feed: LocalFeed, last_event_id: str, check_every_s: float, may_listen: MayListen
+) -> AsyncIterator[bytes]:
     with feed.listening(user) as queue:
         missed = feed.missed(user, last_event_id) if last_event_id else []
-        yield ServerSentEvent(comment="following", retry=RETRY_MS, id=None if missed else feed.last_id)
+        yield format_sse_event(comment="following", retry=RETRY_MS, id=None if missed else feed.last_id)
         if missed is None:
-            yield ServerSentEvent(event="resync", data={}, id=feed.last_id)
-        for numbered in missed or []:
-            yield _event(numbered)
-        async for numbered in _from_now_on(queue, settings.session_check_s, lambda: still_signed_in(user)):
-            yield _event(numbered)
+            yield format_sse_event(event="resync", data_str="{}", id=feed.last_id)
+        elif missed:
+            yield b"".join(one.wire for one in missed)
+        async for piece in _from_now_on(queue, check_every_s, may_listen):
+            yield piece
 
 
 async def _from_now_on(
-    queue: asyncio.Queue[Numbered | None], check_every_s: float, may_listen: Callable[[], Awaitable[bool]]
-) -> AsyncIterator[Numbered]:
+    queue: asyncio.Queue[Numbered | None], check_every_s: float, may_listen: MayListen
+) -> AsyncIterator[bytes]:
     """Until the feed ends, or whoever listens may do so no longer: a stream outlives many a session."""
     now_s = asyncio.get_running_loop().time
     check_at_s = now_s() + check_every_s
     while True:
         try:
-            async with asyncio.timeout_at(check_at_s):
+            async with asyncio.timeout_at(min(check_at_s, now_s() + KEEP_ALIVE_S)):
                 numbered = await queue.get()
         except TimeoutError:
-            if not await may_listen():
+            if now_s() < check_at_s:
+                yield KEEPALIVE_COMMENT
+            elif await may_listen():
+                check_at_s = now_s() + check_every_s
+            else:
                 return
-            check_at_s = now_s() + check_every_s
             continue
-        if numbered is None:
+        wire, goes_on = _all_there_is(queue, numbered)
+        if wire:
+            yield wire
+        if not goes_on:
             return
-        yield numbered
 
 
-def _event(numbered: Numbered) -> ServerSentEvent:
-    return ServerSentEvent(event=numbered.happening.event, data=dict(numbered.happening.data), id=numbered.id)
+def _all_there_is(queue: asyncio.Queue[Numbered | None], first: Numbered | None) -> tuple[bytes, bool]:
+    """What waits, in one piece; whether the stream goes on after it."""
+    pieces = []
+    numbered = first
+    while numbered is not None:
+        pieces.append(numbered.wire)
+        if queue.empty():
+            return b"".join(pieces), True
+        numbered = queue.get_nowait()
+    return b"".join(pieces), False
