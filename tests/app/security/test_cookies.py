@@ -1,0 +1,72 @@
+"""The session's cookie: out of reach of scripts, of other sites, of other hosts and of the open network."""
+
+from http.cookies import Morsel, SimpleCookie
+
+import pytest
+from fastapi import FastAPI
+from fastapi.testclient import TestClient
+
+from app.settings import Settings
+from tests.app.conftest import HERE, SENDER, Mails
+
+SECURE = "https://mail.campus.example"
+
+
+@pytest.fixture
+def settings(settings: Settings) -> Settings:
+    return settings.model_copy(update={"oidc_issuer": "http://127.0.0.1:9", "oidc_client_id": "campus-mail"})
+
+
+def browser_at(base_url: str, app: FastAPI, nobody: TestClient) -> TestClient:
+    browser = TestClient(app, base_url=base_url, headers={"Sec-Fetch-Site": "same-origin"})
+    browser.portal = nobody.portal
+    return browser
+
+
+def cookie_of_sign_in(browser: TestClient, mails: Mails) -> Morsel[str]:
+    browser.post("/api/v1/sign-in/codes", json={"email": SENDER})
+    answer = browser.post("/api/v1/sign-in", json={"email": SENDER, "code": mails.newest_code(SENDER)})
+    (cookie,) = SimpleCookie(answer.headers["Set-Cookie"]).values()
+    return cookie
+
+
+@pytest.mark.parametrize(("base_url", "name", "secure"), [(SECURE, "__Host-session", True), (HERE, "session", "")])
+def test_the_cookie_is_as_strict_as_it_can_be(
+    app: FastAPI, nobody: TestClient, mails: Mails, base_url: str, name: str, secure: bool | str
+) -> None:
+    cookie = cookie_of_sign_in(browser_at(base_url, app, nobody), mails)
+    assert cookie.key == name
+    assert cookie["httponly"] is True
+    assert cookie["samesite"] == "lax"
+    assert cookie["secure"] == secure
+    assert (cookie["path"], cookie["domain"]) == ("/", ""), "this host alone"
+    assert cookie["max-age"] == str(30 * 86400)
+    assert len(cookie.value) >= 43, "256 bits"
+
+
+def test_over_https_a_cookie_without_the_prefix_is_nobodys(app: FastAPI, nobody: TestClient, mails: Mails) -> None:
+    """Another host of the campus can set `session` for the whole domain, but never `__Host-session`."""
+    cookie = cookie_of_sign_in(browser_at(SECURE, app, nobody), mails)
+    fooled = browser_at(SECURE, app, nobody)
+    assert fooled.get("/api/v1/me", headers={"Cookie": f"session={cookie.value}"}).status_code == 401
+    assert fooled.get("/api/v1/me", headers={"Cookie": f"__Host-session={cookie.value}"}).status_code == 200
+
+
+def test_each_sign_in_has_a_cookie_of_its_own_whatever_was_brought(
+    app: FastAPI, nobody: TestClient, mails: Mails
+) -> None:
+    browser = browser_at(HERE, app, nobody)
+    browser.cookies.set("session", "chosen-by-somebody-else")
+    first = cookie_of_sign_in(browser, mails).value
+    again = cookie_of_sign_in(browser, mails).value
+    assert len({"chosen-by-somebody-else", first, again}) == 3
+
+
+def test_signing_out_takes_the_cookie_away_and_its_value_is_worthless(
+    app: FastAPI, nobody: TestClient, mails: Mails
+) -> None:
+    browser = browser_at(SECURE, app, nobody)
+    value = cookie_of_sign_in(browser, mails).value
+    (gone,) = SimpleCookie(browser.delete("/api/v1/session").headers["Set-Cookie"]).values()
+    assert (gone.key, gone.value, gone["max-age"], gone["secure"]) == ("__Host-session", "", "0", True)
+    assert browser.get("/api/v1/me", headers={"Cookie": f"__Host-session={value}"}).status_code == 401

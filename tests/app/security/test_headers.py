@@ -1,0 +1,73 @@
+"""What every answer tells browsers to be strict about: pages, the API, problems, and what is not there at all."""
+
+import re
+from pathlib import Path
+
+import pytest
+from fastapi import FastAPI
+from fastapi.testclient import TestClient
+
+from app.pages import content_security_policy
+from app.settings import ROOT
+from tests.app.conftest import Browser
+
+ANSWERS = {
+    # path: status
+    "/": 200,
+    "/index.html": 200,
+    "/nothing-here": 404,
+    "/package.json": 404,
+    "/healthz": 200,
+    "/api/v1/about": 200,
+    "/api/v1/me": 401,
+    "/api/v1/people": 401,
+    "/api/v1/nothing-here": 404,
+    "/api/v1/link/order": 405,
+    "/api/v1/sign-in/oidc": 404,
+}
+
+
+@pytest.fixture
+def secure(app: FastAPI, nobody: TestClient) -> TestClient:
+    """A browser that came over https."""
+    browser = TestClient(app, base_url="https://mail.campus.example")
+    browser.portal = nobody.portal
+    return browser
+
+
+@pytest.mark.parametrize("path", ANSWERS)
+def test_every_answer_says_what_browsers_must_not_do(secure: TestClient, path: str) -> None:
+    answer = secure.get(path)
+    assert answer.status_code == ANSWERS[path]
+    headers = answer.headers
+    policy = dict(part.strip().partition(" ")[::2] for part in headers["Content-Security-Policy"].split(";"))
+    assert policy["default-src"] == "'self'"
+    assert policy["frame-ancestors"] == "'none'", "no page of another site shows ours inside it"
+    assert policy["object-src"] == policy["base-uri"] == "'none'"
+    assert headers["X-Content-Type-Options"] == "nosniff"
+    assert headers["Referrer-Policy"] in {"same-origin", "no-referrer"}
+    assert headers["Cross-Origin-Opener-Policy"] == "same-origin"
+    assert "camera=()" in headers["Permissions-Policy"]
+    assert headers["Cache-Control"] in {"no-cache", "no-store"}
+    assert int(re.fullmatch(r"max-age=(\d+).*", headers["Strict-Transport-Security"])[1]) >= 15_768_000  # type: ignore[index]
+    assert "server" not in headers, "which version of what runs here is nobody's business"
+
+
+def test_without_https_nobody_is_told_to_insist_on_it(nobody: TestClient) -> None:
+    """It would lock a developer out of their own localhost."""
+    assert "Strict-Transport-Security" not in nobody.get("/healthz").headers
+
+
+def test_no_script_of_a_page_stands_in_it_but_the_import_maps_that_the_policy_names() -> None:
+    policy = content_security_policy(ROOT / "web")
+    assert "unsafe" not in policy
+    assert policy.count("'sha256-") >= 1
+    inline = re.compile(r"<script(?![^>]*\bsrc=)(?![^>]*importmap)|\son[a-z]+\s*=|javascript:", re.IGNORECASE)
+    pages = list(Path(ROOT / "web").glob("*.html"))
+    assert pages
+    assert {page.name: found for page in pages if (found := inline.findall(page.read_text()))} == {}
+
+
+def test_what_is_shown_once_is_kept_by_no_cache(sender: Browser) -> None:
+    made = sender.post("/api/v1/tokens", json={"name": "x", "scopes": ["orders:read"]})
+    assert made.headers["Cache-Control"] == "no-store"
