@@ -8,13 +8,13 @@ from fastapi import APIRouter
 from fastapi.responses import JSONResponse
 from pydantic import BaseModel
 from sqlalchemy.exc import SQLAlchemyError
-from sqlmodel import col, func, select
+from sqlmodel import select
 
 from app.database import Database, DatabaseDep
 from app.errors import problem_answer
+from app.notify.lag import outbox_lag
 from app.schema_version import is_at_head
 from app.settings import ROOT, CampusDep, ClockDep, SettingsDep
-from app.tables import OutgoingNotice
 from app.texts import LANGUAGES
 from protocol.clock import Clock
 
@@ -141,14 +141,10 @@ async def _what_is_not_ready(database: Database, clock: Clock) -> str | None:
     try:
         async with database.reading() as session:
             await session.exec(select(1))
-            oldest = (
-                await session.exec(
-                    select(func.min(col(OutgoingNotice.created_at))).where(col(OutgoingNotice.sent_at).is_(None))
-                )
-            ).one()
+            lag = await outbox_lag(session, clock.utc())
         if not await is_at_head(database):
             return "The schema is not the one of this version: run `python -m app migrate`."
     except SQLAlchemyError as error:
         return f"The database does not answer: {type(error).__name__}."
-    lag_s = (clock.utc() - oldest).total_seconds() if oldest else 0.0
-    return f"The oldest unsent notice is {lag_s:.0f} s old." if lag_s > OUTBOX_LAG_LIMIT_S else None
+    late = lag.oldest_s > OUTBOX_LAG_LIMIT_S
+    return f"The oldest notice that a channel still owes is {lag.oldest_s:.0f} s old." if late else None

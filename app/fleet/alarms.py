@@ -6,6 +6,7 @@ import structlog
 from sqlmodel import col, select, update
 from sqlmodel.ext.asyncio.session import AsyncSession
 
+from app.notify.service import tell_dispatchers
 from app.tables import Alarm
 
 log = structlog.get_logger(__name__)
@@ -14,11 +15,14 @@ log = structlog.get_logger(__name__)
 async def raise_alarm(
     session: AsyncSession, robot: str, name: str, reason: str, *, now: datetime, post: str | None = None
 ) -> None:
-    """Ring once for as long as it lasts: the same alarm again changes nothing."""
+    """Ring once for as long as it lasts, and tell who dispatches: the same alarm again changes nothing."""
     log.warning("alarm", robot=robot, name=name, reason=reason, post=post)
     same = select(Alarm.id).where(Alarm.robot == robot, Alarm.name == name, Alarm.reason == reason[:500])
     if (await session.exec(same.where(col(Alarm.cleared_at).is_(None)))).first() is None:
-        session.add(Alarm(robot=robot, name=name[:64], reason=reason[:500], post=post, at=now))
+        alarm = Alarm(robot=robot, name=name[:64], reason=reason[:500], post=post, at=now)
+        session.add(alarm)
+        await session.flush()
+        await tell_dispatchers(session, alarm)
 
 
 async def clear_alarms(session: AsyncSession, robot: str, name: str, now: datetime) -> None:

@@ -17,7 +17,6 @@ GIVEN_UP = sa.text("gave_up_at IS NOT NULL")
 
 
 def upgrade() -> None:
-    _allow_new_copies_of_tables()
     _name_what_notices_tell()
     _add_wishes()
     with op.batch_alter_table("outbox", schema=None) as batch_op:
@@ -86,7 +85,6 @@ def _add_wishes() -> None:
 
 
 def downgrade() -> None:
-    _allow_new_copies_of_tables()
     op.drop_table("webhooks")
     with op.batch_alter_table("push_subscriptions", schema=None) as batch_op:
         batch_op.drop_index(batch_op.f("ix_push_subscriptions_person_id"))
@@ -113,9 +111,3 @@ def downgrade() -> None:
         batch_op.alter_column("order_id", existing_type=sa.String(None), nullable=False)
         batch_op.drop_column("routed_at")
         batch_op.drop_column("key")
-
-
-def _allow_new_copies_of_tables() -> None:
-    """SQLite writes a table anew to change it, and would not drop the old one while others refer to it."""
-    if op.get_bind().dialect.name == "sqlite":
-        op.execute("PRAGMA defer_foreign_keys=ON")
