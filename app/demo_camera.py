@@ -10,8 +10,8 @@ from pydantic import BaseModel, StringConstraints
 
 from app.database import ReadingDep
 from app.errors import Conflict, NotFound, problems
+from app.handover.routes import HandOversDep
 from app.orders.errors import NoCodeForYou, UnknownOrder
-from app.orders.routes import OrdersDep
 from app.people.current_user import CurrentUser
 from app.settings import SettingsDep
 
@@ -48,14 +48,14 @@ class Shown(BaseModel):
     "/demo/camera", status_code=202, responses=problems(NotADemonstration, DoorClosed, UnknownOrder, NoCodeForYou)
 )
 async def show_code(
-    wish: ShowCode, user: CurrentUser, orders: OrdersDep, session: ReadingDep, settings: SettingsDep
+    wish: ShowCode, user: CurrentUser, hand_overs: HandOversDep, session: ReadingDep, settings: SettingsDep
 ) -> Shown:
     """Hold this person's own code of an order to the camera of the simulated robot."""
     if settings.demo_door is None:
         raise NotADemonstration("This is no demonstration: hold your code to the robot's camera yourself.")
-    _, purpose, text = await orders.code(session, user, wish.order_id)
-    await knock(settings.demo_door, {"do": "show_code", "text": text})
-    return Shown(purpose=purpose)
+    code = await hand_overs.my_code(session, user, wish.order_id)
+    await knock(settings.demo_door, {"do": "show_code", "text": code.text(hand_overs.key)})
+    return Shown(purpose=code.purpose)
 
 
 async def knock(door: Path, wish: dict[str, Any]) -> dict[str, Any]:

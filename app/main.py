@@ -79,6 +79,7 @@ ROUTERS = (
     fleet_routes.router,
     enrolment_routes.router,
     handover_routes.router,
+    handover_routes.dispatch_router,
     demo_camera.router,
 )
 RESTART_PAUSE_S = 1.0

@@ -19,11 +19,18 @@ RECALLED: Final = "The robot was recalled."
 
 async def follow_answer(report: Report, answer: CommandAnswer) -> None:
     """Raises UnknownCommand."""
+    known = await report.session.get(RobotCommand, answer.command_id)
+    if known is not None and known.robot == report.robot and known.answered_at is not None:
+        return  # answered before: what it asked for may be over, or be asked for again by now
     command = await answered(report.session, report.robot, answer, report.now)
     if command.kind == "cancel" and command.order_id is not None:
         await _let_go(report, answer, command.order_id)
     elif command.kind == "recall" and answer.accepted:
         await _recalled(report, answer, command)
+    elif command.kind == "confirm" and command.order_id is not None and not answer.accepted:
+        # Whoever tapped reads it on their page; nobody else has to look.
+        word = report.word(answer.happened_at, None, answer.reason)
+        await report.orders.note(report.session, command.order_id, "confirm_refused", word)
     elif not answer.accepted:
         await _refused(report, answer)
 

@@ -126,7 +126,9 @@ def turn_of(order: Order, person_id: str) -> Purpose | None:
     purpose = TURNS.get(order.state)
     if purpose is Purpose.RECEIVE:
         return purpose if person_id == order.recipient_id else None
-    return purpose if person_id == order.sender_id else None
+    # Whoever placed an order for somebody at their desk loads it for them, too.
+    loads_for_them = purpose is Purpose.LOAD and person_id == order.placed_by_id
+    return purpose if person_id == order.sender_id or loads_for_them else None
 
 
 def code_svg(text: str) -> bytes:

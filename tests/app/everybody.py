@@ -11,6 +11,7 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 from starlette.routing import BaseRoute, Mount
 
 from app.fleet.service import new_token
+from app.handover.schemas import NewDelegate
 from app.notify.devices import add_device, set_webhook
 from app.notify.wish_schemas import NewDevice, SubscriptionKeys
 from app.orders.schemas import NewOrder, NewStandingOrder
@@ -107,6 +108,7 @@ class Everybody:
                 "role": "dispatcher",
                 "session_id": str(sender_session.id),
                 "prefix": token,
+                "delegate_id": await self._delegate(session, people["sender"], order_id),
                 "token_prefix": (await new_token(session, self.app.state.clock, "r1")).split("_")[1],
                 "email": "somebody@campus.example",
                 "file": "none.eml",
@@ -125,6 +127,10 @@ class Everybody:
         session.add(letter)
         await session.flush()
         return {"device_id": device.id, "letter_id": str(letter.id)}
+
+    async def _delegate(self, session: AsyncSession, sender: Person, order_id: str) -> str:
+        delegating = self.app.state.delegating
+        return str((await delegating.name(session, sender, order_id, NewDelegate(name="The porter"))).id)
 
     async def _headers(self, session: AsyncSession, who: str, people: dict[str, Person]) -> dict[str, str]:
         if who == "stranger":

@@ -52,6 +52,7 @@ def maintainers(scopes: str, status: int = 200) -> Line:
     return Line(401, 403, 403, 403, 403, status, scopes)
 
 
+THEIR_CODE: Final = Line(401, 404, 404, 200, 200, 404, "orders:read")
 LINES: Final[dict[tuple[str, str], Line]] = {
     # The order is assigned: it is the sender's turn to show a code, and who may cancel asks the robot to let go.
     ("GET", "/healthz"): OPEN,
@@ -88,6 +89,14 @@ LINES: Final[dict[tuple[str, str], Line]] = {
     ("GET", "/api/v1/orders/{order_id}"): Line(401, 404, 200, 200, 200, 404, "orders:read"),
     ("GET", "/api/v1/orders/{order_id}/code"): Line(401, 404, 404, 200, 404, 404, "orders:read"),
     ("GET", "/api/v1/orders/{order_id}/code.svg"): Line(401, 404, 404, 200, 404, 404, "orders:read"),
+    ("POST", "/api/v1/orders/{order_id}/handover"): Line(401, 404, 409, 409, 409, 404, "orders:write"),
+    ("POST", "/api/v1/orders/{order_id}/digits/release"): dispatchers("dispatch"),
+    # Named by the sender, to load: nothing of the recipient's.
+    ("GET", "/api/v1/orders/{order_id}/delegates"): Line(401, 404, 200, 200, 200, 404, "orders:read"),
+    ("POST", "/api/v1/orders/{order_id}/delegates"): Line(401, 404, 201, 201, 201, 404, "orders:write"),
+    ("DELETE", "/api/v1/orders/{order_id}/delegates/{delegate_id}"): Line(401, 404, 404, 204, 204, 404, "orders:write"),
+    ("GET", "/api/v1/orders/{order_id}/delegates/{delegate_id}/code"): THEIR_CODE,
+    ("GET", "/api/v1/orders/{order_id}/delegates/{delegate_id}/code.svg"): THEIR_CODE,
     ("POST", "/api/v1/orders/{order_id}/cancel"): Line(401, 404, 409, 200, 200, 404, "orders:write"),
     # No mail is aboard, no robot waits, nothing needs attention.
     ("POST", "/api/v1/orders/{order_id}/recall"): Line(401, 404, 409, 409, 409, 404, "orders:write"),
@@ -146,6 +155,8 @@ WISHES: Final[dict[tuple[str, str], dict[str, Any]]] = {
     ("PUT", "/api/v1/me/contacts/{email}"): {"label": "Aunt"},
     ("POST", "/api/v1/tokens"): {"name": "script", "scopes": ["orders:read"]},
     ("POST", "/api/v1/notices/read"): {"ids": [1]},
+    ("POST", "/api/v1/orders/{order_id}/handover"): {},
+    ("POST", "/api/v1/orders/{order_id}/delegates"): {"name": "The porter"},
     ("POST", "/api/v1/robots/enrol"): {"name": "r1", "code": "AAAA-AAAA", "public_key": 43 * "A" + "="},
     ("PUT", "/api/v1/me/notices"): {"muted": {}},
     ("POST", "/api/v1/me/devices"): {"endpoint": "https://push.example/1", "keys": {"p256dh": "AA", "auth": "AA"}},

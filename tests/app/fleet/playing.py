@@ -206,9 +206,11 @@ class PlayedRobot:
 
     def codes(self, stop: Stop) -> list[str]:
         """What opens there, as the server has told."""
-        told = [one.body for one in self.heard if isinstance(one.body, Verifiers)]
-        known = told[-1].verifiers if told else ()
-        return [one.sha256 for one in known if (one.order_id, one.purpose) == (stop.order_id, stop.action.value)]
+        for told in reversed([one.body for one in self.heard if isinstance(one.body, Verifiers)]):
+            known = [one for one in told.verifiers if one.order_id == stop.order_id]
+            if known:
+                return [one.sha256 for one in known if one.purpose == stop.action.value]
+        return []
 
     async def ends(self, seq: int) -> None:
         """Wait until everything up to `seq` is acknowledged."""

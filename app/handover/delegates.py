@@ -1,0 +1,88 @@
+"""Whoever hands over for somebody else: named, listed, revoked; the robot is told each time."""
+
+from dataclasses import dataclass
+from typing import Final
+
+from sqlmodel.ext.asyncio.session import AsyncSession
+
+from app.fleet.service import Fleet
+from app.handover import errors
+from app.handover.people import may_see, purpose_to_delegate
+from app.handover.schemas import NewDelegate
+from app.orders.codes import HandoverCode, Holder, delegates_of
+from app.orders.service import Word
+from app.orders.transitions import ENDED, By
+from app.orders.views import MyRole
+from app.people.service import new_id
+from app.tables import Delegate, Order, OrderState, Person, RobotRow
+from protocol.parts import Purpose
+from protocol.to_robot import Verifiers
+
+MOST: Final = 10
+
+
+@dataclass(frozen=True)
+class Delegating:
+    """The delegates of the orders of one campus."""
+
+    fleet: Fleet
+
+    async def all_of(self, session: AsyncSession, person: Person, order_id: str) -> list[Delegate]:
+        """Those that this person may see, revoked ones too. Raises UnknownOrder."""
+        order, role = await self.fleet.orders.theirs(session, person, order_id)
+        return [one for one in await delegates_of(session, [order]) if may_see(one, role)]
+
+    async def name(self, session: AsyncSession, person: Person, order_id: str, wish: NewDelegate) -> Delegate:
+        """Give somebody a code of their own. Raises UnknownOrder, NotYoursToDelegate, TooLateToDelegate,
+        TooManyDelegates."""
+        order, role = await self.fleet.orders.theirs(session, person, order_id)
+        purpose = purpose_to_delegate(order, role, Purpose(wish.purpose) if wish.purpose else None)
+        if len([one for one in await delegates_of(session, [order]) if one.revoked_at is None]) >= MOST:
+            raise errors.TooManyDelegates(f"There are {MOST} delegates already. Revoke one first.")
+        row = Delegate(
+            id=new_id(),
+            order_id=order.id,
+            purpose=purpose,
+            name=wish.name,
+            email=wish.email,
+            named_by_id=person.id,
+            named_at=self.fleet.clock.utc(),
+        )
+        session.add(row)
+        await self._tell(session, order, "delegate_named", _word(role, person, wish.name))
+        return row
+
+    async def revoke(self, session: AsyncSession, person: Person, order_id: str, delegate_id: str) -> None:
+        """Take a code back: at once if the robot can be reached, else when it is back. Raises UnknownOrder,
+        UnknownDelegate."""
+        order, role = await self.fleet.orders.theirs(session, person, order_id)
+        row = await self._delegate(session, order, role, delegate_id)
+        if row.revoked_at is None:
+            row.revoked_at = self.fleet.clock.utc()
+            await self._tell(session, order, "delegate_revoked", _word(role, person, row.name))
+
+    async def code(self, session: AsyncSession, person: Person, order_id: str, delegate_id: str) -> HandoverCode:
+        """A delegate's code, for whoever may pass it on to them. Raises UnknownOrder, UnknownDelegate."""
+        order, role = await self.fleet.orders.theirs(session, person, order_id)
+        row = await self._delegate(session, order, role, delegate_id)
+        if row.revoked_at is not None or order.state in ENDED:
+            raise errors.UnknownDelegate("This code opens nothing any more.")
+        return HandoverCode(order.id, Purpose(row.purpose), Holder.DELEGATE, order.codes_expire_at, row)
+
+    async def _delegate(self, session: AsyncSession, order: Order, role: MyRole, delegate_id: str) -> Delegate:
+        row = await session.get(Delegate, delegate_id)
+        if row is None or row.order_id != order.id or not may_see(row, role):
+            raise errors.UnknownDelegate(f"This order has no delegate {delegate_id} of yours.")
+        return row
+
+    async def _tell(self, session: AsyncSession, order: Order, kind: str, word: Word) -> None:
+        await session.flush()
+        await self.fleet.orders.note(session, order.id, kind, word)
+        if order.robot is not None and order.state is not OrderState.QUEUED and order.state not in ENDED:
+            robot = await session.get_one(RobotRow, order.robot, with_for_update=True)
+            codes = await self.fleet.orders.verifiers(session, order)
+            await self.fleet.tell(session, robot, Verifiers(verifiers=codes))
+
+
+def _word(role: MyRole, person: Person, name: str) -> Word:
+    return Word(By(role), person_id=person.id, reason=name)

@@ -1,0 +1,179 @@
+"""Handing over: codes, taps, digits, delegates."""
+
+from typing import Annotated, Any, Final
+
+from fastapi import APIRouter, Depends, Path, Request, Response
+
+from app.database import DatabaseDep, ReadingDep, SessionDep
+from app.errors import ServiceError, problems
+from app.handover import errors
+from app.handover.delegates import Delegating
+from app.handover.schemas import CodeView, Delegates, DelegateView, HandoverAsked, HandOverWish, NewDelegate
+from app.handover.service import HandOvers
+from app.orders.codes import HandoverCode, code_svg
+from app.orders.errors import NoCodeForYou, UnknownOrder
+from app.orders.routes import OrderId, OrdersDep
+from app.orders.schemas import OrderView
+from app.people.current_user import CurrentUser, Dispatcher
+from app.people.errors import RoleNeeded
+from app.people.rate_limits import Door, per_host, per_person
+
+router = APIRouter(tags=["orders"])
+dispatch_router = APIRouter(tags=["dispatch"])
+
+DelegateId = Annotated[str, Path(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]*$", max_length=64)]
+NOT_KEPT: Final = {"Cache-Control": "no-store"}
+PICTURE: Final[dict[int | str, dict[str, Any]]] = {200: {"content": {"image/svg+xml": {"schema": {"type": "string"}}}}}
+ASKED = problems(
+    UnknownOrder,
+    errors.NotYourTurn,
+    errors.RobotNotThere,
+    errors.RobotOffline,
+    errors.RobotTakesNoTaps,
+    errors.DigitsLocked,
+    errors.CodesExpired,
+    errors.WrongDigits,
+    429,
+)
+NAMED = problems(UnknownOrder, errors.NotYoursToDelegate, errors.TooLateToDelegate, errors.TooManyDelegates, 429)
+
+
+def _hand_overs(request: Request) -> HandOvers:
+    hand_overs: HandOvers = request.app.state.hand_overs
+    return hand_overs
+
+
+def _delegating(request: Request) -> Delegating:
+    delegating: Delegating = request.app.state.delegating
+    return delegating
+
+
+HandOversDep = Annotated[HandOvers, Depends(_hand_overs)]
+DelegatingDep = Annotated[Delegating, Depends(_delegating)]
+
+
+@router.get("/orders/{order_id}/code", responses=problems(UnknownOrder, NoCodeForYou))
+async def my_code(
+    order_id: OrderId, user: CurrentUser, hand_overs: HandOversDep, session: ReadingDep, response: Response
+) -> CodeView:
+    """The hand-over code of whoever's turn it is, as a QR text and six digits."""
+    code = await hand_overs.my_code(session, user, order_id)
+    response.headers.update(NOT_KEPT)
+    svg_url = f"/api/v1/orders/{order_id}/code.svg"
+    return CodeView.of(code, hand_overs.key, svg_url, await hand_overs.is_locked(session, order_id))
+
+
+@router.get(
+    "/orders/{order_id}/code.svg",
+    response_class=Response,
+    responses={**PICTURE, **problems(UnknownOrder, NoCodeForYou)},
+)
+async def my_code_picture(
+    order_id: OrderId, user: CurrentUser, hand_overs: HandOversDep, session: ReadingDep
+) -> Response:
+    """The same code as a picture."""
+    return _picture(await hand_overs.my_code(session, user, order_id), hand_overs)
+
+
+@router.post("/orders/{order_id}/handover", status_code=202, dependencies=[per_host(Door.DIGITS)], responses=ASKED)
+async def hand_over(
+    order_id: OrderId, wish: HandOverWish, user: CurrentUser, hand_overs: HandOversDep, database: DatabaseDep
+) -> HandoverAsked:
+    """Ask the robot that waits to hand over: by a tap of whoever's turn it is, or by the digits of a code.
+
+    202: the robot is asked. Mail has changed hands when its receipt has come; the order moves then, and its
+    `handover_requested` is null again.
+    """
+    async with database.transaction() as session:
+        if wish.digits:
+            done = await hand_overs.type_digits(session, user, order_id, wish.digits)
+        else:
+            done = await hand_overs.tap(session, user, order_id)
+    if isinstance(done, ServiceError):
+        raise done
+    return done
+
+
+@dispatch_router.post("/orders/{order_id}/digits/release", responses=problems(UnknownOrder, RoleNeeded))
+async def release_digits(
+    order_id: OrderId, dispatcher: Dispatcher, hand_overs: HandOversDep, orders: OrdersDep, session: SessionDep
+) -> OrderView:
+    """Let the digits of an order be typed again after five wrong ones."""
+    await hand_overs.release_digits(session, dispatcher, order_id)
+    return await orders.view(session, dispatcher, order_id)
+
+
+@router.get("/orders/{order_id}/delegates", responses=problems(UnknownOrder))
+async def list_delegates(
+    order_id: OrderId, user: CurrentUser, delegating: DelegatingDep, session: ReadingDep
+) -> Delegates:
+    """List who may hand over for the caller, those whose code was taken back too."""
+    return Delegates(items=[DelegateView.of(one) for one in await delegating.all_of(session, user, order_id)])
+
+
+@router.post("/orders/{order_id}/delegates", status_code=201, dependencies=[per_person(Door.CHANGES)], responses=NAMED)
+async def name_delegate(
+    *,
+    order_id: OrderId,
+    wish: NewDelegate,
+    user: CurrentUser,
+    delegating: DelegatingDep,
+    session: SessionDep,
+    response: Response,
+) -> DelegateView:
+    """Name somebody who hands over instead, with a code of their own."""
+    row = await delegating.name(session, user, order_id, wish)
+    response.headers["Location"] = f"/api/v1/orders/{order_id}/delegates/{row.id}/code"
+    return DelegateView.of(row)
+
+
+@router.delete(
+    "/orders/{order_id}/delegates/{delegate_id}",
+    status_code=204,
+    responses=problems(UnknownOrder, errors.UnknownDelegate),
+)
+async def revoke_delegate(
+    order_id: OrderId, delegate_id: DelegateId, user: CurrentUser, delegating: DelegatingDep, session: SessionDep
+) -> None:
+    """Take a delegate's code back. A robot without network hears of it when it is back."""
+    await delegating.revoke(session, user, order_id, delegate_id)
+
+
+@router.get("/orders/{order_id}/delegates/{delegate_id}/code", responses=problems(UnknownOrder, errors.UnknownDelegate))
+async def delegate_code(
+    *,
+    order_id: OrderId,
+    delegate_id: DelegateId,
+    user: CurrentUser,
+    delegating: DelegatingDep,
+    hand_overs: HandOversDep,
+    session: ReadingDep,
+    response: Response,
+) -> CodeView:
+    """A delegate's code, to be passed on to them."""
+    code = await delegating.code(session, user, order_id, delegate_id)
+    response.headers.update(NOT_KEPT)
+    svg_url = f"/api/v1/orders/{order_id}/delegates/{delegate_id}/code.svg"
+    return CodeView.of(code, hand_overs.key, svg_url, await hand_overs.is_locked(session, order_id))
+
+
+@router.get(
+    "/orders/{order_id}/delegates/{delegate_id}/code.svg",
+    response_class=Response,
+    responses={**PICTURE, **problems(UnknownOrder, errors.UnknownDelegate)},
+)
+async def delegate_code_picture(
+    *,
+    order_id: OrderId,
+    delegate_id: DelegateId,
+    user: CurrentUser,
+    delegating: DelegatingDep,
+    hand_overs: HandOversDep,
+    session: ReadingDep,
+) -> Response:
+    """The same code as a picture."""
+    return _picture(await delegating.code(session, user, order_id, delegate_id), hand_overs)
+
+
+def _picture(code: HandoverCode, hand_overs: HandOvers) -> Response:
+    return Response(code_svg(code.text(hand_overs.key)), media_type="image/svg+xml", headers=NOT_KEPT)

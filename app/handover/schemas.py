@@ -1,0 +1,86 @@
+"""Hand-overs and delegates over HTTP."""
+
+from datetime import datetime
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+
+from app.orders.codes import HandoverCode
+from app.people.schemas import Email
+from app.server_key import ServerKey
+from app.tables import Delegate
+
+PurposeName = Literal["load", "receive", "return"]
+
+
+class CodeView(BaseModel):
+    """A hand-over code: `text` as a QR code for the robot's camera, `digits` to be typed in the app."""
+
+    purpose: PurposeName
+    text: str
+    digits: str
+    digits_locked: bool
+    svg_url: str
+    expires_at: datetime
+
+    @classmethod
+    def of(cls, code: HandoverCode, key: ServerKey, svg_url: str, is_locked: bool) -> "CodeView":
+        return cls(
+            purpose=code.purpose.value,
+            text=code.text(key),
+            digits=code.digits(key),
+            digits_locked=is_locked,
+            svg_url=svg_url,
+            expires_at=code.expires_at,
+        )
+
+
+class HandOverWish(BaseModel):
+    """Hand over now. Without digits it is a tap of whoever's turn it is."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    digits: Annotated[str, StringConstraints(pattern=r"^[0-9]{6}$")] = Field(
+        default="", validate_default=False, description="The six digits of a code that is good now."
+    )
+
+
+class HandoverAsked(BaseModel):
+    """The robot is asked, until `expires_at`. Whether mail changes hands, its receipt says."""
+
+    order_id: str
+    purpose: PurposeName
+    how: Literal["tap", "digits"]
+    at: datetime
+    expires_at: datetime
+
+
+class NewDelegate(BaseModel):
+    """Somebody who hands over instead of the sender or the recipient. `purpose` follows from who names them."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    name: Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=200)]
+    email: Email | None = None
+    purpose: PurposeName | None = None
+
+
+class DelegateView(BaseModel):
+    """Somebody who was named; `revoked_at` null: their code is good still."""
+
+    id: str
+    name: str
+    email: str | None
+    purpose: PurposeName
+    named_at: datetime
+    revoked_at: datetime | None
+
+    @classmethod
+    def of(cls, row: Delegate) -> "DelegateView":
+        return cls.model_validate(row, from_attributes=True)
+
+
+class Delegates(BaseModel):
+    """Everybody who was named for an order, as far as one may see them, oldest first."""
+
+    items: list[DelegateView]
