@@ -8,7 +8,10 @@ from typing import Any
 import structlog
 
 SECRET_KEYS = frozenset({"authorization", "code", "cookie", "password", "secret", "session", "set-cookie", "token"})
-SECRET_TEXTS = re.compile(r"CM1:[0-9a-f]{32}|cmr_[A-Za-z0-9]+_[A-Za-z0-9_-]+|\bsession=[^\s;]+|\b\d{8}\b|\b\d{6}\b")
+SECRET_TEXTS = re.compile(
+    r"CM1:[0-9a-f]{32}|\bcm[a-z]_[A-Za-z0-9]+_[A-Za-z0-9_-]+|(?<=[Bb]earer )[^\s'\"]+|\b(?:session|oidc)=[^\s;]+"
+    r"|\b\d{8}\b|\b\d{6}\b"
+)
 REDACTED = "[redacted]"
 
 
@@ -50,5 +53,5 @@ def set_up_logs(level: str) -> None:
     handler = logging.StreamHandler(sys.stderr)
     handler.setFormatter(structlog.stdlib.ProcessorFormatter(processors=last, foreign_pre_chain=shared))
     logging.basicConfig(level=level, handlers=[handler], force=True)
-    for chatty in ("aiosqlite", "sqlalchemy", "alembic", "httpx", "uvicorn.access"):
+    for chatty in ("aiosqlite", "sqlalchemy", "alembic", "httpcore", "httpx", "uvicorn.access"):
         logging.getLogger(chatty).setLevel(max(logging.WARNING, logging.getLevelName(level)))
