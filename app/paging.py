@@ -52,14 +52,14 @@ class Sorting:
     """How a list is sorted: by columns that are never null and together tell every row apart; all in one direction."""
 
     def __init__(self, name: str, *columns: Any, descending: bool = False) -> None:
-        self.name, self._columns, self._descending = name, columns, descending
+        self.name, self._columns, self.descending = name, columns, descending
 
     def order(self) -> list[ColumnElement[Any]]:
-        return [column.desc() if self._descending else column.asc() for column in self._columns]
+        return [column.desc() if self.descending else column.asc() for column in self._columns]
 
     def beyond(self, place: Sequence[Any]) -> ColumnElement[bool]:
         here = tuple_(*self._columns)
-        return here < tuple(place) if self._descending else here > tuple(place)
+        return here < tuple(place) if self.descending else here > tuple(place)
 
     def place_of(self, row: SQLModel) -> list[Any]:
         return [getattr(row, column.key) for column in self._columns]
@@ -79,11 +79,22 @@ class Paging:
         self, session: AsyncSession, wanted: SelectOfScalar[Row], sorting: Sorting
     ) -> tuple[list[Row], str | None]:
         """The rows of this page and the cursor of the next, which the Link header names too. Raises BadCursor."""
-        if self.cursor:
-            wanted = wanted.where(sorting.beyond(_opened(self.key, sorting.name, self.cursor)))
-        # One more than is shown tells whether there is a next page.
-        found = (await session.exec(wanted.order_by(*sorting.order()).limit(self.limit + 1))).all()
-        rows = list(found[: self.limit])
+        return await self.of_any(session, [wanted], sorting)
+
+    async def of_any(
+        self, session: AsyncSession, wishes: Sequence[SelectOfScalar[Row]], sorting: Sorting
+    ) -> tuple[list[Row], str | None]:
+        """The same for the rows that any of `wishes` finds: each is a walk along an index of its own, where one
+        question with an `or` would have to read and sort all that there is."""
+        beyond = [sorting.beyond(_opened(self.key, sorting.name, self.cursor))] if self.cursor else []
+        found: dict[tuple[Any, ...], Row] = {}
+        for wanted in wishes:
+            # One more than is shown tells whether there is a next page.
+            walk = wanted.where(*beyond).order_by(*sorting.order()).limit(self.limit + 1)
+            found |= {tuple(sorting.place_of(row)): row for row in (await session.exec(walk)).all()}
+        # One walk is in the database's own order, which for words may be another than ours.
+        in_order = list(found) if len(wishes) == 1 else sorted(found, reverse=sorting.descending)
+        rows = [found[place] for place in in_order[: self.limit]]
         if len(found) == len(rows):
             return rows, None
         following = _sealed(self.key, sorting.name, sorting.place_of(rows[-1]))

@@ -3,7 +3,6 @@
 from typing import Annotated, Literal
 
 from fastapi import APIRouter, Depends, Header, Path, Request, Response
-from sqlalchemy import or_
 from sqlmodel import col, select
 from sqlmodel.sql.expression import SelectOfScalar
 
@@ -110,17 +109,18 @@ async def list_orders(
     role: Literal["sent", "coming", "all"] = "all",
 ) -> OrderPage:
     """This person's orders, newest first; a dispatcher's `all` is everybody's."""
-    rows, following = await page.of(session, _theirs(user, role), NEWEST_FIRST)
+    rows, following = await page.of_any(session, _theirs(user, role), NEWEST_FIRST)
     facts = await load_facts(session, rows)
     views = [view_for(user, one, orders.campus, orders.settings) for one in facts]
     return OrderPage(items=[view for view in views if view], next=following)
 
 
-def _theirs(user: Person, role: str) -> SelectOfScalar[Order]:
-    sent, coming = col(Order.sender_id) == user.id, col(Order.recipient_id) == user.id
+def _theirs(user: Person, role: str) -> list[SelectOfScalar[Order]]:
     if role == "all" and user.has_role(Role.DISPATCHER):
-        return select(Order)
-    return select(Order).where({"sent": sent, "coming": coming, "all": or_(sent, coming)}[role])
+        return [select(Order)]
+    sent = select(Order).where(Order.sender_id == user.id)
+    coming = select(Order).where(Order.recipient_id == user.id)
+    return {"sent": [sent], "coming": [coming], "all": [sent, coming]}[role]
 
 
 @router.get("/orders/{order_id}", responses=problems(errors.UnknownOrder))

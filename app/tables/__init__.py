@@ -6,6 +6,7 @@ relationships the unit of work does not order the rows of different tables: flus
 
 from sqlmodel import SQLModel
 
+from app.tables import indexes as indexes
 from app.tables.claims import ClaimRow, GrantRow
 from app.tables.contacts import Contact
 from app.tables.delegates import Delegate, DigitLock

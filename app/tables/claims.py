@@ -28,7 +28,7 @@ class GrantRow(SQLModel, table=True):
     __tablename__ = "grants"
 
     id: int | None = Field(default=None, primary_key=True)
-    robot: str = Field(foreign_key="robots.name", index=True)
+    robot: str = Field(foreign_key="robots.name")
     claim_id: str = Field(max_length=64)
     corridor: str = Field(max_length=130, index=True)
     from_post: str = Field(max_length=64)

@@ -26,7 +26,7 @@ class MissionRow(SQLModel, table=True):
     __tablename__ = "missions"
 
     id: str = Field(primary_key=True, max_length=64)
-    robot: str = Field(foreign_key="robots.name", index=True)
+    robot: str = Field(foreign_key="robots.name")
     update_number: int = 1
     told_update: int = 0
     accepted_update: int = 0

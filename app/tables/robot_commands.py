@@ -16,7 +16,7 @@ class RobotCommand(SQLModel, table=True):
     __tablename__ = "robot_commands"
 
     command_id: str = Field(primary_key=True, max_length=64)
-    robot: str = Field(foreign_key="robots.name", index=True)
+    robot: str = Field(foreign_key="robots.name")
     kind: str = Field(max_length=32)
     order_id: str | None = Field(default=None, foreign_key="orders.id", index=True)
     asked_by_id: str | None = Field(default=None, foreign_key="people.id")

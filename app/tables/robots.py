@@ -57,7 +57,7 @@ class Alarm(SQLModel, table=True):
     __tablename__ = "alarms"
 
     id: int | None = Field(default=None, primary_key=True)
-    robot: str = Field(foreign_key="robots.name", index=True)
+    robot: str = Field(foreign_key="robots.name")
     name: str = Field(max_length=64)
     reason: str = Field(max_length=500)
     post: str | None = Field(default=None, max_length=64)
