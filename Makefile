@@ -6,7 +6,7 @@ BIN := .venv/bin
 ARGS ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help setup setup-robot test check format demo serve robot bench bench-mind bench-body bench-service bench-paper fuzz-mind pin clean
+.PHONY: help setup setup-robot test check format demo serve robot bench bench-mind bench-body bench-service bench-paper bench-service-kills fuzz-mind pin clean
 # A recipe that fails must not leave its stamp behind.
 .DELETE_ON_ERROR:
 
@@ -55,6 +55,9 @@ bench-service: setup ## Measure the service from outside, client and server on a
 
 bench-paper: setup ## The paper's evaluation again, its own program beside ours: JSON and plots
 	@$(BIN)/python -m benchmarks.paper $(ARGS)
+
+bench-service-kills: setup ## Kill the service 300 times under load: what it has kept and told; prints JSON
+	@$(BIN)/python -m benchmarks.service_kills $(ARGS)
 
 fuzz-mind: setup ## Feed the mind 10,000 mangled programs: each is read and run, or what is wrong is named
 	@$(BIN)/python -m benchmarks.fuzz_mind $(ARGS)

@@ -1,0 +1,202 @@
+"""One run: a service under load, killed again and again, then left in peace until all is delivered, then judged."""
+
+import asyncio
+import signal
+from collections import Counter
+from collections.abc import AsyncIterator, Callable
+from contextlib import ExitStack, asynccontextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+from random import Random
+from typing import Any, Final
+
+import httpx
+from sqlalchemy import create_engine
+
+from app.administration import enrol
+from app.keeping.checks import problems_of
+from app.settings import Settings
+from app.tables import metadata
+from benchmarks.service_kills.judge import Facts, judged, mails_repeated
+from benchmarks.service_kills.mail_server import Mailbox, SpoolFolder, is_sign_in, mail_server
+from benchmarks.service_kills.senders import Sender
+from benchmarks.service_kills.stand_in import StandIn
+from benchmarks.service_kills.victim import Victim
+from maps import builtin_map
+
+DOMAIN: Final = "campus.example"
+RECIPIENTS: Final = tuple(f"recipient{n}@{DOMAIN}" for n in range(3))
+DRAINS_WITHIN_S: Final = 120.0
+WHILE_STARTING: Final = 0.15
+"""So many kills strike before the service is up again."""
+MAP: Final = "test_track"
+ORDERLY: Final = (0, -signal.SIGTERM)
+"""Uvicorn ends in order and then dies of the signal that it was sent."""
+
+
+@dataclass(frozen=True)
+class Plan:
+    """How much of everything; a seed fixes when the kills come, and the machine what they hit."""
+
+    kills: int = 300
+    seed: int = 1
+    senders: int = 3
+    robots: int = 4
+    order_pause_s: float = 0.15
+    longest_s: float = 1.5
+    with_smtp: bool = True
+
+
+async def killed(plan: Plan, folder: Path, say: Callable[[int], None] = lambda kills: None) -> dict[str, Any]:
+    """What came of it: counts, and under `wrong` a sentence for everything that must not be."""
+    with ExitStack() as closing:
+        server = closing.enter_context(mail_server()) if plan.with_smtp else None
+        mailbox: Mailbox = server or SpoolFolder(folder / "data" / "spool")
+        victim = Victim(folder, server.port if server else None)
+        closing.callback(victim.end)
+        robots = await _enrolled(plan, victim)
+        victim.start()
+        await victim.is_up()
+        scene = _Scene(plan, victim, mailbox, robots)
+        await scene.play(say)
+        exit_code = await victim.stop()
+        return scene.report(exit_code)
+
+
+async def _enrolled(plan: Plan, victim: Victim) -> list[StandIn]:
+    campus = builtin_map(MAP)
+    posts = sorted(campus.posts)
+    names = [f"r{n}" for n in range(1, plan.robots + 1)]
+    settings = Settings(data=victim.folder / "data")
+    tokens = [await enrol(settings, name, again=False) for name in names]
+    return [
+        StandIn(name, token, victim.link_url, posts[n % len(posts)], campus.version, Random(f"{plan.seed}/{name}"))
+        for n, (name, token) in enumerate(zip(names, tokens, strict=True))
+    ]
+
+
+class _Scene:
+    """Everybody who takes part in a run."""
+
+    def __init__(self, plan: Plan, victim: Victim, mailbox: Mailbox, robots: list[StandIn]) -> None:
+        self._plan, self._victim, self._mailbox, self._robots = plan, victim, mailbox, robots
+        self._senders = [
+            Sender(victim.url, f"sender{n}@{DOMAIN}", RECIPIENTS, Random(f"{plan.seed}/{n}"), plan.order_pause_s)
+            for n in range(plan.senders)
+        ]
+        self._over = False
+        self._struck: Counter[str] = Counter()
+        self._drained = False
+
+    async def play(self, say: Callable[[int], None]) -> None:
+        """Load, kills, and peace at the end."""
+        async with self._robots_driving():
+            async with asyncio.TaskGroup() as group:
+                for sender in self._senders:
+                    group.create_task(self._send(sender))
+                await self._have_ordered()
+                await self._kill(say)
+                self._over = True
+            with suppress(TimeoutError):
+                async with asyncio.timeout(DRAINS_WITHIN_S):
+                    await self._all_is_done()
+                    self._drained = True
+
+    @asynccontextmanager
+    async def _robots_driving(self) -> AsyncIterator[None]:
+        tasks = [asyncio.create_task(robot.run()) for robot in self._robots]
+        try:
+            yield
+        finally:
+            for task in tasks:
+                task.cancel()
+            results = await asyncio.gather(*tasks, return_exceptions=True)
+            for robot, result in zip(self._robots, results, strict=True):
+                if not isinstance(result, asyncio.CancelledError):
+                    robot.errors.append(f"it broke: {result!r}")
+
+    async def _send(self, sender: Sender) -> None:
+        async with httpx.AsyncClient() as http:
+            await sender.sign_in(http, self._mailbox)
+            await sender.order_until(http, lambda: self._over)
+
+    async def _have_ordered(self) -> None:
+        """Everybody is signed in and at work before the first kill: it is orders that are to be hit."""
+        while not all(sender.acknowledged for sender in self._senders):  # noqa: ASYNC110
+            await asyncio.sleep(0.05)
+
+    async def _kill(self, say: Callable[[int], None]) -> None:
+        random = Random(f"{self._plan.seed}/kills")
+        for number in range(1, self._plan.kills + 1):
+            if random.random() < WHILE_STARTING:
+                self._struck["starting"] += 1
+                await asyncio.sleep(random.uniform(0, self._plan.longest_s))
+            else:
+                self._struck["serving"] += 1
+                await self._victim.is_up()
+                await asyncio.sleep(random.uniform(0, self._plan.longest_s))
+            self._victim.kill()
+            self._victim.start()
+            say(number)
+        await self._victim.is_up()
+
+    async def _all_is_done(self) -> None:
+        """Robots idle and heard, and nothing owed to anybody."""
+        while not all(robot.is_idle for robot in self._robots) or await asyncio.to_thread(self._is_owed):  # noqa: ASYNC110
+            await asyncio.sleep(0.1)
+
+    def _is_owed(self) -> bool:
+        tables = self._tables("orders", "notices", "outbox", "server_outbox")
+        return (
+            any(row["state"] not in ("delivered", "cancelled", "expired") for row in tables["orders"])
+            or any(row["routed_at"] is None for row in tables["notices"])
+            or any(row["sent_at"] is None for row in tables["outbox"])
+            or any(row["acked_at"] is None for row in tables["server_outbox"])
+        )
+
+    def _tables(self, *names: str) -> dict[str, list[dict[str, Any]]]:
+        engine = create_engine(f"sqlite:///{self._victim.folder / 'data' / 'campus-mail.sqlite'}")
+        try:
+            with engine.connect() as connection:
+                selects = {name: metadata.tables[name].select() for name in names or metadata.tables}
+                return {name: [dict(row) for row in connection.execute(s).mappings()] for name, s in selects.items()}
+        finally:
+            engine.dispose()
+
+    def _problems(self) -> list[str]:
+        engine = create_engine(f"sqlite:///{self._victim.folder / 'data' / 'campus-mail.sqlite'}")
+        try:
+            with engine.connect() as connection:
+                return problems_of(connection)
+        finally:
+            engine.dispose()
+
+    def _facts(self) -> Facts:
+        return Facts(
+            tables=self._tables(),
+            acknowledged={key: order_id for sender in self._senders for key, order_id in sender.acknowledged.items()},
+            said={r.name: {seq: m.model_dump(mode="json") for seq, m in r.said.items()} for r in self._robots},
+            mail_ids=[str(mail["Message-ID"]).strip() for mail in self._mailbox.mails() if not is_sign_in(mail)],
+        )
+
+    def report(self, exit_code: int) -> dict[str, Any]:
+        facts = self._facts()
+        wrong = [*judged(facts), *self._problems()]
+        wrong += [sentence for sender in self._senders for sentence in sender.wrong]
+        wrong += [f"{robot.name} was told off: {sentence}" for robot in self._robots for sentence in robot.errors]
+        wrong += [] if self._drained else [f"not everything was done within {DRAINS_WITHIN_S:.0f} s of peace"]
+        wrong += [] if exit_code in ORDERLY else [f"the last stop ended with exit code {exit_code}"]
+        return {
+            "kills": sum(self._struck.values()),
+            "struck": dict(self._struck),
+            "mails_by": "smtp" if self._plan.with_smtp else "spool",
+            "orders": len(facts.acknowledged),
+            "requests": sum(sender.tried for sender in self._senders),
+            "answers_replayed": sum(sender.replayed for sender in self._senders),
+            "robot_messages": sum(len(said) for said in facts.said.values()),
+            "robot_connections": sum(robot.connections for robot in self._robots),
+            "notices": len(facts.tables["notices"]),
+            "mails": len(facts.mail_ids),
+            "mails_repeated_under_their_id": mails_repeated(facts),
+            "wrong": wrong,
+        }

@@ -1,0 +1,96 @@
+"""The real service as a process of its own, killed and started again on the same port and the same data."""
+
+import asyncio
+import os
+import signal
+import socket
+import subprocess
+import sys
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Final
+
+import httpx
+
+CHECKOUT: Final = Path(__file__).parents[2]
+STARTS_WITHIN_S: Final = 60.0
+ENDS_WITHIN_S: Final = 15.0
+
+
+class DidNotStart(Exception):
+    """The service did not answer; what it said last."""
+
+
+def free_port() -> int:
+    with socket.create_server(("127.0.0.1", 0)) as listening:
+        return int(listening.getsockname()[1])
+
+
+@dataclass
+class Victim:
+    """`smtp_port` None: mails are files in the spool."""
+
+    folder: Path
+    smtp_port: int | None = None
+    port: int = field(default_factory=free_port)
+    process: "subprocess.Popen[bytes] | None" = None
+
+    @property
+    def url(self) -> str:
+        return f"http://127.0.0.1:{self.port}"
+
+    @property
+    def link_url(self) -> str:
+        return f"ws://127.0.0.1:{self.port}/api/v1/robots/link"
+
+    def environment(self) -> dict[str, str]:
+        """Settings of the environment that would lead elsewhere are left out."""
+        ours = {
+            "CAMPUS_MAIL_DATA": str(self.folder / "data"),
+            "CAMPUS_MAIL_PUBLIC_URL": "https://mail.campus.example",
+            "CAMPUS_MAIL_SIGN_IN_CODES_PER_ADDRESS": "1000 per minute",
+            "CAMPUS_MAIL_ORDERS_PER_PERSON": "1000000 per hour",
+            "CAMPUS_MAIL_LOG_LEVEL": "WARNING",
+        }
+        if self.smtp_port is not None:
+            ours |= {"CAMPUS_MAIL_SMTP_HOST": "127.0.0.1", "CAMPUS_MAIL_SMTP_PORT": str(self.smtp_port)}
+            ours |= {"CAMPUS_MAIL_SMTP_TLS": "none"}
+        inherited = {name: value for name, value in os.environ.items() if not name.startswith("CAMPUS_MAIL_")}
+        return {**inherited, **ours}
+
+    def start(self) -> None:
+        with (self.folder / "service.log").open("ab") as log:
+            self.process = subprocess.Popen(
+                [sys.executable, "-m", "app", "serve", "--port", str(self.port)],
+                cwd=CHECKOUT, env=self.environment(), stdout=log, stderr=log,
+            )  # fmt: skip
+
+    async def is_up(self) -> None:
+        """Wait until it answers. Raises DidNotStart."""
+        assert self.process is not None
+        with suppress(TimeoutError):
+            async with asyncio.timeout(STARTS_WITHIN_S), httpx.AsyncClient() as http:
+                while self.process.poll() is None:
+                    with suppress(httpx.HTTPError):
+                        if (await http.get(f"{self.url}/healthz")).is_success:
+                            return
+                    await asyncio.sleep(0.02)
+        raise DidNotStart((self.folder / "service.log").read_text(errors="replace")[-3000:])
+
+    def kill(self) -> None:
+        """At once, as a power cut of the process would."""
+        assert self.process is not None
+        self.process.send_signal(signal.SIGKILL)
+        self.process.wait()
+
+    async def stop(self) -> int:
+        """As an operator does; the exit code."""
+        assert self.process is not None
+        self.process.terminate()
+        return await asyncio.to_thread(self.process.wait, ENDS_WITHIN_S)
+
+    def end(self) -> None:
+        """Whatever happened: nothing is left running."""
+        if self.process is not None and self.process.poll() is None:
+            self.kill()
