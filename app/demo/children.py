@@ -1,7 +1,9 @@
 """The two processes of a demonstration: started, watched, and ended by their ids."""
 
 import asyncio
+import ctypes
 import signal
+import sys
 from asyncio.subprocess import Process
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
@@ -12,6 +14,7 @@ from app.demo.settings import DemoFailed
 
 STOP_WITHIN_S = 2.0
 LAST_LINES = 15
+PR_SET_PDEATHSIG = 1
 
 
 @dataclass(frozen=True)
@@ -51,6 +54,7 @@ class Children:
                 stderr=output,
                 env=environment,
                 start_new_session=True,
+                preexec_fn=_end_with_us if sys.platform == "linux" else None,
             )
         self._started.append(process)
         return Child(name, process, log)
@@ -58,6 +62,11 @@ class Children:
     async def stop(self) -> None:
         """Ask first, then make them."""
         await asyncio.gather(*(_stop(process) for process in self._started))
+
+
+def _end_with_us() -> None:
+    """If we are killed and can stop nobody any more, the kernel does (`prctl`, PR_SET_PDEATHSIG)."""
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
 
 
 async def _stop(process: Process) -> None:

@@ -10,6 +10,7 @@ import pytest
 
 from app.demo.children import STOP_WITHIN_S, Children
 from app.demo.settings import DemoFailed
+from app.settings import ROOT
 
 STUBBORN = (
     "import signal, time; signal.signal(signal.SIGTERM, signal.SIG_IGN); print('here', flush=True); time.sleep(60)"
@@ -37,3 +38,30 @@ async def test_all_children_are_stopped_at_once_even_those_that_do_not_listen(tm
     await children.stop()
     assert time.monotonic() - began_s < STOP_WITHIN_S + 1.0
     assert not any(psutil.pid_exists(child.process.pid) for child in started)
+
+
+PARENT = """
+import asyncio, pathlib, sys
+from app.demo.children import Children
+
+async def main():
+    command = [sys.executable, "-c", "import time; time.sleep(60)"]
+    child = await Children().start("robot", command, pathlib.Path(sys.argv[1]))
+    print(child.process.pid, flush=True)
+    await asyncio.sleep(60)
+
+asyncio.run(main())
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the kernel's own way")
+async def test_a_demonstration_that_is_killed_leaves_no_children_behind(tmp_path: Path) -> None:
+    parent = await asyncio.create_subprocess_exec(
+        *python(PARENT), str(tmp_path / "log"), stdout=asyncio.subprocess.PIPE, cwd=ROOT
+    )
+    assert parent.stdout is not None
+    child = psutil.Process(int(await parent.stdout.readline()))
+    parent.kill()
+    await parent.wait()
+    psutil.wait_procs([child], timeout=10)
+    assert not child.is_running()
