@@ -6,7 +6,7 @@ BIN := .venv/bin
 ARGS ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help setup setup-robot test check format demo serve robot bench bench-mind bench-body bench-service bench-paper bench-service-kills fuzz-mind pin clean
+.PHONY: help setup setup-robot test check format demo serve robot bench bench-mind bench-body bench-service bench-paper bench-service-kills fuzz-mind client fuzz-api pin clean
 # A recipe that fails must not leave its stamp behind.
 .DELETE_ON_ERROR:
 
@@ -61,6 +61,12 @@ bench-service-kills: setup ## Kill the service 300 times under load: what it has
 
 fuzz-mind: setup ## Feed the mind 10,000 mangled programs: each is read and run, or what is wrong is named
 	@$(BIN)/python -m benchmarks.fuzz_mind $(ARGS)
+
+client: setup ## Write the Python client anew from the API document
+	@$(BIN)/python client/make_client.py
+
+fuzz-api: setup ## Let schemathesis look for answers that the API document does not promise, ten minutes long
+	@CAMPUS_MAIL_FUZZ_S=150 $(BIN)/python -m pytest -q --timeout 900 tests/app/test_api_fuzz.py $(ARGS)
 
 pin: setup ## Write constraints.txt anew from pyproject.toml
 	$(BIN)/pip install --quiet uv

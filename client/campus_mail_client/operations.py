@@ -1,0 +1,605 @@
+"""One method for each operation: made of the service's OpenAPI document by make_client.py."""
+
+from typing import Any, Literal
+from urllib.parse import quote
+
+from campus_mail_client.models import (
+    About,
+    AboutMe,
+    AddressBook,
+    AlarmPage,
+    AlarmView,
+    Attention,
+    CodeMailed,
+    CodeRequest,
+    CodeView,
+    CommandPage,
+    CommandReason,
+    CommandView,
+    ContactView,
+    ContactWish,
+    Delegates,
+    DelegateView,
+    DeviceView,
+    Enrolled,
+    Enrolment,
+    EnrolmentCodeView,
+    Estimate,
+    HandoverAsked,
+    HandOverWish,
+    Inbox,
+    IntoHands,
+    Letters,
+    LetterView,
+    Link,
+    LinkedCode,
+    LinkedDelegate,
+    LinkedDelegateView,
+    LinkedHandOver,
+    LongerWait,
+    MapView,
+    NewDelegate,
+    NewDevice,
+    NewOrder,
+    NewStandingOrder,
+    NewTokenView,
+    NewWebhook,
+    NewWebhookView,
+    NoticesRead,
+    OrderPage,
+    OrderView,
+    PeoplePage,
+    PersonView,
+    PriorityChange,
+    Reassignment,
+    Resolution,
+    RobotDetails,
+    RobotPage,
+    RobotTokenPage,
+    Role,
+    SessionPage,
+    SignIn,
+    SpooledMails,
+    SpooledText,
+    StandingOrderPage,
+    StandingOrderView,
+    TokenPage,
+    TokenWish,
+    Wishes,
+    WishesView,
+)
+
+
+class Operations:
+    """What can be asked of the service; who answers is `_call`."""
+
+    def _call(
+        self,
+        method: str,
+        path: str,
+        kind: Any,
+        *,
+        body: Any = None,
+        query: dict[str, Any] | None = None,
+        headers: dict[str, Any] | None = None,
+    ) -> Any:
+        raise NotImplementedError
+
+    def about(self) -> About:
+        """Name, version, time, languages; `demo` and `simulated` while a demonstration runs."""
+        answer: About = self._call("GET", "/api/v1/about", About)
+        return answer
+
+    def campus_map(self) -> MapView:
+        """Posts and corridors."""
+        answer: MapView = self._call("GET", "/api/v1/map", MapView)
+        return answer
+
+    def mail_code(self, wish: CodeRequest) -> CodeMailed:
+        """Mail an 8-digit code to an address of the campus."""
+        answer: CodeMailed = self._call("POST", "/api/v1/sign-in/codes", CodeMailed, body=wish)
+        return answer
+
+    def sign_in(self, wish: SignIn) -> PersonView:
+        """Exchange the mailed code for a session cookie."""
+        answer: PersonView = self._call("POST", "/api/v1/sign-in", PersonView, body=wish)
+        return answer
+
+    def sign_out(self) -> None:
+        """End this session."""
+        self._call("DELETE", "/api/v1/session", None)
+
+    def sign_in_at_the_campus(self) -> None:
+        """Go to the campus's own sign-in."""
+        self._call("GET", "/api/v1/sign-in/oidc", None)
+
+    def come_back_from_the_campus(
+        self, *, state: str | None = None, code: str | None = None, error: str | None = None
+    ) -> None:
+        """Come back from there, with a session or with `sign_in_problem`."""
+        self._call("GET", "/api/v1/sign-in/oidc/callback", None, query={"state": state, "code": code, "error": error})
+
+    def who_am_i(self) -> PersonView:
+        """The signed-in person; of a script: whose it is, with the roles that its scopes leave."""
+        answer: PersonView = self._call("GET", "/api/v1/me", PersonView)
+        return answer
+
+    def change_me(self, wish: AboutMe) -> PersonView:
+        """Change one's name, language or usual post."""
+        answer: PersonView = self._call("PATCH", "/api/v1/me", PersonView, body=wish)
+        return answer
+
+    def my_contacts(self, *, search: str | None = None, limit: int | None = None) -> AddressBook:
+        """Those one exchanged mail with, newest first, and those one saved; `search` narrows it down."""
+        answer: AddressBook = self._call(
+            "GET", "/api/v1/me/contacts", AddressBook, query={"search": search, "limit": limit}
+        )
+        return answer
+
+    def keep_contact(self, email: str, wish: ContactWish) -> ContactView:
+        """Save somebody with a label and a post, or change them."""
+        answer: ContactView = self._call(
+            "PUT", f"/api/v1/me/contacts/{quote(str(email), safe='')}", ContactView, body=wish
+        )
+        return answer
+
+    def drop_contact(self, email: str) -> None:
+        """Forget a saved contact."""
+        self._call("DELETE", f"/api/v1/me/contacts/{quote(str(email), safe='')}", None)
+
+    def my_sessions(self, *, limit: int | None = None, cursor: str | None = None) -> SessionPage:
+        """Where this person is signed in, newest first."""
+        answer: SessionPage = self._call(
+            "GET", "/api/v1/sessions", SessionPage, query={"limit": limit, "cursor": cursor}
+        )
+        return answer
+
+    def sign_out_elsewhere(self) -> None:
+        """End all of this person's sessions but this one."""
+        self._call("DELETE", "/api/v1/sessions", None)
+
+    def end_one_session(self, session_id: int) -> None:
+        """End one session, this one too."""
+        self._call("DELETE", f"/api/v1/sessions/{quote(str(session_id), safe='')}", None)
+
+    def my_tokens(self, *, limit: int | None = None, cursor: str | None = None) -> TokenPage:
+        """The tokens of this person's scripts, newest first."""
+        answer: TokenPage = self._call("GET", "/api/v1/tokens", TokenPage, query={"limit": limit, "cursor": cursor})
+        return answer
+
+    def make_token(self, wish: TokenWish) -> NewTokenView:
+        """Make a token for a script: `Authorization: Bearer cmp_…`. It is shown now and never again."""
+        answer: NewTokenView = self._call("POST", "/api/v1/tokens", NewTokenView, body=wish)
+        return answer
+
+    def revoke_one_token(self, prefix: str) -> None:
+        """Revoke one token: it opens nothing from now on."""
+        self._call("DELETE", f"/api/v1/tokens/{quote(str(prefix), safe='')}", None)
+
+    def find_people(
+        self, *, search: str | None = None, limit: int | None = None, cursor: str | None = None
+    ) -> PeoplePage:
+        """Everybody, by mail address; `search` narrows it down."""
+        answer: PeoplePage = self._call(
+            "GET", "/api/v1/people", PeoplePage, query={"search": search, "limit": limit, "cursor": cursor}
+        )
+        return answer
+
+    def give_role(self, person_id: str, role: Role) -> PersonView:
+        """Give somebody a role."""
+        answer: PersonView = self._call(
+            "PUT", f"/api/v1/people/{quote(str(person_id), safe='')}/roles/{quote(str(role), safe='')}", PersonView
+        )
+        return answer
+
+    def take_role(self, person_id: str, role: Role) -> PersonView:
+        """Take a role from somebody; everybody stays a member."""
+        answer: PersonView = self._call(
+            "DELETE", f"/api/v1/people/{quote(str(person_id), safe='')}/roles/{quote(str(role), safe='')}", PersonView
+        )
+        return answer
+
+    def estimate(self, *, from_post: str, to_post: str) -> Estimate:
+        """When mail would arrive if it were ordered now."""
+        answer: Estimate = self._call(
+            "GET", "/api/v1/estimate", Estimate, query={"from_post": from_post, "to_post": to_post}
+        )
+        return answer
+
+    def list_orders(
+        self,
+        *,
+        role: Literal["sent", "coming", "all"] | str | None = None,
+        limit: int | None = None,
+        cursor: str | None = None,
+    ) -> OrderPage:
+        """This person's orders, newest first; a dispatcher's `all` is everybody's."""
+        answer: OrderPage = self._call(
+            "GET", "/api/v1/orders", OrderPage, query={"role": role, "limit": limit, "cursor": cursor}
+        )
+        return answer
+
+    def place_order(self, wish: NewOrder, *, idempotency_key: str) -> OrderView:
+        """Place an order. The same key and body again give the first answer again, with `Idempotency-Replayed:
+        true`.
+        """
+        answer: OrderView = self._call(
+            "POST", "/api/v1/orders", OrderView, body=wish, headers={"Idempotency-Key": idempotency_key}
+        )
+        return answer
+
+    def one_order(self, order_id: str) -> OrderView:
+        """One order with its timeline."""
+        answer: OrderView = self._call("GET", f"/api/v1/orders/{quote(str(order_id), safe='')}", OrderView)
+        return answer
+
+    def cancel_order(self, order_id: str, *, if_match: str | None = None) -> OrderView:
+        """Cancel, at once or (with a robot on its way) as soon as the robot answers."""
+        answer: OrderView = self._call(
+            "POST", f"/api/v1/orders/{quote(str(order_id), safe='')}/cancel", OrderView, headers={"If-Match": if_match}
+        )
+        return answer
+
+    def recall_order(self, order_id: str, *, if_match: str | None = None) -> OrderView:
+        """Call mail back that is aboard. It turns round on the robot's word; until then the order goes on."""
+        answer: OrderView = self._call(
+            "POST", f"/api/v1/orders/{quote(str(order_id), safe='')}/recall", OrderView, headers={"If-Match": if_match}
+        )
+        return answer
+
+    def say_not_now(self, order_id: str, *, if_match: str | None = None) -> OrderView:
+        """Say as the recipient that it does not suit now. The mail goes back, on the robot's word."""
+        answer: OrderView = self._call(
+            "POST", f"/api/v1/orders/{quote(str(order_id), safe='')}/not-now", OrderView, headers={"If-Match": if_match}
+        )
+        return answer
+
+    def extend_wait(self, order_id: str, wish: LongerWait, *, if_match: str | None = None) -> OrderView:
+        """Let the robot wait longer. The person it waits for may ask a few times, a dispatcher for as much as is
+        needed.
+        """
+        answer: OrderView = self._call(
+            "POST",
+            f"/api/v1/orders/{quote(str(order_id), safe='')}/wait",
+            OrderView,
+            body=wish,
+            headers={"If-Match": if_match},
+        )
+        return answer
+
+    def stop_order_for_attention(self, order_id: str, wish: Attention, *, if_match: str | None = None) -> OrderView:
+        """Take an order out of its robot's hands, as far as words go. What becomes of it is decided by `resolve`."""
+        answer: OrderView = self._call(
+            "POST",
+            f"/api/v1/orders/{quote(str(order_id), safe='')}/attention",
+            OrderView,
+            body=wish,
+            headers={"If-Match": if_match},
+        )
+        return answer
+
+    def resolve_order(self, order_id: str, wish: Resolution, *, if_match: str | None = None) -> OrderView:
+        """Decide what becomes of an order that needed attention."""
+        answer: OrderView = self._call(
+            "POST",
+            f"/api/v1/orders/{quote(str(order_id), safe='')}/resolve",
+            OrderView,
+            body=wish,
+            headers={"If-Match": if_match},
+        )
+        return answer
+
+    def hold_order(self, order_id: str, wish: IntoHands, *, if_match: str | None = None) -> OrderView:
+        """Say that the mail was taken out of the robot by hand and is held in the mailroom."""
+        answer: OrderView = self._call(
+            "POST",
+            f"/api/v1/orders/{quote(str(order_id), safe='')}/hold",
+            OrderView,
+            body=wish,
+            headers={"If-Match": if_match},
+        )
+        return answer
+
+    def reassign_order(self, order_id: str, wish: Reassignment, *, if_match: str | None = None) -> OrderView:
+        """Let another robot fetch the mail. The one that is on its way lets go on its own word."""
+        answer: OrderView = self._call(
+            "POST",
+            f"/api/v1/orders/{quote(str(order_id), safe='')}/reassign",
+            OrderView,
+            body=wish,
+            headers={"If-Match": if_match},
+        )
+        return answer
+
+    def prioritise_order(self, order_id: str, wish: PriorityChange, *, if_match: str | None = None) -> OrderView:
+        """Fetch an order sooner than others, or later."""
+        answer: OrderView = self._call(
+            "PUT",
+            f"/api/v1/orders/{quote(str(order_id), safe='')}/priority",
+            OrderView,
+            body=wish,
+            headers={"If-Match": if_match},
+        )
+        return answer
+
+    def list_standing_orders(self, *, limit: int | None = None, cursor: str | None = None) -> StandingOrderPage:
+        """This person's standing orders, newest first; a dispatcher sees everybody's."""
+        answer: StandingOrderPage = self._call(
+            "GET", "/api/v1/standing-orders", StandingOrderPage, query={"limit": limit, "cursor": cursor}
+        )
+        return answer
+
+    def place_standing_order(self, wish: NewStandingOrder) -> StandingOrderView:
+        """Order something again and again. Each occurrence becomes an order of its own when its time comes."""
+        answer: StandingOrderView = self._call("POST", "/api/v1/standing-orders", StandingOrderView, body=wish)
+        return answer
+
+    def one_standing_order(self, standing_order_id: str) -> StandingOrderView:
+        """One standing order."""
+        answer: StandingOrderView = self._call(
+            "GET", f"/api/v1/standing-orders/{quote(str(standing_order_id), safe='')}", StandingOrderView
+        )
+        return answer
+
+    def pause_standing_order(self, standing_order_id: str) -> StandingOrderView:
+        """Make no orders of it until it is resumed."""
+        answer: StandingOrderView = self._call(
+            "POST", f"/api/v1/standing-orders/{quote(str(standing_order_id), safe='')}/pause", StandingOrderView
+        )
+        return answer
+
+    def resume_standing_order(self, standing_order_id: str) -> StandingOrderView:
+        """Make orders of it again from now on. What would have come round meanwhile is not made up for."""
+        answer: StandingOrderView = self._call(
+            "POST", f"/api/v1/standing-orders/{quote(str(standing_order_id), safe='')}/resume", StandingOrderView
+        )
+        return answer
+
+    def end_standing_order(self, standing_order_id: str) -> StandingOrderView:
+        """End it for good. The orders that it has made stay as they are."""
+        answer: StandingOrderView = self._call(
+            "POST", f"/api/v1/standing-orders/{quote(str(standing_order_id), safe='')}/end", StandingOrderView
+        )
+        return answer
+
+    def linked_order(self, wish: Link) -> OrderView:
+        """The order that this link was mailed for."""
+        answer: OrderView = self._call("POST", "/api/v1/link/order", OrderView, body=wish)
+        return answer
+
+    def linked_code(self, wish: Link) -> LinkedCode:
+        """The code by which its recipient takes the mail, while it is their turn."""
+        answer: LinkedCode = self._call("POST", "/api/v1/link/code", LinkedCode, body=wish)
+        return answer
+
+    def linked_hand_over(self, wish: LinkedHandOver) -> HandoverAsked:
+        """Ask the robot that waits to hand over; 202: it is asked, and its receipt tells whether it has."""
+        answer: HandoverAsked = self._call("POST", "/api/v1/link/handover", HandoverAsked, body=wish)
+        return answer
+
+    def linked_not_now(self, wish: Link) -> OrderView:
+        """Say that nobody can take the mail now: the robot brings it back."""
+        answer: OrderView = self._call("POST", "/api/v1/link/not-now", OrderView, body=wish)
+        return answer
+
+    def linked_delegate(self, wish: LinkedDelegate) -> LinkedDelegateView:
+        """Name somebody who takes the mail instead, with a code of their own, which is shown here once."""
+        answer: LinkedDelegateView = self._call("POST", "/api/v1/link/delegate", LinkedDelegateView, body=wish)
+        return answer
+
+    def my_notices(self, *, limit: int | None = None, cursor: str | None = None) -> Inbox:
+        """What this person was told, newest first."""
+        answer: Inbox = self._call("GET", "/api/v1/notices", Inbox, query={"limit": limit, "cursor": cursor})
+        return answer
+
+    def notices_read(self, wish: NoticesRead) -> None:
+        """Mark notices as read."""
+        self._call("POST", "/api/v1/notices/read", None, body=wish)
+
+    def my_wishes(self) -> WishesView:
+        """What this person is told, and where."""
+        answer: WishesView = self._call("GET", "/api/v1/me/notices", WishesView)
+        return answer
+
+    def change_my_wishes(self, wish: Wishes) -> WishesView:
+        """Mute kinds of notices on channels. The language is changed by `PATCH /me`."""
+        answer: WishesView = self._call("PUT", "/api/v1/me/notices", WishesView, body=wish)
+        return answer
+
+    def add_device(self, wish: NewDevice) -> DeviceView:
+        """Have notices shown by this browser (Web Push). The same endpoint again takes the place of the first."""
+        answer: DeviceView = self._call("POST", "/api/v1/me/devices", DeviceView, body=wish)
+        return answer
+
+    def remove_device(self, device_id: str) -> None:
+        """No more notices there."""
+        self._call("DELETE", f"/api/v1/me/devices/{quote(str(device_id), safe='')}", None)
+
+    def set_webhook(self, wish: NewWebhook) -> NewWebhookView:
+        """Have each notice posted to an address, signed with the secret of the answer. Another address, another
+        secret.
+        """
+        answer: NewWebhookView = self._call("PUT", "/api/v1/me/webhook", NewWebhookView, body=wish)
+        return answer
+
+    def remove_webhook(self) -> None:
+        """Nothing is posted there any more."""
+        self._call("DELETE", "/api/v1/me/webhook", None)
+
+    def not_sent(self, *, given_up: bool | None = None, limit: int | None = None, cursor: str | None = None) -> Letters:
+        """Notices that have not gone out, or only those that were given up."""
+        answer: Letters = self._call(
+            "GET", "/api/v1/outbox", Letters, query={"given_up": given_up, "limit": limit, "cursor": cursor}
+        )
+        return answer
+
+    def send_again(self, letter_id: int) -> LetterView:
+        """Try once more, now: what was given up, or waits for its next try."""
+        answer: LetterView = self._call("POST", f"/api/v1/outbox/{quote(str(letter_id), safe='')}/retry", LetterView)
+        return answer
+
+    def spooled_mails(self) -> SpooledMails:
+        """The newest mails that lie in the spool because no mail server is set."""
+        answer: SpooledMails = self._call("GET", "/api/v1/spool", SpooledMails)
+        return answer
+
+    def spooled_mail(self, file: str) -> SpooledText:
+        """One mail of the spool. Codes and links that open something are taken out; pictures are named, not shown."""
+        answer: SpooledText = self._call("GET", f"/api/v1/spool/{quote(str(file), safe='')}", SpooledText)
+        return answer
+
+    def all_robots(self, *, limit: int | None = None, cursor: str | None = None) -> RobotPage:
+        """Where the robots were last seen and what they are doing."""
+        answer: RobotPage = self._call("GET", "/api/v1/robots", RobotPage, query={"limit": limit, "cursor": cursor})
+        return answer
+
+    def one_robot(self, name: str) -> RobotDetails:
+        """One robot: where it is, battery, faults, software, when it was last heard, how far its clock is off."""
+        answer: RobotDetails = self._call("GET", f"/api/v1/robots/{quote(str(name), safe='')}", RobotDetails)
+        return answer
+
+    def list_robot_commands(self, name: str, *, limit: int | None = None, cursor: str | None = None) -> CommandPage:
+        """List what a robot was told to do, and what it answered, newest first."""
+        answer: CommandPage = self._call(
+            "GET",
+            f"/api/v1/robots/{quote(str(name), safe='')}/commands",
+            CommandPage,
+            query={"limit": limit, "cursor": cursor},
+        )
+        return answer
+
+    def pause_robot(self, name: str, wish: CommandReason) -> CommandView:
+        """Let a robot wait at the next post until it is told to resume."""
+        answer: CommandView = self._call(
+            "POST", f"/api/v1/robots/{quote(str(name), safe='')}/pause", CommandView, body=wish
+        )
+        return answer
+
+    def resume_robot(self, name: str) -> CommandView:
+        """Let a robot go on after a pause or an emergency stop: whoever says so has looked."""
+        answer: CommandView = self._call("POST", f"/api/v1/robots/{quote(str(name), safe='')}/resume", CommandView)
+        return answer
+
+    def recall_robot(self, name: str, wish: CommandReason) -> CommandView:
+        """Let a robot bring back what is aboard and go home."""
+        answer: CommandView = self._call(
+            "POST", f"/api/v1/robots/{quote(str(name), safe='')}/recall", CommandView, body=wish
+        )
+        return answer
+
+    def stop_robot(self, name: str, wish: CommandReason) -> CommandView:
+        """Let a robot stand still at once, until it is told to resume. A best effort: without network it has not
+        heard.
+        """
+        answer: CommandView = self._call(
+            "POST", f"/api/v1/robots/{quote(str(name), safe='')}/emergency-stop", CommandView, body=wish
+        )
+        return answer
+
+    def list_alarms(
+        self, *, only_open: bool | None = None, limit: int | None = None, cursor: str | None = None
+    ) -> AlarmPage:
+        """List what people should look at, newest first."""
+        answer: AlarmPage = self._call(
+            "GET", "/api/v1/alarms", AlarmPage, query={"only_open": only_open, "limit": limit, "cursor": cursor}
+        )
+        return answer
+
+    def acknowledge_alarm(self, alarm_id: int) -> AlarmView:
+        """Say that somebody sees to an alarm. It stays open until it is over by itself."""
+        answer: AlarmView = self._call("POST", f"/api/v1/alarms/{quote(str(alarm_id), safe='')}/acknowledge", AlarmView)
+        return answer
+
+    def make_enrolment_code(self, name: str) -> EnrolmentCodeView:
+        """Make a one-time code by which a robot of this name enrols itself, for the first time or again."""
+        answer: EnrolmentCodeView = self._call(
+            "POST", f"/api/v1/robots/{quote(str(name), safe='')}/enrolment-codes", EnrolmentCodeView
+        )
+        return answer
+
+    def enrol_robot(self, wish: Enrolment) -> Enrolled:
+        """Exchange a one-time code for a robot's token; its receipts are checked by the key that it brings."""
+        answer: Enrolled = self._call("POST", "/api/v1/robots/enrol", Enrolled, body=wish)
+        return answer
+
+    def list_robot_tokens(self, name: str, *, limit: int | None = None, cursor: str | None = None) -> RobotTokenPage:
+        """List the tokens that a robot has had, newest first: prefix, when made, used and taken back."""
+        answer: RobotTokenPage = self._call(
+            "GET",
+            f"/api/v1/robots/{quote(str(name), safe='')}/tokens",
+            RobotTokenPage,
+            query={"limit": limit, "cursor": cursor},
+        )
+        return answer
+
+    def revoke_robot_token(self, name: str, token_prefix: str) -> None:
+        """Take a robot's token back: whoever is connected by it is cut off, and nobody signs in by it again."""
+        self._call(
+            "DELETE", f"/api/v1/robots/{quote(str(name), safe='')}/tokens/{quote(str(token_prefix), safe='')}", None
+        )
+
+    def my_code(self, order_id: str) -> CodeView:
+        """The hand-over code of whoever's turn it is, as a QR text and six digits."""
+        answer: CodeView = self._call("GET", f"/api/v1/orders/{quote(str(order_id), safe='')}/code", CodeView)
+        return answer
+
+    def my_code_picture(self, order_id: str) -> bytes:
+        """The same code as a picture."""
+        answer: bytes = self._call("GET", f"/api/v1/orders/{quote(str(order_id), safe='')}/code.svg", bytes)
+        return answer
+
+    def hand_over(self, order_id: str, wish: HandOverWish) -> HandoverAsked:
+        """Ask the robot that waits to hand over: by a tap of whoever's turn it is, or by the digits of a code.
+
+        202: the robot is asked. Mail has changed hands when its receipt has come; the order moves then, and its
+        `handover_requested` is null again.
+        """
+        answer: HandoverAsked = self._call(
+            "POST", f"/api/v1/orders/{quote(str(order_id), safe='')}/handover", HandoverAsked, body=wish
+        )
+        return answer
+
+    def list_delegates(self, order_id: str) -> Delegates:
+        """List who may hand over for the caller, those whose code was taken back too."""
+        answer: Delegates = self._call("GET", f"/api/v1/orders/{quote(str(order_id), safe='')}/delegates", Delegates)
+        return answer
+
+    def name_delegate(self, order_id: str, wish: NewDelegate) -> DelegateView:
+        """Name somebody who hands over instead, with a code of their own."""
+        answer: DelegateView = self._call(
+            "POST", f"/api/v1/orders/{quote(str(order_id), safe='')}/delegates", DelegateView, body=wish
+        )
+        return answer
+
+    def revoke_delegate(self, order_id: str, delegate_id: str) -> None:
+        """Take a delegate's code back. A robot without network hears of it when it is back."""
+        self._call(
+            "DELETE",
+            f"/api/v1/orders/{quote(str(order_id), safe='')}/delegates/{quote(str(delegate_id), safe='')}",
+            None,
+        )
+
+    def delegate_code(self, order_id: str, delegate_id: str) -> CodeView:
+        """A delegate's code, to be passed on to them."""
+        answer: CodeView = self._call(
+            "GET",
+            f"/api/v1/orders/{quote(str(order_id), safe='')}/delegates/{quote(str(delegate_id), safe='')}/code",
+            CodeView,
+        )
+        return answer
+
+    def delegate_code_picture(self, order_id: str, delegate_id: str) -> bytes:
+        """The same code as a picture."""
+        answer: bytes = self._call(
+            "GET",
+            f"/api/v1/orders/{quote(str(order_id), safe='')}/delegates/{quote(str(delegate_id), safe='')}/code.svg",
+            bytes,
+        )
+        return answer
+
+    def release_digits(self, order_id: str) -> OrderView:
+        """Let the digits of an order be typed again after five wrong ones."""
+        answer: OrderView = self._call(
+            "POST", f"/api/v1/orders/{quote(str(order_id), safe='')}/digits/release", OrderView
+        )
+        return answer

@@ -1,0 +1,49 @@
+"""When a request may be sent again, and how long to wait before: pure decisions."""
+
+import random
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import httpx
+
+SAFE_TO_REPEAT = frozenset({"GET", "HEAD", "PUT", "DELETE"})
+NOT_DONE = frozenset({429, 503})
+"""The service says that it has done nothing."""
+PERHAPS_DONE = frozenset({502, 504})
+STILL_RUNNING = "still_running"
+
+
+@dataclass(frozen=True)
+class Retrying:
+    """`tries` in all; pauses double from `first_pause_s`, half of each by chance, unless Retry-After names one."""
+
+    tries: int = 4
+    first_pause_s: float = 0.25
+    longest_pause_s: float = 30.0
+
+    def pause_s(self, tries_made: int, retry_after: str = "") -> float | None:
+        """How long to wait before the next try; None: no more tries, or longer than anybody should wait unasked."""
+        if tries_made >= self.tries:
+            return None
+        if retry_after.isdecimal():
+            return float(retry_after) if float(retry_after) <= self.longest_pause_s else None
+        full_s = min(self.first_pause_s * 2.0 ** (tries_made - 1), self.longest_pause_s)
+        return full_s * random.uniform(0.5, 1.0)  # spreads the callers
+
+
+def may_repeat_after_answer(method: str, headers: Mapping[str, str], status: int, code: str) -> bool:
+    """Whether an answer invites to the same request again."""
+    if status in NOT_DONE or code == STILL_RUNNING:
+        return True
+    return status in PERHAPS_DONE and is_repeatable(method, headers)
+
+
+def may_repeat_after_failure(method: str, headers: Mapping[str, str], failure: httpx.TransportError) -> bool:
+    """Whether a request that got no answer may be sent again: what never left may, what changes nothing twice may."""
+    never_left = isinstance(failure, httpx.ConnectError | httpx.ConnectTimeout | httpx.PoolTimeout)
+    return never_left or is_repeatable(method, headers)
+
+
+def is_repeatable(method: str, headers: Mapping[str, str]) -> bool:
+    """Done twice it is done once: by its method, or by its Idempotency-Key."""
+    return method in SAFE_TO_REPEAT or "Idempotency-Key" in headers
