@@ -20,7 +20,7 @@ from app.orders.transitions import By
 from app.people.scopes import Scope
 from app.people.service import set_roles
 from app.people.tokens import issue_token
-from app.tables import Notice, OrderState, OutgoingNotice, Person, PersonSession, Role
+from app.tables import Alarm, Notice, OrderState, OutgoingNotice, Person, PersonSession, Role
 from tests.app.conftest import Mailroom
 
 PEOPLE: Final = {
@@ -108,6 +108,7 @@ class Everybody:
                 "role": "dispatcher",
                 "session_id": str(sender_session.id),
                 "prefix": token,
+                "alarm_id": str(await self._alarm(session)),
                 "delegate_id": await self._delegate(session, people["sender"], order_id),
                 "token_prefix": (await new_token(session, self.app.state.clock, "r1")).split("_")[1],
                 "email": "somebody@campus.example",
@@ -127,6 +128,12 @@ class Everybody:
         session.add(letter)
         await session.flush()
         return {"device_id": device.id, "letter_id": str(letter.id)}
+
+    async def _alarm(self, session: AsyncSession) -> int:
+        alarm = Alarm(robot="r1", name="blocked", reason="A box.", at=self.app.state.clock.utc())
+        session.add(alarm)
+        await session.flush()
+        return alarm.id or 0
 
     async def _delegate(self, session: AsyncSession, sender: Person, order_id: str) -> str:
         delegating = self.app.state.delegating

@@ -101,3 +101,37 @@ def test_whoever_has_an_account_signs_in_and_gets_no_link(
 def test_somebody_outside_can_be_sent_mail_and_still_not_sign_in(nobody: TestClient, sender: Browser) -> None:
     assert sender.order(recipient=OUTSIDE).status_code == 201
     assert said(nobody.post("/api/v1/sign-in/codes", json={"email": OUTSIDE})) == (422, "address_not_allowed")
+
+
+def test_by_the_link_a_guest_gets_their_code_names_somebody_else_and_says_not_now(
+    nobody: TestClient, sender: Browser, mailroom: Mailroom, mails: Mails
+) -> None:
+    order_id = on_its_way(sender, mailroom, OUTSIDE)
+    link = {"token": link_in(mails.to(OUTSIDE)[0])}
+
+    def act(what: str, **wish: str) -> Any:
+        return nobody.post(f"/api/v1/link/{what}", json={**link, **wish})
+
+    code = act("code")
+    assert code.headers["Cache-Control"] == "no-store"
+    assert (code.json()["purpose"], len(code.json()["digits"]), "<svg" in code.json()["svg"]) == ("receive", 6, True)
+    named = act("delegate", name="Porter")
+    assert (named.status_code, named.json()["delegate"]["name"]) == (201, "Porter")
+    assert named.json()["code"]["text"] != code.json()["text"], "a code of their own"
+    assert said(act("handover")) == (409, "robot_not_there")
+    gone_back = act("not-now")
+    assert (gone_back.status_code, gone_back.json()["return_requested"]) == (200, True)
+    assert sender.get(f"/api/v1/orders/{order_id}").json()["return_requested"] is True
+
+
+def test_wrong_digits_by_a_link_count_as_anybodys(
+    nobody: TestClient, sender: Browser, mailroom: Mailroom, mails: Mails
+) -> None:
+    order_id = on_its_way(sender, mailroom, OUTSIDE)
+    mailroom.move(order_id, "at_recipient")
+    link = {"token": link_in(mails.to(OUTSIDE)[0])}
+    right = nobody.post("/api/v1/link/code", json=link).json()["digits"]
+    wrong = f"{(int(right) + 1) % 10**6:06d}"
+    tries = [nobody.post("/api/v1/link/handover", json={**link, "digits": wrong}) for _ in range(5)]
+    assert [said(one)[1] for one in tries] == ["wrong_digits"] * 4 + ["digits_locked"]
+    assert nobody.post("/api/v1/link/code", json=link).json()["digits_locked"] is True
