@@ -1,35 +1,71 @@
-"""aiosqlite with one change of threads for each statement, where it and SQLAlchemy take four.
+"""aiosqlite, but what is short is done at once, on the event loop.
 
-A statement of ours takes SQLite some 20 µs; each change of threads takes longer than that. So a statement, its rows and
-the end of its cursor are one errand to the connection's thread, and what only opens or closes a bracket (BEGIN,
-SAVEPOINT, RELEASE) travels with the statement that follows it.
+A short statement takes SQLite some 10 µs and holds nobody up. The way to a thread and back takes longer, four times for
+each statement as aiosqlite and SQLAlchemy have it, and on a busy event loop every one of these ways waits for its turn
+at the interpreter (decision 0034). So only what may take long goes to the connection's thread: the wait for the write
+lock, the commit with its sync, and whatever is not known to be short. A question that turns out not to be short is
+interrupted, asked again in the thread, and goes there at once the next time.
 """
 
 import asyncio
+import re
 import sqlite3
 from collections.abc import Callable, Sequence
+from functools import lru_cache
 from typing import Any, Final, Self, TypeVar
 
 import aiosqlite
 
 T = TypeVar("T")
 
+SHORT_STEPS: Final = 50_000
+"""Steps of SQLite's machine that a question may take on the event loop: about a millisecond."""
+SHORT_ROWS: Final = 100
+"""Rows that are written on the event loop by one statement."""
+BREATH_S: Final = 0.002
+"""Real seconds after which others get their turn, however much there is to ask."""
+
 BRACKETS: Final = ("BEGIN", "SAVEPOINT", "RELEASE")
+LOCKS: Final = "BEGIN IMMEDIATE"
+QUESTION: Final = re.compile(r"SELECT\b")
+SMALL_CHANGE: Final = re.compile(
+    r"INSERT INTO \w+ \([^)]*\) VALUES \([^)]*\)( RETURNING [\w, ]+)?$"
+    r"|UPDATE \w+ SET .* WHERE \w+\.\w+ = \?( AND \w+\.\w+ = \?)*$",
+    re.DOTALL,
+)
+"""One row each: by its values, or by a key."""
 
 
 def connect(database: str, **options: Any) -> "Connection":
     """What SQLAlchemy calls for a new connection (its `async_creator_fn`)."""
+    options["check_same_thread"] = False  # two threads, but never at the same time: each errand is waited for
     connection = Connection(lambda: sqlite3.connect(database, **options), iter_chunk_size=64)
     connection._thread.daemon = True  # as SQLAlchemy has it: a connection that nobody closed holds up no exit
     return connection
 
 
+@lru_cache(maxsize=2000)
+def is_question(statement: str) -> bool:
+    return QUESTION.match(statement) is not None
+
+
+@lru_cache(maxsize=2000)
+def is_small_change(statement: str) -> bool:
+    return SMALL_CHANGE.match(statement) is not None
+
+
 class Connection(aiosqlite.Connection):
     """Statements reach SQLite in the order in which they were asked for."""
+
+    _long: set[str] = set()  # noqa: RUF012  # what one connection has learned is true for all
+    """Questions that have turned out not to be short."""
 
     def __init__(self, *arguments: Any, **options: Any) -> None:
         super().__init__(*arguments, **options)
         self._brackets: list[str] = []
+        self._is_asking = False
+        self._is_guarded = False
+        self._breathed_at_s = 0.0
 
     def cursor(self) -> "Cursor":  # type: ignore[override]  # aiosqlite's own goes to the thread first
         return Cursor(self)
@@ -38,25 +74,57 @@ class Connection(aiosqlite.Connection):
         """To be said before the next statement. An error of it is that statement's."""
         self._brackets.append(bracket)
 
-    async def errand(self, what: Callable[[sqlite3.Connection], T]) -> T:
-        """Do it in the connection's thread, to its end.
+    async def ask(self, statement: str, what: Callable[[sqlite3.Connection], T], rows: int = 1) -> T:
+        """Do it at once if it is short, else in the thread."""
+        if not any(bracket.startswith(LOCKS) for bracket in self._brackets):
+            if is_small_change(statement) and rows <= SHORT_ROWS:
+                return await self._at_once(what)
+            if is_question(statement) and statement not in self._long:
+                try:
+                    return await self._ask_at_once(what)
+                except sqlite3.OperationalError as error:
+                    if "interrupted" not in str(error):
+                        raise
+                    self._long.add(statement)
+        return await self.errand(what)
 
-        Cancelled half-way, SQLAlchemy would throw the connection away, and with it what others have written in the
-        same transaction. The cancellation comes all the same: at the next wait that is not for the database.
-        """
-        brackets, self._brackets = self._brackets, []
-        outcome: asyncio.Future[T] = asyncio.get_running_loop().create_future()
-
-        def do() -> T:
-            for bracket in brackets:
-                self._conn.execute(bracket)
-            return what(self._conn)
-
-        self._tx.put_nowait((outcome, do))
+    async def _ask_at_once(self, what: Callable[[sqlite3.Connection], T]) -> T:
+        if not self._is_guarded:
+            self._conn.set_progress_handler(self._takes_long, SHORT_STEPS)
+            self._is_guarded = True
+        self._is_asking = True
         try:
-            return await asyncio.shield(outcome)
-        except asyncio.CancelledError:
-            return await _in_spite_of_it(outcome)
+            return await self._at_once(what)
+        finally:
+            self._is_asking = False
+
+    def _takes_long(self) -> bool:
+        return self._is_asking
+
+    async def _at_once(self, what: Callable[[sqlite3.Connection], T]) -> T:
+        answer = self._now(what)
+        loop = asyncio.get_running_loop()
+        if loop.time() - self._breathed_at_s > BREATH_S:
+            self._is_asking = False
+            breath: asyncio.Future[None] = loop.create_future()
+            loop.call_soon(breath.set_result, None)
+            await _uncancelled(breath)
+            self._breathed_at_s = loop.time()
+        return answer
+
+    def _now(self, what: Callable[[sqlite3.Connection], T]) -> T:
+        brackets, self._brackets = self._brackets, []
+        for bracket in brackets:
+            self._conn.execute(bracket)
+        return what(self._conn)
+
+    async def errand(self, what: Callable[[sqlite3.Connection], T]) -> T:
+        """Do it in the connection's thread, to its end."""
+        outcome: asyncio.Future[T] = asyncio.get_running_loop().create_future()
+        self._tx.put_nowait((outcome, lambda: self._now(what)))
+        answer = await _uncancelled(outcome)
+        self._breathed_at_s = asyncio.get_running_loop().time()
+        return answer
 
     async def commit(self) -> None:
         """Raises OperationalError if there is nothing to commit any more: a full disk undoes what was written."""
@@ -65,13 +133,21 @@ class Connection(aiosqlite.Connection):
         await self.errand(lambda connection: connection.commit())
 
     async def rollback(self) -> None:
-        """Nobody has to wait for it: whatever is asked next comes after it."""
         self._brackets.clear()
         if self._conn.in_transaction:
-            self._tx.put_nowait((None, self._conn.rollback))
+            self._conn.rollback()
 
 
-async def _in_spite_of_it(outcome: asyncio.Future[T]) -> T:
+async def _uncancelled(outcome: asyncio.Future[T]) -> T:
+    """Wait for it in any case.
+
+    Cancelled half-way, SQLAlchemy would throw the connection away, and with it what others have written in the same
+    transaction. The cancellation comes all the same: at the next wait that is not for the database.
+    """
+    try:
+        return await asyncio.shield(outcome)
+    except asyncio.CancelledError:
+        pass
     while not outcome.done():
         try:
             await asyncio.wait([outcome])
@@ -102,12 +178,14 @@ class Cursor:
         if statement.startswith(BRACKETS):
             self._connection.remember(statement)
         else:
-            await self._ask(lambda cursor: cursor.execute(statement, parameters))
+            what = self._errand(lambda cursor: cursor.execute(statement, parameters))
+            self._rows = await self._connection.ask(statement, what)
 
     async def executemany(self, statement: str, parameters: Sequence[Sequence[Any]]) -> None:
-        await self._ask(lambda cursor: cursor.executemany(statement, parameters))
+        what = self._errand(lambda cursor: cursor.executemany(statement, parameters))
+        self._rows = await self._connection.ask(statement, what, len(parameters))
 
-    async def _ask(self, what: Callable[[sqlite3.Cursor], object]) -> None:
+    def _errand(self, what: Callable[[sqlite3.Cursor], object]) -> Callable[[sqlite3.Connection], list[Any]]:
         def ask(connection: sqlite3.Connection) -> list[Any]:
             cursor = connection.cursor()
             try:
@@ -119,7 +197,7 @@ class Cursor:
             finally:
                 cursor.close()
 
-        self._rows = await self._connection.errand(ask)
+        return ask
 
     async def fetchall(self) -> list[Any]:
         rows, self._rows = self._rows, []

@@ -118,7 +118,10 @@ class Filling:
     async def give_missions(self, robots: Sequence[KnownRobot], account: Account) -> list[KnownRobot]:
         """Each is on its way to the recipient, with the mail aboard."""
         orders = [self._order(account, account, OrderState.CARRYING, self.now, robot.name) for robot in robots]
-        missions = [MissionRow(id=f"m-{robot.name}", robot=robot.name, created_at=self.now) for robot in robots]
+        missions = [
+            MissionRow(id=f"m-{robot.name}", robot=robot.name, told_update=1, accepted_update=1, created_at=self.now)
+            for robot in robots
+        ]
         stops = [
             StopRow(
                 id=f"{mission.id}-{position}",
