@@ -67,14 +67,14 @@ class Dispatcher:
         while not self._stopping:
             self._woken.clear()
             self._needs_robots = True  # what changes from here on may come too late for this look
-            self._needs_robots = await self._look_round()
+            self._needs_robots = await self.look_round()
             try:
                 async with asyncio.timeout(LOOK_AGAIN_S):
                     await self._woken.wait()
             except TimeoutError:
                 pass
 
-    async def _look_round(self) -> bool:
+    async def look_round(self) -> bool:
         """Do what there is to do; whether anything is left that waits for a robot."""
         async with self._fleet.database.reading() as session:
             dropped = (await session.exec(select(Order.id).where(col(Order.let_go_by).is_not(None)))).all()

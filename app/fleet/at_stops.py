@@ -37,7 +37,9 @@ async def follow_progress(report: Report, progress: Progress) -> None:
     if progress.step is Step.ACCEPTED:
         await _accepted(report, mission, progress)
     elif progress.stop_id is not None:
-        await _at_stop(report, progress, mission, await _stop(report, mission, progress))
+        stop = await _stop(report, mission, progress)
+        if stop is not None:
+            await _at_stop(report, progress, mission, stop)
     elif progress.step in _END_OF_MISSION and mission.state is MissionState.ACTIVE:
         await finish(report, mission, progress, _END_OF_MISSION[progress.step])
 
@@ -53,21 +55,24 @@ async def _accepted(report: Report, mission: MissionRow, progress: Progress) -> 
                 await start_returning(report, order, progress)
 
 
-async def _stop(report: Report, mission: MissionRow, progress: Progress) -> StopRow:
+async def _stop(report: Report, mission: MissionRow, progress: Progress) -> StopRow | None:
+    """The stop that is spoken of; None if a later mission of the robot's own has taken it over. Raises UnknownStop."""
     stop = await report.session.get(StopRow, progress.stop_id)
     if stop is not None and stop.mission_id == mission.id:
         return stop
     order = await report.session.get(Order, progress.order_id) if progress.order_id else None
     if order is None or not is_own(mission.id) or progress.stop_id != f"{OWN_PREFIX}{order.id}"[:64]:
         raise UnknownStop(f"mission {mission.id} has no stop {progress.stop_id}")
-    return await own_stop(report, mission, order)
+    return await own_stop(report, mission, order) if mission.state is MissionState.ACTIVE else None
 
 
 async def _at_stop(report: Report, progress: Progress, mission: MissionRow, stop: StopRow) -> None:
     is_over = stop.done_at is not None or stop.gave_up_at is not None
-    if (name := TIME_OF_STEP.get(progress.step)) and getattr(stop, name) is None:
+    name = TIME_OF_STEP.get(progress.step)
+    was_told = name is not None and getattr(stop, name) is not None
+    if name is not None and not was_told:
         setattr(stop, name, progress.happened_at)
-    if is_over or stop.order_id is None or not await _is_theirs(report, stop):
+    if is_over or was_told or stop.order_id is None or not await _is_theirs(report, stop):
         pass  # what was reported before, or what concerns nobody any more
     elif progress.step is Step.GAVE_UP:
         await _GIVEN_UP[StopAction(stop.action)](report, progress, mission, stop.order_id)

@@ -24,7 +24,7 @@ async def mission_of(report: Report, progress: Progress) -> MissionRow:
         return await _adopt(report, progress)
     if mission is None or mission.robot != report.robot:
         raise UnknownMission(f"{report.robot} was given no mission {progress.mission_id}")
-    if progress.step is Step.DEPARTED and not is_own(mission.id):
+    if progress.step is Step.DEPARTED and not is_own(mission.id) and mission.state is MissionState.ACTIVE:
         await _end_own(report)  # a robot holds one mission at a time
     return mission
 

@@ -57,13 +57,14 @@ async def test_mail_that_nobody_took_is_brought_back_by_the_robots_own_mission(
         await robot.report(receive.mission, Step.ARRIVED, receive.stop)
         await robot.report(receive.mission, Step.GAVE_UP, receive.stop, reason="no_one_came")
         await robot.report(receive.mission, Step.DONE)
-        await service.order("post2", "post3")
+        another = await service.order("post2", "post3")
         own, back = own_mission(order_id, "post1")
         await robot.report(own, Step.ACCEPTED)
         await robot.report(own, Step.DEPARTED, back)
         await robot.report(own, Step.ARRIVED, back)
         await service.reaches(order_id, "at_return")
-        assert not await service.app.state.dispatcher.assign(), "its mail comes first"
+        await service.app.state.dispatcher.assign()
+        assert await service.states(another) == ["queued"], "its mail comes first"
         await robot.say(robot.receipt(back))
         await robot.ends(await robot.report(own, Step.DONE))
         await service.reaches(order_id, "returned")
@@ -82,8 +83,9 @@ async def test_mail_that_nobody_takes_back_either_waits_for_a_person(service: Se
             await robot.report(own, step, back, reason="no_one_came")
         await robot.ends(await robot.report(own, Step.DONE))
         await service.reaches(order_id, "attention")
-        await service.order("post2", "post3")
-        assert not await service.app.state.dispatcher.assign(), "the mail is still aboard"
+        another = await service.order("post2", "post3")
+        await service.app.state.dispatcher.assign()
+        assert await service.states(another) == ["queued"], "the mail is still aboard"
     assert "still in robot r1" in (await service.row(Order, id=order_id)).why
 
 

@@ -1,0 +1,307 @@
+"""The service without its sockets, and robots without their bodies, so that whole lives of orders pass in no time.
+
+Everything that decides is the real thing: orders, dispatch, timer, the intake of robots' messages, the database; and at
+the other end the robot's own memory, outbox and duties. Played are only people, the agent's luck and the network.
+"""
+
+import asyncio
+import json
+import shutil
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from sqlmodel import SQLModel, col, select
+
+from app.database import Database
+from app.dispatch.service import Dispatcher
+from app.fleet import inbox, outbox
+from app.fleet.commands import ask, new_command_id
+from app.fleet.intake import Intake
+from app.fleet.service import Fleet, enrol
+from app.live.feed import LocalFeed
+from app.mail import open_mailer
+from app.orders.codes import Holder, codes_of
+from app.orders.schemas import NewOrder
+from app.orders.service import Orders
+from app.orders.standing import StandingOrders
+from app.orders.timer import Timer
+from app.people.service import SignInDesk, set_roles
+from app.server_key import ServerKey
+from app.settings import Settings
+from app.tables import MessageToRobot, Order, Person, RobotRow, Role
+from maps import builtin_map
+from protocol.both_ways import Error
+from protocol.clock import SteppedClock
+from protocol.envelope import TO_ROBOT, Envelope, type_of
+from protocol.parts import Purpose, StopAction
+from protocol.to_robot import Recall
+from protocol.to_server import Event, Step
+from robot.duties import Duties
+from robot.memory import Incoming, Memory
+from robot.outbox import Outbox
+from robot.store import Store
+
+TRACK = builtin_map("test_track")
+
+
+@dataclass(eq=False)
+class PlayedRobot:
+    """Real memory, outbox and duties; `server` is what has come through the network."""
+
+    name: str
+    token_prefix: str
+    clock: SteppedClock
+    online: bool = True
+    acknowledged: int = 0
+    heard_seq: int = 0
+    journal: str = ""
+    said: list[Event] = field(default_factory=list)
+    refused: list[Error] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.robot = self.name
+        store = Store(None)
+        self.memory, self.outbox = Memory(store), Outbox(store)
+        self.duties = Duties(store, self.memory, self.outbox, self.clock.utc, self)
+        self.taken_up_to = 0
+        self._done = asyncio.Event()
+
+    # The link as the duties see it.
+
+    def incoming(self) -> list[Incoming]:
+        return self.memory.unhandled()
+
+    def wake(self) -> None:
+        pass
+
+    # The connection as the intake sees it.
+
+    def taken(self, envelope: Envelope, problem: Error | None) -> None:
+        self.taken_up_to = max(self.taken_up_to, envelope.seq or 0)
+        if problem is not None:
+            self.refused.append(problem)
+        self._done.set()
+
+    def failed(self, error: Exception) -> None:
+        self.refused.append(Error(code=getattr(error, "code", "failed"), message=str(error)[:400]))
+        self._done.set()
+
+    async def say(self, intake: Intake, seq: int, message: Any) -> None:
+        self._done.clear()
+        envelope = Envelope(
+            type=type_of(message),
+            robot=self.name,
+            journal=self.outbox.journal,
+            seq=seq,
+            ack=self.heard_seq,
+            at=self.clock.utc(),
+            body=message,
+        )
+        intake.hear(self, envelope)
+        async with asyncio.timeout(5):
+            await self._done.wait()
+
+
+class World:
+    """A campus in which nothing happens by itself."""
+
+    def __init__(self, template: Path, folder: Path, **settings: Any) -> None:
+        self.folder = folder
+        folder.mkdir(parents=True)
+        shutil.copy(template, folder / "campus-mail.sqlite")
+        self.settings = Settings(data=folder, time_zone="UTC", **settings)
+        self.clock = SteppedClock()
+        self.where: dict[str, str] = {}
+        """Where the mail of each order really is: sender, recipient, mailroom, or a robot's name."""
+        self.people: dict[str, Person] = {}
+        self.robots: dict[str, PlayedRobot] = {}
+
+    async def begin(self) -> None:
+        self.start_service()
+        async with self.database.transaction() as session:
+            for name in ("sender", "recipient", "dispatcher"):
+                person = await self.orders.desk.person(session, f"{name}@campus.example", self.clock.utc())
+                self.people[name] = person
+            set_roles(self.people["dispatcher"], {Role.DISPATCHER}, set())
+            for name, post in (("r1", "post5"), ("r2", "post2")):
+                token = await enrol(session, self.clock, name)
+                self.robots[name] = PlayedRobot(name, token.split("_")[1], self.clock)
+                row = await session.get_one(RobotRow, name)
+                row.online, row.post, row.battery_ratio = True, post, 0.9
+        for robot in self.robots.values():
+            await self._greet(robot)
+
+    async def _greet(self, robot: PlayedRobot) -> None:
+        """Both sides know each other's journals from the first hello on."""
+        async with self.database.transaction() as session:
+            robot.journal = (await session.get_one(RobotRow, robot.name)).server_journal
+            await inbox.resume(session, robot.name, robot.outbox.journal, 1, self.clock.utc())
+        robot.memory.resume(robot.journal, 1)
+
+    def start_service(self) -> None:
+        """All that it knows is in the database: starting it anew is one of the things that happen."""
+        key = ServerKey(b"k" * 32)
+        self.database = Database(self.settings.url_of_database)
+        feed = LocalFeed()
+        desk = SignInDesk(self.settings, key, open_mailer(self.settings))
+        self.orders = Orders(TRACK, self.settings, self.clock, feed, key, desk)
+        self.fleet = Fleet(self.database, TRACK, self.settings, self.clock, feed, self.orders)
+        self.intake = Intake(self.fleet)
+        self.dispatcher = Dispatcher(self.fleet)
+        self.timer = Timer(self.database, self.orders, StandingOrders(self.orders))
+
+    async def restart(self) -> None:
+        await self.database.close()
+        self.start_service()
+
+    async def end(self) -> None:
+        await self.database.close()
+
+    # What people and time do.
+
+    async def place(self, from_post: str, to_post: str) -> str:
+        wish = NewOrder(from_post=from_post, to_post=to_post, recipient="recipient@campus.example")
+        async with self.database.transaction() as session:
+            order_id = str((await self.orders.create(session, self.people["sender"], wish)).id)
+        self.where[order_id] = "sender"
+        return order_id
+
+    async def change(self, what: Callable[..., Any], who: str, order_id: str, *arguments: Any) -> None:
+        """One request of one person. Raises what it is refused by."""
+        async with self.database.transaction() as session:
+            await what(session, self.people[who], order_id, *arguments)
+
+    async def recall(self, robot: str) -> None:
+        async with self.database.transaction() as session:
+            row = await session.get_one(RobotRow, robot, with_for_update=True)
+            await ask(session, self.fleet, row, Recall(command_id=new_command_id("recall"), reason="come home"))
+
+    async def dispatch(self) -> None:
+        await self.dispatcher.look_round()
+
+    async def set_online(self, name: str, online: bool) -> None:
+        self.robots[name].online = online
+        async with self.database.transaction() as session:
+            (await session.get_one(RobotRow, name)).online = online
+
+    # The network.
+
+    async def hear(self, name: str, count: int = 100) -> None:
+        """The robot is told the next messages that wait for it."""
+        robot = self.robots[name]
+        waiting = await self._waiting_for(robot, count)
+        for row in waiting:
+            message = TO_ROBOT[row.type].model_validate_json(json.dumps(row.body))
+            facts = {"type": row.type, "robot": name, "journal": robot.journal, "seq": row.seq, "body": message}
+            robot.memory.receive(Envelope(**facts, at=self.clock.utc()))
+            robot.heard_seq = row.seq
+        robot.duties.take_messages()
+
+    async def _waiting_for(self, robot: PlayedRobot, count: int) -> list[Any]:
+        async with self.database.reading() as session:
+            return list(await outbox.pending(session, robot.name, robot.token_prefix, robot.heard_seq, count))
+
+    async def speak(self, name: str, count: int = 100, is_heard: bool = True) -> None:
+        """The robot sends what it has to say; `is_heard`: the acknowledgement reaches it, else it says it again."""
+        robot = self.robots[name]
+        for kept in robot.outbox.pending(limit=count):
+            if kept.seq > robot.taken_up_to and isinstance(kept.message, Event):
+                robot.said.append(kept.message)
+            await robot.say(self.intake, kept.seq, kept.message)
+        if is_heard:
+            robot.outbox.acknowledged(robot.taken_up_to)
+            robot.acknowledged = robot.heard_seq
+
+    async def say_again(self, name: str, number: int) -> None:
+        """Something that was said before, in a message of its own, as the paper's prototype does."""
+        robot = self.robots[name]
+        await self.speak(name)
+        if robot.said:
+            seq = robot.outbox.put(robot.said[number % len(robot.said)])
+            await robot.say(self.intake, seq, robot.said[number % len(robot.said)])
+            robot.outbox.acknowledged(seq)
+
+    # What the agent does, with a body that always gets there unless `luck` has it otherwise.
+
+    def act(self, name: str, luck: str) -> None:
+        """One step of what the robot's program does with its next stop."""
+        robot = self.robots[name]
+        duties, held = robot.duties, robot.duties.held
+        if held.mission is None:
+            return
+        stop = held.stop
+        if stop is None:
+            duties.finish_mission(held.mission.id, None)
+        elif stop.order_id in held.cancelled or self._is_pointless(stop, held.cargo):
+            duties.finish_stop(stop.id)
+        else:
+            self._serve(robot, stop, luck)
+
+    def _is_pointless(self, stop: Any, cargo: tuple[str, ...]) -> bool:
+        is_aboard = stop.order_id in cargo
+        return is_aboard if stop.action is StopAction.LOAD else not is_aboard
+
+    def _serve(self, robot: PlayedRobot, stop: Any, luck: str) -> None:
+        duties = robot.duties
+        duties.report(Step.DEPARTED, stop.id, "post3")
+        if luck == "sets out":
+            return
+        if luck == "no way":
+            duties.report(Step.GAVE_UP, stop.id, "post3", "no_route")
+            duties.finish_stop(stop.id)
+            return
+        duties.report(Step.ARRIVED, stop.id, stop.post)
+        if luck == "arrives":
+            return
+        if luck == "nobody comes" or not self._changes_hands(robot, stop, luck):
+            duties.report(Step.GAVE_UP, stop.id, stop.post, "no_one_came")
+            duties.finish_stop(stop.id)
+
+    def _changes_hands(self, robot: PlayedRobot, stop: Any, luck: str) -> bool:
+        """Only what is there can change hands, and only for somebody with the code."""
+        purpose, order_id = Purpose(stop.action.value), stop.order_id
+        giver = "sender" if purpose is Purpose.LOAD else robot.name
+        codes = robot.duties.codes(order_id, purpose)
+        wanted = {"mailroom": Holder.MAILROOM, "recipient": Holder.RECIPIENT}.get(luck, Holder.SENDER)
+        holder = {Purpose.LOAD: Holder.SENDER, Purpose.RECEIVE: Holder.RECIPIENT}.get(purpose, wanted)
+        code = next(
+            one for one in codes_of(self._order(order_id)) if one.holder is holder and _fits(one.purpose, purpose)
+        )
+        sha256 = code.sha256(self.orders.key)
+        if self.where[order_id] != giver or sha256 not in codes:
+            return False
+        robot.duties.handed_over(robot.duties.at_stop(stop.id), purpose, stop.post, sha256)
+        self.where[order_id] = robot.name if purpose is Purpose.LOAD else str(holder)
+        return True
+
+    def _order(self, order_id: str) -> Order:
+        """As far as codes depend on it."""
+        now = self.clock.utc()
+        return Order(
+            id=order_id, sender_id="", recipient_id="", from_post="", to_post="", created_at=now, codes_expire_at=now
+        )
+
+    # What is known.
+
+    async def rows(self, table: type[SQLModel], **wanted: object) -> list[Any]:
+        async with self.database.reading() as session:
+            return list((await session.exec(select(table).filter_by(**wanted))).all())
+
+    async def everything(self, *tables: type[SQLModel]) -> dict[str, list[str]]:
+        """All rows, to compare."""
+        async with self.database.reading() as session:
+            rows = {table.__name__: (await session.exec(select(table))).all() for table in tables}
+        return {name: sorted(repr(row.model_dump()) for row in some) for name, some in rows.items()}
+
+    async def unheard(self, robot: PlayedRobot) -> int:
+        waiting = select(MessageToRobot.seq).where(
+            MessageToRobot.robot == robot.name, col(MessageToRobot.seq) > robot.heard_seq
+        )
+        async with self.database.reading() as session:
+            return len((await session.exec(waiting)).all())
+
+
+def _fits(of_code: Purpose, purpose: Purpose) -> bool:
+    return of_code is purpose or (purpose is Purpose.RETURN and of_code is Purpose.RECEIVE)
