@@ -6,14 +6,16 @@ from fastapi import APIRouter, Depends, Path, Request
 from sqlmodel import col, select
 
 from app.database import DatabaseDep, ReadingDep, SessionDep, after_commit
-from app.enrolment.errors import UnknownRobotToken
+from app.enrolment.errors import NoEnrolmentCode, UnknownRobotToken, WrongEnrolmentCode
 from app.enrolment.schemas import Enrolled, Enrolment, EnrolmentCodeView, RobotTokenView
 from app.enrolment.service import EnrolmentDesk
 from app.errors import problems
+from app.fleet.errors import RobotNameInvalid, UnknownRobot
 from app.fleet.routes import FleetDep, RobotName
 from app.fleet.service import known_robot
 from app.paging import PAGED, PageDep, PageOf, Sorting
 from app.people.current_user import Maintainer
+from app.people.errors import CrossSite, HttpsRequired, RoleNeeded
 from app.people.rate_limits import Door, per_host
 from app.people.same_origin import refuse_other_sites, require_https_or_loopback
 from app.settings import ClockDep
@@ -42,7 +44,7 @@ class RobotTokenPage(PageOf[RobotTokenView]):
     """Some tokens of a robot, newest first."""
 
 
-@router.post("/robots/{name}/enrolment-codes", status_code=201, responses=problems(401, 403, 422))
+@router.post("/robots/{name}/enrolment-codes", status_code=201, responses=problems(RobotNameInvalid, RoleNeeded))
 async def make_enrolment_code(
     name: RobotName, maintainer: Maintainer, desk: DeskDep, session: SessionDep
 ) -> EnrolmentCodeView:
@@ -55,7 +57,7 @@ async def make_enrolment_code(
     "/robots/enrol",
     status_code=201,
     dependencies=[Depends(_door), per_host(Door.ENROLMENT)],
-    responses=problems(401, 403, 422, 429),
+    responses=problems(WrongEnrolmentCode, NoEnrolmentCode, HttpsRequired, CrossSite, 429),
 )
 async def enrol_robot(wish: Enrolment, desk: DeskDep, database: DatabaseDep) -> Enrolled:
     """Exchange a one-time code for a robot's token; its receipts are checked by the key that it brings."""
@@ -67,7 +69,7 @@ async def enrol_robot(wish: Enrolment, desk: DeskDep, database: DatabaseDep) -> 
     return Enrolled(name=wish.name, token=token)
 
 
-@router.get("/robots/{name}/tokens", responses={**PAGED, **problems(400, 401, 403, 404, 422)})
+@router.get("/robots/{name}/tokens", responses={**PAGED, **problems(UnknownRobot, RoleNeeded)})
 async def list_robot_tokens(
     name: RobotName, maintainer: Maintainer, session: ReadingDep, page: PageDep
 ) -> RobotTokenPage:
@@ -77,7 +79,9 @@ async def list_robot_tokens(
     return RobotTokenPage(items=[RobotTokenView.of(row) for row in rows], next=following)
 
 
-@router.delete("/robots/{name}/tokens/{token_prefix}", status_code=204, responses=problems(401, 403, 404, 422))
+@router.delete(
+    "/robots/{name}/tokens/{token_prefix}", status_code=204, responses=problems(UnknownRobotToken, RoleNeeded)
+)
 async def revoke_robot_token(
     name: RobotName, token_prefix: Prefix, maintainer: Maintainer, session: SessionDep, fleet: FleetDep, clock: ClockDep
 ) -> None:

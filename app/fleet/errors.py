@@ -3,6 +3,7 @@
 ServiceError
 ├── RobotExists      a robot of this name is enrolled already
 ├── UnknownRobot     no robot of this name is
+├── UnknownAlarm     no alarm of this number has rung
 └── RobotNameInvalid the name cannot stand in a message
 FleetError           a message that was understood and cannot be followed; it is recorded, answered and an alarm
 ├── UnknownMission   the robot speaks of a mission that it was not given
@@ -29,6 +30,12 @@ class UnknownRobot(NotFound):
     """Enrol it first."""
 
     code = "unknown_robot"
+
+
+class UnknownAlarm(NotFound):
+    """No alarm of this number has rung."""
+
+    code = "unknown_alarm"
 
 
 class RobotNameInvalid(Unprocessable):

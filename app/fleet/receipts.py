@@ -12,6 +12,7 @@ from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PublicKey
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.fleet.alarms import raise_alarm
+from app.fleet.clocks import put_right
 from app.orders.codes import HandoverCode, Holder, codes_of, delegates_of
 from app.server_key import ServerKey
 from app.tables import Handover, Order, RefusedReceipt, RobotCommand, RobotRow
@@ -68,7 +69,7 @@ class _Judge:
             robot=self.robot.name,
             post=receipt.post,
             code_sha256=receipt.code_sha256,
-            robot_at=receipt.happened_at,
+            robot_at=put_right(receipt.happened_at, self.robot.clock_off_s),
             at=self.now,
             how=receipt.how,
             holder=code.holder if code else None,

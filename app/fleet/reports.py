@@ -6,6 +6,7 @@ from datetime import datetime, timedelta
 from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
+from app.fleet.clocks import put_right
 from app.orders.service import Orders, Word
 from app.orders.transitions import By, is_old_news
 from app.tables import Order, OrderState
@@ -19,13 +20,19 @@ class Report:
     orders: Orders
     robot: str
     now: datetime
+    clock_off_s: float = 0.0
+    """How far the robot's clock is ahead."""
+
+    def when(self, at: datetime) -> datetime:
+        """A time that the robot tells, by the service's clock."""
+        return put_right(at, self.clock_off_s)
 
     def word(self, robot_at: datetime, post: str | None, reason: str | None = None) -> Word:
-        return Word(By.ROBOT, robot=self.robot, robot_at=robot_at, post=post, reason=reason)
+        return Word(By.ROBOT, robot=self.robot, robot_at=self.when(robot_at), post=post, reason=reason)
 
     def until(self, since: datetime, limit_s: float) -> datetime:
         """When a wait ends that the robot says began at `since`; its clock may be wrong, but nothing began later."""
-        return min(since, self.now) + timedelta(seconds=limit_s)
+        return min(self.when(since), self.now) + timedelta(seconds=limit_s)
 
     async def aboard(self, *states: OrderState) -> list[Order]:
         """The orders of this robot in one of these states."""

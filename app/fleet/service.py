@@ -10,6 +10,7 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.database import Database, after_commit
 from app.fleet import outbox, traffic
+from app.fleet.clocks import put_right
 from app.fleet.connections import Connections
 from app.fleet.errors import RobotExists, RobotNameInvalid, UnknownRobot
 from app.fleet.progress import Report, follow
@@ -33,9 +34,9 @@ def check_name(name: str) -> None:
         raise RobotNameInvalid(f"{name!r} is no name for a robot: letters, digits, - and _, at most 64.")
 
 
-async def known_robot(session: AsyncSession, name: str) -> RobotRow:
-    """The row of an enrolled robot. Raises UnknownRobot."""
-    robot = await session.get(RobotRow, name)
+async def known_robot(session: AsyncSession, name: str, *, to_change: bool = False) -> RobotRow:
+    """The row of an enrolled robot, locked if it is to be changed. Raises UnknownRobot."""
+    robot = await session.get(RobotRow, name, with_for_update=to_change or None)
     if robot is None:
         raise UnknownRobot(f"No robot named {name!r} is enrolled.")
     return robot
@@ -96,7 +97,7 @@ class Fleet:
         now = self.clock.utc()
         match message:
             case Event():
-                await follow(Report(session, self.orders, robot.name, now), message)
+                await follow(Report(session, self.orders, robot.name, now, robot.clock_off_s), message)
             case Claim():
                 reply = await traffic.answer(session, self.campus, robot.name, message, now)
                 if reply is not None:
@@ -133,7 +134,7 @@ class Fleet:
 def note_state(robot: RobotRow, position: Position, battery: Battery) -> None:
     """What `hello` and `snapshot` share."""
     robot.post, robot.previous, robot.towards = position.post, position.previous, position.towards
-    robot.seen_at = position.seen_at
+    robot.seen_at = position.seen_at and put_right(position.seen_at, robot.clock_off_s)
     robot.battery_ratio, robot.charging = battery.ratio, battery.charging
     if battery.charging:
         robot.activity = Activity.CHARGING

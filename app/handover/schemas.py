@@ -40,9 +40,9 @@ class HandOverWish(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    digits: Annotated[str, StringConstraints(pattern=r"^[0-9]{6}$")] = Field(
-        default="", validate_default=False, description="The six digits of a code that is good now."
-    )
+    digits: Annotated[
+        str, Field(pattern=r"^([0-9]{6})?$", description="The six digits of a code that is good now; empty: a tap.")
+    ] = ""
 
 
 class HandoverAsked(BaseModel):

@@ -1,0 +1,85 @@
+"""Robots, their alarms and commands as dispatchers and maintainers see them."""
+
+from datetime import datetime
+from typing import Annotated
+
+from pydantic import BaseModel, ConfigDict, StringConstraints
+
+from app.orders.robot_view import RobotView
+from app.tables import Alarm, RobotCommand, RobotRow
+
+
+class CommandReason(BaseModel):
+    """Why: the robot keeps it, and whoever reads the log later wants to know."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    reason: Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=500)]
+
+
+class CommandView(BaseModel):
+    """What a robot was told, and what became of it: `accepted` null until it answers.
+
+    `online` false: it has not heard of it yet, and will when it is back.
+    """
+
+    command_id: str
+    robot: str
+    kind: str
+    order_id: str | None
+    asked_at: datetime
+    answered_at: datetime | None
+    accepted: bool | None
+    reason: str | None
+    online: bool
+
+    @classmethod
+    def of(cls, row: RobotCommand, online: bool) -> "CommandView":
+        return cls.model_validate({**row.model_dump(), "online": online})
+
+
+class AlarmView(BaseModel):
+    """Something about a robot that a person should look at; over when `cleared_at` says so."""
+
+    id: int
+    robot: str
+    name: str
+    reason: str
+    post: str | None
+    at: datetime
+    cleared_at: datetime | None
+    acknowledged_at: datetime | None
+
+    @classmethod
+    def of(cls, row: Alarm) -> "AlarmView":
+        return cls.model_validate(row, from_attributes=True)
+
+
+class RobotDetails(BaseModel):
+    """One robot in full. `clock_off_s`: how far its clock was ahead at its last hello; times shown are put right by it.
+
+    `signs_receipts`: it has a key, so that its receipts are checked. `takes_taps`: hand-overs can be confirmed in the
+    app. `alarms` are those that are not over.
+    """
+
+    robot: RobotView
+    enrolled_at: datetime
+    software: str | None
+    map_version: str | None
+    clock_off_s: float
+    signs_receipts: bool
+    takes_taps: bool
+    alarms: list[AlarmView]
+
+    @classmethod
+    def of(cls, row: RobotRow, view: RobotView, alarms: list[Alarm]) -> "RobotDetails":
+        return cls(
+            robot=view,
+            enrolled_at=row.enrolled_at,
+            software=row.software,
+            map_version=row.map_version,
+            clock_off_s=round(row.clock_off_s, 1),
+            signs_receipts=row.public_key is not None,
+            takes_taps=row.takes_confirm,
+            alarms=[AlarmView.of(alarm) for alarm in alarms],
+        )
