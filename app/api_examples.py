@@ -11,7 +11,8 @@ ROBOT: Final = {
     "expected": {"post": "post3", "from": "2026-01-05T09:03:25Z", "to": "2026-01-05T09:03:52Z"},
     "activity": "driving",
     "battery": {"ratio": 0.81, "charging": False},
-    "why": "I am carrying mail to post4.",
+    "why": "Driving towards post3",
+    "why_words": {"key": "why.driving", "facts": {"post": "post3"}},
     "heard_at": "2026-01-05T09:03:14Z",
 }
 

@@ -44,6 +44,9 @@ export interface CampusMap {
 export interface ArrivalWindow { from: string; to: string; assumed?: boolean }
 export interface Estimate { window: ArrivalWindow; length_m: number; assumed: boolean }
 
+/** A sentence as a text of the catalogue and what fills its gaps. */
+export interface Words { key: string; facts: Record<string, string> }
+
 export interface Robot {
   name: string;
   online: boolean;
@@ -53,6 +56,7 @@ export interface Robot {
   activity: string;
   battery: { ratio: number; charging: boolean } | null;
   why: string | null;
+  why_words: Words | null;
   heard_at: string | null;
 }
 
@@ -65,6 +69,7 @@ export interface OrderEvent {
   robot: string | null;
   post: string | null;
   reason: string | null;
+  reason_words: Words | null;
 }
 
 export interface Order {
@@ -81,6 +86,7 @@ export interface Order {
   window: ArrivalWindow | null;
   robot: Robot | null;
   why: string | null;
+  why_words: Words | null;
   my_role: Role;
   my_code: Purpose | null;
   can_cancel: boolean;
@@ -93,7 +99,8 @@ export interface WantedOrder { from_post: string; to_post: string; recipient: st
 export interface HandoverCode { purpose: Purpose; text: string; svg_url: string; expires_at: string | null }
 export interface Notice {
   id: number;
-  order_id: string;
+  /** An alarm of a robot has none. */
+  order_id: string | null;
   kind: string;
   title: string;
   body: string;

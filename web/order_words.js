@@ -1,10 +1,20 @@
 /**
  * An order in words: where it stands, what comes next, what has happened.
- * @import { CampusMap, Order, OrderEvent, OrderState } from "./api_types.ts"
+ * @import { CampusMap, Order, OrderEvent, OrderState, Words } from "./api_types.ts"
  * @typedef {{state: OrderState, text: string, event: OrderEvent | null}} Entry an event, or a step still to come (null)
  */
 import { titleOf } from "./posts.js";
 import { hasText, t } from "./texts.js";
+
+/**
+ * Why something waits, in this page's language; a sentence that the catalogue does not have is shown as it was said.
+ * @param {string} said @param {Words | null} words @param {CampusMap} map
+ */
+export function reasonText(said, words, map) {
+  if (!words || !hasText(words.key)) return t("why.in_english", { sentence: said });
+  const { post } = words.facts;
+  return t(words.key, post ? { ...words.facts, post: titleOf(map, post) } : words.facts);
+}
 
 /** The usual way of an order, in order. */
 const WAY = /** @type {OrderState[]} */ ([

@@ -5,9 +5,9 @@ from typing import Annotated
 
 from pydantic import BaseModel, Field
 
+from app.notify.wording import body_of, title_of
 from app.paging import PageOf
 from app.tables import Notice
-from app.texts import text
 
 
 class NoticeView(BaseModel):
@@ -28,8 +28,8 @@ class NoticeView(BaseModel):
             id=notice.id,
             order_id=notice.order_id,
             kind=str(notice.kind),
-            title=text(language, f"notice.{notice.kind}.title", notice.facts),
-            body=text(language, f"notice.{notice.kind}.body", notice.facts),
+            title=title_of(notice, language),
+            body=body_of(notice, language),
             at=notice.at,
             read=notice.read_at is not None,
         )

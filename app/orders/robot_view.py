@@ -6,6 +6,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from app.settings import Settings
 from app.tables import RobotRow
+from app.texts.reasons import Words, words_of
 from maps import CampusMap, CampusMapError
 
 SPREAD = 2.0
@@ -37,7 +38,10 @@ class BatteryView(BaseModel):
 
 
 class RobotView(BaseModel):
-    """One robot. `online` is its own axis: an offline robot goes on with what it is doing."""
+    """One robot. `online` is its own axis: an offline robot goes on with what it is doing.
+
+    `why` is its own sentence, in English; `why_words` the same as a text of the catalogue, if it is one.
+    """
 
     name: str
     online: bool
@@ -47,6 +51,7 @@ class RobotView(BaseModel):
     activity: str
     battery: BatteryView | None
     why: str | None
+    why_words: Words | None
     heard_at: datetime | None
 
 
@@ -61,6 +66,7 @@ def robot_view(robot: RobotRow, campus: CampusMap, settings: Settings) -> RobotV
         activity=robot.activity,
         battery=_battery(robot),
         why=robot.why,
+        why_words=words_of(robot.why) if robot.why else None,
         heard_at=robot.heard_at,
     )
 

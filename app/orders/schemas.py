@@ -12,6 +12,7 @@ from app.orders.window import Window
 from app.paging import PageOf
 from app.people.schemas import Email
 from app.tables import Priority
+from app.texts.reasons import Words
 
 PostName = Annotated[str, StringConstraints(pattern=r"^[A-Za-z][A-Za-z0-9_]*$", max_length=64)]
 
@@ -122,6 +123,7 @@ class EventView(BaseModel):
     robot: str | None
     post: str | None
     reason: str | None
+    reason_words: Words | None
 
 
 class CustodyView(BaseModel):
@@ -168,6 +170,7 @@ class OrderView(BaseModel):
     window: WindowView | None
     robot: RobotView | None
     why: str | None
+    why_words: Words | None
     my_role: Literal["sender", "recipient", "dispatcher"]
     my_code: Literal["load", "receive", "return"] | None
     handover_requested: HandoverRequested | None

@@ -16,6 +16,7 @@ from app.orders.schemas import CustodyView, EventView, HandoverRequested, OrderV
 from app.orders.transitions import CARRIED, ENDED, LOADED, ROBOT_COMING
 from app.settings import Settings
 from app.tables import Handover, Order, OrderEvent, OrderState, Person, RobotRow, Role
+from app.texts.reasons import words_of
 from maps import CampusMap
 
 CONFIRM_REQUESTED: Final = "confirm_requested"
@@ -99,6 +100,7 @@ def order_view(facts: OrderFacts, role: MyRole, person_id: str, campus: CampusMa
     """The order in one role. The robot is shown while it has to do with the order, and not after."""
     order = facts.order
     robot = robot_view(facts.robot, campus, settings) if facts.robot and order.state not in ENDED else None
+    why = order.why or (robot.why if robot else None)
     turn = turn_of(order, person_id)
     return OrderView(
         id=order.id,
@@ -113,7 +115,8 @@ def order_view(facts: OrderFacts, role: MyRole, person_id: str, campus: CampusMa
         updated_at=order.updated_at,
         window=_window(order),
         robot=robot,
-        why=order.why or (robot.why if robot else None),
+        why=why,
+        why_words=words_of(why) if why else None,
         my_role=role,
         my_code=None if turn is None else turn.value,
         handover_requested=_handover_requested(facts.events, settings),
@@ -177,4 +180,5 @@ def _event(event: OrderEvent) -> EventView:
         robot=event.robot,
         post=event.post,
         reason=event.reason,
+        reason_words=words_of(event.reason) if event.reason else None,
     )

@@ -62,7 +62,7 @@ class SignInDesk:
     async def mail_code(self, row: SignInCode, code: str, language: str) -> None:
         """Mail a code whose row is committed: a mailed code is one that works."""
         facts = {"code": code, "minutes": str(round(self.settings.sign_in_code_lifetime_s / 60))}
-        subject, body = text(language, "mail.sign_in.title"), text(language, "mail.sign_in.body", facts)
+        subject, body = text(language, "email.sign_in.title"), text(language, "email.sign_in.body", facts)
         mail = Mail(f"sign-in.{row.id}.{new_id()}", row.email, subject, body, row.created_at)
         await self.mailer.send_soon(mail)
 

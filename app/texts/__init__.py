@@ -1,13 +1,14 @@
-"""What the service says to people outside its pages: one catalogue per language, all with the same keys."""
+"""What people are told, in their language: one catalogue per language, which the pages share (`web/texts`)."""
 
 import json
 from collections.abc import Mapping
 from functools import cache
-from pathlib import Path
 from typing import Final
 
+from app.settings import ROOT
+
 LANGUAGES: Final = ("en", "fr")
-FOLDER = Path(__file__).parent
+FOLDER: Final = ROOT / "web" / "texts"
 
 
 @cache

@@ -12,7 +12,15 @@ SCRIPTS = [path for path in sorted(WEB.rglob("*.js")) if "node_modules" not in p
 # t("key"), hasText("key"), and t(`prefix.${…}`), whose keys begin with the prefix
 WHOLE_KEY = re.compile(r'"([a-z_]+(?:\.[a-z_0-9]+)+)"')
 KEY_PREFIX = re.compile(r"`([a-z_]+\.(?:[a-z_]+\.)*)\$\{")
-PREFIXES_BY_NAME = {"state.": "sentence", "next.": "sentence", "nav.unread.": "counted"}
+PREFIXES_BY_NAME = {
+    "state.": "sentence",
+    "next.": "sentence",
+    "nav.unread.": "counted",
+    # the same catalogues serve what is mailed and told (tests/app/notify)
+    "email.": "the service",
+    "notice.": "the service",
+    "why.": "reasonText",
+}
 
 
 def test_all_languages_have_the_same_keys():

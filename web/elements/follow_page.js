@@ -3,7 +3,7 @@ import { html, nothing } from "lit";
 import * as api from "../api.js";
 import { repeatPage, PAGES } from "../links.js";
 import { OnLive } from "../live.js";
-import { hasEnded, nextSentence, stages, stateSentence } from "../order_words.js";
+import { hasEnded, nextSentence, reasonText, stages, stateSentence } from "../order_words.js";
 import { loadMap, titleOf } from "../posts.js";
 import { inWords } from "../problems.js";
 import { t } from "../texts.js";
@@ -65,7 +65,7 @@ export class FollowPage extends PageElement {
         ${this.#standing(order, map)}
         <handover-code .order_id=${order.id} .purpose=${order.my_code} .demo=${this.demo}
           .needed=${order.my_code !== null && AT_ME[order.my_code] === order.state}></handover-code>
-        ${this.#why(order)}
+        ${this.#why(order, map)}
         <section class="card" aria-labelledby="timeline-title">
           <h2 id="timeline-title">${t("follow.timeline")}</h2>
           ${orderTimeline(order, map)}
@@ -115,14 +115,14 @@ export class FollowPage extends PageElement {
     </ol>`;
   }
 
-  /** A robot that is on its way waits for nothing, whatever it says that it is doing. @param {Order} order */
-  #why(order) {
+  /** A robot that is on its way waits for nothing, whatever it says that it is doing. @param {Order} order @param {CampusMap} map */
+  #why(order, map) {
     const { robot } = this;
-    const why = robot ? WAITING.includes(robot.activity) && robot.why : order.why;
-    if (!why || hasEnded(order)) return nothing;
+    const { why, why_words } = robot ?? order;
+    if (!why || hasEnded(order) || (robot && !WAITING.includes(robot.activity))) return nothing;
     return html`<section class="card why" aria-labelledby="why-title">
       <h2 id="why-title">${t("follow.why")}</h2>
-      <p>${why}</p>
+      <p>${reasonText(why, why_words, map)}</p>
     </section>`;
   }
 

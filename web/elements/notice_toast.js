@@ -28,7 +28,7 @@ export class NoticeToast extends PageElement {
   /** @param {Notice} notice */
   #toast({ order_id, title, body }) {
     return html`<div class="toast">
-      <a href=${followPage(order_id)}><strong>${title}</strong><span>${body}</span></a>
+      <a href=${order_id ? followPage(order_id) : nothing}><strong>${title}</strong><span>${body}</span></a>
       <button class="quiet" aria-label=${t("notices.dismiss")} @click=${() => (this.notice = null)}>${icon("cross")}</button>
     </div>`;
   }

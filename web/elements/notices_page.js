@@ -44,7 +44,7 @@ export class NoticesPage extends PageElement {
     return html`<ul class="notices">
       ${notices.map(
         (notice) => html`<li class=${notice.read ? "" : "new"}>
-          <a href=${followPage(notice.order_id)} @click=${() => this.#read([notice])}>
+          <a href=${notice.order_id ? followPage(notice.order_id) : nothing} @click=${() => this.#read([notice])}>
             <strong>${notice.title}${notice.read ? nothing : html` <span class="unseen">(${t("notices.unread")})</span>`}</strong>
             <span>${notice.body}</span>
             <time datetime=${notice.at}>${ago(notice.at, serverNow())}</time>

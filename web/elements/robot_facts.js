@@ -1,5 +1,6 @@
 /** What is known of a robot, as a list: everything that the map shows, and why it waits. */
 import { html, nothing } from "lit";
+import { reasonText } from "../order_words.js";
 import { titleOf } from "../posts.js";
 import { serverNow } from "../server_clock.js";
 import { t } from "../texts.js";
@@ -17,7 +18,7 @@ export function robotFacts(map, robot, from, to) {
 }
 
 /** @param {CampusMap} map @param {Robot} robot */
-function aboutRobot(map, { last_seen, expected, towards, battery, online, heard_at, activity, why }) {
+function aboutRobot(map, { last_seen, expected, towards, battery, online, heard_at, activity, why, why_words }) {
   const now_ms = serverNow();
   return [
     fact(
@@ -29,7 +30,7 @@ function aboutRobot(map, { last_seen, expected, towards, battery, online, heard_
       : towards && activity === "driving"
         ? fact("clock", t("map.towards", { post: titleOf(map, towards) }))
         : nothing,
-    why && activity === "driving" ? fact("send", why) : nothing,
+    why && activity === "driving" ? fact("send", reasonText(why, why_words, map)) : nothing,
     online || !heard_at ? nothing : fact("network", t("robot.offline", { ago: ago(heard_at, now_ms) })),
     battery
       ? fact("battery", t(battery.charging ? "robot.charging" : "robot.battery", { charge: percent(battery.ratio) }))

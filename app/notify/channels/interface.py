@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from datetime import timedelta
 from typing import Protocol
 
+from app.notify.wording import body_of, title_of
 from app.tables import Notice, Person
-from app.texts import text
 
 
 @dataclass(frozen=True)
@@ -19,11 +19,11 @@ class Letter:
 
     @property
     def title(self) -> str:
-        return text(self.person.language, f"notice.{self.notice.kind}.title", self.notice.facts)
+        return title_of(self.notice, self.person.language)
 
     @property
     def body(self) -> str:
-        return text(self.person.language, f"notice.{self.notice.kind}.body", self.notice.facts)
+        return body_of(self.notice, self.person.language)
 
 
 class NotSent(Exception):

@@ -51,8 +51,8 @@ class MailChannel:
             picture = await asyncio.to_thread(self.code_picture, notice.order_id, notice.kind)
         url = await self._url(letter)
         parts = [letter.body]
-        parts += [text(language, "mail.code")] if picture else []
-        parts += [text(language, "mail.link", {"url": url})] if url else []
+        parts += [text(language, "email.code")] if picture else []
+        parts += [text(language, "email.link", {"url": url})] if url else []
         return Mail(letter.key, letter.person.email, letter.title, "\n\n".join(parts) + "\n", notice.at, picture)
 
     async def _url(self, letter: Letter) -> str | None:

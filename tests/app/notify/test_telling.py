@@ -11,6 +11,7 @@ from sqlmodel import col
 
 from app.mail import Mail, Spool
 from app.notify.worker import LONGEST_PAUSE_S, pause_s
+from app.settings import ROOT
 from app.tables import NoticeKind, OutgoingNotice
 from app.texts import LANGUAGES, catalogue
 from protocol.clock import SteppedClock
@@ -131,6 +132,13 @@ def test_every_language_has_the_same_texts_with_the_same_gaps(language: str) -> 
     english, other = catalogue("en"), catalogue(language)
     assert set(other) == set(english)
     assert {key: gaps(text) for key, text in other.items()} == {key: gaps(text) for key, text in english.items()}
+
+
+def test_the_service_has_no_text_that_it_does_not_use() -> None:
+    code = "".join(file.read_text() for file in (ROOT / "app").rglob("*.py"))
+    kinds = {f"notice.{kind}.{part}" for kind in NoticeKind for part in ("title", "body")}
+    mine = {key for key in catalogue("en") if key.startswith(("email.", "notice."))}
+    assert {key for key in mine - kinds if f'"{key}"' not in code} == set()
 
 
 def test_every_kind_of_notice_has_its_words_and_no_title_has_room_for_a_code() -> None:
