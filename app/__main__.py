@@ -2,7 +2,7 @@
 
 import typer
 
-from app.commands import backup, demo, map, orders, people, personal, robots, serve
+from app.commands import backup, demo, map, orders, people, personal, retain, robots, serve
 
 HELP = """Campus Mail: the service.
 
@@ -20,6 +20,7 @@ app.command()(backup.backup)
 app.command()(backup.restore)
 app.command()(personal.export)
 app.command()(personal.erase)
+app.command()(retain.retain)
 app.command()(demo.demo)
 
 if __name__ == "__main__":

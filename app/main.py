@@ -25,6 +25,7 @@ from app.fleet.service import Fleet
 from app.handover import routes as handover_routes
 from app.handover.delegates import Delegating
 from app.handover.service import HandOvers
+from app.keeping.housekeeper import Housekeeper
 from app.live import routes as live_routes
 from app.live.feed import LocalFeed
 from app.mail import open_mailer
@@ -138,6 +139,7 @@ def _add_parts(app: FastAPI, settings: Settings, clock: Clock) -> None:
     state.outbox_worker = _outbox_worker(state, settings, clock)
     state.orders.on_change.append(lambda order_id: state.outbox_worker.wake())
     state.dispatcher = Dispatcher(state.fleet)
+    state.housekeeper = Housekeeper(state.database, settings, clock)
 
 
 def _outbox_worker(state: State, settings: Settings, clock: Clock) -> OutboxWorker:
@@ -178,7 +180,9 @@ def _code_picture(key: ServerKey) -> Callable[[str, NoticeKind], tuple[str, byte
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     await bring_to_head(app.state.database)
     await app.state.fleet.begin()
-    workers = {"outbox": app.state.outbox_worker, "dispatch": app.state.dispatcher, "timer": app.state.timer}
+    state = app.state
+    workers = {"outbox": state.outbox_worker, "dispatch": state.dispatcher, "timer": state.timer}
+    workers["housekeeping"] = state.housekeeper
     background = [asyncio.create_task(_keep_running(name, worker.run)) for name, worker in workers.items()]
     try:
         yield

@@ -129,6 +129,15 @@ class Settings(BaseSettings):
         gt=0,
         description="An order of a standing order that could not be made in time is still made so much later.",
     )
+    keep_orders_days: float = Field(
+        400, ge=1, description="How long ended orders keep names and addresses; afterwards they are records of nobody."
+    )
+    keep_telemetry_days: float = Field(
+        30, ge=1, description="How long messages of and to robots, sendings and mails in the spool are kept."
+    )
+    keep_traces_days: float = Field(
+        7, ge=1, description="How long codes, sessions, tokens and links are kept after they have ended."
+    )
     clock_file: Path | None = Field(None, description="Shared scaled clock of a demonstration; default: real time.")
     demo_door: Path | None = Field(None, description="Door of a simulated robot; set by the demonstration alone.")
     log_level: str = Field("INFO", description="DEBUG, INFO, WARNING or ERROR.")

@@ -92,7 +92,7 @@ async def erase(session: AsyncSession, person: Person, now: datetime) -> int:
         )
     await _forget_what_others_know(session, person, [order.id for order in orders])
     await _end_standing_orders(session, person, now)
-    await _delete_rows(session, person)
+    await delete_rows(session, person)
     for order in orders:
         order.description = None
     person.email, person.name = f"{person.id}@{ERASED_DOMAIN}", ERASED_NAME
@@ -132,7 +132,8 @@ async def _end_standing_orders(session: AsyncSession, person: Person, now: datet
     await session.exec(still_going.values(ended_at=now))
 
 
-async def _delete_rows(session: AsyncSession, person: Person) -> None:
+async def delete_rows(session: AsyncSession, person: Person) -> None:
+    """Every way in, every wish, and what they were told."""
     connection = await session.connection()
     told = select(Notice.id).where(Notice.person_id == person.id)
     await session.exec(delete(OutgoingNotice).where(col(OutgoingNotice.notice_id).in_(told)))
