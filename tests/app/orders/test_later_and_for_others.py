@@ -1,0 +1,111 @@
+"""Orders for later, for somebody else and with priority; and what time decides of those that wait."""
+
+from typing import Any
+
+import pytest
+from fastapi import FastAPI
+
+from protocol.clock import SteppedClock
+from tests.app.conftest import SENDER, STRANGER, Browser, Mailroom, SignedIn
+from tests.app.orders.test_life_of_an_order import kinds, make_dispatcher, seen
+
+HOUR_S = 3600.0
+
+
+@pytest.fixture
+def dispatcher(app: FastAPI, signed_in: SignedIn, mailroom: Mailroom) -> Browser:
+    browser = signed_in(STRANGER)
+    mailroom.call(make_dispatcher, app, STRANGER)
+    return browser
+
+
+@pytest.fixture
+def tick(app: FastAPI, mailroom: Mailroom) -> Any:
+    return lambda: mailroom.call(app.state.timer.tick)
+
+
+def look_round(app: FastAPI, mailroom: Mailroom) -> None:
+    """There is a robot, but nobody has told dispatch."""
+    mailroom.call(_put_online, app)
+    mailroom.call(app.state.dispatcher.look_round)
+
+
+async def _put_online(app: FastAPI) -> None:
+    from app.tables import RobotRow
+
+    async with app.state.database.transaction() as session:
+        robot = await session.get_one(RobotRow, "r1")
+        robot.online, robot.battery_ratio = True, 0.9
+
+
+def test_an_order_for_later_is_left_alone_until_then_and_has_its_window_after_it(
+    app: FastAPI, sender: Browser, mailroom: Mailroom, clock: SteppedClock
+) -> None:
+    order = sender.order(not_before="2026-01-05T14:00:00Z").json()
+    assert order["window"]["from"] > "2026-01-05T14:00:00Z"
+    look_round(app, mailroom)
+    assert seen(sender, order["id"])["state"] == "queued"
+    clock.advance(5 * HOUR_S)
+    look_round(app, mailroom)
+    assert seen(sender, order["id"])["state"] == "assigned"
+
+
+def test_a_dispatcher_orders_for_whoever_stands_at_the_desk(dispatcher: Browser, sender: Browser) -> None:
+    answer = dispatcher.order(on_behalf_of=SENDER)
+    assert answer.json()["my_role"] == "dispatcher"
+    order = seen(sender, answer.json()["id"])
+    assert (order["my_role"], order["placed_by"]["email"]) == ("sender", STRANGER)
+    assert [event["by"] for event in order["events"]] == ["dispatcher"]
+    assert kinds(sender) == ["accepted"]
+    assert dispatcher.order(on_behalf_of="eve@elsewhere.example").json()["code"] == "unknown_sender"
+
+
+def test_only_dispatchers_order_for_others_or_with_high_priority(sender: Browser) -> None:
+    for wish in ({"on_behalf_of": STRANGER}, {"priority": "high"}):
+        answer = sender.order(**wish)
+        assert (answer.status_code, answer.json()["code"]) == (403, "for_dispatchers")
+    assert sender.order(priority="low").json()["priority"] == "low"
+
+
+def test_the_important_is_fetched_first(app: FastAPI, dispatcher: Browser, sender: Browser, mailroom: Mailroom) -> None:
+    first, second, third = [sender.order(from_post=f"post{n}", to_post="post4").json()["id"] for n in (1, 2, 3)]
+    raised = dispatcher.put(f"/api/v1/orders/{third}/priority", json={"priority": "high"}).json()
+    assert raised["priority"] == "high"
+    assert [event["kind"] for event in raised["events"]] == ["moved", "priority_changed"]
+    look_round(app, mailroom)
+    stops = {seen(sender, one)["state"] for one in (first, second, third)}
+    assert seen(sender, third)["state"] == "assigned"
+    assert "queued" in stops, "one robot cannot carry three"
+
+
+def test_an_order_that_nobody_fetched_in_a_day_expires_and_the_sender_is_told(
+    sender: Browser, clock: SteppedClock, tick: Any
+) -> None:
+    order_id = sender.order().json()["id"]
+    clock.advance(23 * HOUR_S)
+    tick()
+    assert seen(sender, order_id)["state"] == "queued"
+    clock.advance(2 * HOUR_S)
+    tick()
+    tick()
+    order = seen(sender, order_id)
+    assert (order["state"], order["events"][-1]["by"]) == ("expired", "timer")
+    assert order["events"][-1]["reason"] == "No robot has fetched it in time."
+    assert kinds(sender).count("expired") == 1
+
+
+def test_who_waits_too_long_is_told_once_and_sees_a_later_window(
+    sender: Browser, recipient: Browser, clock: SteppedClock, tick: Any
+) -> None:
+    order = sender.order().json()
+    clock.advance(HOUR_S)
+    tick()
+    tick()
+    later = seen(sender, order["id"])
+    assert later["window"]["to"] > order["window"]["to"]
+    assert [event["kind"] for event in later["events"]] == ["moved", "delayed"]
+    assert kinds(sender) == ["accepted", "delayed"]
+    assert kinds(recipient) == [], "who was told nothing is not told that it is late"
+    clock.advance(2 * HOUR_S)
+    tick()
+    assert kinds(sender) == ["accepted", "delayed"], "once"
