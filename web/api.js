@@ -96,8 +96,32 @@ export const order = (id) => ask(orderPath(id));
 /** @param {string} id @returns {Promise<Api.Order>} */
 export const cancelOrder = (id) => ask(orderPath(id) + "/cancel", { method: "POST" });
 
-/** @param {string} id @returns {Promise<Api.HandoverCode>} */
-export const handoverCode = (id) => ask(orderPath(id) + "/code");
+/** My code, with the address of its picture. @param {string} id @returns {Promise<Api.ShownCode>} */
+export async function handoverCode(id) {
+  const code = await ask(orderPath(id) + "/code");
+  return { ...code, picture: code.svg_url };
+}
+
+/** Ask the robot that waits to hand over, without a code. @param {string} id @returns {Promise<unknown>} */
+export const handOver = (id) => ask(orderPath(id) + "/handover", { method: "POST", body: {} });
+
+/** What the link in a mail opens. @param {string} what @param {string} token */
+const askByLink = (what, token) => ask("/link/" + what, { method: "POST", body: { token } });
+
+/** @param {string} token @returns {Promise<Api.Order>} */
+export const linkedOrder = (token) => askByLink("order", token);
+
+/** @param {string} token @returns {Promise<Api.ShownCode>} */
+export async function linkedCode(token) {
+  const { code, svg } = await askByLink("code", token);
+  return { ...code, picture: "data:image/svg+xml," + encodeURIComponent(svg) };
+}
+
+/** @param {string} token @returns {Promise<unknown>} */
+export const linkedHandOver = (token) => askByLink("handover", token);
+
+/** The recipient cannot come: the robot brings it back. @param {string} token @returns {Promise<Api.Order>} */
+export const linkedNotNow = (token) => askByLink("not-now", token);
 
 /** @returns {Promise<Api.Robot[]>} all of them, page after page */
 export async function robots() {

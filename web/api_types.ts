@@ -7,7 +7,7 @@ export type OrderState =
   | "expired" | "cancelled" | "attention";
 
 export type Role = "sender" | "recipient" | "dispatcher";
-export type Purpose = "load" | "receive";
+export type Purpose = "load" | "receive" | "return";
 
 export interface Person { id: string; email: string; name: string; language: string; roles: string[] }
 export interface Party { email: string; name: string }
@@ -62,6 +62,8 @@ export interface Robot {
 
 export interface OrderEvent {
   seq: number;
+  /** "moved" for a change of state; any other says what else happened. */
+  kind: string;
   state: OrderState;
   at: string;
   robot_at: string | null;
@@ -89,14 +91,27 @@ export interface Order {
   why_words: Words | null;
   my_role: Role;
   my_code: Purpose | null;
+  /** Somebody has tapped, and the robot has not answered yet. */
+  handover_requested: { how: string; at: string; expires_at: string } | null;
   can_cancel: boolean;
   /** Asked for, and not yet answered by the robot. */
   cancel_requested: boolean;
+  /** The mail is aboard and is to be brought back; the robot has not answered yet. */
+  return_requested: boolean;
   events: OrderEvent[];
 }
 
 export interface WantedOrder { from_post: string; to_post: string; recipient: string; description: string }
-export interface HandoverCode { purpose: Purpose; text: string; svg_url: string; expires_at: string | null }
+export interface HandoverCode {
+  purpose: Purpose;
+  text: string;
+  digits: string;
+  digits_locked: boolean;
+  svg_url: string;
+  expires_at: string | null;
+}
+/** A code and the address of its picture. */
+export interface ShownCode extends HandoverCode { picture: string }
 export interface Notice {
   id: number;
   /** An alarm of a robot has none. */

@@ -14,8 +14,7 @@ const LANGUAGES_WITHOUT_SERVICE = ["en", "fr"];
  * @param {(session: {about: About, person: Person}) => unknown} content what the page draws for a person who is signed in
  */
 export async function openPage(page, content) {
-  const root = /** @type {HTMLElement} */ (document.querySelector("#page"));
-  try {
+  await orSayThatNobodyAnswers(async (root) => {
     const [about, person] = await Promise.all([api.about(), api.me()]);
     await loadTexts(chooseLanguage(person ? [person.language] : navigator.languages, about.languages));
     document.title = `${t(person ? `title.${page}` : "title.sign_in")} · ${t("app.name")}`;
@@ -23,6 +22,32 @@ export async function openPage(page, content) {
     const draw = () => person && content({ about, person });
     render(html`<page-shell .page=${page} .about=${about} .person=${person} .content=${draw}></page-shell>`, root);
     if (person) startLive();
+  });
+}
+
+/**
+ * A page for somebody who has no account and needs none.
+ * @param {string} title @param {() => unknown} content
+ */
+export async function openPageForGuest(title, content) {
+  await orSayThatNobodyAnswers(async (root) => {
+    const about = await api.about();
+    await loadTexts(chooseLanguage(navigator.languages, about.languages));
+    document.title = `${t(title)} · ${t("app.name")}`;
+    keepServerTime(about);
+    render(html`${guestHeader()}<main id="content" tabindex="-1">${content()}</main>`, root);
+  });
+}
+
+const guestHeader = () => html`<header class="top">
+  <span class="brand"><img src="/icons/icon.svg" alt="" width="32" height="32" />${t("app.name")}</span>
+</header>`;
+
+/** @param {(root: HTMLElement) => Promise<void>} open */
+async function orSayThatNobodyAnswers(open) {
+  const root = /** @type {HTMLElement} */ (document.querySelector("#page"));
+  try {
+    await open(root);
   } catch (failure) {
     if (!(failure instanceof api.NoAnswer || failure instanceof api.ApiProblem)) throw failure;
     await sayThatNobodyAnswers(root);

@@ -34,6 +34,15 @@ const ENDED = /** @type {OrderState[]} */ (["delivered", "returned", "held", "ex
 /** @param {Order} order */
 export const hasEnded = (order) => ENDED.includes(order.state);
 
+/** Whether the robot carries the mail to its recipient. @param {Order} order */
+export const isAboard = (order) => order.state === "carrying" || order.state === "at_recipient";
+
+/** Where the robot waits for each code. */
+const AT_ME = { load: "at_sender", receive: "at_recipient", return: "at_return" };
+
+/** Whether the robot is there and waits for me. @param {Order} order */
+export const isMyTurn = (order) => order.my_code !== null && AT_ME[order.my_code] === order.state;
+
 /** The names that the sentences about an order use. @param {Order} order @param {CampusMap} map */
 const names = (order, map) => ({
   robot: order.robot ? t("robot.name", { name: order.robot.name }) : t("robot.some"),
@@ -53,7 +62,10 @@ function sentence(what, order, map) {
 export const stateSentence = (order, map) => sentence("state", order, map);
 
 /** What happens next, or what that person is to do. @param {Order} order @param {CampusMap} map */
-export const nextSentence = (order, map) => sentence("next", order, map);
+export function nextSentence(order, map) {
+  if (order.cancel_requested || order.return_requested) return t(isAboard(order) ? "bring_back.requested" : "cancel.requested");
+  return sentence("next", order, map);
+}
 
 /** @param {Order} order @returns {{name: string, done: boolean, now: boolean}[]} nothing where the order left the usual way */
 export function stages(order) {
@@ -68,7 +80,7 @@ export function stages(order) {
 /** Everything that happened, then what is still to come on the usual way. @param {Order} order @param {CampusMap} map @returns {Entry[]} */
 export function timeline(order, map) {
   const values = names(order, map);
-  const happened = order.events.map((event) => ({
+  const happened = order.events.filter(({ kind }) => kind === "moved").map((event) => ({
     state: event.state,
     text: t(`timeline.${event.state}`, event.robot ? { ...values, robot: t("robot.name", { name: event.robot }) } : values),
     event,

@@ -34,6 +34,7 @@ class Service:
             **os.environ,
             "CAMPUS_MAIL_DATA": str(folder),
             "CAMPUS_MAIL_MAP": campus,
+            "CAMPUS_MAIL_PUBLIC_URL": self.url,
             "CAMPUS_MAIL_ALLOWED_DOMAINS": '["campus.example"]',
             **({"CAMPUS_MAIL_DEMO_DOOR": str(door)} if door else {}),
         }
@@ -82,6 +83,16 @@ class Service:
                     return found.group(1)
             time.sleep(0.05)
         raise AssertionError(f"no code was mailed to {email}")
+
+    def link_mailed_to(self, email: str) -> str:
+        """The link to one order in the newest mail to somebody without an account."""
+        until_s = time.monotonic() + MAIL_LIMIT_S
+        while time.monotonic() < until_s:
+            for text in self._mails_to(email):
+                if found := re.search(r"https?://\S+/one-order\.html#\S+", text):
+                    return found.group(0)
+            time.sleep(0.05)
+        raise AssertionError(f"no link was mailed to {email}")
 
     def _mails_to(self, email: str) -> list[str]:
         files = sorted((self._folder / "spool").glob("*.eml"), key=lambda file: file.stat().st_mtime_ns, reverse=True)

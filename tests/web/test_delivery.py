@@ -10,7 +10,7 @@ from playwright.async_api import Page, Route, expect
 
 from protocol.clock import RealClock
 from protocol.parts import Activity, Battery, Position, StopAction
-from protocol.to_robot import Cancel, Mission, Verifiers
+from protocol.to_robot import Cancel, Confirm, Mission, Verifiers
 from protocol.to_server import CommandAnswer, Event, Snapshot, Step, Why
 from tests.app.fleet.playing import PlayedRobot
 from tests.web.camera import Camera
@@ -57,8 +57,16 @@ class Demonstration:
     async def checks_the_code_and_hands_over(self, action: StopAction) -> None:
         code = await self.camera.sees()
         assert sha256(code.encode("ascii")).hexdigest() in self._expected
+        await self.hands_over(action)
+
+    async def hands_over(self, action: StopAction, **how: str) -> None:
         (stop,) = [stop for stop in self.mission.stops if stop.action is action]
-        await self.robot.ends(await self.robot.say(self.robot.receipt(stop)))
+        await self.robot.ends(await self.robot.say(self.robot.receipt(stop, **how)))
+
+    async def hands_over_as_asked(self, action: StopAction) -> None:
+        confirm = (await self.robot.hear("confirm")).body
+        assert isinstance(confirm, Confirm)
+        await self.hands_over(action, how=confirm.how, command_id=confirm.command_id, code_sha256=confirm.by)
 
 
 @pytest_asyncio.fixture(scope="module", loop_scope="session")
@@ -81,7 +89,7 @@ async def demonstration(
     name = f"r{len(request.node.name)}"
     robot, token = PlayedRobot(RealClock(), name, journal=f"journal-of-{name}"), await demo_service.enrol_robot(name)
     async with robot.connected(demo_service.link, token):
-        await robot.greet("post5")
+        await robot.greet("post5", understands=("confirm",))
         yield Demonstration(demo_service, robot, camera)
 
 
@@ -134,6 +142,7 @@ async def test_a_letter_is_ordered_loaded_carried_and_received_by_two_people(dem
     await expect(standing).to_have_text("Your letter is on its way to Post 4")
     await expect(code).to_be_hidden()
     await expect(ada.page.get_by_role("button", name="Cancel this order")).to_be_hidden()
+    await expect(ada.page.get_by_role("button", name="Have it brought back")).to_be_visible()
 
     await follow_the_newest_notice(bob.page, "is on its way to you")
     standing_for_bob = bob.page.get_by_role("heading", level=1)
@@ -232,3 +241,35 @@ async def test_cancelling_with_a_robot_on_its_way_waits_for_the_robots_answer(de
     await expect(ada.page.get_by_role("button", name="Cancel this order")).to_be_hidden()
     await demonstration.agrees_to_cancel()
     await expect(ada.page.get_by_role("heading", level=1)).to_have_text("Cancelled")
+
+
+async def test_a_recipient_without_account_takes_the_letter_by_the_link_in_the_mail(demonstration, visit):
+    ada = await visit("ada.king", at=demonstration.service)
+    guest = await visit("grace.hill", on="phone", at=demonstration.service, signed_in=False)
+    await ada.order(guest.email)
+    await demonstration.is_given_a_mission()
+    await demonstration.reports(Step.ARRIVED, StopAction.LOAD)
+    await demonstration.hands_over(StopAction.LOAD)
+    await guest.page.goto(demonstration.service.link_mailed_to(guest.email))
+    standing = guest.page.get_by_role("heading", level=1)
+    await expect(standing).to_have_text("A letter is on its way to you")
+    code = guest.page.get_by_role("region", name="Your code to take the letter")
+    await code.get_by_text("Show the code").click()
+    assert await code.get_by_role("img").evaluate(IS_DRAWN)
+
+    await demonstration.is_seen("post4", towards=None)
+    await demonstration.reports(Step.ARRIVED, StopAction.RECEIVE)
+    await expect(standing).to_have_text(f"{demonstration.title} is waiting for you at Post 4")
+    await guest.assert_accessible()
+    await code.get_by_role("button", name="Without the camera: I am taking it out now").click()
+    await expect(code.get_by_text("The robot has been asked.")).to_be_visible()
+    await demonstration.hands_over_as_asked(StopAction.RECEIVE)
+    await expect(standing).to_have_text("Delivered")
+
+
+async def test_a_link_that_opens_nothing_says_so(visit):
+    guest = await visit("grace.hill", on="phone", signed_in=False)
+    guest.refusals_expected.add("/api/v1/link/order")
+    await guest.page.goto("/one-order.html#" + "x" * 43)
+    await expect(guest.page.get_by_role("heading", level=1)).to_have_text("This link opens nothing any more")
+    await guest.assert_accessible()

@@ -1,4 +1,4 @@
-/** Cancelling an order, after asking once. Tells the order as it is then in a `changed` event. */
+/** Cancelling an order (with the mail aboard: having it brought back), after asking once. Tells the order as it is then in a `changed` event. */
 import { html, nothing } from "lit";
 import * as api from "../api.js";
 import { inWords } from "../problems.js";
@@ -7,23 +7,26 @@ import { problemLine } from "./field.js";
 import { PageElement } from "./page_element.js";
 
 export class CancelOrder extends PageElement {
-  static properties = { order_id: { attribute: false }, problem: { state: true } };
+  static properties = { order_id: { attribute: false }, aboard: { type: Boolean }, problem: { state: true } };
 
   constructor() {
     super();
     this.order_id = "";
+    /** Whether the robot carries the mail already. */
+    this.aboard = false;
     this.problem = "";
   }
 
   render() {
-    return html`<button class="quiet danger" @click=${() => this.#dialog.showModal()}>${t("cancel.open")}</button>
+    const words = this.aboard ? bringBackWords : cancelWords;
+    return html`<button class="quiet danger" @click=${() => this.#dialog.showModal()}>${words("open")}</button>
       ${this.problem ? problemLine(this.problem) : nothing}
       <dialog aria-labelledby="cancel-title">
-        <h2 id="cancel-title">${t("cancel.title")}</h2>
-        <p>${t("cancel.body")}</p>
+        <h2 id="cancel-title">${words("title")}</h2>
+        <p>${words("body")}</p>
         <div class="choices">
-          <button class="main" autofocus @click=${() => this.#dialog.close()}>${t("cancel.no")}</button>
-          <button class="quiet danger" @click=${this.#cancel}>${t("cancel.yes")}</button>
+          <button class="main" autofocus @click=${() => this.#dialog.close()}>${words("no")}</button>
+          <button class="quiet danger" @click=${this.#cancel}>${words("yes")}</button>
         </div>
       </dialog>`;
   }
@@ -42,5 +45,11 @@ export class CancelOrder extends PageElement {
     }
   }
 }
+
+/** @param {string} part */
+const cancelWords = (part) => t(`cancel.${part}`);
+
+/** @param {string} part */
+const bringBackWords = (part) => t(`bring_back.${part}`);
 
 customElements.define("cancel-order", CancelOrder);

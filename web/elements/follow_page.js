@@ -3,27 +3,28 @@ import { html, nothing } from "lit";
 import * as api from "../api.js";
 import { repeatPage, PAGES } from "../links.js";
 import { OnLive } from "../live.js";
-import { hasEnded, nextSentence, reasonText, stages, stateSentence } from "../order_words.js";
-import { loadMap, titleOf } from "../posts.js";
+import { hasEnded, isAboard, isMyTurn, reasonText, stateSentence } from "../order_words.js";
+import { loadMap } from "../posts.js";
 import { inWords } from "../problems.js";
 import { t } from "../texts.js";
 import "./campus_map.js";
 import "./cancel_order.js";
 import { orderDetails } from "./order_details.js";
+import { orderStanding } from "./order_standing.js";
 import { orderTimeline } from "./order_timeline.js";
-import { arrivalWindow } from "./arrival_window.js";
 import { problemLine } from "./field.js";
 import "./handover_code.js";
 import { icon } from "./icon.js";
 import { PageElement } from "./page_element.js";
 /** @import { CampusMap, Order, Robot } from "../api_types.ts" */
+/** @import { Door } from "./handover_code.js" */
 
-const AT_ME = { load: "at_sender", receive: "at_recipient" };
 const WAITING = ["waiting", "charging", "stopped"];
 
 export class FollowPage extends PageElement {
   /** How often something was heard. */
   #heard = 0;
+  #door = this.#ownDoor();
 
   static properties = {
     order_id: { attribute: false },
@@ -56,15 +57,27 @@ export class FollowPage extends PageElement {
     this.#fetch();
   }
 
+  /** @param {Map<string, unknown>} changed */
+  willUpdate(changed) {
+    if (changed.has("order_id") || changed.has("demo")) this.#door = this.#ownDoor();
+  }
+
+  /** How I come to my code, and to the robot. @returns {Door} */
+  #ownDoor() {
+    const id = this.order_id;
+    const showToCamera = this.demo ? () => api.showCodeToCamera(id) : null;
+    return { code: () => api.handoverCode(id), handOver: () => api.handOver(id), showToCamera };
+  }
+
   render() {
     if (this.problem) return this.#notHere();
     if (!this.order || !this.map) return html`<p class="waiting" role="status">${t("app.loading")}</p>`;
     const { order, map } = this;
     return html`<div class="follow">
       <div class="column">
-        ${this.#standing(order, map)}
-        <handover-code .order_id=${order.id} .purpose=${order.my_code} .demo=${this.demo}
-          .needed=${order.my_code !== null && AT_ME[order.my_code] === order.state}></handover-code>
+        ${orderStanding(order, map)}
+        <handover-code .door=${this.#door} .purpose=${order.my_code} .needed=${isMyTurn(order)}
+          .asked=${order.handover_requested !== null}></handover-code>
         ${this.#why(order, map)}
         <section class="card" aria-labelledby="timeline-title">
           <h2 id="timeline-title">${t("follow.timeline")}</h2>
@@ -83,7 +96,7 @@ export class FollowPage extends PageElement {
             ? html`<a class="button" href=${repeatPage(order)}>${icon("repeat")}${t("follow.again")}</a>`
             : nothing}
           ${order.can_cancel
-            ? html`<cancel-order .order_id=${order.id} @changed=${(/** @type {CustomEvent<Order>} */ event) => this.#show(event.detail)}></cancel-order>`
+            ? html`<cancel-order .order_id=${order.id} .aboard=${isAboard(order)} @changed=${(/** @type {CustomEvent<Order>} */ event) => this.#show(event.detail)}></cancel-order>`
             : nothing}
         </div>
       </div>
@@ -92,27 +105,6 @@ export class FollowPage extends PageElement {
 
   updated() {
     if (this.order && this.map) document.title = `${stateSentence(this.order, this.map)} · ${t("app.name")}`;
-  }
-
-  /** @param {Order} order @param {CampusMap} map */
-  #standing(order, map) {
-    return html`<section class="standing ${order.state}">
-      <p class="ends">${titleOf(map, order.from_post)}${icon("arrow")}<span class="unseen">→</span>${titleOf(map, order.to_post)}</p>
-      <h1 aria-live="polite">${stateSentence(order, map)}</h1>
-      <p class="next">${order.cancel_requested ? t("cancel.requested") : nextSentence(order, map)}</p>
-      ${hasEnded(order) ? nothing : arrivalWindow(order, map)} ${this.#stages(order)}
-    </section>`;
-  }
-
-  /** @param {Order} order */
-  #stages(order) {
-    const all = stages(order);
-    const step = all.findIndex(({ now }) => now) + 1;
-    const label = step ? t("follow.steps", { step, steps: all.length, name: t(`stage.${all[step - 1].name}`) }) : nothing;
-    if (!all.length) return nothing;
-    return html`<ol class="stages" aria-label=${label}>
-      ${all.map(({ name, done, now }) => html`<li class=${done ? "done" : now ? "now" : ""}><span>${t(`stage.${name}`)}</span></li>`)}
-    </ol>`;
   }
 
   /** A robot that is on its way waits for nothing, whatever it says that it is doing. @param {Order} order @param {CampusMap} map */

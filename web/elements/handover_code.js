@@ -1,6 +1,5 @@
-/** My code as a QR picture, what to do with it, and, in a demonstration, hands to hold it up with. */
+/** My code as a QR picture, what to do with it, a tap instead, and, in a demonstration, hands to hold it up with. */
 import { html, nothing } from "lit";
-import * as api from "../api.js";
 import { inWords } from "../problems.js";
 import { serverNow } from "../server_clock.js";
 import { t } from "../texts.js";
@@ -8,36 +7,43 @@ import { dayAndTime } from "../times.js";
 import { problemLine } from "./field.js";
 import { icon } from "./icon.js";
 import { PageElement } from "./page_element.js";
-/** @import { HandoverCode, Purpose } from "../api_types.ts" */
+/** @import { Purpose, ShownCode } from "../api_types.ts" */
+
+/**
+ * How somebody comes to their code and to the robot: signed in, or by the link in a mail.
+ * @typedef {{code: () => Promise<ShownCode>, handOver: () => Promise<unknown>, showToCamera: (() => Promise<unknown>) | null}} Door
+ */
 
 export class HandoverCodeElement extends PageElement {
   static properties = {
-    order_id: { attribute: false },
+    door: { attribute: false },
     purpose: { attribute: false },
     needed: { type: Boolean },
-    demo: { type: Boolean },
+    asked: { type: Boolean },
     code: { state: true },
     problem: { state: true },
-    shown: { state: true },
+    said: { state: true },
   };
 
   constructor() {
     super();
-    this.order_id = "";
+    /** @type {Door | null} */
+    this.door = null;
     /** @type {Purpose | null} */
     this.purpose = null;
     /** Whether the robot is there and asks for it. */
     this.needed = false;
-    this.demo = false;
-    /** @type {HandoverCode | null} */
+    /** Whether the robot was asked to hand over and has not answered yet. */
+    this.asked = false;
+    /** @type {ShownCode | null} */
     this.code = null;
     this.problem = "";
-    this.shown = false;
+    this.said = "";
   }
 
   /** @param {Map<string, unknown>} changed */
   willUpdate(changed) {
-    if (changed.has("purpose") || changed.has("order_id")) this.#fetch();
+    if (changed.has("purpose") || changed.has("door")) this.#fetch();
   }
 
   render() {
@@ -54,18 +60,15 @@ export class HandoverCodeElement extends PageElement {
   /** @param {Purpose} purpose */
   #open(purpose) {
     return html`<div class="handover">
-      ${this.code ? html`<img class="qr" src=${this.code.svg_url} alt=${t("code.image")} width="260" height="260" />` : nothing}
+      ${this.code ? html`<img class="qr" src=${this.code.picture} alt=${t("code.image")} width="260" height="260" />` : nothing}
       <div>
         <ol class="steps">
           <li>${t(`code.how.${purpose}.1`)}</li>
           <li>${t(`code.how.${purpose}.2`)}</li>
         </ol>
         <p class="hint">${t("code.offline")}</p>
-        ${this.#validity()}
-        ${this.demo && this.needed
-          ? html`<button class="main" @click=${this.#showToCamera}>${icon("camera")}${t("code.camera")}</button>`
-          : nothing}
-        <p role="status">${this.shown ? t("code.camera_done") : nothing}</p>
+        ${this.#validity()} ${this.needed ? this.#withoutCode(purpose) : nothing}
+        <p role="status">${this.asked ? t("code.asked") : this.said}</p>
         ${this.problem ? problemLine(this.problem) : nothing}
       </div>
     </div>`;
@@ -76,24 +79,40 @@ export class HandoverCodeElement extends PageElement {
     return until ? html`<p class="hint">${t("code.expires", { time: dayAndTime(until, serverNow()) })}</p>` : nothing;
   }
 
-  async #fetch() {
-    this.code = null;
-    this.shown = false;
-    if (this.purpose) await this.#attempt(async () => (this.code = await api.handoverCode(this.order_id)));
+  /** With a network, a tap asks the robot to do the same. @param {Purpose} purpose */
+  #withoutCode(purpose) {
+    const camera = html`<button class="main" @click=${this.#showToCamera}>${icon("camera")}${t("code.camera")}</button>`;
+    return html`<div class="choices">
+      ${this.door?.showToCamera ? camera : nothing}
+      <button class="quiet" ?disabled=${this.asked} @click=${this.#handOver}>${t(`code.tap.${purpose}`)}</button>
+    </div>`;
   }
 
-  async #showToCamera() {
-    await this.#attempt(async () => {
-      await api.showCodeToCamera(this.order_id);
-      this.shown = true;
+  async #fetch() {
+    this.code = null;
+    this.said = "";
+    if (this.purpose) await this.#attempt(async (door) => (this.code = await door.code()));
+  }
+
+  async #handOver() {
+    await this.#attempt(async (door) => {
+      await door.handOver();
+      this.said = t("code.asked");
     });
   }
 
-  /** @param {() => Promise<unknown>} attempt */
+  async #showToCamera() {
+    await this.#attempt(async (door) => {
+      await door.showToCamera?.();
+      this.said = t("code.camera_done");
+    });
+  }
+
+  /** @param {(door: Door) => Promise<unknown>} attempt */
   async #attempt(attempt) {
     this.problem = "";
     try {
-      await attempt();
+      if (this.door) await attempt(this.door);
     } catch (failure) {
       this.problem = inWords(failure);
     }

@@ -1,0 +1,6 @@
+import { html } from "lit";
+import "../elements/one_order.js";
+import { openPageForGuest } from "../open_page.js";
+
+// The token stands behind the #, which no browser sends anywhere.
+await openPageForGuest("title.one_order", () => html`<one-order .token=${location.hash.slice(1)}></one-order>`);
