@@ -1,5 +1,7 @@
 """The table of transitions, driven at random: whatever is said, orders stay in lives that the design knows."""
 
+from pathlib import Path
+
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, rule
 
@@ -95,3 +97,20 @@ def test_what_lies_behind_an_order_is_old_news_and_what_lies_ahead_is_not() -> N
     assert is_old_news(S.ATTENTION, S.AT_SENDER, S.CARRYING)
     assert is_old_news(S.DELIVERED, S.AT_RECIPIENT)
     assert not is_old_news(S.CANCELLED, S.DELIVERED), "a contradiction, to be refused by name"
+
+
+def table_of_the_docs() -> str:
+    """The table of transitions as docs/orders.md shows it."""
+    rows = [
+        f"| {state} | {', '.join(f'{to} ({_words(by)})' for to, by in following.items()) or 'an end'} |"
+        for state, following in TRANSITIONS.items()
+    ]
+    return "\n".join(["| from | to (on whose word) |", "|---|---|", *rows])
+
+
+def _words(by: set[By]) -> str:
+    return ", ".join(sorted(by))
+
+
+def test_the_docs_show_the_table_as_it_is() -> None:
+    assert table_of_the_docs() in (Path(__file__).parents[3] / "docs" / "orders.md").read_text()
