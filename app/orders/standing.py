@@ -67,7 +67,8 @@ class StandingOrders:
 
     async def view(self, session: AsyncSession, person: Person, standing_id: str) -> StandingOrderView:
         """Raises UnknownStandingOrder."""
-        return (await self.views(session, [await self._theirs(session, person, standing_id)]))[0]
+        row = await self._theirs(session, person, standing_id, to_change=False)
+        return (await self.views(session, [row]))[0]
 
     async def pause(self, session: AsyncSession, person: Person, standing_id: str) -> StandingOrderView:
         """No more orders until it is resumed. Raises UnknownStandingOrder, StandingOrderEnded."""
@@ -128,8 +129,10 @@ class StandingOrders:
             return None
         return facts.order.id
 
-    async def _theirs(self, session: AsyncSession, person: Person, standing_id: str) -> StandingOrder:
-        row = await session.get(StandingOrder, standing_id, with_for_update=True)
+    async def _theirs(
+        self, session: AsyncSession, person: Person, standing_id: str, *, to_change: bool = True
+    ) -> StandingOrder:
+        row = await session.get(StandingOrder, standing_id, with_for_update=to_change or None)
         if row is None or (row.sender_id != person.id and not person.has_role(Role.DISPATCHER)):
             raise errors.UnknownStandingOrder(f"There is no standing order {standing_id} among yours.")
         return row
