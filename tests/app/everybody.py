@@ -1,6 +1,6 @@
 """Everybody who may knock at a route, each with a fresh way in, and an order that they knock about."""
 
-from collections.abc import Iterator
+from collections.abc import Awaitable, Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from datetime import timedelta
 from typing import Any, Final
@@ -19,6 +19,7 @@ from app.orders.service import Word
 from app.orders.transitions import By
 from app.people.scopes import Scope
 from app.people.service import set_roles
+from app.people.sessions import new_session
 from app.people.tokens import issue_token
 from app.tables import Alarm, Notice, OrderState, OutgoingNotice, Person, PersonSession, Role
 from tests.app.conftest import Mailroom
@@ -68,22 +69,28 @@ class Everybody:
 
     app: FastAPI
     mailroom: Mailroom
-    _kept: dict[str, Scene] = field(default_factory=dict)
-    _link: str = ""
+    _headers_of: dict[str, dict[str, str]] = field(default_factory=dict)
+    _places: dict[str, str] = field(default_factory=lambda: dict(FIXED))
 
-    def scene(self, who: str) -> Scene:
-        """For what changes nothing, or is refused: the same each time."""
-        if who not in self._kept:
-            self._kept[who] = self.fresh_scene(who)
-        return self._kept[who]
+    def scene(self, who: str, gaps: Iterable[str] = ("order_id",), anew: bool = False) -> Scene:
+        """What fills the gaps is made when it is first asked for, and `anew` for what may change it."""
+        known = who in self._headers_of and self._places.keys() >= set(gaps)
+        if anew or not known:
+            self.mailroom.call(self._set, who, list(gaps), anew)
+        headers = self._headers_of.pop(who) if anew else self._headers_of[who]
+        return Scene(headers, dict(self._places))
 
-    def fresh_scene(self, who: str) -> Scene:
-        """For what may change something, perhaps whether somebody is signed in."""
-        self._kept.pop(who, None)
-        scene: Scene = self.mailroom.call(self._scene, who)
-        self._link = self._link or self.mailroom.call(self._mailed_link)
-        scene.places["link"] = self._link
-        return scene
+    async def _set(self, who: str, gaps: list[str], anew: bool) -> None:
+        async with self.app.state.database.transaction() as session:
+            people = {name: await self._person(session, *known) for name, known in PEOPLE.items()}
+            self._places["person_id"] = people["member"].id
+            for gap in gaps:
+                if gap in MAKERS and (anew or gap not in self._places):
+                    self._places[gap] = await MAKERS[gap](self, session, people["sender"])
+            if anew or who not in self._headers_of:
+                self._headers_of[who] = await self._headers(session, who, people)
+        if "link" in gaps and "link" not in self._places:
+            self._places["link"] = await self._mailed_link()
 
     async def _mailed_link(self) -> str:
         """What stands behind the # of the link to an order, in the mail to its recipient without account."""
@@ -93,51 +100,6 @@ class Everybody:
         url = await self.app.state.links.url_for(guest, order_id)
         assert url
         return str(url.partition("#")[2])
-
-    async def _scene(self, who: str) -> Scene:
-        async with self.app.state.database.transaction() as session:
-            people = {name: await self._person(session, *known) for name, known in PEOPLE.items()}
-            order_id = await self._order(session, people["sender"], people["recipient"].email)
-            sender_session, _ = await self._signed_in(session, people["sender"])
-            token, _ = await self._token(session, people["sender"], [Scope.ORDERS_READ])
-            places = {
-                "order_id": order_id,
-                "standing_order_id": await self._standing_order(session, people["sender"]),
-                "name": "r1",
-                "person_id": people["member"].id,
-                "role": "dispatcher",
-                "session_id": str(sender_session.id),
-                "prefix": token,
-                "alarm_id": str(await self._alarm(session)),
-                "delegate_id": await self._delegate(session, people["sender"], order_id),
-                "token_prefix": (await new_token(session, self.app.state.clock, "r1")).split("_")[1],
-                "email": "somebody@campus.example",
-                "file": "none.eml",
-                **await self._of_notices(session, people["sender"], order_id),
-            }
-            return Scene(await self._headers(session, who, people), places)
-
-    async def _of_notices(self, session: AsyncSession, sender: Person, order_id: str) -> dict[str, str]:
-        """A browser and a webhook of the sender's, and a letter that no channel takes."""
-        now = self.app.state.clock.utc()
-        keys = NewDevice(endpoint="https://push.example/sender", keys=SubscriptionKeys(p256dh="AA", auth="AA"))
-        device = await add_device(session, sender, keys, now)
-        await set_webhook(session, sender, "https://hook.example/sender", now)
-        notice = (await session.exec(select(Notice.id).where(Notice.order_id == order_id))).one()
-        letter = OutgoingNotice(key=order_id, channel="none", notice_id=notice, created_at=now)
-        session.add(letter)
-        await session.flush()
-        return {"device_id": device.id, "letter_id": str(letter.id)}
-
-    async def _alarm(self, session: AsyncSession) -> int:
-        alarm = Alarm(robot="r1", name="blocked", reason="A box.", at=self.app.state.clock.utc())
-        session.add(alarm)
-        await session.flush()
-        return alarm.id or 0
-
-    async def _delegate(self, session: AsyncSession, sender: Person, order_id: str) -> str:
-        delegating = self.app.state.delegating
-        return str((await delegating.name(session, sender, order_id, NewDelegate(name="The porter"))).id)
 
     async def _headers(self, session: AsyncSession, who: str, people: dict[str, Person]) -> dict[str, str]:
         if who == "stranger":
@@ -150,14 +112,55 @@ class Everybody:
         _, text = await self._token(session, await self._person(session, *EVERYTHING), who.split())
         return {"Authorization": f"Bearer {text}"}
 
+    async def a_session(self, session: AsyncSession, sender: Person) -> str:
+        return str((await self._signed_in(session, sender))[0].id)
+
+    async def a_token(self, session: AsyncSession, sender: Person) -> str:
+        return (await self._token(session, sender, [Scope.ORDERS_READ]))[0]
+
+    async def a_robots_token(self, session: AsyncSession, sender: Person) -> str:
+        return (await new_token(session, self.app.state.clock, "r1")).split("_")[1]
+
+    async def a_device(self, session: AsyncSession, sender: Person) -> str:
+        """A browser of the sender's, and a webhook."""
+        now = self.app.state.clock.utc()
+        await set_webhook(session, sender, "https://hook.example/sender", now)
+        keys = NewDevice(endpoint="https://push.example/sender", keys=SubscriptionKeys(p256dh="AA", auth="AA"))
+        return (await add_device(session, sender, keys, now)).id
+
+    async def a_letter(self, session: AsyncSession, sender: Person) -> str:
+        """A notice that no channel takes."""
+        now, order_id = self.app.state.clock.utc(), await self._order(session, sender, PEOPLE["recipient"][0])
+        notice = (await session.exec(select(Notice.id).where(Notice.order_id == order_id))).one()
+        letter = OutgoingNotice(key=order_id, channel="none", notice_id=notice, created_at=now)
+        session.add(letter)
+        await session.flush()
+        return str(letter.id)
+
+    async def an_alarm(self, session: AsyncSession, sender: Person) -> str:
+        alarm = Alarm(robot="r1", name="blocked", reason="A box.", at=self.app.state.clock.utc())
+        session.add(alarm)
+        await session.flush()
+        return str(alarm.id)
+
+    async def a_delegate(self, session: AsyncSession, sender: Person) -> str:
+        delegating, wish = self.app.state.delegating, NewDelegate(name="The porter")
+        return str((await delegating.name(session, sender, self._places["order_id"], wish)).id)
+
+    async def a_standing_order(self, session: AsyncSession, sender: Person) -> str:
+        order = {"from_post": "post1", "to_post": "post4", "recipient": PEOPLE["recipient"][0]}
+        wish = NewStandingOrder(**order, weekdays=[0], at="09:30", zone="America/Toronto")
+        return str((await self.app.state.standing_orders.create(session, sender, wish)).id)
+
+    async def an_order(self, session: AsyncSession, sender: Person) -> str:
+        return await self._order(session, sender, PEOPLE["recipient"][0])
+
     async def _person(self, session: AsyncSession, email: str, roles: set[Role]) -> Person:
         person: Person = await self.app.state.sign_in_desk.person(session, email, self.app.state.clock.utc())
         set_roles(person, roles, set(Role) - roles)
         return person
 
     async def _signed_in(self, session: AsyncSession, person: Person) -> tuple[PersonSession, str]:
-        from app.people.sessions import new_session
-
         row, cookie = new_session(person, "", 3600, self.app.state.clock.utc())
         session.add(row)
         await session.flush()
@@ -168,11 +171,6 @@ class Everybody:
         row, text = await issue_token(session, person, "script", scopes, timedelta(days=1), now)
         return row.prefix, text
 
-    async def _standing_order(self, session: AsyncSession, sender: Person) -> str:
-        order = {"from_post": "post1", "to_post": "post4", "recipient": PEOPLE["recipient"][0]}
-        wish = NewStandingOrder(**order, weekdays=[0], at="09:30", zone="America/Toronto")
-        return str((await self.app.state.standing_orders.create(session, sender, wish)).id)
-
     async def _order(self, session: AsyncSession, sender: Person, recipient: str) -> str:
         orders = self.app.state.orders
         wish = NewOrder(from_post="post1", to_post="post4", recipient=recipient)
@@ -180,3 +178,18 @@ class Everybody:
         await orders.move(session, view.id, OrderState.ASSIGNED, Word(By.DISPATCHER, robot="r1"))
         order_id: str = view.id
         return order_id
+
+
+FIXED: Final = {"name": "r1", "role": "dispatcher", "email": "somebody@campus.example", "file": "none.eml"}
+MAKERS: Final[dict[str, Callable[[Everybody, AsyncSession, Person], Awaitable[str]]]] = {
+    # what fills a gap of a path or body, all of it the sender's; what another one needs stands before it
+    "order_id": Everybody.an_order,
+    "standing_order_id": Everybody.a_standing_order,
+    "session_id": Everybody.a_session,
+    "prefix": Everybody.a_token,
+    "alarm_id": Everybody.an_alarm,
+    "delegate_id": Everybody.a_delegate,
+    "token_prefix": Everybody.a_robots_token,
+    "device_id": Everybody.a_device,
+    "letter_id": Everybody.a_letter,
+}
