@@ -1,0 +1,40 @@
+"""What schemathesis is to check besides its own checks, and who knocks at doors that shut behind them.
+
+Its command loads this file too (SCHEMATHESIS_HOOKS).
+"""
+
+import json
+import os
+from typing import Any, Final
+
+import schemathesis
+
+SESSIONS: Final[list[str]] = json.loads(os.environ.get("SESSIONS_TO_END", "[]"))
+ENDS_SESSIONS: Final = frozenset({"sign_out", "sign_out_elsewhere", "end_one_session"})
+
+
+@schemathesis.check
+def the_code_is_documented(ctx: Any, response: Any, case: Any) -> None:
+    """Every error answer is a problem document whose code the operation lists."""
+    if response.status_code < 400:
+        return
+    problem = response.json()
+    listed = case.operation.definition.raw["responses"].get(str(response.status_code))
+    assert problem["status"] == response.status_code
+    if listed is not None:
+        schema = listed["content"]["application/problem+json"]["schema"]
+        codes = schema.get("properties", {}).get("code", {}).get("enum", [])
+        assert problem["code"] in codes, f"{problem['code']} is not among {codes}"
+
+
+def own_session(case: Any) -> dict[str, str]:
+    """Who signs out does so in a session of their own, so that the others' go on."""
+    ends = case.operation.definition.raw.get("operationId") in ENDS_SESSIONS
+    return {"Cookie": f"session={SESSIONS.pop()}"} if ends and SESSIONS else {}
+
+
+if SESSIONS:  # its command, which knows one way in for all
+
+    @schemathesis.hook
+    def before_call(context: Any, case: Any, kwargs: dict[str, Any]) -> None:
+        case.headers.update(own_session(case))
