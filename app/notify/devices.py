@@ -14,13 +14,16 @@ from app.tables import Person, PushSubscription, Webhook
 
 MOST_DEVICES = 20
 AUTH_BYTES = 16
+UNCOMPRESSED = 4
 
 
 def check_keys(keys: SubscriptionKeys) -> None:
     """Raises BadSubscription."""
     try:
-        ec.EllipticCurvePublicKey.from_encoded_point(ec.SECP256R1(), from_base64(keys.p256dh))
-        fits = len(from_base64(keys.auth)) == AUTH_BYTES
+        point = from_base64(keys.p256dh)
+        ec.EllipticCurvePublicKey.from_encoded_point(ec.SECP256R1(), point)
+        # A compressed point is one as well, but not what browsers give and encryption takes.
+        fits = point[0] == UNCOMPRESSED and len(from_base64(keys.auth)) == AUTH_BYTES
     except ValueError:
         fits = False
     if not fits:

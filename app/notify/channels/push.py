@@ -87,7 +87,10 @@ class PushChannel:
 
     async def send(self, letter: Letter) -> None:
         subscription = await self._subscription(letter)
-        content = encrypted(payload_of(letter), subscription)
+        try:
+            content = encrypted(payload_of(letter), subscription)
+        except ValueError as error:
+            raise NotSent(f"the keys of the device cannot be used: {error}", for_good=True) from error
         answer = await post(self.client, subscription.endpoint, content, self._headers(letter, subscription.endpoint))
         if answer.status in GONE:
             await self._forget(subscription)

@@ -127,7 +127,10 @@ def test_addresses_behind_the_walls_are_refused_at_once(sender: Browser, url: st
 
 
 def test_keys_that_no_browser_makes_are_refused(sender: Browser) -> None:
-    for changed in ({"p256dh": "AAAA"}, {"auth": "AAAA"}, {"p256dh": "A"}):
+    compressed = base64.urlsafe_b64encode(
+        bytes.fromhex("03" + "6b17d1f2e12c4247f8bce6e563a440f277037d812deb33a0f4a13945d898c296")
+    )
+    for changed in ({"p256dh": "AAAA"}, {"auth": "AAAA"}, {"p256dh": "A"}, {"p256dh": compressed.decode()}):
         keys = {**browser_keys(), **changed}
         refused = sender.post("/api/v1/me/devices", json={"endpoint": "https://push.example/", "keys": keys})
         assert (refused.status_code, refused.json()["code"]) == (422, "bad_subscription")
