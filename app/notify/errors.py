@@ -4,7 +4,7 @@ Unprocessable ├── MutedEverywhere
               └── BadSubscription
 NotFound      ├── UnknownDevice
               ├── NoWebhook
-              ├── UnknownLetter
+              ├── UnknownSending
               └── NotInSpool
 Conflict      └── SentAlready
 """
@@ -36,10 +36,10 @@ class NoWebhook(NotFound):
     code = "no_webhook"
 
 
-class UnknownLetter(NotFound):
+class UnknownSending(NotFound):
     """Nothing in the outbox has this number."""
 
-    code = "unknown_letter"
+    code = "unknown_sending"
 
 
 class NotInSpool(NotFound):

@@ -11,7 +11,7 @@ from sqlmodel import col, select
 from app.database import ReadingDep, SessionDep, after_commit
 from app.errors import problems
 from app.notify import spooled
-from app.notify.errors import NotInSpool, SentAlready, UnknownLetter
+from app.notify.errors import NotInSpool, SentAlready, UnknownSending
 from app.notify.spooled import SpooledMail
 from app.paging import PAGED, PageDep, PageOf, Sorting
 from app.people.current_user import Dispatcher
@@ -21,11 +21,11 @@ from app.tables import Notice, OutgoingNotice, Person
 router = APIRouter(tags=["outbox"])
 
 NEWEST_FIRST = Sorting("outbox", col(OutgoingNotice.id), descending=True)
-LetterId = Annotated[int, Path(ge=1, le=2**31 - 1)]
+SendingId = Annotated[int, Path(ge=1, le=2**31 - 1)]
 FileName = Annotated[str, Path(pattern=r"^[A-Za-z0-9_-][A-Za-z0-9._-]*\.eml$", max_length=300)]
 
 
-class LetterView(BaseModel):
+class SendingView(BaseModel):
     """A notice that a channel has not taken yet. Without its contents: who is told what is enough to help."""
 
     id: int
@@ -40,12 +40,12 @@ class LetterView(BaseModel):
     problem: str | None
 
     @classmethod
-    def of(cls, row: OutgoingNotice, notice: Notice, person: Person) -> "LetterView":
+    def of(cls, row: OutgoingNotice, notice: Notice, person: Person) -> "SendingView":
         told = {"kind": str(notice.kind), "email": person.email, "order_id": notice.order_id}
         return cls.model_validate({**row.model_dump(), **told})
 
 
-class Letters(PageOf[LetterView]):
+class Sendings(PageOf[SendingView]):
     """Newest first."""
 
 
@@ -63,7 +63,7 @@ class SpooledText(SpooledMail):
 
 
 @router.get("/outbox", responses={**PAGED, **problems(400, 401, 403)})
-async def not_sent(user: Dispatcher, session: ReadingDep, page: PageDep, *, given_up: bool = False) -> Letters:
+async def not_sent(user: Dispatcher, session: ReadingDep, page: PageDep, *, given_up: bool = False) -> Sendings:
     """Notices that have not gone out, or only those that were given up."""
     waiting = select(OutgoingNotice).where(col(OutgoingNotice.sent_at).is_(None))
     if given_up:
@@ -71,23 +71,23 @@ async def not_sent(user: Dispatcher, session: ReadingDep, page: PageDep, *, give
     rows, following = await page.of(session, waiting, NEWEST_FIRST)
     notices = select(Notice, Person).join(Person).where(col(Notice.id).in_([row.notice_id for row in rows]))
     told = {notice.id: (notice, person) for notice, person in (await session.exec(notices)).all()}
-    return Letters(items=[LetterView.of(row, *told[row.notice_id]) for row in rows], next=following)
+    return Sendings(items=[SendingView.of(row, *told[row.notice_id]) for row in rows], next=following)
 
 
-@router.post("/outbox/{letter_id}/retry", status_code=202, responses=problems(401, 403, UnknownLetter, SentAlready))
+@router.post("/outbox/{sending_id}/retry", status_code=202, responses=problems(401, 403, UnknownSending, SentAlready))
 async def send_again(
-    letter_id: LetterId, request: Request, user: Dispatcher, session: SessionDep, clock: ClockDep
-) -> LetterView:
+    sending_id: SendingId, request: Request, user: Dispatcher, session: SessionDep, clock: ClockDep
+) -> SendingView:
     """Try once more, now: what was given up, or waits for its next try."""
-    row = await session.get(OutgoingNotice, letter_id, with_for_update=True)
+    row = await session.get(OutgoingNotice, sending_id, with_for_update=True)
     if row is None:
-        raise UnknownLetter(f"There is nothing with the number {letter_id} in the outbox.")
+        raise UnknownSending(f"There is nothing with the number {sending_id} in the outbox.")
     if row.sent_at is not None:
         raise SentAlready("It has gone out already.")
     row.next_try_at, row.gave_up_at = clock.utc(), None
     after_commit(session, request.app.state.outbox_worker.wake)
     notice = await session.get_one(Notice, row.notice_id)
-    return LetterView.of(row, notice, await session.get_one(Person, notice.person_id))
+    return SendingView.of(row, notice, await session.get_one(Person, notice.person_id))
 
 
 @router.get("/spool", responses=problems(401, 403))

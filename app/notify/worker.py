@@ -1,6 +1,6 @@
 """Takes notices to their channels, after the commit that wrote them and again after a failure.
 
-Channels work side by side, each with places for so many letters at once: a slow mail server holds up no push. What is
+Channels work side by side, each with places for so many sendings at once: a slow mail server holds up no push. What is
 done is noted down together; a crash before that sends it again under the same key, by which whoever gets it can tell.
 """
 
@@ -18,7 +18,7 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 from app.database import Database
 from app.live.feed import Feed
 from app.notify import routing
-from app.notify.channels.interface import Channel, Letter, NotSent
+from app.notify.channels.interface import Channel, NotSent, Sending
 from app.tables import Notice, OutgoingNotice, Person
 from protocol.clock import Clock
 
@@ -141,11 +141,11 @@ class OutboxWorker:
             async with self.database.reading() as session:
                 notice = await session.get_one(Notice, outgoing.notice_id)
                 person = await session.get_one(Person, notice.person_id)
-            await channel.send(Letter(outgoing.key, outgoing.target, notice, person))
+            await channel.send(Sending(outgoing.key, outgoing.target, notice, person))
         except NotSent as problem:
             return problem
         except Exception as error:
-            # Whatever is wrong with one letter, those behind it go out.
+            # Whatever is wrong with one sending, those behind it go out.
             return NotSent(f"{type(error).__name__}: {error}")
         return None
 
@@ -182,7 +182,7 @@ def _one_for_each_target(found: Sequence[OutgoingNotice]) -> list[OutgoingNotice
 
 
 def note(outgoing: OutgoingNotice, problem: NotSent | None, now: datetime, gives_up_after: timedelta) -> None:
-    """What becomes of a letter after a try: sent, to be tried again, or given up."""
+    """What becomes of a sending after a try: sent, to be tried again, or given up."""
     outgoing.tries += 1
     outgoing.problem = None if problem is None else str(problem)[:500]
     outgoing.next_try_at = None

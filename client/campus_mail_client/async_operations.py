@@ -29,8 +29,6 @@ from campus_mail_client.models import (
     HandOverWish,
     Inbox,
     IntoHands,
-    Letters,
-    LetterView,
     Link,
     LinkedCode,
     LinkedDelegate,
@@ -57,6 +55,8 @@ from campus_mail_client.models import (
     RobotPage,
     RobotTokenPage,
     Role,
+    Sendings,
+    SendingView,
     SessionPage,
     SignIn,
     SpooledMails,
@@ -434,17 +434,17 @@ class AsyncOperations:
 
     async def not_sent(
         self, *, given_up: bool | None = None, limit: int | None = None, cursor: str | None = None
-    ) -> Letters:
+    ) -> Sendings:
         """Notices that have not gone out, or only those that were given up."""
-        answer: Letters = await self._call(
-            "GET", "/api/v1/outbox", Letters, query={"given_up": given_up, "limit": limit, "cursor": cursor}
+        answer: Sendings = await self._call(
+            "GET", "/api/v1/outbox", Sendings, query={"given_up": given_up, "limit": limit, "cursor": cursor}
         )
         return answer
 
-    async def send_again(self, letter_id: int) -> LetterView:
+    async def send_again(self, sending_id: int) -> SendingView:
         """Try once more, now: what was given up, or waits for its next try."""
-        answer: LetterView = await self._call(
-            "POST", f"/api/v1/outbox/{quote(str(letter_id), safe='')}/retry", LetterView
+        answer: SendingView = await self._call(
+            "POST", f"/api/v1/outbox/{quote(str(sending_id), safe='')}/retry", SendingView
         )
         return answer
 

@@ -243,6 +243,7 @@ class EventView(Model):
     robot: str | None
     post: str | None
     reason: str | None
+    reason_words: Words | None
 
 
 class Expected(Model):
@@ -297,28 +298,6 @@ class LastSeen(Model):
     post: str
     previous: str | None
     at: datetime
-
-
-class LetterView(Model):
-    """A notice that a channel has not taken yet. Without its contents: who is told what is enough to help."""
-
-    id: int
-    channel: str
-    kind: str
-    email: str
-    order_id: str | None
-    created_at: datetime
-    tries: int
-    next_try_at: datetime | None
-    gave_up_at: datetime | None
-    problem: str | None
-
-
-class Letters(Model):
-    """Newest first."""
-
-    items: list[LetterView]
-    next: str | None
 
 
 class Link(Model):
@@ -513,6 +492,7 @@ class OrderView(Model):
     window: WindowView | None
     robot: RobotView | None
     why: str | None
+    why_words: Words | None
     my_role: Literal["sender", "recipient", "dispatcher"] | str
     my_code: Literal["load", "receive", "return"] | str | None
     handover_requested: HandoverRequested | None
@@ -625,7 +605,10 @@ class RobotTokenView(Model):
 
 
 class RobotView(Model):
-    """One robot. `online` is its own axis: an offline robot goes on with what it is doing."""
+    """One robot. `online` is its own axis: an offline robot goes on with what it is doing.
+
+    `why` is its own sentence, in English; `why_words` the same as a text of the catalogue, if it is one.
+    """
 
     name: str
     online: bool
@@ -635,6 +618,7 @@ class RobotView(Model):
     activity: str
     battery: BatteryView | None
     why: str | None
+    why_words: Words | None
     heard_at: datetime | None
 
 
@@ -655,6 +639,28 @@ Scope = (
     | str
 )
 """A token does what its scopes allow and its person may do, never more."""
+
+
+class SendingView(Model):
+    """A notice that a channel has not taken yet. Without its contents: who is told what is enough to help."""
+
+    id: int
+    channel: str
+    kind: str
+    email: str
+    order_id: str | None
+    created_at: datetime
+    tries: int
+    next_try_at: datetime | None
+    gave_up_at: datetime | None
+    problem: str | None
+
+
+class Sendings(Model):
+    """Newest first."""
+
+    items: list[SendingView]
+    next: str | None
 
 
 class SessionPage(Model):
@@ -807,3 +813,10 @@ class WishesView(Model):
     push_key: str
     devices: list[DeviceView]
     webhook: WebhookView | None
+
+
+class Words(Model):
+    """A text of the catalogue and what fills its gaps: whoever has the catalogue can say it in any language."""
+
+    key: str
+    facts: dict[str, str]

@@ -29,8 +29,6 @@ from campus_mail_client.models import (
     HandOverWish,
     Inbox,
     IntoHands,
-    Letters,
-    LetterView,
     Link,
     LinkedCode,
     LinkedDelegate,
@@ -57,6 +55,8 @@ from campus_mail_client.models import (
     RobotPage,
     RobotTokenPage,
     Role,
+    Sendings,
+    SendingView,
     SessionPage,
     SignIn,
     SpooledMails,
@@ -426,16 +426,18 @@ class Operations:
         """Nothing is posted there any more."""
         self._call("DELETE", "/api/v1/me/webhook", None)
 
-    def not_sent(self, *, given_up: bool | None = None, limit: int | None = None, cursor: str | None = None) -> Letters:
+    def not_sent(
+        self, *, given_up: bool | None = None, limit: int | None = None, cursor: str | None = None
+    ) -> Sendings:
         """Notices that have not gone out, or only those that were given up."""
-        answer: Letters = self._call(
-            "GET", "/api/v1/outbox", Letters, query={"given_up": given_up, "limit": limit, "cursor": cursor}
+        answer: Sendings = self._call(
+            "GET", "/api/v1/outbox", Sendings, query={"given_up": given_up, "limit": limit, "cursor": cursor}
         )
         return answer
 
-    def send_again(self, letter_id: int) -> LetterView:
+    def send_again(self, sending_id: int) -> SendingView:
         """Try once more, now: what was given up, or waits for its next try."""
-        answer: LetterView = self._call("POST", f"/api/v1/outbox/{quote(str(letter_id), safe='')}/retry", LetterView)
+        answer: SendingView = self._call("POST", f"/api/v1/outbox/{quote(str(sending_id), safe='')}/retry", SendingView)
         return answer
 
     def spooled_mails(self) -> SpooledMails:

@@ -408,12 +408,6 @@ class UnknownDevice(Problem):
     code = "unknown_device"
 
 
-class UnknownLetter(Problem):
-    """Nothing in the outbox has this number. (404)"""
-
-    code = "unknown_letter"
-
-
 class UnknownOrder(Problem):
     """No such order, or not one of this person's. (404)"""
 
@@ -454,6 +448,12 @@ class UnknownSender(Problem):
     """Nobody with the address of `on_behalf_of` is known, and its domain is not the campus's. (422)"""
 
     code = "unknown_sender"
+
+
+class UnknownSending(Problem):
+    """Nothing in the outbox has this number. (404)"""
+
+    code = "unknown_sending"
 
 
 class UnknownSession(Problem):
@@ -584,7 +584,6 @@ BY_CODE: Final[Mapping[str, type[Problem]]] = {
     "unknown_contact": UnknownContact,
     "unknown_delegate": UnknownDelegate,
     "unknown_device": UnknownDevice,
-    "unknown_letter": UnknownLetter,
     "unknown_order": UnknownOrder,
     "unknown_person": UnknownPerson,
     "unknown_post": UnknownPost,
@@ -592,6 +591,7 @@ BY_CODE: Final[Mapping[str, type[Problem]]] = {
     "unknown_robot": UnknownRobot,
     "unknown_robot_token": UnknownRobotToken,
     "unknown_sender": UnknownSender,
+    "unknown_sending": UnknownSending,
     "unknown_session": UnknownSession,
     "unknown_standing_order": UnknownStandingOrder,
     "unknown_token": UnknownToken,

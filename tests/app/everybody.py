@@ -132,10 +132,10 @@ class Everybody:
         """A notice that no channel takes."""
         now, order_id = self.app.state.clock.utc(), await self._order(session, sender, PEOPLE["recipient"][0])
         notice = (await session.exec(select(Notice.id).where(Notice.order_id == order_id))).one()
-        letter = OutgoingNotice(key=order_id, channel="none", notice_id=notice, created_at=now)
-        session.add(letter)
+        sending = OutgoingNotice(key=order_id, channel="none", notice_id=notice, created_at=now)
+        session.add(sending)
         await session.flush()
-        return str(letter.id)
+        return str(sending.id)
 
     async def an_alarm(self, session: AsyncSession, sender: Person) -> str:
         alarm = Alarm(robot="r1", name="blocked", reason="A box.", at=self.app.state.clock.utc())
@@ -191,5 +191,5 @@ MAKERS: Final[dict[str, Callable[[Everybody, AsyncSession, Person], Awaitable[st
     "delegate_id": Everybody.a_delegate,
     "token_prefix": Everybody.a_robots_token,
     "device_id": Everybody.a_device,
-    "letter_id": Everybody.a_letter,
+    "sending_id": Everybody.a_letter,
 }

@@ -129,7 +129,7 @@ LINES: Final[dict[tuple[str, str], Line]] = {
     ("PUT", "/api/v1/me/webhook"): members("none", 422),  # to a machine behind the walls
     ("DELETE", "/api/v1/me/webhook"): Line(401, 404, 404, 204, 404, 404, "none"),
     ("GET", "/api/v1/outbox"): dispatchers("none"),
-    ("POST", "/api/v1/outbox/{letter_id}/retry"): dispatchers("none", 202),
+    ("POST", "/api/v1/outbox/{sending_id}/retry"): dispatchers("none", 202),
     ("GET", "/api/v1/spool"): dispatchers("none"),
     ("GET", "/api/v1/spool/{file}"): dispatchers("none", 404),
     ("GET", "/api/v1/live"): members("live:read"),

@@ -9,7 +9,7 @@ from app.tables import Notice, Person
 
 
 @dataclass(frozen=True)
-class Letter:
+class Sending:
     """One notice to one person on one channel. `key` is the same on every try: whoever is sent it twice can tell."""
 
     key: str
@@ -36,19 +36,19 @@ class NotSent(Exception):
 
 
 class Channel(Protocol):
-    """A way to people. At least once: after a crash a letter comes again with the same key."""
+    """A way to people. At least once: after a crash a sending comes again with the same key."""
 
     @property
     def name(self) -> str: ...
 
     @property
     def at_once(self) -> int:
-        """How many letters may be under way; of those to the same target one at a time."""
+        """How many sendings may be under way; of those to the same target one at a time."""
         ...
 
     @property
     def gives_up_after(self) -> timedelta: ...
 
-    async def send(self, letter: Letter) -> None:
+    async def send(self, sending: Sending) -> None:
         """Hand it over. Raises NotSent; anything else that is raised is tried again too."""
         ...

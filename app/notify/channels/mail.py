@@ -7,7 +7,7 @@ from datetime import timedelta
 from typing import ClassVar
 
 from app.mail import Mail, Mailer, NotMailed
-from app.notify.channels.interface import Letter, NotSent
+from app.notify.channels.interface import NotSent, Sending
 from app.settings import Settings
 from app.tables import Notice, NoticeKind, Person
 from app.texts import text
@@ -38,25 +38,25 @@ class MailChannel:
     def at_once(self) -> int:
         return self.mailer.at_once
 
-    async def send(self, letter: Letter) -> None:
+    async def send(self, sending: Sending) -> None:
         try:
-            await self.mailer.send(await self._mail(letter))
+            await self.mailer.send(await self._mail(sending))
         except NotMailed as problem:
             raise NotSent(str(problem), for_good=problem.for_good) from problem
 
-    async def _mail(self, letter: Letter) -> Mail:
-        notice, language = letter.notice, letter.person.language
+    async def _mail(self, sending: Sending) -> Mail:
+        notice, language = sending.notice, sending.person.language
         picture = None
         if notice.order_id:  # in a thread: a picture takes its time to draw
             picture = await asyncio.to_thread(self.code_picture, notice.order_id, notice.kind)
-        url = await self._url(letter)
-        parts = [letter.body]
+        url = await self._url(sending)
+        parts = [sending.body]
         parts += [text(language, "email.code")] if picture else []
         parts += [text(language, "email.link", {"url": url})] if url else []
-        return Mail(letter.key, letter.person.email, letter.title, "\n\n".join(parts) + "\n", notice.at, picture)
+        return Mail(sending.key, sending.person.email, sending.title, "\n\n".join(parts) + "\n", notice.at, picture)
 
-    async def _url(self, letter: Letter) -> str | None:
-        if not self.settings.public_url or letter.notice.order_id is None:
+    async def _url(self, sending: Sending) -> str | None:
+        if not self.settings.public_url or sending.notice.order_id is None:
             return None
-        page = f"{self.settings.public_url.rstrip('/')}/follow.html?order={letter.notice.order_id}"
-        return await self.link_for(letter.person, letter.notice) or page
+        page = f"{self.settings.public_url.rstrip('/')}/follow.html?order={sending.notice.order_id}"
+        return await self.link_for(sending.person, sending.notice) or page

@@ -14,7 +14,7 @@ from cryptography.hazmat.primitives.asymmetric import ec
 from sqlmodel import col, delete
 
 from app.database import Database
-from app.notify.channels.interface import Letter, NotSent
+from app.notify.channels.interface import NotSent, Sending
 from app.notify.channels.posting import GONE, post
 from app.notify.push_key import PushKey
 from app.notify.wishes import PUSH
@@ -34,22 +34,22 @@ def urgency_of(kind: NoticeKind) -> str:
     return "normal" if kind in SOON else "low"
 
 
-def topic_of(letter: Letter) -> str:
-    """A second sending of the same letter takes the place of the first, if that still waits at the push service."""
-    return base64.urlsafe_b64encode(sha256(letter.key.encode()).digest()[:24]).decode()
+def topic_of(sending: Sending) -> str:
+    """A second try takes the place of the first, if that still waits at the push service."""
+    return base64.urlsafe_b64encode(sha256(sending.key.encode()).digest()[:24]).decode()
 
 
-def payload_of(letter: Letter) -> bytes:
+def payload_of(sending: Sending) -> bytes:
     """What the page's worker shows; with the same `tag`, the browser shows it once. Never a hand-over code."""
-    notice = letter.notice
+    notice = sending.notice
     shown = {
         "tag": notice.key,
         "kind": str(notice.kind),
         "order_id": notice.order_id,
-        "title": letter.title[:200],
-        "body": letter.body[:1000],
+        "title": sending.title[:200],
+        "body": sending.body[:1000],
         "at": notice.at.isoformat(),
-        "language": letter.person.language,
+        "language": sending.person.language,
     }
     return json.dumps(shown, ensure_ascii=False).encode()
 
@@ -85,13 +85,13 @@ class PushChannel:
     at_once: int = 20
     gives_up_after: timedelta = timedelta(hours=2)
 
-    async def send(self, letter: Letter) -> None:
-        subscription = await self._subscription(letter)
+    async def send(self, sending: Sending) -> None:
+        subscription = await self._subscription(sending)
         try:
-            content = encrypted(payload_of(letter), subscription)
+            content = encrypted(payload_of(sending), subscription)
         except ValueError as error:
             raise NotSent(f"the keys of the device cannot be used: {error}", for_good=True) from error
-        answer = await post(self.client, subscription.endpoint, content, self._headers(letter, subscription.endpoint))
+        answer = await post(self.client, subscription.endpoint, content, self._headers(sending, subscription.endpoint))
         if answer.status in GONE:
             await self._forget(subscription)
             raise NotSent("the device has ended its subscription", for_good=True)
@@ -102,9 +102,9 @@ class PushChannel:
                 again_after_s=answer.again_after_s,
             )
 
-    def _headers(self, letter: Letter, endpoint: str) -> dict[str, str]:
+    def _headers(self, sending: Sending, endpoint: str) -> dict[str, str]:
         url = httpx.URL(endpoint)
-        urgency = urgency_of(letter.notice.kind)
+        urgency = urgency_of(sending.notice.kind)
         return {
             "Authorization": self.key.authorization(
                 f"{url.scheme}://{url.netloc.decode()}", self.contact, self.clock.utc()
@@ -113,13 +113,13 @@ class PushChannel:
             "Content-Type": "application/octet-stream",
             "TTL": str(TTL_S[urgency]),
             "Urgency": urgency,
-            "Topic": topic_of(letter),
+            "Topic": topic_of(sending),
         }
 
-    async def _subscription(self, letter: Letter) -> PushSubscription:
+    async def _subscription(self, sending: Sending) -> PushSubscription:
         async with self.database.reading() as session:
-            found = await session.get(PushSubscription, letter.target)
-        if found is None or found.person_id != letter.person.id:
+            found = await session.get(PushSubscription, sending.target)
+        if found is None or found.person_id != sending.person.id:
             raise NotSent("the device was removed", for_good=True)
         return found
 

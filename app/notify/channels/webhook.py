@@ -1,6 +1,6 @@
 """Signed webhooks: a POST for each notice, to an address that a person or the operator gave.
 
-Signed as Standard Webhooks has it: `webhook-id` is the key of the letter, the same on every try; the signature is an
+Signed as Standard Webhooks has it: `webhook-id` is the key of the sending, the same on every try; the signature is an
 HMAC-SHA256 over id, time and body, so that a receiver knows the sender, and an old delivery from a new one.
 """
 
@@ -16,7 +16,7 @@ import httpx
 from sqlmodel import col, delete
 
 from app.database import Database
-from app.notify.channels.interface import Letter, NotSent
+from app.notify.channels.interface import NotSent, Sending
 from app.notify.channels.posting import post
 from app.notify.routing import SERVICE
 from app.notify.wishes import WEBHOOK
@@ -55,9 +55,9 @@ def signature(secret: bytes, delivery_id: str, at: datetime, body: bytes) -> str
     return "v1," + base64.b64encode(hmac.new(secret, signed, sha256).digest()).decode()
 
 
-def body_of(letter: Letter) -> bytes:
+def body_of(sending: Sending) -> bytes:
     """What is told; never a hand-over code."""
-    notice, person = letter.notice, letter.person
+    notice, person = sending.notice, sending.person
     told = {
         "type": f"notice.{notice.kind}",
         "timestamp": notice.at.isoformat(),
@@ -66,8 +66,8 @@ def body_of(letter: Letter) -> bytes:
             "kind": str(notice.kind),
             "order_id": notice.order_id,
             "person": {"email": person.email, "name": person.name},
-            "title": letter.title,
-            "body": letter.body,
+            "title": sending.title,
+            "body": sending.body,
             "facts": notice.facts,
         },
     }
@@ -87,34 +87,34 @@ class WebhookChannel:
     at_once: int = 20
     gives_up_after: timedelta = timedelta(days=1)
 
-    async def send(self, letter: Letter) -> None:
-        address = await self._address(letter)
-        body, now = body_of(letter), self.clock.utc()
+    async def send(self, sending: Sending) -> None:
+        address = await self._address(sending)
+        body, now = body_of(sending), self.clock.utc()
         headers = {
             "Content-Type": "application/json",
             "User-Agent": "Campus-Mail",
-            "webhook-id": letter.key,
+            "webhook-id": sending.key,
             "webhook-timestamp": str(round(now.timestamp())),
-            "webhook-signature": signature(address.secret, letter.key, now, body),
+            "webhook-signature": signature(address.secret, sending.key, now, body),
         }
         answer = await post(address.client, address.url, body, headers)
-        if answer.status == GONE and letter.target != SERVICE:
-            await self._forget(letter)
+        if answer.status == GONE and sending.target != SERVICE:
+            await self._forget(sending)
             raise NotSent("the receiver has ended its webhook", for_good=True)
         if not answer.is_good:  # whoever runs the receiver may mend it
             raise NotSent(f"the receiver answered {answer.status}", again_after_s=answer.again_after_s)
 
-    async def _address(self, letter: Letter) -> Address:
-        if letter.target == SERVICE:
+    async def _address(self, sending: Sending) -> Address:
+        if sending.target == SERVICE:
             if self.service is None:
                 raise NotSent("the service has no webhook any more", for_good=True)
             return self.service
         async with self.database.reading() as session:
-            row = await session.get(Webhook, letter.target)
-        if row is None or row.person_id != letter.person.id:
+            row = await session.get(Webhook, sending.target)
+        if row is None or row.person_id != sending.person.id:
             raise NotSent("the webhook was removed", for_good=True)
         return Address(row.url, secret_bytes(secret_of(self.key, row.id)), self.outside)
 
-    async def _forget(self, letter: Letter) -> None:
+    async def _forget(self, sending: Sending) -> None:
         async with self.database.transaction() as session:
-            await session.exec(delete(Webhook).where(col(Webhook.id) == letter.target))
+            await session.exec(delete(Webhook).where(col(Webhook.id) == sending.target))

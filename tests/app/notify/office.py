@@ -66,13 +66,13 @@ class Office:
             while await self.state.outbox_worker.has_work():  # noqa: ASYNC110  # the worker rings no bell of ours
                 await asyncio.sleep(0.01)
 
-    async def letters(self, channel: str) -> list[OutgoingNotice]:
+    async def sendings(self, channel: str) -> list[OutgoingNotice]:
         async with self.state.database.reading() as session:
             rows = select(OutgoingNotice).where(OutgoingNotice.channel == channel).order_by(col(OutgoingNotice.id))
             return list((await session.exec(rows)).all())
 
-    async def letter(self, channel: str) -> OutgoingNotice:
-        (one,) = await self.letters(channel)
+    async def sending(self, channel: str) -> OutgoingNotice:
+        (one,) = await self.sendings(channel)
         return one
 
 

@@ -1,4 +1,4 @@
-"""A crash between sending and noting it down, as it happens: the process is killed while the other side has the letter.
+"""A crash between sending and noting it down, as it happens: the process is killed while the other side has it.
 
 The service is a real process. The receiver of its webhook kills it in the moment in which it has read a delivery and
 not answered yet. After the restart everything is told, and what came twice came under the same id.

@@ -47,7 +47,7 @@ def test_what_does_not_go_out_is_seen_and_sent_again_by_hand(
     assert dispatcher.get("/api/v1/outbox").json()["items"] == []
     again = dispatcher.post(f"/api/v1/outbox/{waiting['id']}/retry")
     assert (again.status_code, again.json()["code"]) == (409, "sent_already")
-    assert dispatcher.post("/api/v1/outbox/999999/retry").json()["code"] == "unknown_letter"
+    assert dispatcher.post("/api/v1/outbox/999999/retry").json()["code"] == "unknown_sending"
 
 
 def test_the_spool_shows_who_was_written_to_and_no_code(

@@ -125,9 +125,9 @@ async def test_a_device_that_has_unsubscribed_is_forgotten(office: Office, push_
     await office.order()
     await office.settle()
     assert len(push_service.received) == 1
-    given_up = await office.letter("push")
+    given_up = await office.sending("push")
     assert given_up.gave_up_at and given_up.problem == "the device has ended its subscription"
-    assert all(letter.sent_at for letter in await office.letters("mail"))
+    assert all(sending.sent_at for sending in await office.sendings("mail"))
 
 
 async def test_a_busy_push_service_says_when_to_come_back_and_gets_the_same_push_again(
@@ -145,7 +145,7 @@ async def test_a_busy_push_service_says_when_to_come_back_and_gets_the_same_push
         clock.advance(60)
         await office.settle()
     assert len(push_service.received) == 3
-    assert (await office.letter("push")).sent_at
+    assert (await office.sending("push")).sent_at
     assert len({one.headers["topic"] for one in push_service.received}) == 1
     assert len({keys.read(one)["tag"] for one in push_service.received}) == 1
 
@@ -155,8 +155,8 @@ async def test_a_push_that_is_refused_is_given_up(office: Office, push_service: 
     await subscribed(office, push_service)
     await office.order()
     await office.settle()
-    assert (await office.letter("push")).problem == "the push service answered 403"
-    assert (await office.letter("push")).gave_up_at
+    assert (await office.sending("push")).problem == "the push service answered 403"
+    assert (await office.sending("push")).gave_up_at
 
 
 async def test_a_device_behind_the_walls_is_never_reached(
@@ -167,8 +167,8 @@ async def test_a_device_behind_the_walls_is_never_reached(
         await guarded.order()
         await guarded.settle()
         assert not push_service.received
-        assert not (await guarded.letter("push")).sent_at
-        assert "https" in ((await guarded.letter("push")).problem or "")
+        assert not (await guarded.sending("push")).sent_at
+        assert "https" in ((await guarded.sending("push")).problem or "")
 
 
 def test_the_key_is_made_once_and_is_nobody_elses(settings: Settings) -> None:

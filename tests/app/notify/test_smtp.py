@@ -63,21 +63,21 @@ async def test_a_full_mailbox_is_tried_again_and_an_unknown_one_given_up(
     async with running(smtp, clock) as office:
         await office.order()
         await office.settle()
-        waiting = await office.letter("mail")
+        waiting = await office.sending("mail")
         assert (waiting.sent_at, waiting.gave_up_at, waiting.tries) == (None, None, 1)
         assert waiting.problem == "452 the mailbox is full"
         await office.settle()
         assert server.tries == 1, "not before its time"
         clock.advance(pause_s(1))
         await office.settle()
-        sent = await office.letter("mail")
+        sent = await office.sending("mail")
         assert sent.sent_at and sent.problem is None
         assert len(server.taken) == 1
 
         server.says = ["550 nobody of this name"]
         await office.order()
         await office.settle()
-        given_up = (await office.letters("mail"))[1]
+        given_up = (await office.sendings("mail"))[1]
         assert given_up.gave_up_at and given_up.tries == 1
         assert given_up.problem == "550 nobody of this name"
         clock.advance(DAY_S)
@@ -93,10 +93,10 @@ async def test_a_connection_that_is_cut_loses_no_mail_and_a_second_copy_shows_th
     async with running(smtp, clock) as office:
         await office.order()
         await office.settle()
-        assert not (await office.letter("mail")).sent_at
+        assert not (await office.sending("mail")).sent_at
         clock.advance(pause_s(1))
         await office.settle()
-        assert (await office.letter("mail")).sent_at
+        assert (await office.sending("mail")).sent_at
     assert len(server.taken) == copies
     assert len({mail["Message-ID"] for mail in server.taken}) == 1, "by this a mailbox keeps one of them"
     assert len({mail.as_bytes().split(b"boundary")[0] for mail in server.taken}) == 1
@@ -109,7 +109,7 @@ async def test_a_wrong_password_is_the_servers_concern_and_loses_no_mail(
     async with running(wrong, clock) as office:
         await office.order()
         await office.settle()
-        waiting = await office.letter("mail")
+        waiting = await office.sending("mail")
         assert waiting.gave_up_at is None
         assert "535" in (waiting.problem or "") and "another" not in (waiting.problem or "")
     clock.advance(pause_s(1))
@@ -124,7 +124,7 @@ async def test_a_server_that_proves_nothing_is_sent_nothing(
     async with running(smtp.model_copy(update={"smtp_ca_file": None}), clock) as office:
         await office.order()
         await office.settle()
-        problem = (await office.letter("mail")).problem or ""
+        problem = (await office.sending("mail")).problem or ""
     assert "certificate" in problem.lower()
     assert server.tries == 0
 
@@ -137,7 +137,7 @@ async def test_what_nobody_takes_for_a_day_is_given_up(smtp: Settings, server: M
             await office.settle()
             clock.advance(DAY_S / 2)
         await office.settle()
-        assert (await office.letter("mail")).gave_up_at
+        assert (await office.sending("mail")).gave_up_at
     assert server.tries == 3
 
 

@@ -91,7 +91,7 @@ async def test_a_program_that_is_down_gets_the_same_delivery_until_a_day_has_pas
         for tries in (1, 2, 3):
             await office.settle()
             clock.advance(pause_s(tries))
-        assert (await office.letter("webhook")).sent_at
+        assert (await office.sending("webhook")).sent_at
         assert len({one.headers["webhook-id"] for one in receiver.received}) == 1
         assert len({one.headers["webhook-timestamp"] for one in receiver.received}) == 3
         assert all(is_signed(one, secret) for one in receiver.received)
@@ -100,7 +100,7 @@ async def test_a_program_that_is_down_gets_the_same_delivery_until_a_day_has_pas
         for _ in range(4):
             await office.settle()
             clock.advance(8 * 3600)
-        assert (await office.letters("webhook"))[1].gave_up_at
+        assert (await office.sendings("webhook"))[1].gave_up_at
 
 
 async def test_a_program_that_says_gone_is_told_nothing_more(
@@ -124,7 +124,7 @@ async def test_a_webhook_leads_to_no_machine_behind_the_walls(
         await with_webhook(office, receiver.url.replace("http", scheme))
         await office.order()
         await office.settle()
-        assert not (await office.letter("webhook")).sent_at
+        assert not (await office.sending("webhook")).sent_at
     assert not receiver.received
 
 
@@ -139,7 +139,7 @@ async def test_what_hangs_holds_up_no_other_channel_and_no_other_receiver(
             for _ in range(3):
                 await office.order()
             while len(quick.received) < 3 or not all(  # noqa: ASYNC110  # the channels ring no bell of ours
-                one.sent_at for one in await office.letters("mail")
+                one.sent_at for one in await office.sendings("mail")
             ):
                 await asyncio.sleep(0.02)
             assert len(receiver.received) == 1, "to one that hangs, one at a time"

@@ -148,5 +148,5 @@ async def test_somebody_without_any_other_channel_left_is_mailed_what_must_reach
         await office.add(NoticeWishes(person_id=recipient.id, muted={"mail": ["robot_here_for_you", "on_its_way"]}))
         await office.move(order_id, "assigned", "to_sender", "at_sender", "carrying", "at_recipient")
         await office.settle()
-        kinds = {letter.key.split(".")[2] for letter in await office.letters("mail") if recipient.id in letter.key}
+        kinds = {sending.key.split(".")[2] for sending in await office.sendings("mail") if recipient.id in sending.key}
     assert kinds == {"robot_here_for_you"}
