@@ -73,6 +73,12 @@ class Person:
     def get(self, path: str) -> Any:
         return self._http.get(f"/api/v1{path}").raise_for_status().json()
 
+    def post(self, path: str, body: dict[str, Any] | None = None) -> httpx.Response:
+        return self._http.post(f"/api/v1{path}", json=body or {})
+
+    def delete(self, path: str) -> None:
+        self._http.delete(f"/api/v1{path}").raise_for_status()
+
     def order(self, from_post: str, to_post: str, recipient: str) -> str:
         body = {"from_post": from_post, "to_post": to_post, "recipient": recipient, "description": "A letter"}
         answer = self._http.post("/api/v1/orders", json=body, headers={"Idempotency-Key": str(uuid.uuid4())})
@@ -108,16 +114,21 @@ class Rig:
     def enrol(self) -> None:
         """As a maintainer and whoever stands at the robot do it: one makes a code, the other types it."""
         code = self._command(["app", "robots", "enrol", "r1"], self._service_env())
-        server = f"ws://127.0.0.1:{self.port}/api/v1/robots/link"
-        enrol = ["robot", "enrol", "r1", server, "--config", str(self.settings_file), "--code-stdin"]
-        self._command(enrol, dict(os.environ), code)
+        ran = self.type_code("r1", code, self.settings_file)
+        assert ran.returncode == 0, ran.stderr
         settings = self.settings_file.read_text()  # the robot speaks through the wire that can be cut
         self.settings_file.write_text(settings.replace(f":{self.port}/", f":{self.wire.port}/"))
 
-    def _command(self, arguments: list[str], env: dict[str, str], typed: str = "") -> str:
-        command = [sys.executable, "-m", *arguments]
-        ran = subprocess.run(command, check=False, cwd=ROOT, env=env, input=typed, capture_output=True, text=True)
-        assert ran.returncode == 0, ran.stderr
+    def type_code(self, name: str, code: str, settings_file: Path) -> subprocess.CompletedProcess[str]:
+        """What `robot enrol` makes of a code."""
+        server = f"ws://127.0.0.1:{self.port}/api/v1/robots/link"
+        enrol = [sys.executable, "-m", "robot", "enrol", name, server, "--config", str(settings_file), "--code-stdin"]
+        return subprocess.run(enrol, check=False, cwd=ROOT, input=code, capture_output=True, text=True)
+
+    def _command(self, arguments: list[str], env: dict[str, str]) -> str:
+        ran = subprocess.run(
+            [sys.executable, "-m", *arguments], cwd=ROOT, env=env, check=True, capture_output=True, text=True
+        )
         return ran.stdout.strip()
 
     def __exit__(self, *_: object) -> None:
@@ -138,6 +149,11 @@ class Rig:
         self.people.append(person)
         person.sign_in()
         return person
+
+    def sign_in_as(self, email: str, role: str) -> Person:
+        """Somebody who has been given a role at the service's terminal."""
+        self._command(["app", "people", "role", email, "--add", role], self._service_env())
+        return self.sign_in(email)
 
     def _service_env(self) -> dict[str, str]:
         return {
