@@ -143,7 +143,7 @@ def _begin_postgresql(connection: Connection) -> None:
         connection.exec_driver_sql(f"SELECT pg_advisory_xact_lock({WRITERS_LOCK})")
 
 
-def _database_of(connection: HTTPConnection) -> Database:
+async def _database_of(connection: HTTPConnection) -> Database:
     database: Database = connection.app.state.database
     return database
 

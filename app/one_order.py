@@ -65,12 +65,12 @@ class LinkedDelegateView(BaseModel):
     code: LinkedCode
 
 
-def _door(request: Request) -> None:
+async def _door(request: Request) -> None:
     require_https_or_loopback(request)
     refuse_other_sites(request)
 
 
-def _links(request: Request) -> Links:
+async def _links(request: Request) -> Links:
     links: Links = request.app.state.links
     return links
 

@@ -129,7 +129,7 @@ def _seal(key: ServerKey, name: str, text: str) -> bytes:
     return key.derive("cursor", name, text)[:SEAL_BYTES]
 
 
-def _asked(
+async def _asked(
     request: Request,
     response: Response,
     limit: Annotated[int, Query(ge=1, le=100, description="At most this many items.")] = 20,

@@ -254,17 +254,17 @@ def make_data_folder(settings: Settings) -> None:
         raise StartError(f"The data folder {settings.data} cannot be made: {error}. Set CAMPUS_MAIL_DATA.") from error
 
 
-def _settings_of(connection: HTTPConnection) -> Settings:
+async def _settings_of(connection: HTTPConnection) -> Settings:
     settings: Settings = connection.app.state.settings
     return settings
 
 
-def _clock_of(connection: HTTPConnection) -> Clock:
+async def _clock_of(connection: HTTPConnection) -> Clock:
     clock: Clock = connection.app.state.clock
     return clock
 
 
-def _campus_of(connection: HTTPConnection) -> CampusMap:
+async def _campus_of(connection: HTTPConnection) -> CampusMap:
     campus: CampusMap = connection.app.state.campus
     return campus
 

@@ -27,7 +27,7 @@ NEWEST_FIRST = Sorting("robot_tokens", col(RobotToken.created_at), col(RobotToke
 Prefix = Annotated[str, Path(pattern=r"^[0-9a-f]{8}$")]
 
 
-def _desk(request: Request) -> EnrolmentDesk:
+async def _desk(request: Request) -> EnrolmentDesk:
     desk: EnrolmentDesk = request.app.state.enrolment_desk
     return desk
 

@@ -22,12 +22,12 @@ router = APIRouter(tags=["robots"])
 BY_NAME = Sorting("robots", col(RobotRow.name))
 
 
-def _fleet_of(connection: HTTPConnection) -> Fleet:
+async def _fleet_of(connection: HTTPConnection) -> Fleet:
     fleet: Fleet = connection.app.state.fleet
     return fleet
 
 
-def _intake_of(connection: HTTPConnection) -> Intake:
+async def _intake_of(connection: HTTPConnection) -> Intake:
     intake: Intake = connection.app.state.intake
     return intake
 

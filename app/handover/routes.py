@@ -38,12 +38,12 @@ ASKED = problems(
 NAMED = problems(UnknownOrder, errors.NotYoursToDelegate, errors.TooLateToDelegate, errors.TooManyDelegates, 429)
 
 
-def _hand_overs(request: Request) -> HandOvers:
+async def _hand_overs(request: Request) -> HandOvers:
     hand_overs: HandOvers = request.app.state.hand_overs
     return hand_overs
 
 
-def _delegating(request: Request) -> Delegating:
+async def _delegating(request: Request) -> Delegating:
     delegating: Delegating = request.app.state.delegating
     return delegating
 

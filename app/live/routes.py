@@ -43,7 +43,7 @@ class EventStream(StreamingResponse):
     media_type = "text/event-stream"
 
 
-def _feed_of(connection: HTTPConnection) -> LocalFeed:
+async def _feed_of(connection: HTTPConnection) -> LocalFeed:
     feed: LocalFeed = connection.app.state.feed
     return feed
 

@@ -32,17 +32,17 @@ router = APIRouter(tags=["notices"])
 DeviceId = Annotated[str, Path(pattern=r"^[0-9a-f]+$", max_length=64)]
 
 
-def _push_key(request: Request) -> PushKey:
+async def _push_key(request: Request) -> PushKey:
     key: PushKey = request.app.state.push_key
     return key
 
 
-def _outside(request: Request) -> Outside:
+async def _outside(request: Request) -> Outside:
     outside: Outside = request.app.state.outside
     return outside
 
 
-def _server_key(request: Request) -> ServerKey:
+async def _server_key(request: Request) -> ServerKey:
     key: ServerKey = request.app.state.server_key
     return key
 

@@ -41,12 +41,12 @@ PLACED = {
 CHANGED = {**answering(200, "ETag"), **problems(errors.UnknownOrder, errors.NotCancellable, errors.OrderChanged)}
 
 
-def _orders(request: Request) -> Orders:
+async def _orders(request: Request) -> Orders:
     orders: Orders = request.app.state.orders
     return orders
 
 
-def _running(request: Request) -> Running:
+async def _running(request: Request) -> Running:
     running: Running = request.app.state.running
     return running
 

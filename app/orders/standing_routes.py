@@ -31,7 +31,7 @@ REFUSED: Final = (
 CHANGED: Final = problems(errors.UnknownStandingOrder, errors.StandingOrderEnded)
 
 
-def _standing_orders(request: Request) -> StandingOrders:
+async def _standing_orders(request: Request) -> StandingOrders:
     standing: StandingOrders = request.app.state.standing_orders
     return standing
 

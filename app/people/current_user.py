@@ -125,7 +125,7 @@ async def _at_browser(caller: CallerDep, session_id: Annotated[int, Depends(_ses
     return caller.person
 
 
-def _still_signed_in(request: Request, database: DatabaseDep, clock: ClockDep) -> StillSignedIn:
+async def _still_signed_in(request: Request, database: DatabaseDep, clock: ClockDep) -> StillSignedIn:
     """Whether the session or token of this request goes on, and with it what its person may see."""
 
     async def ask(user: Person) -> bool:

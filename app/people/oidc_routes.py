@@ -30,7 +30,7 @@ router = APIRouter(
 )
 
 
-def _provider(request: Request) -> Provider:
+async def _provider(request: Request) -> Provider:
     provider: Provider = request.app.state.provider
     if not provider.is_configured:
         raise NoCampusSignIn("Sign in by a mailed code: the campus's own sign-in is not set up here.")

@@ -81,7 +81,7 @@ def host_of(request: Request) -> str:
     return str(IPv6Network((ip, HOME_BITS), strict=False)) if isinstance(ip, IPv6Address) else host
 
 
-def _limits_of(request: Request) -> RateLimits:
+async def _limits_of(request: Request) -> RateLimits:
     limits: RateLimits = request.app.state.rate_limits
     return limits
 

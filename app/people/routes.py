@@ -22,7 +22,7 @@ Language = Annotated[str, Header(alias="Accept-Language", max_length=200)]
 UserAgent = Annotated[str, Header(max_length=1000)]
 
 
-def _desk(request: Request) -> SignInDesk:
+async def _desk(request: Request) -> SignInDesk:
     desk: SignInDesk = request.app.state.sign_in_desk
     return desk
 
