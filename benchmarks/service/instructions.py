@@ -70,6 +70,7 @@ async def _measure(
     await _order(server, accounts, mailroom, random, orders)
     used = (server.processor_s() - before_s) / (time.perf_counter() - begun_s)
     await until(lambda: len(mailroom.told_at_s) >= orders, HEARD_WITHIN_S)
+    used_s = server.processor_s() - before_s
     watching.cancel()
     accepting.cancel()
     await asyncio.gather(*(robot.close() for robot in fleet))
@@ -82,6 +83,7 @@ async def _measure(
         "order_to_answer": times(mailroom.answered_after_s),
         "never_at_a_robot": len(mailroom.placed_at_s) - len(told_s),
         "share_of_its_core": round(used, 2),
+        "processor_ms_per_order": round(used_s / orders * 1e3, 2),
         "load_generator_late": punctuality.figures(),
         "memory": server.memory_mib(),
     }

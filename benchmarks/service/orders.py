@@ -28,20 +28,24 @@ class Load:
     """Orders for one server, and which of them it has acknowledged."""
 
     def __init__(self, server: Server, accounts: list[Account], recipient: str) -> None:
+        self._server = server
         self._visitors = [Visitor(server.port, account.cookie) for account in accounts]
         self._recipient = recipient
         self._count = 0
         self.acknowledged: list[str] = []
         self.rates: dict[int, list[float]] = {}
         self.took_s: dict[int, list[float]] = {}
+        self.processor_ms: dict[int, list[float]] = {}
 
     async def round(self, at_once: int, seconds: float) -> None:
-        begun_s = time.perf_counter()
+        begun_s, used_s = time.perf_counter(), self._server.processor_s()
         before = len(self.acknowledged)
         took_s = self.took_s.setdefault(at_once, [])
         await asyncio.gather(*(self._order_until(v, begun_s + seconds, took_s) for v in self._visitors[:at_once]))
         rate = (len(self.acknowledged) - before) / (time.perf_counter() - begun_s)
         self.rates.setdefault(at_once, []).append(rate)
+        used_ms = (self._server.processor_s() - used_s) * 1e3
+        self.processor_ms.setdefault(at_once, []).append(used_ms / (len(self.acknowledged) - before))
         self.close()  # before the server does: it keeps no idle connection for long
 
     async def _order_until(self, visitor: Visitor, end_s: float, took_s: list[float]) -> None:
@@ -52,6 +56,10 @@ class Load:
             assert answer.status == 201, answer
             took_s.append(time.perf_counter() - begun_s)
             self.acknowledged.append(answer.json()["id"])
+
+    def forget(self) -> None:
+        for measured in (self.rates, self.took_s, self.processor_ms):
+            measured.clear()
 
     def close(self) -> None:
         for visitor in self._visitors:
@@ -80,7 +88,7 @@ async def _measure(
     settled_s = []
     for load in (own, other):
         await load.round(1, 0.5)  # what is made at the first request is made now
-        load.rates.clear(), load.took_s.clear()
+        load.forget()
     for number in range(samples.rounds):
         for at_once in (1, AT_ONCE):
             for load in (other, own):
@@ -106,6 +114,8 @@ def _beside(own: Load, other: Load, at_once: int) -> dict[str, Any]:
         "per_s": middle(rates),
         "bare_per_s": middle(bare_rates),
         "ratio_to_bare": middle(ratios),
+        "processor_ms": middle(own.processor_ms[at_once]),
+        "bare_processor_ms": middle(other.processor_ms[at_once]),
         "took": times(own.took_s[at_once]),
         "bare_took": times(other.took_s[at_once]),
     }

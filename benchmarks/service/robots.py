@@ -56,6 +56,7 @@ async def _measure(samples: Samples, server: Server, known: list[KnownRobot], da
     used = (server.processor_s() - before_s) / (time.perf_counter() - begun_s)
     await until(lambda: all(robot.acknowledged >= robot.seq for robot in fleet), LAST_ACKNOWLEDGED_WITHIN_S)
     watching.cancel()
+    used_s = server.processor_s() - before_s
     connected = sum(robot.is_connected for robot in fleet)
     figures = {
         "robots": len(fleet),
@@ -67,6 +68,7 @@ async def _measure(samples: Samples, server: Server, known: list[KnownRobot], da
         "refused": sum(len(robot.errors) for robot in fleet),
         "disconnected": len(fleet) - connected,
         "share_of_its_core": round(used, 2),
+        "processor_ms_per_report": round(used_s / sum(robot.seq for robot in fleet) * 1e3, 3),
         "load_generator_late": punctuality.figures(),
         "memory": server.memory_mib(),
     }

@@ -52,7 +52,7 @@ class Server:
 def service(data: Path) -> Iterator[Server]:
     """The service as people run it, with its data in this folder."""
     port = free_port()
-    names = {"DATA": str(data), "MAP": MAP, "LOG_LEVEL": "WARNING"}
+    names = {"DATA": str(data), "MAP": MAP, "LOG_LEVEL": "WARNING", "ORDERS_PER_PERSON": "1000000 per hour"}
     environment = {f"CAMPUS_MAIL_{name}": value for name, value in names.items()}
     with _running(["app", "serve", "--port", str(port)], port, data / "service.log", environment) as server:
         yield server
