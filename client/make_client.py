@@ -4,6 +4,7 @@ models.py             a pydantic class for each schema
 problems.py           an exception for each code that an answer can carry
 async_operations.py   a method for each operation
 operations.py, client.py   the same without `await`, made of the files for those who do
+docs/api.md           its tables of errors and operations
 """
 
 import re
@@ -20,6 +21,7 @@ sys.path[:0] = [str(Path(__file__).parents[1])]
 from app.api_document import all_codes, operations  # noqa: E402  # the checkout is on the path only now
 from app.main import create_app  # noqa: E402
 from app.settings import Settings  # noqa: E402
+from client import api_tables  # noqa: E402  # the checkout is on the path only now
 from protocol.clock import RealClock  # noqa: E402
 
 PACKAGE: Final = Path(__file__).parent / "campus_mail_client"
@@ -282,5 +284,7 @@ def _paragraphs(text: str, indent: int) -> str:
 
 
 if __name__ == "__main__":
-    for file_name, content in made_files(document()).items():
+    openapi = document()
+    for file_name, content in made_files(openapi).items():
         (PACKAGE / file_name).write_text(content)
+    api_tables.PAGE.write_text(api_tables.page(openapi))

@@ -132,6 +132,12 @@ class MethodNotAllowed(Problem):
     code = "method_not_allowed"
 
 
+class MetricsNotForYou(Problem):
+    """Metrics are for programs on this machine, or for whoever brings the token that the operator has set. (403)"""
+
+    code = "metrics_not_for_you"
+
+
 class MutedEverywhere(Problem):
     """A robot waits with somebody's mail: one channel at least has to be left for that. (422)"""
 
@@ -538,6 +544,7 @@ BY_CODE: Final[Mapping[str, type[Problem]]] = {
     "link_refused": LinkRefused,
     "malformed_body": MalformedBody,
     "method_not_allowed": MethodNotAllowed,
+    "metrics_not_for_you": MetricsNotForYou,
     "muted_everywhere": MutedEverywhere,
     "no_campus_sign_in": NoCampusSignIn,
     "no_code": NoCode,
