@@ -32,6 +32,8 @@ PEOPLE: Final = {
     "dispatcher": ("dispatcher@campus.example", {Role.DISPATCHER}),
     "maintainer": ("maintainer@campus.example", {Role.MAINTAINER}),
 }
+DELEGATE: Final = "delegate@campus.example"
+"""Named by the sender of every order here, and signed in as anybody."""
 GUEST: Final = "guest@campus.example"
 EVERYTHING: Final = ("everything@campus.example", {Role.DISPATCHER, Role.MAINTAINER})
 """Whose scripts come with tokens: what they may not do is their scopes' doing."""
@@ -106,6 +108,8 @@ class Everybody:
             return {}
         if who == "robot":
             return {"Authorization": f"Bearer {await new_token(session, self.app.state.clock, 'r1')}"}
+        if who == "delegate":
+            people = {**people, who: await self._person(session, DELEGATE, set())}
         if who in people:
             _, cookie = await self._signed_in(session, people[who])
             return {"Cookie": f"session={cookie}", "Sec-Fetch-Site": "same-origin"}
@@ -153,7 +157,9 @@ class Everybody:
         return str((await self.app.state.standing_orders.create(session, sender, wish)).id)
 
     async def an_order(self, session: AsyncSession, sender: Person) -> str:
-        return await self._order(session, sender, PEOPLE["recipient"][0])
+        order_id = await self._order(session, sender, PEOPLE["recipient"][0])
+        await self.app.state.delegating.name(session, sender, order_id, NewDelegate(name="Dee", email=DELEGATE))
+        return order_id
 
     async def _person(self, session: AsyncSession, email: str, roles: set[Role]) -> Person:
         person: Person = await self.app.state.sign_in_desk.person(session, email, self.app.state.clock.utc())

@@ -261,6 +261,17 @@ def test_a_script_with_every_scope_may_do_what_its_person_may(browser: httpx.Cli
     assert {route: status for route, status in answered.items() if status in {401, 403}} == {}
 
 
+def test_a_delegate_has_their_code_and_is_else_like_anybody(browser: httpx.Client, everybody: Everybody) -> None:
+    theirs = {
+        ("GET", "/api/v1/orders/{order_id}/code"): 200,
+        ("GET", "/api/v1/orders/{order_id}/code.svg"): 200,
+        ("POST", "/api/v1/orders/{order_id}/handover"): 409,  # no robot waits yet
+    }
+    of_orders = {route: line.member for route, line in LINES.items() if "{order_id}" in route[1]}
+    answered = {route: knock(browser, everybody, "delegate", route)[0] for route in of_orders}
+    assert answered == {**of_orders, **theirs}
+
+
 def test_a_robots_token_opens_no_route(browser: httpx.Client, everybody: Everybody) -> None:
     answered = {route: knock(browser, everybody, "robot", route)[0] for route in LINES}
     assert answered == {route: line.stranger for route, line in LINES.items()}
