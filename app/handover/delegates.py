@@ -7,6 +7,7 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.fleet.service import Fleet
 from app.handover import errors
+from app.handover.looking import theirs
 from app.handover.people import may_see, purpose_to_delegate
 from app.handover.schemas import NewDelegate
 from app.orders.codes import HandoverCode, Holder, delegates_of
@@ -29,7 +30,7 @@ class Delegating:
 
     async def all_of(self, session: AsyncSession, person: Person, order_id: str) -> list[Delegate]:
         """Those that this person may see, revoked ones too. Raises UnknownOrder."""
-        order, role = await self.fleet.orders.theirs(session, person, order_id)
+        order, role = await theirs(session, person, order_id)
         return [one for one in await delegates_of(session, [order]) if may_see(one, role)]
 
     async def name(self, session: AsyncSession, person: Person, order_id: str, wish: NewDelegate) -> Delegate:
@@ -63,7 +64,7 @@ class Delegating:
 
     async def code(self, session: AsyncSession, person: Person, order_id: str, delegate_id: str) -> HandoverCode:
         """A delegate's code, for whoever may pass it on to them. Raises UnknownOrder, UnknownDelegate."""
-        order, role = await self.fleet.orders.theirs(session, person, order_id)
+        order, role = await theirs(session, person, order_id)
         row = await self._delegate(session, order, role, delegate_id)
         if row.revoked_at is not None or order.state in ENDED:
             raise errors.UnknownDelegate("This code opens nothing any more.")

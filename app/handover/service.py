@@ -11,6 +11,7 @@ from app.fleet.alarms import clear_alarms, raise_alarm
 from app.fleet.commands import ask, new_command_id, unanswered
 from app.fleet.service import Fleet
 from app.handover import errors
+from app.handover.looking import find_order
 from app.handover.people import WAITS, check_waits, code_for, codes_by_digits
 from app.handover.schemas import HandoverAsked
 from app.orders.codes import HandoverCode, delegates_of
@@ -42,7 +43,7 @@ class HandOvers:
 
     async def my_code(self, session: AsyncSession, person: Person, order_id: str) -> HandoverCode:
         """The code that it is this person's turn to show. Raises UnknownOrder, NoCodeForYou."""
-        order = await self.fleet.orders.order(session, order_id)
+        order = await find_order(session, order_id)
         code = code_for(order, person, await delegates_of(session, [order]))
         if code is None and role_in(order, person) is None:
             raise unknown(order_id)
