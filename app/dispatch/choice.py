@@ -19,15 +19,19 @@ HEAD_STARTS: Final = {Priority.LOW: -1, Priority.NORMAL: 0, Priority.HIGH: 1}
 
 @dataclass(frozen=True)
 class WaitingOrder:
-    """An order that no robot has been given yet. `wanted` is the only robot that may fetch it, `avoided` may not."""
+    """An order that no robot has been given yet. `wanted` is the only robot that may fetch it, `avoided` may not, nor
+    any that is still `dropping` it."""
 
     id: str
     from_post: str
     to_post: str = ""
     wanted: str | None = None
     avoided: str | None = None
+    dropping: frozenset[str] = frozenset()
 
     def may_go_with(self, robot: str) -> bool:
+        if robot in self.dropping:
+            return False
         return robot == self.wanted if self.wanted is not None else robot != self.avoided
 
 

@@ -59,7 +59,25 @@ async def _waiting(session: AsyncSession, now: datetime, head_start_s: float) ->
         high = wanted.where(col(Order.priority) == Priority.HIGH)
         rows |= {row[0]: row for row in (await connection.execute(high)).all()}
     longest = sorted(rows.values(), key=lambda row: (counts_since(row[5], row[6], head_start_s), row[0]))
-    return [WaitingOrder(*row[:5]) for row in longest]
+    dropping = await _dropping(session, list(rows))
+    return [
+        WaitingOrder(row[0], row[1], row[2], row[3], row[4], frozenset(dropping.get(row[0], ()))) for row in longest
+    ]
+
+
+async def _dropping(session: AsyncSession, order_ids: Sequence[str]) -> dict[str, set[str]]:
+    """Robots that were told to drop one of these orders and have not answered: they would drop it again."""
+    if not order_ids:
+        return {}
+    asked = select(RobotCommand.order_id, RobotCommand.robot).where(
+        col(RobotCommand.order_id).in_(order_ids),
+        RobotCommand.kind == "cancel",
+        col(RobotCommand.answered_at).is_(None),
+    )
+    dropping: dict[str, set[str]] = {}
+    for order_id, robot in (await session.exec(asked)).all():
+        dropping.setdefault(order_id or "", set()).add(robot)
+    return dropping
 
 
 def _columns() -> Any:
@@ -74,9 +92,18 @@ async def _idle(session: AsyncSession) -> list[IdleRobot]:
     )
     carries = exists().where(col(Order.robot) == col(RobotRow.name), is_aboard())
     wanted = select(RobotRow.name, RobotRow.post, RobotRow.battery_ratio).where(
-        col(RobotRow.online), col(RobotRow.activity) != Activity.STOPPED, ~on_mission, ~carries
+        col(RobotRow.online), col(RobotRow.activity) != Activity.STOPPED, ~on_mission, ~carries, ~is_recalled()
     )
     return [IdleRobot(*row) for row in (await session.exec(wanted)).all()]
+
+
+def is_recalled() -> ColumnElement[bool]:
+    """Told to come home, and not heard of since: what it is told next would cross with that."""
+    return exists().where(
+        col(RobotCommand.robot) == col(RobotRow.name),
+        col(RobotCommand.answered_at).is_(None),
+        col(RobotCommand.kind) == "recall",
+    )
 
 
 def is_aboard() -> ColumnElement[bool]:

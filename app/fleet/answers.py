@@ -9,7 +9,7 @@ from app.fleet.commands import answered
 from app.fleet.missions import drop_order, drop_stops, let_go_of
 from app.fleet.reports import Report
 from app.orders.service import Word
-from app.orders.stops import is_own
+from app.orders.stops import is_own, stops_of_order
 from app.orders.transitions import ROBOT_COMING, By
 from app.tables import MissionRow, MissionState, OrderState, RobotCommand
 from protocol.to_server import CommandAnswer
@@ -48,6 +48,9 @@ async def _let_go(report: Report, answer: CommandAnswer, order_id: str) -> None:
         await report.orders.ask_back(report.session, order, Word(By.ROBOT, robot=report.robot, reason=answer.reason))
     else:
         order.reassign_requested_at = None
+        for stop in await stops_of_order(report.session, order_id, report.robot):
+            # Updates have left it out meanwhile.
+            (await report.session.get_one(MissionRow, stop.mission_id)).update_number += 1
         await _refused(report, answer)
 
 
