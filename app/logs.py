@@ -30,8 +30,12 @@ def _redacted(value: Any) -> Any:
     return value
 
 
-def set_up_logs(level: str) -> None:
-    """Send structlog and the standard library's loggers to stderr; `level` is a name such as INFO."""
+def set_up_logs(level: str, as_json: bool | None = None) -> None:
+    """Send structlog and the standard library's loggers to stderr; `level` is a name such as INFO.
+
+    `as_json` None: lines for people at a terminal, else one JSON object a line, for whatever collects them.
+    """
+    as_json = not sys.stderr.isatty() if as_json is None else as_json
     shared: list[structlog.typing.Processor] = [
         structlog.contextvars.merge_contextvars,
         structlog.stdlib.add_log_level,
@@ -48,7 +52,7 @@ def set_up_logs(level: str) -> None:
     last: list[structlog.typing.Processor] = [
         structlog.stdlib.ProcessorFormatter.remove_processors_meta,
         redact,
-        structlog.processors.LogfmtRenderer(),
+        structlog.processors.JSONRenderer(default=str) if as_json else structlog.processors.LogfmtRenderer(),
     ]
     handler = logging.StreamHandler(sys.stderr)
     handler.setFormatter(structlog.stdlib.ProcessorFormatter(processors=last, foreign_pre_chain=shared))

@@ -9,7 +9,7 @@ import structlog
 from fastapi import FastAPI
 from starlette.datastructures import State
 
-from app import about, demo_camera, one_order
+from app import about, demo_camera, metrics, one_order
 from app.api_document import DocumentedApi
 from app.body_limit import BodyLimit
 from app.database import Database
@@ -51,6 +51,7 @@ from app.people.links import Links
 from app.people.oidc import Provider
 from app.people.rate_limits import RateLimits
 from app.people.service import SignInDesk
+from app.request_log import RequestLog
 from app.schema_version import bring_to_head
 from app.server_key import ServerKey, open_server_key
 from app.settings import Settings, make_data_folder, open_map
@@ -107,11 +108,14 @@ def create_app(settings: Settings, clock: Clock, outside: Outside | None = None)
     for router in ROUTERS:
         app.include_router(router, prefix=API)
     app.include_router(about.root_router)
+    app.include_router(metrics.router)
     add_pages(app, settings.pages)
+    metrics.measure_requests(app, app.state.metrics)
     app.add_middleware(ETags)
     app.add_middleware(BodyLimit)
     app.add_middleware(GzippedPages)
     app.add_middleware(SafeHeaders, policy=content_security_policy(settings.pages))
+    app.add_middleware(RequestLog)
     return app
 
 
@@ -123,6 +127,7 @@ def _add_parts(app: FastAPI, settings: Settings, clock: Clock) -> None:
     state.server_key = open_server_key(settings.server_key_path)
     state.database = Database(settings.url_of_database)
     state.feed = LocalFeed()
+    state.metrics = metrics.Metrics(clock.utc())
     state.rate_limits = RateLimits(settings)
     state.mailer = open_mailer(settings)
     state.sign_in_desk = SignInDesk(settings, state.server_key, state.mailer)

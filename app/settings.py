@@ -129,6 +129,9 @@ class Settings(BaseSettings):
         gt=0,
         description="An order of a standing order that could not be made in time is still made so much later.",
     )
+    metrics_token: SecretStr = Field(
+        SecretStr(""), description="Whoever brings it may read /metrics; empty: this machine alone. Give it as a file."
+    )
     keep_orders_days: float = Field(
         400, ge=1, description="How long ended orders keep names and addresses; afterwards they are records of nobody."
     )
