@@ -82,6 +82,10 @@ class Everybody:
         headers = self._headers_of.pop(who) if anew else self._headers_of[who]
         return Scene(headers, dict(self._places))
 
+    def fresh_scene(self, who: str) -> Scene:
+        """With a way in that nobody else has."""
+        return self.scene(who, (), anew=True)
+
     async def _set(self, who: str, gaps: list[str], anew: bool) -> None:
         async with self.app.state.database.transaction() as session:
             people = {name: await self._person(session, *known) for name, known in PEOPLE.items()}
