@@ -26,7 +26,8 @@ def message_of(mail: Mail, sender: str) -> EmailMessage:
     message = EmailMessage()
     message["From"] = sender
     message["To"] = mail.to
-    message["Subject"] = mail.subject
+    # Names of people stand in it, and a line of its own would be another header.
+    message["Subject"] = " ".join(mail.subject.split())
     message["Date"] = format_datetime(mail.at)
     message["Message-ID"] = f"<{name_of(mail.key)}@{sender.rpartition('@')[2].strip('<> ')}>"
     message["Auto-Submitted"] = "auto-generated"

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
+import structlog
 from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
@@ -17,6 +18,8 @@ from app.live.feed import Feed, Happening
 from app.notify.schemas import NoticeView
 from app.notify.wishes import MAIL, PUSH, WEBHOOK, channels_for
 from app.tables import Notice, NoticeWishes, OutgoingNotice, Person, PushSubscription, Webhook
+
+log = structlog.get_logger(__name__)
 
 AT_ONCE = 100
 SERVICE = "service"
@@ -85,5 +88,9 @@ def _sending(notice: Notice, channel: str, target: str | None) -> OutgoingNotice
 
 
 def _tell_pages(session: AsyncSession, feed: Feed, notice: Notice, person: Person) -> None:
-    view = NoticeView.of(notice, person.language).model_dump(mode="json")
+    try:
+        view = NoticeView.of(notice, person.language).model_dump(mode="json")
+    except KeyError as gap:  # a notice that lacks a fact of its text holds up no other
+        log.exception("notice without words", key=notice.key, gap=str(gap))
+        return
     after_commit(session, lambda: feed.publish(Happening("notice", view, person_id=person.id)))

@@ -35,7 +35,11 @@ TURNS: Final[Mapping[OrderState, Purpose]] = {
     OrderState.RETURNING: Purpose.RETURN,
     OrderState.AT_RETURN: Purpose.RETURN,
 }
-PURPOSE_OF_NOTICE: Final = {NoticeKind.ROBOT_HERE: Purpose.LOAD, NoticeKind.ROBOT_HERE_FOR_YOU: Purpose.RECEIVE}
+PURPOSE_OF_NOTICE: Final = {
+    NoticeKind.ROBOT_HERE: Purpose.LOAD,
+    NoticeKind.ROBOT_HERE_FOR_YOU: Purpose.RECEIVE,
+    NoticeKind.AT_RETURN: Purpose.RETURN,
+}
 
 
 class Holder(StrEnum):

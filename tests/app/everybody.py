@@ -136,8 +136,8 @@ class Everybody:
         keys = NewDevice(endpoint="https://push.example/sender", keys=SubscriptionKeys(p256dh="AA", auth="AA"))
         return (await add_device(session, sender, keys, now)).id
 
-    async def a_letter(self, session: AsyncSession, sender: Person) -> str:
-        """A notice that no channel takes."""
+    async def a_sending(self, session: AsyncSession, sender: Person) -> str:
+        """A sending that no channel takes."""
         now, order_id = self.app.state.clock.utc(), await self._order(session, sender, PEOPLE["recipient"][0])
         notice = (await session.exec(select(Notice.id).where(Notice.order_id == order_id))).one()
         sending = OutgoingNotice(key=order_id, channel="none", notice_id=notice, created_at=now)
@@ -201,5 +201,5 @@ MAKERS: Final[dict[str, Callable[[Everybody, AsyncSession, Person], Awaitable[st
     "delegate_id": Everybody.a_delegate,
     "token_prefix": Everybody.a_robots_token,
     "device_id": Everybody.a_device,
-    "sending_id": Everybody.a_letter,
+    "sending_id": Everybody.a_sending,
 }
