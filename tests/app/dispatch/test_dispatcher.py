@@ -116,7 +116,9 @@ async def test_a_robot_under_way_gets_one_more_order_by_the_next_update_of_its_m
 async def test_a_robot_that_delivered_is_given_the_next_order(service: Service, clock: SteppedClock) -> None:
     robot = PlayedRobot(clock)
     token = await service.enrol("r1")
-    first, second = await an_order(service, clock), await service.order("post4", "post1")
+    first = await an_order(service, clock)
+    clock.advance(1.0)
+    second = await service.order("post4", "post1")
     async with robot.connected(service.url, token):
         await robot.greet()
         mission = await robot.mission()
