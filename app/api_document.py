@@ -12,6 +12,7 @@ from fastapi import FastAPI
 from fastapi.routing import APIRoute
 
 from app.api_examples import EXAMPLES
+from app.api_words import PARAMETERS
 from app.errors import (
     GENERAL,
     PROBLEM_JSON,
@@ -138,6 +139,8 @@ def _name_parameters(operation: Document) -> None:
     for parameter in operation.get("parameters", []):
         if parameter["in"] == "header":
             parameter["name"] = parameter["name"].title()
+        if "description" not in parameter and parameter["name"] in PARAMETERS:
+            parameter["description"] = PARAMETERS[parameter["name"]]
 
 
 def _ways_in(operation: Document, method: str) -> list[Document]:
@@ -224,7 +227,7 @@ def _complete_answer(status: str, answer: Document) -> None:
     codes = answer.pop("x-codes", None)
     if codes:
         reference = answer["content"][PROBLEM_JSON]["schema"]["$ref"]
-        schema = {"$ref": reference, "properties": {"code": {"enum": sorted(codes)}}}
+        schema = {"allOf": [{"$ref": reference}, {"properties": {"code": {"enum": sorted(codes)}}}]}
         answer["content"] = {PROBLEM_JSON: {"schema": schema}}
 
 

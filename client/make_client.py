@@ -1,4 +1,5 @@
 """`make client` writes what follows from the service's OpenAPI document, and a client for programs that do not await.
+`--document` prints that document instead.
 
 models.py             a pydantic class for each schema
 problems.py           an exception for each code that an answer can carry
@@ -7,6 +8,7 @@ operations.py, client.py   the same without `await`, made of the files for those
 docs/api.md           its tables of errors and operations
 """
 
+import json
 import re
 import subprocess
 import sys
@@ -285,6 +287,9 @@ def _paragraphs(text: str, indent: int) -> str:
 
 if __name__ == "__main__":
     openapi = document()
+    if sys.argv[1:] == ["--document"]:
+        print(json.dumps(openapi, indent=2))
+        sys.exit()
     for file_name, content in made_files(openapi).items():
         (PACKAGE / file_name).write_text(content)
     api_tables.PAGE.write_text(api_tables.page(openapi))

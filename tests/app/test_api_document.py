@@ -43,6 +43,12 @@ def test_every_operation_says_what_it_does_in_a_sentence(every: list[Operation])
         assert 0 < len(operation["summary"]) <= 120, path
 
 
+def test_every_parameter_says_what_it_is(every: list[Operation]) -> None:
+    for _, path, operation in every:
+        for parameter in operation.get("parameters", ()):
+            assert parameter.get("description"), f"{path} {parameter['name']}: add it to PARAMETERS of app/api_document"
+
+
 def test_every_tag_is_described_and_used(every: list[Operation]) -> None:
     assert {tag for _, _, operation in every for tag in operation["tags"]} == set(TAGS)
 
@@ -52,8 +58,9 @@ def test_every_error_answer_is_a_problem_document_that_lists_its_codes(every: li
     for method, path, operation in every:
         for status, answer in problems_of(operation):
             assert list(answer["content"]) == [PROBLEM_JSON], (method, path, status)
-            codes = answer["content"][PROBLEM_JSON]["schema"].get("properties", {}).get("code", {}).get("enum")
-            assert codes, f"{method} {path} {status} lists no code: name the error class in problems(…)"
+            schema = answer["content"][PROBLEM_JSON]["schema"]
+            assert "allOf" in schema, f"{method} {path} {status} lists no code: name the error class in problems(…)"
+            codes = schema["allOf"][1]["properties"]["code"]["enum"]
             assert set(codes) <= known
             assert all(f"`{code}`" in answer["description"] for code in codes)
 
