@@ -7,7 +7,7 @@ PARAMETERS: Final[Mapping[str, str]] = {
     # headers
     "Accept-Language": "Languages that the caller reads, best first: for somebody who has not chosen one.",
     "Authorization": "`Bearer` and a token.",
-    "Idempotency-Key": "Chosen by the caller, new for each thing to be done: with the same key and body it is done once.",
+    "Idempotency-Key": "Chosen by the caller, new for each thing to be done: the same key and body are done once.",
     "If-Match": "An ETag: the change is made only if the order is still at that version.",
     "Last-Event-Id": "The `id` of the last event that was heard: what came after it is told first.",
     "User-Agent": "What the session is called in the list of sessions.",

@@ -2,7 +2,7 @@
 
 import re
 from datetime import datetime
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 
@@ -57,10 +57,16 @@ class PeoplePage(PageOf[PersonView]):
     """Some people, by mail address."""
 
 
+def _without_defaults(schema: dict[str, Any]) -> None:
+    """What is absent is not changed, so that no default is meant."""
+    for kind in schema["properties"].values():
+        kind.pop("default", None)
+
+
 class AboutMe(BaseModel):
     """What somebody may change about themselves; what is absent stays as it is."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", json_schema_extra=_without_defaults)
 
     name: Annotated[str, StringConstraints(min_length=1, max_length=200, strip_whitespace=True)] = ""
     language: Literal["en", "fr"] = "en"
