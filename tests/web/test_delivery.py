@@ -123,7 +123,7 @@ async def test_a_letter_is_ordered_loaded_carried_and_received_by_two_people(dem
     facts = ada.page.get_by_role("region", name="Where the robot is").get_by_role("list")
     await expect(facts.get_by_text(re.compile("^Last seen at Post 3, "))).to_be_visible()
     await expect(facts.get_by_text(re.compile("^Expected at Post 2, "))).to_be_visible()
-    await expect(facts.get_by_text("Driving towards post2")).to_be_visible()
+    await expect(facts.get_by_text("Driving towards Post 2")).to_be_visible()
     await expect(facts.get_by_text("Battery 82%")).to_be_visible()
     await expect(ada.page.get_by_role("region", name="Why it waits")).to_be_hidden()
     await expect(ada.page.get_by_role("img", name="Map: The paper's test track")).to_contain_text("last seen")
@@ -191,6 +191,19 @@ async def test_a_robot_out_of_reach_is_said_to_be_so_and_its_order_goes_on(demon
         ada.page.get_by_text(re.compile("^Out of network. Last heard of .* it goes on by itself"))
     ).to_be_visible()
     await expect(ada.page.get_by_role("heading", level=1)).to_have_text(f"{robot} is coming to Post 1")
+
+
+async def test_why_it_waits_is_said_in_french_and_what_has_no_french_is_marked(demonstration, visit):
+    ada = await visit("ada.king", at=demonstration.service, locale="fr-CA")
+    order_id = await ada.order("bob.martin@campus.example")
+    await demonstration.is_given_a_mission()
+    await demonstration.reports(Step.DEPARTED, StopAction.LOAD)
+    await ada.page.goto(f"/follow.html?order={order_id}")
+    await demonstration.is_seen("post3", towards="post2")
+    await demonstration.says("Driving towards post2")
+    await expect(ada.page.get_by_text("En route vers Post 2")).to_be_visible()
+    await demonstration.says("Juggling at post2")
+    await expect(ada.page.get_by_text("« Juggling at post2 » (en anglais)")).to_be_visible()
 
 
 async def test_an_answer_that_is_overtaken_does_not_undo_what_was_heard(demonstration, visit):
