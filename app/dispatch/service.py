@@ -28,6 +28,8 @@ from protocol.to_robot import Cancel
 
 LOOK_AGAIN_S: Final = 30.0
 """Real seconds. Nothing should be missed between two wakes; if it is after all, it does not wait for ever."""
+NOBODY_FREE_S: Final = 0.1
+"""Real seconds. While orders wait for robots, looking more often finds nothing new and takes time from what is."""
 AT_ONCE: Final = 20
 """So many orders in one transaction: what is behind them waits no longer than that takes."""
 TAKEN_ALONG_AT_ONCE: Final = 5
@@ -68,6 +70,8 @@ class Dispatcher:
             self._woken.clear()
             self._needs_robots = True  # what changes from here on may come too late for this look
             self._needs_robots = await self.look_round()
+            if self._needs_robots and not self._stopping:
+                await asyncio.sleep(NOBODY_FREE_S)
             try:
                 async with asyncio.timeout(LOOK_AGAIN_S):
                     await self._woken.wait()

@@ -119,7 +119,7 @@ class Fleet:
 
         def say() -> None:
             if view is not None:
-                self.feed.publish(Happening("robot", view.model_dump(mode="json")))
+                self.feed.publish(Happening("robot", view))
             for call in self.on_change:
                 call(robot.name)
 

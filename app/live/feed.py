@@ -14,6 +14,7 @@ from functools import cached_property
 from typing import Any, Final, Protocol
 
 from fastapi.sse import format_sse_event
+from pydantic import BaseModel
 
 from app.tables import Person, Role
 
@@ -23,14 +24,14 @@ QUEUED: Final = 200
 
 @dataclass(frozen=True)
 class Happening:
-    """One event of the stream: its name, its JSON, and for whom it is.
+    """One event of the stream: its name, what becomes its JSON, and for whom it is.
 
     `person_id` is the one person it is for; `role` all who have that role, but not those in `except_for` (who are told
     in another way); with neither it is for everybody signed in.
     """
 
     event: str
-    data: Mapping[str, Any]
+    data: Mapping[str, Any] | BaseModel
     person_id: str | None = None
     role: Role | None = None
     except_for: frozenset[str] = frozenset()
@@ -53,7 +54,9 @@ class Numbered:
     @cached_property
     def wire(self) -> bytes:
         """As it goes out: written once, however many listen, and never if nobody does."""
-        return format_sse_event(data_str=json.dumps(self.happening.data), event=self.happening.event, id=self.id)
+        data = self.happening.data
+        text = data.model_dump_json() if isinstance(data, BaseModel) else json.dumps(data)
+        return format_sse_event(data_str=text, event=self.happening.event, id=self.id)
 
 
 class Feed(Protocol):

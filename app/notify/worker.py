@@ -25,7 +25,7 @@ from protocol.clock import Clock
 log = structlog.get_logger(__name__)
 
 LOOK_EVERY_S: Final = 1.0
-GATHER_S: Final = 0.02
+GATHER_S: Final = 0.1
 """What comes within this time is routed and noted down together."""
 FIRST_PAUSE_S: Final = 5.0
 LONGEST_PAUSE_S: Final = 900.0

@@ -106,7 +106,8 @@ class Ledger:
         order = await self.order(session, order_id)
         if order.why != why:
             order.why = why
-            self.publish(session, (await load_facts(session, [order]))[0])
+            # Pages alone: who waits for changes of orders has nothing to do because of it.
+            self._publish_views(session, (await load_facts(session, [order]))[0])
 
     async def _write(self, session: AsyncSession, order: Order, kind: str, word: Word) -> None:
         order.version += 1
@@ -129,13 +130,16 @@ class Ledger:
 
     def publish(self, session: AsyncSession, facts: OrderFacts) -> None:
         """To sender, recipient and dispatchers, each as they may see it, and to whoever waits for changes."""
+        self._publish_views(session, facts)
+        after_commit(session, partial(self.changed, facts.order.id))
+
+    def _publish_views(self, session: AsyncSession, facts: OrderFacts) -> None:
         mine = {facts.sender.id: facts.sender, facts.recipient.id: facts.recipient}
         for person in mine.values():
             if view := view_for(person, facts, self.campus, self.settings):
                 self._publish_view(session, view, person_id=person.id)
         for_all = order_view(facts, "dispatcher", "", self.campus, self.settings)
         self._publish_view(session, for_all, role=Role.DISPATCHER, except_for=frozenset(mine))
-        after_commit(session, partial(self.changed, facts.order.id))
 
     def changed(self, order_id: str) -> None:
         """Wake whoever waits for changes of orders. After the commit."""
@@ -150,7 +154,7 @@ class Ledger:
         role: Role | None = None,
         except_for: frozenset[str] = frozenset(),
     ) -> None:
-        happening = Happening("order", view.model_dump(mode="json"), person_id, role, except_for)
+        happening = Happening("order", view, person_id, role, except_for)
         after_commit(session, lambda: self.feed.publish(happening))
 
 
