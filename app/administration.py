@@ -75,8 +75,8 @@ async def enrol(settings: Settings, name: str, again: bool) -> str:
         return token
 
 
-async def revoke(settings: Settings, name: str) -> int:
-    """Make all tokens of a robot worthless; how many that were. Raises UnknownRobot."""
+async def revoke(settings: Settings, name: str, prefix: str | None = None) -> int:
+    """Make all tokens of a robot worthless, or the one with this prefix; how many that were. Raises UnknownRobot."""
     clock = open_clock(settings)
     async with database_at_head(settings) as session:
-        return await fleet.revoke_tokens(session, clock, name)
+        return await fleet.revoke_tokens(session, clock, name, prefix)

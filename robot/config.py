@@ -268,7 +268,7 @@ def read_token(path: Path) -> str:
         mode = stat.S_IMODE(path.stat().st_mode)
         token = path.read_text("ascii").strip()
     except (OSError, UnicodeDecodeError) as error:
-        way_out = "`python -m app robots enrol NAME` on the server prints a token to put there."
+        way_out = "`python -m app robots enrol NAME` at the service prints a code for `robot enrol`."
         raise ConfigError(
             str(path), "token_file", f"cannot be read: {getattr(error, 'strerror', error)}", way_out
         ) from None

@@ -10,6 +10,7 @@ from app.administration import database_at_head, make_enrolment_code
 from app.administration import enrol as enrol_robot
 from app.administration import revoke as revoke_robot
 from app.commands.speaking import AsJson, errors_in_words, say_json, say_table
+from app.fleet.service import known_robot
 from app.settings import Settings, load_settings
 from app.tables import RobotRow, RobotToken
 
@@ -49,11 +50,33 @@ def enrol(
 
 
 @cli.command()
-def revoke(name: Name) -> None:
+def tokens(name: Name, as_json: AsJson = False) -> None:
+    """Every token that a robot has had, by its prefix: when it was made, used last and taken back."""
+    with errors_in_words():
+        rows = asyncio.run(_tokens(load_settings(), name))
+    if as_json:
+        say_json(rows)
+    else:
+        names = ("prefix", "created_at", "used_at", "revoked_at")
+        say_table([n.replace("_", " ") for n in names], [[row[n] for n in names] for row in rows], "No tokens.")
+
+
+@cli.command()
+def revoke(
+    name: Name, prefix: Annotated[str | None, typer.Option(help="Only the token that begins so.")] = None
+) -> None:
     """Make every token of a robot worthless, at once: a robot that was stolen, or whose token was seen."""
     with errors_in_words():
-        count = asyncio.run(revoke_robot(load_settings(), name))
+        count = asyncio.run(revoke_robot(load_settings(), name, prefix))
         typer.echo(f"{name}: {count} tokens revoked. Enrol it again: robots enrol {name}")
+
+
+async def _tokens(settings: Settings, name: str) -> list[dict[str, Any]]:
+    async with database_at_head(settings) as session:
+        await known_robot(session, name)
+        theirs = select(RobotToken).where(RobotToken.robot == name).order_by(col(RobotToken.created_at))
+        rows = (await session.exec(theirs)).all()
+    return [row.model_dump(mode="json", exclude={"secret_hash", "robot"}) for row in rows]
 
 
 async def _robots(settings: Settings) -> list[dict[str, Any]]:

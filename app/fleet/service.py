@@ -61,10 +61,12 @@ async def new_token(session: AsyncSession, clock: Clock, name: str) -> str:
     return token.text
 
 
-async def revoke_tokens(session: AsyncSession, clock: Clock, name: str) -> int:
-    """Make all tokens of a robot worthless; how many that were. Raises UnknownRobot."""
+async def revoke_tokens(session: AsyncSession, clock: Clock, name: str, prefix: str | None = None) -> int:
+    """Make a robot's tokens worthless, or the one with this prefix; how many that were. Raises UnknownRobot."""
     await known_robot(session, name)
     theirs = update(RobotToken).where(col(RobotToken.robot) == name, col(RobotToken.revoked_at).is_(None))
+    if prefix is not None:
+        theirs = theirs.where(col(RobotToken.prefix) == prefix)
     return (await session.exec(theirs.values(revoked_at=clock.utc()))).rowcount
 
 

@@ -1,6 +1,9 @@
 """A robot enrols itself by a code that is good once, for minutes, for a few tries; tokens are listed and revoked."""
 
 import base64
+import json
+import re
+from pathlib import Path
 from typing import Any
 
 import httpx2
@@ -8,7 +11,9 @@ import pytest
 from fastapi import FastAPI
 from fastapi.testclient import TestClient
 from sqlmodel import select
+from typer.testing import CliRunner, Result
 
+from app.__main__ import app as commands
 from app.fleet.tokens import token_of
 from app.people.service import find_person, set_roles
 from app.settings import Settings
@@ -144,3 +149,22 @@ def test_a_key_that_is_none_is_refused_before_the_code_is_used(
     code = new_code(maintainer)
     assert problem(enrol(nobody, code, key=key)) == (422, "invalid_request")
     assert enrol(nobody, code).status_code == 201
+
+
+def test_the_commands_print_a_code_list_tokens_by_prefix_and_take_one_back(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("CAMPUS_MAIL_DATA", str(tmp_path / "data"))
+
+    def command(*words: str) -> Result:
+        return CliRunner().invoke(commands, ["robots", *words])
+
+    code = command("enrol", "r1")
+    assert re.fullmatch(r"[2-9A-Z]{4}-[2-9A-Z]{4}\n", code.stdout), code.stdout
+    assert command("tokens", "r1").exit_code == 2, "a code alone makes no robot"
+    prefixes = [command("enrol", "r1", "--token", *again).stdout.split("_")[1] for again in ((), ("--again",))]
+    listed = json.loads(command("tokens", "r1", "--json").stdout)
+    assert [one["prefix"] for one in listed] == prefixes
+    assert [one["revoked_at"] is None for one in listed] == [False, True]
+    assert "1 tokens revoked" in command("revoke", "r1", "--prefix", prefixes[1]).stdout
+    assert "0 tokens revoked" in command("revoke", "r1", "--prefix", prefixes[1]).stdout
