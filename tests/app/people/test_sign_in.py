@@ -4,9 +4,11 @@ import pytest
 from fastapi import FastAPI
 from fastapi.testclient import TestClient
 
+from app.people.service import find_person
 from app.settings import Settings
+from app.tables import Person
 from protocol.clock import SteppedClock
-from tests.app.conftest import SENDER, Browser, Mails, SignedIn
+from tests.app.conftest import SENDER, Browser, Mailroom, Mails, SignedIn, sqlite_alone
 
 CODES, SIGN_IN = "/api/v1/sign-in/codes", "/api/v1/sign-in"
 
@@ -137,11 +139,23 @@ def test_an_old_browser_that_says_only_its_origin_may_act(app: FastAPI, sender: 
     assert answer.status_code == 204
 
 
-def test_neither_codes_nor_cookies_are_stored_in_the_clear(settings: Settings, sender: Browser, mails: Mails) -> None:
+@sqlite_alone
+def test_codes_cookies_tokens_and_links_are_not_stored_in_the_clear(
+    app: FastAPI, settings: Settings, sender: Browser, mails: Mails, mailroom: Mailroom
+) -> None:
+    token = sender.post("/api/v1/tokens", json={"name": "script", "scopes": ["orders:read"]}).json()["token"]
+    order_id = sender.order(recipient="ann@campus.example").json()["id"]
+    ann = mailroom.call(_person, app, "ann@campus.example")
+    link = mailroom.call(app.state.links.url_for, ann, order_id).partition("#")[2]
     stored = b"".join(file.read_bytes() for file in settings.data.glob("campus-mail.sqlite*"))
     assert SENDER.encode() in stored
-    assert mails.newest_code(SENDER).encode() not in stored
-    assert sender.cookies["session"].encode() not in stored
+    secrets = (mails.newest_code(SENDER), sender.cookies["session"], token.rpartition("_")[2], link)
+    assert [secret for secret in secrets if secret.encode() in stored] == []
+
+
+async def _person(app: FastAPI, email: str) -> Person | None:
+    async with app.state.database.reading() as session:
+        return await find_person(session, email)
 
 
 def test_the_mail_is_written_in_the_browsers_language(signed_in: SignedIn, nobody: TestClient, mails: Mails) -> None:

@@ -6,7 +6,6 @@ import pytest
 from fastapi import FastAPI
 from fastapi.testclient import TestClient
 
-from app.settings import Settings
 from protocol.clock import SteppedClock
 from tests.app.conftest import HERE, RECIPIENT, Browser
 
@@ -40,9 +39,7 @@ def test_a_script_orders_in_its_persons_name(app: FastAPI, sender: Browser) -> N
     assert script.get("/api/v1/me").json()["email"] == sender.get("/api/v1/me").json()["email"]
 
 
-def test_a_token_is_listed_without_its_secret_and_revoked(
-    app: FastAPI, sender: Browser, recipient: Browser, settings: Settings, clock: SteppedClock
-) -> None:
+def test_a_token_is_listed_without_its_secret_and_revoked(app: FastAPI, sender: Browser, recipient: Browser) -> None:
     made = issue(sender, "orders:read")
     script = Script(app, sender, made["token"])
     assert sender.get(TOKENS).json()["items"][0]["used_at"] is None
@@ -53,9 +50,6 @@ def test_a_token_is_listed_without_its_secret_and_revoked(
     assert recipient.delete(f"{TOKENS}/{made['prefix']}").status_code == 404, "not theirs"
     assert sender.delete(f"{TOKENS}/{made['prefix']}").status_code == 204
     assert (script.get("/api/v1/orders").status_code, sender.get(TOKENS).json()["items"]) == (401, [])
-    stored = b"".join(file.read_bytes() for file in settings.data.glob("campus-mail.sqlite*"))
-    assert made["prefix"].encode() in stored
-    assert made["token"].rpartition("_")[2].encode() not in stored
 
 
 def test_a_token_is_good_until_its_day(app: FastAPI, sender: Browser, clock: SteppedClock) -> None:
