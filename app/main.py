@@ -25,6 +25,7 @@ from app.fleet.service import Fleet
 from app.handover import routes as handover_routes
 from app.handover.delegates import Delegating
 from app.handover.service import HandOvers
+from app.handshakes import RefusedHandshakes
 from app.keeping.housekeeper import Housekeeper
 from app.live import routes as live_routes
 from app.live.feed import LocalFeed
@@ -111,6 +112,7 @@ def create_app(settings: Settings, clock: Clock, outside: Outside | None = None)
     app.include_router(metrics.router)
     add_pages(app, settings.pages)
     metrics.measure_requests(app, app.state.metrics)
+    app.add_middleware(RefusedHandshakes)
     app.add_middleware(ETags)
     app.add_middleware(BodyLimit)
     app.add_middleware(GzippedPages)

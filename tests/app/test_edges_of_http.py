@@ -2,11 +2,14 @@
 
 import base64
 import gzip
+import json
 from collections.abc import Iterator
 from pathlib import Path
 
 import httpx
 import pytest
+from websockets.asyncio.client import connect
+from websockets.exceptions import InvalidStatus
 
 from app.body_limit import MAX_BODY_BYTES
 from tests.app.conftest import RECIPIENT, Browser, Served
@@ -64,6 +67,15 @@ def test_a_cursor_that_points_nowhere_is_refused(sender: Browser, place: str) ->
     cursor = base64.urlsafe_b64encode(place.encode()).decode()
     answer = sender.get("/api/v1/orders", params={"cursor": cursor})
     assert (answer.status_code, answer.json()["code"]) == (400, "bad_cursor")
+
+
+async def test_a_socket_that_is_not_there_is_answered_by_a_problem(served: Served) -> None:
+    with pytest.raises(InvalidStatus) as refused:
+        async with connect(served.url.replace("http", "ws") + "/api/v1/nowhere"):
+            pass
+    answer = refused.value.response
+    assert (answer.status_code, answer.headers["content-type"]) == (404, "application/problem+json")
+    assert json.loads(answer.body or b"")["code"] == "not_found"
 
 
 @pytest.mark.parametrize("origin", ["http://[::", "null", "http://127.0.0.1.evil.example"])
