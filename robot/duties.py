@@ -130,6 +130,8 @@ class Duties:
     def _take(self, message: Part) -> None:
         match message:
             case Mission():
+                # Held since it came; but a recall that came before it, and is carried out only now, has dropped it.
+                self.memory.hold(message)
                 self._accepted(message)
             case Deny():
                 self._denied[message.claim_id] = message

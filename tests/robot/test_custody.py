@@ -10,8 +10,8 @@ import pytest
 from cryptography.exceptions import InvalidSignature
 from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PublicKey
 
-from protocol.parts import Purpose, Stop, StopAction
-from protocol.to_robot import Cancel, Confirm, Mission, Verifier, Verifiers
+from protocol.parts import Part, Purpose, Stop, StopAction
+from protocol.to_robot import Cancel, Confirm, Mission, Recall, Verifier, Verifiers
 from protocol.to_server import HandoverReceipt, Step
 from robot.config import ConfigError
 from robot.custody import Waiting
@@ -45,9 +45,9 @@ class Desk:
     store: Store
     duties: Duties
 
-    def hears(self, confirm: Cancel | Confirm) -> list[dict[str, Any]]:
+    def hears(self, *messages: Part) -> list[dict[str, Any]]:
         before = len(self.told())
-        self.duties.join(_Saying(confirm))
+        self.duties.join(_Saying(messages))
         self.duties.take_messages()
         return self.told()[before:]
 
@@ -63,11 +63,11 @@ class Desk:
 
 @dataclass
 class _Saying:
-    message: Cancel | Confirm
+    messages: tuple[Part, ...]
     online: bool = True
 
     def incoming(self) -> list[Incoming]:
-        return [Incoming(self.message, "journal", None)]
+        return [Incoming(message, "journal", None) for message in self.messages]
 
     def wake(self) -> None:
         pass
@@ -197,3 +197,11 @@ def test_each_update_of_a_mission_is_accepted_once_and_each_report_says_which_it
         desk.duties.give(LETTER.model_copy(update={"update": 2, "stops": (LOAD, back)}))
     desk.duties.report(Step.DEPARTED, "s1", "post5")
     assert [(one["step"], one["update"]) for one in desk.told()] == [("accepted", 1), ("accepted", 2), ("departed", 2)]
+
+
+def test_a_mission_that_came_after_a_recall_is_held_though_both_are_taken_in_one_go(desk: Desk) -> None:
+    later = LETTER.model_copy(update={"id": "m2"})
+    desk.duties.memory.hold(later)  # as the link does when it comes
+    desk.hears(Recall(command_id="c1", reason="closing early"), later)
+    assert desk.duties.held.mission == later
+    assert (desk.told()[-1]["step"], desk.told()[-1]["mission_id"]) == ("accepted", "m2")
