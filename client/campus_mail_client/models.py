@@ -31,8 +31,8 @@ class About(Model):
 class AboutMe(Model):
     """What somebody may change about themselves; what is absent stays as it is."""
 
-    name: str = ""
-    language: Literal["en", "fr"] | str = "en"
+    name: str | None = None
+    language: Literal["en", "fr"] | str | None = None
     usual_post: str | None = None
 
 
