@@ -31,7 +31,7 @@ from protocol.to_server import Snapshot, Why
 
 GATHER_S: Final = 0.01
 """Real seconds for which the first message waits for others: a transaction costs more than what is in it."""
-AT_ONCE: Final = 64
+AT_ONCE: Final = 200
 """Messages in one transaction, so that the first of them does not wait long for the last."""
 UNSEEN: Final = frozenset({"heard_at", "last_seq"})
 """What may change of a robot without anything to tell pages."""
