@@ -1,7 +1,8 @@
 """Writes notices, in the transaction of whatever they tell of; the inbox is read from them."""
 
 from collections.abc import Mapping
-from datetime import datetime
+from datetime import datetime, timedelta
+from typing import Final
 
 from sqlalchemy import String, cast, func, update
 from sqlmodel import col, select
@@ -11,6 +12,7 @@ from app.notify.schemas import Inbox, NoticeView
 from app.paging import Paging, Sorting
 from app.tables import Alarm, Notice, NoticeKind, Person, Role
 
+COMES_AND_GOES: Final = timedelta(minutes=10)
 NEWEST_FIRST = Sorting("notices", col(Notice.id), descending=True)
 
 
@@ -41,8 +43,8 @@ async def _told(session: AsyncSession, person: Person, key: str) -> bool:
 
 
 async def tell_dispatchers(session: AsyncSession, alarm: Alarm) -> None:
-    """Tell everybody who dispatches of a new alarm. One that is acknowledged or over is silent."""
-    if alarm.acknowledged_at or alarm.cleared_at:
+    """Tell everybody who dispatches of a new alarm. One that is acknowledged or over is silent, or comes and goes."""
+    if alarm.acknowledged_at or alarm.cleared_at or await _was_just_over(session, alarm):
         return
     facts = {"robot": alarm.robot, "reason": alarm.reason, "post": alarm.post or ""}
     for person in await _with_role(session, Role.DISPATCHER):
@@ -55,6 +57,12 @@ async def tell_dispatchers(session: AsyncSession, alarm: Alarm) -> None:
             facts=facts,
             now=alarm.at,
         )
+
+
+async def _was_just_over(session: AsyncSession, alarm: Alarm) -> bool:
+    """A robot that people brush past all day rings each time: they are told of it once."""
+    same = select(Alarm.id).where(Alarm.robot == alarm.robot, Alarm.name == alarm.name, Alarm.id != alarm.id)
+    return (await session.exec(same.where(col(Alarm.cleared_at) > alarm.at - COMES_AND_GOES))).first() is not None
 
 
 async def _with_role(session: AsyncSession, role: Role) -> list[Person]:

@@ -47,13 +47,14 @@ def certificate(folder: Path) -> tuple[Path, ssl.SSLContext]:
 
 @dataclass
 class MailServer:
-    """Speaks SMTP with STARTTLS and AUTH. `says` has what it answers to recipients, in order; then it takes all.
+    """Speaks SMTP with AUTH and STARTTLS, or with TLS `at_once`.
 
-    `cuts` has how often it hangs up: "in data", before it has the mail, or "after data", when it has it but has not
-    said so.
+    `says` has what it answers to recipients, in order; then it takes all. `cuts` has how often it hangs up: "in data",
+    before it has the mail, or "after data", when it has it but has not said so.
     """
 
-    tls: ssl.SSLContext | None = None
+    tls: ssl.SSLContext
+    at_once: bool = False
     says: list[str] = field(default_factory=list)
     cuts: list[str] = field(default_factory=list)
     hangs: bool = False
@@ -64,7 +65,7 @@ class MailServer:
     @asynccontextmanager
     async def listening(self) -> AsyncIterator["MailServer"]:
         loop = asyncio.get_running_loop()
-        server = await loop.create_server(self._connection, "127.0.0.1", 0)
+        server = await loop.create_server(self._connection, "127.0.0.1", 0, ssl=self.tls if self.at_once else None)
         self.port = server.sockets[0].getsockname()[1]
         yield self
         self.hangs = False
@@ -73,9 +74,10 @@ class MailServer:
     def _connection(self) -> SMTP:
         return _Connection(
             self,
-            tls_context=self.tls,
-            require_starttls=self.tls is not None,
-            auth_required=self.tls is not None,
+            tls_context=None if self.at_once else self.tls,
+            require_starttls=not self.at_once,
+            auth_required=not self.at_once,
+            auth_require_tls=not self.at_once,  # it does not know of an encryption that began before it
             authenticator=self._is_known,
         )
 

@@ -39,6 +39,11 @@ async def test_an_alarm_is_told_to_every_dispatcher_once_while_it_lasts(
         async with office.state.database.transaction() as session:
             await clear_alarms(session, "r1", "base_silent", clock.utc())
         await rings(office)
+        assert len(await told(office)) == 1, "it comes and goes"
+        async with office.state.database.transaction() as session:
+            await clear_alarms(session, "r1", "base_silent", clock.utc())
+        clock.advance(11 * 60)
+        await rings(office)
         assert len(await told(office)) == 2, "it has come back"
         await office.settle()
         assert await office.sendings("mail") == [], "the page is open where somebody is on duty"

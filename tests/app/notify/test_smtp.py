@@ -56,6 +56,19 @@ async def test_a_notice_goes_out_encrypted_and_signed_in_with_its_code(
     assert not smtp.spool_folder.exists()
 
 
+async def test_a_server_that_is_encrypted_from_the_first_byte_is_spoken_to_as_well(
+    smtp: Settings, tmp_path: Path, clock: SteppedClock
+) -> None:
+    _, tls = certificate(tmp_path)
+    async with MailServer(tls, at_once=True).listening() as server:
+        known = {"smtp_tls": "tls", "smtp_port": server.port}
+        async with running(smtp.model_copy(update=known), clock) as office:
+            await office.order()
+            await office.settle()
+            assert (await office.sending("mail")).problem is None
+        assert len(server.taken) == 1
+
+
 async def test_a_full_mailbox_is_tried_again_and_an_unknown_one_given_up(
     smtp: Settings, server: MailServer, clock: SteppedClock
 ) -> None:
