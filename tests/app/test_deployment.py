@@ -1,0 +1,35 @@
+"""What is shipped to run the service: units that systemd takes, proxies that pass on what they must."""
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from app.settings import ROOT
+
+DEPLOY = ROOT / "deploy"
+UNITS = ("campus-mail.service", "campus-mail-backup.service", "campus-mail-backup.timer")
+
+
+@pytest.mark.skipif(shutil.which("systemd-analyze") is None, reason="there is no systemd here")
+def test_systemd_finds_nothing_wrong_with_the_units(tmp_path: Path) -> None:
+    for name in UNITS:
+        text = (DEPLOY / name).read_text().replace("/opt/campus-mail/.venv/bin/python", sys.executable)
+        (tmp_path / name).write_text(text)
+    verify = ["systemd-analyze", "verify", "--man=no", *(str(tmp_path / name) for name in UNITS)]
+    ran = subprocess.run(verify, capture_output=True, text=True, check=False)
+    assert [line for line in ran.stderr.splitlines() if "campus-mail" in line] == []
+
+
+def test_no_proxy_shows_the_figures_or_holds_back_an_event() -> None:
+    nginx, caddy = ((DEPLOY / name).read_text() for name in ("nginx.conf", "Caddyfile"))
+    assert "location = /metrics { return 404; }" in nginx
+    assert "respond /metrics 404" in caddy
+    assert "proxy_buffering off;" in nginx.partition("location = /api/v1/live")[2].partition("}")[0]
+    assert "flush_interval -1" in caddy
+    # A proxy_set_header in a location replaces all of the server's, and with them whom the service has to believe.
+    server, _, locations = nginx.partition("location")
+    assert {"X-Forwarded-For", "X-Forwarded-Proto", "Upgrade", "Host"} <= set(server.split())
+    assert "proxy_set_header" not in locations
