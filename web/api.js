@@ -66,6 +66,9 @@ export async function me() {
   }
 }
 
+/** Where a browser goes to sign in at the campus itself; it comes back to `/`. */
+export const CAMPUS_SIGN_IN = `${BASE}/sign-in/oidc`;
+
 /** Have a code mailed. @param {string} email @returns {Promise<{expires_at: string}>} */
 export const requestCode = (email) => ask("/sign-in/codes", { method: "POST", body: { email } });
 

@@ -20,6 +20,7 @@ export interface About {
   now: string;
   languages: string[];
   allowed_domains: string[];
+  campus_sign_in: boolean;
   map: string;
 }
 

@@ -8,6 +8,7 @@ import socket
 import subprocess
 import sys
 import time
+from collections.abc import Mapping
 from email import message_from_bytes, policy
 from pathlib import Path
 
@@ -26,7 +27,9 @@ MAIL_LIMIT_S = 10.0
 class Service:
     """Serves on a free port of this machine; `door` makes it a demonstration."""
 
-    def __init__(self, folder: Path, campus: str = "test_track", door: Path | None = None) -> None:
+    def __init__(
+        self, folder: Path, campus: str = "test_track", door: Path | None = None, more: Mapping[str, str] | None = None
+    ) -> None:
         self._folder = folder
         self._port = _free_port()
         self.url = f"http://127.0.0.1:{self._port}"
@@ -37,6 +40,7 @@ class Service:
             "CAMPUS_MAIL_PUBLIC_URL": self.url,
             "CAMPUS_MAIL_ALLOWED_DOMAINS": '["campus.example"]',
             **({"CAMPUS_MAIL_DEMO_DOOR": str(door)} if door else {}),
+            **(more or {}),
         }
 
     def __enter__(self) -> "Service":

@@ -2,12 +2,22 @@
 import { html, nothing } from "lit";
 import * as api from "../api.js";
 import { atFields } from "../problems.js";
-import { t } from "../texts.js";
+import { hasText, t } from "../texts.js";
 import { field, problemLine } from "./field.js";
 import { PageElement } from "./page_element.js";
 /** @import { About } from "../api_types.ts" */
 
 const FIELD_OF_CODE = { address_not_allowed: "email", wrong_code: "code", code_expired: "code" };
+
+/** Who was refused at the campus's own sign-in comes back with the code of the problem. */
+function whatCameBack() {
+  const here = new URL(location.href);
+  const code = here.searchParams.get("sign_in_problem");
+  if (!code) return {};
+  here.searchParams.delete("sign_in_problem");
+  history.replaceState(history.state, "", here);
+  return { form: t(hasText(`error.${code}`) ? `error.${code}` : "error.oidc_refused") };
+}
 
 export class SignIn extends PageElement {
   static properties = {
@@ -26,7 +36,7 @@ export class SignIn extends PageElement {
     this.codeSent = false;
     this.busy = false;
     /** @type {Record<string, string>} */
-    this.problems = {};
+    this.problems = whatCameBack();
   }
 
   render() {
@@ -35,7 +45,7 @@ export class SignIn extends PageElement {
       <div class="card">
         <h1>${t("sign_in.title")}</h1>
         <p class="lead">${t("sign_in.lead")}</p>
-        ${this.codeSent ? this.#codeForm() : this.#emailForm()}
+        ${this.codeSent ? this.#codeForm() : [this.#emailForm(), this.#campus()]}
       </div>
     </section>`;
   }
@@ -56,6 +66,11 @@ export class SignIn extends PageElement {
       ${this.#formProblem()}
       <button class="main" ?disabled=${this.busy}>${t("sign_in.send")}</button>
     </form>`;
+  }
+
+  #campus() {
+    if (!this.about?.campus_sign_in) return nothing;
+    return html`<p class="hint">${t("sign_in.or")}</p><a class="button" href=${api.CAMPUS_SIGN_IN}>${t("sign_in.campus")}</a>`;
   }
 
   #codeForm() {

@@ -1,8 +1,5 @@
 """Signing in at the campus itself, with a real provider in a process of its own (oidc-provider-mock)."""
 
-import subprocess
-import sys
-import time
 from collections.abc import Iterator
 from typing import Any
 from urllib.parse import parse_qs, parse_qsl, urlencode, urlsplit, urlunsplit
@@ -17,6 +14,7 @@ from app.serving import listen
 from app.settings import Settings
 from protocol.clock import SteppedClock
 from tests.app.conftest import HERE, SignedIn
+from tests.app.people.campus_provider import campus_provider, tell_of
 
 START = "/api/v1/sign-in/oidc"
 ADA = {"email": "Ada.King@campus.example", "email_verified": True, "name": "Ada Lovelace"}
@@ -24,35 +22,8 @@ ADA = {"email": "Ada.King@campus.example", "email_verified": True, "name": "Ada 
 
 @pytest.fixture(scope="module")
 def issuer() -> Iterator[str]:
-    with listen("127.0.0.1", 0) as free:
-        port = free.getsockname()[1]
-    command = [
-        sys.executable,
-        "-W",
-        "ignore",
-        "-m",
-        "oidc_provider_mock",
-        "--port",
-        str(port),
-        "--require-nonce",
-        "true",
-    ]
-    with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
-        url = f"http://127.0.0.1:{port}"
-        _wait_for(url)
-        yield url
-        process.terminate()
-
-
-def _wait_for(url: str) -> None:
-    for _ in range(200):
-        try:
-            httpx.get(url)
-        except httpx.TransportError:
-            time.sleep(0.1)
-        else:
-            return
-    pytest.fail("the provider does not start")
+    with campus_provider() as issuer:
+        yield issuer
 
 
 @pytest.fixture
@@ -68,7 +39,7 @@ class Campus:
         self.issuer = issuer
 
     def knows(self, subject: str, **claims: Any) -> None:
-        httpx.put(f"{self.issuer}/users/{subject}", json=claims).raise_for_status()
+        tell_of(self.issuer, subject, **claims)
 
     def sign_in(self, address: str, subject: str) -> str:
         """Where the provider sends the browser back to."""
