@@ -30,6 +30,6 @@ def test_no_proxy_shows_the_figures_or_holds_back_an_event() -> None:
     assert "proxy_buffering off;" in nginx.partition("location = /api/v1/live")[2].partition("}")[0]
     assert "flush_interval -1" in caddy
     # A proxy_set_header in a location replaces all of the server's, and with them whom the service has to believe.
-    server, _, locations = nginx.partition("location")
+    server, _, locations = nginx.partition("location =")
     assert {"X-Forwarded-For", "X-Forwarded-Proto", "Upgrade", "Host"} <= set(server.split())
     assert "proxy_set_header" not in locations
