@@ -9,7 +9,7 @@ import { PageElement } from "./page_element.js";
 
 const FIELD_OF_CODE = { address_not_allowed: "email", wrong_code: "code", code_expired: "code" };
 
-/** Who was refused at the campus's own sign-in comes back with the code of the problem. */
+/** Who was refused at the campus's own sign-in comes back with the code of the problem. @returns {Record<string, string>} */
 function whatCameBack() {
   const here = new URL(location.href);
   const code = here.searchParams.get("sign_in_problem");
