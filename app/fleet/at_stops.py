@@ -63,7 +63,8 @@ async def _stop(report: Report, mission: MissionRow, progress: Progress) -> Stop
     order = await report.session.get(Order, progress.order_id) if progress.order_id else None
     if order is None or not is_own(mission.id) or progress.stop_id != f"{OWN_PREFIX}{order.id}"[:64]:
         raise UnknownStop(f"mission {mission.id} has no stop {progress.stop_id}")
-    return await own_stop(report, mission, order) if mission.state is MissionState.ACTIVE else None
+    is_taken_over = stop is not None and mission.state is not MissionState.ACTIVE
+    return None if is_taken_over else await own_stop(report, mission, order)
 
 
 async def _at_stop(report: Report, progress: Progress, mission: MissionRow, stop: StopRow) -> None:

@@ -92,10 +92,12 @@ async def drop_order(report: Report, order: Order, word: Word) -> None:
 
 
 async def drop_stops(report: Report, order_id: str) -> None:
-    """Nothing is left to do for this order; a mission in which nothing is left at all is over."""
+    """Nothing is left to do for this order; a mission in which nothing is left at all is over, whoever gave it."""
     for stop in await stops_of_order(report.session, order_id, report.robot):
         stop.dropped_at = report.now
-        await end_if_nothing_is_left(report, await report.session.get_one(MissionRow, stop.mission_id))
+    for mission in await _active(report):
+        if mission.told_update > 0:
+            await _end_if_empty(report, mission)
 
 
 async def end_if_nothing_is_left(report: Report, mission: MissionRow) -> None:
@@ -103,8 +105,13 @@ async def end_if_nothing_is_left(report: Report, mission: MissionRow) -> None:
 
     Of a robot's own mission not every stop may be known: that one ends when the robot says so.
     """
+    if not is_own(mission.id):
+        await _end_if_empty(report, mission)
+
+
+async def _end_if_empty(report: Report, mission: MissionRow) -> None:
     await report.session.flush()
-    if is_own(mission.id) or (await report.session.exec(left_of(mission.id).limit(1))).first() is not None:
+    if (await report.session.exec(left_of(mission.id).limit(1))).first() is not None:
         return
     done = select(StopRow.id).where(StopRow.mission_id == mission.id, col(StopRow.done_at).is_not(None))
     is_done = (await report.session.exec(done.limit(1))).first() is not None

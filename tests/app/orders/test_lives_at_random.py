@@ -146,14 +146,27 @@ class LivesOfOrders(RuleBasedStateMachine):
     def a_robot_acts(self, robot: str, luck: str) -> None:
         self.world.act(robot, luck)
 
-    @rule(robot=ROBOTS, luck=LUCK)
-    def a_robot_goes_on(self, robot: str, luck: str) -> None:
+    @rule(robot=ROBOTS, luck=st.lists(LUCK, min_size=1, max_size=4))
+    def a_robot_goes_on(self, robot: str, luck: list[str]) -> None:
         """Dispatched to, told, doing and telling, as on a good day."""
         self.run(self.world.dispatch())
         if self.world.robots[robot].online:
             self.run(self.world.hear(robot))
-            self.world.act(robot, luck)
+            for one in luck:
+                self.world.act(robot, one)
             self.run(self.world.speak(robot))
+
+    @rule(number=ORDER, stops_at=st.sampled_from(("sender", "sets out", "arrives", "nobody comes")))
+    def mail_is_loaded(self, number: int, stops_at: str) -> None:
+        """Most of what can go wrong begins with mail that is aboard."""
+        order_id = self.order(number)
+        self.run(self.world.dispatch())
+        for name, robot in self.world.robots.items():
+            if robot.online and self.world.where[order_id] == "sender":
+                self.run(self.world.hear(name))
+                self.world.act(name, "sender")
+                self.world.act(name, stops_at)
+                self.run(self.world.speak(name))
 
     @rule(robot=ROBOTS, count=st.integers(1, 4))
     def a_robot_hears(self, robot: str, count: int) -> None:
