@@ -107,8 +107,9 @@ class OutboxWorker:
     async def _begin_due(self) -> bool:
         begun = False
         async with self.database.reading() as session:
+            owing = await self._owing(session)
             for channel in self.channels:
-                for outgoing in await self._due(session, channel):
+                for outgoing in await self._due(session, channel) if channel.name in owing else ():
                     self._begin(channel, outgoing)
                     begun = True
         return begun
@@ -117,6 +118,11 @@ class OutboxWorker:
         task = asyncio.create_task(self._send(channel, outgoing))
         self._under_way[task] = outgoing
         task.add_done_callback(lambda _: self.wake())
+
+    async def _owing(self, session: AsyncSession) -> set[str]:
+        """The channels that have anything to send: mostly one or none, and the others are not asked further."""
+        due = select(OutgoingNotice.channel).where(col(OutgoingNotice.next_try_at) <= self.clock.utc()).distinct()
+        return set((await session.exec(due)).all())
 
     async def _due(self, session: AsyncSession, channel: Channel) -> list[OutgoingNotice]:
         """As many as the channel has places for; of each target the one that waits longest."""

@@ -39,12 +39,12 @@ def test_what_does_not_go_out_is_seen_and_sent_again_by_hand(
     clock.advance(2 * 86_400)
     mailroom.send_mails()
     (given_up,) = dispatcher.get("/api/v1/outbox", params={"given_up": True}).json()["items"]
-    assert given_up["gave_up_at"]
+    assert given_up["id"] == waiting["id"] and given_up["gave_up_at"]
     folder.unlink()
     folder.with_name("aside").rename(folder)
     assert dispatcher.post(f"/api/v1/outbox/{waiting['id']}/retry").status_code == 202
     mailroom.send_mails()
-    assert dispatcher.get("/api/v1/outbox").json()["items"] == []
+    assert waiting["id"] not in [one["id"] for one in dispatcher.get("/api/v1/outbox").json()["items"]]
     again = dispatcher.post(f"/api/v1/outbox/{waiting['id']}/retry")
     assert (again.status_code, again.json()["code"]) == (409, "sent_already")
     assert dispatcher.post("/api/v1/outbox/999999/retry").json()["code"] == "unknown_sending"
