@@ -1,16 +1,37 @@
 """The service ends soon and in order, whatever it is doing when it is told to."""
 
 import asyncio
+import time
 from collections.abc import Sequence
 
+import httpx
+import pytest
 from fastapi import FastAPI
 from fastapi.testclient import TestClient
 from sqlmodel import select
+from websockets.exceptions import ConnectionClosed
+from websockets.sync.client import connect
 
 from app.database import Database
+from app.fleet.service import new_token
+from app.serving import GRACEFUL_S
 from app.settings import Settings
 from app.tables import Order, OrderState, RobotRow
-from tests.app.conftest import HERE, SENDER, Browser, Mails
+from protocol.clock import SteppedClock
+from protocol.envelope import Envelope
+from protocol.parts import Battery, Position
+from protocol.to_server import Hello
+from tests.app.conftest import HERE, SENDER, Browser, Mailroom, Mails, Served
+
+GOING_AWAY = 1012
+"""RFC 6455's registry: the service restarts, come back."""
+HELLO = Envelope(
+    type="hello",
+    robot="r1",
+    journal="j1",
+    at=SteppedClock().utc(),
+    body=Hello(position=Position(post="post5"), battery=Battery(ratio=0.9), software="t", map_version="m"),
+).to_text()
 
 
 def test_what_dispatch_has_begun_is_finished_before_the_end(app: FastAPI, mails: Mails, settings: Settings) -> None:
@@ -54,3 +75,36 @@ async def _let_dispatch_wait_for_the_lock(app: FastAPI) -> "asyncio.Task[None]":
     await has_begun.wait()
     await asyncio.sleep(0.1)
     return holding
+
+
+def test_who_is_connected_is_told_at_once_and_nothing_is_cut_off(
+    served: Served, sender: Browser, mailroom: Mailroom, mails: Mails, settings: Settings
+) -> None:
+    """The robot hears that the service goes away, the page's stream ends in order, what was to be mailed is mailed."""
+    token = mailroom.call(_new_token, mailroom.app)
+    headers = {"Authorization": f"Bearer {token}"}
+    link = served.url.replace("http", "ws") + "/api/v1/robots/link"
+    cookie = {"session": sender.cookies["session"]}
+    with connect(link, additional_headers=headers, proxy=None) as robot:
+        robot.send(HELLO)
+        assert '"welcome"' in robot.recv(5)
+        with httpx.stream("GET", f"{served.url}/api/v1/live", cookies=cookie, timeout=10) as stream:
+            events = stream.iter_lines()
+            assert "following" in next(events)
+            sender.order()
+            begun_s = time.monotonic()
+            served.server.should_exit = True
+            rest = list(events)  # ends, instead of breaking
+        with pytest.raises(ConnectionClosed):
+            while True:
+                robot.recv(5)
+        assert robot.close_code == GOING_AWAY
+        assert time.monotonic() - begun_s < 2 * GRACEFUL_S
+    assert rest is not None
+    mailroom.send_mails()
+    assert [mail["Subject"] for mail in mails.to(SENDER) if not mail["Message-ID"].startswith("<sign-in")]
+
+
+async def _new_token(app: FastAPI) -> str:
+    async with app.state.database.transaction() as session:
+        return await new_token(session, app.state.clock, "r1")
