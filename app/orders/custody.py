@@ -5,7 +5,7 @@ the order's state. Each hand-over ends one link and begins the next, so that at 
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime
 
 from app.orders.codes import Holder
@@ -18,7 +18,8 @@ class Held:
     """One link: who held it (sender, robot, recipient, delegate or mailroom), and until when; None: to this day.
 
     `how` tells how they came to have it: code, tap, digits or button by a robot's receipt, `dispatcher` by a
-    dispatcher's word, None for the sender's own.
+    dispatcher's word, None for the sender's own. `confirmed_by` is whose code, tap or digits it was, `signed` whether
+    the robot has signed for it.
     """
 
     holder: str
@@ -26,6 +27,8 @@ class Held:
     since: datetime
     until: datetime | None
     how: str | None
+    confirmed_by: str | None = None
+    signed: bool = False
 
 
 def custody_of(order: Order, handovers: Iterable[Handover]) -> tuple[Held, ...]:
@@ -36,8 +39,8 @@ def custody_of(order: Order, handovers: Iterable[Handover]) -> tuple[Held, ...]:
         if holder == (last.holder, last.name):
             continue  # the same pair of hands again: a robot that lost its memory tells what is known
         at = max(one.robot_at if _is_plausible(one) else one.at, last.since)
-        chain[-1] = Held(last.holder, last.name, last.since, at, last.how)
-        chain.append(Held(*holder, at, None, one.how))
+        chain[-1] = replace(last, until=at)
+        chain.append(Held(*holder, at, None, one.how, one.holder, one.signature is not None))
     return tuple(chain)
 
 

@@ -131,6 +131,8 @@ class CustodyView(BaseModel):
 
     `holder` is sender, robot, recipient, delegate or mailroom, `name` the robot's. `how` says how they came to have it:
     code, tap, digits or button by a robot's receipt, `dispatcher` by a dispatcher's word, null for the sender's own.
+    `confirmed_by` is whose code, tap or digits it was (null for the button); `signed`: the robot has signed for it, and
+    the signature was checked.
     """
 
     model_config = ConfigDict(validate_by_name=True, validate_by_alias=True, serialize_by_alias=True)
@@ -140,10 +142,20 @@ class CustodyView(BaseModel):
     from_: datetime = Field(alias="from")
     to: datetime | None
     how: str | None
+    confirmed_by: str | None
+    signed: bool
 
     @classmethod
     def of(cls, held: Held) -> "CustodyView":
-        return cls(holder=held.holder, name=held.name, from_=held.since, to=held.until, how=held.how)
+        return cls(
+            holder=held.holder,
+            name=held.name,
+            from_=held.since,
+            to=held.until,
+            how=held.how,
+            confirmed_by=held.confirmed_by,
+            signed=held.signed,
+        )
 
 
 class HandoverRequested(BaseModel):

@@ -37,12 +37,16 @@ async def test_a_signed_receipt_says_who_gave_the_mail_and_how(campus: Campus) -
     assert str(order.state) == "carrying"
     assert (written.holder, written.person_id, written.how) == ("sender", order.sender_id, "code")
     assert written.signature == receipt.happened.signature  # type: ignore[union-attr]
+    link = (await (await campus.browser("sender")).get(campus.path)).json()["custody"][-1]
+    assert (link["holder"], link["confirmed_by"], link["signed"]) == ("robot", "sender", True)
 
 
 async def test_a_robot_without_a_key_is_believed_and_shown_as_unsigned(campus: Campus) -> None:
     await campus.waits_for_load()
     await campus.robot.ends(await campus.robot.say(signed(campus.robot.receipt(campus.load))))
     assert (await campus.service.row(Handover, order_id=campus.order_id)).signature is None
+    link = (await (await campus.browser("sender")).get(campus.path)).json()["custody"][-1]
+    assert (link["holder"], link["signed"]) == ("robot", False)
     assert await campus.state() == "carrying"
 
 
