@@ -8,6 +8,7 @@ from sqlalchemy import String, cast, func, update
 from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
+from app.database import write_new
 from app.notify.schemas import Inbox, NoticeView
 from app.paging import Paging, Sorting
 from app.tables import Alarm, Notice, NoticeKind, Person, Role
@@ -32,8 +33,8 @@ async def tell(
     """
     if await _told(session, person, key):
         return False
-    session.add(Notice(key=key, order_id=order_id, kind=kind, person_id=person.id, at=now, facts=dict(facts)))
-    await session.flush()
+    notice = Notice(key=key, order_id=order_id, kind=kind, person_id=person.id, at=now, facts=dict(facts))
+    await write_new(session, notice)
     return True
 
 

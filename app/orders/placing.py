@@ -5,6 +5,7 @@ from datetime import datetime, timedelta
 
 from sqlmodel.ext.asyncio.session import AsyncSession
 
+from app.database import write_new
 from app.errors import Unprocessable
 from app.orders import errors
 from app.orders.ledger import Ledger, Word, event_of
@@ -91,8 +92,6 @@ class Placing(Ledger):
             window_from=window.begins_at,
             window_to=window.ends_at,
         )
-        session.add(order)
-        await session.flush()
         return await self._begin(session, order, parties, standing)
 
     async def _begin(
@@ -104,8 +103,7 @@ class Placing(Ledger):
         if standing is not None:
             by = By.TIMER
         event = event_of(order, MOVED, Word(by, person_id=person.id, post=order.from_post))
-        session.add(event)
-        await session.flush()
+        await write_new(session, order, event)
         # Everything that there is to know of it is at hand: nothing is read again.
         people = [parties.sender, parties.recipient, person]
         facts = OrderFacts(order, [event], {one.id: one for one in people}, None)

@@ -6,7 +6,7 @@ from fastapi import APIRouter, Depends, Header, Path, Request, Response
 from sqlmodel import col, select
 from sqlmodel.sql.expression import SelectOfScalar
 
-from app.database import ReadingDep, SessionDep
+from app.database import ReadingDep, SessionDep, write_new
 from app.errors import TooManyRequests, answering, problems
 from app.orders import errors
 from app.orders.idempotency import Running, body_hash, earlier_answer
@@ -94,7 +94,7 @@ async def place_order(
             answer=view.model_dump(mode="json"),
             created_at=clock.utc(),
         )
-        session.add(kept)
+        await write_new(session, kept)
         response.headers.update(headers)
         return view
 
