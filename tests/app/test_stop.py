@@ -13,6 +13,7 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
 from app.database import Database
+from app.dispatch.service import NOBODY_FREE_S
 from app.fleet.service import new_token
 from app.serving import GRACEFUL_S
 from app.settings import Settings
@@ -69,11 +70,12 @@ async def _let_dispatch_wait_for_the_lock(app: FastAPI) -> "asyncio.Task[None]":
             await session.flush()
             app.state.dispatcher.wake()
             has_begun.set()
-            await asyncio.sleep(0.4)
+            await asyncio.sleep(NOBODY_FREE_S + 0.7)
 
     holding = asyncio.create_task(hold())
     await has_begun.wait()
-    await asyncio.sleep(0.1)
+    # It takes a breath when nobody was free; then it begins, and waits for us.
+    await asyncio.sleep(NOBODY_FREE_S + 0.3)
     return holding
 
 
