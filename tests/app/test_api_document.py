@@ -6,23 +6,25 @@ from typing import Any
 
 import jsonschema_rs
 import pytest
-from fastapi import FastAPI
 
 from app.api_document import HEADERS, TAGS, all_codes, operations
 from app.api_examples import EXAMPLES
 from app.errors import PROBLEM_JSON
+from app.main import create_app
+from app.settings import Settings
+from protocol.clock import SteppedClock
 
 NAME = re.compile(r"[a-z]+(_[a-z]+)*")
 LIVE = "/api/v1/live"
 Operation = tuple[str, str, dict[str, Any]]
 
 
-@pytest.fixture
-def document(app: FastAPI) -> dict[str, Any]:
-    return app.openapi()
+@pytest.fixture(scope="module")
+def document(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+    return create_app(Settings(data=tmp_path_factory.mktemp("data")), SteppedClock()).openapi()
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def every(document: dict[str, Any]) -> list[Operation]:
     return list(operations(document))
 
