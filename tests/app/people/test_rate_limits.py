@@ -17,6 +17,7 @@ CODES = "/api/v1/sign-in/codes"
 @pytest.fixture
 def settings(settings: Settings) -> Settings:
     few = {"orders_per_person": "3 per hour", "changes_per_person": "2 per hour", "streams_per_person": 2}
+    few |= {f"{door}_tries_per_host": "2 per hour" for door in ("digits", "enrolment", "link")}
     return settings.model_copy(update={**few, "sign_in_tries_per_host": "8 per hour"})
 
 
@@ -42,6 +43,16 @@ def test_knocking_at_the_door_is_counted_per_address_that_it_comes_from(nobody: 
     answers = [nobody.post(CODES, json={"email": f"p{number}@campus.example"}) for number in range(9)]
     assert [answer.status_code for answer in answers[:8]] == [202] * 8
     assert_slowed(answers[8])
+
+
+def test_whoever_guesses_digits_links_or_enrolment_codes_is_slowed_down(sender: Browser, nobody: TestClient) -> None:
+    digits = f"/api/v1/orders/{sender.order().json()['id']}/handover"
+    guess = {"name": "r9", "code": "AAAA-AAAA-AAAA", "public_key": "A" * 43}
+    doors = ((sender, digits, {"digits": "000000"}), (nobody, "/api/v1/link/order", {"token": "A" * 43}))
+    for who, path, wish in (*doors, (nobody, "/api/v1/robots/enrol", guess)):
+        first = [who.post(path, json=wish).status_code for _ in range(2)]
+        assert 429 not in first, path
+        assert_slowed(who.post(path, json=wish))
 
 
 def test_a_person_has_some_event_streams_open_and_no_more(served: Served, sender: Browser, recipient: Browser) -> None:
