@@ -41,7 +41,7 @@ class SpoolMailer:
     """Writes files."""
 
     spool: Spool
-    at_once: int = 4
+    at_once: int = 32
 
     async def send(self, mail: Mail) -> None:
         try:
@@ -62,7 +62,7 @@ class SmtpMailer:
 
     server: SmtpServer
     sender: str
-    at_once: int = 4
+    at_once: int = 8
     _soon: set[asyncio.Task[None]] = field(default_factory=set)
 
     async def send(self, mail: Mail) -> None:
