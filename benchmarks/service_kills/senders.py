@@ -12,6 +12,8 @@ from benchmarks.service_kills.mail_server import Mailbox, newest_code
 
 AGAIN_AFTER_S: Final = 0.05
 GIVES_UP_AFTER_S: Final = 10.0
+IMPATIENT: Final = 0.2
+"""So many orders are sent anew before their answer can have come: an answer that is lost, as on a bad network."""
 POSTS: Final = ("post1", "post2", "post3", "post4")
 
 
@@ -59,10 +61,10 @@ class Sender:
         headers = {"Sec-Fetch-Site": "same-origin", **({"Idempotency-Key": key} if key else {})}
         while True:
             self.tried += 1
+            is_impatient = key and self.random.random() < IMPATIENT
+            patience_s = self.random.uniform(0.005, 0.05) if is_impatient else GIVES_UP_AFTER_S
             try:
-                answer = await http.post(
-                    f"{self.url}/api/v1{path}", json=body, headers=headers, timeout=GIVES_UP_AFTER_S
-                )
+                answer = await http.post(f"{self.url}/api/v1{path}", json=body, headers=headers, timeout=patience_s)
             except httpx.HTTPError:
                 pass
             else:
