@@ -288,7 +288,7 @@ def _paragraphs(text: str, indent: int) -> str:
 if __name__ == "__main__":
     openapi = document()
     if sys.argv[1:] == ["--document"]:
-        print(json.dumps(openapi, indent=2))
+        sys.stdout.write(json.dumps(openapi, indent=2) + "\n")
         sys.exit()
     for file_name, content in made_files(openapi).items():
         (PACKAGE / file_name).write_text(content)

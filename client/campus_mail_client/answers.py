@@ -1,14 +1,33 @@
 """Answers become values or exceptions."""
 
-from typing import Any, TypeVar
+from typing import Any
 
 import httpx
 from pydantic import TypeAdapter, ValidationError
 
-from campus_mail_client.errors import Problem, UnexpectedAnswer, WrongField
+from campus_mail_client.errors import NoAnswer, Problem, UnexpectedAnswer, WrongField
 from campus_mail_client.problems import BY_CODE
+from campus_mail_client.retrying import Retrying, may_repeat_after_answer, may_repeat_after_failure
 
-Value = TypeVar("Value")
+
+def pause_after(
+    retrying: Retrying, request: httpx.Request, outcome: httpx.Response | httpx.TransportError, tries: int
+) -> float | None:
+    """How long to wait before the request is sent again; None: it is not."""
+    if isinstance(outcome, httpx.TransportError):
+        may_repeat, retry_after = may_repeat_after_failure(request.method, request.headers, outcome), ""
+    else:
+        may_repeat = may_repeat_after_answer(request.method, request.headers, outcome.status_code, code_of(outcome))
+        retry_after = outcome.headers.get("Retry-After", "")
+    return retrying.pause_s(tries, retry_after) if may_repeat else None
+
+
+def settled(outcome: httpx.Response | httpx.TransportError, request: httpx.Request, tries: int, kind: Any) -> Any:
+    """What the last try has come to. Raises Problem, NoAnswer, UnexpectedAnswer."""
+    if isinstance(outcome, httpx.Response):
+        return value_of(outcome, kind)
+    said = f"{request.method} {request.url.path} got no answer in {tries} tries: {outcome!r}"
+    raise NoAnswer(said) from outcome
 
 
 def value_of(answer: httpx.Response, kind: Any) -> Any:

@@ -10,12 +10,12 @@ from typing import Any, Protocol, Self, TypeVar
 
 import httpx
 
-from campus_mail_client.answers import code_of, problem_of, value_of
+from campus_mail_client.answers import pause_after, problem_of, settled
 from campus_mail_client.errors import NoAnswer
 from campus_mail_client.following import ENDED, Change, OrderWatch
 from campus_mail_client.models import NewOrder, OrderView
 from campus_mail_client.operations import Operations
-from campus_mail_client.retrying import Retrying, may_repeat_after_answer, may_repeat_after_failure
+from campus_mail_client.retrying import Retrying
 from campus_mail_client.sse import EventReader
 
 Item_co = TypeVar("Item_co", covariant=True)
@@ -141,7 +141,7 @@ class CampusMail(Operations):
     def _require_stream(self, answer: httpx.Response) -> None:
         if answer.is_error:
             answer.read()
-            if not may_repeat_after_answer("GET", {}, answer.status_code, code_of(answer)):
+            if pause_after(self._retrying, answer.request, answer, 1) is None:
                 raise problem_of(answer)
             raise httpx.ReadError(f"answered {answer.status_code}", request=answer.request)
 
@@ -156,25 +156,24 @@ class CampusMail(Operations):
         headers: dict[str, Any] | None = None,
     ) -> Any:
         """One request, sent again where that is safe. Raises Problem, NoAnswer, UnexpectedAnswer."""
-        said = {name: str(value) for name, value in (headers or {}).items() if value is not None}
-        asked = {name: value for name, value in (query or {}).items() if value is not None}
-        json_body = None if body is None else body.model_dump(mode="json", by_alias=True, exclude_unset=True)
-        tries = 0
+        request = self._http.build_request(
+            method,
+            path,
+            params={name: value for name, value in (query or {}).items() if value is not None},
+            headers={name: str(value) for name, value in (headers or {}).items() if value is not None},
+            json=None if body is None else body.model_dump(mode="json", by_alias=True, exclude_unset=True),
+        )
+        tries = 1
         while True:
+            outcome = self._outcome(request)
+            pause_s = pause_after(self._retrying, request, outcome, tries)
+            if pause_s is None:
+                return settled(outcome, request, tries, kind)
+            time.sleep(pause_s)
             tries += 1
-            retry_after, failure = "", None
-            try:
-                answer = self._http.request(method, path, params=asked, headers=said, json=json_body)
-            except httpx.TransportError as error:
-                failure = error
-                may_repeat = may_repeat_after_failure(method, said, error)
-            else:
-                retry_after = answer.headers.get("Retry-After", "")
-                may_repeat = may_repeat_after_answer(method, said, answer.status_code, code_of(answer))
-            pause_s = self._retrying.pause_s(tries, retry_after) if may_repeat else None
-            if pause_s is not None:
-                time.sleep(pause_s)
-            elif failure is not None:
-                raise NoAnswer(f"{method} {path} got no answer in {tries} tries: {failure!r}") from failure
-            else:
-                return value_of(answer, kind)
+
+    def _outcome(self, request: httpx.Request) -> httpx.Response | httpx.TransportError:
+        try:
+            return self._http.send(request)
+        except httpx.TransportError as failure:
+            return failure
