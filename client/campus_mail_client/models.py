@@ -162,7 +162,8 @@ class CustodyView(Model):
 
     `holder` is sender, robot, recipient, delegate or mailroom, `name` the robot's. `how` says how they came to
     have it: code, tap, digits or button by a robot's receipt, `dispatcher` by a dispatcher's word, null for the
-    sender's own.
+    sender's own. `confirmed_by` is whose code, tap or digits it was (null for the button); `signed`: the robot
+    has signed for it, and the signature was checked.
     """
 
     holder: str
@@ -170,6 +171,8 @@ class CustodyView(Model):
     from_: datetime = Field(alias="from")
     to: datetime | None
     how: str | None
+    confirmed_by: str | None
+    signed: bool
 
 
 class DelegateView(Model):
