@@ -14,7 +14,7 @@ from typing import Final
 import httpx
 
 CHECKOUT: Final = Path(__file__).parents[2]
-STARTS_WITHIN_S: Final = 60.0
+STARTS_WITHIN_S: Final = 180.0
 ENDS_WITHIN_S: Final = 15.0
 
 
