@@ -18,6 +18,8 @@ from pathlib import Path
 from textwrap import dedent, wrap
 from typing import Any, Final
 
+import structlog
+
 sys.path[:0] = [str(Path(__file__).parents[1])]
 
 from app.api_document import all_codes, operations  # noqa: E402  # the checkout is on the path only now
@@ -286,6 +288,7 @@ def _paragraphs(text: str, indent: int) -> str:
 
 
 if __name__ == "__main__":
+    structlog.configure(logger_factory=structlog.PrintLoggerFactory(sys.stderr))  # stdout is the document's
     openapi = document()
     if sys.argv[1:] == ["--document"]:
         sys.stdout.write(json.dumps(openapi, indent=2) + "\n")
