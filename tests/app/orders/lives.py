@@ -219,8 +219,9 @@ class World:
         robot = self.robots[name]
         await self.speak(name)
         if robot.said:
-            seq = robot.outbox.put(robot.said[number % len(robot.said)])
-            await robot.say(self.intake, seq, robot.said[number % len(robot.said)])
+            again = robot.said[-1 - number % len(robot.said)]
+            seq = robot.outbox.put(again)
+            await robot.say(self.intake, seq, again)
             robot.outbox.acknowledged(seq)
 
     # What the agent does, with a body that always gets there unless `luck` has it otherwise.

@@ -97,12 +97,13 @@ class LivesOfOrders(RuleBasedStateMachine):
         order_id = self.order(number)
         if self.world.where[order_id] not in self.world.robots:
             return
-        order = self.run(self.world.rows(Order, id=order_id))[0]
-        orders = self.world.orders
-        if order.state is S.ATTENTION:
-            done = self.tries(orders.resolve, "dispatcher", order_id, "held", "fetched")
-        else:
+        orders, state = self.world.orders, self.run(self.world.rows(Order, id=order_id))[0].state
+        if state in MAIL_ABOARD - {S.AT_RETURN}:
+            self.tries(orders.stop_for_attention, "dispatcher", order_id, "It stands in the way.")
+        if state is S.AT_RETURN:
             done = self.tries(orders.hold, "dispatcher", order_id, "fetched")
+        else:
+            done = self.tries(orders.resolve, "dispatcher", order_id, "held", "fetched")
         if done:
             self.world.where[order_id] = "mailroom"
 
@@ -182,7 +183,7 @@ class LivesOfOrders(RuleBasedStateMachine):
     def the_network_comes_and_goes(self, robot: str, online: bool) -> None:
         self.run(self.world.set_online(robot, online))
 
-    @rule(robot=ROBOTS, number=st.integers(0, 50))
+    @rule(robot=ROBOTS, number=st.integers(0, 9))
     def a_robot_repeats_itself(self, robot: str, number: int) -> None:
         if not self.world.robots[robot].online:
             return
