@@ -57,7 +57,8 @@ class Metrics:
         self._given_up = self._gauge("notices_given_up", "Notices that a channel has given up.", "channel")
         self._lag = self._gauge("notices_lag_seconds", "Age of the oldest notice that is still owed.")
         self._alarms = self._gauge("alarms", "Alarms that are not over, by name.", "name")
-        off, late = "How far from the middle of the window it was delivered.", "Delivered after the end of the window."
+        off = "How far it was delivered from the middle of the window that was told last."
+        late = "Delivered after the end of the window that was told last."
         name, registry = "campus_mail_estimate_error_seconds", self.registry
         self._error = Histogram(name, off, buckets=MINUTES, registry=registry)
         self._late = Counter("campus_mail_deliveries_late", late, registry=registry)
