@@ -1,4 +1,4 @@
-"""The AsyncAPI document says what the classes say: its schemas take what the parser takes and refuse what it refuses."""
+"""The AsyncAPI document says what the classes say: its schemas take and refuse what the parser takes and refuses."""
 
 import json
 from collections.abc import Iterator
