@@ -30,6 +30,8 @@ LOOK_AGAIN_S: Final = 30.0
 """Real seconds. Nothing should be missed between two wakes; if it is after all, it does not wait for ever."""
 NOBODY_FREE_S: Final = 0.1
 """Real seconds. While orders wait for robots, looking more often finds nothing new and takes time from what is."""
+REST: Final = 4
+"""And a busy service has other things to do than to look again: so many times as long as a look has taken."""
 AT_ONCE: Final = 20
 """So many orders in one transaction: what is behind them waits no longer than that takes."""
 TAKEN_ALONG_AT_ONCE: Final = 5
@@ -69,9 +71,11 @@ class Dispatcher:
         while not self._stopping:
             self._woken.clear()
             self._needs_robots = True  # what changes from here on may come too late for this look
+            begun_s = asyncio.get_running_loop().time()
             self._needs_robots = await self.look_round()
             if self._needs_robots and not self._stopping:
-                await asyncio.sleep(NOBODY_FREE_S)
+                took_s = asyncio.get_running_loop().time() - begun_s
+                await asyncio.sleep(max(NOBODY_FREE_S, REST * took_s))
             try:
                 async with asyncio.timeout(LOOK_AGAIN_S):
                     await self._woken.wait()
