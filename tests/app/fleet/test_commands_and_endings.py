@@ -11,7 +11,7 @@ from app.tables import Alarm, MessageToRobot, Order
 from protocol.clock import SteppedClock
 from protocol.parts import Leg, Stop, StopAction
 from protocol.to_robot import Cancel, Grant, Mission
-from protocol.to_server import Claim, CommandAnswer, Event, Step
+from protocol.to_server import Claim, CommandAnswer, Event, Fault, Step
 from tests.app.fleet.playing import PlayedRobot, Service
 
 LEG = Leg(from_post="post1", to_post="post2")
@@ -87,6 +87,25 @@ async def test_mail_that_nobody_takes_back_either_waits_for_a_person(service: Se
         await service.app.state.dispatcher.assign()
         assert await service.states(another) == ["queued"], "the mail is still aboard"
     assert "still in robot r1" in (await service.row(Order, id=order_id)).why
+
+
+async def test_a_fault_with_mail_aboard_calls_a_person_and_ends_when_it_is_over_or_the_robot_goes_on(
+    service: Service, robot: PlayedRobot
+) -> None:
+    order_id, receive = await carrying(service, robot)
+    lifted = Fault(name="wheel_drop", happened_at=robot.clock.utc(), post="post3", reason="The robot was lifted.")
+    async with robot.connected(service.url, robot.token):
+        await robot.greet()
+        await robot.say(Event(happened=lifted))
+        await robot.ends(await robot.say(Event(happened=lifted.model_copy(update={"cleared": True}))))
+        assert (await service.states(order_id))[-2:] == ["attention", "carrying"]
+        await robot.report(receive.mission, Step.ARRIVED, receive.stop)
+        await robot.say(Event(happened=lifted))
+        await robot.ends(await robot.report(receive.mission, Step.ARRIVED, receive.stop))
+        order = await service.row(Order, id=order_id)
+        assert (str(order.state), order.why) == ("attention", "The robot was lifted."), "it has said that before"
+        await robot.ends(await robot.say(robot.receipt(receive.stop)))
+    assert (await service.states(order_id))[-3:] == ["attention", "at_recipient", "delivered"]
 
 
 @dataclass
