@@ -108,6 +108,26 @@ async def test_a_fault_with_mail_aboard_calls_a_person_and_ends_when_it_is_over_
     assert (await service.states(order_id))[-3:] == ["attention", "at_recipient", "delivered"]
 
 
+async def test_mail_that_is_called_back_turns_round_when_the_robot_says_so(
+    service: Service, robot: PlayedRobot
+) -> None:
+    order_id, receive = await carrying(service, robot)
+    async with robot.connected(service.url, robot.token):
+        await robot.greet()
+        await service.cancel(order_id)
+        update = await robot.mission()
+        assert (update.id, update.update) == (receive.mission.id, 2)
+        assert [(stop.action, stop.post) for stop in update.stops] == [("return", "post1")]
+        assert (await service.states(order_id))[-1] == "carrying"
+        await robot.ends(await robot.report(update, Step.ACCEPTED, update=1))
+        assert (await service.states(order_id))[-1] == "carrying", "that was the mission before"
+        await robot.ends(await robot.report(update, Step.ACCEPTED, update=2))
+        assert (await service.states(order_id))[-1] == "returning"
+        await robot.report(update, Step.ARRIVED, update.stops[0], update=2)
+        await robot.ends(await robot.say(robot.receipt(update.stops[0])))
+    assert (await service.states(order_id))[-2:] == ["at_return", "returned"]
+
+
 @dataclass
 class Ahead:
     mission: Mission
