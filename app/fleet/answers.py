@@ -6,7 +6,7 @@ from sqlmodel import col, select
 
 from app.fleet.alarms import raise_alarm
 from app.fleet.commands import answered
-from app.fleet.missions import drop_order, drop_stops, let_go_of
+from app.fleet.missions import drop_order, drop_stops, end_what_is_empty, let_go_of
 from app.fleet.reports import Report
 from app.orders.service import Word
 from app.orders.stops import is_own, stops_of_order
@@ -72,3 +72,4 @@ async def _recalled(report: Report, answer: CommandAnswer, command: RobotCommand
     for mission in (await report.session.exec(wanted.order_by(col(MissionRow.created_at)))).all():
         if not is_own(mission.id):
             await let_go_of(report, mission, report.word(answer.happened_at, None, RECALLED))
+    await end_what_is_empty(report)

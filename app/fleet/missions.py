@@ -95,6 +95,11 @@ async def drop_stops(report: Report, order_id: str) -> None:
     """Nothing is left to do for this order; a mission in which nothing is left at all is over, whoever gave it."""
     for stop in await stops_of_order(report.session, order_id, report.robot):
         stop.dropped_at = report.now
+    await end_what_is_empty(report)
+
+
+async def end_what_is_empty(report: Report) -> None:
+    """The robot has dropped what it held: a mission in which nothing is left is over, even if it never says so."""
     for mission in await _active(report):
         if mission.told_update > 0:
             await _end_if_empty(report, mission)
