@@ -75,7 +75,9 @@ async def _measure(samples: Samples, asked: dict[str, tuple[Server, Account]]) -
 async def _third_page(visitor: Visitor) -> str:
     path = PAGES["first"]
     for _ in range(2):
-        page = (await visitor.get(path)).json()
+        answer = await visitor.get(path)
+        assert answer.status == 200, answer
+        page = answer.json()
         path = f"{PAGES['first']}&cursor={page['next']}"
     return path
 
