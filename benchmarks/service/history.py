@@ -33,7 +33,8 @@ def measure(samples: Samples) -> dict[str, Any]:
     with samples.folder() as folder:
         short = _filled(folder / "short", SHORT, 2)
         all_mine = _filled(folder / "all_mine", samples.history, 2)
-        of_a_campus = _filled(folder / "of_a_campus", samples.history, 500)
+        # Everybody has three pages at least.
+        of_a_campus = _filled(folder / "of_a_campus", samples.history, max(2, min(500, samples.history // 100)))
         say(f"  {samples.history} orders are written, twice")
         with (
             service(folder / "short") as reference,
