@@ -61,7 +61,9 @@ async def _measure(samples: Samples, asked: dict[str, tuple[Server, Account]]) -
     took_s: dict[str, dict[str, list[float]]] = {name: {page: [] for page in pages[name]} for name in visitors}
     for number in range(max(2, round(samples.seconds))):
         for name, visitor in visitors.items():
+            visitor.close()  # the service keeps no idle connection for long
             for page, path in pages[name].items():
+                await _ask(visitor, path)
                 asking = [await _ask(visitor, path) for _ in range(REQUESTS_AT_A_TIME)]
                 took_s[name][page] += asking if number else []  # the first time is for warming up
     for visitor in visitors.values():
