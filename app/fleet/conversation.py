@@ -16,6 +16,7 @@ from app.fleet.errors import OutOfTurn, WrongRobot
 from app.fleet.greeting import greet
 from app.fleet.intake import Intake, TokenRevoked
 from app.fleet.outbox import Waiting
+from app.fleet.tokens import note_use
 from app.tables import RobotRow, RobotToken
 from protocol.both_ways import Ack, Error
 from protocol.envelope import TO_ROBOT, TO_SERVER, Envelope, parse, type_of
@@ -104,6 +105,7 @@ class Conversation:
         # Seated before the transaction, so that nothing that is told from its commit on can pass us by.
         before = fleet.connections.take(self.robot, self)
         async with fleet.database.transaction() as session:
+            await note_use(session, self.token_prefix, fleet.clock.utc())
             robot = await robot_row(session, self.robot)
             if before is not None:
                 await self._note_second(session, before.journal)

@@ -51,8 +51,8 @@ async def all_robots(user: CurrentUser, session: ReadingDep, fleet: FleetDep, pa
 @router.websocket("/robots/link")
 async def robot_link(socket: WebSocket, fleet: FleetDep, intake: IntakeDep) -> None:
     """The link of one robot (docs/protocol.md), signed in by its token."""
-    async with fleet.database.transaction() as session:
-        token = await token_of(session, socket.headers.get("Authorization"), fleet.clock.utc())
+    async with fleet.database.reading() as session:
+        token = await token_of(session, socket.headers.get("Authorization"))
     await socket.accept()
     if token is None or not travels_safely(socket):
         reason = "token refused" if token is None else "a token is taken over wss alone"

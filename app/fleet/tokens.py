@@ -2,7 +2,7 @@
 
 from datetime import datetime
 
-from sqlmodel import col, select
+from sqlmodel import col, select, update
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.bearer_tokens import NewToken, read_token
@@ -17,14 +17,21 @@ def make_token() -> NewToken:
     return make_bearer_token(KIND)
 
 
-async def token_of(session: AsyncSession, authorization: str | None, now: datetime) -> RobotToken | None:
-    """The token that an Authorization header carries, which says whose it is; None if it is refused."""
+async def token_of(session: AsyncSession, authorization: str | None) -> RobotToken | None:
+    """The token that an Authorization header carries, which says whose it is; None if it is refused.
+
+    Writes nothing: whoever knocks with a wrong one holds up nobody who writes.
+    """
     shown = read_token(KIND, authorization or "")
     row = await session.get(RobotToken, shown.prefix) if shown else None
     if shown is None or row is None or row.revoked_at is not None or not shown.fits(row.secret_hash):
         return None
-    row.used_at = now
     return row
+
+
+async def note_use(session: AsyncSession, prefix: str, now: datetime) -> None:
+    """Somebody has come in with this token."""
+    await session.exec(update(RobotToken).where(col(RobotToken.prefix) == prefix).values(used_at=now))
 
 
 async def still_good(session: AsyncSession, prefixes: set[str]) -> set[str]:
