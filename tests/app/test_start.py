@@ -56,7 +56,6 @@ async def test_a_new_database_is_at_head_and_owned_by_us_alone(settings: Setting
 
 async def test_the_models_and_the_migrations_say_the_same(settings: Settings) -> None:
     """Alembic's own check: it would find nothing to migrate."""
-    settings.data.mkdir()
     database = Database(settings.url_of_database)
     await bring_to_head(database)
     config = Config(INI)
@@ -71,7 +70,6 @@ async def test_the_models_and_the_migrations_say_the_same(settings: Settings) ->
 
 
 async def test_the_first_migration_can_be_undone(settings: Settings) -> None:
-    settings.data.mkdir()
     database = Database(settings.url_of_database)
     await bring_to_head(database)
     config = Config(INI)
