@@ -7,7 +7,7 @@ import pytest
 from websockets.asyncio.client import connect
 
 from app.fleet.service import new_token
-from app.tables import Alarm, MessageToRobot, Order
+from app.tables import Alarm, Handover, MessageToRobot, Order
 from protocol.clock import SteppedClock
 from protocol.parts import Leg, Stop, StopAction
 from protocol.to_robot import Cancel, Grant, Mission
@@ -168,6 +168,22 @@ async def test_a_robot_drops_only_what_it_was_told_to_drop(service: Service, rob
             await other.say(accepts(f"cancel-{order_id}", other))
             assert await error_code(other) == "unknown_command"
     assert await service.states(order_id) == ["queued", "assigned"]
+
+
+async def test_a_robot_tells_nothing_of_what_another_was_given(service: Service, robot: PlayedRobot) -> None:
+    other = PlayedRobot(robot.clock, name="r2", journal="journal-r2")
+    tokens = [await service.enrol(name) for name in ("r1", "r2")]
+    order_id = await service.order()
+    async with robot.connected(service.url, tokens[0]), other.connected(service.url, tokens[1]):
+        await robot.greet()
+        mission = await robot.mission()
+        load = mission.stops[0]
+        await other.greet(post=None)
+        for tale in (other.progress(mission, Step.ARRIVED, load), other.receipt(load)):
+            await other.say(tale)
+            assert await error_code(other) in {"unknown_mission", "unknown_stop"}
+    assert await service.states(order_id) == ["queued", "assigned"]
+    assert await service.rows(Handover) == []
 
 
 @pytest.mark.parametrize(("step", "reason"), [(Step.ARRIVED, "no_one_came"), (Step.DEPARTED, "no_route")])
