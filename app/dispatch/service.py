@@ -32,6 +32,8 @@ NOBODY_FREE_S: Final = 0.1
 """Real seconds. While orders wait for robots, looking more often finds nothing new and takes time from what is."""
 REST: Final = 4
 """And a busy service has other things to do than to look again: so many times as long as a look has taken."""
+LONGEST_REST_S: Final = 1.0
+"""Real seconds. A look that had to wait for others took long without having done much."""
 AT_ONCE: Final = 20
 """So many orders in one transaction: what is behind them waits no longer than that takes."""
 TAKEN_ALONG_AT_ONCE: Final = 5
@@ -75,7 +77,7 @@ class Dispatcher:
             self._needs_robots = await self.look_round()
             if self._needs_robots and not self._stopping:
                 took_s = asyncio.get_running_loop().time() - begun_s
-                await asyncio.sleep(max(NOBODY_FREE_S, REST * took_s))
+                await asyncio.sleep(min(max(NOBODY_FREE_S, REST * took_s), LONGEST_REST_S))
             try:
                 async with asyncio.timeout(LOOK_AGAIN_S):
                     await self._woken.wait()

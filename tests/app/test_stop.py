@@ -13,6 +13,7 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
 from app.database import Database
+from app.dispatch.service import LONGEST_REST_S
 from app.fleet.service import new_token
 from app.serving import GRACEFUL_S
 from app.settings import Settings
@@ -25,8 +26,6 @@ from tests.app.conftest import HERE, SENDER, Browser, Mailroom, Mails, Served
 
 GOING_AWAY = 1012
 """RFC 6455's registry: the service restarts, come back."""
-RESTS_AT_MOST_S = 2.0
-"""Real seconds: dispatch rests four times as long as a look has taken, which on a busy machine is long."""
 HELLO = Envelope(
     type="hello",
     robot="r1",
@@ -43,7 +42,9 @@ def test_what_dispatch_has_begun_is_finished_before_the_end(app: FastAPI, mails:
         browser.portal = client.portal
         browser.post("/api/v1/sign-in/codes", json={"email": SENDER})
         browser.post("/api/v1/sign-in", json={"email": SENDER, "code": mails.newest_code(SENDER)})
-        assert browser.order().json()["state"] == "queued"
+        order_id = browser.order().json()["id"]
+        while not browser.get(f"/api/v1/orders/{order_id}").json()["why"]:  # until dispatch has looked for a robot
+            time.sleep(0.02)
         assert client.portal is not None
         holding = client.portal.call(_let_dispatch_wait_for_the_lock, app)
     assert holding.done()
@@ -71,12 +72,12 @@ async def _let_dispatch_wait_for_the_lock(app: FastAPI) -> "asyncio.Task[None]":
             await session.flush()
             app.state.dispatcher.wake()
             has_begun.set()
-            await asyncio.sleep(RESTS_AT_MOST_S + 0.7)
+            await asyncio.sleep(LONGEST_REST_S + 1.0)
 
     holding = asyncio.create_task(hold())
     await has_begun.wait()
     # It takes a breath when nobody was free, a longer one where looking took long; then it begins, and waits for us.
-    await asyncio.sleep(RESTS_AT_MOST_S)
+    await asyncio.sleep(LONGEST_REST_S + 0.3)
     return holding
 
 

@@ -10,7 +10,7 @@ import pytest
 from app.people.service import set_roles
 from app.people.sessions import new_session
 from app.settings import Settings
-from app.tables import Role
+from app.tables import OrderEvent, Role
 from protocol.clock import SteppedClock
 from protocol.parts import Stop
 from protocol.to_robot import Mission
@@ -76,7 +76,6 @@ class Campus:
 
     async def kinds(self) -> list[str]:
         """What else happened to the order than that it moved."""
-        from app.tables import OrderEvent
 
         events = await self.service.rows(OrderEvent, order_id=self.order_id)
         return [event.kind for event in sorted(events, key=lambda one: one.seq) if event.kind != "moved"]

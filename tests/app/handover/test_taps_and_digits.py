@@ -6,7 +6,8 @@ from app.settings import Settings
 from app.tables import Alarm, Handover, RobotCommand, Role
 from protocol.clock import SteppedClock
 from protocol.to_robot import Confirm
-from protocol.to_server import CommandAnswer, Event
+from protocol.to_server import CommandAnswer, Event, Step
+from tests.app.fleet.playing import until
 from tests.app.handover.conftest import Campus
 
 
@@ -81,18 +82,15 @@ async def test_it_is_the_turn_of_one_person(campus: Campus, who: str, status: in
 async def test_what_cannot_reach_the_robot_says_that_the_qr_code_works(campus: Campus) -> None:
     await campus.connect(understands=())
     sender = await campus.browser("sender")
+    campus.mission = await campus.robot.mission()
     tap = await sender.post(f"{campus.path}/handover", json={})
     assert (tap.status_code, tap.json()["code"]) == (409, "robot_not_there")
-    campus.mission = await campus.robot.mission()
-    from protocol.to_server import Step
-
     await campus.robot.ends(await campus.robot.report(campus.mission, Step.ARRIVED, campus.load))
     tap = await sender.post(f"{campus.path}/handover", json={})
     assert (tap.status_code, tap.json()["code"]) == (409, "robot_takes_no_taps")
     assert "QR" in tap.json()["detail"]
     assert campus.robot.socket
     await campus.robot.socket.close()
-    from tests.app.fleet.playing import until
 
     async def told_offline() -> bool:
         answer = await sender.post(f"{campus.path}/handover", json={})

@@ -7,7 +7,7 @@ import pytest
 from fastapi import FastAPI
 from fastapi.testclient import TestClient
 from sqlalchemy import update
-from sqlmodel import col
+from sqlmodel import col, select
 
 from app.mail import Mail, Spool
 from app.notify.worker import LONGEST_PAUSE_S, pause_s
@@ -41,7 +41,6 @@ def test_a_crash_between_sending_and_noting_it_down_sends_nothing_twice(
 def test_what_cannot_be_spooled_is_tried_again_later_and_arrives(
     app: FastAPI, sender: Browser, mailroom: Mailroom, mails: Mails, clock: SteppedClock
 ) -> None:
-    from sqlmodel import select
 
     def stuck() -> OutgoingNotice:
         async def look() -> OutgoingNotice:

@@ -11,10 +11,11 @@ from fastapi import FastAPI
 from hypothesis import given
 from hypothesis import strategies as st
 
+from app.main import create_app
 from app.notify.wishes import CHANNELS, MUST_REACH, channels_for
 from app.outside import Outside
 from app.settings import Settings
-from app.tables import NoticeKind
+from app.tables import NoticeKind, NoticeWishes
 from protocol.clock import SteppedClock
 from tests.app.conftest import SENDER, Browser, Mailroom, Mails
 from tests.app.notify.office import running
@@ -77,7 +78,6 @@ class TestWithAPushServiceOnThisMachine:
 
     @pytest.fixture
     def app(self, settings: Settings, clock: SteppedClock) -> FastAPI:
-        from app.main import create_app
 
         return create_app(settings, clock, Outside(allow_private=True))
 
@@ -140,7 +140,6 @@ async def test_somebody_without_any_other_channel_left_is_mailed_what_must_reach
     settings: Settings, clock: SteppedClock
 ) -> None:
     """They muted it in mails because their phone had it; then the phone was lost."""
-    from app.tables import NoticeWishes
 
     async with running(settings, clock) as office:
         order_id = await office.order()

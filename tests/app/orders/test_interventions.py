@@ -1,11 +1,15 @@
 """When something is stuck: what a dispatcher can do with it, and what people can do who meet the robot."""
 
+from datetime import timedelta
 from typing import Any
 
 import pytest
 from fastapi import FastAPI
+from sqlmodel import select
 
-from app.tables import Handover, MissionRow, StopRow
+from app.orders.service import Word
+from app.orders.transitions import By
+from app.tables import Handover, MissionRow, OrderState, StopRow
 from tests.app.conftest import STRANGER, Browser, Mailroom, SignedIn
 from tests.app.orders.test_life_of_an_order import WAY, kinds, make_dispatcher, seen
 
@@ -87,8 +91,6 @@ def test_mail_in_trouble_is_sent_back_by_a_mission_that_says_so(
 
     async def stops() -> list[tuple[str, bool, str]]:
         async with app.state.database.reading() as session:
-            from sqlmodel import select
-
             rows = (await session.exec(select(StopRow).order_by(StopRow.since_update))).all()
             return [(row.action, row.dropped_at is None, row.post) for row in rows]
 
@@ -130,11 +132,6 @@ def test_the_person_that_the_robot_waits_for_may_ask_for_more_time_but_not_for_e
 
 
 async def arrive(app: FastAPI, order_id: str) -> None:
-    from datetime import timedelta
-
-    from app.orders.service import Word
-    from app.orders.transitions import By
-    from app.tables import OrderState
 
     async with app.state.database.transaction() as session:
         word, until = Word(By.ROBOT, robot="r1"), app.state.clock.utc() + timedelta(seconds=600)

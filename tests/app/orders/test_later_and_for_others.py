@@ -5,6 +5,7 @@ from typing import Any
 import pytest
 from fastapi import FastAPI
 
+from app.tables import RobotRow
 from protocol.clock import SteppedClock
 from tests.app.conftest import SENDER, STRANGER, Browser, Mailroom, SignedIn
 from tests.app.orders.test_life_of_an_order import kinds, make_dispatcher, seen
@@ -31,7 +32,6 @@ def look_round(app: FastAPI, mailroom: Mailroom) -> None:
 
 
 async def _put_online(app: FastAPI) -> None:
-    from app.tables import RobotRow
 
     async with app.state.database.transaction() as session:
         robot = await session.get_one(RobotRow, "r1")

@@ -7,7 +7,8 @@ from fastapi import FastAPI
 
 from app.orders.errors import TransitionRefused
 from app.orders.transitions import By
-from app.tables import OrderEvent, OrderState
+from app.people.service import find_person, set_roles
+from app.tables import OrderEvent, OrderState, Role
 from app.tables.order_events import EventsAreAppendOnly
 from tests.app.conftest import RECIPIENT, SENDER, STRANGER, Browser, Mailroom, Mails, SignedIn
 
@@ -174,8 +175,6 @@ def test_nobody_sees_an_order_that_is_not_theirs_unless_dispatcher(
 
 
 async def make_dispatcher(app: FastAPI, email: str) -> None:
-    from app.people.service import find_person, set_roles
-    from app.tables import Role
 
     async with app.state.database.transaction() as session:
         person = await find_person(session, email)
