@@ -93,10 +93,10 @@ def database_url(request: pytest.FixtureRequest) -> Iterator[str]:
 
 
 @pytest.fixture
-def settings(tmp_path: Path, pages: Path, database_url: str, sqlite_at_head: Path) -> Settings:
+def settings(tmp_path: Path, pages: Path, database_url: str, sqlite_at_head: Path | None) -> Settings:
     data = tmp_path / "data"
-    if not database_url:
-        data.mkdir()
+    data.mkdir()
+    if sqlite_at_head and not database_url:
         shutil.copy(sqlite_at_head, data)
     return Settings(
         data=data,

@@ -42,8 +42,12 @@ def database_url(request: pytest.FixtureRequest) -> Iterator[str]:
 
 
 @pytest.fixture
+def sqlite_at_head() -> None:
+    """Here migrations begin at nothing."""
+
+
+@pytest.fixture
 async def database(settings: Settings) -> AsyncIterator[Database]:
-    settings.data.mkdir()
     database = Database(settings.url_of_database)
     yield database
     await database.close()
@@ -129,7 +133,6 @@ async def test_todays_code_reads_every_row_of_an_older_schema(database: Database
 def test_a_service_starts_on_the_first_letters_database_and_goes_on_with_its_work(
     settings: Settings, clock: SteppedClock, pages: Path
 ) -> None:
-    settings.data.mkdir()
     asyncio.run(_prepare(settings))
     with TestClient(create_app(settings, clock)) as client:
         assert client.get("/readyz").json()["status"] == "ready"

@@ -45,6 +45,11 @@ def _logs_as_before() -> Iterator[None]:
     structlog.reset_defaults()
 
 
+@pytest.fixture
+def sqlite_at_head() -> None:
+    """Here migrations begin at nothing."""
+
+
 async def test_a_new_database_is_at_head_and_owned_by_us_alone(settings: Settings) -> None:
     await migrate(settings)
     assert settings.data.stat().st_mode & 0o777 == 0o700

@@ -14,7 +14,16 @@ from app.settings import Settings
 from app.tables import OrderState, RobotRow
 from campus_mail_client import AsyncCampusMail
 from protocol.clock import SteppedClock
-from tests.app.conftest import clock, database_url, mails, nobody, pages, postgresql, settings  # noqa: F401  # fixtures
+from tests.app.conftest import (  # noqa: F401  # fixtures
+    clock,
+    database_url,
+    mails,
+    nobody,
+    pages,
+    postgresql,
+    settings,
+    sqlite_at_head,
+)
 from tests.app.fleet.playing import Service, serving
 
 SENDER, RECIPIENT = "sender@campus.example", "recipient@campus.example"

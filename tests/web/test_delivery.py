@@ -216,7 +216,9 @@ async def test_an_answer_that_is_overtaken_does_not_undo_what_was_heard(demonstr
 
     async def be_overtaken(route: Route) -> None:
         answer = await route.fetch()
-        await ada.page.wait_for_function("window.following")
+        # The pages' policy forbids Playwright's own waiting for a function.
+        while not await ada.page.evaluate("window.following"):
+            await ada.page.wait_for_timeout(10)
         if post := next(posts, None):
             async with ada.page.expect_event("console", lambda said: said.text == "robot heard"):
                 await demonstration.is_seen(post, towards="post1")

@@ -1,5 +1,6 @@
 """Robots as people see them, and how a robot comes to have a token."""
 
+import asyncio
 import sys
 from asyncio.subprocess import PIPE, create_subprocess_exec
 from datetime import datetime, timedelta
@@ -116,3 +117,10 @@ async def test_two_tokens_are_never_alike(service: Service, clock: SteppedClock)
     async with service.app.state.database.transaction() as session:
         tokens = [await enrol(session, clock, f"r{number}") for number in range(20)]
     assert len({token.split("_", 2)[2] for token in tokens}) == 20
+
+
+async def test_a_wrong_token_is_refused_while_somebody_writes(service: Service, robot: PlayedRobot) -> None:
+    """Whoever knocks for long must not hold up those who write, nor wait for them."""
+    wrong = f"cmr_00000000_{'x' * 43}"
+    async with service.app.state.database.transaction(), asyncio.timeout(5), robot.connected(service.url, wrong):
+        assert await robot.close_code() == 4401

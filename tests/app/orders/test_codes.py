@@ -90,7 +90,6 @@ def test_the_mail_that_the_robot_is_here_brings_the_code_as_a_picture_and_never_
 
 def test_codes_derive_from_the_key_file_and_survive_a_restart(tmp_path: object, settings: object) -> None:
     path = settings.data / "server.key"  # type: ignore[attr-defined]
-    path.parent.mkdir()
     first = code_text(open_server_key(path), "o1", Purpose.LOAD)
     assert path.stat().st_mode & 0o777 == 0o600
     assert code_text(open_server_key(path), "o1", Purpose.LOAD) == first
