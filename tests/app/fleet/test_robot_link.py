@@ -330,7 +330,7 @@ async def test_claims_are_granted_once_and_cleared_by_the_robot_alone(service: S
         deny = (await robot.hear("deny")).body.model_dump()
         assert (deny["claim_id"], "no corridor post1-post4" in deny["reason"]) == ("c2", True)
         await robot.ends(await robot.say(Clear(leg=LEG)))
-    rows = await service.rows(GrantRow)
+    rows = sorted(await service.rows(GrantRow), key=lambda row: row.corridor)
     assert [(row.corridor, row.cleared_at is None) for row in rows] == [("post1-post2", False), ("post2-post3", True)]
 
 

@@ -22,7 +22,7 @@ from app.settings import ROOT, Settings
 from protocol.clock import RealClock
 from protocol.to_robot import Verifiers
 from protocol.to_server import Step
-from tests.app.conftest import SENDER, Mails
+from tests.app.conftest import Mails, SENDER, sqlite_alone
 from tests.app.fleet.playing import PlayedRobot
 
 GUEST = "guest@elsewhere.example"
@@ -76,6 +76,7 @@ def _wait_for(url: str) -> None:
     pytest.fail("the service does not start")
 
 
+@sqlite_alone
 async def test_no_secret_is_in_the_log(running: Running) -> None:
     mails = Mails(running.settings.spool_folder)
     with running.browser as browser:
