@@ -22,7 +22,7 @@ from app.settings import ROOT, Settings
 from protocol.clock import RealClock
 from protocol.to_robot import Verifiers
 from protocol.to_server import Step
-from tests.app.conftest import Mails, SENDER, sqlite_alone
+from tests.app.conftest import SENDER, Mails, sqlite_alone
 from tests.app.fleet.playing import PlayedRobot
 
 GUEST = "guest@elsewhere.example"
