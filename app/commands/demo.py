@@ -15,7 +15,7 @@ def demo(
     speed: Annotated[float | None, typer.Option(min=0.25, max=100, help="Simulated seconds per second.")] = None,
     low_battery: Annotated[bool, typer.Option("--low-battery", help="The battery runs low with mail aboard.")] = False,
     hands_on: Annotated[bool, typer.Option("--hands-on", help="Show the codes to the camera yourself.")] = False,
-    port: Annotated[int, typer.Option(help="TCP port of the page.")] = 8000,
+    port: Annotated[int, typer.Option(help="TCP port of the page; 0 takes a free one.")] = 8000,
     data: Annotated[Path | None, typer.Option(help="Folder to keep everything in; default: a temporary one.")] = None,
 ) -> None:
     """See the first letter: service, simulated robot and one order, on this machine."""

@@ -6,6 +6,7 @@ import os
 import signal
 from collections.abc import AsyncIterator, Coroutine
 from contextlib import asynccontextmanager, suppress
+from dataclasses import replace
 from typing import Any
 
 import httpx
@@ -28,7 +29,8 @@ EXIT_INTERRUPTED = 130
 
 def run(demo: Demo) -> int:
     """The exit code. Raises StartError, a taken port above all, before anything is started."""
-    listen("127.0.0.1", demo.port).close()
+    with listen("127.0.0.1", demo.port) as free:
+        demo = replace(demo, port=free.getsockname()[1])  # 0 takes a free one
     return asyncio.run(_run(demo))
 
 
