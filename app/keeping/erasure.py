@@ -73,11 +73,6 @@ class LastMaintainerStays(StartError):
     """Without a maintainer nobody could let anybody in."""
 
 
-def is_erased(person: Person) -> bool:
-    """Whether name and address are gone already."""
-    return person.email.endswith(f"@{ERASED_DOMAIN}")
-
-
 async def erase(session: AsyncSession, person: Person, now: datetime) -> int:
     """Replace name and address, take away every way in and everything said; the number of orders that stay.
 
