@@ -3,7 +3,7 @@
 SQLite by default (write-ahead log, full sync: what was acknowledged survives a power cut), PostgreSQL by URL.
 """
 
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Mapping
 from contextlib import asynccontextmanager
 from functools import cache
 from typing import Annotated, Any
@@ -21,8 +21,13 @@ from app.errors import StartError
 from app.group_commit import AFTER_COMMIT, Writers
 
 PRAGMAS = ("journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON", "busy_timeout=10000")
-WRITERS_LOCK = 0x434D_0001
-"""PostgreSQL's advisory lock that a writing transaction holds to its end."""
+BEGIN_DURABLE = ("PRAGMA synchronous=FULL", "BEGIN IMMEDIATE")
+BEGIN_FLEETING = ("PRAGMA synchronous=NORMAL", "BEGIN IMMEDIATE")
+BEGIN_READING: Mapping[str, tuple[str, ...]] = {"sqlite": ("BEGIN",), "postgresql": ()}
+ONE_WRITER = f"SELECT pg_advisory_xact_lock({0x434D_0001})"
+"""PostgreSQL's writers take turns as SQLite's do, with a lock that is held to the end of the transaction: whoever
+decides by what it has read decides by what is true, so that no transaction has to be repeated because of another one,
+and nobody has to think of which rows to lock."""
 
 
 class Database:
@@ -34,16 +39,18 @@ class Database:
             self.engine: AsyncEngine = create_async_engine(url, **_options(url))
         except (ArgumentError, ImportError) as error:  # not repeated: a URL may hold a password
             raise StartError(f"CAMPUS_MAIL_DATABASE_URL cannot be used: {error}.") from None
-        self.writing = self.engine.execution_options(begin="BEGIN IMMEDIATE")
+        self.writing = self.engine.execution_options(begin=BEGIN_DURABLE)
         if self.engine.dialect.name == "sqlite":
             event.listen(self.engine.sync_engine, "connect", _prepare_sqlite)
-            event.listen(self.engine.sync_engine, "begin", _begin_sqlite)
+            event.listen(self.engine.sync_engine, "begin", _begin)
+            fleeting = self.engine.execution_options(begin=BEGIN_FLEETING)
         else:
-            event.listen(self.engine.sync_engine, "begin", _begin_postgresql)
-            self.writing = self.engine.execution_options(one_writer=True)
+            event.listen(self.engine.sync_engine, "begin", _begin)
+            self.writing = self.engine.execution_options(begin=(ONE_WRITER,))
+            fleeting = self.engine.execution_options(begin=(ONE_WRITER, "SET LOCAL synchronous_commit TO OFF"))
             self.engine = self.engine.execution_options(isolation_level="REPEATABLE READ", postgresql_readonly=True)
 
-        self._writers = Writers(self.writing)
+        self._writers = Writers(self.writing, fleeting)
 
     @property
     def name(self) -> str:
@@ -51,12 +58,13 @@ class Database:
         return self.engine.url.render_as_string(hide_password=True)
 
     @asynccontextmanager
-    async def transaction(self) -> AsyncIterator[AsyncSession]:
+    async def transaction(self, *, durable: bool = True) -> AsyncIterator[AsyncSession]:
         """One transaction: committed at the end, or rolled back by an exception; then what waits for it is said.
 
         Those who write at the same time share a commit (`app.group_commit`). Do not wait in here for anything slow.
+        Not `durable`: a power cut may take it back (the end of the process does not); for what is then done again.
         """
-        async with self._writers.transaction() as session:
+        async with self._writers.transaction(durable=durable) as session:
             yield session
 
     @asynccontextmanager
@@ -123,11 +131,11 @@ def _options(url: str) -> dict[str, Any]:
         return {"pool_size": 10, "max_overflow": 10}
     if made.database in {None, "", ":memory:"}:  # one connection is all there can be
         return {"connect_args": {"async_creator_fn": sqlite_driver.connect}}
-    return {"pool_size": 10, "max_overflow": 10, "connect_args": {"async_creator_fn": sqlite_driver.connect}}
+    return {"pool_size": 20, "max_overflow": 0, "connect_args": {"async_creator_fn": sqlite_driver.connect}}
 
 
 def _prepare_sqlite(connection: Any, record: Any) -> None:
-    # The driver must not begin transactions of its own: `_begin_sqlite` says which kind is wanted.
+    # The driver must not begin transactions of its own: `_begin` says which kind is wanted.
     connection.isolation_level = None
     cursor = connection.cursor()
     try:
@@ -147,17 +155,9 @@ def _heed_foreign_keys(connection: Connection, wanted: str) -> None:
         cursor.close()
 
 
-def _begin_sqlite(connection: Connection) -> None:
-    connection.exec_driver_sql(connection.get_execution_options().get("begin", "BEGIN"))
-
-
-def _begin_postgresql(connection: Connection) -> None:
-    """One writer at a time, as on SQLite: whoever decides by what it has read decides by what is true.
-
-    So no transaction has to be repeated because of another one, and nobody has to think of which rows to lock.
-    """
-    if connection.get_execution_options().get("one_writer"):
-        connection.exec_driver_sql(f"SELECT pg_advisory_xact_lock({WRITERS_LOCK})")
+def _begin(connection: Connection) -> None:
+    for statement in connection.get_execution_options().get("begin", BEGIN_READING[connection.dialect.name]):
+        connection.exec_driver_sql(statement)
 
 
 async def _database_of(connection: HTTPConnection) -> Database:

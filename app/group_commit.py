@@ -3,11 +3,15 @@
 A commit with full sync takes as long as the disk does, and only one writer can be at work. So whoever has done its work
 while others wait passes the open transaction on instead of committing it; the last one commits for all. Everybody's
 work stands in a savepoint of its own, so that what fails is undone alone, and nobody goes on before the common commit.
+
+Some work may be lost in a power cut because it would only be done again. Its commit waits for no disk, unless it shares
+one with work that must last.
 """
 
 import asyncio
+import time
 from collections.abc import AsyncIterator, Callable
-from contextlib import asynccontextmanager
+from contextlib import asynccontextmanager, suppress
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -52,6 +56,7 @@ class _Group:
     """One open transaction."""
 
     connection: AsyncConnection
+    is_durable: bool
     begun_s: float
     works: list[_Work] = field(default_factory=list)
     turns: int = 0
@@ -65,20 +70,21 @@ class _Group:
 class Writers:
     """Gives everybody a turn in the order of asking."""
 
-    def __init__(self, engine: AsyncEngine) -> None:
-        self._engine = engine
+    def __init__(self, durable: AsyncEngine, fleeting: AsyncEngine) -> None:
+        """Two ways to the same database: a commit by the second does not wait for the disk."""
+        self._durable, self._fleeting = durable, fleeting
         self._turn = asyncio.Lock()
         self._waiting = 0
         self._group: _Group | None = None
         self._committing: asyncio.Task[None] | None = None
 
     @asynccontextmanager
-    async def transaction(self) -> AsyncIterator[AsyncSession]:
+    async def transaction(self, *, durable: bool) -> AsyncIterator[AsyncSession]:
         """A session of one's own; committed when this ends."""
         await self._wait_for_turn()
         work: _Work | None = None
         try:
-            group = await self._open_group()
+            group = await self._open_group(durable)
             async with AsyncSession(
                 group.connection, expire_on_commit=False, join_transaction_mode="create_savepoint"
             ) as session:
@@ -108,24 +114,30 @@ class Writers:
         async with self._turn:
             await self._end_turn()
 
-    async def _open_group(self) -> _Group:
+    async def _open_group(self, durable: bool) -> _Group:
+        if self._group is not None and durable and not self._group.is_durable:
+            with suppress(Exception):  # told to those whose work it was
+                await self._commit_open()
         if self._group is None:
-            connection = await self._engine.connect()
+            connection = await (self._durable if durable else self._fleeting).connect()
             try:
                 await connection.begin()
             except BaseException:
                 await connection.close()
                 raise
-            self._group = _Group(connection, asyncio.get_running_loop().time())
+            self._group = _Group(connection, durable, time.monotonic())
         self._group.turns += 1
         return self._group
 
     async def _end_turn(self) -> None:
         """Pass the transaction on to whoever waits, or commit it."""
         group = self._group
-        if group is None or (self._waiting and group.may_go_on(asyncio.get_running_loop().time())):
-            return
-        self._group = None
+        if group and not (self._waiting and group.may_go_on(time.monotonic())):
+            await self._commit_open()
+
+    async def _commit_open(self) -> None:
+        group, self._group = self._group, None
+        assert group is not None, "no transaction is open"  # noqa: S101  # whoever has the turn has looked
         try:
             await _commit(group)
         except BaseException as error:
@@ -140,5 +152,9 @@ async def _commit(group: _Group) -> None:
     try:
         if group.works:
             await group.connection.commit()
+    except BaseException:
+        # SQLAlchemy takes the transaction for ended, SQLite does not: the next writer must not get this connection.
+        await group.connection.invalidate()
+        raise
     finally:
         await group.connection.close()

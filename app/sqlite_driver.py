@@ -10,6 +10,7 @@ interrupted, asked again in the thread, and goes there at once the next time.
 import asyncio
 import re
 import sqlite3
+import time
 from collections.abc import Callable, Sequence
 from functools import lru_cache
 from typing import Any, Final, Self, TypeVar
@@ -25,7 +26,7 @@ SHORT_ROWS: Final = 100
 BREATH_S: Final = 0.002
 """Real seconds after which others get their turn, however much there is to ask."""
 
-BRACKETS: Final = ("BEGIN", "SAVEPOINT", "RELEASE")
+BRACKETS: Final = ("PRAGMA synchronous=", "BEGIN", "SAVEPOINT", "RELEASE")
 LOCKS: Final = "BEGIN IMMEDIATE"
 QUESTION: Final = re.compile(r"SELECT\b")
 SMALL_CHANGE: Final = re.compile(
@@ -104,12 +105,12 @@ class Connection(aiosqlite.Connection):
     async def _at_once(self, what: Callable[[sqlite3.Connection], T]) -> T:
         answer = self._now(what)
         loop = asyncio.get_running_loop()
-        if loop.time() - self._breathed_at_s > BREATH_S:
+        if time.monotonic() - self._breathed_at_s > BREATH_S:
             self._is_asking = False
             breath: asyncio.Future[None] = loop.create_future()
             loop.call_soon(breath.set_result, None)
             await _uncancelled(breath)
-            self._breathed_at_s = loop.time()
+            self._breathed_at_s = time.monotonic()
         return answer
 
     def _now(self, what: Callable[[sqlite3.Connection], T]) -> T:
@@ -123,7 +124,7 @@ class Connection(aiosqlite.Connection):
         outcome: asyncio.Future[T] = asyncio.get_running_loop().create_future()
         self._tx.put_nowait((outcome, lambda: self._now(what)))
         answer = await _uncancelled(outcome)
-        self._breathed_at_s = asyncio.get_running_loop().time()
+        self._breathed_at_s = time.monotonic()
         return answer
 
     async def commit(self) -> None:

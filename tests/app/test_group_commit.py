@@ -143,3 +143,39 @@ async def test_a_kill_in_the_middle_loses_nothing_that_was_told(tmp_path: Path, 
     connection.close()
     assert len(told) > 8
     assert {line for line in told if line.endswith(b"\n")} - set(kept) == set()
+
+
+async def sync_of(session: AsyncSession) -> int:
+    """SQLite's own word: 1 leaves the sync to a later commit, 2 waits for the disk."""
+    return int((await do(session, "PRAGMA synchronous"))[0][0])
+
+
+async def test_what_must_last_does_not_share_a_commit_that_waits_for_no_disk(database: Database) -> None:
+    synced: dict[str, int] = {}
+
+    async def one(word: str, *, durable: bool) -> None:
+        async with database.transaction(durable=durable) as session:
+            await do(session, "INSERT INTO words VALUES (?)", word)
+            await asyncio.sleep(0.01)  # so that the next one waits
+            synced[word] = await sync_of(session)
+
+    await asyncio.gather(one("a", durable=False), one("b", durable=True), one("c", durable=False))
+    assert synced == {"a": 1, "b": 2, "c": 2}  # the last goes along with what lasts
+    assert await words(database) == ["a", "b", "c"]
+
+
+async def test_fleeting_work_that_cannot_be_committed_takes_no_durable_work_with_it(database: Database) -> None:
+    async def one(word: str, *, durable: bool) -> None:
+        async with database.transaction(durable=durable) as session:
+            await do(session, "INSERT INTO words VALUES (?)", word)
+            await asyncio.sleep(0.01)
+            if not durable:
+                await do(session, "PRAGMA defer_foreign_keys=ON")
+                await do(session, "INSERT INTO letters VALUES ('nobody''s')")
+
+    async with database.transaction() as session:
+        await do(session, "CREATE TABLE letters (word TEXT REFERENCES words (word))")
+    outcomes = await asyncio.gather(one("a", durable=False), one("b", durable=True), return_exceptions=True)
+    assert "FOREIGN KEY" in str(outcomes[0])
+    assert outcomes[1] is None
+    assert await words(database) == ["b"]
