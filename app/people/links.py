@@ -1,4 +1,4 @@
-"""Links in mails for recipients who have no account: one link opens one order, for whoever it was mailed to.
+"""Links in mails, for recipients without account and for delegates: one opens one order, for whoever it was mailed to.
 
 The token stands in the URL's fragment, which no browser sends and no proxy sees; the page sends it in a body. It
 derives from the server key and the row's nonce, so that a mail that is written again holds the same link.
@@ -18,7 +18,7 @@ from app.people.errors import LinkRefused
 from app.people.sessions import hash_of
 from app.server_key import ServerKey
 from app.settings import Settings
-from app.tables import Identity, Order, OrderLink, Person, PersonSession
+from app.tables import Delegate, Identity, Order, OrderLink, Person, PersonSession
 from protocol.clock import Clock
 
 PAGE: Final = "one-order.html"
@@ -26,10 +26,11 @@ PAGE: Final = "one-order.html"
 
 @dataclass(frozen=True)
 class Guest:
-    """Somebody who came by a link: themselves without any role, for one order."""
+    """Somebody who came by a link: themselves without any role, for one order. `is_delegate`: not its recipient."""
 
     person: Person
     order_id: str
+    is_delegate: bool = False
 
 
 @dataclass(frozen=True)
@@ -42,7 +43,7 @@ class Links:
     clock: Clock
 
     async def url_for(self, person: Person, order_id: str) -> str | None:
-        """The link of an order's recipient who has never signed in; None for everybody else."""
+        """For an order's recipient who has never signed in, and for its delegates; None for everybody else."""
         if not self.settings.public_url:
             return None
         async with self.database.reading() as session:
@@ -81,8 +82,12 @@ class Links:
         if found is None or not _is_good(found[0], self.clock.utc()):
             raise LinkRefused("This link is unknown or too old. The newest mail about your order has a good one.")
         row, person = found
-        # A copy: whoever is a dispatcher too is only the recipient here.
-        return Guest(Person(**{**person.model_dump(), "roles": []}), row.order_id)
+        order = await session.get_one(Order, row.order_id)
+        is_delegate = order.recipient_id != person.id
+        if is_delegate and not await _is_named(session, person, order.id):
+            raise LinkRefused("Whoever named you for this order has taken that back.")
+        # A copy: whoever is a dispatcher too is only the recipient here, or a delegate.
+        return Guest(Person(**{**person.model_dump(), "roles": []}), order.id, is_delegate)
 
 
 def _is_good(row: OrderLink, now: datetime) -> bool:
@@ -96,8 +101,18 @@ async def _link(session: AsyncSession, person: Person, order_id: str) -> OrderLi
 
 async def _needs_link(session: AsyncSession, person: Person, order_id: str) -> bool:
     order = await session.get(Order, order_id)
-    if order is None or order.recipient_id != person.id:
+    if order is None:
         return False
+    if order.recipient_id != person.id:
+        # The pages for those who sign in show a delegate nothing of the order.
+        return order.sender_id != person.id and await _is_named(session, person, order_id)
     signed_in = select(PersonSession.id).where(PersonSession.person_id == person.id).limit(1)
     known_outside = select(col(Identity.person_id)).where(Identity.person_id == person.id).limit(1)
     return not (await session.exec(signed_in)).first() and not (await session.exec(known_outside)).first()
+
+
+async def _is_named(session: AsyncSession, person: Person, order_id: str) -> bool:
+    named = select(Delegate.id).where(
+        Delegate.order_id == order_id, Delegate.email == person.email, col(Delegate.revoked_at).is_(None)
+    )
+    return (await session.exec(named.limit(1))).first() is not None

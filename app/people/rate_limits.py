@@ -1,6 +1,7 @@
 """How often somebody may knock at a door: counted in memory, per person or per address they come from.
 
-The library counts in the machine's own time, also under a scaled clock: knocking is real.
+The library counts in the machine's own time, also under a scaled clock: knocking is real. It keeps two numbers for
+each knocker, of this window and of the one before, which counts less the longer ago it was.
 
     @router.post("/orders", dependencies=[per_person(Door.ORDERS)])
 """
@@ -15,7 +16,7 @@ from typing import Annotated, Any, Final
 from fastapi import Depends, Request
 from limits import parse
 from limits.aio.storage import MemoryStorage
-from limits.aio.strategies import MovingWindowRateLimiter
+from limits.aio.strategies import SlidingWindowCounterRateLimiter
 
 from app.errors import TooManyRequests
 from app.people.current_user import CurrentUser
@@ -42,7 +43,7 @@ class RateLimits:
     """One door-keeper per service process."""
 
     def __init__(self, settings: Settings) -> None:
-        self._limiter = MovingWindowRateLimiter(MemoryStorage())
+        self._limiter = SlidingWindowCounterRateLimiter(MemoryStorage())
         self._limits = {door: parse(getattr(settings, door)) for door in Door}
         self._streams = settings.streams_per_person
         self._open_streams = Counter[str]()

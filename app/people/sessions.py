@@ -6,6 +6,7 @@ from datetime import datetime, timedelta
 from hashlib import sha256
 from typing import Final
 
+from sqlalchemy import bindparam
 from sqlmodel import col, select, update
 from sqlmodel.ext.asyncio.session import AsyncSession
 from sqlmodel.sql.expression import SelectOfScalar
@@ -53,16 +54,19 @@ def new_session(person: Person, user_agent: str, lifetime_s: float, now: datetim
 
 async def find_session(session: AsyncSession, token: str, now: datetime) -> OpenSession | None:
     """The session of this cookie, if it is still open."""
-    wanted = select(PersonSession, Person).where(
-        PersonSession.token_hash == hash_of(token), PersonSession.person_id == Person.id
+    found = (await session.exec(_OPENED_BY_COOKIE, params={"token_hash": hash_of(token), "now": now})).first()
+    person, session_id, seen_at = found or (None, None, None)
+    return OpenSession(person, session_id, seen_at) if person is not None and session_id is not None else None
+
+
+_OPENED_BY_COOKIE: Final = (  # put together once: that takes longer than asking
+    select(Person, col(PersonSession.id), col(PersonSession.seen_at)).where(
+        col(PersonSession.person_id) == col(Person.id),
+        col(PersonSession.token_hash) == bindparam("token_hash"),
+        col(PersonSession.revoked_at).is_(None),
+        col(PersonSession.expires_at) > bindparam("now"),
     )
-    found = (await session.exec(wanted)).first()
-    if found is None:
-        return None
-    row, person = found
-    if row.id is None or row.revoked_at or row.expires_at <= now:
-        return None
-    return OpenSession(person, row.id, row.seen_at)
+)
 
 
 async def note_seen(session: AsyncSession, session_id: int, now: datetime) -> None:
