@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from datetime import datetime, timedelta
 from typing import Final
 
-from app.dispatch.ways import Ways
 from app.tables import Priority
+from maps.ways import Ways
 
 ENOUGH_CHARGE: Final = 0.30
 """Above the ratio at which a robot's own battery plan would take it back to the dock at once (0.25 and hysteresis)."""

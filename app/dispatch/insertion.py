@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from app.dispatch.ways import Ways
+from maps.ways import Ways
 
 
 @dataclass(frozen=True)

@@ -7,11 +7,11 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.dispatch.choice import WaitingOrder
 from app.dispatch.insertion import Insertion, Tour, Visit, cheapest_insertion
-from app.dispatch.ways import Ways
 from app.fleet.service import Fleet
 from app.orders.stops import active_mission, left_of
 from app.people.service import new_id
 from app.tables import MissionRow, Order, StopRow
+from maps.ways import Ways
 from protocol.parts import StopAction
 
 PLACES: Final = (StopAction.LOAD, StopAction.RECEIVE)

@@ -17,13 +17,13 @@ from sqlmodel.sql.expression import SelectOfScalar
 from app.dispatch.choice import Assignment, choose_robots, has_enough_charge, why_nobody_comes
 from app.dispatch.missions import begin_mission, take_along
 from app.dispatch.situation import Situation, anything_waits, look, tours
-from app.dispatch.ways import Ways
 from app.fleet.commands import ask, new_command_id, unanswered
 from app.fleet.mission_updates import tell_mission
 from app.fleet.service import Fleet
 from app.orders.service import Word
 from app.orders.transitions import By
 from app.tables import MissionRow, MissionState, Order, OrderState, RobotRow
+from maps.ways import Ways
 from protocol.to_robot import Cancel
 
 LOOK_AGAIN_S: Final = 30.0

@@ -7,7 +7,7 @@ and the same, so that whoever knows the one knows the other.
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from datetime import datetime
-from functools import partial
+from functools import cached_property, partial
 
 from sqlmodel.ext.asyncio.session import AsyncSession
 
@@ -24,6 +24,7 @@ from app.settings import Settings
 from app.tables import Order, OrderEvent, OrderState, Person, Role
 from app.tables.order_events import MOVED
 from maps import CampusMap
+from maps.ways import Ways
 from protocol.clock import Clock
 
 
@@ -50,6 +51,11 @@ class Ledger:
     key: ServerKey
     desk: SignInDesk
     on_change: list[Callable[[str], None]] = field(default_factory=list)
+
+    @cached_property
+    def ways(self) -> Ways:
+        """How far it is on this campus."""
+        return Ways(self.campus)
 
     async def order(self, session: AsyncSession, order_id: str) -> Order:
         """The row, locked for this transaction. Raises UnknownOrder."""

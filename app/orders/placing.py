@@ -35,7 +35,7 @@ class Placing(Ledger):
         """When mail should arrive that is fetched from now, or later. Raises UnknownPost, SamePost, NoWay."""
         begins_at = max(self.clock.utc(), not_before or self.clock.utc())
         try:
-            window = arrival_window(self.campus, from_post, to_post, begins_at, self.settings)
+            window = arrival_window(self.ways, from_post, to_post, begins_at, self.settings)
         except UnknownPost as error:
             raise errors.UnknownPost(str(error)) from None
         except NoRoute as error:

@@ -17,9 +17,9 @@ from app.dispatch.choice import (
     has_enough_charge,
     why_nobody_comes,
 )
-from app.dispatch.ways import Ways
 from app.tables import Priority
 from maps import builtin_map, shortest_route
+from maps.ways import Ways
 
 TRACK = Ways(builtin_map("test_track"))
 MAP = builtin_map("carleton")

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from app.dispatch.choice import WaitingOrder
 from app.dispatch.insertion import Tour, Visit, cheapest_insertion
 from app.dispatch.missions import best_tour
-from app.dispatch.ways import Ways
 from maps import builtin_map
+from maps.ways import Ways
 
 MAP = builtin_map("carleton")
 WAYS = Ways(MAP)

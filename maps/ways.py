@@ -2,28 +2,28 @@
 
 import math
 
-from maps import CampusMap, CampusMapError, shortest_route
+from maps.campus_map import CampusMap
+from maps.errors import NoRoute
+from maps.routes import shortest_route
 
 
 class Ways:
     """Lengths of the shortest routes of one campus, in metres."""
 
     def __init__(self, campus: CampusMap) -> None:
-        self._campus = campus
+        self.campus = campus
         self._known: dict[tuple[str, str], float] = {}
 
     def length_m(self, from_post: str | None, to_post: str) -> float:
         """Infinite where nothing is known: from nowhere, to a post of another map, or where no corridors join them."""
-        if from_post is None:
+        if from_post is None or from_post not in self.campus.posts or to_post not in self.campus.posts:
             return math.inf
         if (from_post, to_post) not in self._known:
             self._known[from_post, to_post] = self._look_up(from_post, to_post)
         return self._known[from_post, to_post]
 
     def _look_up(self, from_post: str, to_post: str) -> float:
-        if from_post == to_post:
-            return 0.0 if from_post in self._campus.posts else math.inf
         try:
-            return shortest_route(self._campus, from_post, to_post).length_m
-        except CampusMapError:
+            return shortest_route(self.campus, from_post, to_post).length_m
+        except NoRoute:
             return math.inf
