@@ -32,14 +32,14 @@ from app.live.feed import LocalFeed
 from app.mail import open_mailer
 from app.notify import outbox_routes, wish_routes
 from app.notify import routes as notify_routes
-from app.notify.channels.mail import LinkFor, MailChannel
+from app.notify.channels.mail import CodePicture, LinkFor, MailChannel
 from app.notify.channels.push import PushChannel
 from app.notify.channels.webhook import Address, WebhookChannel, secret_bytes
 from app.notify.push_key import open_push_key
 from app.notify.worker import OutboxWorker
 from app.orders import changing_routes, standing_routes
 from app.orders import routes as orders_routes
-from app.orders.codes import PURPOSE_OF_NOTICE, code_png, code_text
+from app.orders.codes import code_in_mail, code_png
 from app.orders.idempotency import Running
 from app.orders.service import Orders
 from app.orders.standing import StandingOrders
@@ -56,7 +56,7 @@ from app.request_log import RequestLog
 from app.schema_version import bring_to_head
 from app.server_key import ServerKey, open_server_key
 from app.settings import Settings, make_data_folder, open_map
-from app.tables import Notice, NoticeKind, Person
+from app.tables import Notice, Person
 from protocol.clock import Clock
 
 log = structlog.get_logger(__name__)
@@ -173,12 +173,12 @@ def _link_for(links: Links) -> LinkFor:
     return link
 
 
-def _code_picture(key: ServerKey) -> Callable[[str, NoticeKind], tuple[str, bytes] | None]:
+def _code_picture(key: ServerKey) -> CodePicture:
     """The code that goes with a mail, so that it is at hand where there is no network."""
 
-    def picture(order_id: str, kind: NoticeKind) -> tuple[str, bytes] | None:
-        purpose = PURPOSE_OF_NOTICE.get(kind)
-        return None if purpose is None else (f"{purpose}-code.png", code_png(code_text(key, order_id, purpose)))
+    def picture(notice: Notice) -> tuple[str, bytes] | None:
+        code = code_in_mail(key, notice)
+        return None if code is None else (f"{code[0]}-code.png", code_png(code[1]))
 
     return picture
 

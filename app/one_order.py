@@ -1,6 +1,6 @@
 """One order for whoever came by the link in their mail: no account, no cookie, everything by POST.
 
-The link opens this one order, as its recipient sees it, and nothing else.
+The link opens this one order, as its recipient sees it (or a delegate: where it is, and their code), and nothing else.
 """
 
 from datetime import datetime
@@ -16,7 +16,7 @@ from app.handover.routes import ASKED, NAMED, NOT_KEPT, DelegatingDep, HandOvers
 from app.handover.schemas import CodeView, DelegateView, HandoverAsked, HandOverWish, NewDelegate, PurposeName
 from app.handover.service import HandOvers
 from app.orders.codes import HandoverCode, code_svg
-from app.orders.errors import NoCodeForYou, NotRecallable
+from app.orders.errors import NoCodeForYou, NotRecallable, UnknownOrder
 from app.orders.routes import OrdersDep
 from app.orders.schemas import OrderView
 from app.people.errors import LinkRefused
@@ -86,9 +86,13 @@ router = APIRouter(
 
 
 @router.post("/order")
-async def linked_order(link: Link, links: LinksDep, orders: OrdersDep, session: ReadingDep) -> OrderView:
+async def linked_order(
+    link: Link, links: LinksDep, orders: OrdersDep, delegating: DelegatingDep, session: ReadingDep
+) -> OrderView:
     """The order that this link was mailed for."""
     guest = await links.open(session, link.token)
+    if guest.is_delegate:
+        return await delegating.view(session, guest.person, guest.order_id)
     return await orders.view(session, guest.person, guest.order_id)
 
 
@@ -96,7 +100,7 @@ async def linked_order(link: Link, links: LinksDep, orders: OrdersDep, session: 
 async def linked_code(
     link: Link, links: LinksDep, hand_overs: HandOversDep, session: ReadingDep, response: Response
 ) -> LinkedCode:
-    """The code by which its recipient takes the mail, while it is their turn."""
+    """The code of the recipient or the delegate, while it is their turn."""
     guest = await links.open(session, link.token)
     code = await hand_overs.my_code(session, guest.person, guest.order_id)
     response.headers.update(NOT_KEPT)
@@ -113,7 +117,7 @@ async def linked_hand_over(
     return await hand_over(guest.order_id, wish, guest.person, hand_overs, database)
 
 
-@router.post("/not-now", responses=problems(NotRecallable))
+@router.post("/not-now", responses=problems(NotRecallable, UnknownOrder))
 async def linked_not_now(link: Link, links: LinksDep, orders: OrdersDep, session: SessionDep) -> OrderView:
     """Say that nobody can take the mail now: the robot brings it back."""
     guest = await links.open(session, link.token)

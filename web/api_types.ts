@@ -6,7 +6,7 @@ export type OrderState =
   | "returning" | "at_return" | "returned" | "held"
   | "expired" | "cancelled" | "attention";
 
-export type Role = "sender" | "recipient" | "dispatcher";
+export type Role = "sender" | "recipient" | "dispatcher" | "delegate";
 export type Purpose = "load" | "receive" | "return";
 
 export interface Person { id: string; email: string; name: string; language: string; roles: string[] }

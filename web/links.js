@@ -20,3 +20,9 @@ export const wantedFrom = (search) => Object.fromEntries(new URLSearchParams(sea
 
 /** @param {string} search the order that a follow page is about; null if the address names none */
 export const orderFrom = (search) => new URLSearchParams(search).get("order");
+
+/** Told to delegates, who may not follow the order: the mail that they got has a link of their own. */
+const OF_DELEGATES = ["delegated", "delegation_over"];
+
+/** What a notice leads to. @param {import("./api_types.ts").Notice} notice */
+export const pageOf = ({ order_id, kind }) => (order_id && !OF_DELEGATES.includes(kind) ? followPage(order_id) : null);

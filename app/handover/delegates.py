@@ -7,13 +7,15 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.fleet.service import Fleet
 from app.handover import errors
-from app.handover.looking import theirs
-from app.handover.people import may_see, purpose_to_delegate
+from app.handover.looking import find_order, theirs
+from app.handover.people import code_for, may_see, purpose_to_delegate
 from app.handover.schemas import NewDelegate
+from app.handover.telling import tell_delegate, tell_that_it_is_over
 from app.orders.codes import HandoverCode, Holder, delegates_of
+from app.orders.schemas import OrderView
 from app.orders.service import Word
 from app.orders.transitions import ENDED, By
-from app.orders.views import MyRole
+from app.orders.views import MyRole, delegates_view, load_facts
 from app.people.service import new_id
 from app.tables import Delegate, Order, OrderState, Person, RobotRow
 from protocol.parts import Purpose
@@ -34,8 +36,8 @@ class Delegating:
         return [one for one in await delegates_of(session, [order]) if may_see(one, role)]
 
     async def name(self, session: AsyncSession, person: Person, order_id: str, wish: NewDelegate) -> Delegate:
-        """Give somebody a code of their own. Raises UnknownOrder, NotYoursToDelegate, TooLateToDelegate,
-        TooManyDelegates."""
+        """Give somebody a code of their own, by mail if there is an address. Raises UnknownOrder, NotYoursToDelegate,
+        TooLateToDelegate, TooManyDelegates, AddressNotAllowed."""
         order, role = await self.fleet.orders.theirs(session, person, order_id)
         purpose = purpose_to_delegate(order, role, Purpose(wish.purpose) if wish.purpose else None)
         if len([one for one in await delegates_of(session, [order]) if one.revoked_at is None]) >= MOST:
@@ -50,6 +52,9 @@ class Delegating:
             named_at=self.fleet.clock.utc(),
         )
         session.add(row)
+        await session.flush()
+        if wish.email is not None:
+            await tell_delegate(session, self.fleet.orders, order, row, person)
         await self._tell(session, order, "delegate_named", _word(role, person, wish.name))
         return row
 
@@ -60,6 +65,7 @@ class Delegating:
         row = await self._delegate(session, order, role, delegate_id)
         if row.revoked_at is None:
             row.revoked_at = self.fleet.clock.utc()
+            await tell_that_it_is_over(session, self.fleet.orders, order, row)
             await self._tell(session, order, "delegate_revoked", _word(role, person, row.name))
 
     async def code(self, session: AsyncSession, person: Person, order_id: str, delegate_id: str) -> HandoverCode:
@@ -69,6 +75,13 @@ class Delegating:
         if row.revoked_at is not None or order.state in ENDED:
             raise errors.UnknownDelegate("This code opens nothing any more.")
         return HandoverCode(order.id, Purpose(row.purpose), Holder.DELEGATE, order.codes_expire_at, row)
+
+    async def view(self, session: AsyncSession, delegate: Person, order_id: str) -> OrderView:
+        """The order as a delegate of it may see it. Raises UnknownOrder."""
+        order, orders = await find_order(session, order_id), self.fleet.orders
+        code = code_for(order, delegate, await delegates_of(session, [order]))
+        facts = (await load_facts(session, [order]))[0]
+        return delegates_view(facts, code.purpose if code else None, orders.campus, orders.settings)
 
     async def _delegate(self, session: AsyncSession, order: Order, role: MyRole, delegate_id: str) -> Delegate:
         row = await session.get(Delegate, delegate_id)

@@ -15,7 +15,7 @@ from app.orders.errors import NoCodeForYou, UnknownOrder
 from app.orders.routes import OrderId, OrdersDep
 from app.orders.schemas import OrderView
 from app.people.current_user import CurrentUser, Dispatcher
-from app.people.errors import RoleNeeded
+from app.people.errors import AddressNotAllowed, RoleNeeded
 from app.people.rate_limits import Door, per_host, per_person
 
 router = APIRouter(tags=["orders"])
@@ -35,7 +35,14 @@ ASKED = problems(
     errors.WrongDigits,
     429,
 )
-NAMED = problems(UnknownOrder, errors.NotYoursToDelegate, errors.TooLateToDelegate, errors.TooManyDelegates, 429)
+NAMED = problems(
+    UnknownOrder,
+    errors.NotYoursToDelegate,
+    errors.TooLateToDelegate,
+    errors.TooManyDelegates,
+    AddressNotAllowed,
+    429,
+)
 
 
 async def _hand_overs(request: Request) -> HandOvers:

@@ -4,14 +4,14 @@ from collections.abc import Mapping
 from datetime import datetime, timedelta
 from typing import Final
 
-from sqlalchemy import String, cast, func, update
+from sqlalchemy import String, cast, delete, func, update
 from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.database import write_new
 from app.notify.schemas import Inbox, NoticeView
 from app.paging import Paging, Sorting
-from app.tables import Alarm, Notice, NoticeKind, Person, Role
+from app.tables import Alarm, Notice, NoticeKind, OutgoingNotice, Person, Role
 
 COMES_AND_GOES: Final = timedelta(minutes=10)
 NEWEST_FIRST = Sorting("notices", col(Notice.id), descending=True)
@@ -41,6 +41,18 @@ async def tell(
 async def _told(session: AsyncSession, person: Person, key: str) -> bool:
     wanted = select(Notice.id).where(Notice.person_id == person.id, Notice.key == key)
     return (await session.exec(wanted)).first() is not None
+
+
+async def withdraw(session: AsyncSession, person_id: str, key: str) -> bool:
+    """Send no more of what was told; whether the person may have seen it, so that they have to be told."""
+    notice = (await session.exec(select(Notice).where(Notice.person_id == person_id, Notice.key == key))).first()
+    if notice is None:
+        return False
+    theirs = col(OutgoingNotice.notice_id) == notice.id
+    await session.exec(delete(OutgoingNotice).where(theirs, col(OutgoingNotice.next_try_at).is_not(None)))
+    if notice.routed_at is None:
+        await session.delete(notice)
+    return notice.routed_at is not None
 
 
 async def tell_dispatchers(session: AsyncSession, alarm: Alarm) -> None:

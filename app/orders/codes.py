@@ -17,7 +17,7 @@ from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.server_key import ServerKey
-from app.tables import Delegate, NoticeKind, Order, OrderState
+from app.tables import Delegate, Notice, NoticeKind, Order, OrderState
 from protocol.parts import Purpose
 from protocol.to_robot import Verifier
 
@@ -94,6 +94,17 @@ def code_text(key: ServerKey, order_id: str, purpose: Purpose, whose: tuple[str,
     """What the QR code says: `CM1:` and 128 bits in hex. `whose`: of a delegate or the mailroom; else sender's and
     recipient's."""
     return PREFIX + key.derive("hand-over", order_id, purpose, *whose)[:SECRET_BYTES].hex()
+
+
+def code_in_mail(key: ServerKey, notice: Notice) -> tuple[Purpose, str] | None:
+    """The code that goes with a notice by mail: what it is for, and what its QR form says."""
+    if notice.order_id is None:
+        return None
+    if notice.kind is NoticeKind.DELEGATED:
+        purpose, whose = Purpose(notice.facts["purpose"]), (Holder.DELEGATE, notice.facts["delegate_id"])
+        return purpose, code_text(key, notice.order_id, purpose, whose)
+    own = PURPOSE_OF_NOTICE.get(notice.kind)
+    return None if own is None else (own, code_text(key, notice.order_id, own))
 
 
 def codes_of(

@@ -167,7 +167,7 @@ class HandoverRequested(BaseModel):
 
 
 class OrderView(BaseModel):
-    """An order as one person may see it."""
+    """An order as one person may see it. A delegate sees where it is, and of sender and recipient the names alone."""
 
     id: str
     state: str
@@ -183,7 +183,7 @@ class OrderView(BaseModel):
     robot: RobotView | None
     why: str | None
     why_words: Words | None
-    my_role: Literal["sender", "recipient", "dispatcher"]
+    my_role: Literal["sender", "recipient", "dispatcher", "delegate"]
     my_code: Literal["load", "receive", "return"] | None
     handover_requested: HandoverRequested | None
     can_cancel: bool

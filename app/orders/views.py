@@ -18,6 +18,7 @@ from app.settings import Settings
 from app.tables import Handover, Order, OrderEvent, OrderState, Person, RobotRow, Role
 from app.texts.reasons import words_of
 from maps import CampusMap
+from protocol.parts import Purpose
 
 CONFIRM_REQUESTED: Final = "confirm_requested"
 MyRole = Literal["sender", "recipient", "dispatcher"]
@@ -132,6 +133,24 @@ def order_view(facts: OrderFacts, role: MyRole, person_id: str, campus: CampusMa
         custody=[CustodyView.of(held) for held in custody_of(order, facts.handovers)],
         events=[_event(event) for event in facts.events],
     )
+
+
+def delegates_view(facts: OrderFacts, turn: Purpose | None, campus: CampusMap, settings: Settings) -> OrderView:
+    """The order for somebody who was named to hand over: where it is and whose, nothing of what it holds or went
+    through. `turn`: what their code is good for now."""
+    whole = order_view(facts, "recipient", "", campus, settings)
+    theirs: dict[str, object] = {
+        "my_role": "delegate",
+        "my_code": turn and turn.value,
+        "sender": Somebody(email="", name=facts.sender.name),
+        "recipient": Somebody(email="", name=facts.recipient.name),
+        "description": None,
+        "placed_by": None,
+        "standing_order_id": None,
+        "custody": [],
+        "events": [],
+    }
+    return whole.model_copy(update=theirs)
 
 
 def is_cancellable(order: Order, role: MyRole) -> bool:

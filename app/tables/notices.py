@@ -31,6 +31,8 @@ class NoticeKind(StrEnum):
     EXPIRED = "expired"
     ATTENTION = "attention"
     ALARM = "alarm"
+    DELEGATED = "delegated"
+    DELEGATION_OVER = "delegation_over"
 
 
 class Notice(SQLModel, table=True):

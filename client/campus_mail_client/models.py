@@ -448,6 +448,8 @@ NoticeKind = (
         "expired",
         "attention",
         "alarm",
+        "delegated",
+        "delegation_over",
     ]
     | str
 )
@@ -480,7 +482,7 @@ class OrderPage(Model):
 
 
 class OrderView(Model):
-    """An order as one person may see it."""
+    """An order as one person may see it. A delegate sees where it is, and of sender and recipient the names alone."""
 
     id: str
     state: str
@@ -496,7 +498,7 @@ class OrderView(Model):
     robot: RobotView | None
     why: str | None
     why_words: Words | None
-    my_role: Literal["sender", "recipient", "dispatcher"] | str
+    my_role: Literal["sender", "recipient", "dispatcher", "delegate"] | str
     my_code: Literal["load", "receive", "return"] | str | None
     handover_requested: HandoverRequested | None
     can_cancel: bool

@@ -368,7 +368,7 @@ class Operations:
         return answer
 
     def linked_code(self, wish: Link) -> LinkedCode:
-        """The code by which its recipient takes the mail, while it is their turn."""
+        """The code of the recipient or the delegate, while it is their turn."""
         answer: LinkedCode = self._call("POST", "/api/v1/link/code", LinkedCode, body=wish)
         return answer
 

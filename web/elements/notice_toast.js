@@ -1,6 +1,6 @@
 /** What one is told just now, on whatever page one is, for as long as it takes to read and reach. */
 import { html, nothing } from "lit";
-import { followPage, orderFrom } from "../links.js";
+import { orderFrom, pageOf } from "../links.js";
 import { OnLive } from "../live.js";
 import { t } from "../texts.js";
 import { icon } from "./icon.js";
@@ -26,9 +26,9 @@ export class NoticeToast extends PageElement {
   }
 
   /** @param {Notice} notice */
-  #toast({ order_id, title, body }) {
+  #toast(notice) {
     return html`<div class="toast">
-      <a href=${order_id ? followPage(order_id) : nothing}><strong>${title}</strong><span>${body}</span></a>
+      <a href=${pageOf(notice) ?? nothing}><strong>${notice.title}</strong><span>${notice.body}</span></a>
       <button class="quiet" aria-label=${t("notices.dismiss")} @click=${() => (this.notice = null)}>${icon("cross")}</button>
     </div>`;
   }

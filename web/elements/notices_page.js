@@ -1,7 +1,7 @@
 /** The inbox: what I was told, unread first to the eye, each leading to its letter. */
 import { html, nothing } from "lit";
 import * as api from "../api.js";
-import { followPage } from "../links.js";
+import { pageOf } from "../links.js";
 import { OnLive } from "../live.js";
 import { inWords } from "../problems.js";
 import { serverNow } from "../server_clock.js";
@@ -44,7 +44,7 @@ export class NoticesPage extends PageElement {
     return html`<ul class="notices">
       ${notices.map(
         (notice) => html`<li class=${notice.read ? "" : "new"}>
-          <a href=${notice.order_id ? followPage(notice.order_id) : nothing} @click=${() => this.#read([notice])}>
+          <a href=${pageOf(notice) ?? nothing} @click=${() => this.#read([notice])}>
             <strong>${notice.title}${notice.read ? nothing : html` <span class="unseen">(${t("notices.unread")})</span>`}</strong>
             <span>${notice.body}</span>
             <time datetime=${notice.at}>${ago(notice.at, serverNow())}</time>

@@ -62,17 +62,21 @@ export class OneOrder extends PageElement {
         ${orderStanding(order, map)}
         <handover-code .door=${this.door} .purpose=${order.my_code} .needed=${isMyTurn(order)}
           .asked=${order.handover_requested !== null}></handover-code>
-        ${order.state === "at_recipient" ? html`<button class="quiet" @click=${this.#notNow}>${t("one_order.not_now")}</button>` : nothing}
+        ${order.state === "at_recipient" && order.my_role === "recipient" ? html`<button class="quiet" @click=${this.#notNow}>${t("one_order.not_now")}</button>` : nothing}
         ${this.problem ? problemLine(this.problem) : nothing}
       </div>
       <div class="column">
-        <section class="card" aria-labelledby="timeline-title">
-          <h2 id="timeline-title">${t("follow.timeline")}</h2>
-          ${orderTimeline(order, map)}
-        </section>
-        ${orderDetails(order)}
+        ${order.my_role === "delegate" ? nothing : this.#timeline(order, map)} ${orderDetails(order)}
       </div>
     </div>`;
+  }
+
+  /** @param {Order} order @param {CampusMap} map */
+  #timeline(order, map) {
+    return html`<section class="card" aria-labelledby="timeline-title">
+      <h2 id="timeline-title">${t("follow.timeline")}</h2>
+      ${orderTimeline(order, map)}
+    </section>`;
   }
 
   updated() {

@@ -4,7 +4,7 @@ import asyncio
 from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
 from datetime import timedelta
-from typing import ClassVar
+from typing import ClassVar, Final
 
 from app.mail import Mail, Mailer, NotMailed
 from app.notify.channels.interface import NotSent, Sending
@@ -12,10 +12,14 @@ from app.settings import Settings
 from app.tables import Notice, NoticeKind, Person
 from app.texts import text
 
-CodePicture = Callable[[str, NoticeKind], tuple[str, bytes] | None]
-"""The picture of the hand-over code that goes with a notice: (order id, kind) -> (file name, PNG), or None."""
+CodePicture = Callable[[Notice], tuple[str, bytes] | None]
+"""The picture of the hand-over code that goes with a notice: file name and PNG, or None."""
 LinkFor = Callable[[Person, Notice], Awaitable[str | None]]
 """A link for somebody who has no account, by which they may follow this one order; None: they sign in."""
+
+
+LEADS_NOWHERE: Final = frozenset({NoticeKind.DELEGATION_OVER})
+"""Told to somebody whom the order concerns no more: they could not open it."""
 
 
 async def no_link(person: Person, notice: Notice) -> str | None:
@@ -48,7 +52,7 @@ class MailChannel:
         notice, language = sending.notice, sending.person.language
         picture = None
         if notice.order_id:  # in a thread: a picture takes its time to draw
-            picture = await asyncio.to_thread(self.code_picture, notice.order_id, notice.kind)
+            picture = await asyncio.to_thread(self.code_picture, notice)
         url = await self._url(sending)
         parts = [sending.body]
         parts += [text(language, "email.code")] if picture else []
@@ -56,7 +60,8 @@ class MailChannel:
         return Mail(sending.key, sending.person.email, sending.title, "\n\n".join(parts) + "\n", notice.at, picture)
 
     async def _url(self, sending: Sending) -> str | None:
-        if not self.settings.public_url or sending.notice.order_id is None:
+        notice = sending.notice
+        if not self.settings.public_url or notice.order_id is None or notice.kind in LEADS_NOWHERE:
             return None
-        page = f"{self.settings.public_url.rstrip('/')}/follow.html?order={sending.notice.order_id}"
-        return await self.link_for(sending.person, sending.notice) or page
+        page = f"{self.settings.public_url.rstrip('/')}/follow.html?order={notice.order_id}"
+        return await self.link_for(sending.person, notice) or page

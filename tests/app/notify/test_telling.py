@@ -12,7 +12,7 @@ from sqlmodel import col, select
 from app.mail import Mail, Spool
 from app.notify.worker import LONGEST_PAUSE_S, pause_s
 from app.settings import ROOT
-from app.tables import NoticeKind, OutgoingNotice
+from app.tables import Notice, NoticeKind, OutgoingNotice
 from app.texts import LANGUAGES, catalogue
 from protocol.clock import SteppedClock
 from tests.app.conftest import SENDER, Browser, Mailroom, Mails
@@ -71,11 +71,11 @@ def test_a_mail_that_cannot_be_made_holds_up_nobody_elses(
     app: FastAPI, sender: Browser, mailroom: Mailroom, mails: Mails
 ) -> None:
     mail = next(channel for channel in app.state.outbox_worker.channels if channel.name == "mail")
-    broken: list[str] = []
+    broken: list[str | None] = []
 
-    def picture(order_id: str, kind: NoticeKind) -> None:
-        broken.extend([] if broken else [order_id])
-        if order_id in broken:
+    def picture(notice: Notice) -> None:
+        broken.extend([] if broken else [notice.order_id])
+        if notice.order_id in broken:
             raise ValueError("no picture")
 
     mail.code_picture = picture

@@ -133,4 +133,5 @@ def test_every_end_and_every_wait_is_told() -> None:
     ends = {state for state, following in TRANSITIONS.items() if not following}
     assert {telling.kind for end in ends for telling in TOLD[end]} <= ONCE
     kinds = {telling.kind for tellings in TOLD.values() for telling in tellings}
-    assert set(NoticeKind) - kinds == {NoticeKind.DELAYED, NoticeKind.ALARM}
+    of_delegates = {NoticeKind.DELEGATED, NoticeKind.DELEGATION_OVER}
+    assert set(NoticeKind) - kinds == {NoticeKind.DELAYED, NoticeKind.ALARM, *of_delegates}
