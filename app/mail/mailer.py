@@ -36,24 +36,52 @@ class Mailer(Protocol):
         ...
 
 
-@dataclass(frozen=True)
+@dataclass
 class SpoolMailer:
-    """Writes files."""
+    """Writes files, one batch after the other: what comes meanwhile is the next batch."""
 
     spool: Spool
     at_once: int = 32
+    _waiting: list[tuple[Mail, asyncio.Future[None]]] = field(default_factory=list)
+    _writing: asyncio.Task[None] | None = None
 
     async def send(self, mail: Mail) -> None:
+        written: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        self._waiting.append((mail, written))
+        if self._writing is None:
+            self._writing = asyncio.create_task(self._write_what_waits())
         try:
-            await asyncio.to_thread(self.spool.send, mail)
+            await written
         except OSError as error:
             raise NotMailed(f"{type(error).__name__}: {error}") from error
 
     async def send_soon(self, mail: Mail) -> None:
         await self.send(mail)
 
+    async def _write_what_waits(self) -> None:
+        batch: list[tuple[Mail, asyncio.Future[None]]] = []
+        try:
+            while self._waiting:
+                batch, self._waiting = self._waiting, []
+                problems = await asyncio.to_thread(self.spool.send_all, [mail for mail, _ in batch])
+                for (_, written), problem in zip(batch, problems, strict=True):
+                    _end(written, problem)
+        finally:
+            self._writing = None
+            for _, written in batch:  # cut off: nobody shall wait for ever
+                written.cancel()
+
     def stop(self) -> None:
         pass
+
+
+def _end(written: asyncio.Future[None], problem: Exception | None) -> None:
+    if written.done():  # whoever wanted it waits no longer
+        return
+    if problem is None:
+        written.set_result(None)
+    else:
+        written.set_exception(problem)
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,8 @@ from datetime import datetime
 from email.message import EmailMessage
 from email.utils import format_datetime
 
+from app.mail.headers import MAIL
+
 
 @dataclass(frozen=True)
 class Mail:
@@ -23,7 +25,7 @@ class Mail:
 
 def message_of(mail: Mail, sender: str) -> EmailMessage:
     """The same mail gives the same message: nothing in it is of the moment of sending."""
-    message = EmailMessage()
+    message = EmailMessage(policy=MAIL)
     message["From"] = sender
     message["To"] = mail.to
     # Names of people stand in it, and a line of its own would be another header.
