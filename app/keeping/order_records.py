@@ -12,7 +12,7 @@ from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.errors import StartError
-from app.tables import Handover, Order, OrderEvent, OrderState, Person
+from app.tables import Delegate, Handover, Order, OrderEvent, OrderState, Person
 
 AT_ONCE: Final = 500
 _LEFT_OUT: Final = {"sender_id", "recipient_id", "placed_by_id"}
@@ -53,11 +53,13 @@ async def one_order(session: AsyncSession, order_id: str) -> dict[str, Any]:
         raise NoSuchOrder(f"There is no order {order_id}. Their ids: orders list.")
     emails: dict[str, str] = {}
     events = (await session.exec(select(OrderEvent).filter_by(order_id=order_id).order_by(col(OrderEvent.seq)))).all()
-    custody = (await session.exec(select(Handover).filter_by(order_id=order_id).order_by(col(Handover.id)))).all()
+    handovers = (await session.exec(select(Handover).filter_by(order_id=order_id).order_by(col(Handover.id)))).all()
     return {
         **await _record(session, order, emails),
         "events": [await _with_person(session, event, emails) for event in events],
-        "custody": [await _with_person(session, row, emails) for row in custody],
+        "custody": [
+            {**await _with_person(session, row, emails), "delegate": await _delegate(session, row)} for row in handovers
+        ],
     }
 
 
@@ -98,6 +100,10 @@ async def _record(session: AsyncSession, order: Order, emails: dict[str, str]) -
 async def _with_person(session: AsyncSession, row: OrderEvent | Handover, emails: dict[str, str]) -> dict[str, Any]:
     fields = row.model_dump(mode="json", exclude={"order_id", "person_id", "code_sha256"})
     return {**fields, "person": await _email(session, row.person_id, emails)}
+
+
+async def _delegate(session: AsyncSession, row: Handover) -> str | None:
+    return (await session.get_one(Delegate, row.delegate_id)).name if row.delegate_id else None
 
 
 async def _email(session: AsyncSession, person_id: str | None, emails: dict[str, str]) -> str | None:

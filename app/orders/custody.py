@@ -4,9 +4,10 @@ It derives from the receipts of robots alone (and from a dispatcher's word, wher
 the order's state. Each hand-over ends one link and begins the next, so that at any time exactly one holds the mail.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from datetime import datetime
+from types import MappingProxyType
 
 from app.orders.codes import Holder
 from app.tables import Handover, Order
@@ -17,9 +18,11 @@ from protocol.parts import Purpose
 class Held:
     """One link: who held it (sender, robot, recipient, delegate or mailroom), and until when; None: to this day.
 
+    `name` is the robot's or the delegate's; of the others there is one each.
+
     `how` tells how they came to have it: code, tap, digits or button by a robot's receipt, `dispatcher` by a
-    dispatcher's word, None for the sender's own. `confirmed_by` is whose code, tap or digits it was, `signed` whether
-    the robot has signed for it.
+    dispatcher's word, None for the sender's own. `confirmed_by` is whose code, tap or digits it was
+    (`confirmed_by_name`: which delegate's), `signed` whether the robot has signed for it.
     """
 
     holder: str
@@ -29,27 +32,32 @@ class Held:
     how: str | None
     confirmed_by: str | None = None
     signed: bool = False
+    confirmed_by_name: str | None = None
 
 
-def custody_of(order: Order, handovers: Iterable[Handover]) -> tuple[Held, ...]:
-    """The links of an order's chain, oldest first; `handovers` in the order in which they were written down."""
+def custody_of(
+    order: Order, handovers: Iterable[Handover], delegates: Mapping[str, str] = MappingProxyType({})
+) -> tuple[Held, ...]:
+    """The links of an order's chain, oldest first; `handovers` in the order in which they were written down,
+    `delegates` the names of those who took part, by their ids."""
     chain = [Held(Holder.SENDER, None, order.created_at, None, None)]
     for one in handovers:
-        last, holder = chain[-1], _holder(order, one)
+        delegate = delegates.get(one.delegate_id or "")
+        last, holder = chain[-1], _holder(order, one, delegate)
         if holder == (last.holder, last.name):
             continue  # the same pair of hands again: a robot that lost its memory tells what is known
         at = max(one.robot_at if _is_plausible(one) else one.at, last.since)
         chain[-1] = replace(last, until=at)
-        chain.append(Held(*holder, at, None, one.how, one.holder, one.signature is not None))
+        chain.append(Held(*holder, at, None, one.how, one.holder, one.signature is not None, delegate))
     return tuple(chain)
 
 
-def _holder(order: Order, one: Handover) -> tuple[str, str | None]:
+def _holder(order: Order, one: Handover, delegate: str | None) -> tuple[str, str | None]:
     """Who has it after this hand-over."""
     if one.purpose == Purpose.LOAD:
         return ("robot", one.robot)
     if one.holder is not None:
-        return (one.holder, None)
+        return (one.holder, delegate)
     if one.purpose == Purpose.RECEIVE:
         return (Holder.RECIPIENT, None)
     return (Holder.SENDER if one.post == order.from_post else Holder.MAILROOM, None)

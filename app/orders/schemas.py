@@ -129,10 +129,10 @@ class EventView(BaseModel):
 class CustodyView(BaseModel):
     """One link of the chain of custody: who held the mail, from when to when (null: to this day).
 
-    `holder` is sender, robot, recipient, delegate or mailroom, `name` the robot's. `how` says how they came to have it:
-    code, tap, digits or button by a robot's receipt, `dispatcher` by a dispatcher's word, null for the sender's own.
-    `confirmed_by` is whose code, tap or digits it was (null for the button); `signed`: the robot has signed for it, and
-    the signature was checked.
+    `holder` is sender, robot, recipient, delegate or mailroom, `name` the robot's or the delegate's. `how` says how
+    they came to have it: code, tap, digits or button by a robot's receipt, `dispatcher` by a dispatcher's word, null
+    for the sender's own. `confirmed_by` is whose code, tap or digits it was (null for the button), and
+    `confirmed_by_name` which delegate's; `signed`: the robot has signed for it, and the signature was checked.
     """
 
     model_config = ConfigDict(validate_by_name=True, validate_by_alias=True, serialize_by_alias=True)
@@ -143,6 +143,7 @@ class CustodyView(BaseModel):
     to: datetime | None
     how: str | None
     confirmed_by: str | None
+    confirmed_by_name: str | None
     signed: bool
 
     @classmethod
@@ -154,6 +155,7 @@ class CustodyView(BaseModel):
             to=held.until,
             how=held.how,
             confirmed_by=held.confirmed_by,
+            confirmed_by_name=held.confirmed_by_name,
             signed=held.signed,
         )
 

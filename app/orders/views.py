@@ -2,7 +2,7 @@
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import timedelta
 from typing import Any, Final, Literal, TypeVar
 
@@ -15,7 +15,7 @@ from app.orders.robot_view import robot_view
 from app.orders.schemas import CustodyView, EventView, HandoverRequested, OrderView, Somebody, WindowView
 from app.orders.transitions import CARRIED, ENDED, LOADED, ROBOT_COMING
 from app.settings import Settings
-from app.tables import Handover, Order, OrderEvent, OrderState, Person, RobotRow, Role
+from app.tables import Delegate, Handover, Order, OrderEvent, OrderState, Person, RobotRow, Role
 from app.texts.reasons import words_of
 from maps import CampusMap
 from protocol.parts import Purpose
@@ -35,6 +35,8 @@ class OrderFacts:
     people: Mapping[str, Person]
     robot: RobotRow | None
     handovers: Sequence[Handover] = ()
+    delegates: Mapping[str, str] = field(default_factory=dict)
+    """Names of those who took part in hand-overs, by their ids."""
 
     @property
     def sender(self) -> Person:
@@ -46,14 +48,17 @@ class OrderFacts:
 
 
 async def load_facts(session: AsyncSession, orders: Sequence[Order]) -> list[OrderFacts]:
-    """The rows around some orders, in the same order, in four queries at most."""
+    """The rows around some orders, in the same order, in five queries at most."""
     ids = [order.id for order in orders]
     events = select(OrderEvent).where(col(OrderEvent.order_id).in_(ids)).order_by(col(OrderEvent.seq))
     events_of = _by_order((await session.exec(events)).all())
     people = await _by_key(session, Person, Person.id, {one for order in orders for one in _people_of(order)})
     robots = await _by_key(session, RobotRow, RobotRow.name, {o.robot for o in orders if o.robot})
-    handovers_of = _by_order(await _handovers(session, [order.id for order in orders if order.state in LOADED]))
-    return [OrderFacts(o, events_of[o.id], people, robots.get(o.robot or ""), handovers_of[o.id]) for o in orders]
+    handovers = await _handovers(session, [order.id for order in orders if order.state in LOADED])
+    names, handovers_of = await _delegates(session, handovers), _by_order(handovers)
+    return [
+        OrderFacts(o, events_of[o.id], people, robots.get(o.robot or ""), handovers_of[o.id], names) for o in orders
+    ]
 
 
 def _by_order(rows: Iterable[OfOrder]) -> defaultdict[str, list[OfOrder]]:
@@ -75,6 +80,14 @@ async def _handovers(session: AsyncSession, order_ids: Sequence[str]) -> Sequenc
         return ()
     wanted = select(Handover).where(col(Handover.order_id).in_(order_ids)).order_by(col(Handover.id))
     return (await session.exec(wanted)).all()
+
+
+async def _delegates(session: AsyncSession, handovers: Iterable[Handover]) -> Mapping[str, str]:
+    """Mostly nobody took part who would have to be looked for."""
+    ids = {one.delegate_id for one in handovers if one.delegate_id}
+    if not ids:
+        return {}
+    return dict((await session.exec(select(Delegate.id, Delegate.name).where(col(Delegate.id).in_(ids)))).all())
 
 
 async def _by_key(session: AsyncSession, table: type[Row], key: Any, wanted: Iterable[str]) -> dict[str, Row]:
@@ -130,7 +143,7 @@ def order_view(facts: OrderFacts, role: MyRole, person_id: str, campus: CampusMa
         return_post=order.return_post,
         standing_order_id=order.standing_order_id,
         placed_by=_somebody(facts.people[order.placed_by_id]) if order.placed_by_id else None,
-        custody=[CustodyView.of(held) for held in custody_of(order, facts.handovers)],
+        custody=[CustodyView.of(held) for held in custody_of(order, facts.handovers, facts.delegates)],
         events=[_event(event) for event in facts.events],
     )
 

@@ -160,10 +160,11 @@ class CorridorView(Model):
 class CustodyView(Model):
     """One link of the chain of custody: who held the mail, from when to when (null: to this day).
 
-    `holder` is sender, robot, recipient, delegate or mailroom, `name` the robot's. `how` says how they came to
-    have it: code, tap, digits or button by a robot's receipt, `dispatcher` by a dispatcher's word, null for the
-    sender's own. `confirmed_by` is whose code, tap or digits it was (null for the button); `signed`: the robot
-    has signed for it, and the signature was checked.
+    `holder` is sender, robot, recipient, delegate or mailroom, `name` the robot's or the delegate's. `how` says
+    how they came to have it: code, tap, digits or button by a robot's receipt, `dispatcher` by a dispatcher's
+    word, null for the sender's own. `confirmed_by` is whose code, tap or digits it was (null for the button),
+    and `confirmed_by_name` which delegate's; `signed`: the robot has signed for it, and the signature was
+    checked.
     """
 
     holder: str
@@ -172,6 +173,7 @@ class CustodyView(Model):
     to: datetime | None
     how: str | None
     confirmed_by: str | None
+    confirmed_by_name: str | None
     signed: bool
 
 

@@ -1,9 +1,11 @@
 """Somebody else hands over: named with a code of their own, which can be taken back."""
 
+from hashlib import sha256
 from typing import Any
 
 import pytest
 
+from app.keeping.order_records import one_order
 from app.tables import Handover, Role
 from protocol.to_robot import Verifiers
 from tests.app.handover.conftest import Campus
@@ -35,6 +37,22 @@ async def test_a_delegate_has_a_code_of_their_own_and_the_receipt_says_that_it_w
     assert (written.holder, written.delegate_id, written.person_id) == ("delegate", delegate["id"], None)
     assert await campus.state() == "carrying"
     assert await campus.kinds() == ["delegate_named"]
+    aboard = (await sender.get(campus.path)).json()["custody"][-1]
+    assert (aboard["name"], aboard["confirmed_by"], aboard["confirmed_by_name"]) == ("r1", "delegate", "The porter")
+
+
+async def test_the_chain_of_custody_says_which_delegate_has_the_mail_to_sender_and_recipient(campus: Campus) -> None:
+    await campus.waits_for_recipient()
+    sender, recipient = await campus.browser("sender"), await campus.browser("recipient")
+    for name in ("A neighbour", "The porter"):
+        named = await recipient.post(f"{campus.path}/delegates", json={"name": name})
+    theirs = sha256((await recipient.get(named.headers["Location"][7:])).json()["text"].encode()).hexdigest()
+    await campus.robot.ends(await campus.robot.say(campus.robot.receipt(campus.receive, code_sha256=theirs)))
+    for browser in (sender, recipient):
+        last = (await browser.get(campus.path)).json()["custody"][-1]
+        assert (last["holder"], last["name"], last["to"]) == ("delegate", "The porter", None)
+    async with campus.service.app.state.database.reading() as session:
+        assert (await one_order(session, campus.order_id))["custody"][-1]["delegate"] == "The porter"
 
 
 async def test_a_revoked_delegates_code_is_taken_from_the_robot_and_shown_to_nobody(campus: Campus) -> None:
