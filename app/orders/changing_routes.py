@@ -1,9 +1,11 @@
 """What people do with an order under way, and dispatchers with one that is stuck."""
 
+from dataclasses import dataclass
 from typing import Annotated, Final, Literal
 
-from fastapi import APIRouter, Header, Response
+from fastapi import APIRouter, Depends, Header, Response
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.database import SessionDep
 from app.errors import Conflict, answering, problems
@@ -11,7 +13,7 @@ from app.orders import errors
 from app.orders.routes import OrderId, OrdersDep, etag_of
 from app.orders.schemas import OrderView
 from app.people.current_user import CurrentUser, Dispatcher
-from app.tables import Priority
+from app.tables import Person, Priority
 
 router = APIRouter(tags=["orders"])
 dispatch_router = APIRouter(tags=["dispatch"])
@@ -24,6 +26,38 @@ LONGEST_WAIT_S: Final = 7200
 
 def _answers(*refusals: type[Conflict]) -> dict[int | str, dict[str, object]]:
     return {**answering(200, "ETag"), **problems(*KNOWN, *refusals)}
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What every change of an order comes with."""
+
+    order_id: OrderId
+    user: CurrentUser
+    orders: OrdersDep
+    session: SessionDep
+    response: Response
+    if_match: IfMatch = ""
+
+    @property
+    def of(self) -> tuple[AsyncSession, Person, str]:
+        return self.session, self.user, self.order_id
+
+    def tagged(self, view: OrderView) -> OrderView:
+        """The answer, with the version for the next change."""
+        self.response.headers["ETag"] = etag_of(view)
+        return view
+
+
+@dataclass(frozen=True)
+class AskedByDispatcher(Asked):
+    """By nobody else."""
+
+    user: Dispatcher
+
+
+ByParty = Annotated[Asked, Depends()]
+ByDispatcher = Annotated[AskedByDispatcher, Depends()]
 
 
 class Body(BaseModel):
@@ -71,128 +105,52 @@ class PriorityChange(Body):
 
 
 @router.post("/orders/{order_id}/recall", responses=_answers(errors.NotRecallable))
-async def recall_order(
-    *,
-    order_id: OrderId,
-    user: CurrentUser,
-    orders: OrdersDep,
-    session: SessionDep,
-    response: Response,
-    if_match: IfMatch = "",
-) -> OrderView:
+async def recall_order(asked: ByParty) -> OrderView:
     """Call mail back that is aboard. It turns round on the robot's word; until then the order goes on."""
-    return _tagged(response, await orders.recall(session, user, order_id, if_match))
+    return asked.tagged(await asked.orders.recall(*asked.of, asked.if_match))
 
 
 @router.post("/orders/{order_id}/not-now", responses=_answers(errors.NotRecallable))
-async def say_not_now(
-    *,
-    order_id: OrderId,
-    user: CurrentUser,
-    orders: OrdersDep,
-    session: SessionDep,
-    response: Response,
-    if_match: IfMatch = "",
-) -> OrderView:
+async def say_not_now(asked: ByParty) -> OrderView:
     """Say as the recipient that it does not suit now. The mail goes back, on the robot's word."""
-    return _tagged(response, await orders.not_now(session, user, order_id, if_match))
+    return asked.tagged(await asked.orders.not_now(*asked.of, asked.if_match))
 
 
 @router.post("/orders/{order_id}/wait", responses=_answers(errors.NotWaiting, errors.WaitedLongEnough))
-async def extend_wait(
-    *,
-    order_id: OrderId,
-    longer: LongerWait,
-    user: CurrentUser,
-    orders: OrdersDep,
-    session: SessionDep,
-    response: Response,
-    if_match: IfMatch = "",
-) -> OrderView:
+async def extend_wait(asked: ByParty, longer: LongerWait) -> OrderView:
     """Let the robot wait longer. The person it waits for may ask a few times, a dispatcher for as much as is needed."""
-    return _tagged(response, await orders.extend_wait(session, user, order_id, longer.extend_s, if_match))
+    return asked.tagged(await asked.orders.extend_wait(*asked.of, longer.extend_s, asked.if_match))
 
 
 @dispatch_router.post("/orders/{order_id}/attention", responses=_answers(errors.TransitionRefused))
-async def stop_order_for_attention(
-    *,
-    order_id: OrderId,
-    attention: Attention,
-    user: Dispatcher,
-    orders: OrdersDep,
-    session: SessionDep,
-    response: Response,
-    if_match: IfMatch = "",
-) -> OrderView:
+async def stop_order_for_attention(asked: ByDispatcher, attention: Attention) -> OrderView:
     """Take an order out of its robot's hands, as far as words go. What becomes of it is decided by `resolve`."""
-    return _tagged(response, await orders.stop_for_attention(session, user, order_id, attention.reason, if_match))
+    return asked.tagged(await asked.orders.stop_for_attention(*asked.of, attention.reason, asked.if_match))
 
 
 @dispatch_router.post(
     "/orders/{order_id}/resolve", responses=_answers(errors.TransitionRefused, errors.NothingToResume)
 )
-async def resolve_order(
-    *,
-    order_id: OrderId,
-    resolution: Resolution,
-    user: Dispatcher,
-    orders: OrdersDep,
-    session: SessionDep,
-    response: Response,
-    if_match: IfMatch = "",
-) -> OrderView:
+async def resolve_order(asked: ByDispatcher, resolution: Resolution) -> OrderView:
     """Decide what becomes of an order that needed attention."""
-    view = await orders.resolve(session, user, order_id, resolution.to, resolution.reason, if_match)
-    return _tagged(response, view)
+    return asked.tagged(await asked.orders.resolve(*asked.of, resolution.to, resolution.reason, asked.if_match))
 
 
 @dispatch_router.post("/orders/{order_id}/hold", responses=_answers(errors.TransitionRefused))
-async def hold_order(
-    *,
-    order_id: OrderId,
-    into_hands: IntoHands,
-    user: Dispatcher,
-    orders: OrdersDep,
-    session: SessionDep,
-    response: Response,
-    if_match: IfMatch = "",
-) -> OrderView:
+async def hold_order(asked: ByDispatcher, into_hands: IntoHands) -> OrderView:
     """Say that the mail was taken out of the robot by hand and is held in the mailroom."""
-    return _tagged(response, await orders.hold(session, user, order_id, into_hands.reason, if_match))
+    return asked.tagged(await asked.orders.hold(*asked.of, into_hands.reason, asked.if_match))
 
 
 @dispatch_router.post(
     "/orders/{order_id}/reassign", responses=_answers(errors.NotReassignable) | problems(errors.UnknownRobotWanted)
 )
-async def reassign_order(
-    *,
-    order_id: OrderId,
-    reassignment: Reassignment,
-    user: Dispatcher,
-    orders: OrdersDep,
-    session: SessionDep,
-    response: Response,
-    if_match: IfMatch = "",
-) -> OrderView:
+async def reassign_order(asked: ByDispatcher, reassignment: Reassignment) -> OrderView:
     """Let another robot fetch the mail. The one that is on its way lets go on its own word."""
-    return _tagged(response, await orders.reassign(session, user, order_id, reassignment.robot, if_match))
+    return asked.tagged(await asked.orders.reassign(*asked.of, reassignment.robot, asked.if_match))
 
 
 @dispatch_router.put("/orders/{order_id}/priority", responses=_answers(errors.TransitionRefused))
-async def prioritise_order(
-    *,
-    order_id: OrderId,
-    change: PriorityChange,
-    user: Dispatcher,
-    orders: OrdersDep,
-    session: SessionDep,
-    response: Response,
-    if_match: IfMatch = "",
-) -> OrderView:
+async def prioritise_order(asked: ByDispatcher, wish: PriorityChange) -> OrderView:
     """Fetch an order sooner than others, or later."""
-    return _tagged(response, await orders.prioritise(session, user, order_id, change.priority, if_match))
-
-
-def _tagged(response: Response, view: OrderView) -> OrderView:
-    response.headers["ETag"] = etag_of(view)
-    return view
+    return asked.tagged(await asked.orders.prioritise(*asked.of, wish.priority, asked.if_match))
