@@ -5,6 +5,7 @@ import secrets
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
+from functools import cache
 from hashlib import sha256
 from pathlib import Path
 from random import Random
@@ -29,6 +30,7 @@ from app.tables import (
     RobotToken,
     StopRow,
 )
+from app.tables.order_events import MOVED
 from benchmarks.service.servers import MAP
 from maps import CampusMap, find_map
 
@@ -66,8 +68,14 @@ def url_of(data: Path) -> str:
     return f"sqlite+aiosqlite:///{(data / 'campus-mail.sqlite').resolve()}"
 
 
+@cache
 def campus() -> CampusMap:
     return find_map(MAP)
+
+
+@cache
+def _posts() -> tuple[str, ...]:
+    return tuple(sorted(campus().posts))
 
 
 class Filling:
@@ -78,10 +86,12 @@ class Filling:
         self.now = datetime.now(UTC)
 
     async def _write(self, table: type[SQLModel], rows: Sequence[SQLModel]) -> None:
-        for first in range(0, len(rows), ROWS_AT_ONCE):
-            values = [row.model_dump() for row in rows[first : first + ROWS_AT_ONCE]]
+        await self._insert(table, [row.model_dump() for row in rows])
+
+    async def _insert(self, table: type[SQLModel], values: Sequence[dict[str, Any]]) -> None:
+        for first in range(0, len(values), ROWS_AT_ONCE):
             async with self._database.writing.begin() as connection:
-                await connection.execute(insert(table), values)
+                await connection.execute(insert(table), values[first : first + ROWS_AT_ONCE])
 
     async def people(self, number: int, word: str = "person") -> list[Account]:
         """Signed in, with a session of their own."""
@@ -97,9 +107,7 @@ class Filling:
             )
             for person, cookie in zip(people, cookies, strict=True)
         ]
-        values = [row.model_dump(exclude={"id"}) for row in sessions]
-        async with self._database.writing.begin() as connection:
-            await connection.execute(insert(PersonSession), values)
+        await self._insert(PersonSession, [row.model_dump(exclude={"id"}) for row in sessions])
         return [Account(person, cookie) for person, cookie in zip(people, cookies, strict=True)]
 
     async def robots(self, number: int) -> list[KnownRobot]:
@@ -135,7 +143,7 @@ class Filling:
             for position, (post, action) in enumerate(((order.from_post, "load"), (order.to_post, "receive")))
         ]
         await self._write(Order, orders)
-        await self._write(OrderEvent, [event for order in orders for event in self._events(order, 5)])
+        await self._insert(OrderEvent, [event for order in orders for event in self._events(order, 5)])
         await self._write(MissionRow, missions)
         await self._write(StopRow, stops)
         return [KnownRobot(robot.name, robot.token, f"m-{robot.name}") for robot in robots]
@@ -148,7 +156,7 @@ class Filling:
         for first in range(0, number, ROWS_AT_ONCE):
             orders = [self._past_order(people, first + n, robot) for n in range(min(ROWS_AT_ONCE, number - first))]
             await self._write(Order, orders)
-            await self._write(OrderEvent, [event for order in orders for event in self._events(order, len(LIFE))])
+            await self._insert(OrderEvent, [event for order in orders for event in self._events(order, len(LIFE))])
 
     async def _is_there(self, robot: str) -> bool:
         async with self._database.reading() as session:
@@ -160,7 +168,7 @@ class Filling:
         return self._order(sender, recipient, OrderState.DELIVERED, at, robot)
 
     def _order(self, sender: Account, recipient: Account, state: OrderState, at: datetime, robot: str) -> Order:
-        from_post, to_post = self._random.sample(sorted(campus().posts), 2)
+        from_post, to_post = self._random.sample(_posts(), 2)
         return Order(
             id=self._random.randbytes(8).hex(),
             state=state,
@@ -176,10 +184,12 @@ class Filling:
             robot=robot,
         )
 
-    def _events(self, order: Order, number: int) -> Iterator[OrderEvent]:
+    def _events(self, order: Order, number: int) -> Iterator[dict[str, Any]]:
+        """As columns: hundreds of thousands of rows as objects would take minutes."""
+        about = {"order_id": order.id, "kind": MOVED, "robot": order.robot}
         for seq, (state, by) in enumerate(LIFE[:number], 1):
             at = order.created_at + timedelta(seconds=20 * seq)
-            yield OrderEvent(order_id=order.id, seq=seq, state=state, at=at, by=by, robot=order.robot)
+            yield {**about, "seq": seq, "state": state, "at": at, "by": by}
 
 
 def fill(data: Path, work: Any, seed: int = 1) -> Any:
