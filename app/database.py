@@ -10,6 +10,7 @@ from typing import Annotated, Any
 
 from fastapi import Depends
 from sqlalchemy import Connection, Insert, event, insert, make_url
+from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.exc import ArgumentError
 from sqlalchemy.ext.asyncio import AsyncConnection, AsyncEngine, create_async_engine
 from sqlmodel import SQLModel
@@ -21,6 +22,7 @@ from app.errors import StartError
 from app.group_commit import AFTER_COMMIT, Writers
 
 PRAGMAS = ("journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON", "busy_timeout=10000")
+INSERTS: Mapping[str, Any] = {"sqlite": sqlite.insert, "postgresql": postgresql.insert}
 BEGIN_DURABLE = ("PRAGMA synchronous=FULL", "BEGIN IMMEDIATE")
 BEGIN_FLEETING = ("PRAGMA synchronous=NORMAL", "BEGIN IMMEDIATE")
 BEGIN_READING: Mapping[str, tuple[str, ...]] = {"sqlite": ("BEGIN",), "postgresql": ()}
@@ -117,6 +119,18 @@ async def write_new(session: AsyncSession, *rows: SQLModel) -> None:
     connection = await session.connection()
     for row in rows:
         await connection.execute(_insert(type(row)), row.model_dump(exclude_none=True))
+
+
+async def write_once(session: AsyncSession, table: type[SQLModel], values: Mapping[str, Any]) -> bool:
+    """Write a row unless there is one of the same key; whether it is new."""
+    connection = await session.connection()
+    return (await connection.execute(_insert_once(connection.dialect.name, table), values)).rowcount > 0
+
+
+@cache
+def _insert_once(dialect: str, table: type[SQLModel]) -> Insert:
+    statement: Insert = INSERTS[dialect](table).on_conflict_do_nothing().inline()
+    return statement
 
 
 @cache

@@ -30,7 +30,7 @@ BRACKETS: Final = ("PRAGMA synchronous=", "BEGIN", "SAVEPOINT", "RELEASE")
 LOCKS: Final = "BEGIN IMMEDIATE"
 QUESTION: Final = re.compile(r"SELECT\b")
 SMALL_CHANGE: Final = re.compile(
-    r"INSERT INTO \w+ \([^)]*\) VALUES \([^)]*\)( RETURNING [\w, ]+)?$"
+    r"INSERT INTO \w+ \([^)]*\) VALUES \([^)]*\)( ON CONFLICT DO NOTHING)?( RETURNING [\w, ]+)?$"
     r"|UPDATE \w+ SET .* WHERE \w+\.\w+ = \?( AND \w+\.\w+ = \?)*$",
     re.DOTALL,
 )

@@ -8,7 +8,7 @@ from sqlalchemy import String, cast, delete, func, update
 from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.database import write_new
+from app.database import write_once
 from app.notify.schemas import Inbox, NoticeView
 from app.paging import Paging, Sorting
 from app.tables import Alarm, Notice, NoticeKind, OutgoingNotice, Person, Role
@@ -31,16 +31,8 @@ async def tell(
 
     The outbox worker takes it from here to the person's channels (`app.notify.routing`).
     """
-    if await _told(session, person, key):
-        return False
-    notice = Notice(key=key, order_id=order_id, kind=kind, person_id=person.id, at=now, facts=dict(facts))
-    await write_new(session, notice)
-    return True
-
-
-async def _told(session: AsyncSession, person: Person, key: str) -> bool:
-    wanted = select(Notice.id).where(Notice.person_id == person.id, Notice.key == key)
-    return (await session.exec(wanted)).first() is not None
+    notice = {"person_id": person.id, "key": key, "order_id": order_id, "kind": kind, "at": now, "facts": dict(facts)}
+    return await write_once(session, Notice, notice)
 
 
 async def withdraw(session: AsyncSession, person_id: str, key: str) -> bool:
