@@ -7,7 +7,7 @@ import asyncio
 import json
 import secrets
 from collections import deque
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
@@ -24,14 +24,14 @@ QUEUED: Final = 200
 
 @dataclass(frozen=True)
 class Happening:
-    """One event of the stream: its name, what becomes its JSON, and for whom it is.
+    """One event of the stream: its name, what becomes its JSON (or what makes that, if anybody listens), and for whom.
 
     `person_id` is the one person it is for; `role` all who have that role, but not those in `except_for` (who are told
     in another way); with neither it is for everybody signed in.
     """
 
     event: str
-    data: Mapping[str, Any] | BaseModel
+    data: Mapping[str, Any] | BaseModel | Callable[[], BaseModel]
     person_id: str | None = None
     role: Role | None = None
     except_for: frozenset[str] = frozenset()
@@ -55,6 +55,7 @@ class Numbered:
     def wire(self) -> bytes:
         """As it goes out: written once, however many listen, and never if nobody does."""
         data = self.happening.data
+        data = data() if callable(data) else data
         text = data.model_dump_json() if isinstance(data, BaseModel) else json.dumps(data)
         return format_sse_event(data_str=text, event=self.happening.event, id=self.id)
 

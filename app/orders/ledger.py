@@ -17,7 +17,7 @@ from app.orders import errors
 from app.orders.schemas import OrderView
 from app.orders.telling import facts_of, tell_about
 from app.orders.transitions import By, is_allowed, is_old_news
-from app.orders.views import MyRole, OrderFacts, load_facts, order_view, role_in, view_for
+from app.orders.views import MyRole, OrderFacts, load_facts, order_view, role_in
 from app.people.service import SignInDesk
 from app.server_key import ServerKey
 from app.settings import Settings
@@ -140,12 +140,14 @@ class Ledger:
         after_commit(session, partial(self.changed, facts.order.id))
 
     def _publish_views(self, session: AsyncSession, facts: OrderFacts) -> None:
-        mine = {facts.sender.id: facts.sender, facts.recipient.id: facts.recipient}
-        for person in mine.values():
-            if view := view_for(person, facts, self.campus, self.settings):
-                self._publish_view(session, view, person_id=person.id)
-        for_all = order_view(facts, "dispatcher", "", self.campus, self.settings)
+        mine: dict[str, MyRole] = {facts.recipient.id: "recipient", facts.sender.id: "sender"}
+        for person_id, role in mine.items():
+            self._publish_view(session, partial(self._view, facts, role, person_id), person_id)
+        for_all = partial(self._view, facts, "dispatcher", "")
         self._publish_view(session, for_all, role=Role.DISPATCHER, except_for=frozenset(mine))
+
+    def _view(self, facts: OrderFacts, role: MyRole, person_id: str) -> OrderView:
+        return order_view(facts, role, person_id, self.campus, self.settings)
 
     def changed(self, order_id: str) -> None:
         """Wake whoever waits for changes of orders. After the commit."""
@@ -155,7 +157,7 @@ class Ledger:
     def _publish_view(
         self,
         session: AsyncSession,
-        view: OrderView,
+        view: Callable[[], OrderView],
         person_id: str | None = None,
         role: Role | None = None,
         except_for: frozenset[str] = frozenset(),
