@@ -106,6 +106,9 @@ class Settings(BaseSettings):
     link_tries_per_host: str = Field("300 per 15 minutes", description="Links of mails used from one network address.")
     assumed_speed_m_s: float = Field(0.15, gt=0, description="Assumed mean speed of a robot, for arrival windows.")
     assumed_handover_s: float = Field(120, ge=0, description="Assumed time of one hand-over, for arrival windows.")
+    near_s: float = Field(
+        180, ge=0, description="The sender is told that the robot is near when it is one post away, or so long at most."
+    )
     wait_limit_s: float = Field(600, gt=0, description="How long a robot waits for a person at a stop.")
     wait_extension_s: float = Field(300, gt=0, description="How much more the person it waits for may ask for at once.")
     wait_extensions: int = Field(2, ge=0, description="How often the person it waits for may ask for more.")

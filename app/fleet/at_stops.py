@@ -100,6 +100,8 @@ async def _come_along(report: Report, progress: Progress, stop: StopRow, order_i
         order.return_post = stop.post
     word = report.word(progress.happened_at, progress.post, progress.reason)
     await report.along(order_id, AT_STOP.get((progress.step, action), ()), word, until)
+    if (progress.step, action) == (Step.PASSED, StopAction.LOAD):
+        await report.orders.come_nearer(report.session, order_id, progress.post)
 
 
 async def _not_loaded(report: Report, progress: Progress, mission: MissionRow, order_id: str) -> None:

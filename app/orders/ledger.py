@@ -14,6 +14,7 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 from app.database import after_commit
 from app.live.feed import Feed, Happening
 from app.orders import errors
+from app.orders.nearness import is_near
 from app.orders.schemas import OrderView
 from app.orders.telling import facts_of, tell_about
 from app.orders.transitions import By, is_allowed, is_old_news
@@ -122,17 +123,27 @@ class Ledger:
         await session.flush()
         facts = (await load_facts(session, [order]))[0]
         if kind == MOVED:
-            await self._tell(session, facts)
+            await self._tell(session, facts, word.post)
         self.publish(session, facts)
+
+    async def come_nearer(self, session: AsyncSession, order_id: str, post: str | None) -> None:
+        """The robot passes a post on its way to the sender, who is told once it is near. Raises UnknownOrder."""
+        order = await self.order(session, order_id)
+        if order.state is OrderState.TO_SENDER and is_near(self.ways, post, order.from_post, self.settings):
+            await self._tell(session, (await load_facts(session, [order]))[0], post)
+            after_commit(session, partial(self.changed, order_id))
 
     async def begin(self, session: AsyncSession, facts: OrderFacts) -> None:
         """A new order, whose rows have been written: its people are told."""
         await self._tell(session, facts)
         self.publish(session, facts)
 
-    async def _tell(self, session: AsyncSession, facts: OrderFacts) -> None:
-        gaps = facts_of(facts.order, facts.people, self.campus, self.settings)
-        await tell_about(session, facts.order, facts.people, gaps, facts.events)
+    async def _tell(self, session: AsyncSession, facts: OrderFacts, robot_at: str | None = None) -> None:
+        order = facts.order
+        robot_at = robot_at or (facts.robot.post if facts.robot else None)
+        nearby = order.state is OrderState.TO_SENDER and is_near(self.ways, robot_at, order.from_post, self.settings)
+        gaps = facts_of(order, facts.people, self.campus, self.settings)
+        await tell_about(session, order, facts.people, gaps, facts.events, nearby)
 
     def publish(self, session: AsyncSession, facts: OrderFacts) -> None:
         """To sender, recipient and dispatchers, each as they may see it, and to whoever waits for changes."""

@@ -19,11 +19,12 @@ RECIPIENT: Final = By.RECIPIENT
 
 @dataclass(frozen=True)
 class Telling:
-    """One person is told one thing, if it concerns them as things stand."""
+    """One person is told one thing, if it concerns them as things stand; `when_near`: not before the robot is."""
 
     who: By
     kind: NoticeKind
     concerns: Callable[[Order], bool] = lambda order: True
+    when_near: bool = False
 
 
 def _both(kind: NoticeKind, concerns: Callable[[Order], bool] = lambda order: True) -> tuple[Telling, Telling]:
@@ -49,7 +50,7 @@ def _was_aboard(order: Order) -> bool:
 
 TOLD: Final[Mapping[OrderState, tuple[Telling, ...]]] = {
     OrderState.QUEUED: (Telling(SENDER, NoticeKind.ACCEPTED),),
-    OrderState.TO_SENDER: (Telling(SENDER, NoticeKind.ROBOT_NEAR),),
+    OrderState.TO_SENDER: (Telling(SENDER, NoticeKind.ROBOT_NEAR, when_near=True),),
     OrderState.AT_SENDER: (Telling(SENDER, NoticeKind.ROBOT_HERE),),
     OrderState.CARRYING: (Telling(RECIPIENT, NoticeKind.ON_ITS_WAY),),
     OrderState.AT_RECIPIENT: (Telling(RECIPIENT, NoticeKind.ROBOT_HERE_FOR_YOU),),
@@ -69,7 +70,6 @@ TOLD: Final[Mapping[OrderState, tuple[Telling, ...]]] = {
         Telling(RECIPIENT, NoticeKind.ATTENTION, _was_aboard),
     ),
 }
-"""Thin: "near" is told when the robot sets out for the sender."""
 LATE: Final = (Telling(SENDER, NoticeKind.DELAYED), Telling(RECIPIENT, NoticeKind.DELAYED, _was_aboard))
 
 ONCE: Final = frozenset(
@@ -97,9 +97,12 @@ async def tell_about(
     people: Mapping[str, Person],
     facts: Mapping[str, str],
     events: Sequence[OrderEvent],
+    is_near: bool = False,
 ) -> None:
-    """Tell whoever is to be told of the state that `order` is in now; `events` are all it has been through."""
-    await _tell(session, TOLD.get(order.state, ()), order, people, facts, round_of(events))
+    """Tell whoever is to be told of the state that `order` is in now; `events` are all it has been through, `is_near`:
+    its robot is near the sender."""
+    tellings = [one for one in TOLD.get(order.state, ()) if is_near or not one.when_near]
+    await _tell(session, tellings, order, people, facts, round_of(events))
 
 
 async def tell_of_delay(

@@ -169,7 +169,7 @@ async def test_a_letter_is_ordered_loaded_carried_and_received_by_two_people(dem
         await expect(timeline).to_have_count(7)
         await expect(timeline.last).to_contain_text(re.compile("Taken by Bob Martin .*, confirmed"))
     await ada.page.get_by_role("link", name=re.compile("Notices")).click()
-    for title in ("Order accepted", "on its way to Post 1", "waiting at Post 1", "Delivered"):
+    for title in ("Order accepted", "near Post 1", "waiting at Post 1", "Delivered"):
         await expect(ada.page.get_by_role("link", name=re.compile(title))).to_have_count(1)
 
 

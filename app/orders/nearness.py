@@ -1,0 +1,18 @@
+"""Whether the robot that fetches mail is near its sender, told from the posts that it passes."""
+
+import math
+
+from app.settings import Settings
+from maps.ways import Ways
+
+
+def is_near(ways: Ways, post: str | None, to_post: str, settings: Settings) -> bool:
+    """For a robot that was at `post` just now: it is a single corridor away, or so close that it soon arrives.
+
+    After the last post on its way nothing is heard of it before it is there. One whose place is not known counts as
+    near: people are told too early rather than not at all.
+    """
+    length_m = ways.length_m(post, to_post)
+    if post is None or math.isinf(length_m) or any(one.name == to_post for one, _ in ways.campus.neighbours(post)):
+        return True
+    return length_m <= settings.near_s * settings.assumed_speed_m_s
