@@ -9,6 +9,7 @@ from functools import cache
 from typing import Annotated, Any
 
 from fastapi import Depends
+from pydantic_core import from_json, to_json
 from sqlalchemy import Connection, Insert, event, insert, make_url
 from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.exc import ArgumentError
@@ -38,7 +39,10 @@ class Database:
     def __init__(self, url: str) -> None:
         """Opens nothing yet. Raises StartError for a URL that leads nowhere."""
         try:
-            self.engine: AsyncEngine = create_async_engine(url, **_options(url))
+            # pydantic's JSON takes a third of the time of the standard library's.
+            self.engine: AsyncEngine = create_async_engine(
+                url, json_serializer=_json_text, json_deserializer=from_json, **_options(url)
+            )
         except (ArgumentError, ImportError) as error:  # not repeated: a URL may hold a password
             raise StartError(f"CAMPUS_MAIL_DATABASE_URL cannot be used: {error}.") from None
         self.writing = self.engine.execution_options(begin=BEGIN_DURABLE)
@@ -146,6 +150,10 @@ def _options(url: str) -> dict[str, Any]:
     if made.database in {None, "", ":memory:"}:  # one connection is all there can be
         return {"connect_args": {"async_creator_fn": sqlite_driver.connect}}
     return {"pool_size": 20, "max_overflow": 0, "connect_args": {"async_creator_fn": sqlite_driver.connect}}
+
+
+def _json_text(value: Any) -> str:
+    return to_json(value).decode()
 
 
 def _prepare_sqlite(connection: Any, record: Any) -> None:
