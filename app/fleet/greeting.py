@@ -1,12 +1,11 @@
 """The beginning of a connection: both sides learn where the other stands, and nothing is lost or done twice."""
 
 from dataclasses import dataclass
-from datetime import datetime, timedelta
-from typing import Final
+from datetime import datetime
 
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.fleet import inbox, outbox, traffic
+from app.fleet import clocks, inbox, outbox, traffic
 from app.fleet.alarms import clear_alarms, raise_alarm
 from app.fleet.commands import unanswered
 from app.fleet.mission_updates import tell_mission
@@ -17,8 +16,6 @@ from protocol.envelope import Envelope
 from protocol.parts import Received
 from protocol.to_robot import Cancel, Grant, Welcome
 from protocol.to_server import Hello
-
-CLOCK_TOLERANCE: Final = timedelta(minutes=5)
 
 
 @dataclass(frozen=True)
@@ -41,7 +38,7 @@ async def greet(session: AsyncSession, fleet: Fleet, robot: RobotRow, envelope: 
     await _settle_outbox(session, robot, hello.received, now)
     if is_new_memory:
         await restate(session, fleet, robot)
-    await _compare_clocks(session, robot, envelope.at, now)
+    await clocks.compare(session, robot, envelope.at, now)
     await _compare_maps(session, fleet, robot, hello, now)
     note_state(robot, hello.position, hello.battery)
     robot.software, robot.map_version, robot.online, robot.heard_at = hello.software, hello.map_version, True, now
@@ -83,17 +80,6 @@ async def restate(session: AsyncSession, fleet: Fleet, robot: RobotRow) -> None:
     for command in await unanswered(session, robot=robot.name, kind="cancel"):
         # It was told before, but who knows whether it had got round to it.
         await fleet.tell(session, robot, Cancel(command_id=command.command_id, order_id=command.order_id or ""))
-
-
-async def _compare_clocks(session: AsyncSession, robot: RobotRow, at: datetime, now: datetime) -> None:
-    """Order never depends on a robot's clock, but what people read does."""
-    off = at - now
-    robot.clock_off_s = off.total_seconds()
-    if abs(off) > CLOCK_TOLERANCE:
-        sentence = f"the robot's clock is off by {off.total_seconds():+.0f} s"
-        await raise_alarm(session, robot.name, "clock_off", sentence, now=now)
-    else:
-        await clear_alarms(session, robot.name, "clock_off", now)
 
 
 async def _compare_maps(session: AsyncSession, fleet: Fleet, robot: RobotRow, hello: Hello, now: datetime) -> None:

@@ -20,6 +20,7 @@ from app.database import savepoint
 from app.errors import ServiceError
 from app.fleet import inbox, outbox
 from app.fleet.alarms import raise_alarm
+from app.fleet.clocks import compare_again
 from app.fleet.errors import FleetError, MessageGap
 from app.fleet.foresight import look_ahead
 from app.fleet.service import Fleet
@@ -143,6 +144,7 @@ class Intake:
         ahead = await look_ahead(session, [one.envelope.body for one in durable if id(one) in new])
         for one in said:
             if one.envelope.seq is None or id(one) in new:
+                await compare_again(session, robots[one.speaker.robot], one.envelope.at, now)
                 one.problem = await self._follow(session, robots[one.speaker.robot], one.envelope, careful)
         await _heard(session, robots.values(), now)
         for name, robot in robots.items():

@@ -56,7 +56,7 @@ class AlarmView(BaseModel):
 
 
 class RobotDetails(BaseModel):
-    """One robot in full. `clock_off_s`: how far its clock was ahead at its last hello; times shown are put right by it.
+    """One robot in full. `clock_off_s`: how far its clock is ahead; times shown are put right by it.
 
     `signs_receipts`: it has a key, so that its receipts are checked. `takes_taps`: hand-overs can be confirmed in the
     app. `alarms` are those that are not over.

@@ -8,6 +8,7 @@ from typing import Final, Literal
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.fleet.alarms import clear_alarms, raise_alarm
+from app.fleet.clocks import by_its_clock
 from app.fleet.commands import ask, new_command_id, unanswered
 from app.fleet.service import Fleet
 from app.handover import errors
@@ -135,7 +136,8 @@ class HandOvers:
                 purpose=purpose,
                 how=how,
                 by=code.sha256(self.key),
-                expires_at=now + lifetime,
+                # It is the robot that judges whether this came too late.
+                expires_at=by_its_clock(now + lifetime, robot.clock_off_s),
             )
             asked = await ask(session, self.fleet, robot, wish, person.id)
             await self.fleet.orders.note(session, order.id, CONFIRM_REQUESTED, word_of(order, person, how))

@@ -12,7 +12,7 @@ class RobotRow(SQLModel, table=True):
 
     `online` says that its socket is open now; every start of the service begins with nobody online. `public_key`
     (Ed25519, base64) is what its receipts are signed with; None: enrolled without one. `clock_off_s` is how far its
-    clock was ahead at its last hello.
+    clock was ahead at its last hello, or when it was seen to have been set since.
     """
 
     __tablename__ = "robots"

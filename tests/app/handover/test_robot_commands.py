@@ -1,11 +1,13 @@
 """What a dispatcher tells robots, and what they see of one: commands and their answers, alarms, a clock that is off."""
 
-from datetime import timedelta
+from datetime import datetime, timedelta
 
 import pytest
 
+from app.fleet.clocks import has_been_set
 from app.tables import RobotCommand, Role
 from protocol.clock import SteppedClock
+from protocol.to_robot import Confirm
 from protocol.to_server import CommandAnswer, Event, Fault, Step
 from tests.app.handover.conftest import Campus
 
@@ -72,3 +74,51 @@ async def test_times_of_a_robot_whose_clock_is_off_are_put_right_and_it_is_told(
     details = (await desk.get("/robots/r1")).json()
     assert details["clock_off_s"] == 3600
     assert "clock_off" in {one["name"] for one in details["alarms"]}
+
+
+async def test_a_tap_is_good_by_the_robots_own_clock_however_far_that_is_ahead(
+    campus: Campus, clock: SteppedClock
+) -> None:
+    ahead = SteppedClock(started_at=clock.started_at + timedelta(hours=1))
+    campus.robot.clock = ahead
+    await campus.waits_for_load()
+    asked = await (await campus.browser("sender")).post(f"{campus.path}/handover", json={})
+    wish = (await campus.robot.hear("confirm")).body
+    assert isinstance(wish, Confirm)
+    assert datetime.fromisoformat(asked.json()["expires_at"]) - clock.utc() == timedelta(seconds=60)
+    assert wish.expires_at - ahead.utc() == timedelta(seconds=60), "the robot would have refused it as too late"
+
+
+async def test_a_clock_that_is_set_while_the_robot_is_connected_is_noticed_at_its_next_word(
+    campus: Campus, clock: SteppedClock
+) -> None:
+    """It started without network with the time of yesterday, and was set when it had found one."""
+    campus.robot.clock = SteppedClock(started_at=clock.started_at - timedelta(days=1))
+    await campus.connect()
+    desk = await campus.browser("desk", Role.DISPATCHER)
+    assert (await desk.get("/robots/r1")).json()["clock_off_s"] == -86400
+    campus.robot.clock = clock
+    mission = await campus.robot.mission()
+    await campus.robot.ends(await campus.robot.report(mission, Step.ARRIVED, mission.stops[0]))
+    details = (await desk.get("/robots/r1")).json()
+    assert details["clock_off_s"] == 0
+    assert "clock_off" not in {one["name"] for one in details["alarms"]}
+    events = (await (await campus.browser("sender")).get(campus.path)).json()["events"]
+    (arrived,) = [one for one in events if one["state"] == "at_sender"]
+    assert arrived["robot_at"] == arrived["at"]
+
+
+@pytest.mark.parametrize(
+    ("known_s", "seen_s", "is_set"),
+    [
+        (0, -20, False),  # on its way for a while
+        (0, -299, False),
+        (0, -301, True),
+        (0, 29, False),
+        (0, 31, True),  # nothing comes before it was sent
+        (-3600, 0, True),
+        (3600, 3590, False),
+    ],
+)
+def test_a_message_that_was_long_on_its_way_sets_no_clock(known_s: float, seen_s: float, is_set: bool) -> None:
+    assert has_been_set(known_s, seen_s) is is_set
