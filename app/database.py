@@ -22,7 +22,7 @@ from app import sqlite_driver
 from app.errors import StartError
 from app.group_commit import AFTER_COMMIT, Writers
 
-PRAGMAS = ("journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON", "busy_timeout=10000")
+PRAGMAS = ("journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON", f"busy_timeout={sqlite_driver.BUSY_TIMEOUT_MS}")
 INSERTS: Mapping[str, Any] = {"sqlite": sqlite.insert, "postgresql": postgresql.insert}
 BEGIN_DURABLE = ("PRAGMA synchronous=FULL", "BEGIN IMMEDIATE")
 BEGIN_FLEETING = ("PRAGMA synchronous=NORMAL", "BEGIN IMMEDIATE")

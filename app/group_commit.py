@@ -1,8 +1,9 @@
 """Writers that wait for each other share one commit.
 
 A commit with full sync takes as long as the disk does, and only one writer can be at work. So whoever has done its work
-while others wait passes the open transaction on instead of committing it; the last one commits for all. Everybody's
-work stands in a savepoint of its own, so that what fails is undone alone, and nobody goes on before the common commit.
+while others wait passes the open transaction on instead of committing it; the last one commits for all. What fails is
+undone alone (the first with the transaction, those that follow to a savepoint of their own), and nobody goes on before
+the common commit.
 
 Some work may be lost in a power cut because it would only be done again. Its commit waits for no disk, unless it shares
 one with work that must last.
@@ -10,10 +11,10 @@ one with work that must last.
 
 import asyncio
 import time
-from collections.abc import AsyncIterator, Callable
-from contextlib import asynccontextmanager, suppress
+from collections.abc import AsyncIterator, Callable, Iterator
+from contextlib import asynccontextmanager, contextmanager, suppress
 from dataclasses import dataclass, field
-from typing import Final
+from typing import Final, Literal
 
 from sqlalchemy.ext.asyncio import AsyncConnection, AsyncEngine
 from sqlmodel.ext.asyncio.session import AsyncSession
@@ -60,11 +61,25 @@ class _Group:
     begun_s: float
     works: list[_Work] = field(default_factory=list)
     turns: int = 0
+    is_lost: bool = False
+
+    def session(self) -> AsyncSession:
+        """The first work needs no savepoint: with it the whole transaction is undone."""
+        mode: Literal["create_savepoint", "rollback_only"] = "create_savepoint" if self.works else "rollback_only"
+        return AsyncSession(self.connection, expire_on_commit=False, join_transaction_mode=mode)
+
+    @contextmanager
+    def lost_if_first_fails(self) -> Iterator[None]:
+        try:
+            yield
+        except BaseException:
+            self.is_lost = not self.works
+            raise
 
     def may_go_on(self, now_s: float) -> bool:
         """Whether somebody else may still write in it. A connection that broke takes nobody else with it."""
         is_full = self.turns >= AT_MOST or now_s - self.begun_s > NO_LONGER_THAN_S
-        return not is_full and not self.connection.invalidated
+        return not is_full and not self.is_lost and not self.connection.invalidated
 
 
 class Writers:
@@ -85,11 +100,10 @@ class Writers:
         work: _Work | None = None
         try:
             group = await self._open_group(durable)
-            async with AsyncSession(
-                group.connection, expire_on_commit=False, join_transaction_mode="create_savepoint"
-            ) as session:
-                async with session.begin():
-                    yield session
+            async with group.session() as session:
+                with group.lost_if_first_fails():
+                    async with session.begin():
+                        yield session
                 work = _Work(session.info.pop(AFTER_COMMIT, []), asyncio.get_running_loop().create_future())
             group.works.append(work)
         finally:

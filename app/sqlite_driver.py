@@ -23,6 +23,8 @@ SHORT_STEPS: Final = 50_000
 """Steps of SQLite's machine that a question may take on the event loop: about a millisecond."""
 SHORT_ROWS: Final = 100
 """Rows that are written on the event loop by one statement."""
+BUSY_TIMEOUT_MS: Final = 10_000
+"""So long a writer waits for another process."""
 BREATH_S: Final = 0.002
 """Real seconds after which others get their turn, however much there is to ask."""
 
@@ -77,7 +79,7 @@ class Connection(aiosqlite.Connection):
 
     async def ask(self, statement: str, what: Callable[[sqlite3.Connection], T], rows: int = 1) -> T:
         """Do it at once if it is short, else in the thread."""
-        if not any(bracket.startswith(LOCKS) for bracket in self._brackets):
+        if self._has_begun():
             if is_small_change(statement) and rows <= SHORT_ROWS:
                 return await self._at_once(what)
             if is_question(statement) and statement not in self._long:
@@ -88,6 +90,22 @@ class Connection(aiosqlite.Connection):
                         raise
                     self._long.add(statement)
         return await self.errand(what)
+
+    def _has_begun(self) -> bool:
+        """Take the write lock that was asked for, if nobody else has it: whoever has to wait does so in the thread."""
+        if LOCKS not in self._brackets:
+            return True
+        before = self._brackets[: self._brackets.index(LOCKS)]
+        self._conn.execute("PRAGMA busy_timeout=0")
+        try:
+            for bracket in [*before, LOCKS]:
+                self._conn.execute(bracket)
+        except sqlite3.OperationalError:  # if it is not for the lock, the thread finds out
+            return False
+        finally:
+            self._conn.execute(f"PRAGMA busy_timeout={BUSY_TIMEOUT_MS}")
+        del self._brackets[: len(before) + 1]
+        return True
 
     async def _ask_at_once(self, what: Callable[[sqlite3.Connection], T]) -> T:
         if not self._is_guarded:
