@@ -86,7 +86,8 @@ class Paging:
     ) -> tuple[list[Row], str | None]:
         """The same for the rows that any of `wishes` finds: each is a walk along an index of its own, where one
         question with an `or` would have to read and sort all that there is."""
-        beyond = [sorting.beyond(_opened(self.key, sorting.name, self.cursor))] if self.cursor else []
+        place = self.place(sorting.name)
+        beyond = [sorting.beyond(place)] if place else []
         found: dict[tuple[Any, ...], Row] = {}
         for wanted in wishes:
             # One more than is shown tells whether there is a next page.
@@ -97,10 +98,18 @@ class Paging:
         rows = [found[place] for place in in_order[: self.limit]]
         if len(found) == len(rows):
             return rows, None
-        following = _sealed(self.key, sorting.name, sorting.place_of(rows[-1]))
-        url = self.url.include_query_params(cursor=following)
+        return rows, self.following(sorting.name, sorting.place_of(rows[-1]))
+
+    def place(self, name: str) -> list[Any] | None:
+        """Of the last row on the page before; None on the first. Raises BadCursor."""
+        return _opened(self.key, name, self.cursor) if self.cursor else None
+
+    def following(self, name: str, place: Sequence[Any]) -> str:
+        """The cursor of the next page, which the Link header names too; `place` is that of the last row on this one."""
+        cursor = _sealed(self.key, name, place)
+        url = self.url.include_query_params(cursor=cursor)
         self.response.headers["Link"] = f'<{url.path}?{url.query}>; rel="next"'
-        return rows, following
+        return cursor
 
 
 def _sealed(key: ServerKey, name: str, place: Sequence[Any]) -> str:

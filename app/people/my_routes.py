@@ -72,16 +72,16 @@ def _require_post(campus: CampusMap, name: str | None) -> None:
         raise NoSuchPost(str(error)) from None
 
 
-@address_router.get("/me/contacts")
+@address_router.get("/me/contacts", responses={**PAGED, **problems(BadCursor)})
 async def my_contacts(
     user: CurrentUser,
     session: ReadingDep,
+    page: PageDep,
     search: Annotated[str, Query(max_length=100, description="Part of a name, label or mail address.")] = "",
-    limit: Annotated[int, Query(ge=1, le=100)] = 50,
 ) -> AddressBook:
     """Those one exchanged mail with, newest first, and those one saved; `search` narrows it down."""
-    known = await address_book(session, user.id, search, limit)
-    return AddressBook(items=[ContactView.of(one) for one in known])
+    known, following = await address_book(session, user.id, search, page)
+    return AddressBook(items=[ContactView.of(one) for one in known], next=following)
 
 
 @address_router.put("/me/contacts/{email}", dependencies=CHANGES, responses=problems(NoSuchPost, 429))

@@ -159,7 +159,5 @@ class ContactView(BaseModel):
         )
 
 
-class AddressBook(BaseModel):
+class AddressBook(PageOf[ContactView]):
     """Those with whom mail was exchanged, newest first; then the others who are saved, by label."""
-
-    items: list[ContactView]

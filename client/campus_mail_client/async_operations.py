@@ -131,10 +131,12 @@ class AsyncOperations:
         answer: PersonView = await self._call("PATCH", "/api/v1/me", PersonView, body=wish)
         return answer
 
-    async def my_contacts(self, *, search: str | None = None, limit: int | None = None) -> AddressBook:
+    async def my_contacts(
+        self, *, search: str | None = None, limit: int | None = None, cursor: str | None = None
+    ) -> AddressBook:
         """Those one exchanged mail with, newest first, and those one saved; `search` narrows it down."""
         answer: AddressBook = await self._call(
-            "GET", "/api/v1/me/contacts", AddressBook, query={"search": search, "limit": limit}
+            "GET", "/api/v1/me/contacts", AddressBook, query={"search": search, "limit": limit, "cursor": cursor}
         )
         return answer
 

@@ -40,6 +40,7 @@ class AddressBook(Model):
     """Those with whom mail was exchanged, newest first; then the others who are saved, by label."""
 
     items: list[ContactView]
+    next: str | None
 
 
 class AlarmPage(Model):

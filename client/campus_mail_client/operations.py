@@ -129,10 +129,12 @@ class Operations:
         answer: PersonView = self._call("PATCH", "/api/v1/me", PersonView, body=wish)
         return answer
 
-    def my_contacts(self, *, search: str | None = None, limit: int | None = None) -> AddressBook:
+    def my_contacts(
+        self, *, search: str | None = None, limit: int | None = None, cursor: str | None = None
+    ) -> AddressBook:
         """Those one exchanged mail with, newest first, and those one saved; `search` narrows it down."""
         answer: AddressBook = self._call(
-            "GET", "/api/v1/me/contacts", AddressBook, query={"search": search, "limit": limit}
+            "GET", "/api/v1/me/contacts", AddressBook, query={"search": search, "limit": limit, "cursor": cursor}
         )
         return answer
 
