@@ -55,8 +55,8 @@ DURABLE: Final = frozenset({"event", "claim", "clear"}) | {
 _TYPE_OF: Final = {message: name for name, message in {**TO_SERVER, **TO_ROBOT}.items()}
 
 
-class Envelope(Part):
-    """One message on the wire; `body` is one of the classes in `TO_SERVER` or `TO_ROBOT`."""
+class Head(Part):
+    """What stands around the body of a message."""
 
     v: int = MAJOR_VERSION
     type: str
@@ -66,6 +66,15 @@ class Envelope(Part):
     ack: int = Field(default=0, ge=0, le=2**53)
     at: Moment
     replay: bool = False
+
+    def around(self, body: str) -> str:
+        """The JSON text that is sent, for a body that is JSON already."""
+        return f'{self.model_dump_json()[:-1]},"body":{body}}}'
+
+
+class Envelope(Head):
+    """One message on the wire; `body` is one of the classes in `TO_SERVER` or `TO_ROBOT`."""
+
     body: SerializeAsAny[Part]
 
     def to_text(self) -> str:

@@ -1,48 +1,83 @@
-"""Missions as dispatch writes them: a new one for an order, and one more order on one that is under way."""
+"""Missions as dispatch writes them: new ones for orders, and one more order on one that is under way."""
 
 from collections.abc import Sequence
+from datetime import datetime
 from typing import Final
 
+from sqlalchemy import insert
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.dispatch.choice import WaitingOrder
 from app.dispatch.insertion import Insertion, Tour, Visit, cheapest_insertion
+from app.fleet.mission_updates import stop_of
 from app.fleet.service import Fleet
-from app.orders.stops import active_mission, left_of
+from app.orders.stops import active_mission, stops_left
 from app.people.service import new_id
 from app.tables import MissionRow, Order, StopRow
 from maps.ways import Ways
-from protocol.parts import StopAction
+from protocol.parts import Part, StopAction
+from protocol.to_robot import Mission, Verifiers
 
 PLACES: Final = (StopAction.LOAD, StopAction.RECEIVE)
+_NEW_MISSION: Final = insert(MissionRow)
+_NEW_STOP: Final = insert(StopRow)
 
 
-async def begin_mission(session: AsyncSession, fleet: Fleet, order: Order, robot: str) -> MissionRow:
-    """Fetch and bring, nothing else yet."""
-    mission = MissionRow(id=new_id(), robot=robot, created_at=fleet.clock.utc())
-    session.add(mission)
-    await session.flush()
-    stops = _stops(mission, order.id, (order.from_post, order.to_post), fleet.settings.wait_limit_s)
-    for position, stop in enumerate(stops):
-        stop.position = position
-    session.add_all(stops)
-    await session.flush()
-    return mission
+async def begin_missions(
+    session: AsyncSession, fleet: Fleet, given: Sequence[tuple[Order, str]], told: bool
+) -> list[str]:
+    """Fetch and bring, nothing else yet: a new mission for each of these orders and its robot. Their robots are told at
+    once, unless something may still be added."""
+    connection = await session.connection()
+    missions = [_mission(robot, fleet.clock.utc(), told) for _, robot in given]
+    stops = [
+        _stops(mission.id, order.id, (order.from_post, order.to_post), fleet.settings.wait_limit_s)
+        for mission, (order, _) in zip(missions, given, strict=True)
+    ]
+    # All of one kind by one statement: that is most of what an order costs here.
+    await connection.execute(_NEW_MISSION, [mission.model_dump(exclude_none=True) for mission in missions])
+    await connection.execute(_NEW_STOP, [stop.model_dump(exclude_none=True) for both in stops for stop in both])
+    if told:
+        await _tell_of_new(session, fleet, missions, stops, [order for order, _ in given])
+    return [mission.id for mission in missions]
 
 
-def _stops(mission: MissionRow, order_id: str, posts: tuple[str, str], wait_limit_s: float) -> list[StopRow]:
+async def _tell_of_new(
+    session: AsyncSession,
+    fleet: Fleet,
+    missions: Sequence[MissionRow],
+    stops: Sequence[Sequence[StopRow]],
+    orders: Sequence[Order],
+) -> None:
+    """What `tell_mission` would tell of each of them, with nothing read that is at hand."""
+    verifiers = await fleet.orders.verifiers(session, *orders)
+    news: dict[str, tuple[Part, ...]] = {}
+    for mission, both, order in zip(missions, stops, orders, strict=True):
+        codes = Verifiers(verifiers=tuple(one for one in verifiers if one.order_id == order.id))
+        told = Mission(id=mission.id, update=mission.update_number, stops=tuple(stop_of(stop) for stop in both))
+        news[mission.robot] = (codes, told)
+    await fleet.tell_all(session, news)
+
+
+def _mission(robot: str, now: datetime, told: bool) -> MissionRow:
+    return MissionRow(id=new_id(), robot=robot, created_at=now, told_update=int(told))
+
+
+def _stops(
+    mission_id: str, order_id: str, posts: tuple[str, str], wait_limit_s: float, since_update: int = 1
+) -> list[StopRow]:
     return [
         StopRow(
             id=new_id(),
-            mission_id=mission.id,
-            position=0,
+            mission_id=mission_id,
+            position=position,
             post=post,
             action=action,
             order_id=order_id,
             wait_limit_s=wait_limit_s,
-            since_update=mission.update_number,
+            since_update=since_update,
         )
-        for action, post in zip(PLACES, posts, strict=True)
+        for position, (action, post) in enumerate(zip(PLACES, posts, strict=True))
     ]
 
 
@@ -58,9 +93,10 @@ async def take_along(
     assert mission is not None, f"{tour.robot} is under way without a mission"  # noqa: S101  # the same transaction
     if mission.told_update:
         mission.update_number += 1
-    new = _stops(mission, order.id, (order.from_post, order.to_post), fleet.settings.wait_limit_s)
+    posts = (order.from_post, order.to_post)
+    new = _stops(mission.id, order.id, posts, fleet.settings.wait_limit_s, mission.update_number)
     by_key = dict(zip((LOAD, RECEIVE), new, strict=True))
-    stops = {stop.id: stop for stop in (await session.exec(left_of(mission.id))).all()}
+    stops = {stop.id: stop for stop in await stops_left(session, mission.id)}
     for position, visit in enumerate(insertion.visits):
         (by_key.get(visit.key) or stops[visit.key]).position = position
     session.add_all(new)

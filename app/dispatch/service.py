@@ -10,19 +10,26 @@ from collections.abc import Sequence
 from typing import Final
 
 import structlog
+from sqlalchemy import bindparam
 from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
-from sqlmodel.sql.expression import SelectOfScalar
 
-from app.dispatch.choice import Assignment, choose_robots, has_enough_charge, why_nobody_comes
-from app.dispatch.missions import begin_mission, take_along
-from app.dispatch.situation import Situation, anything_waits, look, tours
+from app.dispatch.choice import (
+    Assignment,
+    IdleRobot,
+    WaitingOrder,
+    choose_robots,
+    has_enough_charge,
+    why_nobody_comes,
+)
+from app.dispatch.missions import begin_missions, take_along
+from app.dispatch.situation import Todo, connected_robots, idle_robots, look, look_for_work, tours
 from app.fleet.commands import ask, new_command_id, unanswered
 from app.fleet.mission_updates import tell_mission
 from app.fleet.service import Fleet
 from app.orders.service import Word
 from app.orders.transitions import By
-from app.tables import MissionRow, MissionState, Order, OrderState, RobotRow
+from app.tables import MissionRow, Order, OrderState, RobotRow
 from maps.ways import Ways
 from protocol.to_robot import Cancel
 
@@ -51,12 +58,16 @@ class Dispatcher:
         self._stopping = False
         self._needs_robots = True
         self._left = 0
+        self._own: set[str] = set()
         fleet.on_change.append(self.wake_for_robot)
         fleet.orders.on_change.append(self.wake)
 
-    def wake(self, _changed: str = "") -> None:
-        """An order has changed: look again."""
-        self._woken.set()
+    def wake(self, changed: str = "") -> None:
+        """An order has changed: look again, unless that is what was just decided here."""
+        if changed in self._own:
+            self._own.discard(changed)
+        else:
+            self._woken.set()
 
     def wake_for_robot(self, _changed: str = "") -> None:
         """A robot has changed: look again, if anything was left for which no robot was there."""
@@ -87,78 +98,98 @@ class Dispatcher:
     async def look_round(self) -> bool:
         """Do what there is to do; whether anything is left that waits for a robot."""
         async with self._fleet.database.reading() as session:
-            dropped = (await session.exec(select(Order.id).where(col(Order.let_go_by).is_not(None)))).all()
-            changed = (await session.exec(_changed_missions())).all()
-            waits = await anything_waits(session, self._fleet.clock.utc())
-        await self._pass_on(dropped, changed)
-        if waits:
+            todo = await look_for_work(session, self._fleet.clock.utc())
+        await self._pass_on(todo)
+        if todo.waits:
             while await self.assign():
                 pass
-        return (waits and self._left > 0) or bool(changed)
+        return (todo.waits and self._left > 0) or bool(todo.changed)
 
     # Who fetches what.
 
     async def assign(self) -> bool:
         """Give waiting orders to robots, as many as there are robots for; whether there may be more to give."""
         now = self._fleet.clock.utc()
-        async with self._fleet.database.transaction() as session:
-            situation = await look(session, now, self._fleet.settings.priority_head_start_s)
-            assignments = choose_robots(situation.waiting, situation.idle, self._ways)[:AT_ONCE]
-            touched = [await self._assign(session, one) for one in assignments]
-            given = {one.order_id for one in assignments}
-            if sum(has_enough_charge(robot) for robot in situation.idle) <= len(assignments):
-                given |= await self._take_along(session, situation, given, touched)
-            await self._tell(session, touched)
-            await self._explain(session, situation, given)
+        try:
+            async with self._fleet.database.transaction() as session:
+                situation = await look(session, now, self._fleet.settings.priority_head_start_s)
+                assignments = choose_robots(situation.waiting, situation.idle, self._ways)[:AT_ONCE]
+                given = {one.order_id for one in assignments}
+                if len(given) == len(situation.waiting):
+                    await self._assign(session, assignments)
+                else:
+                    given |= await self._assign_what_can_be(session, assignments, situation.waiting)
+        finally:
+            self._own.clear()
         self._left = len(situation.waiting) - len(given)
         return bool(given) and self._left > 0
 
-    async def _assign(self, session: AsyncSession, assignment: Assignment) -> MissionRow:
-        order = await session.get_one(Order, assignment.order_id)
-        mission = await begin_mission(session, self._fleet, order, assignment.robot)
-        await self._give(session, order, assignment.robot)
-        return mission
+    async def _assign(self, session: AsyncSession, assignments: Sequence[Assignment], told: bool = True) -> list[str]:
+        """The new missions, told unless something may still be added to them."""
+        if not assignments:
+            return []
+        wanted = {"order_ids": [one.order_id for one in assignments]}
+        orders = {order.id: order for order in (await session.exec(_ORDERS, params=wanted)).all()}
+        given = [(orders[one.order_id], one.robot) for one in assignments]
+        missions = await begin_missions(session, self._fleet, given, told)
+        for one in assignments:
+            await self._give(session, one.order_id, one.robot)
+        return missions
 
-    async def _give(self, session: AsyncSession, order: Order, robot: str) -> None:
-        await self._fleet.orders.move(session, order.id, OrderState.ASSIGNED, Word(By.DISPATCHER, robot=robot))
-        log.info("assigned", order=order.id, robot=robot)
+    async def _give(self, session: AsyncSession, order_id: str, robot: str) -> None:
+        self._own.add(order_id)
+        await self._fleet.orders.move(session, order_id, OrderState.ASSIGNED, Word(By.DISPATCHER, robot=robot))
+        log.info("assigned", order=order_id, robot=robot)
+
+    async def _assign_what_can_be(
+        self, session: AsyncSession, assignments: Sequence[Assignment], waiting: Sequence[WaitingOrder]
+    ) -> set[str]:
+        """There are fewer robots than orders: what lies on somebody's way goes along, and the others are told why they
+        wait. Which orders were given."""
+        given = {one.order_id for one in assignments}
+        busy = {one.robot for one in assignments}
+        idle = [robot for robot in await idle_robots(session) if robot.name not in busy]
+        is_somebody_free = any(has_enough_charge(robot) for robot in idle)
+        missions = await self._assign(session, assignments, told=is_somebody_free)
+        if not is_somebody_free:
+            left = [order for order in waiting if order.id not in given]
+            given |= await self._take_along(session, left[:TAKEN_ALONG_AT_ONCE], missions)
+        await self._explain(session, [order.id for order in waiting if order.id not in given], idle)
+        return given
 
     async def _take_along(
-        self, session: AsyncSession, situation: Situation, given: set[str], touched: list[MissionRow]
+        self, session: AsyncSession, orders: Sequence[WaitingOrder], missions: Sequence[str]
     ) -> set[str]:
-        """Nobody is free any more: what lies on the way of a robot under way goes with it."""
-        taken: set[str] = set()
+        """Which orders go along. Robots are told of what has come on, and of these new missions."""
+        taken, touched = set(), set(missions)
         under_way = await tours(session) if self._fleet.settings.robot_capacity > 1 else []
-        for order in [one for one in situation.waiting if one.id not in given][:TAKEN_ALONG_AT_ONCE]:
+        for order in orders:
             mission = await take_along(session, self._fleet, order, under_way, self._ways)
             if mission is not None:
-                await self._give(session, await session.get_one(Order, order.id), mission.robot)
+                await self._give(session, order.id, mission.robot)
                 taken.add(order.id)
-                touched[:] = [*(one for one in touched if one.id != mission.id), mission]
+                touched.add(mission.id)
                 under_way = await tours(session)
-        return taken
-
-    async def _tell(self, session: AsyncSession, missions: list[MissionRow]) -> None:
-        for mission in missions:
+        for mission_id in sorted(touched):
+            mission = await session.get_one(MissionRow, mission_id)
             robot = await session.get_one(RobotRow, mission.robot, with_for_update=True)
             await tell_mission(session, self._fleet, robot, mission)
+        return taken
 
-    async def _explain(self, session: AsyncSession, situation: Situation, given: set[str]) -> None:
+    async def _explain(self, session: AsyncSession, waiting: Sequence[str], idle: Sequence[IdleRobot]) -> None:
         """Only to those who were told something else so far."""
-        waiting = [order.id for order in situation.waiting if order.id not in given]
-        if waiting:
-            why = why_nobody_comes(situation.idle, situation.connected)
-            told = select(Order.id).where(col(Order.id).in_(waiting), col(Order.why).is_distinct_from(why))
-            for order_id in (await session.exec(told)).all():
-                await self._fleet.orders.explain(session, order_id, why)
+        why = why_nobody_comes(idle, await connected_robots(session))
+        told = await session.exec(_TOLD_OTHERWISE, params={"order_ids": waiting, "why": why})
+        for order_id in told.all():
+            await self._fleet.orders.explain(session, order_id, why)
 
     # What has changed for robots.
 
-    async def _pass_on(self, dropped: Sequence[str], changed: Sequence[str]) -> None:
+    async def _pass_on(self, todo: Todo) -> None:
         """Tell robots what to drop, and missions that have changed; each is told once, in a transaction of its own."""
-        for order_id in dropped:
+        for order_id in todo.dropped:
             await self._tell_to_drop(order_id)
-        for mission_id in changed:
+        for mission_id in todo.changed:
             await self._tell_change(mission_id)
 
     async def _tell_to_drop(self, order_id: str) -> None:
@@ -182,7 +213,7 @@ class Dispatcher:
             await tell_mission(session, self._fleet, robot, mission)
 
 
-def _changed_missions() -> SelectOfScalar[str]:
-    return select(MissionRow.id).where(
-        MissionRow.state == MissionState.ACTIVE, col(MissionRow.told_update) < col(MissionRow.update_number)
-    )
+_ORDERS: Final = select(Order).where(col(Order.id).in_(bindparam("order_ids", expanding=True)))
+_TOLD_OTHERWISE: Final = select(Order.id).where(
+    col(Order.id).in_(bindparam("order_ids", expanding=True)), col(Order.why).is_distinct_from(bindparam("why"))
+)

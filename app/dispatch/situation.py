@@ -5,14 +5,26 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Any, Final
 
-from sqlalchemy import ColumnElement, and_, exists, or_
-from sqlalchemy import select as sa_select
-from sqlmodel import col, func, select
+from sqlalchemy import (
+    ColumnElement,
+    CompoundSelect,
+    Integer,
+    Select,
+    and_,
+    bindparam,
+    exists,
+    func,
+    literal,
+    or_,
+    select,
+    union_all,
+)
+from sqlmodel import col
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.dispatch.choice import IdleRobot, WaitingOrder, counts_since
+from app.dispatch.choice import ENOUGH_CHARGE, IdleRobot, WaitingOrder, counts_since
 from app.dispatch.insertion import Tour, Visit
-from app.orders.stops import left_of
+from app.orders.stops import stops_left
 from app.orders.transitions import MAIL_ABOARD
 from app.tables import MissionRow, MissionState, Order, OrderState, Priority, RobotCommand, RobotRow, StopRow
 from protocol.parts import Activity, StopAction
@@ -25,85 +37,82 @@ WAITING_AT_A_STOP: Final = (OrderState.AT_SENDER, OrderState.AT_RECIPIENT, Order
 
 @dataclass(frozen=True)
 class Situation:
-    """Longest waiting first."""
+    """Longest waiting first, and of the robots that could fetch it as many at each post as could be chosen."""
 
     waiting: Sequence[WaitingOrder]
     idle: Sequence[IdleRobot]
-    connected: int
 
 
-def is_waiting(now: datetime) -> ColumnElement[bool]:
-    """Queued, and not left for later."""
-    due = or_(col(Order.not_before).is_(None), col(Order.not_before) <= now)
-    return and_(col(Order.state) == OrderState.QUEUED, due)
+@dataclass(frozen=True)
+class Todo:
+    """What there is to do for dispatch: orders that a robot is to drop, missions to tell, and whether orders wait."""
+
+    dropped: Sequence[str]
+    changed: Sequence[str]
+    waits: bool
 
 
-async def anything_waits(session: AsyncSession, now: datetime) -> bool:
-    return (await session.exec(select(Order.id).where(is_waiting(now)).limit(1))).first() is not None
+async def look_for_work(session: AsyncSession, now: datetime) -> Todo:
+    """One question, since it is asked after every change."""
+    rows = (await (await session.connection()).execute(_TODO, {"now": now})).all()
+    return Todo(
+        [row.id for row in rows if row.what == "drop"],
+        [row.id for row in rows if row.what == "tell"],
+        any(row.what == "give" for row in rows),
+    )
 
 
 async def look(session: AsyncSession, now: datetime, head_start_s: float) -> Situation:
     """Everything that the choice needs, as columns."""
-    connected = select(func.count()).select_from(RobotRow).where(col(RobotRow.online))
-    return Situation(
-        await _waiting(session, now, head_start_s), await _idle(session), (await session.exec(connected)).one()
-    )
+    waiting = await _waiting(session, now, head_start_s)
+    return Situation(waiting, await _nearby(session, waiting))
 
 
 async def _waiting(session: AsyncSession, now: datetime, head_start_s: float) -> list[WaitingOrder]:
     # As columns, not as orders: nothing of them is changed here, and there may be many.
-    wanted = _columns().where(is_waiting(now)).order_by(col(Order.created_at), col(Order.id)).limit(LOOKED_AT)
     connection = await session.connection()
-    rows = {row[0]: row for row in (await connection.execute(wanted)).all()}
+    rows = {row.id: row for row in (await connection.execute(_WAITING, {"now": now})).all()}
     if len(rows) == LOOKED_AT:  # the important ones behind these must not be overlooked
-        high = wanted.where(col(Order.priority) == Priority.HIGH)
-        rows |= {row[0]: row for row in (await connection.execute(high)).all()}
-    longest = sorted(rows.values(), key=lambda row: (counts_since(row[5], row[6], head_start_s), row[0]))
+        rows |= {row.id: row for row in (await connection.execute(_IMPORTANT, {"now": now})).all()}
+    longest = sorted(rows.values(), key=lambda row: (counts_since(row.created_at, row.priority, head_start_s), row.id))
     dropping = await _dropping(session, list(rows))
-    return [
-        WaitingOrder(row[0], row[1], row[2], row[3], row[4], frozenset(dropping.get(row[0], ()))) for row in longest
-    ]
+    return [WaitingOrder(*row[:5], frozenset(dropping.get(row.id, ()))) for row in longest]
 
 
 async def _dropping(session: AsyncSession, order_ids: Sequence[str]) -> dict[str, set[str]]:
     """Robots that were told to drop one of these orders and have not answered: they would drop it again."""
     if not order_ids:
         return {}
-    asked = select(RobotCommand.order_id, RobotCommand.robot).where(
-        col(RobotCommand.order_id).in_(order_ids),
-        RobotCommand.kind == "cancel",
-        col(RobotCommand.answered_at).is_(None),
-    )
+    asked = await (await session.connection()).execute(_DROPPING, {"order_ids": order_ids})
     dropping: dict[str, set[str]] = {}
-    for order_id, robot in (await session.exec(asked)).all():
-        dropping.setdefault(order_id or "", set()).add(robot)
+    for order_id, robot in asked.all():
+        dropping.setdefault(str(order_id), set()).add(robot)
     return dropping
 
 
-def _columns() -> Any:
-    who = (col(Order.id), col(Order.from_post), col(Order.to_post), col(Order.wanted_robot), col(Order.avoided_robot))
-    return sa_select(*who, col(Order.created_at), col(Order.priority))
+async def _nearby(session: AsyncSession, waiting: Sequence[WaitingOrder]) -> list[IdleRobot]:
+    """Each order takes the first at some post that it may go with: more than that there need not be of any post."""
+    if not waiting:
+        return []
+    not_with = {robot for order in waiting for robot in (*order.dropping, order.avoided) if robot}
+    wanted = {order.wanted for order in waiting if order.wanted}
+    asked = {"at_each_post": len(waiting) + len(not_with), "wanted": list(wanted)}
+    return [IdleRobot(*row) for row in (await (await session.connection()).execute(_NEARBY, asked)).all()]
 
 
-async def _idle(session: AsyncSession) -> list[IdleRobot]:
-    """A robot that has mail aboard and no mission any more is no free robot: its mail comes first."""
-    on_mission = exists().where(
-        col(MissionRow.robot) == col(RobotRow.name), col(MissionRow.state) == MissionState.ACTIVE
-    )
-    carries = exists().where(col(Order.robot) == col(RobotRow.name), is_aboard())
-    wanted = select(RobotRow.name, RobotRow.post, RobotRow.battery_ratio).where(
-        col(RobotRow.online), col(RobotRow.activity) != Activity.STOPPED, ~on_mission, ~carries, ~is_recalled()
-    )
-    return [IdleRobot(*row) for row in (await session.exec(wanted)).all()]
+async def idle_robots(session: AsyncSession) -> list[IdleRobot]:
+    """Connected and with nothing to do, charged or not."""
+    return [IdleRobot(*row) for row in (await (await session.connection()).execute(_IDLE)).all()]
 
 
-def is_recalled() -> ColumnElement[bool]:
-    """Told to come home, and not heard of since: what it is told next would cross with that."""
-    return exists().where(
-        col(RobotCommand.robot) == col(RobotRow.name),
-        col(RobotCommand.answered_at).is_(None),
-        col(RobotCommand.kind) == "recall",
-    )
+async def connected_robots(session: AsyncSession) -> int:
+    return int((await (await session.connection()).execute(_CONNECTED)).scalar_one())
+
+
+def is_waiting() -> ColumnElement[bool]:
+    """Queued, and not left for later than `now`."""
+    due = or_(col(Order.not_before).is_(None), col(Order.not_before) <= bindparam("now"))
+    return and_(col(Order.state) == OrderState.QUEUED, due)
 
 
 def is_aboard() -> ColumnElement[bool]:
@@ -114,8 +123,67 @@ def is_aboard() -> ColumnElement[bool]:
     )
 
 
+def _is_idle() -> ColumnElement[bool]:
+    """A robot that has mail aboard and no mission any more is no free robot: its mail comes first. Nor is one that was
+    told to come home and not heard of since: what it is told next would cross with that."""
+    on_mission = exists().where(
+        col(MissionRow.robot) == col(RobotRow.name), col(MissionRow.state) == MissionState.ACTIVE
+    )
+    carries = exists().where(col(Order.robot) == col(RobotRow.name), is_aboard())
+    is_recalled = exists().where(
+        col(RobotCommand.robot) == col(RobotRow.name),
+        col(RobotCommand.answered_at).is_(None),
+        col(RobotCommand.kind) == "recall",
+    )
+    is_there = and_(col(RobotRow.online), col(RobotRow.activity) != Activity.STOPPED)
+    return and_(is_there, ~on_mission, ~carries, ~is_recalled)
+
+
+def _nearby_robots() -> Select[Any]:
+    place = func.row_number().over(partition_by=col(RobotRow.post), order_by=col(RobotRow.name))
+    able = select(*_OF_ROBOT, place.label("place")).where(_is_idle(), col(RobotRow.battery_ratio) >= ENOUGH_CHARGE)
+    ranked = able.subquery()
+    is_near = ranked.c.place <= bindparam("at_each_post", type_=Integer)
+    is_wanted = ranked.c.name.in_(bindparam("wanted", expanding=True))
+    return select(ranked.c.name, ranked.c.post, ranked.c.battery_ratio).where(or_(is_near, is_wanted))
+
+
+# Put together once: that takes several times as long as asking.
+_OF_ROBOT: Final = (col(RobotRow.name), col(RobotRow.post), col(RobotRow.battery_ratio))
+_NEARBY: Final = _nearby_robots()
+_IDLE: Final = select(*_OF_ROBOT).where(_is_idle())
+_CONNECTED: Final = select(func.count()).select_from(RobotRow).where(col(RobotRow.online))
+_WAITING: Final = (
+    select(
+        *(col(Order.id), col(Order.from_post), col(Order.to_post), col(Order.wanted_robot), col(Order.avoided_robot)),
+        *(col(Order.created_at), col(Order.priority)),
+    )
+    .where(is_waiting())
+    .order_by(col(Order.created_at), col(Order.id))
+    .limit(LOOKED_AT)
+)
+_IMPORTANT: Final = _WAITING.where(col(Order.priority) == Priority.HIGH)
+_DROPPING: Final = select(col(RobotCommand.order_id), col(RobotCommand.robot)).where(
+    col(RobotCommand.order_id).in_(bindparam("order_ids", expanding=True)),
+    col(RobotCommand.kind) == "cancel",
+    col(RobotCommand.answered_at).is_(None),
+)
+_TODO: Final[CompoundSelect[Any]] = union_all(
+    select(literal("drop").label("what"), col(Order.id).label("id")).where(col(Order.let_go_by).is_not(None)),
+    select(literal("tell"), col(MissionRow.id)).where(
+        col(MissionRow.state) == MissionState.ACTIVE, col(MissionRow.told_update) < col(MissionRow.update_number)
+    ),
+    select(literal("give"), literal("")).where(exists().where(is_waiting())),
+)
+
+
 async def tours(session: AsyncSession) -> list[Tour]:
     """Missions under way that may get one more order: of robots that can be told, and wait for nobody just now."""
+    rows = (await (await session.connection()).execute(_UNDER_WAY)).all()
+    return [await tour_of(session, *row) for row in rows]
+
+
+def _under_way() -> Select[str, str, str]:
     stands = exists().where(col(Order.robot) == col(RobotRow.name), col(Order.state).in_(WAITING_AT_A_STOP))
     in_trouble = exists().where(col(Order.robot) == col(RobotRow.name), col(Order.state) == OrderState.ATTENTION)
     commanded = exists().where(
@@ -123,7 +191,8 @@ async def tours(session: AsyncSession) -> list[Tour]:
         col(RobotCommand.answered_at).is_(None),
         col(RobotCommand.kind).in_(("recall", "cancel")),
     )
-    wanted = select(MissionRow.id, RobotRow.name, func.coalesce(RobotRow.towards, RobotRow.post)).where(
+    comes_to = func.coalesce(col(RobotRow.towards), col(RobotRow.post))
+    wanted = select(col(MissionRow.id), col(RobotRow.name), comes_to).where(
         col(MissionRow.robot) == col(RobotRow.name),
         col(MissionRow.state) == MissionState.ACTIVE,
         ~col(MissionRow.id).startswith("return-"),
@@ -133,20 +202,18 @@ async def tours(session: AsyncSession) -> list[Tour]:
         ~in_trouble,
         ~commanded,
     )
-    rows = (await session.exec(wanted.order_by(col(MissionRow.created_at)).limit(TOURS))).all()
-    return [await tour_of(session, mission_id, robot, post) for mission_id, robot, post in rows]
+    return wanted.order_by(col(MissionRow.created_at)).limit(TOURS)
+
+
+_UNDER_WAY: Final = _under_way()
+_ABOARD: Final = select(func.count()).select_from(Order).where(col(Order.robot) == bindparam("of"), is_aboard())
 
 
 async def tour_of(session: AsyncSession, mission_id: str, robot: str, post: str | None) -> Tour:
     """What is left of a mission, as a way; it may turn aside wherever it comes to next."""
-    stops = (await session.exec(left_of(mission_id))).all()
-    aboard = select(func.count()).select_from(Order).where(Order.robot == robot, is_aboard())
-    return Tour(
-        robot=robot,
-        start=post,
-        visits=tuple(visit_of(stop) for stop in stops),
-        aboard=(await session.exec(aboard)).one(),
-    )
+    stops = await stops_left(session, mission_id)
+    aboard = (await (await session.connection()).execute(_ABOARD, {"of": robot})).scalar_one()
+    return Tour(robot=robot, start=post, visits=tuple(visit_of(stop) for stop in stops), aboard=aboard)
 
 
 def visit_of(stop: StopRow) -> Visit:

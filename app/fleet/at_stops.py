@@ -6,7 +6,7 @@ from typing import Final
 from app.fleet.errors import UnknownStop
 from app.fleet.missions import drop_stops, end_if_nothing_is_left, finish, mission_of, own_stop, start_returning
 from app.fleet.reports import Report
-from app.orders.stops import OWN_PREFIX, is_own, left_of
+from app.orders.stops import OWN_PREFIX, is_own, orders_to_return
 from app.orders.transitions import MAIL_ABOARD
 from app.tables import MissionRow, MissionState, Order, OrderState, StopRow
 from protocol.parts import StopAction
@@ -48,11 +48,10 @@ async def _accepted(report: Report, mission: MissionRow, progress: Progress) -> 
     """The robot holds the mission now; mail that this update sends back is on its way back from here on."""
     mission.accepted_at = mission.accepted_at or report.now
     mission.accepted_update = max(mission.accepted_update, getattr(progress, "update", None) or 1)
-    for stop in (await report.session.exec(left_of(mission.id))).all():
-        if stop.action == StopAction.RETURN and stop.order_id and stop.since_update <= mission.accepted_update:
-            order = await report.orders.order(report.session, stop.order_id)
-            if order.robot == report.robot and order.state in MAIL_ABOARD:
-                await start_returning(report, order, progress)
+    for order_id in await orders_to_return(report.session, mission.id, mission.accepted_update):
+        order = await report.orders.order(report.session, order_id)
+        if order.robot == report.robot and order.state in MAIL_ABOARD:
+            await start_returning(report, order, progress)
 
 
 async def _stop(report: Report, mission: MissionRow, progress: Progress) -> StopRow | None:

@@ -1,5 +1,6 @@
 """Who is connected now: one robot, one socket. In memory, since a socket does not outlive its process either."""
 
+from collections.abc import Iterable
 from typing import Protocol
 
 
@@ -46,3 +47,7 @@ class Connections:
         """Something new is in the outbox of this robot; nobody minds if it is not connected."""
         if seat := self._seats.get(robot):
             seat.wake()
+
+    def wake_all(self, robots: Iterable[str]) -> None:
+        for robot in robots:
+            self.wake(robot)

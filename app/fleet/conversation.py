@@ -2,7 +2,6 @@
 
 import asyncio
 import contextlib
-import json
 from collections.abc import Sequence
 from typing import Final
 
@@ -19,7 +18,7 @@ from app.fleet.outbox import Waiting
 from app.fleet.tokens import note_use
 from app.tables import RobotRow, RobotToken
 from protocol.both_ways import Ack, Error
-from protocol.envelope import TO_ROBOT, TO_SERVER, Envelope, parse, type_of
+from protocol.envelope import TO_SERVER, Envelope, Head, parse, type_of
 from protocol.errors import ProtocolError
 from protocol.parts import Part
 from protocol.to_server import Hello
@@ -205,25 +204,27 @@ class Conversation:
         for row in rows:
             if not row.may_hear:
                 raise TokenRevoked
-            await self._send(TO_ROBOT[row.type].model_validate_json(json.dumps(row.body)), row.seq)
+            await self._send_text(row.type, row.body, row.seq)
             self._sent = row.seq
 
     async def _waiting(self, limit: int) -> Sequence[Waiting]:
         async with self._fleet.database.reading() as session:
             return await outbox.pending(session, self.robot, self.token_prefix, self._sent, limit)
 
-    async def _send(self, message: Part, seq: int | None = None) -> None:
-        envelope = Envelope(
-            type=type_of(message),
+    async def _send(self, message: Part) -> None:
+        await self._send_text(type_of(message), message.model_dump_json())
+
+    async def _send_text(self, kind: str, body: str, seq: int | None = None) -> None:
+        head = Head(
+            type=kind,
             robot=self.robot,
             journal=self._server_journal or NO_JOURNAL,
             seq=seq,
             ack=self._received_seq,
             at=self._fleet.clock.utc(),
-            body=message,
         )
         try:
-            await self._socket.send_text(envelope.to_text())
+            await self._socket.send_text(head.around(body))
         except (WebSocketDisconnect, RuntimeError):  # Starlette says RuntimeError once the close has been seen
             raise Gone from None
 

@@ -7,7 +7,7 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.fleet.commands import unanswered
 from app.fleet.service import Fleet
-from app.orders.stops import left_of
+from app.orders.stops import stops_left
 from app.tables import MissionRow, Order, RobotRow, StopRow
 from protocol.parts import Stop, StopAction
 from protocol.to_robot import Mission, Verifiers
@@ -21,7 +21,7 @@ async def tell_mission(
     An order that the robot was told to drop and has not answered for is left out: it would take it up again.
     `anew`: to a robot that has forgotten everything, and is told again what to drop afterwards.
     """
-    stops = list((await session.exec(left_of(mission.id))).all())
+    stops = list(await stops_left(session, mission.id))
     if not anew:
         dropped = {command.order_id for command in await unanswered(session, robot=robot.name, kind="cancel")}
         stops = [stop for stop in stops if stop.order_id not in dropped]

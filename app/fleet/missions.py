@@ -7,7 +7,7 @@ from sqlmodel import col, select
 from app.fleet.errors import UnknownMission
 from app.fleet.reports import Report
 from app.orders.service import Word
-from app.orders.stops import OWN_PREFIX, is_own, left_of, stops_of_order
+from app.orders.stops import OWN_PREFIX, is_anything_left, is_own, stops_left, stops_of_order
 from app.orders.transitions import MAIL_ABOARD, ROBOT_COMING
 from app.tables import MissionRow, MissionState, Order, OrderState, StopRow
 from protocol.parts import StopAction
@@ -77,7 +77,7 @@ async def start_returning(report: Report, order: Order, progress: Progress) -> N
 async def let_go_of(report: Report, mission: MissionRow, word: Word) -> None:
     """A mission that the robot does not hold any more: what it has not loaded is to be fetched by somebody else."""
     end(report, mission, MissionState.CANCELLED)
-    for stop in (await report.session.exec(left_of(mission.id))).all():
+    for stop in await stops_left(report.session, mission.id):
         stop.dropped_at = report.now
         order = await report.session.get(Order, stop.order_id) if stop.order_id else None
         if order and order.robot == report.robot and order.state in ROBOT_COMING:
@@ -116,7 +116,7 @@ async def end_if_nothing_is_left(report: Report, mission: MissionRow) -> None:
 
 async def _end_if_empty(report: Report, mission: MissionRow) -> None:
     await report.session.flush()
-    if (await report.session.exec(left_of(mission.id).limit(1))).first() is not None:
+    if await is_anything_left(report.session, mission.id):
         return
     done = select(StopRow.id).where(StopRow.mission_id == mission.id, col(StopRow.done_at).is_not(None))
     is_done = (await report.session.exec(done.limit(1))).first() is not None
@@ -126,7 +126,7 @@ async def _end_if_empty(report: Report, mission: MissionRow) -> None:
 async def finish(report: Report, mission: MissionRow, progress: Progress, state: MissionState) -> None:
     """The robot says that it has ended. What a later update brings, of which it did not know, is still to come."""
     known = getattr(progress, "update", None) or mission.update_number
-    left = (await report.session.exec(left_of(mission.id))).all()
+    left = await stops_left(report.session, mission.id)
     for stop in left:
         if stop.since_update <= known:
             stop.dropped_at = report.now
@@ -156,7 +156,7 @@ def end(report: Report, mission: MissionRow, state: MissionState) -> None:
 async def _end_own(report: Report) -> None:
     for mission in await _active(report):
         if is_own(mission.id):
-            for stop in (await report.session.exec(left_of(mission.id))).all():
+            for stop in await stops_left(report.session, mission.id):
                 stop.dropped_at = report.now
             end(report, mission, MissionState.CANCELLED)
 

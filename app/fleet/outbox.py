@@ -6,8 +6,8 @@ from datetime import datetime
 from typing import Any, Final
 from uuid import uuid4
 
-from sqlalchemy import bindparam, exists
-from sqlmodel import col, func, select, update
+from sqlalchemy import Text, bindparam, cast, exists, func, insert, select, update
+from sqlmodel import col
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.tables import MessageToRobot, RobotRow, RobotToken
@@ -18,33 +18,65 @@ from protocol.parts import Part, Received
 async def keep(session: AsyncSession, robot: RobotRow, message: Part, now: datetime) -> int:
     """Number a durable message and keep it; it is sent as soon as the transaction is committed and the robot there."""
     robot.last_seq += 1
-    body = message.model_dump(mode="json")
-    row = MessageToRobot(robot=robot.name, seq=robot.last_seq, type=type_of(message), body=body, created_at=now)
-    session.add(row)
-    await session.flush()
+    await (await session.connection()).execute(_KEEP, [_row(robot.name, robot.last_seq, message, now)])
     return robot.last_seq
+
+
+async def keep_all(session: AsyncSession, news: Mapping[str, Sequence[Part]], now: datetime) -> None:
+    """The same for messages to several robots, by their names. Their rows must not be in use in this session."""
+    connection = await session.connection()
+    last = dict((await connection.execute(_LAST, {"names": list(news)})).all())
+    rows = [
+        _row(robot, seq, message, now)
+        for robot, messages in news.items()
+        for seq, message in enumerate(messages, last[robot] + 1)
+    ]
+    await connection.execute(_KEEP, rows)
+    await connection.execute(_COUNT, [{"of": name, "seq": last[name] + len(news[name])} for name in news])
+
+
+def _row(robot: str, seq: int, message: Part, now: datetime) -> dict[str, Any]:
+    body = message.model_dump(mode="json")
+    return {"robot": robot, "seq": seq, "type": type_of(message), "body": body, "created_at": now}
+
+
+_KEEP: Final = insert(MessageToRobot)
+_LAST: Final = (
+    select(col(RobotRow.name), col(RobotRow.last_seq))
+    .where(col(RobotRow.name).in_(bindparam("names", expanding=True)))
+    .order_by(col(RobotRow.name))
+    .with_for_update()
+)
+_COUNT: Final = update(RobotRow).where(col(RobotRow.name) == bindparam("of")).values(last_seq=bindparam("seq"))
 
 
 @dataclass(frozen=True, slots=True)
 class Waiting:
-    """A message that is to go out. `may_hear` is false once the token of the connection is revoked."""
+    """A message that is to go out; `body` is its JSON. `may_hear` is false once the connection's token is revoked."""
 
     seq: int
     type: str
-    body: Mapping[str, Any]
+    body: str
     may_hear: bool
 
 
 async def pending(session: AsyncSession, robot: str, prefix: str, after: int, limit: int) -> Sequence[Waiting]:
     """What the robot has not acknowledged, beyond `after`, in order; `prefix` is the token that it came in with."""
-    good = exists().where(col(RobotToken.prefix) == prefix, col(RobotToken.revoked_at).is_(None))
-    wanted = (
-        select(MessageToRobot.seq, MessageToRobot.type, MessageToRobot.body, good)
-        .where(MessageToRobot.robot == robot, MessageToRobot.seq > after, col(MessageToRobot.acked_at).is_(None))
-        .order_by(col(MessageToRobot.seq))
-        .limit(limit)
+    asked = {"of": robot, "prefix": prefix, "after": after, "at_most": limit}
+    return [Waiting(*row) for row in (await (await session.connection()).execute(_PENDING, asked)).all()]
+
+
+_IS_GOOD: Final = exists().where(col(RobotToken.prefix) == bindparam("prefix"), col(RobotToken.revoked_at).is_(None))
+_PENDING: Final = (
+    select(col(MessageToRobot.seq), col(MessageToRobot.type), cast(col(MessageToRobot.body), Text), _IS_GOOD)
+    .where(
+        col(MessageToRobot.robot) == bindparam("of"),
+        col(MessageToRobot.seq) > bindparam("after"),
+        col(MessageToRobot.acked_at).is_(None),
     )
-    return [Waiting(*row) for row in (await session.exec(wanted)).all()]
+    .order_by(col(MessageToRobot.seq))
+    .limit(bindparam("at_most"))
+)
 
 
 async def acknowledged_by(session: AsyncSession, up_to: Mapping[str, int], now: datetime) -> None:
@@ -71,10 +103,13 @@ async def acknowledged(session: AsyncSession, robot: str, seq: int, now: datetim
 
 async def resume_from(session: AsyncSession, robot: RobotRow) -> int:
     """The lowest number that can still be sent."""
-    lowest = select(func.min(MessageToRobot.seq)).where(
-        MessageToRobot.robot == robot.name, col(MessageToRobot.acked_at).is_(None)
-    )
-    return (await session.exec(lowest)).one() or robot.last_seq + 1
+    lowest = (await (await session.connection()).execute(_LOWEST, {"of": robot.name})).scalar_one()
+    return lowest or robot.last_seq + 1
+
+
+_LOWEST: Final = select(func.min(MessageToRobot.seq)).where(
+    col(MessageToRobot.robot) == bindparam("of"), col(MessageToRobot.acked_at).is_(None)
+)
 
 
 def went_back_in_time(robot: RobotRow, received: Received) -> bool:

@@ -1,8 +1,9 @@
 """What can be done with robots: enrol one, tell one something, take in what one says, show them all."""
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from uuid import uuid4
 
 from sqlmodel import col, select, update
@@ -93,6 +94,11 @@ class Fleet:
         seq = await outbox.keep(session, robot, message, self.clock.utc())
         after_commit(session, lambda: self.connections.wake(robot.name))
         return seq
+
+    async def tell_all(self, session: AsyncSession, news: Mapping[str, Sequence[Part]]) -> None:
+        """The same for several robots, by their names: one statement writes all of it."""
+        await outbox.keep_all(session, news, self.clock.utc())
+        after_commit(session, partial(self.connections.wake_all, tuple(news)))
 
     async def follow(self, session: AsyncSession, robot: RobotRow, message: Part) -> None:
         """Do what follows from a durable message. Raises FleetError or ServiceError; undo what it has done then."""

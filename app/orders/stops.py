@@ -6,7 +6,9 @@ that whatever changes stops need know nothing of robots and their sockets.
 
 from collections.abc import Sequence
 from datetime import datetime
+from typing import Final, TypeVar
 
+from sqlalchemy import bindparam
 from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 from sqlmodel.sql.expression import SelectOfScalar
@@ -15,7 +17,8 @@ from app.people.service import new_id
 from app.tables import MissionRow, MissionState, Order, StopRow
 from protocol.parts import StopAction
 
-OWN_PREFIX = "return-"
+OWN_PREFIX: Final = "return-"
+Wanted = TypeVar("Wanted")
 
 
 def is_own(mission_id: str) -> bool:
@@ -23,14 +26,36 @@ def is_own(mission_id: str) -> bool:
     return mission_id.startswith(OWN_PREFIX)
 
 
-def left_of(mission_id: str) -> SelectOfScalar[StopRow]:
-    """The stops of a mission that are not over, in their order."""
-    return _not_over(select(StopRow).where(StopRow.mission_id == mission_id)).order_by(col(StopRow.position))
-
-
-def _not_over(stops: SelectOfScalar[StopRow]) -> SelectOfScalar[StopRow]:
+def _not_over(stops: SelectOfScalar[Wanted]) -> SelectOfScalar[Wanted]:
     over = (StopRow.done_at, StopRow.gave_up_at, StopRow.dropped_at)
     return stops.where(*(col(at).is_(None) for at in over))
+
+
+_LEFT: Final = (
+    _not_over(select(StopRow)).where(col(StopRow.mission_id) == bindparam("mission_id")).order_by(col(StopRow.position))
+)
+_ANY_LEFT: Final = _not_over(select(col(StopRow.id))).where(col(StopRow.mission_id) == bindparam("mission_id")).limit(1)
+_TO_RETURN: Final = _not_over(select(col(StopRow.order_id))).where(
+    col(StopRow.mission_id) == bindparam("mission_id"),
+    col(StopRow.action) == StopAction.RETURN,
+    col(StopRow.since_update) <= bindparam("up_to"),
+)
+
+
+async def stops_left(session: AsyncSession, mission_id: str) -> Sequence[StopRow]:
+    """The stops of a mission that are not over, in their order."""
+    return (await session.exec(_LEFT, params={"mission_id": mission_id})).all()
+
+
+async def is_anything_left(session: AsyncSession, mission_id: str) -> bool:
+    """Whether a mission has stops that are not over."""
+    return (await session.exec(_ANY_LEFT, params={"mission_id": mission_id})).first() is not None
+
+
+async def orders_to_return(session: AsyncSession, mission_id: str, up_to: int) -> Sequence[str]:
+    """Whose mail a mission brings back, as of its update number `up_to`."""
+    asked = {"mission_id": mission_id, "up_to": up_to}
+    return [order_id for order_id in (await session.exec(_TO_RETURN, params=asked)).all() if order_id]
 
 
 async def active_mission(session: AsyncSession, robot: str) -> MissionRow | None:

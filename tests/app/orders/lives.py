@@ -5,7 +5,6 @@ the other end the robot's own memory, outbox and duties. Played are only people,
 """
 
 import asyncio
-import json
 import shutil
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -193,7 +192,7 @@ class World:
         robot = self.robots[name]
         waiting = await self._waiting_for(robot, count)
         for row in waiting:
-            message = TO_ROBOT[row.type].model_validate_json(json.dumps(row.body))
+            message = TO_ROBOT[row.type].model_validate_json(row.body)
             facts = {"type": row.type, "robot": name, "journal": robot.journal, "seq": row.seq, "body": message}
             robot.memory.receive(Envelope(**facts, at=self.clock.utc()))
             robot.heard_seq = row.seq
