@@ -32,7 +32,7 @@ from app.live.feed import LocalFeed
 from app.mail import open_mailer
 from app.notify import outbox_routes, wish_routes
 from app.notify import routes as notify_routes
-from app.notify.channels.mail import CodePicture, LinkFor, MailChannel
+from app.notify.channels.mail import CodePicture, Drawing, LinkFor, MailChannel
 from app.notify.channels.push import PushChannel
 from app.notify.channels.webhook import Address, WebhookChannel, secret_bytes
 from app.notify.push_key import open_push_key
@@ -176,9 +176,9 @@ def _link_for(links: Links) -> LinkFor:
 def _code_picture(key: ServerKey) -> CodePicture:
     """The code that goes with a mail, so that it is at hand where there is no network."""
 
-    def picture(notice: Notice) -> tuple[str, bytes] | None:
+    def picture(notice: Notice) -> Drawing | None:
         code = code_in_mail(key, notice)
-        return None if code is None else (f"{code[0]}-code.png", code_png(code[1]))
+        return None if code is None else lambda: (f"{code[0]}-code.png", code_png(code[1]))
 
     return picture
 

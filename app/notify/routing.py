@@ -5,11 +5,13 @@ between is still marked as not routed.
 """
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
+from typing import Any, Final
 
 import structlog
+from sqlalchemy import bindparam, insert, literal, union_all, update
 from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
@@ -21,76 +23,93 @@ from app.tables import Notice, NoticeWishes, OutgoingNotice, Person, PushSubscri
 
 log = structlog.get_logger(__name__)
 
-AT_ONCE = 100
-SERVICE = "service"
+AT_ONCE: Final = 100
+SERVICE: Final = "service"
 """The target of the one webhook that is told of everything."""
+
+Muted = Mapping[str, Sequence[str]]
+Targets = Mapping[tuple[str, str], Sequence[str]]
+"""By (person, channel): their devices, their webhook."""
+
+_IS_NEW: Final = col(Notice.routed_at).is_(None)
+_READERS: Final = select(Notice.person_id).where(_IS_NEW)
+_NEW: Final[Any] = (
+    select(Notice, Person, NoticeWishes.muted)
+    .join(Person, col(Notice.person_id) == Person.id)
+    .outerjoin(NoticeWishes, col(NoticeWishes.person_id) == Person.id)
+    .where(_IS_NEW)
+    .order_by(col(Notice.id))
+    .limit(AT_ONCE)
+)
+_TARGETS: Final[Any] = union_all(
+    select(literal(PUSH), PushSubscription.person_id, PushSubscription.id).where(
+        col(PushSubscription.person_id).in_(_READERS)
+    ),
+    select(literal(WEBHOOK), Webhook.person_id, Webhook.id).where(col(Webhook.person_id).in_(_READERS)),
+)
+_ROUTED: Final = update(Notice).where(col(Notice.id) == bindparam("its_id")).values(routed_at=bindparam("now"))
+_OUTGOING: Final = insert(OutgoingNotice)
 
 
 @dataclass(frozen=True)
-class Readers:
-    """What is known of the people that some notices are for."""
+class New:
+    """A notice that no channel has yet, and its reader; `muted` is None for whoever has changed nothing."""
 
-    people: Mapping[str, Person]
-    muted: Mapping[str, Mapping[str, Sequence[str]]]
-    targets: Mapping[tuple[str, str], Sequence[str]]
-    """By (person, channel): their devices, their webhook."""
-
-    def reachable(self, person_id: str) -> set[str]:
-        return {MAIL} | {channel for channel in (PUSH, WEBHOOK) if self.targets.get((person_id, channel))}
+    notice: Notice
+    person: Person
+    muted: Muted | None
 
 
-async def not_routed(session: AsyncSession, limit: int = AT_ONCE) -> list[Notice]:
-    """The oldest notices that no channel has yet."""
-    waiting = select(Notice).where(col(Notice.routed_at).is_(None)).order_by(col(Notice.id)).limit(limit)
-    return list((await session.exec(waiting)).all())
+async def route(session: AsyncSession, feed: Feed, now: datetime, *, tell_service: bool) -> set[str]:
+    """Route what waits, at most AT_ONCE notices; which channels have something to send now."""
+    news = [New(*row) for row in await session.exec(_NEW)]
+    if not news:
+        return set()
+    targets = await _targets(session)
+    rows = [row for new in news for row in _outgoing(new, targets, tell_service=tell_service)]
+    connection = await session.connection()
+    if rows:
+        await connection.execute(_OUTGOING, rows)
+    await connection.execute(_ROUTED, [{"its_id": new.notice.id, "now": now} for new in news])
+    for new in news:
+        _tell_pages(session, feed, new)
+    return {row["channel"] for row in rows}
 
 
-async def route(session: AsyncSession, feed: Feed, now: datetime, *, tell_service: bool) -> int:
-    """Route what waits, at most AT_ONCE notices; how many there were."""
-    notices = await not_routed(session)
-    readers = await _readers(session, {notice.person_id for notice in notices})
-    for notice in notices:
-        session.add_all(_outgoing(notice, readers, tell_service=tell_service))
-        notice.routed_at = now
-        _tell_pages(session, feed, notice, readers.people[notice.person_id])
-    return len(notices)
-
-
-async def _readers(session: AsyncSession, ids: Iterable[str]) -> Readers:
-    ids = list(ids)
-    people = (await session.exec(select(Person).where(col(Person.id).in_(ids)))).all()
-    wishes = (await session.exec(select(NoticeWishes).where(col(NoticeWishes.person_id).in_(ids)))).all()
-    devices = (await session.exec(select(PushSubscription).where(col(PushSubscription.person_id).in_(ids)))).all()
-    hooks = (await session.exec(select(Webhook).where(col(Webhook.person_id).in_(ids)))).all()
+async def _targets(session: AsyncSession) -> Targets:
     targets: defaultdict[tuple[str, str], list[str]] = defaultdict(list)
-    for device in devices:
-        targets[device.person_id, PUSH].append(device.id)
-    for hook in hooks:
-        targets[hook.person_id, WEBHOOK].append(hook.id)
-    return Readers({one.id: one for one in people}, {one.person_id: one.muted for one in wishes}, targets)
+    for channel, person_id, target in await session.exec(_TARGETS):
+        targets[person_id, channel].append(target)
+    return targets
 
 
-def _outgoing(notice: Notice, readers: Readers, *, tell_service: bool) -> Iterator[OutgoingNotice]:
-    person_id = notice.person_id
-    for channel in channels_for(notice.kind, readers.muted.get(person_id), readers.reachable(person_id)):
-        for target in readers.targets.get((person_id, channel), (None,)):
-            yield _sending(notice, channel, target)
+def _outgoing(new: New, targets: Targets, *, tell_service: bool) -> Iterator[dict[str, Any]]:
+    person_id = new.person.id
+    reachable = {MAIL} | {channel for channel in (PUSH, WEBHOOK) if (person_id, channel) in targets}
+    for channel in channels_for(new.notice.kind, new.muted, reachable):
+        for target in targets.get((person_id, channel), (None,)):
+            yield _sending(new.notice, channel, target)
     if tell_service:
-        yield _sending(notice, WEBHOOK, SERVICE)
+        yield _sending(new.notice, WEBHOOK, SERVICE)
 
 
-def _sending(notice: Notice, channel: str, target: str | None) -> OutgoingNotice:
+def _sending(notice: Notice, channel: str, target: str | None) -> dict[str, Any]:
     key = ".".join(part for part in (channel, notice.key, notice.person_id, target) if part)
-    assert notice.id is not None  # noqa: S101  # it was read from its table
-    return OutgoingNotice(
-        key=key, channel=channel, target=target, notice_id=notice.id, created_at=notice.at, next_try_at=notice.at
-    )
+    return {
+        "key": key,
+        "channel": channel,
+        "target": target,
+        "notice_id": notice.id,
+        "created_at": notice.at,
+        "next_try_at": notice.at,
+        "tries": 0,
+    }
 
 
-def _tell_pages(session: AsyncSession, feed: Feed, notice: Notice, person: Person) -> None:
+def _tell_pages(session: AsyncSession, feed: Feed, new: New) -> None:
     try:
-        view = NoticeView.of(notice, person.language).model_dump(mode="json")
+        view = NoticeView.of(new.notice, new.person.language)
     except KeyError as gap:  # a notice that lacks a fact of its text holds up no other
-        log.exception("notice without words", key=notice.key, gap=str(gap))
+        log.exception("notice without words", key=new.notice.key, gap=str(gap))
         return
-    after_commit(session, lambda: feed.publish(Happening("notice", view, person_id=person.id)))
+    after_commit(session, lambda: feed.publish(Happening("notice", view, person_id=new.person.id)))

@@ -38,9 +38,13 @@ def channels_for(
     kind: NoticeKind, wishes: Mapping[str, Sequence[str]] | None, reachable: Collection[str]
 ) -> tuple[str, ...]:
     """The channels for this kind among those that reach the person; mail reaches everybody."""
-    muted = muted_of(wishes)
-    wanted = tuple(channel for channel in CHANNELS if channel in reachable and kind not in muted[channel])
+    wanted = tuple(channel for channel in CHANNELS if channel in reachable and not _is_muted(kind, channel, wishes))
     return wanted or ((MAIL,) if kind in MUST_REACH else ())
+
+
+def _is_muted(kind: NoticeKind, channel: str, wishes: Mapping[str, Sequence[str]] | None) -> bool:
+    chosen = wishes.get(channel) if wishes else None
+    return kind in MUTED_AT_FIRST[channel] if chosen is None else str(kind) in chosen
 
 
 def is_muted_everywhere(kind: NoticeKind, muted: Mapping[str, Collection[NoticeKind]]) -> bool:

@@ -12,8 +12,9 @@ from app.settings import Settings
 from app.tables import Notice, NoticeKind, Person
 from app.texts import text
 
-CodePicture = Callable[[Notice], tuple[str, bytes] | None]
-"""The picture of the hand-over code that goes with a notice: file name and PNG, or None."""
+Drawing = Callable[[], tuple[str, bytes]]
+CodePicture = Callable[[Notice], Drawing | None]
+"""What draws the hand-over code that goes with a notice, as file name and PNG; None if none goes with it."""
 LinkFor = Callable[[Person, Notice], Awaitable[str | None]]
 """A link for somebody who has no account, by which they may follow this one order; None: they sign in."""
 
@@ -50,9 +51,8 @@ class MailChannel:
 
     async def _mail(self, sending: Sending) -> Mail:
         notice, language = sending.notice, sending.person.language
-        picture = None
-        if notice.order_id:  # in a thread: a picture takes its time to draw
-            picture = await asyncio.to_thread(self.code_picture, notice)
+        drawing = self.code_picture(notice)
+        picture = await asyncio.to_thread(drawing) if drawing else None  # it takes its time to draw
         url = await self._url(sending)
         parts = [sending.body]
         parts += [text(language, "email.code")] if picture else []

@@ -13,8 +13,8 @@ from py_vapid import Vapid02
 
 from app.errors import StartError
 from app.notify.channels.push import urgency_of
+from app.notify.noting import pause_s
 from app.notify.push_key import open_push_key
-from app.notify.worker import pause_s
 from app.outside import Outside
 from app.settings import Settings
 from app.tables import NoticeKind, PushSubscription

@@ -7,7 +7,7 @@ import pytest
 from pydantic import SecretStr
 
 from app.errors import StartError
-from app.notify.worker import pause_s
+from app.notify.noting import pause_s
 from app.settings import Settings, load_settings
 from protocol.clock import SteppedClock
 from tests.app.conftest import RECIPIENT, SENDER

@@ -10,7 +10,7 @@ from sqlalchemy import update
 from sqlmodel import col, select
 
 from app.mail import Mail, Spool
-from app.notify.worker import LONGEST_PAUSE_S, pause_s
+from app.notify.noting import LONGEST_PAUSE_S, pause_s
 from app.settings import ROOT
 from app.tables import Notice, NoticeKind, OutgoingNotice
 from app.texts import LANGUAGES, catalogue

@@ -13,7 +13,7 @@ from pydantic import SecretStr
 
 from app.errors import StartError
 from app.notify.channels.webhook import secret_of
-from app.notify.worker import pause_s
+from app.notify.noting import pause_s
 from app.outside import Outside
 from app.settings import Settings, load_settings
 from app.tables import Webhook
