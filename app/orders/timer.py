@@ -80,8 +80,10 @@ class Timer:
         return and_(col(Order.state) == OrderState.QUEUED, col(Order.created_at) < since, begun)
 
     def _is_late(self, now: datetime) -> ColumnElement[bool]:
-        since = now - timedelta(seconds=self.orders.settings.delayed_after_s)
-        return and_(col(Order.window_to) < since, col(Order.state).not_in(NOT_ON_ITS_WAY))
+        return and_(col(Order.window_to) < self._late_since(now), col(Order.state).not_in(NOT_ON_ITS_WAY))
+
+    def _late_since(self, now: datetime) -> datetime:
+        return now - timedelta(seconds=self.orders.settings.delayed_after_s)
 
     def _begins(self, now: datetime) -> ColumnElement[bool]:
         """Left for later, and this is later: dispatch has to look."""
@@ -98,9 +100,9 @@ class Timer:
         """With the window that it has now, as if it were fetched from here on: rather too late than wrong again."""
         async with self.database.transaction() as session:
             order = await self.orders.order(session, order_id)
-            if order.state in NOT_ON_ITS_WAY:
-                return
             now = self.orders.clock.utc()
+            if order.state in NOT_ON_ITS_WAY or order.window_to is None or order.window_to >= self._late_since(now):
+                return  # it has moved on, or another process has told of it
             with suppress(ServiceError):  # a post that the map has lost since: nothing better is known
                 window = self.orders.window(order.from_post, order.to_post)
                 order.window_from, order.window_to = window.begins_at, window.ends_at
