@@ -35,8 +35,9 @@ from app.notify import routes as notify_routes
 from app.notify.channels.mail import CodePicture, Drawing, LinkFor, MailChannel
 from app.notify.channels.push import PushChannel
 from app.notify.channels.webhook import Address, WebhookChannel, secret_bytes
+from app.notify.lag import outbox_lag
 from app.notify.push_key import open_push_key
-from app.notify.worker import OutboxWorker
+from app.notify.worker import FINISH_WITHIN_S, OutboxWorker
 from app.orders import changing_routes, standing_routes
 from app.orders import routes as orders_routes
 from app.orders.codes import code_in_mail, code_png
@@ -188,28 +189,43 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     await bring_to_head(app.state.database)
     await app.state.fleet.begin()
     state = app.state
-    workers = {"outbox": state.outbox_worker, "dispatch": state.dispatcher, "timer": state.timer}
-    workers["housekeeping"] = state.housekeeper
+    workers = {"dispatch": state.dispatcher, "timer": state.timer, "housekeeping": state.housekeeper}
     background = [asyncio.create_task(_keep_running(name, worker.run)) for name, worker in workers.items()]
+    outbox = asyncio.create_task(_keep_running("outbox", state.outbox_worker.run))
     try:
         yield
     finally:
         app.state.feed.close()
         for worker in workers.values():
             worker.stop()
-        await _ended(background)
+        await _ended(background, STOP_WITHIN_S)
+        # The last, so that what the others have just written goes out too.
+        state.outbox_worker.stop()
+        await _ended([outbox], FINISH_WITHIN_S + STOP_WITHIN_S)
+        await _say_what_is_left(state)
         app.state.mailer.stop()
         await app.state.http.aclose()
         await app.state.service_http.aclose()
         await app.state.database.close()
 
 
-async def _ended(background: list[asyncio.Task[None]]) -> None:
+async def _say_what_is_left(state: State) -> None:
+    """Whoever stops the service for good, to move it or to put it back, has to know what nobody has been told yet."""
+    try:
+        async with state.database.reading() as session:
+            lag = await outbox_lag(session, state.clock.utc())
+    except Exception:
+        log.exception("the service stops; what is left in the outbox could not be counted")
+    else:
+        log.info("the service stops", notices_left=sum(lag.waiting.values()) + lag.not_routed)
+
+
+async def _ended(background: list[asyncio.Task[None]], within_s: float) -> None:
     """What runs in the background may finish its transaction, and is cut off only if that takes long.
 
     A transaction that is cut off keeps SQLite's write lock until its cursor is collected, and so holds up the others.
     """
-    await asyncio.wait(background, timeout=STOP_WITHIN_S)
+    await asyncio.wait(background, timeout=within_s)
     for task in background:
         task.cancel()
     await asyncio.gather(*background, return_exceptions=True)

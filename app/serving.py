@@ -1,4 +1,5 @@
-"""Listens and serves until told to stop; then lets go of open event streams at once."""
+"""Listens and serves until told to stop; then lets go of open event streams at once, and of the rest in order:
+requests, what runs in the background, the outbox (`app.main`)."""
 
 import asyncio
 import errno

@@ -22,6 +22,8 @@ LOOK_EVERY_S: Final = 1.0
 GATHER_S: Final = 0.1
 """What comes within this time is routed and noted down together."""
 LONGEST_REST_S: Final = 0.5
+FINISH_WITHIN_S: Final = 3.0
+"""After that the service ends, and what has not gone out does at its next start."""
 
 Ended = Mapping["asyncio.Task[NotSent | None]", Due]
 
@@ -46,7 +48,7 @@ class OutboxWorker:
         self._bell.set()
 
     def stop(self) -> None:
-        """End `run` after what it is doing."""
+        """End `run` when everything that is due has gone out, or after FINISH_WITHIN_S."""
         self._stopping = True
         self.wake()
 
@@ -87,9 +89,16 @@ class OutboxWorker:
                 await self._bell.wait()
 
     async def _finish(self) -> None:
-        if self._under_way:
-            await asyncio.wait(self._under_way)
-            await self._write_down(self._ended(), has_new=False)
+        """What is due now still goes out, as far as the time goes; what hangs by then is cut off."""
+        clock = asyncio.get_running_loop().time
+        ends_s = clock() + FINISH_WITHIN_S
+        while (left_s := ends_s - clock()) > 0 and await self.has_work():
+            if not await self.work_once():
+                if not self._under_way:
+                    break  # of a channel that there is no more
+                await asyncio.wait(self._under_way, timeout=left_s, return_when=asyncio.FIRST_COMPLETED)
+        if ended := self._ended():
+            await self._write_down(ended, has_new=False)
 
     def _ended(self) -> Ended:
         return {task: what for task, what in self._under_way.items() if task.done()}
