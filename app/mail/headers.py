@@ -15,11 +15,19 @@ KEPT: Final = 256
 class RememberingPolicy(EmailPolicy):
     """Mails share header objects, which nothing changes: whoever sets a header anew puts another in its place."""
 
+    def header_max_count(self, name: str) -> int | None:
+        return _max_count(name)
+
     def header_store_parse(self, name: str, value: Any) -> tuple[str, Any]:
         return _read(name, value)
 
     def fold_binary(self, name: str, value: Any) -> bytes:
         return _folded(name, value)
+
+
+@lru_cache(KEPT)
+def _max_count(name: str) -> int | None:
+    return BY_THE_BOOK.header_max_count(name)
 
 
 @lru_cache(KEPT)

@@ -55,8 +55,7 @@ class Spool:
         unfinished = f"{path}.tmp"
         descriptor = self._open(unfinished)
         try:
-            with os.fdopen(descriptor, "wb", closefd=False) as file:
-                file.write(contents)
+            _write(descriptor, contents)
             _begin_to_sync(descriptor)
         except BaseException:
             os.close(descriptor)
@@ -69,6 +68,12 @@ class Spool:
         except FileNotFoundError:  # the first mail of all
             self.folder.mkdir(mode=0o700, parents=True, exist_ok=True)
             return os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
+
+
+def _write(descriptor: int, contents: bytes) -> None:
+    written = 0
+    while written < len(contents):
+        written += os.write(descriptor, contents[written:])
 
 
 def _begin_to_sync(descriptor: int) -> None:
