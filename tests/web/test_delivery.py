@@ -282,6 +282,29 @@ async def test_a_recipient_without_account_takes_the_letter_by_the_link_in_the_m
     await expect(standing).to_have_text("Delivered")
 
 
+async def test_a_delegate_sees_by_the_link_in_their_mail_where_it_is_and_their_code_and_no_more(demonstration, visit):
+    ada = await visit("ada.king", at=demonstration.service)
+    porter = await visit("grace.hill", on="phone", at=demonstration.service, signed_in=False)
+    order_id = await ada.order("bob.martin@campus.example")
+    await ada.name_delegate(order_id, porter.email)
+    await demonstration.is_given_a_mission()
+    await demonstration.reports(Step.ARRIVED, StopAction.LOAD)
+    await porter.page.goto(demonstration.service.link_mailed_to(porter.email))
+    standing = porter.page.get_by_role("heading", level=1)
+    await expect(standing).to_have_text(f"{demonstration.title} is waiting at Post 1")
+    code = porter.page.get_by_role("region", name="Your code to load the robot")
+    assert await code.get_by_role("img").evaluate(IS_DRAWN)
+    await expect(porter.page.get_by_text("Ada King")).to_be_visible()
+    await expect(porter.page.get_by_text("ada.king@")).to_have_count(0)
+    await expect(porter.page.get_by_role("heading", name="So far, and next")).to_have_count(0)
+    await porter.assert_accessible()
+    await code.get_by_role("button", name=re.compile("^Without the camera")).click()
+    await expect(code.get_by_text("The robot has been asked.")).to_be_visible()
+    await demonstration.hands_over_as_asked(StopAction.LOAD)
+    await expect(standing).to_have_text("The letter is on its way to Post 4")
+    await expect(code).to_be_hidden()
+
+
 async def test_a_link_that_opens_nothing_says_so(visit):
     guest = await visit("grace.hill", on="phone", signed_in=False)
     guest.refusals_expected.add("/api/v1/link/order")

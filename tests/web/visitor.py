@@ -99,3 +99,10 @@ class Visitor:
         answer = await self.context.request.post("/api/v1/orders", data=body, headers=headers)
         assert answer.ok, await answer.text()
         return str((await answer.json())["id"])
+
+    async def name_delegate(self, order_id: str, email: str) -> None:
+        """Somebody who hands over instead; without the pages too."""
+        headers = {"Sec-Fetch-Site": "same-origin"}
+        wish = {"name": "The porter", "email": email}
+        answer = await self.context.request.post(f"/api/v1/orders/{order_id}/delegates", data=wish, headers=headers)
+        assert answer.ok, await answer.text()
