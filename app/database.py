@@ -26,7 +26,6 @@ PRAGMAS = ("journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON", f"busy_tim
 INSERTS: Mapping[str, Any] = {"sqlite": sqlite.insert, "postgresql": postgresql.insert}
 BEGIN_DURABLE = ("PRAGMA synchronous=FULL", "BEGIN IMMEDIATE")
 BEGIN_FLEETING = ("PRAGMA synchronous=NORMAL", "BEGIN IMMEDIATE")
-BEGIN_READING: Mapping[str, tuple[str, ...]] = {"sqlite": ("BEGIN",), "postgresql": ()}
 ONE_WRITER = f"SELECT pg_advisory_xact_lock({0x434D_0001})"
 """PostgreSQL's writers take turns as SQLite's do, with a lock that is held to the end of the transaction: whoever
 decides by what it has read decides by what is true, so that no transaction has to be repeated because of another one,
@@ -48,10 +47,10 @@ class Database:
         self.writing = self.engine.execution_options(begin=BEGIN_DURABLE)
         if self.engine.dialect.name == "sqlite":
             event.listen(self.engine.sync_engine, "connect", _prepare_sqlite)
-            event.listen(self.engine.sync_engine, "begin", _begin)
+            event.listen(self.engine.sync_engine, "begin", _begin_sqlite)
             fleeting = self.engine.execution_options(begin=BEGIN_FLEETING)
         else:
-            event.listen(self.engine.sync_engine, "begin", _begin)
+            event.listen(self.engine.sync_engine, "begin", _begin_postgresql)
             self.writing = self.engine.execution_options(begin=(ONE_WRITER,))
             fleeting = self.engine.execution_options(begin=(ONE_WRITER, "SET LOCAL synchronous_commit TO OFF"))
             self.engine = self.engine.execution_options(isolation_level="REPEATABLE READ", postgresql_readonly=True)
@@ -157,7 +156,7 @@ def _json_text(value: Any) -> str:
 
 
 def _prepare_sqlite(connection: Any, record: Any) -> None:
-    # The driver must not begin transactions of its own: `_begin` says which kind is wanted.
+    # The driver must not begin transactions of its own: `_begin_sqlite` says which kind is wanted.
     connection.isolation_level = None
     cursor = connection.cursor()
     try:
@@ -177,8 +176,15 @@ def _heed_foreign_keys(connection: Connection, wanted: str) -> None:
         cursor.close()
 
 
-def _begin(connection: Connection) -> None:
-    for statement in connection.get_execution_options().get("begin", BEGIN_READING[connection.dialect.name]):
+def _begin_sqlite(connection: Connection) -> None:
+    # Past SQLAlchemy, which takes longer over these words than SQLite does.
+    driver: sqlite_driver.Connection = connection.connection.driver_connection  # type: ignore[assignment]
+    for statement in connection.get_execution_options().get("begin", ("BEGIN",)):
+        driver.remember(statement)
+
+
+def _begin_postgresql(connection: Connection) -> None:
+    for statement in connection.get_execution_options().get("begin", ()):
         connection.exec_driver_sql(statement)
 
 
