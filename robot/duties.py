@@ -245,7 +245,8 @@ class Duties:
         if mission is None or mission.id != mission_id:
             return
         with self._store.transaction():
-            if self.memory.first_time(mission.id, Step.DONE):
+            # Once for each update: one that came after the mission was done makes it a mission again.
+            if self.memory.first_time(mission.id, f"{Step.DONE}:{mission.update}"):
                 self._tell(self._progress(Step.DONE, mission, None, post))
             self.memory.drop_mission()
             if is_own(mission):

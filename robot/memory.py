@@ -85,7 +85,11 @@ class Memory:
 
     def next_stop(self) -> int:
         """Which stop of the mission comes next: 0 is the first, `len(stops)` means that all are done."""
-        return self._read("next_stop", _NUMBER, 0)
+        return _next_undone(self.mission(), self._read("next_stop", _NUMBER, 0), self.done())
+
+    def done(self) -> frozenset[str]:
+        """The stops that were done before the last update; it may have put new ones before them."""
+        return self._read("done", _NAMES, frozenset())
 
     def mission_held(self) -> MissionHeld | None:
         """The mission as `hello` and `snapshot` tell it."""
@@ -106,7 +110,11 @@ class Memory:
                 raise refusal
             if held is not None and held.id == mission.id and mission.update <= held.update:
                 return False
-            self._write("next_stop", _NUMBER, next_stop_after(held, self.next_stop(), mission))
+            done: frozenset[str] = frozenset()
+            if held is not None and held.id == mission.id:
+                done = self.done() | {stop.id for stop in held.stops[: self.next_stop()]}
+            self._write("done", _NAMES, done)
+            self._write("next_stop", _NUMBER, 0)
             self._write("mission", _MISSION, mission)
             database.execute("DELETE FROM reported WHERE mission_id != ?", (mission.id,))
             return True
@@ -128,6 +136,7 @@ class Memory:
         with self._store.transaction():
             self._write("mission", _MISSION, None)
             self._write("next_stop", _NUMBER, 0)
+            self._write("done", _NAMES, frozenset())
             self._write("cancelled", _NAMES, frozenset())
 
     def first_time(self, mission_id: str, key: str) -> bool:
@@ -337,13 +346,12 @@ class Memory:
             database.execute("INSERT OR REPLACE INTO facts (name, value) VALUES (?, ?)", (name, text))
 
 
-def next_stop_after(held: Mission | None, next_stop: int, update: Mission) -> int:
-    """Where an updated mission is taken up: at its first stop that was not done under the mission held before."""
-    if held is None or held.id != update.id:
-        return 0
-    done = {stop.id for stop in held.stops[:next_stop]}
-    undone = [number for number, stop in enumerate(update.stops) if stop.id not in done]
-    return undone[0] if undone else len(update.stops)
+def _next_undone(mission: Mission | None, number: int, done: frozenset[str]) -> int:
+    """The first stop from this number on that was not done under an earlier update."""
+    stops = mission.stops if mission else ()
+    while number < len(stops) and stops[number].id in done:
+        number += 1
+    return number
 
 
 def conflict(held: Mission | None, offered: Mission) -> MissionConflict | None:

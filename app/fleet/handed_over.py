@@ -14,6 +14,8 @@ from app.fleet.receipts import judged
 from app.fleet.reports import Report
 from app.orders.codes import Holder, codes_of, delegates_of
 from app.orders.errors import TransitionRefused
+from app.orders.stops import stops_of_order
+from app.orders.transitions import TURNED_BACK
 from app.tables import Handover, MissionRow, Order, OrderState, StopRow
 from protocol.parts import Purpose
 from protocol.to_server import HandoverReceipt
@@ -46,7 +48,15 @@ async def follow_receipt(report: Report, receipt: HandoverReceipt) -> None:
     stop.done_at = stop.done_at or receipt.happened_at
     report.session.add(handover)
     await _move(report, receipt)
+    await _drop_the_rest(report, receipt)
     await end_if_nothing_is_left(report, await report.session.get_one(MissionRow, stop.mission_id))
+
+
+async def _drop_the_rest(report: Report, receipt: HandoverReceipt) -> None:
+    """Mail that is out has nowhere to go any more, whatever was wished of it while the robot could not be told."""
+    if receipt.purpose != Purpose.LOAD:
+        for stop in await stops_of_order(report.session, receipt.order_id, report.robot):
+            stop.dropped_at = report.now
 
 
 async def _check_chain(report: Report, receipt: HandoverReceipt) -> None:
@@ -97,6 +107,8 @@ async def _states(report: Report, order: Order, receipt: HandoverReceipt) -> tup
     purpose = Purpose(receipt.purpose)
     if purpose is Purpose.LOAD and order.state is OrderState.QUEUED:
         return (OrderState.CARRYING,)
+    if purpose is Purpose.RECEIVE and (order.state_before_attention or order.state) in TURNED_BACK:
+        return (OrderState.DELIVERED,)  # tried once more, by a robot that was told of it before it gave up
     if purpose is not Purpose.RETURN:
         return HANDED_OVER[purpose]
     return (*HANDED_OVER[purpose], await _taken_back(report, order, receipt))

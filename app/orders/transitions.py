@@ -2,7 +2,7 @@
 
 queued → assigned → to_sender → at_sender → carrying → at_recipient → delivered
    │                               │            └───────────┴→ returning → at_return → returned | held | delivered
-   └→ expired                      └→ expired
+   └→ expired                      └→ expired                            └→ delivered (taken after all)
 queued | assigned | to_sender | at_sender → cancelled
 assigned | to_sender | at_sender → queued (the robot was told to let go)
 a fault → attention → the state it left
@@ -45,7 +45,7 @@ TRANSITIONS: Final[Mapping[OrderState, Mapping[OrderState, set[By]]]] = {
     S.AT_SENDER: {S.CARRYING: {ROBOT}, S.EXPIRED: {ROBOT, TIMER}, **LET_GO, **FAULT},
     S.CARRYING: {S.AT_RECIPIENT: {ROBOT}, S.RETURNING: {ROBOT, DISPATCHER}, **FAULT},
     S.AT_RECIPIENT: {S.DELIVERED: {ROBOT}, S.RETURNING: {ROBOT, DISPATCHER, TIMER}, **FAULT},
-    S.RETURNING: {S.AT_RETURN: {ROBOT}, **FAULT},
+    S.RETURNING: {S.AT_RETURN: {ROBOT}, S.DELIVERED: {ROBOT}, **FAULT},
     # On the way back the recipient's code opens too: what they have taken is delivered.
     S.AT_RETURN: {S.RETURNED: {ROBOT}, S.HELD: {ROBOT, DISPATCHER}, S.DELIVERED: {ROBOT}, **FAULT},
     # Out of attention also leads back to the state that was left; which of these, depends on it (see `is_allowed`).

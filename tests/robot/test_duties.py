@@ -75,6 +75,14 @@ def test_a_mission_is_accepted_once_however_often_it_comes(desk: Desk) -> None:
     assert desk.duties.held.stop == LOAD
 
 
+def test_a_mission_that_goes_on_by_an_update_after_its_end_ends_once_more(desk: Desk) -> None:
+    for update in (1, 2):
+        desk.hears(LETTER.model_copy(update={"update": update}))
+        for _ in range(2):
+            desk.duties.finish_mission("m1", "post4")
+    assert [(one["step"], one["update"]) for one in desk.told() if one["step"] == "done"] == [("done", 1), ("done", 2)]
+
+
 def test_each_step_of_a_stop_is_told_once_and_each_post_passed_once(desk: Desk) -> None:
     desk.hears(LETTER)
     for _ in range(2):

@@ -91,6 +91,21 @@ def test_an_update_keeps_done_what_was_done(store: Store) -> None:
     assert memory.next_stop() == 0
 
 
+def test_what_was_given_up_is_not_begun_again_though_an_update_puts_new_stops_before_it(store: Store) -> None:
+    """The service did not know of it yet when it sent the robot to another sender first."""
+    memory = Memory(store)
+    memory.hold(MISSION)
+    memory.pass_stop("s2")
+    another = Stop(id="s4", post="post2", action=StopAction.LOAD, order_id="o2")
+    for update in (2, 3):
+        memory.hold(Mission(id="m1", update=update, stops=(another, RECEIVE, PARK)))
+        assert memory.next_stop() == 0
+    memory.pass_stop("s4")
+    assert memory.next_stop() == 2
+    memory.hold(Mission(id="m2", update=1, stops=(RECEIVE,)))
+    assert memory.next_stop() == 0
+
+
 def test_a_newer_code_takes_the_place_of_the_older_and_used_ones_are_forgotten(store: Store) -> None:
     memory = Memory(store)
     memory.keep_verifiers(Verifiers(verifiers=(a_verifier(Purpose.LOAD, "a"),)), AT)

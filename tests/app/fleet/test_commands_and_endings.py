@@ -128,6 +128,24 @@ async def test_mail_that_is_called_back_turns_round_when_the_robot_says_so(
     assert (await service.states(order_id))[-2:] == ["at_return", "returned"]
 
 
+async def test_mail_that_was_called_back_too_late_is_delivered_and_the_robot_free(
+    service: Service, robot: PlayedRobot
+) -> None:
+    """It gave up, and before it heard that the mail was to come back, somebody took it after all."""
+    order_id, receive = await carrying(service, robot)
+    async with robot.connected(service.url, robot.token):
+        await robot.greet()
+        await service.cancel(order_id)
+        await robot.mission()
+        await robot.report(receive.mission, Step.ARRIVED, receive.stop)
+        await robot.report(receive.mission, Step.GAVE_UP, receive.stop, reason="no_one_came")
+        await service.reaches(order_id, "returning")
+        await robot.say(robot.receipt(receive.stop))
+        await service.reaches(order_id, "delivered")
+        another = await service.order("post2", "post3")
+        assert (await robot.mission()).stops[0].order_id == another
+
+
 @dataclass
 class Ahead:
     mission: Mission

@@ -67,6 +67,21 @@ class PlayedRobot:
         self.taken_up_to = 0
         self._done = asyncio.Event()
 
+    def still_to_do(self) -> set[str]:
+        """The stops before it at which there is something to load or to give."""
+        held = self.duties.held
+        ahead = held.mission.stops[held.next_stop :] if held.mission else ()
+        sensible, aboard, over = set(), set(held.cargo), self.memory.done()
+        for stop in ahead:
+            if (
+                stop.id not in over
+                and stop.order_id not in held.cancelled
+                and (stop.order_id in aboard) != (stop.action is StopAction.LOAD)
+            ):
+                sensible.add(stop.id)
+                aboard ^= {stop.order_id}
+        return sensible
+
     # The link as the duties see it.
 
     def incoming(self) -> list[Incoming]:

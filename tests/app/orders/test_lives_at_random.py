@@ -5,6 +5,7 @@ import asyncio
 import os
 import tempfile
 from collections import Counter
+from datetime import timedelta
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -17,19 +18,58 @@ from app.administration import migrate
 from app.errors import ServiceError
 from app.orders.custody import custody_of
 from app.orders.telling import ONCE, TOLD
-from app.orders.transitions import ENDED, MAIL_ABOARD, ROBOT_COMING, By, is_allowed
+from app.orders.transitions import MAIL_ABOARD, ROBOT_COMING, By, is_allowed
 from app.settings import Settings
-from app.tables import Handover, MissionRow, Notice, Order, OrderEvent, Person, Priority, StopRow
+from app.tables import Alarm, Handover, MissionRow, Notice, Order, OrderEvent, Person, Priority, StopRow
 from app.tables import OrderState as S
 from tests.app.orders.lives import World
 
 POSTS = ("post1", "post2", "post3", "post4", "post5")
 ROBOTS = st.sampled_from(("r1", "r2"))
 LUCK = st.sampled_from(("sets out", "arrives", "no way", "nobody comes", "sender", "sender", "recipient", "mailroom"))
-PEOPLE = st.sampled_from(("sender", "recipient", "dispatcher"))
-ORDER = st.integers(0, 2)
+WAY = {
+    "a robot is told": (),
+    "it sets out": ("sets out",),
+    "it waits for the sender": ("arrives",),
+    "the sender does not come": ("nobody comes",),
+    "the mail is loaded": ("sender",),
+    "it sets out with it": ("sender", "sets out"),
+    "it waits for the recipient": ("sender", "arrives"),
+    "the recipient does not come": ("sender", "nobody comes"),
+    "and it goes back": ("sender", "nobody comes", "sets out", "arrives"),
+}
+SO_FAR = st.sampled_from((None, *WAY))
+"""Most of what can go wrong begins in the middle of a life."""
+WISHES = (
+    *(("sender", what) for what in ("cancel", "recall", "extend_wait")),
+    *(("recipient", what) for what in ("not_now", "extend_wait", "cancel")),
+    *(("dispatcher", what) for what in ("cancel", "recall", "extend_wait")),
+)
+ORDERS = 5
+ORDER = st.integers(0, ORDERS - 1)
+ENDED = frozenset({S.DELIVERED, S.RETURNED, S.HELD, S.EXPIRED, S.CANCELLED})
+"""Said here once more: a table that lets an order out of its end would call it no end."""
+SURELY_TOLD = {
+    S.QUEUED: {("sender", "accepted")},
+    S.AT_SENDER: {("sender", "robot_here")},
+    S.CARRYING: {("recipient", "on_its_way")},
+    S.AT_RECIPIENT: {("recipient", "robot_here_for_you")},
+    S.DELIVERED: {("sender", "delivered"), ("recipient", "delivered")},
+    S.RETURNED: {("sender", "returned"), ("recipient", "returned")},
+    S.HELD: {("sender", "held"), ("recipient", "held")},
+    S.CANCELLED: {("sender", "cancelled")},
+    S.EXPIRED: {("sender", "expired")},
+    S.ATTENTION: {("sender", "attention")},
+}
+SEEN_BY_PEOPLE = ("state", "robot", "priority", "wait_until", "cancel_requested_at", "return_requested_at")
 TELLS = {one.kind: {state for state, told in TOLD.items() if one in told} for told in TOLD.values() for one in told}
 ROUNDS_TO_THE_END = 25
+
+
+def is_left(stop: StopRow) -> bool:
+    return stop.done_at is None and stop.gave_up_at is None and stop.dropped_at is None
+
+
 folder = tempfile.TemporaryDirectory(prefix="lives-")
 
 
@@ -42,7 +82,7 @@ def template() -> Path:
 
 
 class LivesOfOrders(RuleBasedStateMachine):
-    """Three orders at most, two robots, one of each kind of person."""
+    """A few orders, two robots, one of each kind of person."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -50,41 +90,59 @@ class LivesOfOrders(RuleBasedStateMachine):
         self.world = World(template(), Path(tempfile.mkdtemp(dir=folder.name)) / "data")
         self.ids: list[str] = []
         self.ended: dict[str, S] = {}
+        self.seen: dict[str, tuple[int, list[Any]]] = {}
 
     def run(self, work: Any) -> Any:
         return self.runner.run(work)
 
     def order(self, number: int) -> str:
-        return self.ids[number % len(self.ids)]
+        """The newest first: those before have mostly ended."""
+        return self.ids[-1 - number % len(self.ids)]
 
-    @initialize(from_post=st.sampled_from(POSTS), step=st.integers(1, 4))
-    def begin(self, from_post: str, step: int) -> None:
+    @initialize(from_post=st.sampled_from(POSTS), step=st.integers(1, 4), so_far=SO_FAR, alone=st.booleans())
+    def begin(self, from_post: str, step: int, so_far: str | None, alone: bool) -> None:
         self.run(self.world.begin())
-        self.somebody_orders(from_post, step)
+        self.run(self.world.set_online("r2", not alone))
+        self.somebody_orders(from_post, step, so_far)
 
     # What people do.
 
-    @precondition(lambda self: len(self.ids) < 3)
-    @rule(from_post=st.sampled_from(POSTS), step=st.integers(1, 4))
-    def somebody_orders(self, from_post: str, step: int) -> None:
+    @precondition(lambda self: len(self.ids) < ORDERS)
+    @rule(from_post=st.sampled_from(POSTS), step=st.integers(1, 4), so_far=SO_FAR)
+    def somebody_orders(self, from_post: str, step: int, so_far: str | None) -> None:
         to_post = POSTS[(POSTS.index(from_post) + step) % len(POSTS)]
         self.ids.append(self.run(self.world.place(from_post, to_post)))
+        self.an_order_comes(0, so_far)
 
-    @rule(number=ORDER, who=PEOPLE, what=st.sampled_from(("cancel", "recall", "not_now", "extend_wait")))
-    def somebody_asks(self, number: int, who: str, what: str) -> None:
+    @precondition(lambda self: len(self.ids) < ORDERS)
+    @rule(number=ORDER)
+    def somebody_orders_the_same_way(self, number: int) -> None:
+        """Which goes along with what is on its way already, if nobody else is free."""
+        (same,) = self.run(self.world.rows(Order, id=self.order(number)))
+        self.ids.append(self.run(self.world.place(same.from_post, same.to_post)))
+        self.run(self.world.dispatch())
+
+    @rule(number=ORDER, wish=st.sampled_from(WISHES), so_far=SO_FAR)
+    def somebody_asks(self, number: int, wish: tuple[str, str], so_far: str | None) -> None:
+        self.an_order_comes(number, so_far)
+        who, what = wish
         arguments = {"cancel": ("",), "extend_wait": (None,)}.get(what, ())
         self.tries(getattr(self.world.orders, what), who, self.order(number), *arguments)
 
     @rule(number=ORDER, to=st.sampled_from(("resume", "returning", "queued", "cancelled")))
     def a_dispatcher_decides(self, number: int, to: str) -> None:
-        self.tries(self.world.orders.resolve, "dispatcher", self.order(number), to, "decided")
+        waiting = [one.id for one in self.run(self.world.rows(Order, state=S.ATTENTION))]
+        order_id = sorted(waiting)[number % len(waiting)] if waiting else self.order(number)
+        self.tries(self.world.orders.resolve, "dispatcher", order_id, to, "decided")
 
-    @rule(number=ORDER)
-    def a_dispatcher_stops_an_order(self, number: int) -> None:
+    @rule(number=ORDER, so_far=SO_FAR)
+    def a_dispatcher_stops_an_order(self, number: int, so_far: str | None) -> None:
+        self.an_order_comes(number, so_far)
         self.tries(self.world.orders.stop_for_attention, "dispatcher", self.order(number), "It does not move.")
 
-    @rule(number=ORDER, robot=ROBOTS | st.none())
-    def a_dispatcher_reassigns(self, number: int, robot: str | None) -> None:
+    @rule(number=ORDER, robot=ROBOTS | st.none(), so_far=SO_FAR)
+    def a_dispatcher_reassigns(self, number: int, robot: str | None, so_far: str | None) -> None:
+        self.an_order_comes(number, so_far)
         self.tries(self.world.orders.reassign, "dispatcher", self.order(number), robot)
 
     @rule(number=ORDER, priority=st.sampled_from(Priority))
@@ -95,15 +153,13 @@ class LivesOfOrders(RuleBasedStateMachine):
     def a_dispatcher_takes_mail_out_by_hand(self, number: int) -> None:
         """Only what is in a robot can be taken out of it."""
         order_id = self.order(number)
-        if self.world.where[order_id] not in self.world.robots:
+        state = self.run(self.world.rows(Order, id=order_id))[0].state
+        if self.world.where[order_id] not in self.world.robots or state not in {S.ATTENTION, S.AT_RETURN}:
             return
-        orders, state = self.world.orders, self.run(self.world.rows(Order, id=order_id))[0].state
-        if state in MAIL_ABOARD - {S.AT_RETURN}:
-            self.tries(orders.stop_for_attention, "dispatcher", order_id, "It stands in the way.")
         if state is S.AT_RETURN:
-            done = self.tries(orders.hold, "dispatcher", order_id, "fetched")
+            done = self.tries(self.world.orders.hold, "dispatcher", order_id, "fetched")
         else:
-            done = self.tries(orders.resolve, "dispatcher", order_id, "held", "fetched")
+            done = self.tries(self.world.orders.resolve, "dispatcher", order_id, "held", "fetched")
         if done:
             self.world.where[order_id] = "mailroom"
 
@@ -124,7 +180,7 @@ class LivesOfOrders(RuleBasedStateMachine):
         return True
 
     async def everything(self) -> dict[str, list[str]]:
-        return await self.world.everything(Order, OrderEvent, Notice, Handover, MissionRow, StopRow, Person)
+        return await self.world.everything(Order, OrderEvent, Notice, Handover, MissionRow, StopRow, Person, Alarm)
 
     # What time and dispatch do.
 
@@ -132,10 +188,14 @@ class LivesOfOrders(RuleBasedStateMachine):
     def dispatch_looks(self) -> None:
         self.run(self.world.dispatch())
 
-    @rule(minutes=st.sampled_from((1, 20, 600)))
-    def time_passes(self, minutes: int) -> None:
+    @rule(minutes=st.sampled_from((1, 20, 600, 1500)), so_far=SO_FAR)
+    def time_passes(self, minutes: int, so_far: str | None) -> None:
+        self.an_order_comes(0, so_far)
         self.world.clock.advance(minutes * 60.0)
         self.run(self.world.timer.tick())
+        limit = timedelta(seconds=self.world.settings.queue_limit_s)
+        waits_since = [order.created_at for order in self.run(self.world.rows(Order, state=S.QUEUED))]
+        assert all(self.world.clock.utc() - at <= limit for at in waits_since), "nothing waits for ever"
 
     @rule()
     def the_service_is_restarted(self) -> None:
@@ -147,26 +207,28 @@ class LivesOfOrders(RuleBasedStateMachine):
     def a_robot_acts(self, robot: str, luck: str) -> None:
         self.world.act(robot, luck)
 
-    @rule(robot=ROBOTS, luck=st.lists(LUCK, min_size=1, max_size=4))
-    def a_robot_goes_on(self, robot: str, luck: list[str]) -> None:
-        """Dispatched to, told, doing and telling, as on a good day."""
+    @rule(robot=ROBOTS, luck=st.lists(LUCK, min_size=1, max_size=4), hears=st.booleans())
+    def a_robot_goes_on(self, robot: str, luck: list[str], hears: bool) -> None:
+        """Dispatched to, told (or not so soon), doing and telling, as on a good day."""
         self.run(self.world.dispatch())
         if self.world.robots[robot].online:
-            self.run(self.world.hear(robot))
+            if hears:
+                self.run(self.world.hear(robot))
             for one in luck:
                 self.world.act(robot, one)
             self.run(self.world.speak(robot))
 
-    @rule(number=ORDER, stops_at=st.sampled_from(("sender", "sets out", "arrives", "nobody comes")))
-    def mail_is_loaded(self, number: int, stops_at: str) -> None:
-        """Most of what can go wrong begins with mail that is aboard."""
-        order_id = self.order(number)
+    @rule(number=ORDER, so_far=SO_FAR)
+    def an_order_comes(self, number: int, so_far: str | None) -> None:
+        """To this point, if it waits still and there is a network."""
+        if so_far is None or self.world.where[self.order(number)] != "sender":
+            return
         self.run(self.world.dispatch())
         for name, robot in self.world.robots.items():
-            if robot.online and self.world.where[order_id] == "sender":
+            if robot.online:
                 self.run(self.world.hear(name))
-                self.world.act(name, "sender")
-                self.world.act(name, stops_at)
+                for luck in WAY[so_far]:
+                    self.world.act(name, luck)
                 self.run(self.world.speak(name))
 
     @rule(robot=ROBOTS, count=st.integers(1, 4))
@@ -220,9 +282,12 @@ class LivesOfOrders(RuleBasedStateMachine):
             theirs = sorted((one for one in events if one.order_id == order.id), key=lambda one: one.seq)
             passed_on = sorted((one for one in handovers if one.order_id == order.id), key=lambda one: one.id)
             self.every_change_is_explained(order, theirs)
+            self.nothing_changes_in_silence(order)
             self.terminal_is_terminal(order, theirs)
             self.exactly_one_holds_the_mail(order, passed_on)
-            self.nobody_is_told_twice(theirs, [one for one in notices if one.order_id == order.id])
+            told = [(self.who_is(one.person_id), str(one.kind)) for one in notices if one.order_id == order.id]
+            self.everybody_is_told_once(theirs, Counter(told))
+        await self.robots_do_what_the_record_says(orders)
 
     def every_change_is_explained(self, order: Order, events: list[OrderEvent]) -> None:
         assert [one.seq for one in events] == list(range(1, order.version + 1)), "one event for each version"
@@ -232,11 +297,19 @@ class LivesOfOrders(RuleBasedStateMachine):
         before: S | None = None
         for last, one in pairwise(moves):
             assert is_allowed(last.state, one.state, By(one.by), before), (last.state, one.state, one.by)
+            if one.state in {S.EXPIRED, S.CANCELLED}:
+                assert (before or last.state) not in MAIL_ABOARD, "mail that is aboard has to go somewhere"
             before = last.state if one.state is S.ATTENTION else None
         for one in events:
             assert one.robot if one.by == By.ROBOT else one.person_id or one.by == By.TIMER or one.state is S.ASSIGNED
             if one.kind == "moved" and one.state in {S.ATTENTION, S.EXPIRED}:
                 assert one.reason
+
+    def nothing_changes_in_silence(self, order: Order) -> None:
+        now = (order.version, [getattr(order, name) for name in SEEN_BY_PEOPLE])
+        before = self.seen.get(order.id, now)
+        assert now == before or now[0] > before[0], "what people see has changed, and the timeline has not"
+        self.seen[order.id] = now
 
     def terminal_is_terminal(self, order: Order, events: list[OrderEvent]) -> None:
         if order.id in self.ended:
@@ -261,11 +334,29 @@ class LivesOfOrders(RuleBasedStateMachine):
         if all(robot.outbox.waiting() == 0 for robot in self.world.robots.values()):
             assert holder == self.world.where[order.id], "with everything told, the record is the truth"
 
-    def nobody_is_told_twice(self, events: list[OrderEvent], notices: list[Notice]) -> None:
+    def who_is(self, person_id: str) -> str:
+        return next(name for name, person in self.world.people.items() if person.id == person_id)
+
+    def everybody_is_told_once(self, events: list[OrderEvent], told: Counter[tuple[str, str]]) -> None:
+        """Once for each time that it happens, and after an order was stopped or queued again: once more at most."""
         moves = Counter(one.state for one in events if one.kind == "moved")
-        for (kind, _), count in Counter((one.kind, one.person_id) for one in notices).items():
-            if kind in TELLS:
-                assert count <= (1 if kind in ONCE else sum(moves[state] for state in TELLS[kind])), kind
+        rounds = moves[S.QUEUED] + moves[S.ATTENTION]
+        for (who, kind), count in told.items():
+            times = 1 if kind in ONCE else min(rounds, sum(moves[state] for state in TELLS.get(kind, moves)))
+            assert count <= times, (who, kind)
+        surely = {one for state in moves for one in SURELY_TOLD.get(state, ())}
+        assert surely <= set(told), surely - set(told)
+
+    async def robots_do_what_the_record_says(self, orders: list[Order]) -> None:
+        """Once both have said and heard everything: no robot goes where it is not sent, or is sent and does not go."""
+        missions, stops = await self.world.rows(MissionRow, state="active"), await self.world.rows(StopRow)
+        for robot in self.world.robots.values():
+            theirs = {one.id for one in missions if one.robot == robot.name}
+            left = {one.id for one in stops if one.mission_id in theirs and is_left(one)}
+            is_untold = any(one.told_update < one.update_number for one in missions if one.id in theirs)
+            waits = is_untold or robot.outbox.waiting() or any(one.let_go_by == robot.name for one in orders)
+            if not waits and not await self.world.unheard(robot):
+                assert robot.still_to_do() == left
 
     # And in the end.
 
