@@ -157,13 +157,19 @@ class Conversation:
             if isinstance(envelope.body, Ack) and envelope.ack <= self.acknowledged:
                 continue
             await self._room.acquire()
-            self._intake.hear(self, envelope)
+            had = self.acknowledged
+            self._count(envelope.ack)
+            self._intake.hear(self, envelope, had)
+
+    def _count(self, ack: int) -> None:
+        """At once: what the robot has need not be known to the disk before it is told more."""
+        if ack > self.acknowledged:
+            self.acknowledged = ack
+            if self._is_held_back:
+                self.wake()
 
     def taken(self, envelope: Envelope, problem: Error | None) -> None:
         self._room.release()
-        if envelope.ack > self.acknowledged:
-            self.acknowledged = envelope.ack
-            self._look_again = self._look_again or self._is_held_back
         if envelope.seq is not None:
             # Acknowledged after the commit: a crash in between must make the robot send it again.
             self._received_seq = max(self._received_seq, envelope.seq)

@@ -1,7 +1,9 @@
 """The rows that some messages will ask for, fetched together: one question per table instead of one per message."""
 
 from collections.abc import Sequence
+from typing import Final
 
+from sqlalchemy import bindparam
 from sqlmodel import SQLModel, col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
@@ -15,10 +17,17 @@ async def look_ahead(session: AsyncSession, messages: Sequence[Part]) -> Sequenc
     happened = [message.happened for message in messages if isinstance(message, Event)]
     if len(happened) < 2:  # one message asks for itself
         return []
-    missions = select(MissionRow).where(col(MissionRow.id).in_(_named(happened, "mission_id")))
-    stops = select(StopRow).where(col(StopRow.id).in_(_named(happened, "stop_id")))
-    return [*(await session.exec(missions)).all(), *(await session.exec(stops)).all()]
+    rows: list[SQLModel] = []
+    if mission_ids := _named(happened, "mission_id"):
+        rows += (await session.exec(_MISSIONS, params={"ids": mission_ids})).all()
+    if stop_ids := _named(happened, "stop_id"):
+        rows += (await session.exec(_STOPS, params={"ids": stop_ids})).all()
+    return rows
 
 
-def _named(happened: Sequence[Part], field: str) -> set[str]:
-    return {found for one in happened if (found := getattr(one, field, None))}
+_MISSIONS: Final = select(MissionRow).where(col(MissionRow.id).in_(bindparam("ids", expanding=True)))
+_STOPS: Final = select(StopRow).where(col(StopRow.id).in_(bindparam("ids", expanding=True)))
+
+
+def _named(happened: Sequence[Part], field: str) -> list[str]:
+    return list({found for one in happened if (found := getattr(one, field, None))})

@@ -47,7 +47,7 @@ async def write_down(session: AsyncSession, said: Sequence[Envelope], now: datet
     new = [envelope for envelope, verdict in zip(said, verdicts, strict=True) if verdict is True]
     if new:
         connection = await session.connection()
-        await connection.execute(insert(RobotMessage), [_row(envelope, now) for envelope in new])
+        await connection.execute(_WRITE_DOWN, [_row(envelope, now) for envelope in new])
         moved = [
             {"of": robot, "in_journal": journal, "up_to": seq}
             for (robot, journal), seq in received.items()
@@ -57,6 +57,10 @@ async def write_down(session: AsyncSession, said: Sequence[Envelope], now: datet
     return verdicts
 
 
+_WRITE_DOWN: Final = insert(RobotMessage)
+_RECEIVED: Final = select(col(RobotJournal.robot), col(RobotJournal.journal), col(RobotJournal.received_seq)).where(
+    col(RobotJournal.robot).in_(bindparam("robots", expanding=True))
+)
 _MOVE_ON: Final = (
     update(RobotJournal)
     .where(col(RobotJournal.robot) == bindparam("of"), col(RobotJournal.journal) == bindparam("in_journal"))
@@ -66,8 +70,7 @@ _MOVE_ON: Final = (
 
 async def _received(session: AsyncSession, robots: set[str]) -> dict[tuple[str, str], int]:
     """The highest number taken so far, by robot and journal."""
-    wanted = select(RobotJournal.robot, RobotJournal.journal, RobotJournal.received_seq)
-    rows = await session.exec(wanted.where(col(RobotJournal.robot).in_(robots)))
+    rows = await (await session.connection()).execute(_RECEIVED, {"robots": list(robots)})
     return {(robot, journal): seq for robot, journal, seq in rows.all()}
 
 

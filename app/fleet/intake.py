@@ -7,11 +7,12 @@ them costs the others nothing but time.
 
 import asyncio
 from collections import deque
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from datetime import datetime
 from typing import Any, Final, Protocol
 
-from sqlalchemy import update
+from sqlalchemy import bindparam, update
 from sqlalchemy.orm.attributes import set_committed_value
 from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
@@ -20,20 +21,25 @@ from app.database import savepoint
 from app.errors import ServiceError
 from app.fleet import inbox, outbox
 from app.fleet.alarms import raise_alarm
-from app.fleet.clocks import compare_again
+from app.fleet.clocks import compare_again, has_been_set
 from app.fleet.errors import FleetError, MessageGap
 from app.fleet.foresight import look_ahead
 from app.fleet.service import Fleet
-from app.fleet.tokens import still_good
+from app.fleet.tokens import Known, still_good
 from app.tables import RobotRow
-from protocol.both_ways import Error
+from protocol.both_ways import Ack, Error
 from protocol.envelope import Envelope
-from protocol.to_server import Snapshot, Why
+from protocol.to_server import Claim, Snapshot, Why
 
 GATHER_S: Final = 0.01
 """Real seconds for which the first message waits for others: a transaction costs more than what is in it."""
 AT_ONCE: Final = 200
 """Messages in one transaction, so that the first of them does not wait long for the last."""
+ACKNOWLEDGED_S: Final = 0.25
+"""Real seconds that acknowledgements may wait for something to be taken in with them: a crash until then has messages
+sent again that the robot knows already."""
+OF_THE_ROBOT: Final = (Snapshot, Why, Claim)
+"""What changes the row of the robot itself."""
 UNSEEN: Final = frozenset({"heard_at", "last_seq"})
 """What may change of a robot without anything to tell pages."""
 
@@ -64,6 +70,8 @@ class Said:
 
     speaker: Speaker
     envelope: Envelope
+    had: int
+    """What the robot had acknowledged before."""
     problem: Error | None = None
     failure: Exception | None = None
 
@@ -76,10 +84,21 @@ class Intake:
     _waiting: deque[Said] = field(default_factory=deque)
     _over: set[Speaker] = field(default_factory=set)
     _work: asyncio.Task[None] | None = None
+    _later: asyncio.TimerHandle | None = None
 
-    def hear(self, speaker: Speaker, envelope: Envelope) -> None:
-        """Take this message in, soon; the speaker is told when it is done."""
-        self._waiting.append(Said(speaker, envelope))
+    def hear(self, speaker: Speaker, envelope: Envelope, had: int | None = None) -> None:
+        """Take this message in, soon; the speaker is told when it is done. `had`: what it had acknowledged before, if
+        it counts this message's acknowledgement already."""
+        self._waiting.append(Said(speaker, envelope, speaker.acknowledged if had is None else had))
+        if not isinstance(envelope.body, Ack):
+            self._begin()
+        elif self._later is None:
+            self._later = asyncio.get_running_loop().call_later(ACKNOWLEDGED_S, self._begin)
+
+    def _begin(self) -> None:
+        if self._later is not None:
+            self._later.cancel()
+            self._later = None
         if self._work is None or self._work.done():
             self._work = asyncio.create_task(self._take_all())
 
@@ -104,7 +123,9 @@ class Intake:
     async def _in_one_transaction(self, said: Sequence[Said], careful: bool = False) -> None:
         for one in said:
             one.problem = one.failure = None
-        async with self.fleet.database.transaction() as session:
+        # What is not numbered would only be said again: a power cut may have it.
+        is_durable = any(one.envelope.seq is not None for one in said)
+        async with self.fleet.database.transaction(durable=is_durable) as session:
             await self._take_in(session, said, careful)
 
     async def _by_itself(self, theirs: Sequence[Said]) -> None:
@@ -131,9 +152,11 @@ class Intake:
 
     async def _take_in(self, session: AsyncSession, said: Sequence[Said], careful: bool) -> None:
         now = self.fleet.clock.utc()
-        said = await self._from_good_tokens(session, said)
-        robots = await _rows(session, {one.speaker.robot for one in said})
-        before = {name: _seen(robot) for name, robot in robots.items()}
+        good = await still_good(session, {one.speaker.token_prefix for one in said})
+        said = _from_good_tokens(said, good)
+        rows = await _rows(session, {one.speaker.robot for one in said if _is_of_its_row(one, good, now)})
+        robots: dict[str, RobotRow | Known] = {known.name: known for known in good.values()} | rows
+        before = {name: _seen(robot) for name, robot in rows.items()}
         await self._note_acknowledged(session, said)
         durable = [one for one in said if one.envelope.seq is not None]
         verdicts = await inbox.write_down(session, [one.envelope for one in durable], now)
@@ -144,30 +167,32 @@ class Intake:
         ahead = await look_ahead(session, [one.envelope.body for one in durable if id(one) in new])
         for one in said:
             if one.envelope.seq is None or id(one) in new:
-                await compare_again(session, robots[one.speaker.robot], one.envelope.at, now)
-                one.problem = await self._follow(session, robots[one.speaker.robot], one.envelope, careful)
-        await _heard(session, robots.values(), now)
-        for name, robot in robots.items():
-            self.fleet.announce(session, robot, is_seen=_seen(robot) != before[name])
+                robot = robots[one.speaker.robot]
+                if isinstance(robot, RobotRow):
+                    await compare_again(session, robot, one.envelope.at, now)
+                one.problem = await self._follow(session, robot, one.envelope, careful)
+        await _heard(session, robots, rows, now)
+        for name, row in rows.items():
+            self.fleet.announce(session, row, is_seen=_seen(row) != before[name])
+        self.fleet.have_spoken(session, robots.keys() - rows.keys())
         del ahead
 
-    async def _from_good_tokens(self, session: AsyncSession, said: Sequence[Said]) -> Sequence[Said]:
-        """With every message: what was stolen must not go on being heard once it is found out."""
-        good = await still_good(session, {one.speaker.token_prefix for one in said})
-        for one in said:
-            one.failure = None if one.speaker.token_prefix in good else TokenRevoked()
-        return [one for one in said if one.failure is None]
-
     async def _note_acknowledged(self, session: AsyncSession, said: Sequence[Said]) -> None:
-        news = {one.speaker.robot: one.envelope.ack for one in said if one.envelope.ack > one.speaker.acknowledged}
+        news: dict[str, tuple[int, int]] = {}
+        for one in said:
+            had, has = news.get(one.speaker.robot, (one.had, one.had))
+            if one.envelope.ack > has:
+                news[one.speaker.robot] = (had, one.envelope.ack)
         if news:
             await outbox.acknowledged_by(session, news, self.fleet.clock.utc())
 
-    async def _follow(self, session: AsyncSession, robot: RobotRow, envelope: Envelope, careful: bool) -> Error | None:
+    async def _follow(
+        self, session: AsyncSession, robot: RobotRow | Known, envelope: Envelope, careful: bool
+    ) -> Error | None:
         """Do what follows. What cannot be followed is written down all the same, or it would come again for ever:
         people get an alarm, the robot the returned error."""
         match envelope.body:
-            case Snapshot() | Why() as news:
+            case Snapshot() | Why() as news if isinstance(robot, RobotRow):
                 self.fleet.note(robot, news)
             case Error(code=code, message=message):
                 now = self.fleet.clock.utc()
@@ -178,7 +203,9 @@ class Intake:
                 return await self._follow_carefully(session, robot, envelope)
         return None
 
-    async def _follow_carefully(self, session: AsyncSession, robot: RobotRow, envelope: Envelope) -> Error | None:
+    async def _follow_carefully(
+        self, session: AsyncSession, robot: RobotRow | Known, envelope: Envelope
+    ) -> Error | None:
         try:
             async with savepoint(session):
                 await self.fleet.follow(session, robot, envelope.body)
@@ -196,20 +223,45 @@ def _by_speaker(said: Iterable[Said]) -> Iterable[Sequence[Said]]:
     return theirs.values()
 
 
+def _from_good_tokens(said: Sequence[Said], good: Mapping[str, Known]) -> Sequence[Said]:
+    """With every message: what was stolen must not go on being heard once it is found out."""
+    for one in said:
+        one.failure = None if one.speaker.token_prefix in good else TokenRevoked()
+    return [one for one in said if one.failure is None]
+
+
+def _is_of_its_row(one: Said, good: Mapping[str, Known], now: datetime) -> bool:
+    """Whether the message changes what is known of its robot; most tell only of missions and orders."""
+    off_s = (one.envelope.at - now).total_seconds()
+    return isinstance(one.envelope.body, OF_THE_ROBOT) or has_been_set(
+        good[one.speaker.token_prefix].clock_off_s, off_s
+    )
+
+
 async def _rows(session: AsyncSession, names: set[str]) -> dict[str, RobotRow]:
-    # In the order of their names: two transactions that lock the same rows never wait for each other.
-    wanted = select(RobotRow).where(col(RobotRow.name).in_(names)).order_by(col(RobotRow.name)).with_for_update()
-    return {row.name: row for row in (await session.exec(wanted)).all()}
+    if not names:
+        return {}
+    return {row.name: row for row in (await session.exec(_ROBOTS, params={"names": list(names)})).all()}
+
+
+# In the order of their names: two transactions that lock the same rows never wait for each other.
+_ROBOTS: Final = (
+    select(RobotRow)
+    .where(col(RobotRow.name).in_(bindparam("names", expanding=True)))
+    .order_by(col(RobotRow.name))
+    .with_for_update()
+)
+_HEARD: Final = update(RobotRow).where(col(RobotRow.name) == bindparam("of")).values(heard_at=bindparam("at"))
 
 
 def _seen(robot: RobotRow) -> dict[str, Any]:
     return {name: value for name, value in robot.__dict__.items() if name not in UNSEEN and name[0] != "_"}
 
 
-async def _heard(session: AsyncSession, robots: Iterable[RobotRow], now: Any) -> None:
+async def _heard(session: AsyncSession, names: Iterable[str], rows: Mapping[str, RobotRow], now: datetime) -> None:
     """One statement for all of them."""
-    rows = list(robots)
-    theirs = update(RobotRow).where(col(RobotRow.name).in_([row.name for row in rows]))
-    await (await session.connection()).execute(theirs.values(heard_at=now))
-    for row in rows:
+    heard = [{"of": name, "at": now} for name in sorted(names)]
+    if heard:
+        await (await session.connection()).execute(_HEARD, heard)
+    for row in rows.values():
         set_committed_value(row, "heard_at", now)

@@ -79,12 +79,24 @@ _PENDING: Final = (
 )
 
 
-async def acknowledged_by(session: AsyncSession, up_to: Mapping[str, int], now: datetime) -> None:
-    """These robots have stored everything up to these numbers."""
-    rows = [{"of": robot, "up_to": seq, "at": now} for robot, seq in up_to.items()]
-    await (await session.connection()).execute(_HAVE, rows)
+async def acknowledged_by(session: AsyncSession, news: Mapping[str, tuple[int, int]], now: datetime) -> None:
+    """These robots have stored everything up to the second number; what they had before ends with the first."""
+    few = {robot: range(had + 1, has + 1) for robot, (had, has) in news.items() if has - had <= FEW}
+    one_by_one = [{"of": robot, "one": seq, "at": now} for robot, numbers in few.items() for seq in numbers]
+    rest = [{"of": robot, "up_to": has, "at": now} for robot, (_, has) in news.items() if robot not in few]
+    connection = await session.connection()
+    if one_by_one:  # by their keys, which is quick
+        await connection.execute(_HAS, one_by_one)
+    if rest:
+        await connection.execute(_HAVE, rest)
 
 
+FEW: Final = 10
+_HAS: Final = (
+    update(MessageToRobot)
+    .where(col(MessageToRobot.robot) == bindparam("of"), col(MessageToRobot.seq) == bindparam("one"))
+    .values(acked_at=bindparam("at"))
+)
 _HAVE: Final = (
     update(MessageToRobot)
     .where(
@@ -98,7 +110,7 @@ _HAVE: Final = (
 
 async def acknowledged(session: AsyncSession, robot: str, seq: int, now: datetime) -> None:
     """The robot has stored everything up to `seq`."""
-    await acknowledged_by(session, {robot: seq}, now)
+    await (await session.connection()).execute(_HAVE, {"of": robot, "up_to": seq, "at": now})
 
 
 async def resume_from(session: AsyncSession, robot: RobotRow) -> int:

@@ -1,7 +1,7 @@
 """What can be done with robots: enrol one, tell one something, take in what one says, show them all."""
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from uuid import uuid4
@@ -15,7 +15,7 @@ from app.fleet.clocks import put_right
 from app.fleet.connections import Connections
 from app.fleet.errors import RobotExists, RobotNameInvalid, UnknownRobot
 from app.fleet.progress import Report, follow
-from app.fleet.tokens import make_token
+from app.fleet.tokens import Known, make_token
 from app.live.feed import Feed, Happening
 from app.orders.robot_view import RobotView, robot_view
 from app.orders.service import Orders
@@ -100,13 +100,13 @@ class Fleet:
         await outbox.keep_all(session, news, self.clock.utc())
         after_commit(session, partial(self.connections.wake_all, tuple(news)))
 
-    async def follow(self, session: AsyncSession, robot: RobotRow, message: Part) -> None:
+    async def follow(self, session: AsyncSession, robot: RobotRow | Known, message: Part) -> None:
         """Do what follows from a durable message. Raises FleetError or ServiceError; undo what it has done then."""
         now = self.clock.utc()
         match message:
             case Event():
                 await follow(Report(session, self.orders, robot.name, now, robot.clock_off_s), message)
-            case Claim():
+            case Claim() if isinstance(robot, RobotRow):
                 reply = await traffic.answer(session, self.campus, robot.name, message, now)
                 if reply is not None:
                     await self.tell(session, robot, reply)
@@ -130,6 +130,16 @@ class Fleet:
                 self.feed.publish(Happening("robot", view))
             for call in self.on_change:
                 call(robot.name)
+
+        after_commit(session, say)
+
+    def have_spoken(self, session: AsyncSession, robots: Iterable[str]) -> None:
+        """After the commit: these robots are as pages know them, but whoever waits for robots looks again."""
+
+        def say() -> None:
+            for robot in robots:
+                for call in self.on_change:
+                    call(robot)
 
         after_commit(session, say)
 

@@ -1,13 +1,16 @@
 """Robots sign in with `cmr_<prefix>_<secret>`: the prefix can be read in lists and logs, the secret is only hashed."""
 
+from dataclasses import dataclass
 from datetime import datetime
+from typing import Final
 
+from sqlalchemy import bindparam
 from sqlmodel import col, select, update
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.bearer_tokens import NewToken, read_token
 from app.bearer_tokens import make_token as make_bearer_token
-from app.tables import RobotToken
+from app.tables import RobotRow, RobotToken
 
 KIND = "cmr"
 
@@ -34,7 +37,22 @@ async def note_use(session: AsyncSession, prefix: str, now: datetime) -> None:
     await session.exec(update(RobotToken).where(col(RobotToken.prefix) == prefix).values(used_at=now))
 
 
-async def still_good(session: AsyncSession, prefixes: set[str]) -> set[str]:
-    """Which of these tokens, that let somebody in, are worth something still."""
-    good = select(RobotToken.prefix).where(col(RobotToken.prefix).in_(prefixes), col(RobotToken.revoked_at).is_(None))
-    return set((await session.exec(good)).all())
+@dataclass(frozen=True, slots=True)
+class Known:
+    """A robot that was let in: its name, and how far its clock is ahead."""
+
+    name: str
+    clock_off_s: float
+
+
+async def still_good(session: AsyncSession, prefixes: set[str]) -> dict[str, Known]:
+    """Which of these tokens, that let somebody in, are worth something still, and whose they are."""
+    rows = await (await session.connection()).execute(_STILL_GOOD, {"prefixes": list(prefixes)})
+    return {prefix: Known(name, clock_off_s) for prefix, name, clock_off_s in rows.all()}
+
+
+_STILL_GOOD: Final = (
+    select(col(RobotToken.prefix), col(RobotRow.name), col(RobotRow.clock_off_s))
+    .join(RobotRow, col(RobotRow.name) == col(RobotToken.robot))
+    .where(col(RobotToken.prefix).in_(bindparam("prefixes", expanding=True)), col(RobotToken.revoked_at).is_(None))
+)

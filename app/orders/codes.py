@@ -13,6 +13,7 @@ from hashlib import sha256
 from typing import Final
 
 import segno
+from sqlalchemy import bindparam
 from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
@@ -122,8 +123,14 @@ def codes_of(
 
 async def delegates_of(session: AsyncSession, orders: Sequence[Order]) -> Sequence[Delegate]:
     """Whoever was named for some orders, those revoked too."""
-    named = select(Delegate).where(col(Delegate.order_id).in_([order.id for order in orders]))
-    return (await session.exec(named.order_by(col(Delegate.named_at), col(Delegate.id)))).all()
+    return (await session.exec(_DELEGATES, params={"order_ids": [order.id for order in orders]})).all()
+
+
+_DELEGATES: Final = (
+    select(Delegate)
+    .where(col(Delegate.order_id).in_(bindparam("order_ids", expanding=True)))
+    .order_by(col(Delegate.named_at), col(Delegate.id))
+)
 
 
 async def verifiers(session: AsyncSession, key: ServerKey, orders: Sequence[Order]) -> tuple[Verifier, ...]:

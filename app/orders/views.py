@@ -4,9 +4,10 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import timedelta
-from typing import Any, Final, Literal, TypeVar
+from typing import Final, Literal, TypeVar
 
-from sqlmodel import SQLModel, col, select
+from sqlalchemy import BindParameter, bindparam
+from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.orders.codes import turn_of
@@ -22,7 +23,6 @@ from protocol.parts import Purpose
 
 CONFIRM_REQUESTED: Final = "confirm_requested"
 MyRole = Literal["sender", "recipient", "dispatcher"]
-Row = TypeVar("Row", bound=SQLModel)
 OfOrder = TypeVar("OfOrder", OrderEvent, Handover)
 
 
@@ -50,10 +50,11 @@ class OrderFacts:
 async def load_facts(session: AsyncSession, orders: Sequence[Order]) -> list[OrderFacts]:
     """The rows around some orders, in the same order, in five queries at most."""
     ids = [order.id for order in orders]
-    events = select(OrderEvent).where(col(OrderEvent.order_id).in_(ids)).order_by(col(OrderEvent.seq))
-    events_of = _by_order((await session.exec(events)).all())
-    people = await _by_key(session, Person, Person.id, {one for order in orders for one in _people_of(order)})
-    robots = await _by_key(session, RobotRow, RobotRow.name, {o.robot for o in orders if o.robot})
+    events_of = _by_order((await session.exec(_EVENTS, params={"ids": ids})).all())
+    wanted = {one for order in orders for one in _people_of(order)}
+    people = {one.id: one for one in (await session.exec(_PEOPLE, params={"ids": list(wanted)})).all()}
+    names_of_robots = {order.robot for order in orders if order.robot}
+    robots = {one.name: one for one in (await session.exec(_ROBOTS, params={"ids": list(names_of_robots)})).all()}
     handovers = await _handovers(session, [order.id for order in orders if order.state in LOADED])
     names, handovers_of = await _delegates(session, handovers), _by_order(handovers)
     return [
@@ -90,9 +91,11 @@ async def _delegates(session: AsyncSession, handovers: Iterable[Handover]) -> Ma
     return dict((await session.exec(select(Delegate.id, Delegate.name).where(col(Delegate.id).in_(ids)))).all())
 
 
-async def _by_key(session: AsyncSession, table: type[Row], key: Any, wanted: Iterable[str]) -> dict[str, Row]:
-    rows = (await session.exec(select(table).where(col(key).in_(list(wanted))))).all()
-    return {str(getattr(row, key.key)): row for row in rows}
+# Put together once: that takes longer than asking.
+_IDS: Final[BindParameter[str]] = bindparam("ids", expanding=True)
+_EVENTS: Final = select(OrderEvent).where(col(OrderEvent.order_id).in_(_IDS)).order_by(col(OrderEvent.seq))
+_PEOPLE: Final = select(Person).where(col(Person.id).in_(_IDS))
+_ROBOTS: Final = select(RobotRow).where(col(RobotRow.name).in_(_IDS))
 
 
 def role_in(order: Order, person: Person) -> MyRole | None:
