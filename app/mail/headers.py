@@ -10,6 +10,7 @@ from typing import Any, Final
 
 BY_THE_BOOK: Final = EmailPolicy(linesep="\r\n")
 KEPT: Final = 256
+MESSAGE_ID: Final = "Message-ID"
 
 
 class RememberingPolicy(EmailPolicy):
@@ -22,6 +23,8 @@ class RememberingPolicy(EmailPolicy):
         return _read(name, value)
 
     def fold_binary(self, name: str, value: Any) -> bytes:
+        if name == MESSAGE_ID and value.isascii():  # one word, and another in each mail: there is nothing to fold
+            return f"{name}: {value}\r\n".encode("ascii")
         return _folded(name, value)
 
 
