@@ -12,6 +12,7 @@ from fastapi import FastAPI
 
 from app.administration import migrate
 from app.errors import StartError
+from app.fleet.attentive import ANSWERS_WITHIN_S, LOOKS_AFTER_S, AttentiveSocket
 from app.keeping.running import the_only_one
 from app.main import create_app
 from app.settings import Settings, open_clock
@@ -98,11 +99,10 @@ def config_of(app: FastAPI) -> uvicorn.Config:
         log_config=None,
         access_log=False,
         timeout_graceful_shutdown=GRACEFUL_S,
-        ws="websockets-sansio",
+        ws=AttentiveSocket,
         ws_max_size=128 * 1024,
-        # A robot that has driven out of the network's reach is shown as offline within 10 s.
-        ws_ping_interval=4.0,
-        ws_ping_timeout=6.0,
+        ws_ping_interval=LOOKS_AFTER_S,
+        ws_ping_timeout=ANSWERS_WITHIN_S,
         server_header=False,
         # A proxy on this machine ends TLS and says so in X-Forwarded-Proto; nobody else is believed.
         proxy_headers=True,

@@ -15,6 +15,7 @@ from sqlmodel import SQLModel, select
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed
 
+from app.fleet.attentive import AttentiveSocket
 from app.fleet.service import enrol
 from app.main import create_app
 from app.orders.schemas import NewOrder
@@ -93,7 +94,7 @@ async def serving(settings: Settings, clock: Clock, ping_s: float = 10.0) -> Asy
     config = uvicorn.Config(
         app,
         log_config=None,
-        ws="websockets-sansio",
+        ws=AttentiveSocket,
         ws_ping_interval=ping_s,
         ws_ping_timeout=ping_s,
         timeout_graceful_shutdown=1,
