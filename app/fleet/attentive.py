@@ -6,7 +6,7 @@ from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIO
 
 LOOKS_AFTER_S = 2.0
 ANSWERS_WITHIN_S = 6.0
-"""Real seconds. A robot out of the network's reach is shown as offline within 10 s: twice the one and once the other."""
+"""A robot out of the network's reach is shown as offline within 10 s: twice the one and the other once."""
 
 
 class AttentiveSocket(WebSocketsSansIOProtocol):
