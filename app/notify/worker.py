@@ -10,6 +10,8 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Final
 
+from sqlmodel.ext.asyncio.session import AsyncSession
+
 from app.database import Database
 from app.live.feed import Feed
 from app.notify import due, routing
@@ -72,15 +74,18 @@ class OutboxWorker:
 
     async def has_work(self) -> bool:
         """Whether anything is to be routed, sent or noted down now."""
-        return bool(self._under_way or await self._waiting())
+        has_new, due_now = await self._look()
+        return bool(self._under_way or has_new or due_now)
 
     async def work_once(self) -> bool:
         """Note down what has ended, route what is new, begin what is due; whether there was any of it."""
-        ended, waiting = self._ended(), await self._waiting()
-        if ended or NOT_ROUTED in waiting:
-            waiting = waiting.union(await self._write_down(ended, has_new=NOT_ROUTED in waiting))
-        begun = await self._begin_due(waiting) if waiting else False
-        return bool(ended) or NOT_ROUTED in waiting or begun
+        ended = self._ended()
+        has_new, due_now = (False, []) if ended else await self._look()
+        if ended or has_new:
+            due_now = await self._write_down(ended)
+        for channel, what in due_now:
+            self._begin(channel, what)
+        return bool(ended or has_new or due_now)
 
     async def _wait_for_bell(self) -> None:
         # Not `wait_for`: before Python 3.12 it loses a cancellation that comes just as the bell rings.
@@ -98,41 +103,52 @@ class OutboxWorker:
                     break  # of a channel that there is no more
                 await asyncio.wait(self._under_way, timeout=left_s, return_when=asyncio.FIRST_COMPLETED)
         if ended := self._ended():
-            await self._write_down(ended, has_new=False)
+            async with self.database.transaction(durable=False) as session:
+                await self._note(session, ended)
 
     def _ended(self) -> Ended:
         return {task: what for task, what in self._under_way.items() if task.done()}
 
-    async def _waiting(self) -> set[str]:
+    async def _look(self) -> tuple[bool, list[tuple[Channel, Due]]]:
+        """Whether there is anything new, and what is due: one question while nothing happens."""
         async with self.database.reading() as session:
-            return await due.waiting(session, self.clock.utc())
+            waiting = await due.waiting(session, self.clock.utc())
+            return NOT_ROUTED in waiting, await self._due(session, waiting, self._under_way.values())
 
-    async def _write_down(self, ended: Ended, *, has_new: bool) -> Collection[str]:
-        """What became of sendings, and which follow from new notices: the channels of these.
+    async def _write_down(self, ended: Ended) -> list[tuple[Channel, Due]]:
+        """What became of sendings, and which follow from new notices; what is due then.
 
         No disk is waited for: after a power cut it is routed again, or sent again under its key.
         """
         async with self.database.transaction(durable=False) as session:
-            now = self.clock.utc()
-            outcomes = [(what, task.result()) for task, what in ended.items()]
-            await note_sent(session, [what for what, problem in outcomes if problem is None], now)
-            failed = [(what, problem) for what, problem in outcomes if problem is not None]
-            await note_not_sent(session, failed, now, {one.name: one.gives_up_after for one in self.channels})
-            new = await routing.route(session, self.feed, now, tell_service=self.tell_service) if has_new else ()
+            await self._note(session, ended)
+            waiting = await due.waiting(session, self.clock.utc())
+            if NOT_ROUTED in waiting:
+                waiting |= await routing.route(session, self.feed, self.clock.utc(), tell_service=self.tell_service)
+            running = [what for task, what in self._under_way.items() if task not in ended]
+            due_now = await self._due(session, waiting, running)
         for task in ended:
             del self._under_way[task]
-        return new
+        return due_now
 
-    async def _begin_due(self, waiting: Collection[str]) -> bool:
-        before = len(self._under_way)
-        async with self.database.reading() as session:
-            for channel in self.channels:
-                busy = [one for one in self._under_way.values() if one.channel == channel.name]
-                places = channel.at_once - len(busy)
-                if channel.name in waiting and places > 0:
-                    for one in await due.next_of(session, channel.name, self.clock.utc(), places, busy):
-                        self._begin(channel, one)
-        return len(self._under_way) > before
+    async def _note(self, session: AsyncSession, ended: Ended) -> None:
+        now, outcomes = self.clock.utc(), [(what, task.result()) for task, what in ended.items()]
+        await note_sent(session, [what for what, problem in outcomes if problem is None], now)
+        failed = [(what, problem) for what, problem in outcomes if problem is not None]
+        await note_not_sent(session, failed, now, {one.name: one.gives_up_after for one in self.channels})
+
+    async def _due(
+        self, session: AsyncSession, waiting: Collection[str], running: Collection[Due]
+    ) -> list[tuple[Channel, Due]]:
+        """As many for each channel as it has places for."""
+        found: list[tuple[Channel, Due]] = []
+        for channel in self.channels:
+            busy = [one for one in running if one.channel == channel.name]
+            places = channel.at_once - len(busy)
+            if channel.name in waiting and places > 0:
+                following = await due.next_of(session, channel.name, self.clock.utc(), places, busy)
+                found += [(channel, one) for one in following]
+        return found
 
     def _begin(self, channel: Channel, what: Due) -> None:
         task = asyncio.create_task(_send(channel, what))
