@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 from fastapi import Depends
 from pydantic_core import from_json, to_json
-from sqlalchemy import Connection, Insert, event, insert, make_url
+from sqlalchemy import ColumnElement, Connection, Insert, event, insert, inspect, make_url
 from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.exc import ArgumentError
 from sqlalchemy.ext.asyncio import AsyncConnection, AsyncEngine, create_async_engine
@@ -112,6 +112,11 @@ async def savepoint(session: AsyncSession) -> AsyncIterator[None]:
     except BaseException:
         del session.info[AFTER_COMMIT][waiting:]
         raise
+
+
+def columns_of(table: type[SQLModel]) -> list[ColumnElement[Any]]:
+    """All columns, for a row that is only looked at: a session takes three times as long to make one that it knows."""
+    return list(inspect(table).columns)
 
 
 async def write_new(session: AsyncSession, *rows: SQLModel) -> None:

@@ -13,7 +13,7 @@ from app.orders.schemas import NewOrder, OrderView, Wish
 from app.orders.transitions import By
 from app.orders.views import MyRole, OrderFacts, order_view
 from app.orders.window import Window, arrival_window
-from app.people.service import find_person, may_be_sent_mail, new_id
+from app.people.service import look_up_person, may_be_sent_mail, new_id
 from app.tables import Order, Person, Priority, Role, StandingOrder
 from app.tables.order_events import MOVED
 from maps import NoRoute, UnknownPost
@@ -111,7 +111,7 @@ class Placing(Ledger):
         return facts
 
     async def _somebody(self, session: AsyncSession, email: str, unknown: type[Unprocessable]) -> Person:
-        known = await find_person(session, email)
+        known = await look_up_person(session, email)
         if known is None and not may_be_sent_mail(email, self.settings):
             domains = ", ".join(self.settings.allowed_domains)
             raise unknown(f"Nobody here has the address {email}. New addresses are those of {domains}.")

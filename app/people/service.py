@@ -8,9 +8,11 @@ from datetime import datetime, timedelta
 from typing import Final
 
 from sqlalchemy import bindparam
+from sqlalchemy import select as sa_select
 from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
+from app.database import columns_of
 from app.mail import Mail, Mailer
 from app.people.errors import AddressNotAllowed, CodeExpired, WrongCode
 from app.people.sessions import new_session
@@ -124,6 +126,15 @@ async def find_person(session: AsyncSession, email: str) -> Person | None:
 
 _WITH_ADDRESS: Final = select(Person).where(col(Person.email) == bindparam("address"))
 """Put together once: that takes longer than asking."""
+
+
+async def look_up_person(session: AsyncSession, email: str) -> Person | None:
+    """The same, to look at only: the session does not know this row, and takes a third of the time."""
+    row = (await (await session.connection()).execute(_ROW_WITH_ADDRESS, {"address": email})).first()
+    return None if row is None else Person(**row._mapping)
+
+
+_ROW_WITH_ADDRESS: Final = sa_select(*columns_of(Person)).where(col(Person.email) == bindparam("address"))
 
 
 async def _has_signed_in(session: AsyncSession, person: Person) -> bool:

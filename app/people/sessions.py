@@ -7,10 +7,12 @@ from hashlib import sha256
 from typing import Final
 
 from sqlalchemy import bindparam
+from sqlalchemy import select as sa_select
 from sqlmodel import col, select, update
 from sqlmodel.ext.asyncio.session import AsyncSession
 from sqlmodel.sql.expression import SelectOfScalar
 
+from app.database import columns_of
 from app.people.devices import device_of
 from app.people.errors import UnknownSession
 from app.tables import Person, PersonSession
@@ -53,14 +55,18 @@ def new_session(person: Person, user_agent: str, lifetime_s: float, now: datetim
 
 
 async def find_session(session: AsyncSession, token: str, now: datetime) -> OpenSession | None:
-    """The session of this cookie, if it is still open."""
-    found = (await session.exec(_OPENED_BY_COOKIE, params={"token_hash": hash_of(token), "now": now})).first()
-    person, session_id, seen_at = found or (None, None, None)
-    return OpenSession(person, session_id, seen_at) if person is not None and session_id is not None else None
+    """The session of this cookie, if it is still open. Its person is to be looked at only."""
+    asked = {"token_hash": hash_of(token), "now": now}
+    row = (await (await session.connection()).execute(_OPENED_BY_COOKIE, asked)).first()
+    if row is None:
+        return None
+    session_id, seen_at, *person = row
+    return OpenSession(Person(**dict(zip(_OF_A_PERSON, person, strict=True))), session_id, seen_at)
 
 
+_OF_A_PERSON: Final = [str(column.key) for column in columns_of(Person)]
 _OPENED_BY_COOKIE: Final = (  # put together once: that takes longer than asking
-    select(Person, col(PersonSession.id), col(PersonSession.seen_at)).where(
+    sa_select(col(PersonSession.id), col(PersonSession.seen_at), *columns_of(Person)).where(
         col(PersonSession.person_id) == col(Person.id),
         col(PersonSession.token_hash) == bindparam("token_hash"),
         col(PersonSession.revoked_at).is_(None),
