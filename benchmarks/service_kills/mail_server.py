@@ -1,16 +1,20 @@
 """A mail server on a real port that remembers what it accepted: before it says so, as a mail server must."""
 
+import asyncio
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from email import message_from_bytes, policy
 from email.message import EmailMessage
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, Final, Protocol
 
 from aiosmtpd.controller import Controller
 
 from benchmarks.service_kills.victim import free_port
+
+THINKS_FOR_S: Final = 0.03
+"""As mail servers do, before they take anything: long enough that kills strike while a mail is on its way."""
 
 
 class Mailbox(Protocol):
@@ -30,6 +34,13 @@ class MailServer:
 
     def mails(self) -> list[EmailMessage]:
         return list(self.accepted)
+
+    async def handle_RCPT(  # noqa: N802  # aiosmtpd's name
+        self, server: Any, session: Any, envelope: Any, address: str, options: list[str]
+    ) -> str:
+        await asyncio.sleep(THINKS_FOR_S)
+        envelope.rcpt_tos.append(address)
+        return "250 go on"
 
     async def handle_DATA(self, server: Any, session: Any, envelope: Any) -> str:  # noqa: N802  # aiosmtpd's name
         self.accepted.append(message_from_bytes(envelope.content, policy=policy.default))
