@@ -146,6 +146,22 @@ async def test_mail_that_was_called_back_too_late_is_delivered_and_the_robot_fre
         assert (await robot.mission()).stops[0].order_id == another
 
 
+async def test_what_an_update_brings_is_not_over_with_a_mission_that_did_not_know_of_it(
+    service: Service, robot: PlayedRobot
+) -> None:
+    order_id, receive = await carrying(service, robot)
+    async with robot.connected(service.url, robot.token):
+        await robot.greet()
+        await service.cancel(order_id)
+        update = await robot.mission()
+        await robot.report(receive.mission, Step.GAVE_UP, receive.stop, reason="no_one_came")
+        await robot.ends(await robot.report(receive.mission, Step.DONE, update=1))
+        assert (await service.states(order_id))[-1] == "returning", "nobody has to look for it"
+        await robot.report(update, Step.ACCEPTED, update=2)
+        await robot.say(robot.receipt(update.stops[0]))
+        await service.reaches(order_id, "returned")
+
+
 @dataclass
 class Ahead:
     mission: Mission
