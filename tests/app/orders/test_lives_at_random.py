@@ -4,9 +4,7 @@ late and more than once; and whatever happens, these things hold."""
 import asyncio
 import os
 import tempfile
-from collections import Counter
 from datetime import timedelta
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -16,13 +14,12 @@ from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, pr
 
 from app.administration import migrate
 from app.errors import ServiceError
-from app.orders.custody import custody_of
-from app.orders.telling import ONCE, TOLD
-from app.orders.transitions import MAIL_ABOARD, ROBOT_COMING, By, is_allowed
+from app.orders.transitions import MAIL_ABOARD
 from app.settings import Settings
 from app.tables import Alarm, Handover, MissionRow, Notice, Order, OrderEvent, Person, Priority, StopRow
 from app.tables import OrderState as S
 from tests.app.orders.lives import World
+from tests.app.orders.what_holds import ENDED, Record
 
 POSTS = ("post1", "post2", "post3", "post4", "post5")
 ROBOTS = st.sampled_from(("r1", "r2"))
@@ -47,27 +44,7 @@ WISHES = (
 )
 ORDERS = 5
 ORDER = st.integers(0, ORDERS - 1)
-ENDED = frozenset({S.DELIVERED, S.RETURNED, S.HELD, S.EXPIRED, S.CANCELLED})
-"""Said here once more: a table that lets an order out of its end would call it no end."""
-SURELY_TOLD = {
-    S.QUEUED: {("sender", "accepted")},
-    S.AT_SENDER: {("sender", "robot_here")},
-    S.CARRYING: {("recipient", "on_its_way")},
-    S.AT_RECIPIENT: {("recipient", "robot_here_for_you")},
-    S.DELIVERED: {("sender", "delivered"), ("recipient", "delivered")},
-    S.RETURNED: {("sender", "returned"), ("recipient", "returned")},
-    S.HELD: {("sender", "held"), ("recipient", "held")},
-    S.CANCELLED: {("sender", "cancelled")},
-    S.EXPIRED: {("sender", "expired")},
-    S.ATTENTION: {("sender", "attention")},
-}
-SEEN_BY_PEOPLE = ("state", "robot", "priority", "wait_until", "cancel_requested_at", "return_requested_at")
-TELLS = {one.kind: {state for state, told in TOLD.items() if one in told} for told in TOLD.values() for one in told}
 ROUNDS_TO_THE_END = 25
-
-
-def is_left(stop: StopRow) -> bool:
-    return stop.done_at is None and stop.gave_up_at is None and stop.dropped_at is None
 
 
 folder = tempfile.TemporaryDirectory(prefix="lives-")
@@ -89,8 +66,7 @@ class LivesOfOrders(RuleBasedStateMachine):
         self.runner = asyncio.Runner()
         self.world = World(template(), Path(tempfile.mkdtemp(dir=folder.name)) / "data")
         self.ids: list[str] = []
-        self.ended: dict[str, S] = {}
-        self.seen: dict[str, tuple[int, list[Any]]] = {}
+        self.record = Record(self.world)
 
     def run(self, work: Any) -> Any:
         return self.runner.run(work)
@@ -271,92 +247,7 @@ class LivesOfOrders(RuleBasedStateMachine):
     @invariant()
     def everything_holds(self) -> None:
         if self.ids:
-            self.run(self.check())
-
-    async def check(self) -> None:
-        orders = await self.world.rows(Order)
-        events = await self.world.rows(OrderEvent)
-        handovers = await self.world.rows(Handover)
-        notices = await self.world.rows(Notice)
-        for order in orders:
-            theirs = sorted((one for one in events if one.order_id == order.id), key=lambda one: one.seq)
-            passed_on = sorted((one for one in handovers if one.order_id == order.id), key=lambda one: one.id)
-            self.every_change_is_explained(order, theirs)
-            self.nothing_changes_in_silence(order)
-            self.terminal_is_terminal(order, theirs)
-            self.exactly_one_holds_the_mail(order, passed_on)
-            told = [(self.who_is(one.person_id), str(one.kind)) for one in notices if one.order_id == order.id]
-            self.everybody_is_told_once(theirs, Counter(told))
-        await self.robots_do_what_the_record_says(orders)
-
-    def every_change_is_explained(self, order: Order, events: list[OrderEvent]) -> None:
-        assert [one.seq for one in events] == list(range(1, order.version + 1)), "one event for each version"
-        moves = [one for one in events if one.kind == "moved"]
-        assert moves[-1].state is order.state
-        assert moves[0].state is S.QUEUED
-        before: S | None = None
-        for last, one in pairwise(moves):
-            assert is_allowed(last.state, one.state, By(one.by), before), (last.state, one.state, one.by)
-            if one.state in {S.EXPIRED, S.CANCELLED}:
-                assert (before or last.state) not in MAIL_ABOARD, "mail that is aboard has to go somewhere"
-            before = last.state if one.state is S.ATTENTION else None
-        for one in events:
-            assert one.robot if one.by == By.ROBOT else one.person_id or one.by == By.TIMER or one.state is S.ASSIGNED
-            if one.kind == "moved" and one.state in {S.ATTENTION, S.EXPIRED}:
-                assert one.reason
-
-    def nothing_changes_in_silence(self, order: Order) -> None:
-        now = (order.version, [getattr(order, name) for name in SEEN_BY_PEOPLE])
-        before = self.seen.get(order.id, now)
-        assert now == before or now[0] > before[0], "what people see has changed, and the timeline has not"
-        self.seen[order.id] = now
-
-    def terminal_is_terminal(self, order: Order, events: list[OrderEvent]) -> None:
-        if order.id in self.ended:
-            assert order.state is self.ended[order.id]
-        if order.state in ENDED:
-            self.ended[order.id] = order.state
-        assert not ENDED & {one.state for one in events if one.kind == "moved"} - {order.state}
-
-    def exactly_one_holds_the_mail(self, order: Order, handovers: list[Handover]) -> None:
-        chain = custody_of(order, handovers)
-        assert [held.until for held in chain[:-1]] == [held.since for held in chain[1:]], "a chain without gaps"
-        assert chain[-1].until is None, "and one who holds it now"
-        assert all(one.since <= two.since for one, two in pairwise(chain))
-        holder = chain[-1].name or chain[-1].holder
-        state = order.state_before_attention or order.state
-        if state in MAIL_ABOARD:
-            assert holder == order.robot
-        elif state is S.QUEUED or state in ROBOT_COMING or state is S.RETURNED:
-            assert holder == "sender"
-        elif state in {S.DELIVERED, S.HELD}:
-            assert holder == {S.DELIVERED: "recipient", S.HELD: "mailroom"}[state]
-        if all(robot.outbox.waiting() == 0 for robot in self.world.robots.values()):
-            assert holder == self.world.where[order.id], "with everything told, the record is the truth"
-
-    def who_is(self, person_id: str) -> str:
-        return next(name for name, person in self.world.people.items() if person.id == person_id)
-
-    def everybody_is_told_once(self, events: list[OrderEvent], told: Counter[tuple[str, str]]) -> None:
-        """Once for each time that it happens, and after an order was stopped or queued again: once more at most."""
-        moves = Counter(one.state for one in events if one.kind == "moved")
-        rounds = moves[S.QUEUED] + moves[S.ATTENTION]
-        for (who, kind), count in told.items():
-            times = 1 if kind in ONCE else min(rounds, sum(moves[state] for state in TELLS.get(kind, moves)))
-            assert count <= times, (who, kind)
-        surely = {one for state in moves for one in SURELY_TOLD.get(state, ())}
-        assert surely <= set(told), surely - set(told)
-
-    async def robots_do_what_the_record_says(self, orders: list[Order]) -> None:
-        """Once both have said and heard everything: no robot goes where it is not sent, or is sent and does not go."""
-        missions, stops = await self.world.rows(MissionRow, state="active"), await self.world.rows(StopRow)
-        for robot in self.world.robots.values():
-            theirs = {one.id for one in missions if one.robot == robot.name}
-            left = {one.id for one in stops if one.mission_id in theirs and is_left(one)}
-            is_untold = any(one.told_update < one.update_number for one in missions if one.id in theirs)
-            waits = is_untold or robot.outbox.waiting() or any(one.let_go_by == robot.name for one in orders)
-            if not waits and not await self.world.unheard(robot):
-                assert robot.still_to_do() == left
+            self.run(self.record.check())
 
     # And in the end.
 
@@ -386,7 +277,7 @@ class LivesOfOrders(RuleBasedStateMachine):
             )
         )
         assert await self.all_is_done(), "no order and no robot is stuck for ever"
-        await self.check()
+        await self.record.check()
 
     async def one_round(self) -> None:
         await self.world.dispatch()
