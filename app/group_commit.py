@@ -24,6 +24,8 @@ AT_MOST: Final = 32
 NO_LONGER_THAN_S: Final = 0.05
 """Real seconds. Nobody joins a transaction that has been open for so long."""
 AFTER_COMMIT: Final = "after_commit"
+CONNECTION: Final = "connection"
+"""Of a session that writes: kept, because asking the session for it takes as long as a statement."""
 
 Say = Callable[[], None]
 
@@ -103,6 +105,7 @@ class Writers:
             async with group.session() as session:
                 with group.lost_if_first_fails():
                     async with session.begin():
+                        session.info[CONNECTION] = await session.connection()
                         yield session
                 work = _Work(session.info.pop(AFTER_COMMIT, []), asyncio.get_running_loop().create_future())
             group.works.append(work)

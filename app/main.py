@@ -41,7 +41,6 @@ from app.notify.worker import FINISH_WITHIN_S, OutboxWorker
 from app.orders import changing_routes, standing_routes
 from app.orders import routes as orders_routes
 from app.orders.codes import code_in_mail, code_png
-from app.orders.idempotency import Running
 from app.orders.service import Orders
 from app.orders.standing import StandingOrders
 from app.orders.timer import Timer
@@ -138,7 +137,6 @@ def _add_parts(app: FastAPI, settings: Settings, clock: Clock) -> None:
     state.orders = Orders(state.campus, settings, clock, state.feed, state.server_key, state.sign_in_desk)
     state.standing_orders = StandingOrders(state.orders)
     state.timer = Timer(state.database, state.orders, state.standing_orders)
-    state.running = Running()
     state.links = Links(state.database, state.server_key, settings, clock)
     state.enrolment_desk = EnrolmentDesk(settings, state.server_key, clock)
     state.fleet = Fleet(state.database, state.campus, settings, clock, state.feed, state.orders)

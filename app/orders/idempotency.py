@@ -14,11 +14,13 @@ from sqlalchemy import bindparam, delete
 from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
+from app.database import connection_of, write_once
 from app.orders.errors import KeyReused, StillRunning
 from app.orders.schemas import NewOrder
 from app.tables import IdempotencyKey
 
 KEPT = timedelta(hours=24)
+TWICE: Final = "The first request with this Idempotency-Key is still running. Ask again in a moment."
 
 
 def body_hash(wish: NewOrder) -> str:
@@ -37,7 +39,7 @@ class Running:
         """Raises StillRunning while another request with this key is under way."""
         running = (person_id, key)
         if running in self._keys:
-            raise StillRunning("The first request with this Idempotency-Key is still running. Ask again in a moment.")
+            raise StillRunning(TWICE)
         self._keys.add(running)
         try:
             yield
@@ -57,7 +59,7 @@ async def earlier_answer(
     session: AsyncSession, person_id: str, key: str, hash_of_body: str, now: datetime
 ) -> Answer | None:
     """What was answered before, if anything. Raises KeyReused for another body."""
-    connection = await session.connection()
+    connection = await connection_of(session)
     row = (await connection.execute(_KEPT, {"person": person_id, "name": key})).first()
     if row is None:
         return None
@@ -68,6 +70,15 @@ async def earlier_answer(
     if row.body_hash != hash_of_body:
         raise KeyReused("This Idempotency-Key belongs to another order. Take a new key for a new order.")
     return Answer(row.headers, row.answer)
+
+
+async def keep_answer(
+    session: AsyncSession, person_id: str, key: str, hash_of_body: str, answer: Answer, now: datetime
+) -> None:
+    """Raises StillRunning if another process has answered meanwhile: what was done here is undone."""
+    values = {"person_id": person_id, "key": key, "body_hash": hash_of_body, "status": 201, "created_at": now}
+    if not await write_once(session, IdempotencyKey, {**values, "headers": answer.headers, "answer": answer.answer}):
+        raise StillRunning(TWICE)
 
 
 # Put together once: that takes longer than asking.

@@ -14,6 +14,7 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 from app.database import after_commit, write_new
 from app.live.feed import Feed, Happening
 from app.orders import errors
+from app.orders.idempotency import Running
 from app.orders.nearness import is_near
 from app.orders.schemas import OrderView
 from app.orders.telling import facts_of, tell_about
@@ -52,6 +53,7 @@ class Ledger:
     key: ServerKey
     desk: SignInDesk
     on_change: list[Callable[[str], None]] = field(default_factory=list)
+    running: Running = field(default_factory=Running)
 
     @cached_property
     def ways(self) -> Ways:

@@ -6,18 +6,18 @@ from fastapi import APIRouter, Depends, Header, Path, Request, Response
 from sqlmodel import col, select
 from sqlmodel.sql.expression import SelectOfScalar
 
-from app.database import ReadingDep, SessionDep, write_new
+from app.database import ReadingDep, SessionDep
 from app.errors import TooManyRequests, answering, problems
 from app.orders import errors
-from app.orders.idempotency import Running, body_hash, earlier_answer
+from app.orders.idempotency import Answer, body_hash, earlier_answer, keep_answer
 from app.orders.schemas import Estimate, NewOrder, OrderPage, OrderView, PostName, WindowView
 from app.orders.service import Orders
 from app.orders.views import load_facts, view_for
 from app.paging import PAGED, PageDep, Sorting
 from app.people.current_user import CurrentUser
 from app.people.rate_limits import Door, per_person
-from app.settings import CampusDep, ClockDep
-from app.tables import IdempotencyKey, Order, Person, Role
+from app.settings import CampusDep
+from app.tables import Order, Person, Role
 from maps import shortest_route
 
 router = APIRouter(tags=["orders"])
@@ -46,11 +46,6 @@ async def _orders(request: Request) -> Orders:
     return orders
 
 
-async def _running(request: Request) -> Running:
-    running: Running = request.app.state.running
-    return running
-
-
 OrdersDep = Annotated[Orders, Depends(_orders)]
 
 
@@ -72,29 +67,18 @@ async def place_order(
     user: CurrentUser,
     orders: OrdersDep,
     session: SessionDep,
-    clock: ClockDep,
-    running: Annotated[Running, Depends(_running)],
     response: Response,
 ) -> OrderView:
     """Place an order. The same key and body again give the first answer again, with `Idempotency-Replayed: true`."""
-    with running.only_once(user.id, idempotency_key):
-        wanted = body_hash(wish)
-        earlier = await earlier_answer(session, user.id, idempotency_key, wanted, clock.utc())
+    with orders.running.only_once(user.id, idempotency_key):
+        wanted, now = body_hash(wish), orders.clock.utc()
+        earlier = await earlier_answer(session, user.id, idempotency_key, wanted, now)
         if earlier is not None:
             response.headers.update({**earlier.headers, REPLAYED: "true"})
             return OrderView.model_validate(earlier.answer)
         view = await orders.create(session, user, wish)
         headers = {"Location": f"/api/v1/orders/{view.id}", "ETag": etag_of(view)}
-        kept = IdempotencyKey(
-            person_id=user.id,
-            key=idempotency_key,
-            body_hash=wanted,
-            status=201,
-            headers=headers,
-            answer=view.model_dump(mode="json"),
-            created_at=clock.utc(),
-        )
-        await write_new(session, kept)
+        await keep_answer(session, user.id, idempotency_key, wanted, Answer(headers, view.model_dump(mode="json")), now)
         response.headers.update(headers)
         return view
 

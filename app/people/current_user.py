@@ -49,13 +49,12 @@ class Caller:
 
 async def _caller(
     request: Request,
-    database: DatabaseDep,
-    clock: ClockDep,
     cookie: Annotated[object, Security(_cookie_documented)],
     token: Annotated[object, Security(_token_documented)],
 ) -> Caller:
     require_https_or_loopback(request)
-    caller = await _find_caller(request, database, clock)
+    # Not as dependencies of their own: this one is solved for every request.
+    caller = await _find_caller(request, request.app.state.database, request.app.state.clock)
     if caller.session_id is not None:  # a token travels only where a program of ours puts it
         require_same_origin(request)
     return caller

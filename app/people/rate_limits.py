@@ -93,8 +93,8 @@ LimitsDep = Annotated[RateLimits, Depends(_limits_of)]
 def per_person(door: Door) -> Any:
     """For `dependencies=`: counts the signed-in person at this door."""
 
-    async def counted(user: CurrentUser, limits: LimitsDep) -> None:
-        await limits.count(door, user.id)
+    async def counted(request: Request, user: CurrentUser) -> None:
+        await (await _limits_of(request)).count(door, user.id)
 
     return Depends(counted)
 
@@ -102,8 +102,8 @@ def per_person(door: Door) -> Any:
 def per_host(door: Door) -> Any:
     """For `dependencies=`: counts the address at this door, whoever it is."""
 
-    async def counted(request: Request, limits: LimitsDep) -> None:
-        await limits.count(door, host_of(request))
+    async def counted(request: Request) -> None:
+        await (await _limits_of(request)).count(door, host_of(request))
 
     return Depends(counted)
 
