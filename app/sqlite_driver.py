@@ -66,6 +66,7 @@ class Connection(aiosqlite.Connection):
     def __init__(self, *arguments: Any, **options: Any) -> None:
         super().__init__(*arguments, **options)
         self._brackets: list[str] = []
+        self._has_transaction = False
         self._is_asking = False
         self._is_guarded = False
         self._breathed_at_s = 0.0
@@ -99,7 +100,7 @@ class Connection(aiosqlite.Connection):
         self._conn.execute("PRAGMA busy_timeout=0")
         try:
             for bracket in [*before, LOCKS]:
-                self._conn.execute(bracket)
+                self._open(bracket)
         except sqlite3.OperationalError:  # if it is not for the lock, the thread finds out
             return False
         finally:
@@ -132,10 +133,21 @@ class Connection(aiosqlite.Connection):
         return answer
 
     def _now(self, what: Callable[[sqlite3.Connection], T]) -> T:
+        self._refuse_if_undone()
         brackets, self._brackets = self._brackets, []
         for bracket in brackets:
-            self._conn.execute(bracket)
+            self._open(bracket)
         return what(self._conn)
+
+    def _open(self, bracket: str) -> None:
+        self._conn.execute(bracket)
+        self._has_transaction |= bracket.startswith("BEGIN")
+
+    def _refuse_if_undone(self) -> None:
+        """A full disk undoes the whole transaction. A savepoint would begin another, and its release commit that one:
+        those who wrote before would be told that what they wrote is there."""
+        if self._has_transaction and not self._conn.in_transaction:
+            raise sqlite3.OperationalError("the transaction has been undone")
 
     async def errand(self, what: Callable[[sqlite3.Connection], T]) -> T:
         """Do it in the connection's thread, to its end."""
@@ -146,13 +158,13 @@ class Connection(aiosqlite.Connection):
         return answer
 
     async def commit(self) -> None:
-        """Raises OperationalError if there is nothing to commit any more: a full disk undoes what was written."""
-        if not self._brackets and not self._conn.in_transaction:
-            raise sqlite3.OperationalError("the transaction has been undone")
+        """Raises OperationalError if there is nothing to commit any more."""
         await self.errand(lambda connection: connection.commit())
+        self._has_transaction = False
 
     async def rollback(self) -> None:
         self._brackets.clear()
+        self._has_transaction = False
         if self._conn.in_transaction:
             self._conn.rollback()
 

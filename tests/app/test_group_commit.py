@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 from sqlalchemy import event
+from sqlalchemy.exc import OperationalError
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.database import Database, after_commit
@@ -91,6 +92,25 @@ async def test_what_fails_is_undone_alone(database: Database) -> None:
     failures = await asyncio.gather(*writing, return_exceptions=True)
     assert [type(failure).__name__ for failure in failures] == ["NoneType", "NoneType", "IntegrityError", "NoneType"]
     assert await words(database) == ["one", "two", "three"]
+
+
+async def test_nobody_is_told_of_what_a_full_disk_undid(database: Database) -> None:
+    """SQLite then undoes the whole transaction, and with it what others wrote before."""
+    said: list[str] = []
+
+    async def write_and_say(word: str) -> None:
+        async with database.transaction() as session:
+            if word == "first":
+                ((pages,),) = await do(session, "PRAGMA page_count")
+                await do(session, f"PRAGMA max_page_count={pages + 10}")
+            await do(session, "INSERT INTO words (word) VALUES (?)", word)
+            after_commit(session, lambda: said.append(word))
+            await asyncio.sleep(0.02)  # so that the next one waits
+
+    writing = [write_and_say(word) for word in ("first", "much" * 50_000, "third")]
+    assert all(isinstance(end, OperationalError) for end in await asyncio.gather(*writing, return_exceptions=True))
+    await write_and_say("fourth")
+    assert said == await words(database) == ["fourth"]
 
 
 async def test_who_is_cancelled_takes_nobody_with_them(database: Database) -> None:
