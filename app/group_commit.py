@@ -107,8 +107,9 @@ class Writers:
                     async with session.begin():
                         session.info[CONNECTION] = await session.connection()
                         yield session
+                # Before the session closes, which is where a cancellation may come: it is done, and will be committed.
                 work = _Work(session.info.pop(AFTER_COMMIT, []), asyncio.get_running_loop().create_future())
-            group.works.append(work)
+                group.works.append(work)
         finally:
             try:
                 await self._end_turn()

@@ -199,3 +199,19 @@ async def test_fleeting_work_that_cannot_be_committed_takes_no_durable_work_with
     assert "FOREIGN KEY" in str(outcomes[0])
     assert outcomes[1] is None
     assert await words(database) == ["b"]
+
+
+async def test_what_is_committed_is_said_even_if_its_writer_was_cancelled_at_the_end(database: Database) -> None:
+    said: list[str] = []
+
+    async def one(word: str) -> None:
+        async with database.transaction() as session:
+            await do(session, "INSERT INTO words VALUES (?)", word)
+            after_commit(session, lambda: said.append(word))
+            task = asyncio.current_task()
+            if word == "a" and task is not None:
+                task.cancel()
+
+    await asyncio.gather(*(asyncio.create_task(one(word)) for word in "ab"), return_exceptions=True)
+    assert said == await words(database)
+    assert "b" in said
