@@ -74,8 +74,8 @@ async def _find_caller(request: Request, database: Database, clock: Clock) -> Ca
 async def _browser(token: str, database: Database, clock: Clock) -> Caller:
     now = clock.utc()
     # A short look of its own, so that an event stream holds no session and a writer no lock while it waits.
-    async with database.reading() as session:
-        found = await find_session(session, token, now)
+    async with database.asking() as connection:
+        found = await find_session(connection, token, now)
     if found is None:
         raise NotSignedIn("This session has ended. Sign in again.")
     if is_stale(found.seen_at, now):

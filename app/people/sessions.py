@@ -8,11 +8,12 @@ from typing import Final
 
 from sqlalchemy import bindparam
 from sqlalchemy import select as sa_select
+from sqlalchemy.ext.asyncio import AsyncConnection
 from sqlmodel import col, select, update
 from sqlmodel.ext.asyncio.session import AsyncSession
 from sqlmodel.sql.expression import SelectOfScalar
 
-from app.database import columns_of, connection_of
+from app.database import columns_of
 from app.people.devices import device_of
 from app.people.errors import UnknownSession
 from app.tables import Person, PersonSession
@@ -54,10 +55,10 @@ def new_session(person: Person, user_agent: str, lifetime_s: float, now: datetim
     return row, token
 
 
-async def find_session(session: AsyncSession, token: str, now: datetime) -> OpenSession | None:
+async def find_session(connection: AsyncConnection, token: str, now: datetime) -> OpenSession | None:
     """The session of this cookie, if it is still open. Its person is to be looked at only."""
     asked = {"token_hash": hash_of(token), "now": now}
-    row = (await (await connection_of(session)).execute(_OPENED_BY_COOKIE, asked)).first()
+    row = (await connection.execute(_OPENED_BY_COOKIE, asked)).first()
     if row is None:
         return None
     session_id, seen_at, *person = row
