@@ -1,26 +1,26 @@
 """Missions as dispatch writes them: new ones for orders, and one more order on one that is under way."""
 
 from collections.abc import Sequence
-from datetime import datetime
-from typing import Final
+from typing import Any, Final
 
 from sqlalchemy import insert
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.dispatch.choice import WaitingOrder
 from app.dispatch.insertion import Insertion, Tour, Visit, cheapest_insertion
-from app.fleet.mission_updates import stop_of
 from app.fleet.service import Fleet
 from app.orders.stops import active_mission, stops_left
 from app.people.service import new_id
 from app.tables import MissionRow, Order, StopRow
 from maps.ways import Ways
-from protocol.parts import Part, StopAction
+from protocol.parts import Part, Stop, StopAction
 from protocol.to_robot import Mission, Verifiers
 
 PLACES: Final = (StopAction.LOAD, StopAction.RECEIVE)
 _NEW_MISSION: Final = insert(MissionRow)
 _NEW_STOP: Final = insert(StopRow)
+Values = dict[str, Any]
+"""A new row, by its columns."""
 
 
 async def begin_missions(
@@ -29,24 +29,27 @@ async def begin_missions(
     """Fetch and bring, nothing else yet: a new mission for each of these orders and its robot. Their robots are told at
     once, unless something may still be added."""
     connection = await session.connection()
-    missions = [_mission(robot, fleet.clock.utc(), told) for _, robot in given]
+    now, wait_limit_s = fleet.clock.utc(), fleet.settings.wait_limit_s
+    missions: list[Values] = [
+        {"id": new_id(), "robot": robot, "created_at": now, "told_update": int(told)} for _, robot in given
+    ]
     stops = [
-        _stops(mission.id, order.id, (order.from_post, order.to_post), fleet.settings.wait_limit_s)
+        _stops(mission["id"], order.id, (order.from_post, order.to_post), wait_limit_s)
         for mission, (order, _) in zip(missions, given, strict=True)
     ]
-    # All of one kind by one statement: that is most of what an order costs here.
-    await connection.execute(_NEW_MISSION, [mission.model_dump(exclude_none=True) for mission in missions])
-    await connection.execute(_NEW_STOP, [stop.model_dump(exclude_none=True) for both in stops for stop in both])
+    # All of one kind by one statement, and as values: that is most of what an order costs here.
+    await connection.execute(_NEW_MISSION, missions)
+    await connection.execute(_NEW_STOP, [stop for both in stops for stop in both])
     if told:
         await _tell_of_new(session, fleet, missions, stops, [order for order, _ in given])
-    return [mission.id for mission in missions]
+    return [mission["id"] for mission in missions]
 
 
 async def _tell_of_new(
     session: AsyncSession,
     fleet: Fleet,
-    missions: Sequence[MissionRow],
-    stops: Sequence[Sequence[StopRow]],
+    missions: Sequence[Values],
+    stops: Sequence[Sequence[Values]],
     orders: Sequence[Order],
 ) -> None:
     """What `tell_mission` would tell of each of them, with nothing read that is at hand."""
@@ -54,29 +57,29 @@ async def _tell_of_new(
     news: dict[str, tuple[Part, ...]] = {}
     for mission, both, order in zip(missions, stops, orders, strict=True):
         codes = Verifiers(verifiers=tuple(one for one in verifiers if one.order_id == order.id))
-        told = Mission(id=mission.id, update=mission.update_number, stops=tuple(stop_of(stop) for stop in both))
-        news[mission.robot] = (codes, told)
+        told = Mission(id=mission["id"], update=1, stops=tuple(_as_told(stop) for stop in both))
+        news[mission["robot"]] = (codes, told)
     await fleet.tell_all(session, news)
 
 
-def _mission(robot: str, now: datetime, told: bool) -> MissionRow:
-    return MissionRow(id=new_id(), robot=robot, created_at=now, told_update=int(told))
+def _as_told(stop: Values) -> Stop:
+    return Stop(**{name: stop[name] for name in Stop.model_fields})
 
 
 def _stops(
     mission_id: str, order_id: str, posts: tuple[str, str], wait_limit_s: float, since_update: int = 1
-) -> list[StopRow]:
+) -> list[Values]:
     return [
-        StopRow(
-            id=new_id(),
-            mission_id=mission_id,
-            position=position,
-            post=post,
-            action=action,
-            order_id=order_id,
-            wait_limit_s=wait_limit_s,
-            since_update=since_update,
-        )
+        {
+            "id": new_id(),
+            "mission_id": mission_id,
+            "position": position,
+            "post": post,
+            "action": action,
+            "order_id": order_id,
+            "wait_limit_s": wait_limit_s,
+            "since_update": since_update,
+        }
         for position, (action, post) in enumerate(zip(PLACES, posts, strict=True))
     ]
 
@@ -94,7 +97,8 @@ async def take_along(
     if mission.told_update:
         mission.update_number += 1
     posts = (order.from_post, order.to_post)
-    new = _stops(mission.id, order.id, posts, fleet.settings.wait_limit_s, mission.update_number)
+    values = _stops(mission.id, order.id, posts, fleet.settings.wait_limit_s, mission.update_number)
+    new = [StopRow(**one) for one in values]
     by_key = dict(zip((LOAD, RECEIVE), new, strict=True))
     stops = {stop.id: stop for stop in await stops_left(session, mission.id)}
     for position, visit in enumerate(insertion.visits):

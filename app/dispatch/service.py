@@ -113,9 +113,10 @@ class Dispatcher:
         try:
             async with self._fleet.database.transaction() as session:
                 situation = await look(session, now, self._fleet.settings.priority_head_start_s)
-                assignments = choose_robots(situation.waiting, situation.idle, self._ways)[:AT_ONCE]
+                chosen = choose_robots(situation.waiting, situation.idle, self._ways)
+                assignments = chosen[:AT_ONCE]
                 given = {one.order_id for one in assignments}
-                if len(given) == len(situation.waiting):
+                if len(chosen) == len(situation.waiting):
                     await self._assign(session, assignments)
                 else:
                     given |= await self._assign_what_can_be(session, assignments, situation.waiting)

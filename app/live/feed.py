@@ -6,6 +6,7 @@ One process with everything in memory (thin: a broker behind the same `Feed` whe
 import asyncio
 import json
 import secrets
+import time
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
@@ -20,6 +21,8 @@ from app.tables import Person, Role
 
 REPLAYED: Final = 1000
 QUEUED: Final = 200
+COMES_BACK_S: Final = 60.0
+"""Real seconds for which somebody who has left may come back and be given what was missed."""
 
 
 @dataclass(frozen=True)
@@ -63,6 +66,15 @@ class Numbered:
 class Feed(Protocol):
     """What features see of the feed."""
 
+    @property
+    def is_heard(self) -> bool:
+        """Whether anybody listens, or did so just now: if not, nothing need be put together to be published."""
+        ...
+
+    def pass_over(self) -> None:
+        """Instead of `publish`, for what was not put together since nobody listened."""
+        ...
+
     def publish(self, happening: Happening) -> None:
         """Tell whoever listens; never waits. Call it after the commit (`app.database.after_commit`)."""
         ...
@@ -77,7 +89,19 @@ class LocalFeed:
         self._count = 0
         self._recent: deque[Numbered] = deque(maxlen=REPLAYED)
         self._listeners: dict[asyncio.Queue[Numbered | None], Person] = {}
+        self._left_at_s = -COMES_BACK_S
         self._closed = False
+
+    @property
+    def is_heard(self) -> bool:
+        return bool(self._listeners) or time.monotonic() < self._left_at_s + COMES_BACK_S
+
+    def pass_over(self) -> None:
+        """Nobody can be given it later, and whoever has begun to listen meanwhile has to fetch anew."""
+        self._recent.clear()
+        self._count += 1
+        if self._listeners:
+            self.publish(Happening("resync", {}))
 
     def publish(self, happening: Happening) -> None:
         self._count += 1
@@ -119,6 +143,7 @@ class LocalFeed:
             yield queue
         finally:
             self._listeners.pop(queue, None)
+            self._left_at_s = time.monotonic()
 
     def close(self) -> None:
         """End every stream: an open one would otherwise hold up the service's end."""

@@ -8,16 +8,18 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from datetime import datetime
 from functools import cached_property, partial
+from typing import Any, Final
 
+from sqlalchemy import insert
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.database import after_commit, write_new
+from app.database import after_commit
 from app.live.feed import Feed, Happening
 from app.orders import errors
 from app.orders.idempotency import Running
 from app.orders.nearness import is_near
 from app.orders.schemas import OrderView
-from app.orders.telling import facts_of, tell_about
+from app.orders.telling import TOLD, facts_of, tell_about
 from app.orders.transitions import By, is_allowed, is_old_news
 from app.orders.views import MyRole, OrderFacts, load_facts, order_view, role_in
 from app.people.service import SignInDesk
@@ -116,14 +118,22 @@ class Ledger:
         if order.why != why:
             order.why = why
             # Pages alone: who waits for changes of orders has nothing to do because of it.
-            self._publish_views(session, (await load_facts(session, [order]))[0])
+            if self.feed.is_heard:
+                self._publish_views(session, (await load_facts(session, [order]))[0])
+            else:
+                after_commit(session, self.feed.pass_over)
 
     async def _write(self, session: AsyncSession, order: Order, kind: str, word: Word) -> None:
         order.version += 1
         order.updated_at = self.clock.utc()
-        await write_new(session, event_of(order, kind, word))
+        await (await session.connection()).execute(_NEW_EVENT, _event(order, kind, word))
+        is_told = kind == MOVED and order.state in TOLD
+        if not is_told and not self.feed.is_heard:  # all that has been is looked up for somebody who reads it
+            after_commit(session, self.feed.pass_over)
+            after_commit(session, partial(self.changed, order.id))
+            return
         facts = (await load_facts(session, [order]))[0]
-        if kind == MOVED:
+        if is_told:
             await self._tell(session, facts, word.post)
         self.publish(session, facts)
 
@@ -187,19 +197,26 @@ def _begin_anew(order: Order) -> None:
 
 def event_of(order: Order, kind: str, word: Word) -> OrderEvent:
     """What has just happened to `order`, as its timeline tells it."""
-    return OrderEvent(
-        order_id=order.id,
-        seq=order.version,
-        state=order.state,
-        kind=kind,
-        at=order.updated_at,
-        by=word.by,
-        person_id=word.person_id,
-        robot=word.robot,
-        robot_at=word.robot_at,
-        post=word.post,
-        reason=word.reason,
-    )
+    return OrderEvent(**_event(order, kind, word))
+
+
+_NEW_EVENT: Final = insert(OrderEvent)
+
+
+def _event(order: Order, kind: str, word: Word) -> dict[str, Any]:
+    return {
+        "order_id": order.id,
+        "seq": order.version,
+        "state": order.state,
+        "kind": kind,
+        "at": order.updated_at,
+        "by": word.by,
+        "person_id": word.person_id,
+        "robot": word.robot,
+        "robot_at": word.robot_at,
+        "post": word.post,
+        "reason": word.reason,
+    }
 
 
 def unknown(order_id: str) -> errors.UnknownOrder:

@@ -170,6 +170,25 @@ def test_who_was_away_too_long_or_before_a_restart_is_told_to_fetch_anew() -> No
     assert numbers(feed, ANN, start.replace("-0", "-99999999")) is None
 
 
+def test_who_was_not_there_when_nothing_was_put_together_is_told_to_fetch_anew() -> None:
+    feed = LocalFeed()
+    assert not feed.is_heard
+    feed.publish(happening(1))
+    seen = feed.last_id
+    feed.pass_over()
+    assert numbers(feed, ANN, seen) is None, "rather than what came after it alone"
+    seen = feed.last_id
+    feed.publish(happening(2))
+    assert numbers(feed, ANN, seen) == [2]
+    with feed.listening(ANN) as heard:
+        assert feed.is_heard
+        feed.pass_over()  # it was not to be put together when Ann was not there yet
+        only = heard.get_nowait()
+        assert only is not None and only.happening.event == "resync"
+        assert heard.empty()
+    assert feed.is_heard, "who has just left comes back, and is given what was missed"
+
+
 def test_a_listener_that_is_too_slow_is_let_go_and_the_others_hear_on() -> None:
     feed = LocalFeed()
     with feed.listening(ANN) as slow, feed.listening(BOB) as quick:
