@@ -63,6 +63,7 @@ log = structlog.get_logger(__name__)
 
 API = "/api/v1"
 ROUTERS = (
+    orders_routes.router,  # first: routes are looked through in this order, and these are asked for most
     about.api_router,
     people_routes.router,
     oidc_routes.router,
@@ -71,7 +72,6 @@ ROUTERS = (
     my_routes.router,
     everybody_routes.address_router,
     everybody_routes.router,
-    orders_routes.router,
     changing_routes.router,
     changing_routes.dispatch_router,
     standing_routes.router,

@@ -85,6 +85,47 @@ class AsyncOperations:
     ) -> Any:
         raise NotImplementedError
 
+    async def estimate(self, *, from_post: str, to_post: str) -> Estimate:
+        """When mail would arrive if it were ordered now."""
+        answer: Estimate = await self._call(
+            "GET", "/api/v1/estimate", Estimate, query={"from_post": from_post, "to_post": to_post}
+        )
+        return answer
+
+    async def list_orders(
+        self,
+        *,
+        role: Literal["sent", "coming", "all"] | str | None = None,
+        limit: int | None = None,
+        cursor: str | None = None,
+    ) -> OrderPage:
+        """This person's orders, newest first; a dispatcher's `all` is everybody's."""
+        answer: OrderPage = await self._call(
+            "GET", "/api/v1/orders", OrderPage, query={"role": role, "limit": limit, "cursor": cursor}
+        )
+        return answer
+
+    async def place_order(self, wish: NewOrder, *, idempotency_key: str) -> OrderView:
+        """Place an order. The same key and body again give the first answer again, with `Idempotency-Replayed:
+        true`.
+        """
+        answer: OrderView = await self._call(
+            "POST", "/api/v1/orders", OrderView, body=wish, headers={"Idempotency-Key": idempotency_key}
+        )
+        return answer
+
+    async def one_order(self, order_id: str) -> OrderView:
+        """One order with its timeline."""
+        answer: OrderView = await self._call("GET", f"/api/v1/orders/{quote(str(order_id), safe='')}", OrderView)
+        return answer
+
+    async def cancel_order(self, order_id: str, *, if_match: str | None = None) -> OrderView:
+        """Cancel, at once or (with a robot on its way) as soon as the robot answers."""
+        answer: OrderView = await self._call(
+            "POST", f"/api/v1/orders/{quote(str(order_id), safe='')}/cancel", OrderView, headers={"If-Match": if_match}
+        )
+        return answer
+
     async def about(self) -> About:
         """Name, version, time, languages; `demo` and `simulated` while a demonstration runs."""
         answer: About = await self._call("GET", "/api/v1/about", About)
@@ -202,47 +243,6 @@ class AsyncOperations:
         """Take a role from somebody; everybody stays a member."""
         answer: PersonView = await self._call(
             "DELETE", f"/api/v1/people/{quote(str(person_id), safe='')}/roles/{quote(str(role), safe='')}", PersonView
-        )
-        return answer
-
-    async def estimate(self, *, from_post: str, to_post: str) -> Estimate:
-        """When mail would arrive if it were ordered now."""
-        answer: Estimate = await self._call(
-            "GET", "/api/v1/estimate", Estimate, query={"from_post": from_post, "to_post": to_post}
-        )
-        return answer
-
-    async def list_orders(
-        self,
-        *,
-        role: Literal["sent", "coming", "all"] | str | None = None,
-        limit: int | None = None,
-        cursor: str | None = None,
-    ) -> OrderPage:
-        """This person's orders, newest first; a dispatcher's `all` is everybody's."""
-        answer: OrderPage = await self._call(
-            "GET", "/api/v1/orders", OrderPage, query={"role": role, "limit": limit, "cursor": cursor}
-        )
-        return answer
-
-    async def place_order(self, wish: NewOrder, *, idempotency_key: str) -> OrderView:
-        """Place an order. The same key and body again give the first answer again, with `Idempotency-Replayed:
-        true`.
-        """
-        answer: OrderView = await self._call(
-            "POST", "/api/v1/orders", OrderView, body=wish, headers={"Idempotency-Key": idempotency_key}
-        )
-        return answer
-
-    async def one_order(self, order_id: str) -> OrderView:
-        """One order with its timeline."""
-        answer: OrderView = await self._call("GET", f"/api/v1/orders/{quote(str(order_id), safe='')}", OrderView)
-        return answer
-
-    async def cancel_order(self, order_id: str, *, if_match: str | None = None) -> OrderView:
-        """Cancel, at once or (with a robot on its way) as soon as the robot answers."""
-        answer: OrderView = await self._call(
-            "POST", f"/api/v1/orders/{quote(str(order_id), safe='')}/cancel", OrderView, headers={"If-Match": if_match}
         )
         return answer
 

@@ -85,6 +85,47 @@ class Operations:
     ) -> Any:
         raise NotImplementedError
 
+    def estimate(self, *, from_post: str, to_post: str) -> Estimate:
+        """When mail would arrive if it were ordered now."""
+        answer: Estimate = self._call(
+            "GET", "/api/v1/estimate", Estimate, query={"from_post": from_post, "to_post": to_post}
+        )
+        return answer
+
+    def list_orders(
+        self,
+        *,
+        role: Literal["sent", "coming", "all"] | str | None = None,
+        limit: int | None = None,
+        cursor: str | None = None,
+    ) -> OrderPage:
+        """This person's orders, newest first; a dispatcher's `all` is everybody's."""
+        answer: OrderPage = self._call(
+            "GET", "/api/v1/orders", OrderPage, query={"role": role, "limit": limit, "cursor": cursor}
+        )
+        return answer
+
+    def place_order(self, wish: NewOrder, *, idempotency_key: str) -> OrderView:
+        """Place an order. The same key and body again give the first answer again, with `Idempotency-Replayed:
+        true`.
+        """
+        answer: OrderView = self._call(
+            "POST", "/api/v1/orders", OrderView, body=wish, headers={"Idempotency-Key": idempotency_key}
+        )
+        return answer
+
+    def one_order(self, order_id: str) -> OrderView:
+        """One order with its timeline."""
+        answer: OrderView = self._call("GET", f"/api/v1/orders/{quote(str(order_id), safe='')}", OrderView)
+        return answer
+
+    def cancel_order(self, order_id: str, *, if_match: str | None = None) -> OrderView:
+        """Cancel, at once or (with a robot on its way) as soon as the robot answers."""
+        answer: OrderView = self._call(
+            "POST", f"/api/v1/orders/{quote(str(order_id), safe='')}/cancel", OrderView, headers={"If-Match": if_match}
+        )
+        return answer
+
     def about(self) -> About:
         """Name, version, time, languages; `demo` and `simulated` while a demonstration runs."""
         answer: About = self._call("GET", "/api/v1/about", About)
@@ -198,47 +239,6 @@ class Operations:
         """Take a role from somebody; everybody stays a member."""
         answer: PersonView = self._call(
             "DELETE", f"/api/v1/people/{quote(str(person_id), safe='')}/roles/{quote(str(role), safe='')}", PersonView
-        )
-        return answer
-
-    def estimate(self, *, from_post: str, to_post: str) -> Estimate:
-        """When mail would arrive if it were ordered now."""
-        answer: Estimate = self._call(
-            "GET", "/api/v1/estimate", Estimate, query={"from_post": from_post, "to_post": to_post}
-        )
-        return answer
-
-    def list_orders(
-        self,
-        *,
-        role: Literal["sent", "coming", "all"] | str | None = None,
-        limit: int | None = None,
-        cursor: str | None = None,
-    ) -> OrderPage:
-        """This person's orders, newest first; a dispatcher's `all` is everybody's."""
-        answer: OrderPage = self._call(
-            "GET", "/api/v1/orders", OrderPage, query={"role": role, "limit": limit, "cursor": cursor}
-        )
-        return answer
-
-    def place_order(self, wish: NewOrder, *, idempotency_key: str) -> OrderView:
-        """Place an order. The same key and body again give the first answer again, with `Idempotency-Replayed:
-        true`.
-        """
-        answer: OrderView = self._call(
-            "POST", "/api/v1/orders", OrderView, body=wish, headers={"Idempotency-Key": idempotency_key}
-        )
-        return answer
-
-    def one_order(self, order_id: str) -> OrderView:
-        """One order with its timeline."""
-        answer: OrderView = self._call("GET", f"/api/v1/orders/{quote(str(order_id), safe='')}", OrderView)
-        return answer
-
-    def cancel_order(self, order_id: str, *, if_match: str | None = None) -> OrderView:
-        """Cancel, at once or (with a robot on its way) as soon as the robot answers."""
-        answer: OrderView = self._call(
-            "POST", f"/api/v1/orders/{quote(str(order_id), safe='')}/cancel", OrderView, headers={"If-Match": if_match}
         )
         return answer
 
