@@ -18,6 +18,7 @@ from app.orders.transitions import ENDED, By
 from app.orders.views import MyRole, delegates_view, load_facts
 from app.people.service import new_id
 from app.tables import Delegate, Order, OrderState, Person, RobotRow
+from app.tables.order_events import DELEGATE_NAMED, DELEGATE_REVOKED
 from protocol.parts import Purpose
 from protocol.to_robot import Verifiers
 
@@ -55,7 +56,7 @@ class Delegating:
         await session.flush()
         if wish.email is not None:
             await tell_delegate(session, self.fleet.orders, order, row, person)
-        await self._tell(session, order, "delegate_named", _word(role, person, wish.name))
+        await self._tell(session, order, DELEGATE_NAMED, _word(role, person, wish.name))
         return row
 
     async def revoke(self, session: AsyncSession, person: Person, order_id: str, delegate_id: str) -> None:
@@ -66,7 +67,7 @@ class Delegating:
         if row.revoked_at is None:
             row.revoked_at = self.fleet.clock.utc()
             await tell_that_it_is_over(session, self.fleet.orders, order, row)
-            await self._tell(session, order, "delegate_revoked", _word(role, person, row.name))
+            await self._tell(session, order, DELEGATE_REVOKED, _word(role, person, row.name))
 
     async def code(self, session: AsyncSession, person: Person, order_id: str, delegate_id: str) -> HandoverCode:
         """A delegate's code, for whoever may pass it on to them. Raises UnknownOrder, UnknownDelegate."""

@@ -10,7 +10,7 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Any, Final
 
-from sqlalchemy import delete, update
+from sqlalchemy import ColumnElement, delete, update
 from sqlmodel import col, or_, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
@@ -22,6 +22,7 @@ from app.tables import (
     IdempotencyKey,
     Notice,
     Order,
+    OrderEvent,
     OutgoingNotice,
     Person,
     Role,
@@ -29,6 +30,7 @@ from app.tables import (
     StandingOrder,
     metadata,
 )
+from app.tables.order_events import DELEGATE_NAMED, DELEGATE_REVOKED
 
 ERASED_NAME: Final = "Erased"
 ERASED_DOMAIN: Final = "erased.invalid"
@@ -117,7 +119,16 @@ async def _forget_what_others_know(session: AsyncSession, person: Person, order_
     await session.exec(delete(Contact).where(col(Contact.email) == person.email))
     await session.exec(delete(SignInCode).where(col(SignInCode.email) == person.email))
     theirs = or_(col(Delegate.email) == person.email, col(Delegate.named_by_id) == person.id)
-    await session.exec(update(Delegate).where(theirs).values(name=ERASED_NAME, email=None))
+    await forget_delegates(session, theirs)
+
+
+async def forget_delegates(session: AsyncSession, which: ColumnElement[bool], **more: str) -> None:
+    """Their names and addresses, in the timelines of their orders too; `more`: what else becomes of their rows."""
+    for order_id, name in (await session.exec(select(Delegate.order_id, Delegate.name).where(which))).all():
+        of_them = (col(OrderEvent.kind).in_((DELEGATE_NAMED, DELEGATE_REVOKED)), col(OrderEvent.reason) == name)
+        told = update(OrderEvent).where(col(OrderEvent.order_id) == order_id, *of_them)
+        await session.exec(told.values(reason=ERASED_NAME))
+    await session.exec(update(Delegate).where(which).values(name=ERASED_NAME, email=None, **more))
 
 
 async def _end_standing_orders(session: AsyncSession, person: Person, now: datetime) -> None:

@@ -10,7 +10,7 @@ from sqlalchemy import delete, exists, update
 from sqlmodel import col, or_, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.keeping.erasure import ERASED_DOMAIN, ERASED_NAME, delete_rows
+from app.keeping.erasure import ERASED_DOMAIN, ERASED_NAME, delete_rows, forget_delegates
 from app.orders.transitions import ENDED
 from app.tables import (
     Delegate,
@@ -44,8 +44,7 @@ async def forget_orders(session: AsyncSession, before: datetime, at_most: int) -
     for row in (OrderEvent, Handover):
         await session.exec(update(row).where(col(row.order_id).in_(ids)).values(person_id=None))
     await session.exec(update(RobotCommand).where(col(RobotCommand.order_id).in_(ids)).values(asked_by_id=None))
-    named = {"name": ERASED_NAME, "email": None, "named_by_id": NOBODY}
-    await session.exec(update(Delegate).where(col(Delegate.order_id).in_(ids)).values(**named))
+    await forget_delegates(session, col(Delegate.order_id).in_(ids), named_by_id=NOBODY)
     await session.exec(delete(OrderLink).where(col(OrderLink.order_id).in_(ids)))
     told = select(Notice.id).where(col(Notice.order_id).in_(ids))
     await session.exec(delete(OutgoingNotice).where(col(OutgoingNotice.notice_id).in_(told)))

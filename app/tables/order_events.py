@@ -15,6 +15,9 @@ class EventsAreAppendOnly(RuntimeError):
 
 
 MOVED: Final = "moved"
+DELEGATE_NAMED: Final = "delegate_named"
+DELEGATE_REVOKED: Final = "delegate_revoked"
+"""Their `reason` is the delegate's name."""
 
 
 class OrderEvent(SQLModel, table=True):

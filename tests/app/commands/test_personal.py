@@ -66,6 +66,21 @@ async def _whole_database(mailroom: Mailroom) -> str:
         return "\n".join([str((await connection.execute(table.select())).all()) for table in metadata.sorted_tables])
 
 
+def test_a_delegate_who_is_erased_is_found_nowhere(ask: Ask, sender: Browser, mailroom: Mailroom, mails: Mails) -> None:
+    """Neither their account, which their mail has made, nor the name by which others called them."""
+    order_id = sender.order().json()["id"]
+    wish = {"name": "Eve of the porters", "email": "eve@campus.example"}
+    named = sender.post(f"/api/v1/orders/{order_id}/delegates", json=wish)
+    assert named.status_code == 201
+    mailroom.send_mails()
+    assert mails.to(wish["email"])
+    ask("erase", wish["email"], "--yes")
+    everything = mailroom.call(_whole_database, mailroom)
+    assert wish["name"] not in everything
+    assert wish["email"] not in everything
+    assert mails.to(wish["email"]) == []
+
+
 def test_nobody_is_erased_while_their_mail_is_under_way(run: Run, sender: Browser, mailroom: Mailroom) -> None:
     order_id = sender.order().json()["id"]
     for email in (SENDER, RECIPIENT):

@@ -97,19 +97,21 @@ def delivered(sender: Browser, mailroom: Mailroom) -> str:
 def test_an_order_keeps_its_names_for_400_days_and_its_life_for_ever(
     kept: Kept, sender: Browser, mailroom: Mailroom, clock: SteppedClock
 ) -> None:
-    order_id = delivered(sender, mailroom)
+    order_id = sender.order(description="For Ada").json()["id"]
+    assert sender.post(f"/api/v1/orders/{order_id}/delegates", json={"name": "Eve"}).status_code == 201
+    mailroom.move(order_id, "assigned", "to_sender", "at_sender", "carrying", "at_recipient", "delivered")
     now, ada = clock.utc(), kept.rows(Order)[0].sender_id
     stop = {"order_id": order_id, "stop_id": "s1", "purpose": "load", "robot": "r1", "post": "post1"}
     kept.add(Handover(**stop, robot_at=now, at=now, person_id=ada, how="tap"))
-    kept.add(Delegate(id="d1", order_id=order_id, purpose="load", name="Eve", named_by_id=ada, named_at=now))
     assert "orders" not in kept.retain_after(399.0)
     assert kept.rows(Order)[0].description == "For Ada"
     assert kept.retain_after(1.5)["orders"] == 1
     (order,) = kept.rows(Order)
     assert (order.sender_id, order.recipient_id, order.description) == ("nobody", "nobody", None)
     assert order.state == "delivered"
-    assert len(kept.rows(OrderEvent)) == 7
+    assert len(kept.rows(OrderEvent)) == 8
     assert {event.person_id for event in kept.rows(OrderEvent)} == {None}
+    assert [event.reason for event in kept.rows(OrderEvent) if event.kind == "delegate_named"] == ["Erased"]
     assert [(row.purpose, row.robot, row.person_id) for row in kept.rows(Handover)] == [("load", "r1", None)]
     assert [(row.name, row.named_by_id) for row in kept.rows(Delegate)] == [("Erased", "nobody")]
     assert kept.rows(Notice) == kept.rows(OutgoingNotice) == []
