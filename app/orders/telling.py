@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from datetime import datetime
 from typing import Final
 
 from sqlmodel.ext.asyncio.session import AsyncSession
@@ -98,11 +99,12 @@ async def tell_about(
     facts: Mapping[str, str],
     events: Sequence[OrderEvent],
     is_near: bool = False,
+    now: datetime | None = None,
 ) -> None:
     """Tell whoever is to be told of the state that `order` is in now; `events` are all it has been through, `is_near`:
-    its robot is near the sender."""
+    its robot is near the sender. `now`: if that is not when the order changed."""
     tellings = [one for one in TOLD.get(order.state, ()) if is_near or not one.when_near]
-    await _tell(session, tellings, order, people, facts, round_of(events))
+    await _tell(session, tellings, order, people, facts, round_of(events), now or order.updated_at)
 
 
 async def tell_of_delay(
@@ -113,7 +115,7 @@ async def tell_of_delay(
     events: Sequence[OrderEvent],
 ) -> None:
     """Its window is later than what people were told; once in each round."""
-    await _tell(session, LATE, order, people, facts, round_of(events))
+    await _tell(session, LATE, order, people, facts, round_of(events), order.updated_at)
 
 
 async def _tell(
@@ -123,6 +125,7 @@ async def _tell(
     people: Mapping[str, Person],
     facts: Mapping[str, str],
     round_: int,
+    now: datetime,
 ) -> None:
     ids = {SENDER: order.sender_id, RECIPIENT: order.recipient_id}
     for one in tellings:
@@ -135,7 +138,7 @@ async def _tell(
                 order_id=order.id,
                 kind=one.kind,
                 facts=facts,
-                now=order.updated_at,
+                now=now,
             )
 
 
