@@ -23,6 +23,8 @@ from protocol.to_robot import Grant, Mission, Verifier, Verifiers
 from robot.store import Store
 
 KEPT_COMMANDS: Final = 200
+KEPT_MISSIONS: Final = 10
+"""The stops of so many that were dropped are known to be done."""
 T = TypeVar("T")
 
 _MISSION: Final = TypeAdapter[Mission | None](Mission | None)
@@ -33,6 +35,7 @@ _LEGS: Final = TypeAdapter(tuple[Leg, ...])
 _POSITION: Final = TypeAdapter(Position)
 _FLAG: Final = TypeAdapter(bool)
 _NAMES: Final = TypeAdapter(frozenset[str])
+_DONE_OF: Final = TypeAdapter(dict[str, frozenset[str]])
 _TIMES: Final = TypeAdapter(dict[str, datetime])
 _RECEIVED: Final = TypeAdapter(Received)
 _WORD: Final = TypeAdapter[str | None](str | None)
@@ -102,7 +105,8 @@ class Memory:
     def hold(self, mission: Mission) -> bool:
         """Take a mission or an update of it; False if it is the one held, or older than that. Raises MissionConflict.
 
-        Stops that were done stay done: the next stop is the first whose id has not been passed yet.
+        Stops that were done stay done: the next stop is the first whose id has not been passed yet. So do those of a
+        mission that was dropped: without network nobody knew that it was over, and it may have got an update.
         """
         with self._store.transaction() as database:
             held = self.mission()
@@ -110,10 +114,8 @@ class Memory:
                 raise refusal
             if held is not None and held.id == mission.id and mission.update <= held.update:
                 return False
-            done: frozenset[str] = frozenset()
-            if held is not None and held.id == mission.id:
-                done = self.done() | {stop.id for stop in held.stops[: self.next_stop()]}
-            self._write("done", _NAMES, done)
+            is_update = held is not None and held.id == mission.id
+            self._write("done", _NAMES, self._passed() if is_update else self._dropped().get(mission.id, frozenset()))
             self._write("next_stop", _NUMBER, 0)
             self._write("mission", _MISSION, mission)
             database.execute("DELETE FROM reported WHERE mission_id != ?", (mission.id,))
@@ -134,10 +136,21 @@ class Memory:
     def drop_mission(self) -> None:
         """Nothing is to be done any more. Cargo, grants and verifiers stay what they are."""
         with self._store.transaction():
+            if mission := self.mission():
+                before = {one: done for one, done in self._dropped().items() if one != mission.id}
+                newest = [*before.items(), (mission.id, self._passed())][-KEPT_MISSIONS:]
+                self._write("dropped", _DONE_OF, dict(newest))
             self._write("mission", _MISSION, None)
             self._write("next_stop", _NUMBER, 0)
             self._write("done", _NAMES, frozenset())
             self._write("cancelled", _NAMES, frozenset())
+
+    def _passed(self) -> frozenset[str]:
+        mission = self.mission()
+        return self.done() | {stop.id for stop in mission.stops[: self.next_stop()]} if mission else frozenset()
+
+    def _dropped(self) -> dict[str, frozenset[str]]:
+        return self._read("dropped", _DONE_OF, {})
 
     def first_time(self, mission_id: str, key: str) -> bool:
         """True once for each key of a mission, for ever: what was reported is not reported again after a restart.

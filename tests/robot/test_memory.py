@@ -71,6 +71,22 @@ def test_the_same_mission_again_changes_nothing_and_an_older_update_neither(stor
     assert (memory.mission(), memory.next_stop()) == (newer, 2)
 
 
+def test_what_was_done_is_not_done_again_by_an_update_that_comes_when_the_mission_is_over(store: Store) -> None:
+    """Without network nobody knew: an update that lets it wait longer, say, was under way."""
+    memory = Memory(store)
+    memory.hold(MISSION)
+    for stop in MISSION.stops:
+        memory.pass_stop(stop.id)
+    memory.drop_mission()
+    memory.hold(Mission(id="return-1", update=1, stops=(PARK,)))
+    memory.drop_mission()
+    memory.hold(Mission(id="m1", update=2, stops=(LOAD, RECEIVE, PARK)))
+    assert memory.next_stop() == 2, "what is new is still to come"
+    memory.drop_mission()
+    memory.hold(Mission(id="m2", update=1, stops=(LOAD,)))
+    assert memory.next_stop() == 0, "another mission is another one"
+
+
 def test_other_stops_under_the_same_number_are_an_error_and_the_first_are_kept(store: Store) -> None:
     memory = Memory(store)
     memory.hold(MISSION)
