@@ -6,6 +6,7 @@ from typing import Any, Final
 from sqlalchemy import insert
 from sqlmodel.ext.asyncio.session import AsyncSession
 
+from app.database import connection_of
 from app.dispatch.choice import WaitingOrder
 from app.dispatch.insertion import Insertion, Tour, Visit, cheapest_insertion
 from app.fleet.service import Fleet
@@ -28,7 +29,7 @@ async def begin_missions(
 ) -> list[str]:
     """Fetch and bring, nothing else yet: a new mission for each of these orders and its robot. Their robots are told at
     once, unless something may still be added."""
-    connection = await session.connection()
+    connection = await connection_of(session)
     now, wait_limit_s = fleet.clock.utc(), fleet.settings.wait_limit_s
     missions: list[Values] = [
         {"id": new_id(), "robot": robot, "created_at": now, "told_update": int(told)} for _, robot in given

@@ -22,6 +22,7 @@ from sqlalchemy import (
 from sqlmodel import col
 from sqlmodel.ext.asyncio.session import AsyncSession
 
+from app.database import connection_of
 from app.dispatch.choice import ENOUGH_CHARGE, IdleRobot, WaitingOrder, counts_since
 from app.dispatch.insertion import Tour, Visit
 from app.orders.stops import stops_left
@@ -54,7 +55,7 @@ class Todo:
 
 async def look_for_work(session: AsyncSession, now: datetime) -> Todo:
     """One question, since it is asked after every change."""
-    rows = (await (await session.connection()).execute(_TODO, {"now": now})).all()
+    rows = (await (await connection_of(session)).execute(_TODO, {"now": now})).all()
     return Todo(
         [row.id for row in rows if row.what == "drop"],
         [row.id for row in rows if row.what == "tell"],
@@ -70,12 +71,12 @@ async def look(session: AsyncSession, now: datetime, head_start_s: float) -> Sit
 
 async def _waiting(session: AsyncSession, now: datetime, head_start_s: float) -> list[WaitingOrder]:
     # As columns, not as orders: nothing of them is changed here, and there may be many.
-    connection = await session.connection()
+    connection = await connection_of(session)
     rows = {row.id: row for row in (await connection.execute(_WAITING, {"now": now})).all()}
     if len(rows) == LOOKED_AT:  # the important ones behind these must not be overlooked
         rows |= {row.id: row for row in (await connection.execute(_IMPORTANT, {"now": now})).all()}
     longest = sorted(rows.values(), key=lambda row: (counts_since(row.created_at, row.priority, head_start_s), row.id))
-    dropping = await _dropping(session, list(rows))
+    dropping = await _dropping(session, [row.id for row in rows.values() if row.is_dropped])
     return [WaitingOrder(*row[:5], frozenset(dropping.get(row.id, ()))) for row in longest]
 
 
@@ -83,7 +84,7 @@ async def _dropping(session: AsyncSession, order_ids: Sequence[str]) -> dict[str
     """Robots that were told to drop one of these orders and have not answered: they would drop it again."""
     if not order_ids:
         return {}
-    asked = await (await session.connection()).execute(_DROPPING, {"order_ids": order_ids})
+    asked = await (await connection_of(session)).execute(_DROPPING, {"order_ids": order_ids})
     dropping: dict[str, set[str]] = {}
     for order_id, robot in asked.all():
         dropping.setdefault(str(order_id), set()).add(robot)
@@ -97,16 +98,16 @@ async def _nearby(session: AsyncSession, waiting: Sequence[WaitingOrder]) -> lis
     not_with = {robot for order in waiting for robot in (*order.dropping, order.avoided) if robot}
     wanted = {order.wanted for order in waiting if order.wanted}
     asked = {"at_each_post": len(waiting) + len(not_with), "wanted": list(wanted)}
-    return [IdleRobot(*row) for row in (await (await session.connection()).execute(_NEARBY, asked)).all()]
+    return [IdleRobot(*row) for row in (await (await connection_of(session)).execute(_NEARBY, asked)).all()]
 
 
 async def idle_robots(session: AsyncSession) -> list[IdleRobot]:
     """Connected and with nothing to do, charged or not."""
-    return [IdleRobot(*row) for row in (await (await session.connection()).execute(_IDLE)).all()]
+    return [IdleRobot(*row) for row in (await (await connection_of(session)).execute(_IDLE)).all()]
 
 
 async def connected_robots(session: AsyncSession) -> int:
-    return int((await (await session.connection()).execute(_CONNECTED)).scalar_one())
+    return int((await (await connection_of(session)).execute(_CONNECTED)).scalar_one())
 
 
 def is_waiting() -> ColumnElement[bool]:
@@ -153,10 +154,12 @@ _OF_ROBOT: Final = (col(RobotRow.name), col(RobotRow.post), col(RobotRow.battery
 _NEARBY: Final = _nearby_robots()
 _IDLE: Final = select(*_OF_ROBOT).where(_is_idle())
 _CONNECTED: Final = select(func.count()).select_from(RobotRow).where(col(RobotRow.online))
+_IS_DROPPED: Final = and_(col(RobotCommand.kind) == "cancel", col(RobotCommand.answered_at).is_(None))
 _WAITING: Final = (
     select(
         *(col(Order.id), col(Order.from_post), col(Order.to_post), col(Order.wanted_robot), col(Order.avoided_robot)),
         *(col(Order.created_at), col(Order.priority)),
+        exists().where(col(RobotCommand.order_id) == col(Order.id), _IS_DROPPED).label("is_dropped"),
     )
     .where(is_waiting())
     .order_by(col(Order.created_at), col(Order.id))
@@ -164,9 +167,7 @@ _WAITING: Final = (
 )
 _IMPORTANT: Final = _WAITING.where(col(Order.priority) == Priority.HIGH)
 _DROPPING: Final = select(col(RobotCommand.order_id), col(RobotCommand.robot)).where(
-    col(RobotCommand.order_id).in_(bindparam("order_ids", expanding=True)),
-    col(RobotCommand.kind) == "cancel",
-    col(RobotCommand.answered_at).is_(None),
+    col(RobotCommand.order_id).in_(bindparam("order_ids", expanding=True)), _IS_DROPPED
 )
 _TODO: Final[CompoundSelect[Any]] = union_all(
     select(literal("drop").label("what"), col(Order.id).label("id")).where(col(Order.let_go_by).is_not(None)),
@@ -179,7 +180,7 @@ _TODO: Final[CompoundSelect[Any]] = union_all(
 
 async def tours(session: AsyncSession) -> list[Tour]:
     """Missions under way that may get one more order: of robots that can be told, and wait for nobody just now."""
-    rows = (await (await session.connection()).execute(_UNDER_WAY)).all()
+    rows = (await (await connection_of(session)).execute(_UNDER_WAY)).all()
     return [await tour_of(session, *row) for row in rows]
 
 
@@ -212,7 +213,7 @@ _ABOARD: Final = select(func.count()).select_from(Order).where(col(Order.robot) 
 async def tour_of(session: AsyncSession, mission_id: str, robot: str, post: str | None) -> Tour:
     """What is left of a mission, as a way; it may turn aside wherever it comes to next."""
     stops = await stops_left(session, mission_id)
-    aboard = (await (await session.connection()).execute(_ABOARD, {"of": robot})).scalar_one()
+    aboard = (await (await connection_of(session)).execute(_ABOARD, {"of": robot})).scalar_one()
     return Tour(robot=robot, start=post, visits=tuple(visit_of(stop) for stop in stops), aboard=aboard)
 
 

@@ -1,16 +1,19 @@
 """Who is connected now: one robot, one socket. In memory, since a socket does not outlive its process either."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Protocol
+
+from app.fleet.outbox import Kept, Waiting
 
 
 class Seat(Protocol):
     """A robot's open connection, as others see it. Neither call waits."""
 
     journal: str
+    token_prefix: str
 
-    def wake(self) -> None:
-        """Something new is in the outbox."""
+    def wake(self, news: Sequence[Waiting] = ()) -> None:
+        """Something new is in the outbox: `news`, or it has to be looked for."""
         ...
 
     def give_way(self) -> None:
@@ -48,6 +51,12 @@ class Connections:
         if seat := self._seats.get(robot):
             seat.wake()
 
-    def wake_all(self, robots: Iterable[str]) -> None:
-        for robot in robots:
-            self.wake(robot)
+    def tokens(self, robots: Iterable[str]) -> dict[str, str]:
+        """What those of these robots who are connected came in with: their tokens' prefixes."""
+        return {robot: seat.token_prefix for robot in robots if (seat := self._seats.get(robot))}
+
+    def hand_over(self, news: Mapping[str, Kept]) -> None:
+        """What has just been put into outboxes: nobody has to look for it there."""
+        for robot, kept in news.items():
+            if seat := self._seats.get(robot):
+                seat.wake(kept.messages if seat.token_prefix == kept.token else ())

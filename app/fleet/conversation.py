@@ -57,11 +57,15 @@ class Conversation:
         self._room = asyncio.Semaphore(MAX_IN_HAND)
         self._owes_ack = False
         self._problems: list[Error] = []
+        self._news: list[Waiting] = []
         self._look_again = True
         self._is_held_back = False
 
-    def wake(self) -> None:
-        self._look_again = True
+    def wake(self, news: Sequence[Waiting] = ()) -> None:
+        if news:
+            self._news += news
+        else:
+            self._look_again = True
         self._wake.set()
 
     def give_way(self) -> None:
@@ -189,6 +193,7 @@ class Conversation:
         while True:
             self._wake.clear()
             await self._answer()
+            await self._send_news()
             if self._look_again:
                 self._look_again = False
                 await self._send_waiting()
@@ -203,8 +208,24 @@ class Conversation:
         for problem in problems:
             await self._send(problem)
 
+    async def _send_news(self) -> None:
+        """What was handed over, if nothing else is to be sent before it."""
+        news, self._news = [one for one in self._news if one.seq > self._sent], []
+        if not news:
+            return
+        is_next = news[-1].seq == self._sent + len(news) and len(news) <= self._room_left()
+        if self._look_again or not is_next:
+            self._look_again = True
+            return
+        for one in news:
+            await self._send_text(one.type, one.body, one.seq)
+            self._sent = one.seq
+
+    def _room_left(self) -> int:
+        return max(0, MAX_UNACKNOWLEDGED - (self._sent - self.acknowledged))
+
     async def _send_waiting(self) -> None:
-        room = max(0, MAX_UNACKNOWLEDGED - (self._sent - self.acknowledged))
+        room = self._room_left()
         rows = await self._waiting(room) if room else []
         self._is_held_back = len(rows) == room
         for row in rows:

@@ -8,6 +8,7 @@ from sqlalchemy import bindparam, insert, update
 from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
+from app.database import connection_of
 from app.fleet.errors import MessageGap
 from app.tables import RobotJournal, RobotMessage
 from protocol import sequence
@@ -46,7 +47,7 @@ async def write_down(session: AsyncSession, said: Sequence[Envelope], now: datet
     verdicts = [_judge(received, envelope) for envelope in said]
     new = [envelope for envelope, verdict in zip(said, verdicts, strict=True) if verdict is True]
     if new:
-        connection = await session.connection()
+        connection = await connection_of(session)
         await connection.execute(_WRITE_DOWN, [_row(envelope, now) for envelope in new])
         moved = [
             {"of": robot, "in_journal": journal, "up_to": seq}
@@ -70,7 +71,7 @@ _MOVE_ON: Final = (
 
 async def _received(session: AsyncSession, robots: set[str]) -> dict[tuple[str, str], int]:
     """The highest number taken so far, by robot and journal."""
-    rows = await (await session.connection()).execute(_RECEIVED, {"robots": list(robots)})
+    rows = await (await connection_of(session)).execute(_RECEIVED, {"robots": list(robots)})
     return {(robot, journal): seq for robot, journal, seq in rows.all()}
 
 

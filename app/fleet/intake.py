@@ -17,7 +17,7 @@ from sqlalchemy.orm.attributes import set_committed_value
 from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.database import savepoint
+from app.database import connection_of, savepoint
 from app.errors import ServiceError
 from app.fleet import inbox, outbox
 from app.fleet.alarms import raise_alarm
@@ -208,6 +208,7 @@ class Intake:
     ) -> Error | None:
         try:
             async with savepoint(session):
+                await session.connection()  # which begins it: what is written past the session is to be undone too
                 await self.fleet.follow(session, robot, envelope.body)
         except (FleetError, ServiceError) as problem:
             sentence = str(problem)[:500]
@@ -262,6 +263,6 @@ async def _heard(session: AsyncSession, names: Iterable[str], rows: Mapping[str,
     """One statement for all of them."""
     heard = [{"of": name, "at": now} for name in sorted(names)]
     if heard:
-        await (await session.connection()).execute(_HEARD, heard)
+        await (await connection_of(session)).execute(_HEARD, heard)
     for row in rows.values():
         set_committed_value(row, "heard_at", now)

@@ -6,10 +6,12 @@ from datetime import datetime
 from typing import Any, Final
 from uuid import uuid4
 
+from pydantic_core import to_json
 from sqlalchemy import Text, bindparam, cast, exists, func, insert, select, update
 from sqlmodel import col
 from sqlmodel.ext.asyncio.session import AsyncSession
 
+from app.database import connection_of
 from app.tables import MessageToRobot, RobotRow, RobotToken
 from protocol.envelope import type_of
 from protocol.parts import Part, Received
@@ -18,36 +20,8 @@ from protocol.parts import Part, Received
 async def keep(session: AsyncSession, robot: RobotRow, message: Part, now: datetime) -> int:
     """Number a durable message and keep it; it is sent as soon as the transaction is committed and the robot there."""
     robot.last_seq += 1
-    await (await session.connection()).execute(_KEEP, [_row(robot.name, robot.last_seq, message, now)])
+    await (await connection_of(session)).execute(_KEEP, [_row(robot.name, robot.last_seq, message, now)])
     return robot.last_seq
-
-
-async def keep_all(session: AsyncSession, news: Mapping[str, Sequence[Part]], now: datetime) -> None:
-    """The same for messages to several robots, by their names. Their rows must not be in use in this session."""
-    connection = await session.connection()
-    last = dict((await connection.execute(_LAST, {"names": list(news)})).all())
-    rows = [
-        _row(robot, seq, message, now)
-        for robot, messages in news.items()
-        for seq, message in enumerate(messages, last[robot] + 1)
-    ]
-    await connection.execute(_KEEP, rows)
-    await connection.execute(_COUNT, [{"of": name, "seq": last[name] + len(news[name])} for name in news])
-
-
-def _row(robot: str, seq: int, message: Part, now: datetime) -> dict[str, Any]:
-    body = message.model_dump(mode="json")
-    return {"robot": robot, "seq": seq, "type": type_of(message), "body": body, "created_at": now}
-
-
-_KEEP: Final = insert(MessageToRobot)
-_LAST: Final = (
-    select(col(RobotRow.name), col(RobotRow.last_seq))
-    .where(col(RobotRow.name).in_(bindparam("names", expanding=True)))
-    .order_by(col(RobotRow.name))
-    .with_for_update()
-)
-_COUNT: Final = update(RobotRow).where(col(RobotRow.name) == bindparam("of")).values(last_seq=bindparam("seq"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,13 +31,62 @@ class Waiting:
     seq: int
     type: str
     body: str
-    may_hear: bool
+    may_hear: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class Kept:
+    """What has been put into one robot's outbox; whoever came in with `token` may hear it at once."""
+
+    messages: Sequence[Waiting]
+    token: str | None
+
+
+async def keep_all(
+    session: AsyncSession, news: Mapping[str, Sequence[Part]], now: datetime, tokens: Mapping[str, str]
+) -> dict[str, Kept]:
+    """The same for messages to several robots, by their names; `tokens`: what those came in with who are there (their
+    prefixes). The robots' rows must not be in use in this session."""
+    connection = await connection_of(session)
+    asked = {"names": list(news), "prefixes": list(tokens.values())}
+    found = {name: (last, is_good) for name, last, is_good in (await connection.execute(_LAST, asked)).all()}
+    kept, rows, counts = {}, [], []
+    for robot, messages in news.items():
+        last, is_good = found[robot]
+        theirs = [_row(robot, seq, message, now) for seq, message in enumerate(messages, last + 1)]
+        waiting = [Waiting(row["seq"], row["type"], to_json(row["body"]).decode()) for row in theirs]
+        kept[robot] = Kept(waiting, tokens.get(robot) if is_good else None)
+        rows += theirs
+        counts.append({"of": robot, "seq": last + len(messages)})
+    await connection.execute(_KEEP, rows)
+    await connection.execute(_COUNT, counts)
+    return kept
+
+
+def _row(robot: str, seq: int, message: Part, now: datetime) -> dict[str, Any]:
+    body = message.model_dump(mode="json")
+    return {"robot": robot, "seq": seq, "type": type_of(message), "body": body, "created_at": now}
+
+
+_KEEP: Final = insert(MessageToRobot)
+_HAS_GOOD_TOKEN: Final = exists().where(
+    col(RobotToken.robot) == col(RobotRow.name),
+    col(RobotToken.prefix).in_(bindparam("prefixes", expanding=True)),
+    col(RobotToken.revoked_at).is_(None),
+)
+_LAST: Final = (
+    select(col(RobotRow.name), col(RobotRow.last_seq), _HAS_GOOD_TOKEN)
+    .where(col(RobotRow.name).in_(bindparam("names", expanding=True)))
+    .order_by(col(RobotRow.name))
+    .with_for_update()
+)
+_COUNT: Final = update(RobotRow).where(col(RobotRow.name) == bindparam("of")).values(last_seq=bindparam("seq"))
 
 
 async def pending(session: AsyncSession, robot: str, prefix: str, after: int, limit: int) -> Sequence[Waiting]:
     """What the robot has not acknowledged, beyond `after`, in order; `prefix` is the token that it came in with."""
     asked = {"of": robot, "prefix": prefix, "after": after, "at_most": limit}
-    return [Waiting(*row) for row in (await (await session.connection()).execute(_PENDING, asked)).all()]
+    return [Waiting(*row) for row in (await (await connection_of(session)).execute(_PENDING, asked)).all()]
 
 
 _IS_GOOD: Final = exists().where(col(RobotToken.prefix) == bindparam("prefix"), col(RobotToken.revoked_at).is_(None))
@@ -84,7 +107,7 @@ async def acknowledged_by(session: AsyncSession, news: Mapping[str, tuple[int, i
     few = {robot: range(had + 1, has + 1) for robot, (had, has) in news.items() if has - had <= FEW}
     one_by_one = [{"of": robot, "one": seq, "at": now} for robot, numbers in few.items() for seq in numbers]
     rest = [{"of": robot, "up_to": has, "at": now} for robot, (_, has) in news.items() if robot not in few]
-    connection = await session.connection()
+    connection = await connection_of(session)
     if one_by_one:  # by their keys, which is quick
         await connection.execute(_HAS, one_by_one)
     if rest:
@@ -110,12 +133,12 @@ _HAVE: Final = (
 
 async def acknowledged(session: AsyncSession, robot: str, seq: int, now: datetime) -> None:
     """The robot has stored everything up to `seq`."""
-    await (await session.connection()).execute(_HAVE, {"of": robot, "up_to": seq, "at": now})
+    await (await connection_of(session)).execute(_HAVE, {"of": robot, "up_to": seq, "at": now})
 
 
 async def resume_from(session: AsyncSession, robot: RobotRow) -> int:
     """The lowest number that can still be sent."""
-    lowest = (await (await session.connection()).execute(_LOWEST, {"of": robot.name})).scalar_one()
+    lowest = (await (await connection_of(session)).execute(_LOWEST, {"of": robot.name})).scalar_one()
     return lowest or robot.last_seq + 1
 
 

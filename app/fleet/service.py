@@ -97,8 +97,8 @@ class Fleet:
 
     async def tell_all(self, session: AsyncSession, news: Mapping[str, Sequence[Part]]) -> None:
         """The same for several robots, by their names: one statement writes all of it."""
-        await outbox.keep_all(session, news, self.clock.utc())
-        after_commit(session, partial(self.connections.wake_all, tuple(news)))
+        kept = await outbox.keep_all(session, news, self.clock.utc(), self.connections.tokens(news))
+        after_commit(session, partial(self.connections.hand_over, kept))
 
     async def follow(self, session: AsyncSession, robot: RobotRow | Known, message: Part) -> None:
         """Do what follows from a durable message. Raises FleetError or ServiceError; undo what it has done then."""

@@ -10,6 +10,7 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.bearer_tokens import NewToken, read_token
 from app.bearer_tokens import make_token as make_bearer_token
+from app.database import connection_of
 from app.tables import RobotRow, RobotToken
 
 KIND = "cmr"
@@ -47,7 +48,7 @@ class Known:
 
 async def still_good(session: AsyncSession, prefixes: set[str]) -> dict[str, Known]:
     """Which of these tokens, that let somebody in, are worth something still, and whose they are."""
-    rows = await (await session.connection()).execute(_STILL_GOOD, {"prefixes": list(prefixes)})
+    rows = await (await connection_of(session)).execute(_STILL_GOOD, {"prefixes": list(prefixes)})
     return {prefix: Known(name, clock_off_s) for prefix, name, clock_off_s in rows.all()}
 
 

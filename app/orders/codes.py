@@ -17,6 +17,7 @@ from sqlalchemy import bindparam
 from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
+from app.database import columns_of, connection_of
 from app.server_key import ServerKey
 from app.tables import Delegate, Notice, NoticeKind, Order, OrderState
 from protocol.parts import Purpose
@@ -131,11 +132,14 @@ _DELEGATES: Final = (
     .where(col(Delegate.order_id).in_(bindparam("order_ids", expanding=True)))
     .order_by(col(Delegate.named_at), col(Delegate.id))
 )
+_DELEGATES_COLUMNS: Final = _DELEGATES.with_only_columns(*columns_of(Delegate))
 
 
 async def verifiers(session: AsyncSession, key: ServerKey, orders: Sequence[Order]) -> tuple[Verifier, ...]:
     """What a robot needs to check every code of some orders offline."""
-    delegates = await delegates_of(session, orders) if orders else ()
+    connection = await connection_of(session)
+    named = await connection.execute(_DELEGATES_COLUMNS, {"order_ids": [order.id for order in orders]})
+    delegates = [Delegate(**row) for row in named.mappings()]
     return tuple(
         Verifier(order_id=code.order_id, purpose=code.purpose, sha256=code.sha256(key), expires_at=code.expires_at)
         for order in orders

@@ -13,7 +13,7 @@ from typing import Any, Final
 from sqlalchemy import insert
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.database import after_commit
+from app.database import after_commit, connection_of
 from app.live.feed import Feed, Happening
 from app.orders import errors
 from app.orders.idempotency import Running
@@ -126,7 +126,7 @@ class Ledger:
     async def _write(self, session: AsyncSession, order: Order, kind: str, word: Word) -> None:
         order.version += 1
         order.updated_at = self.clock.utc()
-        await (await session.connection()).execute(_NEW_EVENT, _event(order, kind, word))
+        await (await connection_of(session)).execute(_NEW_EVENT, _event(order, kind, word))
         is_told = kind == MOVED and order.state in TOLD
         if not is_told and not self.feed.is_heard:  # all that has been is looked up for somebody who reads it
             after_commit(session, self.feed.pass_over)

@@ -13,6 +13,7 @@ from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 from sqlmodel.sql.expression import SelectOfScalar
 
+from app.database import connection_of
 from app.people.service import new_id
 from app.tables import MissionRow, MissionState, Order, StopRow
 from protocol.parts import StopAction
@@ -54,8 +55,10 @@ async def is_anything_left(session: AsyncSession, mission_id: str) -> bool:
 
 async def orders_to_return(session: AsyncSession, mission_id: str, up_to: int) -> Sequence[str]:
     """Whose mail a mission brings back, as of its update number `up_to`."""
-    asked = {"mission_id": mission_id, "up_to": up_to}
-    return [order_id for order_id in (await session.exec(_TO_RETURN, params=asked)).all() if order_id]
+    if any(isinstance(row, StopRow) for row in (*session.dirty, *session.new)):
+        await session.flush()
+    rows = await (await connection_of(session)).execute(_TO_RETURN, {"mission_id": mission_id, "up_to": up_to})
+    return [order_id for order_id in rows.scalars() if order_id]
 
 
 async def active_mission(session: AsyncSession, robot: str) -> MissionRow | None:
