@@ -154,7 +154,7 @@ class Ledger:
         robot_at = robot_at or (facts.robot.post if facts.robot else None)
         nearby = order.state is OrderState.TO_SENDER and is_near(self.ways, robot_at, order.from_post, self.settings)
         gaps = facts_of(order, facts.people, self.campus, self.settings)
-        await tell_about(session, order, facts.people, gaps, facts.events, nearby)
+        await tell_about(session, order, facts.people, gaps, facts.events, nearby, self.clock.utc())
 
     def publish(self, session: AsyncSession, facts: OrderFacts) -> None:
         """To sender, recipient and dispatchers, each as they may see it, and to whoever waits for changes."""

@@ -55,6 +55,22 @@ async def test_the_sender_hears_once_that_the_robot_is_near_when_it_has_one_corr
     assert await kinds(service) == ["accepted", "robot_near", "robot_here"]
 
 
+async def test_what_is_told_on_the_way_is_told_at_the_time_at_which_it_is(
+    service: Service, robot: PlayedRobot, clock: SteppedClock
+) -> None:
+    """Not when the robot set out, perhaps half an hour before."""
+    await service.order(SENDERS, FAR)
+    async with robot.connected(service.url, await service.enrol("r1")):
+        await robot.greet(FAR)
+        mission = await robot.mission()
+        load = mission.stops[0]
+        await robot.ends(await robot.report(mission, Step.DEPARTED, load, post=FAR))
+        clock.advance(1800.0)
+        await robot.ends(await robot.report(mission, Step.PASSED, load, post=NEXT_TO_IT))
+    near = (await service.rows(Notice))[-1]
+    assert (near.kind, near.at) == ("robot_near", clock.utc())
+
+
 async def test_a_robot_that_sets_out_next_door_is_near_at_once(service: Service, robot: PlayedRobot) -> None:
     await service.order(SENDERS, FAR)
     async with robot.connected(service.url, await service.enrol("r1")):
