@@ -97,8 +97,8 @@ class Dispatcher:
 
     async def look_round(self) -> bool:
         """Do what there is to do; whether anything is left that waits for a robot."""
-        async with self._fleet.database.reading() as session:
-            todo = await look_for_work(session, self._fleet.clock.utc())
+        async with self._fleet.database.asking() as connection:
+            todo = await look_for_work(connection, self._fleet.clock.utc())
         await self._pass_on(todo)
         if todo.waits:
             while await self.assign():

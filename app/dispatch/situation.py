@@ -19,6 +19,7 @@ from sqlalchemy import (
     select,
     union_all,
 )
+from sqlalchemy.ext.asyncio import AsyncConnection
 from sqlmodel import col
 from sqlmodel.ext.asyncio.session import AsyncSession
 
@@ -53,9 +54,9 @@ class Todo:
     waits: bool
 
 
-async def look_for_work(session: AsyncSession, now: datetime) -> Todo:
+async def look_for_work(connection: AsyncConnection, now: datetime) -> Todo:
     """One question, since it is asked after every change."""
-    rows = (await (await connection_of(session)).execute(_TODO, {"now": now})).all()
+    rows = (await connection.execute(_TODO, {"now": now})).all()
     return Todo(
         [row.id for row in rows if row.what == "drop"],
         [row.id for row in rows if row.what == "tell"],
