@@ -43,30 +43,36 @@ class Links:
     clock: Clock
 
     async def url_for(self, person: Person, order_id: str) -> str | None:
-        """For an order's recipient who has never signed in, and for its delegates; None for everybody else."""
+        """For an order's recipient who has never signed in, and for its delegates; None for everybody else.
+
+        One link for all mails about an order: the first that comes when it is too old makes it good again.
+        """
         if not self.settings.public_url:
             return None
+        now = self.clock.utc()
         async with self.database.reading() as session:
-            if not await _needs_link(session, person, order_id):
+            order = await session.get(Order, order_id)
+            if order is None or not await _needs_link(session, person, order):
                 return None
             row = await _link(session, person, order_id)
-        if row is None:
-            row = self._new(person, order_id)
+        if row is None or row.expires_at <= now:
+            # Like the codes: whoever is named for an order that was left for later comes then.
+            ends_at = max(now, order.not_before or now) + timedelta(seconds=self.settings.link_lifetime_s)
             async with self.database.transaction() as session:
-                earlier = await _link(session, person, order_id)
-                session.add(earlier or row)
-                row = earlier or row
+                row = await _link(session, person, order_id) or self._new(person, order_id, ends_at)
+                row.expires_at = ends_at
+                session.add(row)
         return f"{self.settings.public_url.rstrip('/')}/{PAGE}#{self._token(row.nonce, order_id, person.id)}"
 
-    def _new(self, person: Person, order_id: str) -> OrderLink:
-        nonce, now = secrets.token_hex(16), self.clock.utc()
+    def _new(self, person: Person, order_id: str, expires_at: datetime) -> OrderLink:
+        nonce = secrets.token_hex(16)
         return OrderLink(
             nonce=nonce,
             order_id=order_id,
             person_id=person.id,
             token_hash=hash_of(self._token(nonce, order_id, person.id)),
-            created_at=now,
-            expires_at=now + timedelta(seconds=self.settings.link_lifetime_s),
+            created_at=self.clock.utc(),
+            expires_at=expires_at,
         )
 
     def _token(self, nonce: str, order_id: str, person_id: str) -> str:
@@ -99,13 +105,10 @@ async def _link(session: AsyncSession, person: Person, order_id: str) -> OrderLi
     return (await session.exec(theirs)).first()
 
 
-async def _needs_link(session: AsyncSession, person: Person, order_id: str) -> bool:
-    order = await session.get(Order, order_id)
-    if order is None:
-        return False
+async def _needs_link(session: AsyncSession, person: Person, order: Order) -> bool:
     if order.recipient_id != person.id:
         # The pages for those who sign in show a delegate nothing of the order.
-        return order.sender_id != person.id and await _is_named(session, person, order_id)
+        return order.sender_id != person.id and await _is_named(session, person, order.id)
     signed_in = select(PersonSession.id).where(PersonSession.person_id == person.id).limit(1)
     known_outside = select(col(Identity.person_id)).where(Identity.person_id == person.id).limit(1)
     return not (await session.exec(signed_in)).first() and not (await session.exec(known_outside)).first()

@@ -91,6 +91,19 @@ def test_when_they_are_not_needed_any_more_they_are_told_and_the_link_opens_noth
     assert nobody.post("/api/v1/link/order", json=link_in(first)).status_code == 200, "named again"
 
 
+def test_a_link_is_good_when_the_robot_comes_however_long_before_somebody_was_named(
+    nobody: TestClient, sender: Browser, mailroom: Mailroom, mails: Mails
+) -> None:
+    later_id = sender.order(not_before="2026-01-31T09:00:00Z").json()["id"]
+    name(sender, later_id)
+    mailroom.send_mails()
+    (mail,) = about_mail(mails)
+    mailroom.app.state.clock.advance(26.5 * 86400)
+    assert nobody.post("/api/v1/link/order", json=link_in(mail)).json()["my_role"] == "delegate"
+    mailroom.app.state.clock.advance(30 * 86400)
+    assert nobody.post("/api/v1/link/order", json=link_in(mail)).status_code == 401, "for ever it is not"
+
+
 def test_a_code_that_is_taken_back_before_its_mail_is_out_is_mailed_to_nobody(
     sender: Browser, mailroom: Mailroom, mails: Mails, order_id: str
 ) -> None:
