@@ -16,7 +16,6 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.dispatch.choice import (
     Assignment,
-    IdleRobot,
     WaitingOrder,
     choose_robots,
     has_enough_charge,
@@ -122,7 +121,10 @@ class Dispatcher:
                     given |= await self._assign_what_can_be(session, assignments, situation.waiting)
         finally:
             self._own.clear()
-        self._left = len(situation.waiting) - len(given)
+        left = [order.id for order in situation.waiting if order.id not in given]
+        if len(chosen) < len(situation.waiting):
+            await self._explain(left)
+        self._left = len(left)
         return bool(given) and self._left > 0
 
     async def _assign(self, session: AsyncSession, assignments: Sequence[Assignment], told: bool = True) -> list[str]:
@@ -145,8 +147,7 @@ class Dispatcher:
     async def _assign_what_can_be(
         self, session: AsyncSession, assignments: Sequence[Assignment], waiting: Sequence[WaitingOrder]
     ) -> set[str]:
-        """There are fewer robots than orders: what lies on somebody's way goes along, and the others are told why they
-        wait. Which orders were given."""
+        """There are fewer robots than orders: what lies on somebody's way goes along. Which orders were given."""
         given = {one.order_id for one in assignments}
         busy = {one.robot for one in assignments}
         idle = [robot for robot in await idle_robots(session) if robot.name not in busy]
@@ -155,7 +156,6 @@ class Dispatcher:
         if not is_somebody_free:
             left = [order for order in waiting if order.id not in given]
             given |= await self._take_along(session, left[:TAKEN_ALONG_AT_ONCE], missions)
-        await self._explain(session, [order.id for order in waiting if order.id not in given], idle)
         return given
 
     async def _take_along(
@@ -177,12 +177,16 @@ class Dispatcher:
             await tell_mission(session, self._fleet, robot, mission)
         return taken
 
-    async def _explain(self, session: AsyncSession, waiting: Sequence[str], idle: Sequence[IdleRobot]) -> None:
-        """Only to those who were told something else so far."""
-        why = why_nobody_comes(idle, await connected_robots(session))
-        told = await session.exec(_TOLD_OTHERWISE, params={"order_ids": waiting, "why": why})
-        for order_id in told.all():
-            await self._fleet.orders.explain(session, order_id, why)
+    async def _explain(self, waiting: Sequence[str]) -> None:
+        """Only to those who were told something else so far. It waits for no disk: what is lost is said again."""
+        async with self._fleet.database.reading() as session:
+            why = why_nobody_comes(await idle_robots(session), await connected_robots(session))
+            asked = {"order_ids": waiting, "why": why}
+            if not (await session.exec(_TOLD_OTHERWISE, params=asked)).all():
+                return
+        async with self._fleet.database.transaction(durable=False) as session:
+            for order_id in (await session.exec(_TOLD_OTHERWISE, params=asked)).all():
+                await self._fleet.orders.explain(session, order_id, why)
 
     # What has changed for robots.
 
@@ -216,5 +220,7 @@ class Dispatcher:
 
 _ORDERS: Final = select(Order).where(col(Order.id).in_(bindparam("order_ids", expanding=True)))
 _TOLD_OTHERWISE: Final = select(Order.id).where(
-    col(Order.id).in_(bindparam("order_ids", expanding=True)), col(Order.why).is_distinct_from(bindparam("why"))
+    col(Order.id).in_(bindparam("order_ids", expanding=True)),
+    col(Order.state) == OrderState.QUEUED,
+    col(Order.why).is_distinct_from(bindparam("why")),
 )
