@@ -4,8 +4,10 @@ from collections.abc import AsyncIterator
 
 import pytest
 
+from app.dispatch.service import AT_ONCE
+from app.orders.schemas import NewOrder
 from app.settings import Settings
-from app.tables import MessageToRobot, MissionRow, Order
+from app.tables import MessageToRobot, MissionRow, Order, Person, RobotRow, Role
 from protocol.clock import SteppedClock
 from protocol.parts import Activity, Battery
 from protocol.to_server import Event, Snapshot, Step
@@ -69,6 +71,30 @@ async def test_each_robot_has_one_mission_and_the_nearer_one_gets_the_first_orde
         assert (await near.mission()).stops[0].order_id == first
         assert (await far.mission()).stops[0].order_id == second
     assert [row.robot for row in await service.rows(MissionRow)] == ["near", "far"]
+
+
+async def test_more_orders_than_are_given_at_once_all_get_a_robot_and_nobody_is_told_that_there_is_none(
+    service: Service, clock: SteppedClock
+) -> None:
+    state, number = service.app.state, AT_ONCE + 5
+    dispatcher = Person(id="dan", email="dan@campus.example", name="Dan", roles=[Role.DISPATCHER])
+    with state.feed.listening(dispatcher) as heard:
+        async with state.database.transaction() as session:
+            for name in range(number):
+                row = RobotRow(name=f"r{name}", enrolled_at=clock.utc(), server_journal="j", post="post5")
+                row.online, row.battery_ratio = True, 0.9
+                session.add(row)
+            sender = await state.sign_in_desk.person(session, "sender@campus.example", clock.utc())
+            for _ in range(number):
+                wish = NewOrder(from_post="post1", to_post="post4", recipient="recipient@campus.example")
+                await state.orders.create(session, sender, wish)
+
+        async def all_assigned() -> bool:
+            return len(await service.rows(Order, state="assigned")) == number
+
+        await until(all_assigned)
+        views = [heard.get_nowait().happening for _ in range(heard.qsize())]
+    assert [one.data().why for one in views if one.event == "order"] == [None] * 2 * number
 
 
 async def test_what_waits_is_taken_along_where_it_is_on_the_way_and_only_as_much_as_a_robot_can_carry(
