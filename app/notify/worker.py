@@ -55,7 +55,8 @@ class OutboxWorker:
         self.wake()
 
     async def run(self) -> None:
-        """Until stopped or cancelled."""
+        """Until stopped or cancelled. If it fails (the database is busy, say) it may be begun again: what is under way
+        goes on meanwhile, and is noted down then."""
         try:
             while not self._stopping:
                 self._bell.clear()
@@ -66,11 +67,16 @@ class OutboxWorker:
                     await self._wait_for_bell()
                     await asyncio.sleep(GATHER_S)
             await self._finish()
-        finally:
-            # Cut off: they are not noted down, and so sent again under their keys.
-            for task in self._under_way:
-                task.cancel()
-            self._under_way.clear()
+        except asyncio.CancelledError:
+            self._cut_off()
+            raise
+        self._cut_off()
+
+    def _cut_off(self) -> None:
+        """They are not noted down, and so sent again under their keys."""
+        for task in self._under_way:
+            task.cancel()
+        self._under_way.clear()
 
     async def has_work(self) -> bool:
         """Whether anything is to be routed, sent or noted down now."""

@@ -3,7 +3,7 @@
 import asyncio
 from collections.abc import AsyncIterator
 from dataclasses import dataclass, field
-from datetime import timedelta
+from datetime import datetime, timedelta
 
 import pytest
 from sqlmodel import delete
@@ -94,6 +94,34 @@ async def test_what_was_sent_and_not_noted_down_is_sent_again_under_its_key(offi
     await worker_of(office, mail).work_once()  # another process: the first has noted down nothing
     await end_of_sending()
     assert mail.keys == [key, key]
+
+
+class BadMoment(SteppedClock):
+    """A round that asks for the time fails, once."""
+
+    comes = False
+
+    def utc(self) -> datetime:
+        if self.comes:
+            self.comes = False
+            raise RuntimeError("a bad moment")
+        return super().utc()
+
+
+async def test_a_round_that_fails_has_nothing_sent_a_second_time(office: Office) -> None:
+    keys, clock = await orders(office, 2), BadMoment()
+    mail = Channel()
+    worker = OutboxWorker(office.state.database, office.state.feed, clock, [mail])
+    await worker.work_once()
+    await end_of_sending()
+    clock.comes = True
+    with pytest.raises(RuntimeError, match="a bad moment"):
+        await worker.run()
+    mail.gate.set()
+    worker.stop()
+    await worker.run()
+    assert all(one.sent_at for one in await office.sendings("mail"))
+    assert mail.keys == keys
 
 
 async def test_what_is_under_way_is_not_begun_again_and_no_more_than_there_are_places(office: Office) -> None:
