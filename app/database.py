@@ -3,6 +3,7 @@
 SQLite by default (write-ahead log, full sync: what was acknowledged survives a power cut), PostgreSQL by URL.
 """
 
+import asyncio
 from collections.abc import AsyncIterator, Callable, Mapping
 from contextlib import asynccontextmanager
 from functools import cache
@@ -21,6 +22,7 @@ from starlette.requests import HTTPConnection
 from app import sqlite_driver
 from app.errors import StartError
 from app.group_commit import AFTER_COMMIT, CONNECTION, Writers
+from app.uncancelled import uncancelled
 
 PRAGMAS = ("journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON", f"busy_timeout={sqlite_driver.BUSY_TIMEOUT_MS}")
 INSERTS: Mapping[str, Any] = {"sqlite": sqlite.insert, "postgresql": postgresql.insert}
@@ -75,14 +77,27 @@ class Database:
     @asynccontextmanager
     async def reading(self) -> AsyncIterator[AsyncSession]:
         """A consistent view for reading, which holds up no writer."""
-        async with AsyncSession(self.engine, expire_on_commit=False) as session:
+        session = AsyncSession(self.engine, expire_on_commit=False)
+        try:
             yield session
+        finally:
+            await self._close(session)
 
     @asynccontextmanager
     async def asking(self) -> AsyncIterator[AsyncConnection]:
         """The same past the session, for a question with each request: it costs half."""
-        async with self.engine.connect() as connection:
+        connection = await self.engine.connect()
+        try:
             yield connection
+        finally:
+            await self._close(connection)
+
+    async def _close(self, used: AsyncSession | AsyncConnection) -> None:
+        """To its end: whoever is cancelled while it waits would leave a connection behind."""
+        if self.engine.dialect.name == "sqlite":  # does not wait
+            await used.close()
+        else:
+            await uncancelled(asyncio.ensure_future(used.close()))
 
     @asynccontextmanager
     async def rebuilding(self) -> AsyncIterator[AsyncConnection]:
@@ -114,6 +129,7 @@ async def savepoint(session: AsyncSession) -> AsyncIterator[None]:
     waiting = len(session.info.setdefault(AFTER_COMMIT, []))
     try:
         async with session.begin_nested():
+            await session.connection()  # which begins it, also for those who write past the session
             yield
     except BaseException:
         del session.info[AFTER_COMMIT][waiting:]

@@ -16,8 +16,13 @@ from contextlib import asynccontextmanager, contextmanager, suppress
 from dataclasses import dataclass, field
 from typing import Final, Literal
 
+import structlog
 from sqlalchemy.ext.asyncio import AsyncConnection, AsyncEngine
 from sqlmodel.ext.asyncio.session import AsyncSession
+
+from app.uncancelled import uncancelled
+
+log = structlog.get_logger(__name__)
 
 AT_MOST: Final = 32
 """Works in one commit: the first of them waits for the last."""
@@ -38,15 +43,14 @@ class _Work:
     done: asyncio.Future[None]
 
     def committed(self) -> None:
-        """Said even if whoever did it waits no longer."""
-        try:
-            for say in self.says:
+        """Said even if whoever did it waits no longer; and done, whatever becomes of what is said."""
+        for say in self.says:
+            try:
                 say()
-        except Exception as error:
-            self.failed(error)
-        else:
-            if not self.done.done():
-                self.done.set_result(None)
+            except Exception:
+                log.exception("what follows a commit has failed")
+        if not self.done.done():
+            self.done.set_result(None)
 
     def failed(self, error: BaseException) -> None:
         if not self.done.done():
@@ -102,7 +106,8 @@ class Writers:
         work: _Work | None = None
         try:
             group = await self._open_group(durable)
-            async with group.session() as session:
+            session = group.session()
+            try:
                 with group.lost_if_first_fails():
                     async with session.begin():
                         session.info[CONNECTION] = await session.connection()
@@ -110,6 +115,8 @@ class Writers:
                 # Before the session closes, which is where a cancellation may come: it is done, and will be committed.
                 work = _Work(session.info.pop(AFTER_COMMIT, []), asyncio.get_running_loop().create_future())
                 group.works.append(work)
+            finally:
+                await session.close()  # its connection stays open: this does not wait
         finally:
             try:
                 await self._end_turn()
@@ -157,7 +164,7 @@ class Writers:
         group, self._group = self._group, None
         assert group is not None, "no transaction is open"  # noqa: S101  # whoever has the turn has looked
         try:
-            await _commit(group)
+            await uncancelled(asyncio.ensure_future(_commit(group)))
         except BaseException as error:
             for work in group.works:
                 work.failed(error)

@@ -17,6 +17,8 @@ from typing import Any, Final, Self, TypeVar
 
 import aiosqlite
 
+from app.uncancelled import uncancelled
+
 T = TypeVar("T")
 
 SHORT_STEPS: Final = 50_000
@@ -128,7 +130,7 @@ class Connection(aiosqlite.Connection):
             self._is_asking = False
             breath: asyncio.Future[None] = loop.create_future()
             loop.call_soon(breath.set_result, None)
-            await _uncancelled(breath)
+            await uncancelled(breath)
             self._breathed_at_s = time.monotonic()
         return answer
 
@@ -153,7 +155,7 @@ class Connection(aiosqlite.Connection):
         """Do it in the connection's thread, to its end."""
         outcome: asyncio.Future[T] = asyncio.get_running_loop().create_future()
         self._tx.put_nowait((outcome, lambda: self._now(what)))
-        answer = await _uncancelled(outcome)
+        answer = await uncancelled(outcome)
         self._breathed_at_s = time.monotonic()
         return answer
 
@@ -167,27 +169,6 @@ class Connection(aiosqlite.Connection):
         self._has_transaction = False
         if self._conn.in_transaction:
             self._conn.rollback()
-
-
-async def _uncancelled(outcome: asyncio.Future[T]) -> T:
-    """Wait for it in any case.
-
-    Cancelled half-way, SQLAlchemy would throw the connection away, and with it what others have written in the same
-    transaction. The cancellation comes all the same: at the next wait that is not for the database.
-    """
-    try:
-        return await asyncio.shield(outcome)
-    except asyncio.CancelledError:
-        pass
-    while not outcome.done():
-        try:
-            await asyncio.wait([outcome])
-        except asyncio.CancelledError:
-            continue
-    if task := asyncio.current_task():
-        task.uncancel()
-        task.cancel()
-    return outcome.result()
 
 
 class Cursor:

@@ -4,10 +4,11 @@ import asyncio
 from collections.abc import AsyncIterator
 
 import pytest
+from sqlalchemy import event
 from sqlalchemy.exc import IntegrityError
 
 from app.administration import migrate
-from app.database import Database, after_commit, savepoint
+from app.database import Database, after_commit, savepoint, write_new, write_once
 from app.settings import Settings
 from app.tables import Person, PersonSession
 from protocol.clock import SteppedClock
@@ -98,3 +99,35 @@ async def test_what_was_committed_survives_a_power_cut(database: Database) -> No
             for name in ("journal_mode", "synchronous")
         }
     assert pragmas == {"journal_mode": "wal", "synchronous": 2}
+
+
+async def test_what_is_written_past_the_session_is_taken_back_with_its_part(database: Database) -> None:
+    """A savepoint begins with the first statement of the session, which these are not."""
+    async with database.transaction() as session:
+        with pytest.raises(ZeroDivisionError):
+            async with savepoint(session):
+                await write_new(session, person("ann"))
+                assert await write_once(session, Person, person("bob").model_dump())
+                raise ZeroDivisionError
+    async with database.reading() as session:
+        assert await session.get(Person, "ann") is None
+        assert await session.get(Person, "bob") is None
+
+
+async def test_a_commit_goes_to_its_end_even_if_whoever_makes_it_is_cancelled(database: Database) -> None:
+    told: list[str] = []
+
+    async def write(name: str) -> None:
+        async with database.transaction() as session:
+            session.add(person(name))
+            after_commit(session, lambda: told.append(name))
+            await session.flush()
+
+    tasks = [asyncio.create_task(write(name)) for name in ("ann", "bob")]
+    # The last of the two commits for both.
+    event.listen(database.writing.sync_engine, "commit", lambda connection: tasks[-1].cancel())
+    outcomes = await asyncio.gather(*tasks, return_exceptions=True)
+    assert outcomes[0] is None
+    assert told == ["ann", "bob"]
+    async with database.reading() as session:
+        assert await session.get(Person, "ann") and await session.get(Person, "bob")
