@@ -89,7 +89,6 @@ async def _move(report: Report, receipt: HandoverReceipt) -> None:
     states = await _states(report, order, receipt)
     try:
         async with savepoint(report.session):
-            await report.session.connection()  # which begins it
             await report.along(order.id, states, word)
     except TransitionRefused as refused:
         await _contradiction(report, receipt, refused)

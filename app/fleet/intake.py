@@ -208,7 +208,6 @@ class Intake:
     ) -> Error | None:
         try:
             async with savepoint(session):
-                await session.connection()  # which begins it: what is written past the session is to be undone too
                 await self.fleet.follow(session, robot, envelope.body)
         except (FleetError, ServiceError) as problem:
             sentence = str(problem)[:500]

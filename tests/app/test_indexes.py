@@ -85,7 +85,7 @@ async def ask(app: FastAPI, what: str) -> None:
     async with app.state.database.transaction() as session:
         match what:
             case "what a robot is to be told":
-                await outbox.acknowledged_by(session, {"r1": 5}, now)
+                await outbox.acknowledged_by(session, {"r1": (0, 500)}, now)
             case "robots that are to let go":
                 await session.exec(select(Order.id).where(col(Order.let_go_by).is_not(None)))
             case "missions that have changed":
