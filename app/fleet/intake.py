@@ -31,7 +31,7 @@ from protocol.both_ways import Ack, Error
 from protocol.envelope import Envelope
 from protocol.to_server import Claim, Snapshot, Why
 
-GATHER_S: Final = 0.02
+GATHER_S: Final = 0.01
 """Real seconds for which the first message waits for others: a transaction costs more than what is in it."""
 AT_ONCE: Final = 200
 """Messages in one transaction, so that the first of them does not wait long for the last."""
