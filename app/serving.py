@@ -20,10 +20,10 @@ from app.settings import Settings, open_clock
 # Without this an open event stream holds the server for ever. Streams end by themselves sooner (see `shutdown`).
 GRACEFUL_S = 2
 GARBAGE_AT = (2_000, 10, 200)
-"""New objects after which the youngest are looked through for garbage, and of how many such looks one goes further back.
+"""After so many new objects the youngest are looked through for garbage; of how many such looks one goes further back.
 
-Each look stops everything: for some 5 ms over the youngest, for 120 ms over all that a thousand robots' connections hold
-(measured), which is why that comes seldom."""
+Each look stops everything: over the youngest for some 5 ms, over all that the connections of a thousand robots hold for
+120 ms (measured), which is why that comes seldom."""
 ANOTHER_FOLDER = "Stop that one, or give this one a data folder of its own: CAMPUS_MAIL_DATA."
 
 
