@@ -270,12 +270,15 @@ class LivesOfOrders(RuleBasedStateMachine):
             await self.one_round()
             if await self.all_is_done():
                 break
-        orders = await self.world.rows(Order)
-        note(
-            str(
-                [(one.id, one.state, one.state_before_attention, one.robot, self.world.where[one.id]) for one in orders]
-            )
-        )
+        for one in await self.world.rows(Order):
+            note(str((one.id, one.state, one.state_before_attention, one.robot, self.world.where[one.id])))
+        for mission in await self.world.rows(MissionRow):
+            if mission.state == "active":
+                note(
+                    f"{mission!r} {[stop for stop in await self.world.rows(StopRow) if stop.mission_id == mission.id]}"
+                )
+        for robot in self.world.robots.values():
+            note(f"{robot.name}: {robot.duties.held}")
         assert await self.all_is_done(), "no order and no robot is stuck for ever"
         await self.record.check()
 
