@@ -8,7 +8,7 @@ from datetime import timedelta
 from pathlib import Path
 from typing import Any
 
-from hypothesis import HealthCheck, Phase, note, settings
+from hypothesis import HealthCheck, Phase, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
 
@@ -270,17 +270,19 @@ class LivesOfOrders(RuleBasedStateMachine):
             await self.one_round()
             if await self.all_is_done():
                 break
-        for one in await self.world.rows(Order):
-            note(str((one.id, one.state, one.state_before_attention, one.robot, self.world.where[one.id])))
-        for mission in await self.world.rows(MissionRow):
-            if mission.state == "active":
-                note(
-                    f"{mission!r} {[stop for stop in await self.world.rows(StopRow) if stop.mission_id == mission.id]}"
-                )
-        for robot in self.world.robots.values():
-            note(f"{robot.name}: {robot.duties.held}")
-        assert await self.all_is_done(), "no order and no robot is stuck for ever"
+        assert await self.all_is_done(), "\n".join(
+            ["no order and no robot is stuck for ever", *await self.how_it_ended()]
+        )
         await self.record.check()
+
+    async def how_it_ended(self) -> list[str]:
+        orders = [(o.id, o.state, o.state_before_attention, o.robot) for o in await self.world.rows(Order)]
+        missions = [one for one in await self.world.rows(MissionRow) if one.state == "active"]
+        stops = [
+            one for one in await self.world.rows(StopRow) if one.mission_id in {mission.id for mission in missions}
+        ]
+        held = [f"{robot.name}: {robot.duties.held}" for robot in self.world.robots.values()]
+        return [str(orders), *map(repr, missions), *map(repr, stops), *held]
 
     async def one_round(self) -> None:
         await self.world.dispatch()
