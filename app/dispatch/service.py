@@ -29,7 +29,6 @@ from app.fleet.service import Fleet
 from app.orders.service import Word
 from app.orders.transitions import By
 from app.tables import MissionRow, Order, OrderState, RobotRow
-from maps.ways import Ways
 from protocol.to_robot import Cancel
 
 LOOK_AGAIN_S: Final = 30.0
@@ -52,7 +51,7 @@ class Dispatcher:
 
     def __init__(self, fleet: Fleet) -> None:
         self._fleet = fleet
-        self._ways = Ways(fleet.campus)
+        self._ways = fleet.orders.ways
         self._woken = asyncio.Event()
         self._stopping = False
         self._needs_robots = True

@@ -9,6 +9,7 @@ from sqlalchemy import bindparam, update
 from sqlmodel import col
 from sqlmodel.ext.asyncio.session import AsyncSession
 
+from app.database import connection_of
 from app.notify.channels.interface import NotSent
 from app.notify.due import Due
 from app.tables import OutgoingNotice
@@ -34,7 +35,7 @@ def pause_s(tries: int) -> float:
 async def note_sent(session: AsyncSession, sent: Sequence[Due], now: datetime) -> None:
     """All that went out, in one statement. What was erased meanwhile is not there any more."""
     if sent:
-        connection = await session.connection()
+        connection = await connection_of(session)
         await connection.execute(_SENT, [{"its_id": one.id, "its_key": one.sending.key, "now": now} for one in sent])
 
 

@@ -15,7 +15,7 @@ from sqlalchemy import bindparam, insert, literal, union_all, update
 from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.database import after_commit
+from app.database import after_commit, connection_of
 from app.live.feed import Feed, Happening
 from app.notify.schemas import NoticeView
 from app.notify.wishes import MAIL, PUSH, WEBHOOK, channels_for
@@ -67,7 +67,7 @@ async def route(session: AsyncSession, feed: Feed, now: datetime, *, tell_servic
         return set()
     targets = await _targets(session)
     rows = [row for new in news for row in _outgoing(new, targets, tell_service=tell_service)]
-    connection = await session.connection()
+    connection = await connection_of(session)
     if rows:
         await connection.execute(_OUTGOING, rows)
     await connection.execute(_ROUTED, [{"its_id": new.notice.id, "now": now} for new in news])

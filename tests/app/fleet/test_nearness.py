@@ -1,7 +1,5 @@
 """The sender is told that the robot is near when it is near, on a map that is large enough to be far away."""
 
-from collections.abc import AsyncIterator
-
 import pytest
 
 from app.orders.nearness import is_near
@@ -10,7 +8,7 @@ from app.tables import Notice
 from maps.ways import Ways
 from protocol.clock import SteppedClock
 from protocol.to_server import Step
-from tests.app.fleet.playing import PlayedRobot, Service, serving
+from tests.app.fleet.playing import PlayedRobot, Service
 
 FAR, NEARER, NEXT_TO_IT, SENDERS = "loeb", "uc", "frontenac", "commons"
 
@@ -18,17 +16,6 @@ FAR, NEARER, NEXT_TO_IT, SENDERS = "loeb", "uc", "frontenac", "commons"
 @pytest.fixture
 def settings(settings: Settings) -> Settings:
     return settings.model_copy(update={"map": "carleton"})
-
-
-@pytest.fixture
-async def service(settings: Settings, clock: SteppedClock) -> AsyncIterator[Service]:
-    async with serving(settings, clock) as service:
-        yield service
-
-
-@pytest.fixture
-def robot(clock: SteppedClock) -> PlayedRobot:
-    return PlayedRobot(clock)
 
 
 async def kinds(service: Service) -> list[str]:
