@@ -6,6 +6,8 @@ from collections import Counter
 from collections.abc import Callable
 
 from bdi import Agent, Finished, Message, parse_program
+from bdi.logic.logic import REMEMBERED_FORMULAS
+from tests.own_process import in_own_process
 
 # A robot's life in small: missions by message, percepts that flicker, failures, waits, a goal for ever, beliefs that
 # come and go, drops and atomic plans.
@@ -63,15 +65,45 @@ def run_of(agent: Agent, acted: Counter[str]) -> Callable[[int], None]:
 
 
 def test_a_hundred_thousand_cycles_leave_nothing_behind() -> None:
+    acted, objects, blocks = in_own_process(a_hundred_thousand_cycles)
+    assert min(acted[name] for name in ("drive", "turn", "dock")) > 1000
+    assert objects < FEW
+    assert blocks < FEW
+
+
+def a_hundred_thousand_cycles() -> tuple[Counter[str], int, int]:
+    """What was done in them, and what they have left: objects and blocks of memory."""
     acted: Counter[str] = Counter()
     run = run_of(Agent(parse_program(ROBOT)), acted)
     run(WARM_UP)
     before = held()
     run(CYCLES)
     objects, blocks = (now - then for now, then in zip(held(), before, strict=True))
-    assert min(acted[name] for name in ("drive", "turn", "dock")) > 1000
+    return acted, objects, blocks
+
+
+def test_nobody_is_remembered_who_is_gone() -> None:
+    """A relation knows what was compiled with it; plans and questions that come and go leave nothing there."""
+    objects, blocks = in_own_process(plans_and_questions_come_and_go)
     assert objects < FEW
     assert blocks < FEW
+
+
+def plans_and_questions_come_and_go() -> tuple[int, int]:
+    """What a round of them leaves: objects and blocks of memory. After each whole round as many questions are
+    remembered as ever are: in between it may be a hundred or all."""
+    agent = Agent(
+        parse_program("q(a). +!go(N) <- .add_plan({ @p +!h : q(_) <- true }); !h; .remove_plan(p); !go(N+1).")
+    )
+    agent.cycle(None, [Message("tester", "achieve", "go(0)")])
+    sizes = []
+    for number in range(3 * REMEMBERED_FORMULAS):
+        agent.cycle()
+        agent.ask(f"q(X) & not q(b{number})")
+        if (number + 1) % REMEMBERED_FORMULAS == 0:
+            sizes.append(held())
+    objects, blocks = (now - then for now, then in zip(sizes[-1], sizes[-2], strict=True))
+    return objects, blocks
 
 
 def held() -> tuple[int, int]:

@@ -4,7 +4,6 @@ The meaning is written down here once more, in the plainest way (unify, try, tak
 beliefs that hypothesis makes up.
 """
 
-import gc
 from collections.abc import Iterator, Sequence
 
 import pytest
@@ -339,19 +338,3 @@ def test_what_was_compiled_for_plain_facts_is_compiled_again_when_others_come(la
         finished = [Finished(action.id) for action in outcome.actions]
         acts += [show(action.term) for action in outcome.actions]
     assert acts == ["none(z)", "found(z)"]
-
-
-def test_nobody_is_remembered_who_is_gone() -> None:
-    """A relation knows what was compiled with it; plans and questions that come and go leave nothing there."""
-    agent = Agent(
-        parse_program("q(a). +!go(N) <- .add_plan({ @p +!h : q(_) <- true }); !h; .remove_plan(p); !go(N+1).")
-    )
-    agent.cycle(None, [Message("tester", "achieve", "go(0)")])
-    sizes = []
-    for _ in range(2):
-        for number in range(600):
-            agent.cycle()
-            agent.ask(f"q(X) & not q(b{number})")
-        gc.collect()
-        sizes.append(len(gc.get_objects()))
-    assert sizes[1] - sizes[0] < 300

@@ -124,6 +124,7 @@ def test_a_goal_that_takes_too_long_ends_with_status_1_and_says_what_it_was_doin
 
 
 @pytest.mark.system
+@pytest.mark.alone
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
 def test_a_signal_stops_the_wheels_and_leaves_the_base_in_passive_within_two_seconds(
     tmp_path: Path, number: signal.Signals

@@ -14,6 +14,7 @@ from robot.drivers.marker_reader import MarkerReader, MarkerWatch
 from robot.errors import CameraAbsent
 from robot.simulated import SimulatedRobot
 
+pytestmark = pytest.mark.alone
 TRACK = builtin_map("test_track")
 
 

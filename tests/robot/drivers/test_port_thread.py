@@ -18,6 +18,7 @@ from robot.drivers.serial_port import open_serial
 from robot.simulated import SimulatedRobot
 from robot.simulated.live import Live
 
+pytestmark = pytest.mark.alone
 AHEAD = WheelSpeeds(100, 100)
 
 
@@ -28,6 +29,7 @@ class OnThreads:
         self.clock = RealClock()
         self.robot = SimulatedRobot(builtin_map("test_track"), self.clock.now(), "post1:post2")
         self.base = PortThread(Create2(lambda: open_serial(self.robot.port_path)), self.clock.now)
+        self.before = set(threading.enumerate())
 
     def drive_for(self, duration_s: float) -> None:
         until_s = self.clock.now() + duration_s
@@ -82,7 +84,7 @@ def test_a_touch_is_urgent_once_and_frames_have_the_time_of_their_arrival(drivin
 def test_the_end_leaves_the_base_in_passive_and_no_thread_behind(driving: OnThreads) -> None:
     driving.base.close()
     driving.until(lambda: driving.robot.state()["mode"] == "passive", 1)
-    assert "base port" not in {thread.name for thread in threading.enumerate()}
+    assert "base port" not in {thread.name for thread in set(threading.enumerate()) - driving.before}
     driving.base.poll(driving.clock.now())
     assert driving.base.poll(driving.clock.now()) is None, "nobody listens any more"
 

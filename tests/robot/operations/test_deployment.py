@@ -85,6 +85,7 @@ class DrivingRobot:
         self.robot.close()
 
 
+@pytest.mark.alone
 @pytest.mark.parametrize("half_said", [b"", b"\x91", b"\x91\x00", b"\x91\x00\x96", b"\x91\x00\x96\x00"])
 def test_the_stop_goes_past_a_daemon_that_holds_the_port_whatever_it_left_half_said(half_said: bytes) -> None:
     driving = DrivingRobot(half_said)
@@ -94,6 +95,7 @@ def test_the_stop_goes_past_a_daemon_that_holds_the_port_whatever_it_left_half_s
     driving.close()
 
 
+@pytest.mark.alone
 def test_the_shell_alone_stops_the_base_and_leaves_it_in_passive() -> None:
     driving = DrivingRobot()
     ran = subprocess.run([DEPLOY / "stop-base", driving.robot.port_path], capture_output=True, text=True, check=False)

@@ -164,6 +164,7 @@ def test_a_dead_camera_gives_no_frame(make):
     assert bench.robot.camera.read() == (False, None)
 
 
+@pytest.mark.alone
 def test_frames_are_cheap_enough_for_a_world_at_twenty_times_real_time(make):
     """Aims: 1.5 ms with a marker, 0.2 ms without. The test allows four times that on a busy machine."""
 

@@ -105,6 +105,7 @@ def test_each_kind_of_robot_has_its_own_port_and_says_so(make, robot):
         robot.memory_port()
 
 
+@pytest.mark.alone
 def test_a_second_of_the_world_costs_less_than_25_ms(make):
     """With the recommended stream of 25 packets on. Measured: 2 to 3 ms of processor time."""
     ids = (7, 9, 10, 11, 12, 14, 17, 18, 21, 22, 23, 24, 25, 26, 34, 35, 37, 43, 44, 45, 52, 53, 54, 55, 58)

@@ -94,6 +94,7 @@ def test_a_tag_of_no_post_of_this_map_is_foreign():
     assert reader.look(drawn.frame(ABREAST), 0.0) == ()
 
 
+@pytest.mark.alone
 def test_a_frame_without_a_marker_costs_next_to_nothing():
     """Drawn and looked at: 0.1 ms where a search for codes took 0.8. The test allows four times that."""
     drawn = Renderer(MARKERS, CameraMount(colour=False), Faults(), 0)
