@@ -123,8 +123,7 @@ class Intake:
     async def _in_one_transaction(self, said: Sequence[Said], careful: bool = False) -> None:
         for one in said:
             one.problem = one.failure = None
-        # What is not numbered would only be said again: a power cut may have it.
-        is_durable = any(one.envelope.seq is not None for one in said)
+        is_durable = any(_must_last(one.envelope) for one in said)
         async with self.fleet.database.transaction(durable=is_durable) as session:
             await self._take_in(session, said, careful)
 
@@ -214,6 +213,11 @@ class Intake:
             await raise_alarm(session, robot.name, problem.code, sentence, now=self.fleet.clock.utc())
             return Error(code=problem.code, message=sentence, seq=envelope.seq)
         return None
+
+
+def _must_last(envelope: Envelope) -> bool:
+    """What is not numbered would only be said again: a power cut may have it. But for errors, which ring an alarm."""
+    return envelope.seq is not None or isinstance(envelope.body, Error)
 
 
 def _by_speaker(said: Iterable[Said]) -> Iterable[Sequence[Said]]:

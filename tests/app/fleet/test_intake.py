@@ -1,10 +1,17 @@
 """What many robots say is taken in together: in each one's order, and what fails in one of them is that one's alone."""
 
-from app.tables import Alarm, OrderEvent, RobotMessage
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from sqlalchemy import Engine, event
+
+from app.tables import Alarm, OrderEvent, RobotMessage, RobotRow
+from protocol.both_ways import Error
 from protocol.clock import SteppedClock
-from protocol.parts import Leg
-from protocol.to_server import Clear, Step
-from tests.app.fleet.playing import PlayedRobot, Service
+from protocol.parts import Activity, Battery, Leg, Position
+from protocol.to_server import Clear, Snapshot, Step
+from tests.app.fleet.playing import PlayedRobot, Service, until
 
 LEG = Leg(from_post="post1", to_post="post2")
 
@@ -56,3 +63,38 @@ async def test_a_robot_that_fails_holds_up_nobody(service: Service, clock: Stepp
     kept = [(row.robot, row.seq) for row in await service.rows(RobotMessage)]
     assert sorted(kept) == [("r1", 1), ("r1", 2), ("r1", 3), ("r2", 1), ("r2", 2)]
     assert {row.robot for row in await service.rows(Alarm, name="unknown_mission")} == {"r2"}
+
+
+@contextmanager
+def transactions_of(statement: str) -> Iterator[list[Any]]:
+    """How each transaction was begun in which something was done that begins like this."""
+    begun: list[Any] = []
+
+    def note(connection: Any, _cursor: Any, said: str, *_: Any) -> None:
+        if said.startswith(statement):
+            begun.append(connection.get_execution_options()["begin"])
+
+    event.listen(Engine, "before_cursor_execute", note)
+    try:
+        yield begun
+    finally:
+        event.remove(Engine, "before_cursor_execute", note)
+
+
+async def test_what_a_robot_complains_of_rings_an_alarm_that_survives_a_power_cut(
+    service: Service, robot: PlayedRobot
+) -> None:
+    """An error has no number and is not said again; a snapshot is, and waits for no disk."""
+    durably = service.app.state.database.writing.get_execution_options()["begin"]
+    async with robot.connected(service.url, await service.enrol("r1")):
+        await robot.greet()
+        with transactions_of("INSERT INTO alarms") as begun:
+            await robot.say(Error(code="map_unreadable", message="The map cannot be read."))
+            await until(lambda: service.rows(Alarm, name="robot_reports_error"))
+        assert begun == [durably]
+        with transactions_of("UPDATE robots") as begun:
+            await robot.say(
+                Snapshot(position=Position(post="post2"), battery=Battery(ratio=0.5), activity=Activity.IDLE)
+            )
+            await until(lambda: service.rows(RobotRow, name="r1", battery_ratio=0.5))
+        assert begun and durably not in begun
