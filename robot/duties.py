@@ -5,11 +5,11 @@ happened or not at all. A report is made once for each step of a stop, however o
 may be interrupted and begun again at its present stop at any time.
 """
 
-import uuid
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from datetime import datetime, timedelta
 from typing import Final, Literal, Protocol
 
+from protocol.ids import new_uuid
 from protocol.parts import Leg, Part, Purpose, Stop
 from protocol.to_robot import Cancel, Confirm, Deny, EmergencyStop, Grant, Mission, Pause, Recall, Resume, Verifiers
 from protocol.to_server import Charge, Claim, Clear, CommandAnswer, Event, Fault, HandoverReceipt, Progress, Step
@@ -321,7 +321,7 @@ class Duties:
         if self._server is None or not wanted:
             return None
         if wanted not in self._claimed:
-            claim_id = str(uuid.uuid4())
+            claim_id = new_uuid()
             self.outbox.put(Claim(claim_id=claim_id, legs=wanted))
             self._claimed = {wanted: claim_id}
             self._denied.clear()  # of older claims, for which nobody waits any more

@@ -5,12 +5,12 @@ acknowledged; that is how the server knows a repeated message from a new one.
 """
 
 import sqlite3
-import uuid
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
 from protocol.envelope import DURABLE, TO_SERVER, type_of
+from protocol.ids import new_uuid
 from protocol.parts import Part
 from robot.store import Store
 
@@ -104,7 +104,7 @@ def _journal(database: sqlite3.Connection) -> str | None:
 
 
 def _begin_journal(database: sqlite3.Connection) -> str:
-    journal = str(uuid.uuid4())
+    journal = new_uuid()
     database.execute("INSERT OR REPLACE INTO facts (name, value) VALUES (?, ?)", (_JOURNAL, journal))
     return journal
 

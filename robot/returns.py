@@ -1,9 +1,9 @@
 """Bringing mail back: the mission that a robot gives itself when nobody took its mail, or when it is recalled."""
 
-import uuid
 from collections.abc import Iterable, Mapping
 from typing import Final
 
+from protocol.ids import new_id
 from protocol.parts import Stop, StopAction
 from protocol.to_robot import Mission
 from robot.memory import Loading
@@ -34,7 +34,7 @@ def return_mission(
     ]
     posts = list(dict.fromkeys(stop.post for stop in stops))
     stops.sort(key=lambda stop: posts.index(stop.post))
-    return Mission(id=PREFIX + uuid.uuid4().hex[:16], update=1, stops=tuple(stops)) if stops else None
+    return Mission(id=PREFIX + new_id(), update=1, stops=tuple(stops)) if stops else None
 
 
 def is_own(mission: Mission) -> bool:

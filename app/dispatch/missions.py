@@ -11,9 +11,9 @@ from app.dispatch.choice import WaitingOrder
 from app.dispatch.insertion import Insertion, Tour, Visit, cheapest_insertion
 from app.fleet.service import Fleet
 from app.orders.stops import active_mission, stops_left
-from app.people.service import new_id
 from app.tables import MissionRow, Order, StopRow
 from maps.ways import Ways
+from protocol.ids import new_id
 from protocol.parts import Part, Stop, StopAction
 from protocol.to_robot import Mission, Verifiers
 

@@ -8,10 +8,10 @@ from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.fleet.errors import UnknownCommand
-from app.people.service import new_id
 from app.tables import RobotCommand, RobotRow
 from protocol.clock import Clock
 from protocol.envelope import type_of
+from protocol.ids import new_id
 from protocol.parts import Part
 from protocol.to_robot import Cancel, Confirm, EmergencyStop, Pause, Recall, Resume
 from protocol.to_server import CommandAnswer

@@ -4,7 +4,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from typing import Any, Final
-from uuid import uuid4
 
 from pydantic_core import to_json
 from sqlalchemy import Text, bindparam, cast, exists, func, insert, select, update
@@ -14,6 +13,7 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 from app.database import connection_of
 from app.tables import MessageToRobot, RobotRow, RobotToken
 from protocol.envelope import type_of
+from protocol.ids import new_uuid
 from protocol.parts import Part, Received
 
 
@@ -157,4 +157,4 @@ def went_back_in_time(robot: RobotRow, received: Received) -> bool:
 
 def renew_journal(robot: RobotRow) -> None:
     """Begin another journal; the numbers go on, and what waits belongs to the new one."""
-    robot.server_journal = str(uuid4())
+    robot.server_journal = new_uuid()

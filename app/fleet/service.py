@@ -4,7 +4,6 @@ import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from uuid import uuid4
 
 from sqlmodel import col, select, update
 from sqlmodel.ext.asyncio.session import AsyncSession
@@ -23,6 +22,7 @@ from app.settings import Settings
 from app.tables import RobotRow, RobotToken
 from maps import CampusMap
 from protocol.clock import Clock
+from protocol.ids import new_uuid
 from protocol.parts import Activity, Battery, Part, Position
 from protocol.to_server import Claim, Clear, Event, Snapshot, Why
 
@@ -48,7 +48,7 @@ async def enrol(session: AsyncSession, clock: Clock, name: str) -> str:
     check_name(name)
     if await session.get(RobotRow, name) is not None:
         raise RobotExists(f"A robot named {name!r} is enrolled already. Revoke its token for a new one.")
-    session.add(RobotRow(name=name, enrolled_at=clock.utc(), server_journal=str(uuid4())))
+    session.add(RobotRow(name=name, enrolled_at=clock.utc(), server_journal=new_uuid()))
     await session.flush()
     return await new_token(session, clock, name)
 

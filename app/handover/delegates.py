@@ -16,9 +16,9 @@ from app.orders.schemas import OrderView
 from app.orders.service import Word
 from app.orders.transitions import ENDED, By
 from app.orders.views import MyRole, delegates_view, load_facts
-from app.people.service import new_id
 from app.tables import Delegate, Order, OrderState, Person, RobotRow
 from app.tables.order_events import DELEGATE_NAMED, DELEGATE_REVOKED
+from protocol.ids import new_id
 from protocol.parts import Purpose
 from protocol.to_robot import Verifiers
 

@@ -9,8 +9,8 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 from app.notify.channels.push import from_base64
 from app.notify.errors import BadSubscription, NoWebhook, UnknownDevice
 from app.notify.wish_schemas import NewDevice, SubscriptionKeys
-from app.people.service import new_id
 from app.tables import Person, PushSubscription, Webhook
+from protocol.ids import new_id
 
 MOST_DEVICES = 20
 AUTH_BYTES = 16

@@ -13,10 +13,11 @@ from app.orders.schemas import NewOrder, OrderView, Wish
 from app.orders.transitions import By
 from app.orders.views import MyRole, OrderFacts, order_view
 from app.orders.window import Window, arrival_window
-from app.people.service import look_up_person, may_be_sent_mail, new_id
+from app.people.service import look_up_person, may_be_sent_mail
 from app.tables import Order, Person, Priority, Role, StandingOrder
 from app.tables.order_events import MOVED
 from maps import NoRoute, UnknownPost
+from protocol.ids import new_id
 
 
 @dataclass(frozen=True)

@@ -19,8 +19,8 @@ from app.orders.placing import Parties
 from app.orders.recurrence import Recurrence, day_of, next_after
 from app.orders.schemas import NewStandingOrder, Somebody, StandingOrderView, Wish
 from app.orders.service import Orders
-from app.people.service import new_id
 from app.tables import Order, Person, Role, StandingOrder
+from protocol.ids import new_id
 
 log = structlog.get_logger(__name__)
 

@@ -14,8 +14,8 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 from sqlmodel.sql.expression import SelectOfScalar
 
 from app.database import connection_of
-from app.people.service import new_id
 from app.tables import MissionRow, MissionState, Order, StopRow
+from protocol.ids import new_id
 from protocol.parts import StopAction
 
 OWN_PREFIX: Final = "return-"

@@ -20,11 +20,7 @@ from app.server_key import ServerKey
 from app.settings import Settings
 from app.tables import Person, PersonSession, Role, SignInCode
 from app.texts import LANGUAGES, text
-
-
-def new_id() -> str:
-    """64 random bits: enough to be unique, short enough to read out."""
-    return secrets.token_hex(8)
+from protocol.ids import new_id
 
 
 def is_allowed(email: str, settings: Settings) -> bool:

@@ -4,8 +4,10 @@ late and more than once; and whatever happens, these things hold."""
 import asyncio
 import os
 import tempfile
+from contextlib import ExitStack
 from datetime import timedelta
 from pathlib import Path
+from random import Random
 from typing import Any
 
 from hypothesis import HealthCheck, Phase, settings
@@ -18,6 +20,7 @@ from app.orders.transitions import MAIL_ABOARD
 from app.settings import Settings
 from app.tables import Alarm, Handover, MissionRow, Notice, Order, OrderEvent, Person, Priority, StopRow
 from app.tables import OrderState as S
+from protocol.ids import ids_from
 from tests.app.orders.lives import World
 from tests.app.orders.what_holds import ENDED, Record
 
@@ -59,11 +62,12 @@ def template() -> Path:
 
 
 class LivesOfOrders(RuleBasedStateMachine):
-    """A few orders, two robots, one of each kind of person."""
+    """A few orders, two robots, one of each kind of person. What they are called is drawn too: what is found first
+    depends on it, and a life that failed must fail again."""
 
     def __init__(self) -> None:
         super().__init__()
-        self.runner = asyncio.Runner()
+        self.runner, self.lasting = asyncio.Runner(), ExitStack()
         self.world = World(template(), Path(tempfile.mkdtemp(dir=folder.name)) / "data")
         self.ids: list[str] = []
         self.record = Record(self.world)
@@ -75,8 +79,15 @@ class LivesOfOrders(RuleBasedStateMachine):
         """The newest first: those before have mostly ended."""
         return self.ids[-1 - number % len(self.ids)]
 
-    @initialize(from_post=st.sampled_from(POSTS), step=st.integers(1, 4), so_far=SO_FAR, alone=st.booleans())
-    def begin(self, from_post: str, step: int, so_far: str | None, alone: bool) -> None:
+    @initialize(
+        names=st.integers(0, 2**16),
+        from_post=st.sampled_from(POSTS),
+        step=st.integers(1, 4),
+        so_far=SO_FAR,
+        alone=st.booleans(),
+    )
+    def begin(self, names: int, from_post: str, step: int, so_far: str | None, alone: bool) -> None:
+        self.lasting.enter_context(ids_from(Random(names).randbytes))
         self.run(self.world.begin())
         self.run(self.world.set_online("r2", not alone))
         self.somebody_orders(from_post, step, so_far)
@@ -259,6 +270,7 @@ class LivesOfOrders(RuleBasedStateMachine):
             if hasattr(self.world, "database"):
                 self.run(self.world.end())
             self.runner.close()
+            self.lasting.close()
 
     async def everybody_does_their_part(self) -> None:
         """Whatever went before: with a network, people who come and a dispatcher who decides, every order ends."""
