@@ -57,7 +57,7 @@ class Intervening(Returning):
         if not left:  # the robot has given up; with the mail aboard it can be sent once more
             action = DESTINATION[before]
             post = order.to_post if action is StopAction.RECEIVE else self.return_post(order)
-            await stops.bring(session, order, action, post, self.settings.wait_limit_s, self.clock.utc())
+            await self.send(session, order, action, post)
         await self.move(session, order.id, before, word)
 
     async def _return(self, session: AsyncSession, order: Order, before: OrderState, word: Word) -> None:

@@ -3,6 +3,7 @@
 The robot is asked by an update of its mission; until it says that it has turned, the order goes on as before.
 """
 
+from datetime import timedelta
 from typing import Final
 
 from sqlmodel.ext.asyncio.session import AsyncSession
@@ -68,5 +69,11 @@ class Returning(Ledger):
     async def bring_back(self, session: AsyncSession, order: Order) -> None:
         """The stop where this mail is given back, on the mission of the robot that has it."""
         order.return_post = self.return_post(order)
-        limit_s, now = self.settings.wait_limit_s, self.clock.utc()
-        await stops.bring(session, order, StopAction.RETURN, order.return_post, limit_s, now)
+        await self.send(session, order, StopAction.RETURN, order.return_post)
+
+    async def send(self, session: AsyncSession, order: Order, action: StopAction, post: str) -> None:
+        """The mail that is aboard goes to `post` now. However old its codes are: who waits there has to be able to
+        take it."""
+        now, lifetime = self.clock.utc(), timedelta(seconds=self.settings.handover_code_lifetime_s)
+        order.codes_expire_at = max(order.codes_expire_at, now + lifetime)
+        await stops.bring(session, order, action, post, self.settings.wait_limit_s, now)

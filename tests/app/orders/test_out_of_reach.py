@@ -1,28 +1,13 @@
 """A robot goes on without network while people at the service wish for things."""
 
-from pathlib import Path
-
-import pytest
-
-from app.administration import migrate
-from app.settings import Settings
 from app.tables import Order, OrderState
 from tests.app.orders.lives import World
 from tests.app.orders.what_holds import Record
 
 
-@pytest.fixture
-async def template(tmp_path: Path) -> Path:
-    await migrate(Settings(data=tmp_path / "template"))
-    return tmp_path / "template" / "campus-mail.sqlite"
-
-
 async def test_a_robot_that_is_asked_too_late_to_wait_longer_does_not_go_back_for_mail_that_is_delivered(
-    template: Path, tmp_path: Path
+    world: World,
 ) -> None:
-    world = World(template, tmp_path / "data")
-    await world.begin()
-    await world.set_online("r2", False)
     order_id = await world.place("post1", "post2")
     await world.dispatch()
     await world.hear("r1")
@@ -38,4 +23,3 @@ async def test_a_robot_that_is_asked_too_late_to_wait_longer_does_not_go_back_fo
     await world.speak("r1")
     assert [order.state for order in await world.rows(Order)] == [OrderState.DELIVERED]
     await Record(world).check()
-    await world.end()
