@@ -106,7 +106,8 @@ class Memory:
         """Take a mission or an update of it; False if it is the one held, or older than that. Raises MissionConflict.
 
         Stops that were done stay done: the next stop is the first whose id has not been passed yet. So do those of a
-        mission that was dropped: without network nobody knew that it was over, and it may have got an update.
+        mission that was dropped: without network nobody knew that it was over, and it may have got an update. An order
+        that was cancelled and is named again has been given anew: the server names none that is still to be dropped.
         """
         with self._store.transaction() as database:
             held = self.mission()
@@ -116,6 +117,7 @@ class Memory:
                 return False
             is_update = held is not None and held.id == mission.id
             self._write("done", _NAMES, self._passed() if is_update else self._dropped().get(mission.id, frozenset()))
+            self._write("cancelled", _NAMES, self.cancelled() - {stop.order_id for stop in mission.stops})
             self._write("next_stop", _NUMBER, 0)
             self._write("mission", _MISSION, mission)
             database.execute("DELETE FROM reported WHERE mission_id != ?", (mission.id,))

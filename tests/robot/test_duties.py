@@ -190,6 +190,17 @@ def test_an_order_that_was_cancelled_is_not_served_after_a_restart(desk: Desk, s
     assert again_of(store).held.cancelled == frozenset()
 
 
+def test_an_order_that_was_dropped_and_is_given_again_is_served(desk: Desk) -> None:
+    other = Stop(id="s3", post="post2", action=StopAction.LOAD, order_id="o2")
+    desk.hears(Mission(id="m1", update=1, stops=(LOAD, RECEIVE, other)))
+    desk.hears(Cancel(command_id="c1", order_id="o1"))
+    desk.hears(Mission(id="m1", update=2, stops=(other,)))
+    assert desk.duties.held.cancelled == {"o1"}
+    again = LOAD.model_copy(update={"id": "s4"})
+    desk.hears(Mission(id="m1", update=3, stops=(other, again)))
+    assert desk.duties.held.cancelled == frozenset()
+
+
 def test_a_fault_that_was_told_is_known_after_a_restart_and_told_to_be_over_once(desk: Desk, store: Store) -> None:
     desk.duties.report_fault("way_blocked", "The agent met line_lost.", "post3")
     again = again_of(store)

@@ -41,3 +41,17 @@ async def test_mail_that_a_dispatcher_sends_on_can_be_taken_however_old_its_code
     await world.change(world.orders.resolve, "dispatcher", order_id, "resume", "Once more.")
     await goes_on(world, *["sender"] * 6)
     assert await state(world, order_id) is OrderState.RETURNED
+
+
+async def test_an_order_that_a_robot_dropped_and_is_given_again_is_fetched(world: World) -> None:
+    first = await world.place("post3", "post4")
+    await goes_on(world, "sets out")
+    second = await world.place("post3", "post4")
+    await goes_on(world)
+    assert await state(world, second) is OrderState.ASSIGNED, "it goes along"
+    await world.change(world.orders.reassign, "dispatcher", second, None)
+    await goes_on(world)
+    await world.change(world.orders.reassign, "dispatcher", second, "r1")
+    await goes_on(world, *["sender"] * 6)
+    await Record(world).check()
+    assert [await state(world, one) for one in (first, second)] == [OrderState.DELIVERED] * 2
