@@ -6,7 +6,7 @@ from typing import Final
 from app.handover import errors
 from app.orders.codes import TURNS, HandoverCode, Holder, codes_of, turn_of
 from app.orders.transitions import ENDED, ROBOT_COMING
-from app.orders.views import MyRole
+from app.orders.views import THEIRS, MyRole
 from app.tables import Delegate, Order, OrderState, Person, Role
 from protocol.parts import Purpose
 
@@ -16,13 +16,6 @@ WAITS: Final[Mapping[OrderState, Purpose]] = {
     OrderState.AT_RETURN: Purpose.RETURN,
 }
 """Where the robot waits for a hand-over."""
-
-THEIRS: Final[Mapping[MyRole, tuple[Purpose, ...]]] = {
-    "sender": (Purpose.LOAD, Purpose.RETURN),
-    "recipient": (Purpose.RECEIVE,),
-    "dispatcher": tuple(Purpose),
-}
-"""What each may name somebody for; the first is meant if nothing is said."""
 
 
 def code_for(order: Order, person: Person, delegates: Iterable[Delegate]) -> HandoverCode | None:

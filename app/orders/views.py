@@ -2,8 +2,9 @@
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from datetime import timedelta
+from types import MappingProxyType
 from typing import Final, Literal, TypeVar
 
 from sqlalchemy import BindParameter, bindparam
@@ -17,13 +18,29 @@ from app.orders.schemas import CustodyView, EventView, HandoverRequested, OrderV
 from app.orders.transitions import CARRIED, ENDED, LOADED, ROBOT_COMING
 from app.settings import Settings
 from app.tables import Delegate, Handover, Order, OrderEvent, OrderState, Person, RobotRow, Role
+from app.tables.order_events import DELEGATE_NAMED, DELEGATE_REVOKED
 from app.texts.reasons import words_of
 from maps import CampusMap
 from protocol.parts import Purpose
 
 CONFIRM_REQUESTED: Final = "confirm_requested"
 MyRole = Literal["sender", "recipient", "dispatcher"]
+THEIRS: Final[Mapping[MyRole, tuple[Purpose, ...]]] = {
+    "sender": (Purpose.LOAD, Purpose.RETURN),
+    "recipient": (Purpose.RECEIVE,),
+    "dispatcher": tuple(Purpose),
+}
+"""What each may name somebody for (the first is meant if nothing is said), and whose names they see."""
 OfOrder = TypeVar("OfOrder", OrderEvent, Handover)
+
+
+SHOWN_TO_DELEGATES: Final = (
+    *("id", "state", "version", "created_at", "updated_at", "from_post", "to_post", "return_post", "priority"),
+    *("not_before", "window", "wait_until", "handover_requested", "cancel_requested", "return_requested"),
+)
+"""Where it is, when it comes, and whether a hand-over is still wanted."""
+UNSAID_TO_DELEGATES: Final = MappingProxyType({"why": None, "why_words": None, "battery": None})
+"""Of the robot: a delegate has to meet it, and nothing more."""
 
 
 @dataclass(frozen=True)
@@ -35,8 +52,8 @@ class OrderFacts:
     people: Mapping[str, Person]
     robot: RobotRow | None
     handovers: Sequence[Handover] = ()
-    delegates: Mapping[str, str] = field(default_factory=dict)
-    """Names of those who took part in hand-overs, by their ids."""
+    delegates: Sequence[tuple[str, str, str]] = ()
+    """Those who took part in hand-overs: their ids, what they were named for, their names."""
 
     @property
     def sender(self) -> Person:
@@ -83,12 +100,13 @@ async def _handovers(session: AsyncSession, order_ids: Sequence[str]) -> Sequenc
     return (await session.exec(wanted)).all()
 
 
-async def _delegates(session: AsyncSession, handovers: Iterable[Handover]) -> Mapping[str, str]:
+async def _delegates(session: AsyncSession, handovers: Iterable[Handover]) -> Sequence[tuple[str, str, str]]:
     """Mostly nobody took part who would have to be looked for."""
     ids = {one.delegate_id for one in handovers if one.delegate_id}
     if not ids:
-        return {}
-    return dict((await session.exec(select(Delegate.id, Delegate.name).where(col(Delegate.id).in_(ids)))).all())
+        return ()
+    wanted = select(Delegate.id, Delegate.purpose, Delegate.name).where(col(Delegate.id).in_(ids))
+    return (await session.exec(wanted)).all()
 
 
 # Put together once: that takes longer than asking.
@@ -146,27 +164,47 @@ def order_view(facts: OrderFacts, role: MyRole, person_id: str, campus: CampusMa
         return_post=order.return_post,
         standing_order_id=order.standing_order_id,
         placed_by=_somebody(facts.people[order.placed_by_id]) if order.placed_by_id else None,
-        custody=[CustodyView.of(held) for held in custody_of(order, facts.handovers, facts.delegates)],
-        events=[_event(event) for event in facts.events],
+        custody=[CustodyView.of(held) for held in custody_of(order, facts.handovers, _names_for(role, facts))],
+        events=[_event(event, _may_read(role, order, event)) for event in facts.events],
     )
 
 
 def delegates_view(facts: OrderFacts, turn: Purpose | None, campus: CampusMap, settings: Settings) -> OrderView:
     """The order for somebody who was named to hand over: where it is and whose, nothing of what it holds or went
-    through. `turn`: what their code is good for now."""
+    through, and no `why`, which may be anybody's own words. `turn`: what their code is good for now."""
     whole = order_view(facts, "recipient", "", campus, settings)
-    theirs: dict[str, object] = {
-        "my_role": "delegate",
-        "my_code": turn and turn.value,
-        "sender": Somebody(email="", name=facts.sender.name),
-        "recipient": Somebody(email="", name=facts.recipient.name),
-        "description": None,
-        "placed_by": None,
-        "standing_order_id": None,
-        "custody": [],
-        "events": [],
-    }
-    return whole.model_copy(update=theirs)
+    return OrderView(
+        **{name: getattr(whole, name) for name in SHOWN_TO_DELEGATES},
+        sender=Somebody(email="", name=facts.sender.name),
+        recipient=Somebody(email="", name=facts.recipient.name),
+        robot=whole.robot and whole.robot.model_copy(update=UNSAID_TO_DELEGATES),
+        my_role="delegate",
+        my_code=turn and turn.value,
+        can_cancel=False,
+        description=None,
+        why=None,
+        why_words=None,
+        standing_order_id=None,
+        placed_by=None,
+        custody=[],
+        events=[],
+    )
+
+
+def _names_for(role: MyRole, facts: OrderFacts) -> Mapping[str, str]:
+    """Whom sender and recipient name is nothing to the other: what they see of them is that it was a delegate."""
+    sees = tuple(Purpose) if _is_on_both_sides(facts.order) else THEIRS[role]
+    return {id_: name for id_, purpose, name in facts.delegates if purpose in sees}
+
+
+def _may_read(role: MyRole, order: Order, event: OrderEvent) -> bool:
+    """The reason of an event that names a delegate is for those who did so, and for dispatchers."""
+    is_for_all = event.kind not in (DELEGATE_NAMED, DELEGATE_REVOKED) or _is_on_both_sides(order)
+    return is_for_all or role in ("dispatcher", event.by)
+
+
+def _is_on_both_sides(order: Order) -> bool:
+    return order.sender_id == order.recipient_id
 
 
 def is_cancellable(order: Order, role: MyRole) -> bool:
@@ -204,7 +242,8 @@ def _somebody(person: Person) -> Somebody:
     return Somebody(email=person.email, name=person.name)
 
 
-def _event(event: OrderEvent) -> EventView:
+def _event(event: OrderEvent, with_reason: bool) -> EventView:
+    reason = event.reason if with_reason else None
     return EventView(
         seq=event.seq,
         kind=event.kind,
@@ -214,6 +253,6 @@ def _event(event: OrderEvent) -> EventView:
         by=event.by,
         robot=event.robot,
         post=event.post,
-        reason=event.reason,
-        reason_words=words_of(event.reason) if event.reason else None,
+        reason=reason,
+        reason_words=words_of(reason) if reason else None,
     )

@@ -165,7 +165,7 @@ class CustodyView(Model):
     how they came to have it: code, tap, digits or button by a robot's receipt, `dispatcher` by a dispatcher's
     word, null for the sender's own. `confirmed_by` is whose code, tap or digits it was (null for the button),
     and `confirmed_by_name` which delegate's; `signed`: the robot has signed for it, and the signature was
-    checked.
+    checked. A delegate of the other side is a delegate without a name.
     """
 
     holder: str

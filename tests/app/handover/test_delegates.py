@@ -3,11 +3,14 @@
 from hashlib import sha256
 from typing import Any
 
+import httpx
 import pytest
 
 from app.keeping.order_records import one_order
 from app.tables import Handover, Role
+from protocol.parts import Stop
 from protocol.to_robot import Verifiers
+from protocol.to_server import Step
 from tests.app.handover.conftest import Campus
 
 
@@ -41,18 +44,54 @@ async def test_a_delegate_has_a_code_of_their_own_and_the_receipt_says_that_it_w
     assert (aboard["name"], aboard["confirmed_by"], aboard["confirmed_by_name"]) == ("r1", "delegate", "The porter")
 
 
-async def test_the_chain_of_custody_says_which_delegate_has_the_mail_to_sender_and_recipient(campus: Campus) -> None:
-    await campus.waits_for_recipient()
-    sender, recipient = await campus.browser("sender"), await campus.browser("recipient")
-    for name in ("A neighbour", "The porter"):
-        named = await recipient.post(f"{campus.path}/delegates", json={"name": name})
-    theirs = sha256((await recipient.get(named.headers["Location"][7:])).json()["text"].encode()).hexdigest()
-    await campus.robot.ends(await campus.robot.say(campus.robot.receipt(campus.receive, code_sha256=theirs)))
-    for browser in (sender, recipient):
-        last = (await browser.get(campus.path)).json()["custody"][-1]
-        assert (last["holder"], last["name"], last["to"]) == ("delegate", "The porter", None)
+# Sender and recipient name a delegate each; who reads of them by which name, and of whom it is said that they were one.
+SEEN = {
+    "sender": ("The porter", None),
+    "recipient": (None, "A neighbour"),
+    "dispatcher": ("The porter", "A neighbour"),
+    "maintainer": None,
+    "stranger": None,
+}
+
+
+async def test_a_delegates_name_is_for_the_side_that_named_them_and_for_dispatchers(campus: Campus) -> None:
+    roles = {"dispatcher": (Role.DISPATCHER,), "maintainer": (Role.MAINTAINER,)}
+    people = {who: await campus.browser(who, *roles.get(who, ())) for who in SEEN}
+    await campus.waits_for_load()
+    await hands_over(campus, people["sender"], "The porter", campus.load)
+    assert campus.mission
+    await campus.robot.ends(await campus.robot.report(campus.mission, Step.ARRIVED, campus.receive))
+    await hands_over(campus, people["recipient"], "A neighbour", campus.receive)
+    for who, names in SEEN.items():
+        answer = await people[who].get(campus.path)
+        if names is None:
+            assert answer.status_code == 404, who
+            continue
+        of_sender, of_recipient = names
+        told = [(one["holder"], one["name"], one["confirmed_by"], one["confirmed_by_name"]) for one in custody(answer)]
+        assert told[1:] == [
+            ("robot", "r1", "delegate", of_sender),
+            ("delegate", of_recipient, "delegate", of_recipient),
+        ], who
+        read = [event["reason"] for event in answer.json()["events"] if event["kind"] == "delegate_named"]
+        assert read == [of_sender, of_recipient], who
+        (listed,) = (await people[who].get("/orders")).json()["items"]
+        for name in ("The porter", "A neighbour"):
+            assert (name in answer.text, name in str(listed)) == (name in names, name in names), (who, name)
     async with campus.service.app.state.database.reading() as session:
-        assert (await one_order(session, campus.order_id))["custody"][-1]["delegate"] == "The porter"
+        assert (await one_order(session, campus.order_id))["custody"][-1]["delegate"] == "A neighbour"
+
+
+async def hands_over(campus: Campus, who: httpx.AsyncClient, name: str, stop: Stop) -> None:
+    """Somebody names this delegate, whose code the robot sees."""
+    named = await who.post(f"{campus.path}/delegates", json={"name": name})
+    theirs = sha256((await who.get(named.headers["Location"][7:])).json()["text"].encode()).hexdigest()
+    await campus.robot.ends(await campus.robot.say(campus.robot.receipt(stop, code_sha256=theirs)))
+
+
+def custody(answer: httpx.Response) -> list[dict[str, Any]]:
+    chain: list[dict[str, Any]] = answer.json()["custody"]
+    return chain
 
 
 async def test_a_revoked_delegates_code_is_taken_from_the_robot_and_shown_to_nobody(campus: Campus) -> None:

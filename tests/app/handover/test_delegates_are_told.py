@@ -9,7 +9,7 @@ from fastapi.testclient import TestClient
 
 from app.orders.codes import code_png
 from app.settings import Settings
-from app.tables import Notice, NoticeKind
+from app.tables import Notice, NoticeKind, RobotRow
 from tests.app.conftest import RECIPIENT, SENDER, Browser, Mailroom, Mails, SignedIn
 
 PORTER = "porter@campus.example"
@@ -71,6 +71,34 @@ def test_a_delegate_is_mailed_their_own_code_and_a_link_that_opens_where_it_is_a
     for what, more in (("not-now", {}), ("delegate", {"name": "Another"})):
         answer = nobody.post(f"/api/v1/link/{what}", json={**link, **more})
         assert (answer.status_code, answer.json()["code"]) == (404, "unknown_order"), what
+
+
+WHERE_IT_IS = {
+    *("id", "state", "version", "created_at", "updated_at", "from_post", "to_post", "priority", "window", "robot"),
+    *("my_role", "sender", "recipient"),
+}
+
+
+def test_why_it_waits_is_not_for_a_delegate_who_is_shown_what_is_listed_and_no_more(
+    nobody: TestClient, sender: Browser, mailroom: Mailroom, mails: Mails, order_id: str
+) -> None:
+    """A dispatcher's sentence and a robot's own may name anybody."""
+    name(sender, order_id)
+    mailroom.send_mails()
+    (mail,) = about_mail(mails)
+    mailroom.call(_says_why, mailroom)
+    mailroom.move(order_id, "assigned", "to_sender", "attention", reason="Somebody holds it back.")
+    assert sender.get(f"/api/v1/orders/{order_id}").json()["why"] == "Somebody holds it back."
+    answer = nobody.post("/api/v1/link/order", json=link_in(mail))
+    assert {field for field, shown in answer.json().items() if shown} == WHERE_IT_IS
+    assert answer.json()["robot"]["name"] == "r1"
+    for hidden in ("holds it back", "wheel", "gift", "@"):
+        assert hidden not in answer.text, hidden
+
+
+async def _says_why(mailroom: Mailroom) -> None:
+    async with mailroom.app.state.database.transaction() as session:
+        (await session.get_one(RobotRow, "r1")).why = "Somebody took its wheel."
 
 
 def test_when_they_are_not_needed_any_more_they_are_told_and_the_link_opens_nothing(
