@@ -18,7 +18,19 @@ from app.administration import migrate
 from app.errors import ServiceError
 from app.orders.transitions import MAIL_ABOARD
 from app.settings import Settings
-from app.tables import Alarm, Handover, MissionRow, Notice, Order, OrderEvent, Person, Priority, StopRow
+from app.tables import (
+    Alarm,
+    Handover,
+    MessageToRobot,
+    MissionRow,
+    Notice,
+    Order,
+    OrderEvent,
+    Person,
+    Priority,
+    RobotMessage,
+    StopRow,
+)
 from app.tables import OrderState as S
 from protocol.ids import ids_from
 from tests.app.orders.lives import World
@@ -327,3 +339,22 @@ LivesOfOrders.TestCase.settings = settings(
     suppress_health_check=list(HealthCheck),
 )
 TestLivesOfOrders = LivesOfOrders.TestCase
+
+
+def test_a_life_is_lived_again_from_its_choices() -> None:
+    """To the last id: else a life that failed once would not fail again, and nobody could find out why."""
+    assert lived() == lived()
+
+
+def lived() -> dict[str, list[str]]:
+    life = LivesOfOrders()
+    try:
+        life.begin(names=7, from_post="post1", step=2, so_far="it sets out", alone=True)
+        life.somebody_orders_the_same_way(number=0)
+        life.a_dispatcher_reassigns(number=0, robot="r2", so_far=None)
+        life.a_robot_goes_on(robot="r1", luck=["sender", "nobody comes"], hears=True)
+        life.a_dispatcher_recalls_a_robot(robot="r1")
+        life.a_robot_goes_on(robot="r1", luck=["arrives"], hears=True)
+        return life.run(life.everything()) | life.run(life.world.everything(MessageToRobot, RobotMessage))
+    finally:
+        life.teardown()
