@@ -45,12 +45,13 @@ class Report:
         """Take an order through `states`, from wherever it is among them. Raises TransitionRefused.
 
         A robot that was given up on and goes on by itself takes its order out of attention: what it does is the truth.
+        People have been told of where that was, and are now told of what it has come to.
         """
         order = await self.orders.order(self.session, order_id)
         before = order.state_before_attention
         goes_on = order.state not in states and states and not is_old_news(order.state, states[-1], before)
         if before is not None and goes_on:
-            await self.orders.move(self.session, order_id, before, word)
+            await self.orders.move(self.session, order_id, before, word, quietly=before is not states[-1])
         if order.state in states:
             states = states[states.index(order.state) :]
         for state in states:

@@ -82,13 +82,20 @@ class Ledger:
         return order, role
 
     async def move(
-        self, session: AsyncSession, order_id: str, to: OrderState, word: Word, wait_until: datetime | None = None
+        self,
+        session: AsyncSession,
+        order_id: str,
+        to: OrderState,
+        word: Word,
+        wait_until: datetime | None = None,
+        *,
+        quietly: bool = False,
     ) -> bool:
         """Take an order to its next state; False if this has happened before and nothing changes.
 
         A robot repeats itself after a lost acknowledgement, and may tell late what others told already: what lies
-        behind the order is no news on a robot's word. `wait_until` is how long the robot waits there. Raises
-        UnknownOrder, TransitionRefused.
+        behind the order is no news on a robot's word. `wait_until` is how long the robot waits there; `quietly`: nobody
+        gets a notice of it, since more follows at once. Raises UnknownOrder, TransitionRefused.
         """
         order = await self.order(session, order_id)
         if order.state is to or (word.by is By.ROBOT and is_old_news(order.state, to, order.state_before_attention)):
@@ -102,7 +109,7 @@ class Ledger:
         order.wait_until = wait_until
         if to is OrderState.QUEUED:
             _begin_anew(order)
-        await self._write(session, order, MOVED, word)
+        await self._write(session, order, MOVED, word, quietly=quietly)
         return True
 
     async def note(self, session: AsyncSession, order_id: str, kind: str, word: Word) -> None:
@@ -123,11 +130,13 @@ class Ledger:
             else:
                 after_commit(session, self.feed.pass_over)
 
-    async def _write(self, session: AsyncSession, order: Order, kind: str, word: Word) -> None:
+    async def _write(
+        self, session: AsyncSession, order: Order, kind: str, word: Word, *, quietly: bool = False
+    ) -> None:
         order.version += 1
         order.updated_at = self.clock.utc()
         await (await connection_of(session)).execute(_NEW_EVENT, _event(order, kind, word))
-        is_told = kind == MOVED and order.state in TOLD
+        is_told = kind == MOVED and order.state in TOLD and not quietly
         if not is_told and not self.feed.is_heard:  # all that has been is looked up for somebody who reads it
             after_commit(session, self.feed.pass_over)
             after_commit(session, partial(self.changed, order.id))

@@ -1,13 +1,14 @@
 """What becomes of an order when it does not go as ordered: cancelled, not fetched, not taken; and of a stolen token."""
 
 import socket
+from collections import Counter
 from dataclasses import dataclass
 
 import pytest
 from websockets.asyncio.client import connect
 
 from app.fleet.service import new_token
-from app.tables import Alarm, Handover, MessageToRobot, Order
+from app.tables import Alarm, Handover, MessageToRobot, Notice, Order
 from protocol.clock import SteppedClock
 from protocol.parts import Leg, Stop, StopAction
 from protocol.to_robot import Cancel, Grant, Mission
@@ -106,6 +107,30 @@ async def test_a_fault_with_mail_aboard_calls_a_person_and_ends_when_it_is_over_
         assert (str(order.state), order.why) == ("attention", "The robot was lifted."), "it has said that before"
         await robot.ends(await robot.say(robot.receipt(receive.stop)))
     assert (await service.states(order_id))[-3:] == ["attention", "at_recipient", "delivered"]
+    assert (await told(service, order_id))["robot_here_for_you"] == 1, "before it was lifted"
+    assert (await told(service, order_id))["delivered"] == 2, "the sender and the recipient"
+
+
+async def test_who_was_told_that_nobody_took_it_is_not_told_so_again_when_it_is_back(
+    service: Service, robot: PlayedRobot
+) -> None:
+    order_id, receive = await carrying(service, robot)
+    lifted = Fault(name="wheel_drop", happened_at=robot.clock.utc(), post="post3", reason="The robot was lifted.")
+    async with robot.connected(service.url, robot.token):
+        await robot.greet()
+        await robot.report(receive.mission, Step.GAVE_UP, receive.stop, reason="no_one_came")
+        await robot.report(receive.mission, Step.DONE)
+        own, back = own_mission(order_id, "post1")
+        await robot.report(own, Step.DEPARTED, back)
+        await robot.say(Event(happened=lifted))
+        await robot.ends(await robot.say(robot.receipt(back)))
+    assert (await service.states(order_id))[-5:] == ["returning", "attention", "returning", "at_return", "returned"]
+    counts = await told(service, order_id)
+    assert (counts["not_taken"], counts["attention"], counts["returned"]) == (2, 2, 2), "once to each side"
+
+
+async def told(service: Service, order_id: str) -> Counter[str]:
+    return Counter(str(one.kind) for one in await service.rows(Notice, order_id=order_id))
 
 
 async def test_mail_that_is_called_back_turns_round_when_the_robot_says_so(
