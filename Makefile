@@ -6,7 +6,7 @@ BIN := .venv/bin
 ARGS ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help setup setup-robot test check format demo serve robot bench bench-mind bench-body bench-service bench-paper bench-service-kills fuzz-mind client fuzz-api pin clean
+.PHONY: help setup setup-robot test check format demo serve robot bench bench-mind bench-body bench-service bench-paper bench-service-kills fuzz-mind client pages fuzz-api pin clean
 # A recipe that fails must not leave its stamp behind.
 .DELETE_ON_ERROR:
 
@@ -23,6 +23,7 @@ check: setup .venv/.lint-ready ## Format, lint, types, import contracts, types o
 	$(BIN)/ruff check
 	$(BIN)/mypy
 	$(BIN)/lint-imports --no-logo
+	@$(BIN)/python web/make_pages.py --check
 	$(WITH_NODE) web/node_modules/.bin/tsc --noEmit --project web
 	@$(BIN)/python client/make_client.py --document > .venv/openapi.json
 	$(WITH_NODE) $(SPECTRAL) --ruleset .ci/lint/openapi.yaml .venv/openapi.json
@@ -67,6 +68,9 @@ fuzz-mind: setup ## Feed the mind 10,000 mangled programs: each is read and run,
 
 client: setup ## Write the Python client anew from the API document
 	@$(BIN)/python client/make_client.py
+
+pages: setup ## Write what follows from other files into web/: lists of modules, the types of the API
+	@$(BIN)/python web/make_pages.py
 
 fuzz-api: setup ## Let schemathesis look for answers that the API document does not promise, twenty minutes long
 	@CAMPUS_MAIL_FUZZ_S=300 $(BIN)/python -m pytest -q --timeout 900 tests/app/test_api_fuzz.py $(ARGS)

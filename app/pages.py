@@ -21,7 +21,17 @@ log = structlog.get_logger(__name__)
 
 NPM_PACKAGES: Final = ("lit", "lit-html", "lit-element", "@lit/reactive-element")
 """What browsers may fetch of node_modules."""
-NOT_PAGES: Final = frozenset({"node_modules", "package.json", "package-lock.json", "tsconfig.json"})
+NOT_PAGES: Final = frozenset(
+    {
+        "node_modules",
+        "package.json",
+        "package-lock.json",
+        "tsconfig.json",
+        "make_pages.py",
+        "openapi_types.d.ts",
+        "api_types.ts",
+    }
+)
 """What lies in the pages' folder and is for those who work on them."""
 IMPORT_MAP = re.compile(rb'<script type="importmap">(.*?)</script>', re.DOTALL)
 

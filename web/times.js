@@ -1,6 +1,5 @@
 /** Times as people read them, in their own locale. Times go in as the service writes them. */
 import { locale, t } from "./texts.js";
-/** @import { ArrivalWindow } from "./api_types.ts" */
 
 const HOUR_MS = 3_600_000;
 const DAY_MS = 24 * HOUR_MS;
@@ -13,7 +12,7 @@ const CLOCK = /** @type {const} */ ({ hour: "numeric", minute: "2-digit" });
 /** "14:05" @param {string} at */
 export const clockTime = (at) => format(CLOCK).format(new Date(at));
 
-/** "12:40 – 12:44" @param {ArrivalWindow} window */
+/** "12:40 – 12:44" @param {{from: string, to: string}} window */
 export const windowText = ({ from, to }) => format(CLOCK).formatRange(new Date(from), new Date(to));
 
 /** A day and a time; today needs no day. @param {string} at @param {number} now_ms */

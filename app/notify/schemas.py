@@ -7,7 +7,7 @@ from pydantic import BaseModel, Field
 
 from app.notify.wording import body_of, title_of
 from app.paging import PageOf
-from app.tables import Notice
+from app.tables import Notice, NoticeKind
 
 
 class NoticeView(BaseModel):
@@ -15,7 +15,7 @@ class NoticeView(BaseModel):
 
     id: int
     order_id: str | None
-    kind: str
+    kind: NoticeKind
     title: str
     body: str
     at: datetime
@@ -27,7 +27,7 @@ class NoticeView(BaseModel):
         return cls(
             id=notice.id,
             order_id=notice.order_id,
-            kind=str(notice.kind),
+            kind=NoticeKind(notice.kind),
             title=title_of(notice, language),
             body=body_of(notice, language),
             at=notice.at,

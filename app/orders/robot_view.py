@@ -8,6 +8,7 @@ from app.settings import Settings
 from app.tables import RobotRow
 from app.texts.reasons import Words, words_of
 from maps import CampusMap, CampusMapError
+from protocol.parts import Activity
 
 SPREAD = 2.0
 
@@ -48,7 +49,7 @@ class RobotView(BaseModel):
     last_seen: LastSeen | None
     towards: str | None
     expected: Expected | None
-    activity: str
+    activity: Activity
     battery: BatteryView | None
     why: str | None
     why_words: Words | None
@@ -63,7 +64,7 @@ def robot_view(robot: RobotRow, campus: CampusMap, settings: Settings) -> RobotV
         last_seen=_last_seen(robot),
         towards=robot.towards,
         expected=_expected(robot, campus, settings),
-        activity=robot.activity,
+        activity=Activity(robot.activity),
         battery=_battery(robot),
         why=robot.why,
         why_words=words_of(robot.why) if robot.why else None,

@@ -11,7 +11,7 @@ from app.orders.robot_view import RobotView
 from app.orders.window import Window
 from app.paging import PageOf
 from app.people.schemas import Email
-from app.tables import Priority
+from app.tables import OrderState, Priority
 from app.texts.reasons import Words
 
 PostName = Annotated[str, StringConstraints(pattern=r"^[A-Za-z][A-Za-z0-9_]*$", max_length=64)]
@@ -116,7 +116,7 @@ class EventView(BaseModel):
 
     seq: int
     kind: str
-    state: str
+    state: OrderState
     at: datetime
     robot_at: datetime | None
     by: str
@@ -173,7 +173,7 @@ class OrderView(BaseModel):
     """An order as one person may see it. A delegate sees where it is, and of sender and recipient the names alone."""
 
     id: str
-    state: str
+    state: OrderState
     version: int
     from_post: str
     to_post: str

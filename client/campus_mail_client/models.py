@@ -36,6 +36,10 @@ class AboutMe(Model):
     usual_post: str | None = None
 
 
+Activity = Literal["idle", "driving", "waiting", "charging", "stopped"] | str
+"""What the robot is doing, in one word."""
+
+
 class AddressBook(Model):
     """Those with whom mail was exchanged, newest first; then the others who are saved, by label."""
 
@@ -242,7 +246,7 @@ class EventView(Model):
 
     seq: int
     kind: str
-    state: str
+    state: OrderState
     at: datetime
     robot_at: datetime | None
     by: str
@@ -464,7 +468,7 @@ class NoticeView(Model):
 
     id: int
     order_id: str | None
-    kind: str
+    kind: NoticeKind
     title: str
     body: str
     at: datetime
@@ -484,11 +488,33 @@ class OrderPage(Model):
     next: str | None
 
 
+OrderState = (
+    Literal[
+        "queued",
+        "assigned",
+        "to_sender",
+        "at_sender",
+        "carrying",
+        "at_recipient",
+        "delivered",
+        "returning",
+        "at_return",
+        "returned",
+        "held",
+        "expired",
+        "cancelled",
+        "attention",
+    ]
+    | str
+)
+"""Where an order stands; which may follow which is `app/orders/transitions.py`."""
+
+
 class OrderView(Model):
     """An order as one person may see it. A delegate sees where it is, and of sender and recipient the names alone."""
 
     id: str
-    state: str
+    state: OrderState
     version: int
     from_post: str
     to_post: str
@@ -622,7 +648,7 @@ class RobotView(Model):
     last_seen: LastSeen | None
     towards: str | None
     expected: Expected | None
-    activity: str
+    activity: Activity
     battery: BatteryView | None
     why: str | None
     why_words: Words | None

@@ -1,16 +1,15 @@
 """What the pages are made of: what a strict policy allows, and nothing that waits in line to be fetched."""
 
-import json
-import posixpath
 import re
 from pathlib import Path
 
 import pytest
 
+from web import make_pages
+
 WEB = Path(__file__).parents[2] / "web"
 PAGES = sorted(WEB.glob("*.html"))
 SCRIPTS = [path for path in sorted(WEB.rglob("*.js")) if "node_modules" not in path.parts]
-IMPORT = re.compile(r"""(?:^|[;\s}])(?:import|export)\s*(?:[\w$*{][^"';]*?from)?\s*["']([^"']+)["']""", re.MULTILINE)
 IMPORT_MAP = re.compile(r"<script type=\"importmap\">(.*?)</script>", re.DOTALL)
 
 
@@ -29,34 +28,11 @@ def test_all_pages_have_the_same_import_map():
     assert len({IMPORT_MAP.search(page.read_text(encoding="utf-8"))[1] for page in PAGES}) == 1
 
 
-def test_a_page_names_all_modules_that_it_needs_so_that_none_waits_for_another(html):
-    named = set(re.findall(r'<link rel="modulepreload" href="([^"]+)"', html))
-    (first,) = re.findall(r'<script type="module" src="([^"]+)"', html)
-    assert named == modules_behind(first, json.loads(IMPORT_MAP.search(html)[1])["imports"])
-
-
-def modules_behind(first: str, import_map: dict[str, str]) -> set[str]:
-    """Every module that a module imports, at any depth; without itself."""
-    found, waiting = set(), [first]
-    while waiting:
-        module = waiting.pop()
-        text = re.sub(r"/\*.*?\*/", "", file_of(module).read_text(encoding="utf-8"), flags=re.DOTALL)
-        waiting += {resolve(module, name, import_map) for name in IMPORT.findall(text)} - found
-        found |= set(waiting)
-    return found - {first}
-
-
-def resolve(module: str, name: str, import_map: dict[str, str]) -> str:
-    if name.startswith("."):
-        return posixpath.normpath(posixpath.join(posixpath.dirname(module), name))
-    if name in import_map:
-        return import_map[name]
-    prefix = max((key for key in import_map if key.endswith("/") and name.startswith(key)), key=len)
-    return import_map[prefix] + name.removeprefix(prefix)
-
-
-def file_of(module: str) -> Path:
-    return WEB / module.replace("/npm/", "node_modules/", 1).removeprefix("/")
+def test_what_is_made_of_other_files_is_up_to_date():
+    """The pages' lists of modules, so that none waits for another, and the types of what the service sends."""
+    made = make_pages.made_files()
+    assert [file.name for file, text in made.items() if file.read_text(encoding="utf-8") != text] == []
+    assert len(made) == len(PAGES) + 1
 
 
 def test_only_one_file_knows_addresses_of_the_service():

@@ -1,0 +1,111 @@
+"""`make pages` writes what follows from other files: each page's list of the modules that it needs, and the types of
+what the service sends, from its OpenAPI document. `--check` says what is not up to date instead.
+
+*.html               their `modulepreload` lines, so that no module waits for another to be read
+openapi_types.d.ts   a type for each schema; `api_types.ts` gives them the names that the pages use
+"""
+
+import argparse
+import json
+import os
+import posixpath
+import re
+import subprocess
+import sys
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Final
+
+WEB: Final = Path(__file__).parent
+TYPES: Final = "openapi_types.d.ts"
+IMPORT: Final = re.compile(
+    r"""(?:^|[;\s}])(?:import|export)\s*(?:[\w$*{][^"';]*?from)?\s*["']([^"']+)["']""", re.MULTILINE
+)
+IMPORT_MAP: Final = re.compile(r"<script type=\"importmap\">(.*?)</script>", re.DOTALL)
+PRELOADS: Final = re.compile(
+    r"(?:    <link rel=\"modulepreload\" href=\"[^\"]+\" />\n)*(?=    <script type=\"module\")"
+)
+FIRST: Final = re.compile(r'<script type="module" src="([^"]+)"')
+
+
+def with_preloads(html: str) -> str:
+    """The page with a line for each module behind its first one, in the order of their names."""
+    import_map = json.loads(_only(IMPORT_MAP, html))["imports"]
+    modules = sorted(modules_behind(_only(FIRST, html), import_map))
+    return PRELOADS.sub("".join(f'    <link rel="modulepreload" href="{one}" />\n' for one in modules), html, count=1)
+
+
+def _only(pattern: re.Pattern[str], html: str) -> str:
+    (found,) = pattern.findall(html)
+    return str(found)
+
+
+def modules_behind(first: str, import_map: Mapping[str, str]) -> set[str]:
+    """Every module that a module imports at once, at any depth, without itself; what `import()` fetches waits."""
+    found: set[str] = set()
+    waiting = [first]
+    while waiting:
+        module = waiting.pop()
+        text = re.sub(r"/\*.*?\*/", "", file_of(module).read_text(encoding="utf-8"), flags=re.DOTALL)
+        new = {resolve(module, name, import_map) for name in IMPORT.findall(text)} - found
+        waiting += new
+        found |= new
+    return found - {first}
+
+
+def resolve(module: str, name: str, import_map: Mapping[str, str]) -> str:
+    """The address of what `module` imports as `name`."""
+    if name.startswith("."):
+        return posixpath.normpath(posixpath.join(posixpath.dirname(module), name))
+    if name in import_map:
+        return import_map[name]
+    prefix = max((key for key in import_map if key.endswith("/") and name.startswith(key)), key=len)
+    return import_map[prefix] + name.removeprefix(prefix)
+
+
+def file_of(address: str) -> Path:
+    """Where a module lies."""
+    return WEB / address.replace("/npm/", "node_modules/", 1).removeprefix("/")
+
+
+def types_of(openapi: Mapping[str, Any]) -> str:
+    """TypeScript for the document's schemas. Its paths are left out: only `api.js` knows addresses."""
+    with tempfile.TemporaryDirectory() as folder:
+        given, made = Path(folder, "openapi.json"), Path(folder, "types.d.ts")
+        given.write_text(json.dumps({**openapi, "paths": {}}), encoding="utf-8")
+        command = [WEB / "node_modules/.bin/openapi-typescript", given, "--output", made]
+        # Where the system has no node of its own, setup has put one beside our Python.
+        path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ.get('PATH', '')}"
+        done = subprocess.run(command, check=False, capture_output=True, text=True, env={**os.environ, "PATH": path})
+        if done.returncode:
+            sys.exit(f"openapi-typescript failed (is web/node_modules there? `make setup`):\n{done.stderr}")
+        return made.read_text(encoding="utf-8")
+
+
+def made_files() -> dict[Path, str]:
+    """Every file that is made or has a made part, as it should be."""
+    sys.path[:0] = [str(WEB.parent)]
+    from client.make_client import document  # the checkout is on the path only now
+
+    pages = {page: with_preloads(page.read_text(encoding="utf-8")) for page in sorted(WEB.glob("*.html"))}
+    return pages | {WEB / TYPES: types_of(document())}
+
+
+def main() -> None:
+    """Write, or check."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--check", action="store_true", help="write nothing; fail if something is not up to date")
+    is_check = parser.parse_args().check
+    stale = [
+        (file, text) for file, text in made_files().items() if not file.exists() or file.read_text("utf-8") != text
+    ]
+    if is_check and stale:
+        sys.exit(f"Not up to date: {', '.join(file.name for file, _ in stale)}. Run `make pages`.")
+    for file, text in stale:
+        file.write_text(text, encoding="utf-8")
+        sys.stdout.write(f"{file.name} written\n")
+
+
+if __name__ == "__main__":
+    main()
