@@ -288,7 +288,8 @@ export interface components {
          *     `holder` is sender, robot, recipient, delegate or mailroom, `name` the robot's or the delegate's. `how` says how
          *     they came to have it: code, tap, digits or button by a robot's receipt, `dispatcher` by a dispatcher's word, null
          *     for the sender's own. `confirmed_by` is whose code, tap or digits it was (null for the button), and
-         *     `confirmed_by_name` which delegate's; `signed`: the robot has signed for it, and the signature was checked.
+         *     `confirmed_by_name` which delegate's; `signed`: the robot has signed for it, and the signature was checked. A
+         *     delegate of the other side is a delegate without a name.
          */
         CustodyView: {
             /** Holder */
