@@ -238,7 +238,10 @@ async def _answer_http(request: Request, error: Exception) -> JSONResponse:
 
 
 def _allowed(request: Request) -> str:
-    """Everything that can be done with a path: the router itself names the methods of one route alone."""
+    """Everything that can be done with a path: the router itself names the methods of one route alone. What stands in
+    the document as it is (`/robots/enrol`) is nothing else besides (`/robots/{name}`)."""
+    if documented := request.app.openapi()["paths"].get(request.url.path):
+        return ", ".join(method for method in METHODS if method.lower() in documented)
     routes = request.app.router.routes
     scopes = {method: {**request.scope, "method": method} for method in METHODS}
     return ", ".join(m for m, scope in scopes.items() if any(r.matches(scope)[0] is Match.FULL for r in routes))

@@ -22,7 +22,8 @@ router = APIRouter(tags=["outbox"])
 
 NEWEST_FIRST = Sorting("outbox", col(OutgoingNotice.id), descending=True)
 SendingId = Annotated[int, Path(ge=1, le=2**31 - 1)]
-FileName = Annotated[str, Path(pattern=r"^[A-Za-z0-9_-][A-Za-z0-9._-]*\.eml$", max_length=300)]
+FileName = Annotated[str, Path(pattern=r"^[A-Za-z0-9_-][A-Za-z0-9._-]*\.eml$", max_length=255)]
+"""No file system has longer names."""
 
 
 class SendingView(BaseModel):

@@ -27,16 +27,15 @@ class SpooledMail(BaseModel):
 
 
 def newest(folder: Path) -> list[SpooledMail]:
-    """The mails written last."""
-    files = nlargest(SHOWN, folder.glob("*.eml"), key=lambda file: file.stat().st_mtime_ns)
-    return [_about(file.name, _message(file)) for file in files]
+    """The mails written last, but for those that retention takes away meanwhile."""
+    files = nlargest(SHOWN, folder.glob("*.eml"), key=_written_ns)
+    return [_about(file.name, message) for file in files if (message := _message(file))]
 
 
 def read(folder: Path, name: str) -> tuple[SpooledMail, str, list[str]] | None:
     """Head, text and names of attachments; None if there is no such mail."""
-    try:
-        message = _message(folder / name)
-    except FileNotFoundError:
+    message = _message(folder / name)
+    if message is None:
         return None
     body = message.get_body(("plain",))
     attached = [part.get_filename() or "attachment" for part in message.iter_attachments()]
@@ -49,8 +48,18 @@ def redacted(text: str) -> str:
     return FRAGMENT.sub(f"#{REDACTED}", SECRET_TEXTS.sub(REDACTED, text))
 
 
-def _message(file: Path) -> EmailMessage:
-    return message_from_bytes(file.read_bytes(), policy=policy.default)
+def _message(file: Path) -> EmailMessage | None:
+    try:
+        return message_from_bytes(file.read_bytes(), policy=policy.default)
+    except FileNotFoundError:
+        return None
+
+
+def _written_ns(file: Path) -> int:
+    try:
+        return file.stat().st_mtime_ns
+    except FileNotFoundError:
+        return 0
 
 
 def _about(name: str, message: EmailMessage) -> SpooledMail:

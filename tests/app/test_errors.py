@@ -28,6 +28,19 @@ def test_what_is_not_there_is_a_problem_too(nobody: TestClient, method: str, pat
     assert problem["type"] == f"urn:campus-mail:problem:{code}"
 
 
+@pytest.mark.parametrize(
+    ("path", "allowed"),
+    [
+        ("/api/v1/robots/enrol", "POST"),  # not what GET /robots/{name} would make of it
+        ("/api/v1/robots/r1", "GET"),
+        ("/api/v1/me", "GET, PATCH"),
+    ],
+)
+def test_allow_says_what_the_document_says(nobody: TestClient, path: str, allowed: str) -> None:
+    answer = nobody.options(path)
+    assert (answer.status_code, set(answer.headers["Allow"].split(", "))) == (405, set(allowed.split(", ")))
+
+
 def test_what_does_not_fit_is_named_by_its_field_and_not_repeated(nobody: TestClient) -> None:
     answer = nobody.post("/api/v1/sign-in", json={"email": "ann@campus.example", "code": "sesame-1234"})
     problem = answer.json()

@@ -68,3 +68,9 @@ def test_the_spool_shows_who_was_written_to_and_no_code(
             assert shown["attachments"] == ["load-code.png"]
     for hidden in ("none.eml", "..%2Fserver.key.eml", "%2e%2e%2fcampus-mail.sqlite.eml"):
         assert dispatcher.get(f"/api/v1/spool/{hidden}").status_code in (404, 422)
+    longest = dispatcher.get(f"/api/v1/spool/{'0' * 251}.eml")
+    assert (longest.status_code, longest.json()["code"]) == (404, "not_in_spool")
+    assert dispatcher.get(f"/api/v1/spool/{'0' * 252}.eml").status_code == 422, "no file can have such a name"
+    # As one is that retention takes away between the list of names and the look at it.
+    (app.state.settings.spool_folder / "gone.eml").symlink_to("nowhere")
+    assert dispatcher.get("/api/v1/spool").json()["items"] == mails
