@@ -85,6 +85,8 @@ class Intervening(Returning):
 
     async def take_into_hands(self, session: AsyncSession, order: Order, word: Word) -> None:
         """Custody by a dispatcher's word, the only one that no robot has written; the robot is told to forget it."""
+        if order.state is OrderState.HELD:
+            return  # the mailroom has it already
         if order.robot is not None:
             order.let_go_by = order.robot
             session.add(self._taken_by_hand(order, word))

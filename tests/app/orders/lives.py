@@ -29,7 +29,7 @@ from app.orders.timer import Timer
 from app.people.service import SignInDesk, set_roles
 from app.server_key import ServerKey
 from app.settings import Settings
-from app.tables import MessageToRobot, Order, Person, RobotRow, Role
+from app.tables import MessageToRobot, Order, OrderState, Person, RobotRow, Role
 from maps import builtin_map
 from protocol.both_ways import Error
 from protocol.clock import SteppedClock
@@ -238,6 +238,14 @@ class World:
             await robot.say(self.intake, seq, again)
             robot.outbox.acknowledged(seq)
 
+    async def goes_on(self, name: str, *luck: str) -> None:
+        """With a network and after a look of dispatch: the robot hears, does and tells."""
+        await self.dispatch()
+        await self.hear(name)
+        for one in luck:
+            self.act(name, one)
+        await self.speak(name)
+
     # What the agent does, with a body that always gets there unless `luck` has it otherwise.
 
     def act(self, name: str, luck: str) -> None:
@@ -303,6 +311,9 @@ class World:
     async def rows(self, table: type[SQLModel], **wanted: object) -> list[Any]:
         async with self.database.reading() as session:
             return list((await session.exec(select(table).filter_by(**wanted))).all())
+
+    async def state(self, order_id: str) -> OrderState:
+        return OrderState((await self.rows(Order, id=order_id))[0].state)
 
     async def everything(self, *tables: type[SQLModel]) -> dict[str, list[str]]:
         """All rows, to compare."""

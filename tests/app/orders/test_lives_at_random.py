@@ -21,14 +21,12 @@ from app.settings import Settings
 from app.tables import (
     Alarm,
     Handover,
-    MessageToRobot,
     MissionRow,
     Notice,
     Order,
     OrderEvent,
     Person,
     Priority,
-    RobotMessage,
     StopRow,
 )
 from app.tables import OrderState as S
@@ -52,11 +50,12 @@ WAY = {
 }
 SO_FAR = st.sampled_from((None, *WAY))
 """Most of what can go wrong begins in the middle of a life."""
-WISHES = (
+WISHES: tuple[tuple[str, str], ...] = (
     *(("sender", what) for what in ("cancel", "recall", "extend_wait")),
     *(("recipient", what) for what in ("not_now", "extend_wait", "cancel")),
     *(("dispatcher", what) for what in ("cancel", "recall", "extend_wait")),
 )
+WISH = st.sampled_from(WISHES)
 ORDERS = 5
 ORDER = st.integers(0, ORDERS - 1)
 ROUNDS_TO_THE_END = 25
@@ -121,9 +120,29 @@ class LivesOfOrders(RuleBasedStateMachine):
         self.ids.append(self.run(self.world.place(same.from_post, same.to_post)))
         self.run(self.world.dispatch())
 
-    @rule(number=ORDER, wish=st.sampled_from(WISHES), so_far=SO_FAR)
+    @rule(number=ORDER, wish=WISH, so_far=SO_FAR)
     def somebody_asks(self, number: int, wish: tuple[str, str], so_far: str | None) -> None:
         self.an_order_comes(number, so_far)
+        self.asks(number, wish)
+
+    @rule(first=ORDER, one=WISH, second=ORDER, other=WISH, so_far=SO_FAR)
+    def wishes_cross(
+        self, first: int, one: tuple[str, str], second: int, other: tuple[str, str], so_far: str | None
+    ) -> None:
+        """Robots have heard of the first, and are not heard themselves before they are told of the second."""
+        self.an_order_comes(first, so_far)
+        for number, wish in ((first, one), (second, other)):
+            self.asks(number, wish)
+            self.run(self.world.dispatch())
+            for name in self.reached():
+                self.run(self.world.hear(name))
+        for name in self.reached():
+            self.run(self.world.speak(name))
+
+    def reached(self) -> list[str]:
+        return [name for name, robot in self.world.robots.items() if robot.online]
+
+    def asks(self, number: int, wish: tuple[str, str]) -> None:
         who, what = wish
         arguments = {"cancel": ("",), "extend_wait": (None,)}.get(what, ())
         self.tries(getattr(self.world.orders, what), who, self.order(number), *arguments)
@@ -143,6 +162,24 @@ class LivesOfOrders(RuleBasedStateMachine):
     def a_dispatcher_reassigns(self, number: int, robot: str | None, so_far: str | None) -> None:
         self.an_order_comes(number, so_far)
         self.tries(self.world.orders.reassign, "dispatcher", self.order(number), robot)
+
+    @rule(number=ORDER, so_far=SO_FAR, luck=st.lists(LUCK, max_size=3), comes_back=st.booleans())
+    def a_robot_is_given_up_on_and_goes_on(
+        self, number: int, so_far: str | None, luck: list[str], comes_back: bool
+    ) -> None:
+        """A dispatcher gives its order to another, while it does what it was told."""
+        self.an_order_comes(number, so_far)
+        (order,) = self.run(self.world.rows(Order, id=self.order(number)))
+        if order.robot is None or not self.tries(self.world.orders.stop_for_attention, "dispatcher", order.id, "Lost."):
+            return
+        self.run(self.world.set_online(order.robot, False))
+        self.tries(self.world.orders.resolve, "dispatcher", order.id, "queued", None)
+        self.an_order_comes(number, "it sets out")
+        for one in luck:
+            self.world.act(order.robot, one)
+        if comes_back:
+            self.run(self.world.set_online(order.robot, True))
+            self.run(self.world.speak(order.robot))
 
     @rule(number=ORDER, priority=st.sampled_from(Priority))
     def a_dispatcher_prioritises(self, number: int, priority: Priority) -> None:
@@ -223,12 +260,11 @@ class LivesOfOrders(RuleBasedStateMachine):
         if so_far is None or self.world.where[self.order(number)] != "sender":
             return
         self.run(self.world.dispatch())
-        for name, robot in self.world.robots.items():
-            if robot.online:
-                self.run(self.world.hear(name))
-                for luck in WAY[so_far]:
-                    self.world.act(name, luck)
-                self.run(self.world.speak(name))
+        for name in self.reached():
+            self.run(self.world.hear(name))
+            for luck in WAY[so_far]:
+                self.world.act(name, luck)
+            self.run(self.world.speak(name))
 
     @rule(robot=ROBOTS, count=st.integers(1, 4))
     def a_robot_hears(self, robot: str, count: int) -> None:
@@ -239,6 +275,15 @@ class LivesOfOrders(RuleBasedStateMachine):
     def a_robot_speaks(self, robot: str, count: int, is_heard: bool) -> None:
         if self.world.robots[robot].online:
             self.run(self.world.speak(robot, count, is_heard))
+
+    @rule(robot=ROBOTS, count=st.integers(1, 4))
+    def what_was_not_acknowledged_comes_again(self, robot: str, count: int) -> None:
+        if not self.world.robots[robot].online:
+            return
+        self.run(self.world.speak(robot, count, is_heard=False))
+        before = self.run(self.everything())
+        self.run(self.world.speak(robot, count))
+        assert self.run(self.everything()) == before, "a message is taken once"
 
     @rule(robot=ROBOTS, online=st.booleans())
     def the_network_comes_and_goes(self, robot: str, online: bool) -> None:
@@ -339,22 +384,3 @@ LivesOfOrders.TestCase.settings = settings(
     suppress_health_check=list(HealthCheck),
 )
 TestLivesOfOrders = LivesOfOrders.TestCase
-
-
-def test_a_life_is_lived_again_from_its_choices() -> None:
-    """To the last id: else a life that failed once would not fail again, and nobody could find out why."""
-    assert lived() == lived()
-
-
-def lived() -> dict[str, list[str]]:
-    life = LivesOfOrders()
-    try:
-        life.begin(names=7, from_post="post1", step=2, so_far="it sets out", alone=True)
-        life.somebody_orders_the_same_way(number=0)
-        life.a_dispatcher_reassigns(number=0, robot="r2", so_far=None)
-        life.a_robot_goes_on(robot="r1", luck=["sender", "nobody comes"], hears=True)
-        life.a_dispatcher_recalls_a_robot(robot="r1")
-        life.a_robot_goes_on(robot="r1", luck=["arrives"], hears=True)
-        return life.run(life.everything()) | life.run(life.world.everything(MessageToRobot, RobotMessage))
-    finally:
-        life.teardown()

@@ -1,57 +1,44 @@
 """Ends that lives at random did not come to, told as they went."""
 
-from app.tables import Order, OrderState
+from app.tables import OrderState
 from tests.app.orders.lives import World
 from tests.app.orders.what_holds import Record
 
 WEEK_S = 7 * 86400.0
 
 
-async def state(world: World, order_id: str) -> OrderState:
-    return OrderState((await world.rows(Order, id=order_id))[0].state)
-
-
-async def goes_on(world: World, *luck: str) -> None:
-    """The robot hears, does and tells."""
-    await world.dispatch()
-    await world.hear("r1")
-    for one in luck:
-        world.act("r1", one)
-    await world.speak("r1")
-
-
 async def test_mail_that_a_dispatcher_sends_back_can_be_taken_however_old_its_codes_are(world: World) -> None:
     order_id = await world.place("post1", "post2")
-    await goes_on(world, "sender")
+    await world.goes_on("r1", "sender")
     world.clock.advance(WEEK_S)
-    await goes_on(world, *["sender"] * 6)
-    assert await state(world, order_id) is OrderState.ATTENTION, "all codes were too old"
+    await world.goes_on("r1", *["sender"] * 6)
+    assert await world.state(order_id) is OrderState.ATTENTION, "all codes were too old"
     await world.change(world.orders.resolve, "dispatcher", order_id, "returning", "Once more.")
-    await goes_on(world, *["sender"] * 6)
-    assert await state(world, order_id) is OrderState.RETURNED
+    await world.goes_on("r1", *["sender"] * 6)
+    assert await world.state(order_id) is OrderState.RETURNED
     assert world.where[order_id] == "sender"
     await Record(world).check()
 
 
 async def test_mail_that_a_dispatcher_sends_on_can_be_taken_however_old_its_codes_are(world: World) -> None:
     order_id = await world.place("post1", "post2")
-    await goes_on(world, "sender", "no way")
+    await world.goes_on("r1", "sender", "no way")
     world.clock.advance(WEEK_S)
-    await goes_on(world, *["sender"] * 6)
+    await world.goes_on("r1", *["sender"] * 6)
     await world.change(world.orders.resolve, "dispatcher", order_id, "resume", "Once more.")
-    await goes_on(world, *["sender"] * 6)
-    assert await state(world, order_id) is OrderState.RETURNED
+    await world.goes_on("r1", *["sender"] * 6)
+    assert await world.state(order_id) is OrderState.RETURNED
 
 
 async def test_an_order_that_a_robot_dropped_and_is_given_again_is_fetched(world: World) -> None:
     first = await world.place("post3", "post4")
-    await goes_on(world, "sets out")
+    await world.goes_on("r1", "sets out")
     second = await world.place("post3", "post4")
-    await goes_on(world)
-    assert await state(world, second) is OrderState.ASSIGNED, "it goes along"
+    await world.goes_on("r1")
+    assert await world.state(second) is OrderState.ASSIGNED, "it goes along"
     await world.change(world.orders.reassign, "dispatcher", second, None)
-    await goes_on(world)
+    await world.goes_on("r1")
     await world.change(world.orders.reassign, "dispatcher", second, "r1")
-    await goes_on(world, *["sender"] * 6)
+    await world.goes_on("r1", *["sender"] * 6)
     await Record(world).check()
-    assert [await state(world, one) for one in (first, second)] == [OrderState.DELIVERED] * 2
+    assert [await world.state(one) for one in (first, second)] == [OrderState.DELIVERED] * 2

@@ -1,0 +1,147 @@
+"""What robots say late, again, or while something else was decided; and what they are told meanwhile."""
+
+from contextlib import suppress
+
+import pytest
+
+from app.errors import ServiceError
+from app.tables import Alarm, Handover, MissionRow, Notice, Order, OrderEvent, RobotCommand, StopRow
+from app.tables import OrderState as S
+from protocol.to_server import CommandAnswer, Event
+from tests.app.orders.lives import World
+from tests.app.orders.what_holds import Record
+
+ALL_DONE = ["sender"] * 6
+
+
+async def everything(world: World) -> dict[str, list[str]]:
+    return await world.everything(Order, OrderEvent, Notice, Handover, MissionRow, StopRow, Alarm, RobotCommand)
+
+
+async def two_on_one_way(world: World) -> tuple[str, str]:
+    """One whose mail is aboard of r1, and one for which it is still to come."""
+    first = await world.place("post3", "post4")
+    await world.goes_on("r1", "sets out")
+    second = await world.place("post3", "post4")
+    await world.goes_on("r1")
+    assert await world.state(second) is S.ASSIGNED, "it goes along"
+    await world.goes_on("r1", "sender")
+    assert [await world.state(one) for one in (first, second)] == [S.TO_SENDER, S.CARRYING]
+    return second, first
+
+
+async def test_an_update_that_crosses_with_an_answer_does_not_give_again_what_was_to_be_dropped(world: World) -> None:
+    aboard, waiting = await two_on_one_way(world)
+    await world.change(world.orders.cancel, "sender", waiting, "")
+    await world.dispatch()
+    await world.hear("r1")
+    await world.change(world.orders.recall, "sender", aboard)
+    await world.goes_on("r1")
+    assert await world.state(waiting) is S.CANCELLED
+    await Record(world).check()
+    await world.goes_on("r1", *ALL_DONE)
+    assert world.where == {aboard: "sender", waiting: "sender"}
+    assert await world.state(aboard) is S.RETURNED
+    await Record(world).check()
+
+
+async def test_who_has_fetched_the_mail_is_its_robot_though_it_was_given_to_another_meanwhile(world: World) -> None:
+    order_id = await world.place("post3", "post5")
+    await world.goes_on("r1", "arrives")
+    await world.set_online("r1", False)
+    await world.set_online("r2", True)
+    await world.change(world.orders.stop_for_attention, "dispatcher", order_id, "It is not heard of.")
+    await world.change(world.orders.resolve, "dispatcher", order_id, "queued", None)
+    await world.goes_on("r2", "sets out")
+    world.act("r1", "sender")
+    await world.set_online("r1", True)
+    await world.goes_on("r1")
+    (order,) = await world.rows(Order)
+    assert (order.state, order.robot) == (S.CARRYING, "r1")
+    await world.goes_on("r2")
+    assert world.robots["r2"].still_to_do() == set(), "the other need not come"
+    await Record(world).check()
+    await world.goes_on("r1", *ALL_DONE)
+    assert await world.state(order_id) is S.DELIVERED
+    await Record(world).check()
+
+
+async def test_a_robot_that_comes_where_it_was_to_go_before_turns_no_mail_round_again(world: World) -> None:
+    order_id = await world.place("post3", "post5")
+    await world.goes_on("r1", "sender", "sets out")
+    await world.change(world.orders.stop_for_attention, "dispatcher", order_id, "It is not heard of.")
+    await world.change(world.orders.resolve, "dispatcher", order_id, "returning", None)
+    world.act("r1", "arrives")
+    await world.speak("r1")
+    assert await world.state(order_id) is S.RETURNING
+    await world.goes_on("r1", *ALL_DONE)
+    assert await world.state(order_id) is S.RETURNED
+    await Record(world).check()
+
+
+async def test_an_answer_that_comes_again_drops_nothing_that_was_given_since(world: World) -> None:
+    _, waiting = await two_on_one_way(world)
+    await world.change(world.orders.reassign, "dispatcher", waiting, None)
+    await world.goes_on("r1")
+    await world.change(world.orders.reassign, "dispatcher", waiting, "r1")
+    await world.goes_on("r1")
+    assert await world.state(waiting) is S.ASSIGNED
+    (answer,) = (one for one in world.robots["r1"].said if isinstance(one.happened, CommandAnswer))
+    before = await everything(world)
+    await says(world, answer)
+    assert await everything(world) == before
+
+
+async def says(world: World, event: Event) -> None:
+    """Once more, in a message of its own."""
+    world.robots["r1"].outbox.put(event)
+    await world.speak("r1")
+
+
+async def test_a_message_that_was_not_acknowledged_comes_again_and_changes_nothing(world: World) -> None:
+    """A fault that is over rings no second time."""
+    order_id = await world.place("post3", "post5")
+    await world.goes_on("r1", "sender")
+    for is_over in (False, True):
+        world.robots["r1"].duties.report_fault("wheel_drop", "The robot was lifted.", "post3", cleared=is_over)
+    await world.speak("r1", is_heard=False)
+    before = await everything(world)
+    assert [event.state for event in await world.rows(OrderEvent, order_id=order_id)][-2:] == [S.ATTENTION, S.CARRYING]
+    await world.speak("r1")
+    assert await everything(world) == before
+
+
+@pytest.mark.parametrize("end", ["delivered", "returned", "held", "cancelled", "expired"])
+async def test_what_has_ended_has_ended_for_everybody(world: World, end: str) -> None:
+    order_id = await ended(world, end)
+    assert await world.state(order_id) == end
+    orders, before = world.orders, await everything(world)
+    wishes = (
+        (orders.stop_for_attention, "It does not move."),
+        *((orders.resolve, to, None) for to in ("resume", "returning", "held", "queued", "cancelled")),
+        (orders.hold, None),
+        (orders.reassign, "r2"),
+        (orders.recall,),
+        (orders.cancel, ""),
+        (orders.extend_wait, None),
+    )
+    for what, *arguments in wishes:
+        with suppress(ServiceError):  # refused, or granted because it is so already
+            await world.change(what, "dispatcher", order_id, *arguments)
+        assert await everything(world) == before, what
+    await Record(world).check()
+
+
+async def ended(world: World, end: str) -> str:
+    order_id = await world.place("post3", "post5")
+    if end == "cancelled":
+        await world.change(world.orders.cancel, "sender", order_id, "")
+    elif end == "expired":
+        await world.goes_on("r1", "nobody comes")
+    elif end == "delivered":
+        await world.goes_on("r1", *ALL_DONE)
+    else:
+        await world.goes_on("r1", "sender")
+        await world.change(world.orders.recall, "sender", order_id)
+        await world.goes_on("r1", {"held": "mailroom", "returned": "sender"}[end])
+    return order_id
