@@ -1,6 +1,30 @@
-/** Where each page is. @import { Order, WantedOrder } from "./api_types.ts" */
+/**
+ * Where each page is, and who may open it.
+ * @import { Order, Person, WantedOrder } from "./api_types.ts"
+ * @typedef {keyof typeof PAGES | "follow" | "print"} PageName what `title.NAME` is the title of
+ */
 
-export const PAGES = { order: "/", mail: "/mail.html", notices: "/notices.html" };
+export const PAGES = {
+  order: "/",
+  mail: "/mail.html",
+  notices: "/notices.html",
+  mailroom: "/mailroom.html",
+  robots: "/robots.html",
+  settings: "/settings.html",
+};
+
+/** One of these roles opens the page; every other page is for whoever is signed in. @type {Partial<Record<PageName, Person["roles"]>>} */
+const NEEDED = {
+  mailroom: ["dispatcher"],
+  print: ["dispatcher"],
+  robots: ["maintainer", "dispatcher"],
+};
+
+/** @param {PageName} page @param {Person} person */
+export const mayOpen = (page, person) => NEEDED[page]?.some((role) => person.roles.includes(role)) ?? true;
+
+/** The page of one robot. @param {string} name */
+export const robotPage = (name) => `/robots.html?robot=${encodeURIComponent(name)}`;
 
 /** @param {string} order_id */
 export const followPage = (order_id) => `/follow.html?order=${encodeURIComponent(order_id)}`;

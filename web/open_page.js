@@ -6,11 +6,12 @@ import { startLive } from "./live.js";
 import { keepServerTime } from "./server_clock.js";
 import { chooseLanguage, loadTexts, t } from "./texts.js";
 /** @import { About, Person } from "./api_types.ts" */
+/** @import { PageName } from "./links.js" */
 
 const LANGUAGES_WITHOUT_SERVICE = ["en", "fr"];
 
 /**
- * @param {"order" | "follow" | "mail" | "notices"} page
+ * @param {PageName} page
  * @param {(session: {about: About, person: Person}) => unknown} content what the page draws for a person who is signed in
  */
 export async function openPage(page, content) {

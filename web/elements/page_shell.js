@@ -1,19 +1,23 @@
 /** What stands around every page: name, pages, unread notices, account; and the sign-in where nobody is signed in. */
 import { html, nothing } from "lit";
 import * as api from "../api.js";
-import { PAGES } from "../links.js";
+import { mayOpen, PAGES } from "../links.js";
 import { OnLive, stopLive } from "../live.js";
 import { counted, t } from "../texts.js";
 import { icon } from "./icon.js";
+import { noRole } from "./no_role.js";
 import "./notice_toast.js";
 import { PageElement } from "./page_element.js";
 import "./sign_in.js";
 /** @import { About, Person } from "../api_types.ts" */
+/** @import { PageName } from "../links.js" */
 
 const ENTRIES = /** @type {const} */ ([
   ["order", "send"],
   ["mail", "letter"],
   ["notices", "bell"],
+  ["mailroom", "tray"],
+  ["robots", "robot"],
 ]);
 
 export class PageShell extends PageElement {
@@ -28,6 +32,7 @@ export class PageShell extends PageElement {
 
   constructor() {
     super();
+    /** @type {PageName} */
     this.page = "order";
     /** @type {About | null} */
     this.about = null;
@@ -53,20 +58,26 @@ export class PageShell extends PageElement {
       <a class="skip" href="#content">${t("app.skip")}</a>
       <header class="top">
         <a class="brand" href=${PAGES.order}><img src="/icons/icon.svg" alt="" width="32" height="32" />${t("app.name")}</a>
-        ${this.person ? [this.#navigation(), this.#account(this.person)] : nothing}
+        ${this.person ? [this.#navigation(this.person), this.#account(this.person)] : nothing}
       </header>
       ${this.connected ? nothing : html`<p class="banner" role="status">${icon("network")}${t("app.reconnecting")}</p>`}
       <main id="content" tabindex="-1">
-        ${this.person ? this.content() : html`<sign-in .about=${this.about}></sign-in>`}
+        ${this.person ? this.#page(this.person) : html`<sign-in .about=${this.about}></sign-in>`}
       </main>
       ${this.person && this.page !== "notices" ? html`<notice-toast></notice-toast>` : nothing}
       ${this.about?.simulated ? html`<footer class="foot">${t("app.demo")}</footer>` : nothing}
     `;
   }
 
-  #navigation() {
+  /** @param {Person} person */
+  #page(person) {
+    return mayOpen(this.page, person) ? this.content() : noRole(this.page);
+  }
+
+  /** @param {Person} person */
+  #navigation(person) {
     return html`<nav class="pages" aria-label=${t("nav.pages")}>
-      ${ENTRIES.map(
+      ${ENTRIES.filter(([page]) => mayOpen(page, person)).map(
         ([page, drawing]) => html`<a href=${PAGES[page]} aria-current=${this.page === page ? "page" : nothing}>
           <span class="glyph">${icon(drawing)}${page === "notices" ? this.#unreadMark() : nothing}</span>
           <span>${t(`nav.${page}`)}</span>
@@ -86,8 +97,13 @@ export class PageShell extends PageElement {
     return html`<details class="account">
       <summary>${initials(person.name)}<span class="unseen"> ${t("account.open")}: ${person.name}</span></summary>
       <div class="sheet">
-        <strong>${person.name}</strong><span>${person.email}</span>
-        <button class="quiet" @click=${this.#signOut}>${t("account.sign_out")}</button>
+        <strong>${person.name}</strong><span class="address">${person.email}</span>
+        <div class="entries">
+          <a class="entry" href=${PAGES.settings} aria-current=${this.page === "settings" ? "page" : nothing}>
+            ${icon("settings")}${t("nav.settings")}
+          </a>
+          <button class="entry" @click=${this.#signOut}>${icon("leave")}${t("account.sign_out")}</button>
+        </div>
       </div>
     </details>`;
   }
