@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from datetime import datetime, timedelta
 from typing import Final
 
+from sqlalchemy import String, and_, bindparam, case, exists, false, not_, or_
 from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
@@ -49,20 +50,27 @@ class Links:
         """
         if not self.settings.public_url:
             return None
+        asked = {"order_id": order_id, "person_id": person.id, "email": person.email}
+        async with self.database.asking() as connection:
+            found = (await connection.execute(_IN_NEED_OF_A_LINK, asked)).first()
+        if found is None:
+            return None
+        not_before, nonce, expires_at = found
         now = self.clock.utc()
-        async with self.database.reading() as session:
-            order = await session.get(Order, order_id)
-            if order is None or not await _needs_link(session, person, order):
-                return None
-            row = await _link(session, person, order_id)
-        if row is None or row.expires_at <= now:
+        if nonce is None or expires_at <= now:
             # Like the codes: whoever is named for an order that was left for later comes then.
-            ends_at = max(now, order.not_before or now) + timedelta(seconds=self.settings.link_lifetime_s)
-            async with self.database.transaction() as session:
-                row = await _link(session, person, order_id) or self._new(person, order_id, ends_at)
-                row.expires_at = ends_at
-                session.add(row)
-        return f"{self.settings.public_url.rstrip('/')}/{PAGE}#{self._token(row.nonce, order_id, person.id)}"
+            ends_at = max(now, not_before or now) + timedelta(seconds=self.settings.link_lifetime_s)
+            nonce = await self._make_good(person, order_id, ends_at)
+        return f"{self.settings.public_url.rstrip('/')}/{PAGE}#{self._token(nonce, order_id, person.id)}"
+
+    async def _make_good(self, person: Person, order_id: str, until: datetime) -> str:
+        """The nonce of the link, which is a new one if there was none."""
+        theirs = select(OrderLink).where(OrderLink.order_id == order_id, OrderLink.person_id == person.id)
+        async with self.database.transaction() as session:
+            row = (await session.exec(theirs)).first() or self._new(person, order_id, until)
+            row.expires_at = until
+            session.add(row)
+            return row.nonce
 
     def _new(self, person: Person, order_id: str, expires_at: datetime) -> OrderLink:
         nonce = secrets.token_hex(16)
@@ -100,22 +108,32 @@ def _is_good(row: OrderLink, now: datetime) -> bool:
     return row.revoked_at is None and row.expires_at > now
 
 
-async def _link(session: AsyncSession, person: Person, order_id: str) -> OrderLink | None:
-    theirs = select(OrderLink).where(OrderLink.order_id == order_id, OrderLink.person_id == person.id)
-    return (await session.exec(theirs)).first()
-
-
-async def _needs_link(session: AsyncSession, person: Person, order: Order) -> bool:
-    if order.recipient_id != person.id:
-        # The pages for those who sign in show a delegate nothing of the order.
-        return order.sender_id != person.id and await _is_named(session, person, order.id)
-    signed_in = select(PersonSession.id).where(PersonSession.person_id == person.id).limit(1)
-    known_outside = select(col(Identity.person_id)).where(Identity.person_id == person.id).limit(1)
-    return not (await session.exec(signed_in)).first() and not (await session.exec(known_outside)).first()
-
-
 async def _is_named(session: AsyncSession, person: Person, order_id: str) -> bool:
     named = select(Delegate.id).where(
         Delegate.order_id == order_id, Delegate.email == person.email, col(Delegate.revoked_at).is_(None)
     )
     return (await session.exec(named.limit(1))).first() is not None
+
+
+_ORDER: Final = bindparam("order_id", type_=String)
+_PERSON: Final = bindparam("person_id", type_=String)
+_NAMED: Final = exists().where(
+    col(Delegate.order_id) == _ORDER,
+    col(Delegate.email) == bindparam("email", type_=String),
+    col(Delegate.revoked_at).is_(None),
+)
+_KNOWN: Final = or_(
+    exists().where(col(PersonSession.person_id) == _PERSON), exists().where(col(Identity.person_id) == _PERSON)
+)
+_IN_NEED_OF_A_LINK: Final = (
+    select(Order.not_before, OrderLink.nonce, OrderLink.expires_at)
+    .outerjoin(OrderLink, and_(col(OrderLink.order_id) == Order.id, col(OrderLink.person_id) == _PERSON))
+    .where(
+        col(Order.id) == _ORDER,
+        # The pages for those who sign in show a delegate nothing of the order.
+        case(
+            (col(Order.recipient_id) == _PERSON, not_(_KNOWN)), (col(Order.sender_id) == _PERSON, false()), else_=_NAMED
+        ),
+    )
+)
+"""Nothing for whoever signs in, nor for whom the order does not concern."""

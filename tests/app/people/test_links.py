@@ -1,16 +1,20 @@
 """A recipient without account follows their one order by the link in their mail, and opens nothing else with it."""
 
 import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from email.message import EmailMessage
 from typing import Any
 
 import pytest
 from fastapi import FastAPI
 from fastapi.testclient import TestClient
+from sqlalchemy import Engine, event
 
 from app.settings import Settings
+from app.tables import Person
 from protocol.clock import SteppedClock
-from tests.app.conftest import RECIPIENT, Browser, Mailroom, Mails, SignedIn
+from tests.app.conftest import RECIPIENT, SENDER, Browser, Mailroom, Mails, SignedIn
 
 OUTSIDE = "guest@elsewhere.example"
 ORDER = "/api/v1/link/order"
@@ -133,3 +137,55 @@ def test_wrong_digits_by_a_link_count_as_anybodys(
     tries = [nobody.post("/api/v1/link/handover", json={**link, "digits": wrong}) for _ in range(5)]
     assert [said(one)[1] for one in tries] == ["wrong_digits"] * 4 + ["digits_locked"]
     assert nobody.post("/api/v1/link/code", json=link).json()["digits_locked"] is True
+
+
+LINKED = {"outside": True, "porter": True, SENDER: False, "signed in": False, "stranger": False, "let go": False}
+
+
+def test_whether_somebody_needs_a_link_is_one_question(
+    app: FastAPI, signed_in: SignedIn, sender: Browser, mailroom: Mailroom
+) -> None:
+    """For each mail there is; only what is not there yet, or too old, is written besides."""
+    order_id = sender.order(recipient="outside@elsewhere.example").json()["id"]
+    to_a_member = sender.order(recipient=RECIPIENT).json()["id"]
+    signed_in(RECIPIENT)
+    for name in ("porter", "let go"):
+        wish = {"name": name, "email": f"{name.replace(' ', '-')}@elsewhere.example"}
+        named = sender.post(f"/api/v1/orders/{order_id}/delegates", json=wish)
+        if name == "let go":
+            assert sender.delete(named.headers["Location"].removesuffix("/code")).status_code == 204
+    emails = {"signed in": RECIPIENT, SENDER: SENDER}
+    got: dict[str, tuple[bool, int]] = {}
+    for who in LINKED:
+        email = emails.get(who, f"{who.replace(' ', '-')}@elsewhere.example")
+        person = mailroom.call(_person, app, email)
+        about = to_a_member if who == "signed in" else order_id
+        first = mailroom.call(app.state.links.url_for, person, about)
+        with questions() as asked:
+            again = mailroom.call(app.state.links.url_for, person, about)
+        assert again == first
+        got[who] = (again is not None, len(asked))
+    assert got == {who: (is_linked, 1) for who, is_linked in LINKED.items()}
+    assert mailroom.call(app.state.links.url_for, person, "no such order") is None
+
+
+async def _person(app: FastAPI, email: str) -> Person:
+    async with app.state.database.transaction() as session:
+        person: Person = await app.state.sign_in_desk.person(session, email, app.state.clock.utc())
+        return person
+
+
+@contextmanager
+def questions() -> Iterator[list[str]]:
+    """About links, in this time: what else the service asks meanwhile does not count."""
+    asked: list[str] = []
+
+    def note(_connection: Any, _cursor: Any, statement: str, *_: Any) -> None:
+        if any(table in statement for table in ("order_links", "delegates", "identities", "sessions")):
+            asked.append(statement)
+
+    event.listen(Engine, "before_cursor_execute", note)
+    try:
+        yield asked
+    finally:
+        event.remove(Engine, "before_cursor_execute", note)
