@@ -41,6 +41,7 @@ from app.notify.worker import FINISH_WITHIN_S, OutboxWorker
 from app.orders import changing_routes, standing_routes
 from app.orders import routes as orders_routes
 from app.orders.codes import code_in_mail, code_png
+from app.orders.desk import OrderDesk
 from app.orders.service import Orders
 from app.orders.standing import StandingOrders
 from app.orders.timer import Timer
@@ -52,6 +53,7 @@ from app.people.links import Links
 from app.people.oidc import Provider
 from app.people.rate_limits import RateLimits
 from app.people.service import SignInDesk
+from app.request_figures import RequestFigures
 from app.request_log import RequestLog
 from app.schema_version import bring_to_head
 from app.server_key import ServerKey, open_server_key
@@ -111,7 +113,7 @@ def create_app(settings: Settings, clock: Clock, outside: Outside | None = None)
     app.include_router(about.root_router)
     app.include_router(metrics.router)
     add_pages(app, settings.pages)
-    metrics.measure_requests(app, app.state.metrics)
+    app.add_middleware(RequestFigures, registry=app.state.metrics.registry)
     app.add_middleware(RefusedHandshakes)
     app.add_middleware(ETags)
     app.add_middleware(BodyLimit)
@@ -135,6 +137,7 @@ def _add_parts(app: FastAPI, settings: Settings, clock: Clock) -> None:
     state.sign_in_desk = SignInDesk(settings, state.server_key, state.mailer)
     state.provider = Provider(settings, state.server_key)
     state.orders = Orders(state.campus, settings, clock, state.feed, state.server_key, state.sign_in_desk)
+    state.order_desk = OrderDesk(state.database, state.orders)
     state.standing_orders = StandingOrders(state.orders)
     state.timer = Timer(state.database, state.orders, state.standing_orders)
     state.links = Links(state.database, state.server_key, settings, clock)

@@ -10,11 +10,9 @@ from datetime import datetime, timedelta
 from typing import Annotated, Any, Final
 
 from fastapi import APIRouter, Depends, Header
-from fastapi import FastAPI as App
 from fastapi.responses import Response
 from prometheus_client import CollectorRegistry, Counter, Gauge, Histogram, generate_latest
 from prometheus_client.exposition import CONTENT_TYPE_PLAIN_0_0_4
-from prometheus_fastapi_instrumentator import Instrumentator
 from sqlmodel import col, func, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 from starlette.requests import HTTPConnection
@@ -118,17 +116,6 @@ def _set_all(gauge: Gauge, values: Mapping[Any, float | int | None]) -> None:
     gauge.clear()
     for label, value in values.items():
         gauge.labels(str(label)).set(value or 0)
-
-
-def measure_requests(app: App, metrics: Metrics) -> None:
-    """Requests by route and status, and how long they took; streams count when they end."""
-    instrumentator = Instrumentator(
-        should_ignore_untemplated=True,
-        should_exclude_streaming_duration=True,
-        excluded_handlers=["/metrics", "/healthz"],
-        registry=metrics.registry,
-    )
-    instrumentator.instrument(app, metric_namespace="campus_mail")
 
 
 def _is_let_in(connection: HTTPConnection, settings: Settings, authorization: str) -> bool:

@@ -20,7 +20,8 @@ class RememberingPolicy(EmailPolicy):
         return _max_count(name)
 
     def header_store_parse(self, name: str, value: Any) -> tuple[str, Any]:
-        return _read(name, value)
+        # Ours, of letters that are harmless in a header, and another in each mail: there is nothing to read.
+        return (name, value) if name == MESSAGE_ID else _read(name, value)
 
     def fold_binary(self, name: str, value: Any) -> bytes:
         if name == MESSAGE_ID and value.isascii():  # one word, and another in each mail: there is nothing to fold

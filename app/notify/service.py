@@ -1,14 +1,14 @@
 """Writes notices, in the transaction of whatever they tell of; the inbox is read from them."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from datetime import datetime, timedelta
-from typing import Final
+from typing import Any, Final
 
 from sqlalchemy import String, cast, delete, func, update
 from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.database import write_once
+from app.database import write_all_once, write_once
 from app.notify.schemas import Inbox, NoticeView
 from app.paging import Paging, Sorting
 from app.tables import Alarm, Notice, NoticeKind, OutgoingNotice, Person, Role
@@ -31,8 +31,19 @@ async def tell(
 
     The outbox worker takes it from here to the person's channels (`app.notify.routing`).
     """
-    notice = {"person_id": person.id, "key": key, "order_id": order_id, "kind": kind, "at": now, "facts": dict(facts)}
-    return await write_once(session, Notice, notice)
+    return await write_once(session, Notice, notice_row(person.id, key, order_id, kind, facts, now))
+
+
+async def tell_all(session: AsyncSession, notices: Sequence[Mapping[str, Any]]) -> None:
+    """The same for several of a kind."""
+    await write_all_once(session, Notice, notices)
+
+
+def notice_row(
+    person_id: str, key: str, order_id: str | None, kind: NoticeKind, facts: Mapping[str, str], now: datetime
+) -> dict[str, Any]:
+    """For those who have several to write."""
+    return {"person_id": person_id, "key": key, "order_id": order_id, "kind": kind, "at": now, "facts": dict(facts)}
 
 
 async def withdraw(session: AsyncSession, person_id: str, key: str) -> bool:

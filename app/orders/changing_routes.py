@@ -10,8 +10,8 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 from app.database import SessionDep
 from app.errors import Conflict, answering, problems
 from app.orders import errors
-from app.orders.routes import OrderId, OrdersDep, etag_of
-from app.orders.schemas import OrderView
+from app.orders.routes import OrderId, OrdersDep
+from app.orders.schemas import OrderView, etag_of
 from app.people.current_user import CurrentUser, Dispatcher
 from app.tables import Person, Priority
 

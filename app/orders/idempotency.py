@@ -3,21 +3,24 @@
 Thin: "still running" is known to this process alone; another process waits for the first one's commit instead.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from hashlib import sha256
 from typing import Any, Final
 
-from sqlalchemy import bindparam, delete
-from sqlmodel import col, select
+from sqlalchemy import bindparam, delete, select, tuple_
+from sqlmodel import col
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.database import connection_of, write_once
+from app.database import connection_of
 from app.orders.errors import KeyReused, StillRunning
 from app.orders.schemas import NewOrder
 from app.tables import IdempotencyKey
+
+Key = tuple[str, str]
+"""Of a person (by id), and what they have called their request."""
 
 KEPT = timedelta(hours=24)
 TWICE: Final = "The first request with this Idempotency-Key is still running. Ask again in a moment."
@@ -52,44 +55,58 @@ class Answer:
     """What was answered the first time."""
 
     headers: Mapping[str, str]
-    answer: Mapping[str, Any]
+    body: Mapping[str, Any]
 
 
-async def earlier_answer(
-    session: AsyncSession, person_id: str, key: str, hash_of_body: str, now: datetime
-) -> Answer | None:
-    """What was answered before, if anything. Raises KeyReused for another body."""
+@dataclass(frozen=True)
+class Earlier:
+    """A request that was answered before."""
+
+    hash_of_body: str
+    answer: Answer
+
+    def answer_to(self, wish: NewOrder) -> Answer:
+        """The same as then. Raises KeyReused for another wish."""
+        if self.hash_of_body != body_hash(wish):
+            raise KeyReused("This Idempotency-Key belongs to another order. Take a new key for a new order.")
+        return self.answer
+
+
+async def earlier_answers(session: AsyncSession, keys: Sequence[Key], now: datetime) -> dict[Key, Earlier]:
+    """What was answered to these before, if anything."""
     connection = await connection_of(session)
-    row = (await connection.execute(_KEPT, {"person": person_id, "name": key})).first()
-    if row is None:
-        return None
-    if row.created_at < now - KEPT:
-        # Whoever keeps house deletes the others, which stand in nobody's way.
-        await connection.execute(_FORGOTTEN, {"person": person_id, "name": key})
-        return None
-    if row.body_hash != hash_of_body:
-        raise KeyReused("This Idempotency-Key belongs to another order. Take a new key for a new order.")
-    return Answer(row.headers, row.answer)
+    earlier = {}
+    for row in (await connection.execute(_KEPT, {"keys": keys})).all():
+        if row.created_at < now - KEPT:
+            # Whoever keeps house deletes the others, which stand in nobody's way.
+            await connection.execute(_FORGOTTEN, {"person": row.person_id, "name": row.key})
+        else:
+            earlier[row.person_id, row.key] = Earlier(row.body_hash, Answer(row.headers, row.answer))
+    return earlier
 
 
-async def keep_answer(
-    session: AsyncSession, person_id: str, key: str, hash_of_body: str, answer: Answer, now: datetime
-) -> None:
-    """Raises StillRunning if another process has answered meanwhile: what was done here is undone."""
-    values = {"person_id": person_id, "key": key, "body_hash": hash_of_body, "status": 201, "created_at": now}
-    if not await write_once(session, IdempotencyKey, {**values, "headers": answer.headers, "answer": answer.answer}):
-        raise StillRunning(TWICE)
+def key_row(person_id: str, key: str, wish: NewOrder, answer: Answer, now: datetime) -> dict[str, Any]:
+    """What is kept, to be written with the order itself."""
+    return {
+        "person_id": person_id,
+        "key": key,
+        "body_hash": body_hash(wish),
+        "status": 201,
+        "headers": answer.headers,
+        "answer": answer.body,
+        "created_at": now,
+    }
 
 
 # Put together once: that takes longer than asking.
-_OF_THIS_KEY: Final = (
-    col(IdempotencyKey.person_id) == bindparam("person"),
-    col(IdempotencyKey.key) == bindparam("name"),
-)
 _KEPT: Final = select(
+    col(IdempotencyKey.person_id),
+    col(IdempotencyKey.key),
     col(IdempotencyKey.created_at),
     col(IdempotencyKey.body_hash),
     col(IdempotencyKey.headers),
     col(IdempotencyKey.answer),
-).where(*_OF_THIS_KEY)
-_FORGOTTEN: Final = delete(IdempotencyKey).where(*_OF_THIS_KEY)
+).where(tuple_(col(IdempotencyKey.person_id), col(IdempotencyKey.key)).in_(bindparam("keys", expanding=True)))
+_FORGOTTEN: Final = delete(IdempotencyKey).where(
+    col(IdempotencyKey.person_id) == bindparam("person"), col(IdempotencyKey.key) == bindparam("name")
+)

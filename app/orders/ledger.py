@@ -15,11 +15,12 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.database import after_commit, connection_of
 from app.live.feed import Feed, Happening
+from app.notify.service import tell_all
 from app.orders import errors
 from app.orders.idempotency import Running
 from app.orders.nearness import is_near
 from app.orders.schemas import OrderView
-from app.orders.telling import TOLD, facts_of, tell_about
+from app.orders.telling import TOLD, facts_of, notices_about
 from app.orders.transitions import By, is_allowed, is_old_news
 from app.orders.views import MyRole, OrderFacts, load_facts, order_view, role_in
 from app.people.service import SignInDesk
@@ -135,7 +136,7 @@ class Ledger:
     ) -> None:
         order.version += 1
         order.updated_at = self.clock.utc()
-        await (await connection_of(session)).execute(_NEW_EVENT, _event(order, kind, word))
+        await (await connection_of(session)).execute(_NEW_EVENT, event_row(order, kind, word))
         is_told = kind == MOVED and order.state in TOLD and not quietly
         if not is_told and not self.feed.is_heard:  # all that has been is looked up for somebody who reads it
             after_commit(session, self.feed.pass_over)
@@ -153,17 +154,16 @@ class Ledger:
             await self._tell(session, (await load_facts(session, [order]))[0], post)
             after_commit(session, partial(self.changed, order_id))
 
-    async def begin(self, session: AsyncSession, facts: OrderFacts) -> None:
-        """A new order, whose rows have been written: its people are told."""
-        await self._tell(session, facts)
-        self.publish(session, facts)
-
     async def _tell(self, session: AsyncSession, facts: OrderFacts, robot_at: str | None = None) -> None:
+        await tell_all(session, self.notices(facts, robot_at))
+
+    def notices(self, facts: OrderFacts, robot_at: str | None = None) -> list[dict[str, Any]]:
+        """What its people are to be told of the state that an order is in now."""
         order = facts.order
         robot_at = robot_at or (facts.robot.post if facts.robot else None)
         nearby = order.state is OrderState.TO_SENDER and is_near(self.ways, robot_at, order.from_post, self.settings)
         gaps = facts_of(order, facts.people, self.campus, self.settings)
-        await tell_about(session, order, facts.people, gaps, facts.events, nearby, self.clock.utc())
+        return notices_about(order, gaps, facts.events, nearby, self.clock.utc())
 
     def publish(self, session: AsyncSession, facts: OrderFacts) -> None:
         """To sender, recipient and dispatchers, each as they may see it, and to whoever waits for changes."""
@@ -204,15 +204,11 @@ def _begin_anew(order: Order) -> None:
     order.return_requested_at = order.reassign_requested_at = None
 
 
-def event_of(order: Order, kind: str, word: Word) -> OrderEvent:
-    """What has just happened to `order`, as its timeline tells it."""
-    return OrderEvent(**_event(order, kind, word))
-
-
 _NEW_EVENT: Final = insert(OrderEvent)
 
 
-def _event(order: Order, kind: str, word: Word) -> dict[str, Any]:
+def event_row(order: Order, kind: str, word: Word) -> dict[str, Any]:
+    """What has just happened to `order`, as its timeline tells it."""
     return {
         "order_id": order.id,
         "seq": order.version,

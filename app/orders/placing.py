@@ -1,20 +1,23 @@
 """Placing an order: what is checked, and what it begins with."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timedelta
+from typing import Any
 
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.database import write_new
+from app.database import new_row, row_of, write_all
 from app.errors import Unprocessable
+from app.notify.service import tell_all
 from app.orders import errors
-from app.orders.ledger import Ledger, Word, event_of
+from app.orders.ledger import Ledger, Word, event_row
 from app.orders.schemas import NewOrder, OrderView, Wish
 from app.orders.transitions import By
 from app.orders.views import MyRole, OrderFacts, order_view
 from app.orders.window import Window, arrival_window
-from app.people.service import look_up_person, may_be_sent_mail
-from app.tables import Order, Person, Priority, Role, StandingOrder
+from app.people.service import look_up_people, may_be_sent_mail
+from app.tables import Order, OrderEvent, OrderState, Person, Priority, Role, StandingOrder
 from app.tables.order_events import MOVED
 from maps import NoRoute, UnknownPost
 from protocol.ids import new_id
@@ -27,6 +30,16 @@ class Parties:
     sender: Person
     recipient: Person
     placed_by: Person | None = None
+
+
+@dataclass(frozen=True)
+class Draft:
+    """A new order before it is written down: what is known of it, and its rows."""
+
+    facts: OrderFacts
+    order: Mapping[str, Any]
+    event: Mapping[str, Any]
+    notices: Sequence[Mapping[str, Any]]
 
 
 class Placing(Ledger):
@@ -46,74 +59,109 @@ class Placing(Ledger):
         return window
 
     async def create(self, session: AsyncSession, person: Person, wish: NewOrder) -> OrderView:
-        """Queue a new order. Raises UnknownPost, SamePost, NoWay, UnknownRecipient, UnknownSender, ForDispatchers."""
-        parties = await self.parties(session, person, wish)
-        facts = await self.place(session, parties, wish, not_before=wish.not_before)
-        role: MyRole = "sender" if parties.placed_by is None else "dispatcher"
-        return order_view(facts, role, person.id, self.campus, self.settings)
+        """Queue one new order. Raises what `draft` does."""
+        draft = await self.draft(session, person, wish, await look_up_people(session, wish.addresses))
+        await self.write(session, [draft])
+        return self.first_view(draft, person)
+
+    async def draft(self, session: AsyncSession, person: Person, wish: NewOrder, known: dict[str, Person]) -> Draft:
+        """What `person` orders; `known` are the people by their addresses, and grow with it.
+
+        Raises UnknownPost, SamePost, NoWay, UnknownRecipient, UnknownSender, ForDispatchers.
+        """
+        window = self.window(wish.from_post, wish.to_post, wish.not_before)
+        parties = await self._parties(session, person, wish, known)
+        return self._draft(parties, wish, window, wish.not_before)
+
+    def first_view(self, draft: Draft, person: Person) -> OrderView:
+        """A new order as it is answered to whoever has placed it."""
+        role: MyRole = "sender" if draft.facts.order.placed_by_id is None else "dispatcher"
+        return order_view(draft.facts, role, person.id, self.campus, self.settings)
 
     async def parties(self, session: AsyncSession, person: Person, wish: Wish) -> Parties:
         """Who sends what `person` orders. Raises UnknownRecipient, UnknownSender, ForDispatchers."""
+        return await self._parties(session, person, wish, await look_up_people(session, wish.addresses))
+
+    async def _parties(self, session: AsyncSession, person: Person, wish: Wish, known: dict[str, Person]) -> Parties:
         if (wish.on_behalf_of or wish.priority is Priority.HIGH) and not person.has_role(Role.DISPATCHER):
             raise errors.ForDispatchers("Only a dispatcher orders for somebody else, or with high priority.")
-        recipient = await self._somebody(session, wish.recipient, errors.UnknownRecipient)
+        recipient = await self._somebody(session, wish.recipient, known, errors.UnknownRecipient)
         if not wish.on_behalf_of or wish.on_behalf_of == person.email:
             return Parties(person, recipient)
-        return Parties(await self._somebody(session, wish.on_behalf_of, errors.UnknownSender), recipient, person)
+        sender = await self._somebody(session, wish.on_behalf_of, known, errors.UnknownSender)
+        return Parties(sender, recipient, person)
 
     async def place(
+        self, session: AsyncSession, parties: Parties, wish: Wish, standing: StandingOrder, occurs_on: str
+    ) -> OrderFacts:
+        """Write down the order of a standing order and tell its people. Raises UnknownPost, SamePost, NoWay."""
+        window = self.window(wish.from_post, wish.to_post)
+        draft = self._draft(parties, wish, window, standing_order_id=standing.id, occurs_on=occurs_on)
+        await self.write(session, [draft])
+        return draft.facts
+
+    def _draft(
         self,
-        session: AsyncSession,
         parties: Parties,
         wish: Wish,
-        *,
+        window: Window,
         not_before: datetime | None = None,
-        standing: StandingOrder | None = None,
+        standing_order_id: str | None = None,
         occurs_on: str | None = None,
-    ) -> OrderFacts:
-        """Write a new order down and tell its people. Raises UnknownPost, SamePost, NoWay."""
-        window = self.window(wish.from_post, wish.to_post, not_before)
+    ) -> Draft:
         now = self.clock.utc()
         lifetime = timedelta(seconds=self.settings.handover_code_lifetime_s)
-        order = Order(
-            id=new_id(),
-            sender_id=parties.sender.id,
-            recipient_id=parties.recipient.id,
-            placed_by_id=parties.placed_by.id if parties.placed_by else None,
-            from_post=wish.from_post,
-            to_post=wish.to_post,
-            description=wish.description or None,
-            priority=wish.priority,
-            not_before=not_before,
-            standing_order_id=standing.id if standing else None,
-            occurs_on=occurs_on,
-            created_at=now,
-            updated_at=now,
-            codes_expire_at=max(now, not_before or now) + lifetime,
-            window_from=window.begins_at,
-            window_to=window.ends_at,
-        )
-        return await self._begin(session, order, parties, standing)
+        row = {
+            "id": new_id(),
+            "state": OrderState.QUEUED,
+            "version": 1,
+            "sender_id": parties.sender.id,
+            "recipient_id": parties.recipient.id,
+            "placed_by_id": parties.placed_by.id if parties.placed_by else None,
+            "from_post": wish.from_post,
+            "to_post": wish.to_post,
+            "description": wish.description or None,
+            "priority": wish.priority,
+            "not_before": not_before,
+            "standing_order_id": standing_order_id,
+            "occurs_on": occurs_on,
+            "created_at": now,
+            "updated_at": now,
+            "codes_expire_at": max(now, not_before or now) + lifetime,
+            "window_from": window.begins_at,
+            "window_to": window.ends_at,
+            "window_assumed": True,
+        }
+        return self._with_its_people(row, parties)
 
-    async def _begin(
-        self, session: AsyncSession, order: Order, parties: Parties, standing: StandingOrder | None
-    ) -> OrderFacts:
-        by, person = By.SENDER, parties.sender
-        if parties.placed_by is not None:
-            by, person = By.DISPATCHER, parties.placed_by
-        if standing is not None:
-            by = By.TIMER
-        event = event_of(order, MOVED, Word(by, person_id=person.id, post=order.from_post))
-        await write_new(session, order, event)
+    def _with_its_people(self, row: Mapping[str, Any], parties: Parties) -> Draft:
+        order, (by, person) = new_row(Order, row), _on_whose_word(row, parties)
+        event = event_row(order, MOVED, Word(by, person_id=person.id, post=order.from_post))
         # Everything that there is to know of it is at hand: nothing is read again.
-        people = [parties.sender, parties.recipient, person]
-        facts = OrderFacts(order, [event], {one.id: one for one in people}, None)
-        await self.begin(session, facts)
-        return facts
+        people = {one.id: one for one in (parties.sender, parties.recipient, person)}
+        facts = OrderFacts(order, [row_of(OrderEvent, event)], people, None)
+        return Draft(facts, row, event, self.notices(facts))
 
-    async def _somebody(self, session: AsyncSession, email: str, unknown: type[Unprocessable]) -> Person:
-        known = await look_up_person(session, email)
-        if known is None and not may_be_sent_mail(email, self.settings):
-            domains = ", ".join(self.settings.allowed_domains)
-            raise unknown(f"Nobody here has the address {email}. New addresses are those of {domains}.")
-        return known or await self.desk.person(session, email, self.clock.utc())
+    async def write(self, session: AsyncSession, drafts: Sequence[Draft]) -> None:
+        """Write new orders down, tell their people, and publish them after the commit."""
+        await write_all(session, Order, [one.order for one in drafts])
+        await write_all(session, OrderEvent, [one.event for one in drafts])
+        await tell_all(session, [notice for one in drafts for notice in one.notices])
+        for one in drafts:
+            self.publish(session, one.facts)
+
+    async def _somebody(
+        self, session: AsyncSession, email: str, known: dict[str, Person], unknown: type[Unprocessable]
+    ) -> Person:
+        if email not in known:
+            if not may_be_sent_mail(email, self.settings):
+                domains = ", ".join(self.settings.allowed_domains)
+                raise unknown(f"Nobody here has the address {email}. New addresses are those of {domains}.")
+            known[email] = await self.desk.person(session, email, self.clock.utc())
+        return known[email]
+
+
+def _on_whose_word(row: Mapping[str, Any], parties: Parties) -> tuple[By, Person]:
+    if row["standing_order_id"] is not None:
+        return By.TIMER, parties.placed_by or parties.sender
+    return (By.SENDER, parties.sender) if parties.placed_by is None else (By.DISPATCHER, parties.placed_by)

@@ -9,8 +9,8 @@ from sqlmodel.sql.expression import SelectOfScalar
 from app.database import ReadingDep, SessionDep
 from app.errors import TooManyRequests, answering, problems
 from app.orders import errors
-from app.orders.idempotency import Answer, body_hash, earlier_answer, keep_answer
-from app.orders.schemas import Estimate, NewOrder, OrderPage, OrderView, PostName, WindowView
+from app.orders.desk import OrderDesk
+from app.orders.schemas import Estimate, NewOrder, OrderPage, OrderView, PostName, WindowView, etag_of
 from app.orders.service import Orders
 from app.orders.views import load_facts, view_for
 from app.paging import PAGED, PageDep, Sorting
@@ -46,7 +46,13 @@ async def _orders(request: Request) -> Orders:
     return orders
 
 
+async def _order_desk(request: Request) -> OrderDesk:
+    desk: OrderDesk = request.app.state.order_desk
+    return desk
+
+
 OrdersDep = Annotated[Orders, Depends(_orders)]
+OrderDeskDep = Annotated[OrderDesk, Depends(_order_desk)]
 
 
 @router.get("/estimate", responses=problems(errors.UnknownPost, errors.SamePost, errors.NoWay))
@@ -65,22 +71,13 @@ async def place_order(
     wish: NewOrder,
     idempotency_key: Annotated[str, Header(pattern=r"^[!-~]+$", max_length=255)],
     user: CurrentUser,
-    orders: OrdersDep,
-    session: SessionDep,
+    desk: OrderDeskDep,
     response: Response,
 ) -> OrderView:
     """Place an order. The same key and body again give the first answer again, with `Idempotency-Replayed: true`."""
-    with orders.running.only_once(user.id, idempotency_key):
-        wanted, now = body_hash(wish), orders.clock.utc()
-        earlier = await earlier_answer(session, user.id, idempotency_key, wanted, now)
-        if earlier is not None:
-            response.headers.update({**earlier.headers, REPLAYED: "true"})
-            return OrderView.model_validate(earlier.answer)
-        view = await orders.create(session, user, wish)
-        headers = {"Location": f"/api/v1/orders/{view.id}", "ETag": etag_of(view)}
-        await keep_answer(session, user.id, idempotency_key, wanted, Answer(headers, view.model_dump(mode="json")), now)
-        response.headers.update(headers)
-        return view
+    placed = await desk.place(user, idempotency_key, wish)
+    response.headers.update({**placed.headers, REPLAYED: "true"} if placed.again else placed.headers)
+    return placed.view
 
 
 @router.get("/orders", responses=PAGED)
@@ -131,8 +128,3 @@ async def cancel_order(
     view = await orders.cancel(session, user, order_id, if_match)
     response.headers["ETag"] = etag_of(view)
     return view
-
-
-def etag_of(view: OrderView) -> str:
-    """The version of an order, for If-Match."""
-    return f'"{view.version}"'

@@ -35,6 +35,11 @@ class Wish(BaseModel):
     priority: Annotated[Priority, Field(description="`high` is for dispatchers.")] = Priority.NORMAL
     on_behalf_of: EmailOfSomebody = None
 
+    @property
+    def addresses(self) -> set[str]:
+        """Of whom something has to be known."""
+        return {self.recipient, self.on_behalf_of or self.recipient}
+
 
 class NewOrder(Wish):
     """What the order form says."""
@@ -208,3 +213,8 @@ class StandingOrderPage(PageOf[StandingOrderView]):
 
 class OrderPage(PageOf[OrderView]):
     """Some orders, newest first; `next` is the cursor of the following page, null on the last."""
+
+
+def etag_of(view: OrderView) -> str:
+    """The version of an order, for If-Match."""
+    return f'"{view.version}"'

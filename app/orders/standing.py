@@ -122,7 +122,7 @@ class StandingOrders:
             priority=row.priority,
         )
         try:
-            facts = await self.orders.place(session, parties, wish, standing=row, occurs_on=day.isoformat())
+            facts = await self.orders.place(session, parties, wish, row, day.isoformat())
         except ServiceError as problem:  # the map has changed, say: whoever made it has to look
             row.paused_at, row.next_at, row.why = self.orders.clock.utc(), None, problem.sentence[:500]
             log.warning("standing order paused", standing_order=row.id, problem=problem.code)

@@ -3,11 +3,9 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
-from typing import Final
+from typing import Any, Final
 
-from sqlmodel.ext.asyncio.session import AsyncSession
-
-from app.notify.service import tell
+from app.notify.service import notice_row
 from app.orders.transitions import MAIL_ABOARD, By
 from app.settings import Settings
 from app.tables import NoticeKind, Order, OrderEvent, OrderState, Person
@@ -92,54 +90,35 @@ def round_of(events: Sequence[OrderEvent]) -> int:
     return sum(event.state in again and event.kind == MOVED for event in events)
 
 
-async def tell_about(
-    session: AsyncSession,
+def notices_about(
     order: Order,
-    people: Mapping[str, Person],
     facts: Mapping[str, str],
     events: Sequence[OrderEvent],
     is_near: bool = False,
     now: datetime | None = None,
-) -> None:
-    """Tell whoever is to be told of the state that `order` is in now; `events` are all it has been through, `is_near`:
-    its robot is near the sender. `now`: if that is not when the order changed."""
+) -> list[dict[str, Any]]:
+    """What is to be told of the state that `order` is in now; `events` are all it has been through, `is_near`: its
+    robot is near the sender. `now`: if that is not when the order changed."""
     tellings = [one for one in TOLD.get(order.state, ()) if is_near or not one.when_near]
-    await _tell(session, tellings, order, people, facts, round_of(events), now or order.updated_at)
+    return _notices(tellings, order, facts, round_of(events), now or order.updated_at)
 
 
-async def tell_of_delay(
-    session: AsyncSession,
-    order: Order,
-    people: Mapping[str, Person],
-    facts: Mapping[str, str],
-    events: Sequence[OrderEvent],
-) -> None:
+def notices_of_delay(order: Order, facts: Mapping[str, str], events: Sequence[OrderEvent]) -> list[dict[str, Any]]:
     """Its window is later than what people were told; once in each round."""
-    await _tell(session, LATE, order, people, facts, round_of(events), order.updated_at)
+    return _notices(LATE, order, facts, round_of(events), order.updated_at)
 
 
-async def _tell(
-    session: AsyncSession,
-    tellings: Sequence[Telling],
-    order: Order,
-    people: Mapping[str, Person],
-    facts: Mapping[str, str],
-    round_: int,
-    now: datetime,
-) -> None:
+def _notices(
+    tellings: Sequence[Telling], order: Order, facts: Mapping[str, str], round_: int, now: datetime
+) -> list[dict[str, Any]]:
     ids = {SENDER: order.sender_id, RECIPIENT: order.recipient_id}
+    notices = []
     for one in tellings:
         if one.concerns(order):
             occasion = f".{round_}" if round_ > 1 and one.kind not in ONCE else ""
-            await tell(
-                session,
-                person=people[ids[one.who]],
-                key=f"{order.id}.{one.kind}{occasion}",
-                order_id=order.id,
-                kind=one.kind,
-                facts=facts,
-                now=now,
-            )
+            key = f"{order.id}.{one.kind}{occasion}"
+            notices.append(notice_row(ids[one.who], key, order.id, one.kind, facts, now))
+    return notices
 
 
 def facts_of(order: Order, people: Mapping[str, Person], campus: CampusMap, settings: Settings) -> dict[str, str]:

@@ -14,10 +14,11 @@ from sqlmodel import col, select
 
 from app.database import Database
 from app.errors import ServiceError
+from app.notify.service import tell_all
 from app.orders.ledger import Word
 from app.orders.service import Orders
 from app.orders.standing import StandingOrders
-from app.orders.telling import facts_of, tell_of_delay
+from app.orders.telling import facts_of, notices_of_delay
 from app.orders.transitions import ENDED, By
 from app.orders.views import load_facts
 from app.tables import Order, OrderState
@@ -112,4 +113,4 @@ class Timer:
             await self.orders.note(session, order_id, DELAYED, Word(By.TIMER))
             facts = (await load_facts(session, [order]))[0]
             gaps = facts_of(order, facts.people, self.orders.campus, self.orders.settings)
-            await tell_of_delay(session, order, facts.people, gaps, facts.events)
+            await tell_all(session, notices_of_delay(order, gaps, facts.events))

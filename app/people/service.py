@@ -3,6 +3,7 @@
 import hmac
 import re
 import secrets
+from collections.abc import Collection
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from typing import Final
@@ -12,7 +13,7 @@ from sqlalchemy import select as sa_select
 from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.database import columns_of, connection_of
+from app.database import columns_of, connection_of, row_of
 from app.mail import Mail, Mailer
 from app.people.errors import AddressNotAllowed, CodeExpired, WrongCode
 from app.people.sessions import new_session
@@ -124,13 +125,15 @@ _WITH_ADDRESS: Final = select(Person).where(col(Person.email) == bindparam("addr
 """Put together once: that takes longer than asking."""
 
 
-async def look_up_person(session: AsyncSession, email: str) -> Person | None:
-    """The same, to look at only: the session does not know this row, and takes a third of the time."""
-    row = (await (await connection_of(session)).execute(_ROW_WITH_ADDRESS, {"address": email})).first()
-    return None if row is None else Person(**row._mapping)
+async def look_up_people(session: AsyncSession, emails: Collection[str]) -> dict[str, Person]:
+    """The same for several, to look at only: the session does not know these rows, and takes three times as long."""
+    rows = await (await connection_of(session)).execute(_ROWS_WITH_ADDRESS, {"addresses": list(emails)})
+    return {row.email: row_of(Person, row._asdict()) for row in rows}
 
 
-_ROW_WITH_ADDRESS: Final = sa_select(*columns_of(Person)).where(col(Person.email) == bindparam("address"))
+_ROWS_WITH_ADDRESS: Final = sa_select(*columns_of(Person)).where(
+    col(Person.email).in_(bindparam("addresses", expanding=True))
+)
 
 
 async def _has_signed_in(session: AsyncSession, person: Person) -> bool:

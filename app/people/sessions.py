@@ -13,7 +13,7 @@ from sqlmodel import col, select, update
 from sqlmodel.ext.asyncio.session import AsyncSession
 from sqlmodel.sql.expression import SelectOfScalar
 
-from app.database import columns_of
+from app.database import columns_of, row_of
 from app.people.devices import device_of
 from app.people.errors import UnknownSession
 from app.tables import Person, PersonSession
@@ -62,7 +62,7 @@ async def find_session(connection: AsyncConnection, token: str, now: datetime) -
     if row is None:
         return None
     session_id, seen_at, *person = row
-    return OpenSession(Person(**dict(zip(_OF_A_PERSON, person, strict=True))), session_id, seen_at)
+    return OpenSession(row_of(Person, dict(zip(_OF_A_PERSON, person, strict=True))), session_id, seen_at)
 
 
 _OF_A_PERSON: Final = [str(column.key) for column in columns_of(Person)]

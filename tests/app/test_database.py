@@ -8,7 +8,7 @@ from sqlalchemy import event
 from sqlalchemy.exc import IntegrityError
 
 from app.administration import migrate
-from app.database import Database, after_commit, savepoint, write_new, write_once
+from app.database import Database, after_commit, savepoint, write_all, write_once
 from app.settings import Settings
 from app.tables import Person, PersonSession
 from protocol.clock import SteppedClock
@@ -106,7 +106,7 @@ async def test_what_is_written_past_the_session_is_taken_back_with_its_part(data
     async with database.transaction() as session:
         with pytest.raises(ZeroDivisionError):
             async with savepoint(session):
-                await write_new(session, person("ann"))
+                await write_all(session, Person, [person("ann").model_dump()])
                 assert await write_once(session, Person, person("bob").model_dump())
                 raise ZeroDivisionError
     async with database.reading() as session:

@@ -1,0 +1,114 @@
+"""Orders that come at the same time are placed together, and each is refused alone."""
+
+import asyncio
+from typing import Any
+
+import pytest
+from fastapi import FastAPI
+from sqlalchemy import event
+from sqlmodel import select
+
+from app.errors import ServiceError
+from app.orders.desk import AT_ONCE, OrderDesk, Placed
+from app.orders.errors import UnknownPost, UnknownRecipient
+from app.orders.schemas import NewOrder
+from app.tables import Person
+from tests.app.conftest import RECIPIENT, SENDER, Browser, Mailroom
+
+NEWCOMER = "new.comer@campus.example"
+
+
+class Crowd:
+    """Requests of one person that come in before the first of them has been answered."""
+
+    def __init__(self, app: FastAPI, mailroom: Mailroom) -> None:
+        self._app, self._mailroom = app, mailroom
+        self.desk: OrderDesk = app.state.order_desk
+        self.begun = 0
+
+    def people(self) -> dict[str, Person]:
+        return {one.email: one for one in self._mailroom.call(self._people)}
+
+    async def _people(self) -> list[Person]:
+        async with self._app.state.database.reading() as session:
+            return list((await session.exec(select(Person))).all())
+
+    def ask(self, *wishes: dict[str, Any], key: str = "k") -> list[Placed | BaseException]:
+        made = [NewOrder.model_validate({"from_post": "post1", "to_post": "post4", **wish}) for wish in wishes]
+        answers: list[Placed | BaseException] = self._mailroom.call(self._ask, made, key)
+        return answers
+
+    async def _ask(self, wishes: list[NewOrder], key: str) -> list[Placed | BaseException]:
+        person = next(one for one in await self._people() if one.email == SENDER)
+        engine = self._app.state.database.writing.sync_engine
+        event.listen(engine, "begin", self._count)
+        try:
+            places = [self.desk.place(person, f"{key}{number}", wish) for number, wish in enumerate(wishes)]
+            return await asyncio.gather(*places, return_exceptions=True)
+        finally:
+            event.remove(engine, "begin", self._count)
+
+    def _count(self, connection: Any) -> None:
+        self.begun += "IMMEDIATE" in str(connection.get_execution_options().get("begin", "")) or (
+            "advisory" in str(connection.get_execution_options().get("begin", ""))
+        )
+
+
+@pytest.fixture
+def crowd(app: FastAPI, mailroom: Mailroom, sender: Browser, recipient: Browser) -> Crowd:
+    return Crowd(app, mailroom)
+
+
+def test_what_cannot_be_delivered_keeps_nobody_else_from_ordering(crowd: Crowd, sender: Browser) -> None:
+    answers = crowd.ask({"recipient": RECIPIENT}, {"recipient": RECIPIENT, "to_post": "post9"}, {"recipient": NEWCOMER})
+    assert isinstance(answers[1], UnknownPost)
+    placed = [one.view for one in answers if isinstance(one, Placed)]
+    assert [one.recipient.email for one in placed] == [RECIPIENT, NEWCOMER]
+    assert {one["id"] for one in sender.get("/api/v1/orders").json()["items"]} == {one.id for one in placed}
+
+
+def test_of_an_order_that_is_refused_nothing_is_kept_nor_its_recipient(crowd: Crowd, sender: Browser) -> None:
+    refused = crowd.ask({"recipient": NEWCOMER, "to_post": "post9"}, {"recipient": "eve@elsewhere.example"})
+    assert [type(one) for one in refused] == [UnknownPost, UnknownRecipient]
+    assert NEWCOMER not in crowd.people()
+    (placed,) = crowd.ask({"recipient": NEWCOMER})  # under the same key, which was not used up
+    assert isinstance(placed, Placed) and not placed.again
+    assert [one["kind"] for one in sender.get("/api/v1/notices").json()["items"]] == ["accepted"]
+
+
+def test_two_orders_to_the_same_newcomer_make_one_person(crowd: Crowd) -> None:
+    first, second = crowd.ask({"recipient": NEWCOMER}, {"recipient": NEWCOMER})
+    assert isinstance(first, Placed) and isinstance(second, Placed)
+    assert first.view.id != second.view.id
+    assert NEWCOMER in crowd.people()
+
+
+def test_a_crowd_takes_few_transactions(crowd: Crowd) -> None:
+    answers = crowd.ask(*({"recipient": RECIPIENT} for _ in range(2 * AT_ONCE)))
+    assert len({one.view.id for one in answers if isinstance(one, Placed)}) == 2 * AT_ONCE
+    assert crowd.begun <= 6  # two rounds; the outbox and dispatch have some of their own
+
+
+def test_a_retry_among_new_orders_is_given_its_first_answer(crowd: Crowd) -> None:
+    (first,) = crowd.ask({"recipient": RECIPIENT})
+    again, other = crowd.ask({"recipient": RECIPIENT}, {"recipient": RECIPIENT})
+    assert isinstance(first, Placed) and isinstance(again, Placed) and isinstance(other, Placed)
+    assert (again.again, again.view, again.headers) == (True, first.view, first.headers)
+    assert not other.again
+
+
+def test_where_a_round_fails_each_of_its_orders_is_tried_by_itself(crowd: Crowd, sender: Browser) -> None:
+    """A person who was erased just now cannot order any more; whoever orders at the same moment can."""
+    people = crowd.people()
+    erased = people[SENDER].model_copy(update={"id": "nobody"})
+    wish = NewOrder(from_post="post1", to_post="post4", recipient=RECIPIENT)
+
+    async def both() -> list[Placed | BaseException]:
+        desk = crowd.desk
+        places = [desk.place(erased, "k", wish), desk.place(people[SENDER], "k", wish)]
+        return await asyncio.gather(*places, return_exceptions=True)
+
+    failed, placed = crowd._mailroom.call(both)
+    assert isinstance(failed, Exception) and not isinstance(failed, ServiceError)
+    assert isinstance(placed, Placed)
+    assert [one["id"] for one in sender.get("/api/v1/orders").json()["items"]] == [placed.view.id]
