@@ -16,6 +16,7 @@ from app.notify.lag import outbox_lag
 from app.schema_version import is_at_head
 from app.settings import ROOT, CampusDep, ClockDep, SettingsDep
 from app.texts import LANGUAGES
+from maps import Post
 from protocol.clock import Clock
 
 api_router = APIRouter(tags=["about"])
@@ -46,7 +47,8 @@ class About(BaseModel):
 
 
 class PostView(BaseModel):
-    """A post of the map; metres, x to the right, y up."""
+    """A post of the map; metres, x to the right, y up. `markers`: how many marker sheets hang there; `network`
+    false: no robot is heard there."""
 
     name: str
     title: str
@@ -54,16 +56,19 @@ class PostView(BaseModel):
     y_m: float
     dock: bool
     mailroom: bool
+    markers: int
+    network: bool
 
 
 class CorridorView(BaseModel):
-    """The line between two posts; `tape` is where it lies, from a to b."""
+    """The line between two posts; `tape` is where it lies, from a to b; `network`: as of a post."""
 
     name: str
     a: str
     b: str
     length_m: float
     assumed: bool
+    network: bool
     tape: list[tuple[float, float]]
 
 
@@ -98,16 +103,8 @@ async def about(settings: SettingsDep, clock: ClockDep, campus: CampusDep) -> Ab
 @api_router.get("/map")
 async def campus_map(campus: CampusDep) -> MapView:
     """Posts and corridors."""
-    posts = [
-        PostView(name=p.name, title=p.title, x_m=p.x_m, y_m=p.y_m, dock=p.dock is not None, mailroom=p.mailroom)
-        for p in campus.posts.values()
-    ]
-    corridors = [
-        CorridorView(
-            name=c.name, a=c.a, b=c.b, length_m=c.length_m, assumed=c.assumed, tape=[(x, y) for x, y in c.tape]
-        )
-        for c in campus.corridors
-    ]
+    posts = [_post(post) for post in campus.posts.values()]
+    corridors = [CorridorView.model_validate(corridor, from_attributes=True) for corridor in campus.corridors]
     return MapView(
         name=campus.name,
         title=campus.title,
@@ -115,6 +112,19 @@ async def campus_map(campus: CampusDep) -> MapView:
         note=campus.note,
         posts=posts,
         corridors=corridors,
+    )
+
+
+def _post(post: Post) -> PostView:
+    return PostView(
+        name=post.name,
+        title=post.title,
+        x_m=post.x_m,
+        y_m=post.y_m,
+        dock=post.dock is not None,
+        mailroom=post.mailroom,
+        markers=len(post.markers),
+        network=post.network,
     )
 
 

@@ -20,6 +20,7 @@ PARAMETERS: Final[Mapping[str, str]] = {
     "name": "A robot's name.",
     "order_id": "An order's id.",
     "person_id": "A person's id.",
+    "post": "A post's name on the map.",
     "prefix": "A token's readable beginning, without `cmp_`.",
     "role": "What to give or take; in a list of orders: those one sent, those coming to one, or all that one may see.",
     "sending_id": "One notice on one channel, as the outbox lists it.",

@@ -9,7 +9,7 @@ import structlog
 from fastapi import FastAPI
 from starlette.datastructures import State
 
-from app import about, demo_camera, metrics, one_order
+from app import about, demo_camera, marker_sheets, metrics, one_order, order_export
 from app.api_document import DocumentedApi
 from app.body_limit import BodyLimit
 from app.database import Database
@@ -88,6 +88,8 @@ ROUTERS = (
     handover_routes.router,
     handover_routes.dispatch_router,
     demo_camera.router,
+    order_export.router,
+    marker_sheets.router,
 )
 RESTART_PAUSE_S = 1.0
 STOP_WITHIN_S = 2.0

@@ -14,6 +14,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator
+from keyword import iskeyword
 from pathlib import Path
 from textwrap import dedent, wrap
 from typing import Any, Final
@@ -264,7 +265,8 @@ def _gathered(parameters: list[Schema]) -> str:
 
 
 def _plain(parameter: Schema) -> str:
-    return str(parameter["name"]).lower().replace("-", "_")
+    name = str(parameter["name"]).lower().replace("-", "_")
+    return f"{name}_" if iskeyword(name) else name
 
 
 def _answered(operation: Schema) -> str | None:

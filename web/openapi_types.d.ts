@@ -1006,7 +1006,7 @@ export interface components {
         };
         /**
          * PostView
-         * @description A post of the map; metres, x to the right, y up.
+         * @description A post of the map; metres, x to the right, y up. `markers`: how many marker sheets hang there.
          */
         PostView: {
             /** Name */
@@ -1021,6 +1021,8 @@ export interface components {
             dock: boolean;
             /** Mailroom */
             mailroom: boolean;
+            /** Markers */
+            markers: number;
         };
         /**
          * Priority

@@ -152,13 +152,14 @@ class ContactWish(Model):
 
 
 class CorridorView(Model):
-    """The line between two posts; `tape` is where it lies, from a to b."""
+    """The line between two posts; `tape` is where it lies, from a to b; `network`: as of a post."""
 
     name: str
     a: str
     b: str
     length_m: float
     assumed: bool
+    network: bool
     tape: list[tuple[float, float]]
 
 
@@ -562,7 +563,9 @@ class PersonView(Model):
 
 
 class PostView(Model):
-    """A post of the map; metres, x to the right, y up."""
+    """A post of the map; metres, x to the right, y up. `markers`: how many marker sheets hang there; `network`
+    false: no robot is heard there.
+    """
 
     name: str
     title: str
@@ -570,6 +573,8 @@ class PostView(Model):
     y_m: float
     dock: bool
     mailroom: bool
+    markers: int
+    network: bool
 
 
 Priority = Literal["low", "normal", "high"] | str
@@ -789,6 +794,18 @@ class SubscriptionKeys(Model):
     auth: str
 
 
+class TakenCorridor(Model):
+    """A corridor that a robot may be in, in its direction, since it was let in; until the robot says that it is
+    out.
+    """
+
+    robot: str
+    corridor: str
+    from_post: str
+    to_post: str
+    since: datetime
+
+
 class TokenPage(Model):
     """Some tokens that still open something, newest first."""
 
@@ -813,6 +830,12 @@ class TokenWish(Model):
     name: str
     scopes: list[Scope]
     days: int = 90
+
+
+class Traffic(Model):
+    """Every corridor that is taken, by robot, each robot's in the order in which it was granted them."""
+
+    taken: list[TakenCorridor]
 
 
 class WebhookView(Model):

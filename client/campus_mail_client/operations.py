@@ -1,5 +1,6 @@
 """One method for each operation: made of the service's OpenAPI document by make_client.py."""
 
+from datetime import datetime
 from typing import Any, Literal
 from urllib.parse import quote
 
@@ -65,6 +66,7 @@ from campus_mail_client.models import (
     StandingOrderView,
     TokenPage,
     TokenWish,
+    Traffic,
     Wishes,
     WishesView,
 )
@@ -96,12 +98,19 @@ class Operations:
         self,
         *,
         role: Literal["sent", "coming", "all"] | str | None = None,
+        state: Literal["open", "attention", "ended", "all"] | str | None = None,
+        search: str | None = None,
         limit: int | None = None,
         cursor: str | None = None,
     ) -> OrderPage:
-        """This person's orders, newest first; a dispatcher's `all` is everybody's."""
+        """This person's orders, newest first; a dispatcher's `all` is everybody's. `state` and `search` narrow it
+        down.
+        """
         answer: OrderPage = self._call(
-            "GET", "/api/v1/orders", OrderPage, query={"role": role, "limit": limit, "cursor": cursor}
+            "GET",
+            "/api/v1/orders",
+            OrderPage,
+            query={"role": role, "state": state, "search": search, "limit": limit, "cursor": cursor},
         )
         return answer
 
@@ -457,6 +466,11 @@ class Operations:
         answer: RobotPage = self._call("GET", "/api/v1/robots", RobotPage, query={"limit": limit, "cursor": cursor})
         return answer
 
+    def traffic(self) -> Traffic:
+        """Which robot holds which corridor: all of them, or those with an order of one's own for members."""
+        answer: Traffic = self._call("GET", "/api/v1/map/traffic", Traffic)
+        return answer
+
     def one_robot(self, name: str) -> RobotDetails:
         """One robot: where it is, battery, faults, software, when it was last heard, how far its clock is off."""
         answer: RobotDetails = self._call("GET", f"/api/v1/robots/{quote(str(name), safe='')}", RobotDetails)
@@ -606,4 +620,18 @@ class Operations:
         answer: OrderView = self._call(
             "POST", f"/api/v1/orders/{quote(str(order_id), safe='')}/digits/release", OrderView
         )
+        return answer
+
+    def export_orders(self, *, from_: datetime | None = None, to: datetime | None = None) -> bytes:
+        """Everybody's orders of a time as a table (CSV, RFC 4180, UTF-8 with a byte order mark), the oldest first.
+
+        The columns keep their names and order; new ones come behind them. What would be run as a formula by a
+        spreadsheet begins with an apostrophe.
+        """
+        answer: bytes = self._call("GET", "/api/v1/orders.csv", bytes, query={"from": from_, "to": to})
+        return answer
+
+    def marker_picture(self, post: str) -> bytes:
+        """A post's marker sheet (SVG, 148 × 210 mm, to be printed at 100 %), as often as it says."""
+        answer: bytes = self._call("GET", f"/api/v1/map/posts/{quote(str(post), safe='')}/marker.svg", bytes)
         return answer

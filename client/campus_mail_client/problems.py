@@ -18,6 +18,12 @@ class BadCursor(Problem):
     code = "bad_cursor"
 
 
+class BadRange(Problem):
+    """The export would end before it begins. (400)"""
+
+    code = "bad_range"
+
+
 class BadRequest(Problem):
     """The request contradicts itself. (400)"""
 
@@ -160,6 +166,12 @@ class NoEnrolmentCode(Problem):
     """No code for this name is still good: never made, too old, used, or tried too often. (401)"""
 
     code = "no_enrolment_code"
+
+
+class NoSuchPost(Problem):
+    """The campus map has no post of this name. (404)"""
+
+    code = "no_such_post"
 
 
 class NoWay(Problem):
@@ -525,6 +537,7 @@ class WrongState(Problem):
 BY_CODE: Final[Mapping[str, type[Problem]]] = {
     "address_not_allowed": AddressNotAllowed,
     "bad_cursor": BadCursor,
+    "bad_range": BadRange,
     "bad_request": BadRequest,
     "bad_subscription": BadSubscription,
     "code_expired": CodeExpired,
@@ -549,6 +562,7 @@ BY_CODE: Final[Mapping[str, type[Problem]]] = {
     "no_campus_sign_in": NoCampusSignIn,
     "no_code": NoCode,
     "no_enrolment_code": NoEnrolmentCode,
+    "no_such_post": NoSuchPost,
     "no_way": NoWay,
     "no_webhook": NoWebhook,
     "not_a_demonstration": NotADemonstration,

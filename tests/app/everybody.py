@@ -190,7 +190,13 @@ class Everybody:
         return order_id
 
 
-FIXED: Final = {"name": "r1", "role": "dispatcher", "email": "somebody@campus.example", "file": "none.eml"}
+FIXED: Final = {
+    "name": "r1",
+    "role": "dispatcher",
+    "email": "somebody@campus.example",
+    "file": "none.eml",
+    "post": "post1",
+}
 MAKERS: Final[dict[str, Callable[[Everybody, AsyncSession, Person], Awaitable[str]]]] = {
     # what fills a gap of a path or body, all of it the sender's; what another one needs stands before it
     "order_id": Everybody.an_order,

@@ -113,6 +113,8 @@ LINES: Final[dict[tuple[str, str], Line]] = {
     ("POST", "/api/v1/orders/{order_id}/hold"): dispatchers("dispatch", 409),
     ("POST", "/api/v1/orders/{order_id}/reassign"): dispatchers("dispatch"),
     ("PUT", "/api/v1/orders/{order_id}/priority"): dispatchers("dispatch"),
+    ("GET", "/api/v1/orders.csv"): dispatchers("dispatch"),
+    ("GET", "/api/v1/map/posts/{post}/marker.svg"): Line(401, 403, 403, 403, 200, 200, "dispatch"),
     # The sender's.
     ("POST", "/api/v1/standing-orders"): members("orders:write", 201),
     ("GET", "/api/v1/standing-orders"): members("orders:read"),
@@ -134,6 +136,7 @@ LINES: Final[dict[tuple[str, str], Line]] = {
     ("GET", "/api/v1/spool/{file}"): dispatchers("none", 404),
     ("GET", "/api/v1/live"): members("live:read"),
     ("GET", "/api/v1/robots"): members("robots:read"),
+    ("GET", "/api/v1/map/traffic"): members("robots:read"),
     ("GET", "/api/v1/robots/{name}"): Line(401, 403, 403, 403, 200, 200, "dispatch"),
     ("GET", "/api/v1/robots/{name}/commands"): Line(401, 403, 403, 403, 200, 200, "dispatch"),
     ("POST", "/api/v1/robots/{name}/pause"): dispatchers("dispatch", 202),
