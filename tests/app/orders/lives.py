@@ -315,6 +315,10 @@ class World:
     async def state(self, order_id: str) -> OrderState:
         return OrderState((await self.rows(Order, id=order_id))[0].state)
 
+    def aboard(self, robot: str) -> set[str]:
+        """Whose mail really is in this robot."""
+        return {order_id for order_id, place in self.where.items() if place == robot}
+
     async def everything(self, *tables: type[SQLModel]) -> dict[str, list[str]]:
         """All rows, to compare."""
         async with self.database.reading() as session:

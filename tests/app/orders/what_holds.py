@@ -125,3 +125,4 @@ class Record:
             waits = is_untold or robot.outbox.waiting() or any(one.let_go_by == robot.name for one in orders)
             if not waits and not await self.world.unheard(robot):
                 assert robot.still_to_do() == left
+                assert set(robot.duties.held.cargo) == self.world.aboard(robot.name)
