@@ -14,10 +14,13 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Final, Protocol
 
+import structlog
 from fastapi.sse import format_sse_event
 from pydantic import BaseModel
 
 from app.tables import Person, Role
+
+log = structlog.get_logger(__name__)
 
 REPLAYED: Final = 1000
 QUEUED: Final = 200
@@ -56,11 +59,22 @@ class Numbered:
 
     @cached_property
     def wire(self) -> bytes:
-        """As it goes out: written once, however many listen, and never if nobody does."""
+        """As it goes out: written once, however many listen, and never if nobody does.
+
+        That late it may be beyond words: a row whose change was undone cannot be read any more once its session is
+        closed. Then everybody fetches anew; a stream that broke there would break there again when it is resumed.
+        """
+        try:
+            event, text = self.happening.event, self._text()
+        except Exception:
+            log.exception("what happened has no words", event_name=self.happening.event, id=self.id)
+            event, text = "resync", "{}"
+        return format_sse_event(data_str=text, event=event, id=self.id)
+
+    def _text(self) -> str:
         data = self.happening.data
         data = data() if callable(data) else data
-        text = data.model_dump_json() if isinstance(data, BaseModel) else json.dumps(data)
-        return format_sse_event(data_str=text, event=self.happening.event, id=self.id)
+        return data.model_dump_json() if isinstance(data, BaseModel) else json.dumps(data)
 
 
 class Feed(Protocol):
