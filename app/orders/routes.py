@@ -1,29 +1,32 @@
 """Ordering, following, cancelling."""
 
-from typing import Annotated, Literal
+from typing import Annotated
 
-from fastapi import APIRouter, Depends, Header, Path, Request, Response
-from sqlmodel import col, select
-from sqlmodel.sql.expression import SelectOfScalar
+from fastapi import APIRouter, Depends, Header, Path, Query, Request, Response
+from sqlmodel import col
 
 from app.database import ReadingDep, SessionDep
 from app.errors import TooManyRequests, answering, problems
 from app.orders import errors
 from app.orders.desk import OrderDesk
+from app.orders.finding import Looked, RoleInList, StateInList
 from app.orders.schemas import Estimate, NewOrder, OrderPage, OrderView, PostName, WindowView, etag_of
 from app.orders.service import Orders
 from app.orders.views import load_facts, view_for
 from app.paging import PAGED, PageDep, Sorting
 from app.people.current_user import CurrentUser
 from app.people.rate_limits import Door, per_person
+from app.people.search import SearchText
 from app.settings import CampusDep
-from app.tables import Order, Person, Role
+from app.tables import Order
 from maps import shortest_route
 
 router = APIRouter(tags=["orders"])
 
 OrderId = Annotated[str, Path(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]*$", max_length=64)]
 NEWEST_FIRST = Sorting("orders", col(Order.created_at), col(Order.id), descending=True)
+SEARCHED = "Part of the description, of the other side's name or mail address, or of a post's name or title."
+STATES = "`open`: what goes on; `attention`: what of that waits for a dispatcher; `ended`: what goes on no more."
 REPLAYED = "Idempotency-Replayed"
 REFUSED = (
     errors.UnknownPost,
@@ -87,21 +90,16 @@ async def list_orders(
     orders: OrdersDep,
     session: ReadingDep,
     page: PageDep,
-    role: Literal["sent", "coming", "all"] = "all",
+    role: RoleInList = "all",
+    state: Annotated[StateInList, Query(description=STATES)] = "all",
+    search: Annotated[SearchText, Query(description=SEARCHED)] = "",
 ) -> OrderPage:
-    """This person's orders, newest first; a dispatcher's `all` is everybody's."""
-    rows, following = await page.of_any(session, _theirs(user, role), NEWEST_FIRST)
+    """This person's orders, newest first; a dispatcher's `all` is everybody's. `state` and `search` narrow it down."""
+    walks = Looked(role, state, search.strip()).walks(user, orders.campus)
+    rows, following = await page.of_any(session, walks, NEWEST_FIRST)
     facts = await load_facts(session, rows)
     views = [view_for(user, one, orders.campus, orders.settings) for one in facts]
     return OrderPage(items=[view for view in views if view], next=following)
-
-
-def _theirs(user: Person, role: str) -> list[SelectOfScalar[Order]]:
-    if role == "all" and user.has_role(Role.DISPATCHER):
-        return [select(Order)]
-    sent = select(Order).where(Order.sender_id == user.id)
-    coming = select(Order).where(Order.recipient_id == user.id)
-    return {"sent": [sent], "coming": [coming], "all": [sent, coming]}[role]
 
 
 @router.get("/orders/{order_id}", responses=problems(errors.UnknownOrder))

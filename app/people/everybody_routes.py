@@ -12,14 +12,14 @@ from app.people.current_user import DispatcherOrMaintainer, Maintainer
 from app.people.errors import LastMaintainer, RoleNeeded, UnknownPerson
 from app.people.roles import change_role
 from app.people.schemas import PeoplePage, PersonView
-from app.people.search import says
+from app.people.search import SearchText, says
 from app.tables import Person, Role
 
 router = APIRouter(tags=["people"])
 address_router = APIRouter(tags=["address book"])
 
 PersonId = Annotated[str, Path(pattern=r"^[A-Za-z0-9_-]{1,64}$")]
-Search = Annotated[str, Query(max_length=100, description="Part of a name or mail address.")]
+Search = Annotated[SearchText, Query(description="Part of a name or mail address.")]
 BY_ADDRESS = Sorting("people", col(Person.email))
 
 

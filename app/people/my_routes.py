@@ -27,6 +27,7 @@ from app.people.schemas import (
     TokenView,
     TokenWish,
 )
+from app.people.search import SearchText
 from app.people.sessions import end_others, end_session, open_sessions
 from app.people.tokens import good_tokens, issue_token, revoke_token
 from app.settings import CampusDep, ClockDep
@@ -77,7 +78,7 @@ async def my_contacts(
     user: CurrentUser,
     session: ReadingDep,
     page: PageDep,
-    search: Annotated[str, Query(max_length=100, description="Part of a name, label or mail address.")] = "",
+    search: Annotated[SearchText, Query(description="Part of a name, label or mail address.")] = "",
 ) -> AddressBook:
     """Those one exchanged mail with, newest first, and those one saved; `search` narrows it down."""
     known, following = await address_book(session, user.id, search, page)

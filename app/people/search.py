@@ -1,11 +1,20 @@
 """What somebody types into a search field."""
 
-from typing import Any
+from typing import Annotated, Any
 
+from pydantic import StringConstraints
 from sqlalchemy import ColumnElement, or_
 from sqlmodel import col
+
+SearchText = Annotated[str, StringConstraints(max_length=100, pattern=r"^[^\x00]*$")]
+"""PostgreSQL refuses a zero byte in a text."""
 
 
 def says(search: str, *columns: Any) -> ColumnElement[bool]:
     """Whether one of these columns holds this text, in capitals or not."""
-    return or_(*(col(column).icontains(search, autoescape=True) for column in columns))
+    return or_(*(col(column).icontains(one, autoescape=True) for column in columns for one in _spellings(search)))
+
+
+def _spellings(search: str) -> list[str]:
+    """SQLite knows small and capital letters from a to z; what else there is has to be said in each way."""
+    return [search] if search.isascii() else sorted({search.lower(), search.upper(), search.title()})

@@ -61,6 +61,23 @@ def test_a_page_of_my_mail_walks_along_its_index(
         assert "TEMP B-TREE" not in plan
 
 
+@pytest.mark.parametrize(
+    ("question", "index"),
+    [
+        ("role=sent&state=open", "ix_orders_state"),
+        ("role=sent&state=ended&search=keys", "ix_orders_sent"),
+        ("role=coming&search=keys", "ix_orders_coming"),
+    ],
+)
+def test_what_goes_on_is_found_by_its_state_and_the_rest_along_its_index(
+    app: FastAPI, sender: Browser, mailroom: Mailroom, question: str, index: str
+) -> None:
+    with asked(app) as questions:
+        sender.get(f"/api/v1/orders?{question}")
+    walk = next(one for one in questions if "FROM orders" in one[0] and "LIMIT" in one[0])
+    assert f"USING INDEX {index}" in mailroom.call(plan_of, app, *walk)
+
+
 NOT_OVER = {
     "what a robot is to be told": "ix_server_outbox_waiting",
     "robots that are to let go": "ix_orders_let_go",
