@@ -192,6 +192,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     await bring_to_head(app.state.database)
     await app.state.fleet.begin()
     state = app.state
+    await asyncio.to_thread(state.mailer.begin)
     workers = {"dispatch": state.dispatcher, "timer": state.timer, "housekeeping": state.housekeeper}
     background = [asyncio.create_task(_keep_running(name, worker.run)) for name, worker in workers.items()]
     outbox = asyncio.create_task(_keep_running("outbox", state.outbox_worker.run))

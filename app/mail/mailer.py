@@ -31,6 +31,10 @@ class Mailer(Protocol):
         """For what is kept nowhere (a sign-in code): the caller does not wait for a slow server, and asks no more."""
         ...
 
+    def begin(self) -> None:
+        """Before the first mail; takes a moment."""
+        ...
+
     def stop(self) -> None:
         """End what `send_soon` still has to do."""
         ...
@@ -70,6 +74,15 @@ class SpoolMailer:
             self._writing = None
             for _, written in batch:  # cut off: nobody shall wait for ever
                 written.cancel()
+
+    def begin(self) -> None:
+        try:
+            count = self.spool.tidy()
+        except OSError as problem:  # a folder that cannot be tidied may still take mails
+            log.warning("the spool cannot be tidied", problem=str(problem))
+        else:
+            if count:
+                log.info("half-written mails removed", count=count)
 
     def stop(self) -> None:
         pass
@@ -112,6 +125,9 @@ class SmtpMailer:
                 if problem.for_good:
                     return None
         return None
+
+    def begin(self) -> None:
+        pass
 
     def stop(self) -> None:
         for task in self._soon:

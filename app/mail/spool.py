@@ -4,12 +4,18 @@ The file's name is the key of the sending: writing it a second time, after a cra
 """
 
 import os
+import re
+import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TypeVar
+from typing import Final, TypeVar
 
 from app.mail.message import Mail, message_of, name_of
+
+UNFINISHED: Final = re.compile(r"[A-Za-z0-9._-]+\.eml\.tmp")
+STALE_AFTER_S: Final = 3600.0
+"""Real seconds. A younger file may be one that somebody else is writing."""
 
 Given = TypeVar("Given")
 Made = TypeVar("Made")
@@ -46,6 +52,15 @@ class Spool:
         begun = [_tried(self._begin, mail) for mail in mails]
         ended = [_tried(_finish, one) if isinstance(one, Unfinished) else one for one in begun]
         return [one if isinstance(one, Exception) else None for one in ended]
+
+    def tidy(self) -> int:
+        """Remove what a killed service has left half written, and nothing that is not of our naming."""
+        before_s = time.time() - STALE_AFTER_S
+        ours = (file for file in self.folder.glob("*.tmp") if UNFINISHED.fullmatch(file.name))
+        stale = [file for file in ours if file.is_file() and file.lstat().st_mtime < before_s]
+        for file in stale:
+            file.unlink(missing_ok=True)
+        return len(stale)
 
     def _begin(self, mail: Mail) -> Unfinished | None:
         path = f"{self.folder}/{name_of(mail.key)}.eml"

@@ -1,15 +1,20 @@
 """The spool: many mails at once, each whole, and one that cannot be written is no other's concern."""
 
 import asyncio
+import os
+import time
 from email.message import EmailMessage
 from email.policy import SMTP
 from email.utils import format_datetime
 from pathlib import Path
 
 import pytest
+from fastapi.testclient import TestClient
 
 from app.mail import Mail, NotMailed, Spool, SpoolMailer
 from app.mail.message import message_of
+from app.main import create_app
+from app.settings import Settings
 from protocol.clock import SteppedClock
 
 FROM = "Campus Mail <mail@campus.example>"
@@ -78,3 +83,18 @@ def test_an_address_with_a_line_of_its_own_is_refused_each_time(clock: SteppedCl
     for _ in range(2):
         with pytest.raises(ValueError, match="linefeed"):
             message_of(Mail("a", address, "Subject", "Text", clock.utc()), FROM)
+
+
+def test_what_a_kill_left_half_written_is_gone_after_the_next_start_and_nothing_else(
+    settings: Settings, clock: SteppedClock
+) -> None:
+    folder = settings.spool_folder
+    folder.mkdir(parents=True)
+    names = ("mail.o1.accepted.p1.eml.tmp", "mail.o1.accepted.p1.eml", "notes.tmp", "a b.eml.tmp", "young.eml.tmp")
+    for name in names:
+        (folder / name).write_text("To: somebody")
+        hours = 0.5 if name.startswith("young") else 2.0
+        os.utime(folder / name, (0, time.time() - hours * 3600))
+    (folder / "folder.eml.tmp").mkdir()
+    with TestClient(create_app(settings, clock)):
+        assert {file.name for file in folder.iterdir()} == {*names[1:], "folder.eml.tmp"}
