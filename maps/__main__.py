@@ -71,17 +71,18 @@ def show(where: MapArgument) -> None:
         table.add_row(*_row(campus, post))
     console = Console()
     console.print(table)
-    console.print("~ marks a length that is assumed, not measured.")
+    console.print("~ marks a length that is assumed, not measured; ! a post or corridor without network.")
     console.print(campus.note)
 
 
 def _row(campus: CampusMap, post: Post) -> tuple[str, ...]:
     ways = (
-        f"{other.name} {'~' if corridor.assumed else ''}{corridor.length_m:.4g}"
+        f"{other.name} {'~' if corridor.assumed else ''}{corridor.length_m:.4g}{'' if corridor.network else '!'}"
         for other, corridor in campus.neighbours(post.name)
     )
     place = f"{post.x_m:g}, {post.y_m:g}"
-    return post.name, post.title, place, str(len(post.markers)), "dock" if post.dock else "", ", ".join(ways)
+    name, dock = post.name + ("" if post.network else "!"), "dock" if post.dock else ""
+    return name, post.title, place, str(len(post.markers)), dock, ", ".join(ways)
 
 
 @cli.command()

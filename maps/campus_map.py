@@ -11,6 +11,7 @@ from hashlib import sha256
 from itertools import pairwise
 from json import dumps, loads
 from pathlib import Path
+from typing import Any
 
 from maps.errors import MapError, UnknownCorridor, UnknownPost
 from maps.geometry import Point, heading_rad, moved, path_length_m, rounded
@@ -48,7 +49,10 @@ class Dock:
 
 @dataclass(frozen=True)
 class Post:
-    """A place where a robot can stop. `bays` is how many can stand there clear of the line; `tag`: see `maps.tags`."""
+    """A place where a robot can stop. `bays` is how many can stand there clear of the line; `tag`: see `maps.tags`.
+
+    `network` False: no robot is heard there.
+    """
 
     name: str
     title: str
@@ -59,6 +63,7 @@ class Post:
     bays: int = 1
     mailroom: bool = False
     tag: int | None = None
+    network: bool = True
 
     @property
     def point(self) -> Point:
@@ -67,13 +72,14 @@ class Post:
 
 @dataclass(frozen=True)
 class Corridor:
-    """The line between two posts. `tape` is where it lies, from a to b, both ends included."""
+    """The line between two posts. `tape` is where it lies, from a to b, both ends included; `network`: as of a post."""
 
     a: str
     b: str
     length_m: float
     assumed: bool
     tape: tuple[Point, ...]
+    network: bool = True
 
     @property
     def name(self) -> str:
@@ -188,13 +194,14 @@ def _corridor(row: CorridorRow, points: Mapping[str, Point]) -> Corridor:
     # Two of the same point in a row have no direction between them.
     path = (path[0], *(there for here, there in pairwise(path) if here != there))
     tape = rounded(path, row.bend_radius_m)
-    return Corridor(a, b, row.length_m or path_length_m(tape), row.assumed, tape)
+    return Corridor(a, b, row.length_m or path_length_m(tape), row.assumed, tape, row.network)
 
 
 def _post(row: PostRow, corridors: tuple[Corridor, ...], tag: int | None) -> Post:
     dock = Dock(row.dock.x_m, row.dock.y_m, math.radians(row.dock.heading_deg)) if row.dock else None
     markers = _standard_markers(row, dock, corridors) if row.markers is None else _own_markers(row.name, row.markers)
-    return Post(row.name, row.title or row.name, row.x_m, row.y_m, markers, dock, row.bays, row.mailroom, tag)
+    title = row.title or row.name
+    return Post(row.name, title, row.x_m, row.y_m, markers, dock, row.bays, row.mailroom, tag, row.network)
 
 
 def _own_markers(post: str, rows: tuple[PoseRow, ...]) -> tuple[Marker, ...]:
@@ -218,7 +225,12 @@ def _marker(post: str, seen_from: Point, robot_heading_rad: float, before_m: flo
 
 def _fingerprint(name: str, posts: Iterable[Post], corridors: Iterable[Corridor]) -> str:
     """Twelve hex digits of the facts, rounded to a micrometre: two machines may differ in the last bit of a sine."""
-    facts = {"name": name, "posts": [asdict(post) for post in posts], "corridors": [asdict(c) for c in corridors]}
+    facts = {"name": name, "posts": [_facts(post) for post in posts], "corridors": [_facts(c) for c in corridors]}
     # Adding 0.0 turns a negative zero into a plain one.
     rounded_facts = loads(dumps(facts), parse_float=lambda digits: round(float(digits), 6) + 0.0)
     return sha256(dumps(rounded_facts, sort_keys=True).encode()).hexdigest()[:12]
+
+
+def _facts(place: Post | Corridor) -> dict[str, Any]:
+    """Network is not told of where there is some: maps that say nothing of it keep their version."""
+    return {key: value for key, value in asdict(place).items() if key != "network" or not value}

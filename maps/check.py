@@ -40,6 +40,7 @@ def check(file: MapFile) -> tuple[Problem, ...]:
 def _of_map(file: MapFile, campus: CampusMap) -> Iterator[Problem]:
     yield from _unreachable(campus)
     yield from _docks(campus)
+    yield from _silent_docks(campus)
     for row in file.post:
         post = campus.post(row.name)
         yield from _sides_and_geometry(row, campus)
@@ -86,6 +87,13 @@ def _docks(campus: CampusMap) -> Iterator[Problem]:
     for name in campus.posts:
         if name not in charging:
             yield error("no_dock", name, f"no dock can be reached from {name}", "Add a dock or a corridor.")
+
+
+def _silent_docks(campus: CampusMap) -> Iterator[Problem]:
+    for post in campus.docks():
+        if not post.network:
+            said = f"there is no network at {post.name}, so a robot that rests in its dock hears of no order"
+            yield warning("silent_dock", post.name, said, "Bring the network there, or move the dock.")
 
 
 def _reached(campus: CampusMap, start: str) -> frozenset[str]:

@@ -39,6 +39,8 @@ class PostRow(Row):
     y_m: Metres
     bays: int = Field(default=1, ge=0)
     mailroom: bool = False
+    # False: a robot that stands here is heard of by nobody until it is back where there is network.
+    network: bool = True
     # The number of the AprilTag on its sheets; left out: the post's place in this file, counted from 0.
     tag: int | None = Field(default=None, ge=0, le=LAST_TAG)
     dock: PoseRow | None = None
@@ -53,6 +55,7 @@ class CorridorRow(Row):
     ends: tuple[str, str]
     length_m: Annotated[float, Field(gt=0, allow_inf_nan=False)] | None = None
     assumed: bool = False
+    network: bool = True
     via: tuple[tuple[Metres, Metres], ...] = ()
     bend_radius_m: float = Field(default=1.0, ge=0)
 

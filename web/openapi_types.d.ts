@@ -262,7 +262,7 @@ export interface components {
         };
         /**
          * CorridorView
-         * @description The line between two posts; `tape` is where it lies, from a to b.
+         * @description The line between two posts; `tape` is where it lies, from a to b; `network`: as of a post.
          */
         CorridorView: {
             /** Name */
@@ -275,6 +275,8 @@ export interface components {
             length_m: number;
             /** Assumed */
             assumed: boolean;
+            /** Network */
+            network: boolean;
             /** Tape */
             tape: [
                 number,
@@ -1006,7 +1008,8 @@ export interface components {
         };
         /**
          * PostView
-         * @description A post of the map; metres, x to the right, y up. `markers`: how many marker sheets hang there.
+         * @description A post of the map; metres, x to the right, y up. `markers`: how many marker sheets hang there; `network`
+         *     false: no robot is heard there.
          */
         PostView: {
             /** Name */
@@ -1023,6 +1026,8 @@ export interface components {
             mailroom: boolean;
             /** Markers */
             markers: number;
+            /** Network */
+            network: boolean;
         };
         /**
          * Priority
@@ -1425,6 +1430,25 @@ export interface components {
             auth: string;
         };
         /**
+         * TakenCorridor
+         * @description A corridor that a robot may be in, in its direction, since it was let in; until the robot says that it is out.
+         */
+        TakenCorridor: {
+            /** Robot */
+            robot: string;
+            /** Corridor */
+            corridor: string;
+            /** From Post */
+            from_post: string;
+            /** To Post */
+            to_post: string;
+            /**
+             * Since
+             * Format: date-time
+             */
+            since: string;
+        };
+        /**
          * TokenPage
          * @description Some tokens that still open something, newest first.
          */
@@ -1480,6 +1504,14 @@ export interface components {
              * @default 90
              */
             days: number;
+        };
+        /**
+         * Traffic
+         * @description Every corridor that is taken, by robot, each robot's in the order in which it was granted them.
+         */
+        Traffic: {
+            /** Taken */
+            taken: components["schemas"]["TakenCorridor"][];
         };
         /**
          * WebhookView

@@ -10,6 +10,7 @@ from app.database import ReadingDep
 from app.fleet.conversation import TOKEN_REFUSED, Conversation
 from app.fleet.intake import Intake
 from app.fleet.service import Fleet
+from app.fleet.taken import Traffic, traffic_for
 from app.fleet.tokens import token_of
 from app.orders.robot_view import RobotView, robot_view
 from app.paging import PAGED, PageDep, PageOf, Sorting
@@ -46,6 +47,12 @@ async def all_robots(user: CurrentUser, session: ReadingDep, fleet: FleetDep, pa
     """Where the robots were last seen and what they are doing."""
     robots, following = await page.of(session, select(RobotRow), BY_NAME)
     return RobotPage(items=[robot_view(robot, fleet.campus, fleet.settings) for robot in robots], next=following)
+
+
+@router.get("/map/traffic")
+async def traffic(user: CurrentUser, session: ReadingDep) -> Traffic:
+    """Which robot holds which corridor: all of them, or those with an order of one's own for members."""
+    return await traffic_for(session, user)
 
 
 @router.websocket("/robots/link")

@@ -14,6 +14,7 @@ from app.fleet.clocks import put_right
 from app.fleet.connections import Connections
 from app.fleet.errors import RobotExists, RobotNameInvalid, UnknownRobot
 from app.fleet.progress import Report, follow
+from app.fleet.taken import tell_of_traffic
 from app.fleet.tokens import Known, make_token
 from app.live.feed import Feed, Happening
 from app.orders.robot_view import RobotView, robot_view
@@ -110,8 +111,10 @@ class Fleet:
                 reply = await traffic.answer(session, self.campus, robot.name, message, now)
                 if reply is not None:
                     await self.tell(session, robot, reply)
+                    await tell_of_traffic(session, self.feed, robot.name)
             case Clear():
                 await traffic.clear(session, self.campus, robot.name, message, now)
+                await tell_of_traffic(session, self.feed, robot.name)
 
     def note(self, robot: RobotRow, message: Snapshot | Why) -> None:
         """Take over what a robot says of its present state."""

@@ -161,6 +161,15 @@ def test_the_version_changes_with_a_fact_and_with_nothing_else(write_map):
     assert replace(campus, note="another remark").version == campus.version
 
 
+def test_where_there_is_no_network_is_a_fact_and_there_is_unless_the_file_says_so(write_map):
+    plain = read_map(write_map(TWO_POSTS + CORRIDOR))
+    assert plain.corridor("a", "b").network and plain.post("a").network
+    silent = read_map(write_map(TWO_POSTS + CORRIDOR + "network = false\n"))
+    assert not silent.corridor("a", "b").network and silent.post("a").network
+    assert silent.version != plain.version
+    assert builtin_map("test_track").version == "8c5820fb9b64"
+
+
 def test_a_map_is_found_by_name_or_by_file(write_map):
     assert find_map("test_track").name == "test_track"
     assert find_map(write_map(TWO_POSTS + CORRIDOR)).name == "campus"

@@ -92,6 +92,12 @@ def test_a_dock_without_a_marker_is_a_warning(write_map):
     assert list(found) == ["warning unseen_dock post5"]
 
 
+def test_a_dock_without_network_is_a_warning(write_map):
+    assert list(problems_of(write_map, TRACK.replace('name = "post5"', 'name = "post5"\nnetwork = false'))) == [
+        "warning silent_dock post5"
+    ]
+
+
 def test_a_name_beyond_14_characters_makes_a_dense_marker(write_map):
     assert problems_of(write_map, CARLETON.replace('"commons"', '"dormitories_14"')) == {}
     found = problems_of(write_map, CARLETON.replace('"commons"', '"residences_of15"'))
