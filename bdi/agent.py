@@ -346,6 +346,14 @@ class Agent(Sensing):
         self._listeners.append(callback)
         self._explains = self._explains or explain
 
+    def stop_listening(self, callback: Callable[[TraceEntry], None]) -> None:
+        """From here on it costs nothing again, unless others listen too. What is remembered of choices goes with the
+        last listener: nobody would add to it."""
+        self._listeners.remove(callback)
+        if not self._listeners:
+            self._explains = False
+            self.choices.clear()
+
     def why(self, goal: Term | str) -> Why:
         """Why a goal is not reached yet, in words and as data."""
         return explain(self, literal_from(goal))

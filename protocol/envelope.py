@@ -13,7 +13,7 @@ from typing import Any, Final
 
 from pydantic import Field, SerializeAsAny, ValidationError
 
-from protocol import both_ways, to_robot, to_server
+from protocol import both_ways, insight, to_robot, to_server
 from protocol.errors import MalformedMessage, MessageTooLarge, NewerVersion, ProtocolError, UnknownMessage
 from protocol.parts import Identifier, Moment, Part, Seq
 
@@ -28,6 +28,7 @@ TO_SERVER: Final[Mapping[str, type[Part]]] = {
     "claim": to_server.Claim,
     "clear": to_server.Clear,
     "why": to_server.Why,
+    "insight": insight.Insight,
     **BOTH_WAYS,
 }
 TO_ROBOT: Final[Mapping[str, type[Part]]] = {
@@ -42,9 +43,10 @@ TO_ROBOT: Final[Mapping[str, type[Part]]] = {
     "resume": to_robot.Resume,
     "recall": to_robot.Recall,
     "emergency_stop": to_robot.EmergencyStop,
+    "watch": to_robot.Watch,
     **BOTH_WAYS,
 }
-YOUNGER: Final = ("confirm",)
+YOUNGER: Final = ("confirm", "watch")
 """Types to robots that came later: sent only to those that name them in `hello`; an older robot would hang up."""
 
 DURABLE: Final = frozenset({"event", "claim", "clear"}) | {

@@ -122,3 +122,14 @@ class Recall(Part):
 
     command_id: Identifier
     reason: Sentence
+
+
+class Watch(Part):
+    """Somebody watches: tell what you sense and think in `insight` messages, for so many seconds of the machine's time.
+
+    Said again as long as they look. `whole`: somebody new is looking, so the next insight has all beliefs. A best
+    effort like the insights themselves: not kept, and nothing else depends on it.
+    """
+
+    for_s: float = Field(ge=0.0, le=120.0)
+    whole: bool = False

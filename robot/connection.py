@@ -16,9 +16,10 @@ from protocol.both_ways import Ack, Error
 from protocol.clock import Clock
 from protocol.envelope import TO_ROBOT, Envelope, parse, type_of
 from protocol.errors import ProtocolError
+from protocol.insight import Insight
 from protocol.parts import Part
 from protocol.sequence import Reception
-from protocol.to_robot import Welcome
+from protocol.to_robot import Watch, Welcome
 from protocol.to_server import Hello, Snapshot, Why
 from robot.errors import RobotError
 from robot.memory import Incoming, Memory
@@ -68,6 +69,8 @@ class Newest:
 
     snapshot: Snapshot | None = None
     why: Why | None = None
+    insight: Callable[[], Insight] | None = None
+    """Made when its turn comes. There is room for the next once it is on its way: a slow link makes them rarer."""
 
     def take(self, news: Snapshot | Why) -> bool:
         """Whether it says anything new."""
@@ -90,6 +93,7 @@ class Ends:
     newest: Newest
     deliver: Callable[[Incoming], None]
     rhythm: Rhythm
+    watched: Callable[[Watch], None] = lambda _: None
 
 
 class Connection:
@@ -111,6 +115,7 @@ class Connection:
     async def greet(self) -> None:
         """Hello, welcome, and both sides know where the other stands."""
         ends = self._ends
+        ends.newest.insight = None  # what was thought before is no news to whoever watches now
         received = ends.memory.received()
         facts = {"received": received, "resume_from": ends.outbox.resume_from()}
         await self._send(ends.hello_source().model_copy(update=facts))
@@ -173,6 +178,8 @@ class Connection:
         elif isinstance(envelope.body, Error):
             log.error("server_reports_error", code=envelope.body.code, sentence=envelope.body.message)
             self._ends.deliver(Incoming(envelope.body, envelope.journal))
+        elif isinstance(envelope.body, Watch):
+            self._ends.watched(envelope.body)
 
     async def _take_durable(self, envelope: Envelope, seq: int) -> None:
         taken = self._ends.memory.receive(envelope)
@@ -201,6 +208,7 @@ class Connection:
             self._wake.clear()
             await self._send_newest()
             await self._send_kept()
+            await self._send_insight()
             try:
                 async with asyncio.timeout(self._until_snapshot_s()):
                     await self._wake.wait()
@@ -222,6 +230,13 @@ class Connection:
         for kept in self._ends.outbox.pending(after=self._sent, limit=max(0, room)):
             await self._send_numbered(kept)
             self._sent = kept.seq
+
+    async def _send_insight(self) -> None:
+        """Last of all. The socket takes no more while the network does not: then there is no room for the next one."""
+        insight = self._ends.newest.insight
+        if insight is not None:
+            await self._send(insight())
+            self._ends.newest.insight = None
 
     def _snapshot_gap_s(self) -> float:
         rhythm = self._ends.rhythm

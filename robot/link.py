@@ -30,7 +30,8 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus, WebSocketExce
 from protocol.clock import Clock
 from protocol.envelope import MAX_MESSAGE_BYTES
 from protocol.errors import ProtocolError
-from protocol.to_robot import EmergencyStop
+from protocol.insight import Insight
+from protocol.to_robot import EmergencyStop, Watch
 from protocol.to_server import Hello, Snapshot, Why
 from robot.connection import Connection, Ends, LinkBroken, Newest, Rhythm
 from robot.errors import RobotError
@@ -101,7 +102,12 @@ class Link:
         self._stop_at_once = stop_at_once
         self._newest = Newest()
         self._incoming: deque[Incoming] = deque(memory.unhandled())
-        self._ends = Ends(robot, clock, outbox, memory, hello_source, self._newest, self._deliver, self._rhythm)
+        self.on_watch: Callable[[Watch], None] = lambda _: None
+        """Called in the link's thread when somebody at the service looks."""
+        self._ends = Ends(
+            *(robot, clock, outbox, memory, hello_source, self._newest, self._deliver, self._rhythm),
+            watched=self._watched,
+        )
         self._state = LinkState.STOPPED
         self._problem: str | None = None
         self._loop: asyncio.AbstractEventLoop | None = None
@@ -150,6 +156,15 @@ class Link:
         if self._newest.take(why):
             self.wake()
 
+    def has_room_for_insight(self) -> bool:
+        """Whether the server is there and has been sent the one before."""
+        return self.online and self._newest.insight is None
+
+    def tell_insight(self, insight: Callable[[], Insight]) -> None:
+        """Sent after everything else, and lost with the connection; `insight` is called in the link's thread."""
+        self._newest.insight = insight
+        self.wake()
+
     def incoming(self) -> list[Incoming]:
         """What came since the last call, each message once per start. Say `memory.handled(it)` when it is done with."""
         taken = [self._incoming.popleft() for _ in range(len(self._incoming))]
@@ -170,6 +185,9 @@ class Link:
         self._incoming.append(incoming)
         if len(self._incoming) >= MAX_INCOMING:
             self._room.clear()
+
+    def _watched(self, watch: Watch) -> None:
+        self.on_watch(watch)
 
     def _run_thread(self) -> None:
         asyncio.run(self._run())

@@ -6,6 +6,7 @@ import signal
 import socket
 import sys
 import tempfile
+from collections.abc import Callable
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,9 +20,10 @@ from .assembly import Parts, Simulation, assemble
 from .config import ConfigError, Settings
 from .control import SOCKET_NAME, Control
 from .errors import RobotError
+from .insight import Insights
 from .json_socket import JsonSocket
-from .link import LinkError
-from .mind import messages_from_person
+from .link import Link, LinkError
+from .mind import Mind, messages_from_person
 from .report import Ending, Refusal, Reporter
 from .runners import SWITCH_INTERVAL_S, LockstepRunner, Runner, ThreadedRunner
 from .service_manager import ServiceManager, SignsOfLife
@@ -87,6 +89,7 @@ def run_once(settings: Settings, clock: Clock, simulation: Simulation | None, wi
         signs = SignsOfLife(ServiceManager.of_environment(os.environ), board.signs, board.sentence)
         closing.callback(signs.close)
         if parts.link:
+            parts.daemon.watchers += (_shown_to_watchers(parts.mind, parts.link, runner, clock),)
             parts.link.start()
         _stop_on_signals(runner)
         runner.run()
@@ -94,6 +97,13 @@ def run_once(settings: Settings, clock: Clock, simulation: Simulation | None, wi
         raise LinkError(refusal.reason)
     _tell_end(reporter, ending, wish)
     return ending.problem is None
+
+
+def _shown_to_watchers(mind: Mind, link: Link, runner: Runner, clock: Clock) -> Callable[[float], None]:
+    """What is done after each tick of the mind for those who watch it from the service."""
+    insights = Insights(mind, link, runner.lags, clock.utc)
+    link.on_watch = lambda watch: insights.watch(watch.for_s, watch.whole)
+    return insights.look
 
 
 def _open_door(robot: SimulatedRobot, path: Path, reporter: Reporter) -> Door:

@@ -139,3 +139,20 @@ def test_nobody_listens_nothing_is_kept() -> None:
     outcomes = [agent.cycle() for _ in range(50)]
     assert all(outcome.trace == () for outcome in outcomes)
     assert not agent.choices
+
+
+def test_who_stops_listening_hears_no_more_and_the_others_go_on() -> None:
+    agent = Agent(parse_program("+b : true <- true."))
+    first: list[str] = []
+    second: list[str] = []
+    tell_first, tell_second = (lambda entry: first.append(str(entry))), (lambda entry: second.append(str(entry)))
+    agent.listen(tell_first, explain=True)
+    agent.listen(tell_second)
+    agent.cycle(("b",))
+    agent.stop_listening(tell_first)
+    agent.cycle(())
+    heard = len(first)
+    assert len(second) > heard > 0
+    agent.stop_listening(tell_second)
+    assert agent.cycle(("b",)).trace == ()
+    assert (len(first), list(agent.choices)) == (heard, [])
