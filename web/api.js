@@ -89,7 +89,8 @@ export const estimate = (from_post, to_post) => ask("/estimate" + query({ from_p
 export const placeOrder = (wanted, key) =>
   ask("/orders", { method: "POST", body: wanted, headers: { "Idempotency-Key": key } });
 
-/** @param {"sent" | "coming" | "all"} role @param {{limit?: number, cursor?: string}} [page]
+/** @param {"sent" | "coming" | "all"} role
+ *  @param {{limit?: number, cursor?: string, state?: "open" | "attention" | "ended" | "all", search?: string}} [page]
  *  @returns {Promise<Api.Page<Api.Order>>} newest first */
 export const orders = (role, page = {}) => ask("/orders" + query({ role, ...page }));
 
@@ -99,29 +100,67 @@ export const order = (id) => ask(orderPath(id));
 /** @param {string} id @returns {Promise<Api.Order>} */
 export const cancelOrder = (id) => ask(orderPath(id) + "/cancel", { method: "POST" });
 
+/** Call mail back as its recipient, who cannot come. @param {string} id @returns {Promise<Api.Order>} */
+export const sayNotNow = (id) => ask(orderPath(id) + "/not-now", { method: "POST" });
+
+/** Have the robot wait longer. @param {string} id @param {number} extend_s @returns {Promise<Api.Order>} */
+export const extendWait = (id, extend_s) => ask(orderPath(id) + "/wait", { method: "POST", body: { extend_s } });
+
+/** Who may hand over for me. @param {string} id @returns {Promise<Api.Delegate[]>} */
+export const delegates = async (id) => (await ask(orderPath(id) + "/delegates")).items;
+
+/** @param {string} id @param {Api.NewDelegate} delegate @returns {Promise<Api.Delegate>} */
+export const nameDelegate = (id, delegate) => ask(orderPath(id) + "/delegates", { method: "POST", body: delegate });
+
+/** @param {string} id @param {string} delegate_id */
+const delegatePath = (id, delegate_id) => `${orderPath(id)}/delegates/${encodeURIComponent(delegate_id)}`;
+
+/** @param {string} id @param {string} delegate_id @returns {Promise<null>} */
+export const revokeDelegate = (id, delegate_id) => ask(delegatePath(id, delegate_id), { method: "DELETE" });
+
+/** A delegate's code, to be passed on. @param {string} id @param {string} delegate_id @returns {Promise<Api.ShownCode>} */
+export const delegateCode = async (id, delegate_id) => withPicture(await ask(delegatePath(id, delegate_id) + "/code"));
+
+/** @param {Api.HandoverCode} code @returns {Api.ShownCode} */
+const withPicture = (code) => ({ ...code, picture: code.svg_url });
+
+/** @param {Api.NewStandingOrder} wish @returns {Promise<Api.StandingOrder>} */
+export const placeStandingOrder = (wish) => ask("/standing-orders", { method: "POST", body: wish });
+
+/** @param {{limit?: number, cursor?: string}} [page] @returns {Promise<Api.Page<Api.StandingOrder>>} newest first */
+export const standingOrders = (page = {}) => ask("/standing-orders" + query(page));
+
+/** @param {string} id @param {"pause" | "resume" | "end"} what @returns {Promise<Api.StandingOrder>} */
+export const changeStandingOrder = (id, what) => ask(`/standing-orders/${encodeURIComponent(id)}/${what}`, { method: "POST" });
+
 /** My code, with the address of its picture. @param {string} id @returns {Promise<Api.ShownCode>} */
-export async function handoverCode(id) {
-  const code = await ask(orderPath(id) + "/code");
-  return { ...code, picture: code.svg_url };
-}
+export const handoverCode = async (id) => withPicture(await ask(orderPath(id) + "/code"));
 
-/** Ask the robot that waits to hand over, without a code. @param {string} id @returns {Promise<unknown>} */
-export const handOver = (id) => ask(orderPath(id) + "/handover", { method: "POST", body: {} });
+/** Ask the robot that waits to hand over: by a tap, or by the digits of a code.
+ *  @param {string} id @param {string} [digits] @returns {Promise<unknown>} */
+export const handOver = (id, digits = "") => ask(orderPath(id) + "/handover", { method: "POST", body: { digits } });
 
-/** What the link in a mail opens. @param {string} what @param {string} token */
-const askByLink = (what, token) => ask("/link/" + what, { method: "POST", body: { token } });
+/** What the link in a mail opens. @param {string} what @param {string} token @param {object} [more] */
+const askByLink = (what, token, more = {}) => ask("/link/" + what, { method: "POST", body: { token, ...more } });
+
+/** A code that comes with its picture. @param {Api.LinkedCode} code @returns {Api.ShownCode} */
+const withPictureInside = ({ svg, ...code }) => ({ ...code, picture: "data:image/svg+xml," + encodeURIComponent(svg) });
 
 /** @param {string} token @returns {Promise<Api.Order>} */
 export const linkedOrder = (token) => askByLink("order", token);
 
 /** @param {string} token @returns {Promise<Api.ShownCode>} */
-export async function linkedCode(token) {
-  const { code, svg } = await askByLink("code", token);
-  return { ...code, picture: "data:image/svg+xml," + encodeURIComponent(svg) };
-}
+export const linkedCode = async (token) => withPictureInside(await askByLink("code", token));
 
-/** @param {string} token @returns {Promise<unknown>} */
-export const linkedHandOver = (token) => askByLink("handover", token);
+/** @param {string} token @param {string} [digits] @returns {Promise<unknown>} */
+export const linkedHandOver = (token, digits = "") => askByLink("handover", token, { digits });
+
+/** Name somebody who takes the mail instead. @param {string} token @param {Api.NewDelegate} delegate
+ *  @returns {Promise<{delegate: Api.Delegate, code: Api.ShownCode}>} the code is shown this once */
+export async function linkedDelegate(token, delegate) {
+  const named = await askByLink("delegate", token, delegate);
+  return { delegate: named.delegate, code: withPictureInside(named.code) };
+}
 
 /** The recipient cannot come: the robot brings it back. @param {string} token @returns {Promise<Api.Order>} */
 export const linkedNotNow = (token) => askByLink("not-now", token);
@@ -143,8 +182,155 @@ export const notices = (page = { limit: 50 }) => ask("/notices" + query(page));
 /** @param {Api.Notice["id"][]} ids @returns {Promise<unknown>} */
 export const markRead = (ids) => ask("/notices/read", { method: "POST", body: { ids } });
 
+// What dispatchers do.
+
+/** @param {string} path @param {unknown} [body] */
+const tell = (path, body) => ask(path, { method: "POST", body });
+
+/** @param {string} name */
+const robotPath = (name) => `/robots/${encodeURIComponent(name)}`;
+
+/** It waits at the next post. @param {string} name @param {string} reason @returns {Promise<Api.Command>} */
+export const pauseRobot = (name, reason) => tell(robotPath(name) + "/pause", { reason });
+
+/** @param {string} name @returns {Promise<Api.Command>} */
+export const resumeRobot = (name) => tell(robotPath(name) + "/resume");
+
+/** It brings back what is aboard and goes home. @param {string} name @param {string} reason @returns {Promise<Api.Command>} */
+export const recallRobot = (name, reason) => tell(robotPath(name) + "/recall", { reason });
+
+/** It stands still at once. @param {string} name @param {string} reason @returns {Promise<Api.Command>} */
+export const stopRobot = (name, reason) => tell(robotPath(name) + "/emergency-stop", { reason });
+
+/** Those that are not over, newest first. @returns {Promise<Api.Page<Api.Alarm>>} */
+export const openAlarms = () => ask("/alarms" + query({ only_open: "true", limit: 100 }));
+
+/** @param {Api.Alarm["id"]} id @returns {Promise<Api.Alarm>} */
+export const acknowledgeAlarm = (id) => tell(`/alarms/${id}/acknowledge`);
+
+/** @param {string} id @param {string} reason @returns {Promise<Api.Order>} */
+export const stopForAttention = (id, reason) => tell(orderPath(id) + "/attention", { reason });
+
+/** @param {string} id @param {string} to what becomes of it @param {string} reason "" for none @returns {Promise<Api.Order>} */
+export const resolveOrder = (id, to, reason) => tell(orderPath(id) + "/resolve", { to, reason: reason || null });
+
+/** The mail was taken out by hand. @param {string} id @param {string} reason "" for none @returns {Promise<Api.Order>} */
+export const holdOrder = (id, reason) => tell(orderPath(id) + "/hold", { reason: reason || null });
+
+/** @param {string} id @param {string} robot "" for any other @returns {Promise<Api.Order>} */
+export const reassignOrder = (id, robot) => tell(orderPath(id) + "/reassign", { robot: robot || null });
+
+/** @param {string} id @param {string} priority @returns {Promise<Api.Order>} */
+export const prioritiseOrder = (id, priority) => ask(orderPath(id) + "/priority", { method: "PUT", body: { priority } });
+
+/** @param {string} id @param {number} extend_s @returns {Promise<Api.Order>} */
+export const letWait = (id, extend_s) => tell(orderPath(id) + "/wait", { extend_s });
+
+/** Digits may be typed again. @param {string} id @returns {Promise<Api.Order>} */
+export const releaseDigits = (id) => tell(orderPath(id) + "/digits/release");
+
+/** Notices that no channel has taken yet, newest first. @param {{given_up?: "true" | "false", limit?: number, cursor?: string}} page
+ *  @returns {Promise<Api.Page<Api.Sending>>} */
+export const notSent = (page) => ask("/outbox" + query(page));
+
+/** @param {Api.Sending["id"]} id @returns {Promise<Api.Sending>} */
+export const sendAgain = (id) => tell(`/outbox/${id}/retry`);
+
+/** @returns {Promise<{items: Api.SpooledMail[]}>} newest first */
+export const spool = () => ask("/spool");
+
+/** @param {string} file @returns {Promise<Api.SpooledText>} */
+export const spooledMail = (file) => ask(`/spool/${encodeURIComponent(file)}`);
+
+/** @param {string} search part of a name or address @param {number} limit @returns {Promise<Api.Page<Api.Person>>} */
+export const people = (search, limit) => ask("/people" + query({ search, limit }));
+
+/** Everybody's orders of a time as a table. @param {string} from @param {string} to */
+export const ordersTable = (from, to) => `${BASE}/orders.csv` + query({ from, to });
+
+/** The marker sheet of a post, in its true size. @param {string} post */
+export const markerPicture = (post) => `${BASE}/map/posts/${encodeURIComponent(post)}/marker.svg`;
+
+/** @param {Api.AboutMe} changes @returns {Promise<Api.Person>} */
+export const changeMe = (changes) => ask("/me", { method: "PATCH", body: changes });
+
+/** Whom I know: those I exchanged mail with, then those I saved. @param {{search?: string, limit?: number, cursor?: string}} page
+ *  @returns {Promise<Api.Page<Api.Contact>>} */
+export const contacts = (page) => ask("/me/contacts" + query(page));
+
+/** @param {string} email */
+const contactPath = (email) => `/me/contacts/${encodeURIComponent(email)}`;
+
+/** @param {string} email @param {{label: string, post: string | null}} wish @returns {Promise<Api.Contact>} */
+export const saveContact = (email, wish) => ask(contactPath(email), { method: "PUT", body: wish });
+
+/** @param {string} email @returns {Promise<null>} */
+export const forgetContact = (email) => ask(contactPath(email), { method: "DELETE" });
+
+/** @returns {Promise<Api.NoticeWishes>} */
+export const noticeWishes = () => ask("/me/notices");
+
+/** @param {Api.NoticeWishes["muted"]} muted @returns {Promise<Api.NoticeWishes>} */
+export const changeNoticeWishes = (muted) => ask("/me/notices", { method: "PUT", body: { muted } });
+
+/** No more notices there. @param {string} id @returns {Promise<null>} */
+export const removeDevice = (id) => ask(`/me/devices/${encodeURIComponent(id)}`, { method: "DELETE" });
+
+/** @param {string} url @returns {Promise<Api.NewWebhook>} its secret is shown this once */
+export const setWebhook = (url) => ask("/me/webhook", { method: "PUT", body: { url } });
+
+/** @returns {Promise<null>} */
+export const removeWebhook = () => ask("/me/webhook", { method: "DELETE" });
+
+/** Where I am signed in. @param {{limit?: number, cursor?: string}} [page] @returns {Promise<Api.Page<Api.OpenSession>>} */
+export const sessions = (page = { limit: 50 }) => ask("/sessions" + query(page));
+
+/** @param {number} id @returns {Promise<null>} */
+export const endSession = (id) => ask(`/sessions/${id}`, { method: "DELETE" });
+
+/** All but this one. @returns {Promise<null>} */
+export const endOtherSessions = () => ask("/sessions", { method: "DELETE" });
+
+/** My scripts' tokens. @param {{limit?: number, cursor?: string}} [page] @returns {Promise<Api.Page<Api.Token>>} */
+export const tokens = (page = { limit: 50 }) => ask("/tokens" + query(page));
+
+/** @param {Api.NewToken} wish @returns {Promise<Api.MadeToken>} it is shown this once */
+export const makeToken = (wish) => ask("/tokens", { method: "POST", body: wish });
+
+/** @param {string} prefix @returns {Promise<null>} */
+export const revokeToken = (prefix) => ask(`/tokens/${prefix}`, { method: "DELETE" });
+
 /** Demonstration only: somebody holds my code of this order to the simulated camera. @param {string} order_id */
 export const showCodeToCamera = (order_id) => ask("/demo/camera", { method: "POST", body: { order_id } });
 
 /** What changes for me from now on, as named events. */
 export const openLive = () => new EventSource(BASE + "/live");
+
+// What the service worker asks about an address.
+
+const ME = BASE + "/me";
+const LIST = BASE + "/orders";
+const ORDER = new RegExp(`^${LIST}/[^/]+$`);
+const CODE = new RegExp(`^${LIST}/[^/]+/code(\\.svg)?$`);
+const ALWAYS = [BASE + "/about", ME, ME + "/contacts", BASE + "/map"];
+const SESSION = new RegExp(`^${BASE}/sessions?(/|$)`);
+
+/** Whether an answer is of the few that may be kept on the device (docs/decisions/0037). @param {URL} url */
+export const isKeptOffline = (url) =>
+  ALWAYS.includes(url.pathname) || isList(url) || isOrder(url) || CODE.test(url.pathname);
+
+/** @param {URL} url */
+export const isMe = (url) => url.pathname === ME;
+
+/** The first page of my own orders. @param {URL} url */
+export const isList = (url) => url.pathname === LIST && !url.searchParams.has("cursor") && !url.searchParams.get("search");
+
+/** @param {URL} url */
+export const isOrder = (url) => ORDER.test(url.pathname);
+
+/** @param {string} id */
+export const aboutOrder = (id) => new URL(BASE + orderPath(id), location.origin);
+
+/** Whether somebody else may be signed in afterwards. @param {string} method @param {URL} url */
+export const changesSession = (method, url) =>
+  (method !== "GET" && SESSION.test(url.pathname)) || url.pathname.startsWith(BASE + "/sign-in");

@@ -25,11 +25,37 @@ export type OrderState = Order["state"];
 export type OrderEvent = Schemas["EventView"];
 export type Role = Order["my_role"];
 export type Purpose = NonNullable<Order["my_code"]>;
-export type WantedOrder = Required<Pick<Schemas["NewOrder"], "from_post" | "to_post" | "recipient">> & { description: string };
+export type WantedOrder = Required<Pick<Schemas["NewOrder"], "from_post" | "to_post" | "recipient">> & {
+  description: string;
+  not_before?: string;
+};
+export type NewStandingOrder = Omit<WantedOrder, "not_before"> & Pick<Schemas["NewStandingOrder"], "weekdays" | "at" | "zone" | "until">;
+export type StandingOrder = Schemas["StandingOrderView"];
+export type Custody = Schemas["CustodyView"];
 
 export type HandoverCode = Schemas["CodeView"];
+export type LinkedCode = Schemas["LinkedCode"];
 /** A code and the address of its picture. */
-export type ShownCode = HandoverCode & { picture: string };
+export type ShownCode = Omit<HandoverCode, "svg_url"> & { picture: string };
+export type Delegate = Schemas["DelegateView"];
+export interface NewDelegate { name: string; email?: string }
+
+export type AboutMe = Schemas["AboutMe"];
+export type Contact = Schemas["ContactView"];
+export type NoticeWishes = Schemas["WishesView"];
+export type NewWebhook = Schemas["NewWebhookView"];
+export type OpenSession = Schemas["SessionView"];
+export type Token = Schemas["TokenView"];
+export type NewToken = Schemas["TokenWish"];
+export type MadeToken = Schemas["NewTokenView"];
+
+/** An order that a dispatcher places for somebody at their desk. */
+export type WalkUpOrder = WantedOrder & { on_behalf_of: string; priority: Order["priority"] };
+export type Alarm = Schemas["AlarmView"];
+export type Command = Schemas["CommandView"];
+export type Sending = Schemas["SendingView"];
+export type SpooledMail = Schemas["SpooledMail"];
+export type SpooledText = Schemas["SpooledText"];
 
 export type Notice = Schemas["NoticeView"];
 export type Inbox = Schemas["Inbox"];
