@@ -45,7 +45,9 @@ def test_what_cannot_be_put_into_words_any_more_is_fetched_anew(
     """Something else in the transaction failed and was undone: it took along the row that the page was to be shown."""
     order_id = sender.order().json()["id"]
     wires = mailroom.call(_told_of_a_row_that_was_undone, app, order_id)
-    assert [wire.partition(b"\n")[0] for wire in wires] == [b"event: resync", b"event: order"]
+    events = [wire.partition(b"\n")[0].decode() for wire in wires]  # dispatch and notices may say something too
+    assert events.count("event: resync") == 1
+    assert "event: order" in events[events.index("event: resync") :], "the stream goes on"
     assert all(b"\nid: " in wire for wire in wires), "a stream that breaks goes on after it"
 
 
