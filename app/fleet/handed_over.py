@@ -57,6 +57,7 @@ async def _drop_the_rest(report: Report, receipt: HandoverReceipt) -> None:
     if receipt.purpose != Purpose.LOAD:
         for stop in await stops_of_order(report.session, receipt.order_id, report.robot):
             stop.dropped_at = report.now
+            await end_if_nothing_is_left(report, await report.session.get_one(MissionRow, stop.mission_id))
 
 
 async def _check_chain(report: Report, receipt: HandoverReceipt) -> None:

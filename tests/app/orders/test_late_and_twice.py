@@ -7,6 +7,7 @@ import pytest
 from app.errors import ServiceError
 from app.tables import Alarm, Handover, MissionRow, Notice, Order, OrderEvent, RobotCommand, StopRow
 from app.tables import OrderState as S
+from protocol.parts import Purpose
 from protocol.to_server import CommandAnswer, Event
 from tests.app.orders.lives import World
 from tests.app.orders.what_holds import Record
@@ -48,10 +49,7 @@ async def test_an_update_that_crosses_with_an_answer_does_not_give_again_what_wa
 async def test_who_has_fetched_the_mail_is_its_robot_though_it_was_given_to_another_meanwhile(world: World) -> None:
     order_id = await world.place("post3", "post5")
     await world.goes_on("r1", "arrives")
-    await world.set_online("r1", False)
-    await world.set_online("r2", True)
-    await world.change(world.orders.stop_for_attention, "dispatcher", order_id, "It is not heard of.")
-    await world.change(world.orders.resolve, "dispatcher", order_id, "queued", None)
+    await given_to_r2(world, order_id)
     await world.goes_on("r2", "sets out")
     world.act("r1", "sender")
     await world.set_online("r1", True)
@@ -109,6 +107,43 @@ async def test_a_message_that_was_not_acknowledged_comes_again_and_changes_nothi
     assert [event.state for event in await world.rows(OrderEvent, order_id=order_id)][-2:] == [S.ATTENTION, S.CARRYING]
     await world.speak("r1")
     assert await everything(world) == before
+
+
+async def test_a_robot_gives_only_what_it_was_given(world: World) -> None:
+    order_id = await world.place("post3", "post5")
+    await world.goes_on("r1", "arrives")
+    duties = world.robots["r1"].duties
+    assert duties.held.mission is not None
+    place = duties.at_stop(duties.held.mission.stops[1].id)
+    duties.handed_over(place, Purpose.RECEIVE, "post5", duties.codes(order_id, Purpose.RECEIVE)[0])
+    await world.speak("r1")
+    assert [one.code for one in world.robots["r1"].refused] == ["transition_refused"]
+    assert await world.rows(Handover) == []
+    assert await world.state(order_id) is S.AT_SENDER
+
+
+async def test_mail_comes_aboard_once_whoever_says_that_it_has_it_too(world: World) -> None:
+    order_id = await world.place("post3", "post5")
+    await world.goes_on("r1", "arrives")
+    await given_to_r2(world, order_id)
+    await world.goes_on("r2", "sender")
+    assert await world.state(order_id) is S.CARRYING
+    world.where[order_id] = "sender"  # or so r1 thinks
+    world.act("r1", "sender")
+    world.where[order_id] = "r2"
+    await world.set_online("r1", True)
+    await world.speak("r1")
+    assert [one.code for one in world.robots["r1"].refused] == ["transition_refused"]
+    assert [one.robot for one in await world.rows(Handover)] == ["r2"]
+    await Record(world).check()
+
+
+async def given_to_r2(world: World, order_id: str) -> None:
+    """By a dispatcher, while r1 is out of network."""
+    await world.set_online("r1", False)
+    await world.set_online("r2", True)
+    await world.change(world.orders.stop_for_attention, "dispatcher", order_id, "It is not heard of.")
+    await world.change(world.orders.resolve, "dispatcher", order_id, "queued", None)
 
 
 @pytest.mark.parametrize("end", ["delivered", "returned", "held", "cancelled", "expired"])

@@ -1,6 +1,6 @@
 """Ends that lives at random did not come to, told as they went."""
 
-from app.tables import OrderState
+from app.tables import MissionRow, OrderState
 from tests.app.orders.lives import World
 from tests.app.orders.what_holds import Record
 
@@ -42,3 +42,29 @@ async def test_an_order_that_a_robot_dropped_and_is_given_again_is_fetched(world
     await world.goes_on("r1", *["sender"] * 6)
     await Record(world).check()
     assert [await world.state(one) for one in (first, second)] == [OrderState.DELIVERED] * 2
+
+
+async def left_aboard(world: World) -> str:
+    """Mail that nobody took, not even back: it is still in r1, which has nothing to do."""
+    order_id = await world.place("post3", "post5")
+    await world.goes_on("r1", "sender")
+    await world.goes_on("r1", *["nobody comes"] * 6)
+    assert await world.state(order_id) is OrderState.ATTENTION
+    assert world.robots["r1"].duties.held.mission is None
+    return order_id
+
+
+async def test_a_mission_whose_mail_is_out_before_it_is_told_is_over(world: World) -> None:
+    order_id = await left_aboard(world)
+    await world.recall("r1")
+    await world.hear("r1")
+    world.clock.advance(1.0)
+    await world.change(world.orders.resolve, "dispatcher", order_id, "returning", "Once more.")
+    for _ in range(3):
+        world.act("r1", "sender")
+    await world.goes_on("r1")
+    assert await world.state(order_id) is OrderState.RETURNED
+    assert await world.rows(MissionRow, state="active") == [], "the robot is free"
+    another = await world.place("post3", "post5")
+    await world.goes_on("r1", *["sender"] * 6)
+    assert await world.state(another) is OrderState.DELIVERED
