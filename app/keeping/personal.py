@@ -2,7 +2,7 @@
 
 import json
 import zipfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, Final
 
@@ -12,6 +12,7 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.errors import StartError
 from app.keeping.order_records import one_order
+from app.orders.views import may_read, role_in, whose_delegates
 from app.tables import Order, Person, metadata
 
 SECRET: Final = ("hash", "secret", "auth", "answer", "code")
@@ -42,10 +43,10 @@ def references_to_people() -> Iterator[tuple[Table, list[Column[Any]]]]:
 
 async def everything_of(session: AsyncSession, person: Person) -> dict[str, Any]:
     """By name of the document: `person`, `orders` with their lives, and each table that has rows about them."""
-    connection = await session.connection()
+    connection, theirs = await session.connection(), await _orders_of(session, person)
     documents: dict[str, Any] = {
         "person": person.model_dump(mode="json"),
-        "orders": [await one_order(session, order_id) for order_id in await _orders_of(session, person)],
+        "orders": [_as_seen_by(person, order, await one_order(session, order.id)) for order in theirs],
     }
     for table, columns in references_to_people():
         if table.name not in ("orders", "order_events", "handovers"):
@@ -58,11 +59,29 @@ async def everything_of(session: AsyncSession, person: Person) -> dict[str, Any]
     return {name: rows for name, rows in documents.items() if rows}
 
 
-async def _orders_of(session: AsyncSession, person: Person) -> list[str]:
+async def _orders_of(session: AsyncSession, person: Person) -> Sequence[Order]:
     theirs = or_(
         col(Order.sender_id) == person.id, col(Order.recipient_id) == person.id, col(Order.placed_by_id) == person.id
     )
-    return list((await session.exec(select(Order.id).where(theirs).order_by(col(Order.created_at)))).all())
+    return (await session.exec(select(Order).where(theirs).order_by(col(Order.created_at)))).all()
+
+
+def _as_seen_by(person: Person, order: Order, record: dict[str, Any]) -> dict[str, Any]:
+    """Without those who are somebody else's concern: delegates of the other side, whoever helped."""
+    role = role_in(order, person)
+    sees = whose_delegates(role, order)
+    known = {record["sender"], record["recipient"], person.email}
+    steps = [*record["events"], *record["custody"]]
+    for step in steps:
+        if step["person"] not in known:
+            step["person"] = None
+    for event in record["events"]:
+        if not may_read(role, order, event["kind"], event["by"]):
+            event["reason"] = None
+    for handover in record["custody"]:
+        if handover["purpose"] not in sees:
+            handover["delegate"] = None
+    return record
 
 
 def _readable(row: Any) -> dict[str, Any]:

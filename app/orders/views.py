@@ -165,7 +165,7 @@ def order_view(facts: OrderFacts, role: MyRole, person_id: str, campus: CampusMa
         standing_order_id=order.standing_order_id,
         placed_by=_somebody(facts.people[order.placed_by_id]) if order.placed_by_id else None,
         custody=[CustodyView.of(held) for held in custody_of(order, facts.handovers, _names_for(role, facts))],
-        events=[_event(event, _may_read(role, order, event)) for event in facts.events],
+        events=[_event(event, may_read(role, order, event.kind, event.by)) for event in facts.events],
     )
 
 
@@ -191,20 +191,23 @@ def delegates_view(facts: OrderFacts, turn: Purpose | None, campus: CampusMap, s
     )
 
 
-def _names_for(role: MyRole, facts: OrderFacts) -> Mapping[str, str]:
-    """Whom sender and recipient name is nothing to the other: what they see of them is that it was a delegate."""
-    sees = tuple(Purpose) if _is_on_both_sides(facts.order) else THEIRS[role]
-    return {id_: name for id_, purpose, name in facts.delegates if purpose in sees}
+def whose_delegates(role: MyRole | None, order: Order) -> tuple[Purpose, ...]:
+    """For what somebody was named whose name this role sees. Whom sender and recipient name is nothing to the other:
+    what they see of them is that it was a delegate."""
+    if role is None:
+        return ()
+    return THEIRS["dispatcher" if order.sender_id == order.recipient_id else role]
 
 
-def _may_read(role: MyRole, order: Order, event: OrderEvent) -> bool:
+def may_read(role: MyRole | None, order: Order, kind: str, by: str) -> bool:
     """The reason of an event that names a delegate is for those who did so, and for dispatchers."""
-    is_for_all = event.kind not in (DELEGATE_NAMED, DELEGATE_REVOKED) or _is_on_both_sides(order)
-    return is_for_all or role in ("dispatcher", event.by)
+    sees_all = whose_delegates(role, order) == THEIRS["dispatcher"]
+    return kind not in (DELEGATE_NAMED, DELEGATE_REVOKED) or sees_all or role == by
 
 
-def _is_on_both_sides(order: Order) -> bool:
-    return order.sender_id == order.recipient_id
+def _names_for(role: MyRole, facts: OrderFacts) -> Mapping[str, str]:
+    sees = whose_delegates(role, facts.order)
+    return {id_: name for id_, purpose, name in facts.delegates if purpose in sees}
 
 
 def is_cancellable(order: Order, role: MyRole) -> bool:

@@ -7,6 +7,7 @@ import httpx
 import pytest
 
 from app.keeping.order_records import one_order
+from app.keeping.personal import everything_of, person_of
 from app.tables import Handover, Role
 from protocol.parts import Stop
 from protocol.to_robot import Verifiers
@@ -45,12 +46,13 @@ async def test_a_delegate_has_a_code_of_their_own_and_the_receipt_says_that_it_w
 
 
 # Sender and recipient name a delegate each; who reads of them by which name, and of whom it is said that they were one.
-SEEN = {
+NOT_AT_ALL = (None, None)
+SEEN: dict[str, tuple[str | None, str | None]] = {
     "sender": ("The porter", None),
     "recipient": (None, "A neighbour"),
     "dispatcher": ("The porter", "A neighbour"),
-    "maintainer": None,
-    "stranger": None,
+    "maintainer": NOT_AT_ALL,
+    "stranger": NOT_AT_ALL,
 }
 
 
@@ -64,7 +66,7 @@ async def test_a_delegates_name_is_for_the_side_that_named_them_and_for_dispatch
     await hands_over(campus, people["recipient"], "A neighbour", campus.receive)
     for who, names in SEEN.items():
         answer = await people[who].get(campus.path)
-        if names is None:
+        if names is NOT_AT_ALL:
             assert answer.status_code == 404, who
             continue
         of_sender, of_recipient = names
@@ -80,6 +82,10 @@ async def test_a_delegates_name_is_for_the_side_that_named_them_and_for_dispatch
             assert (name in answer.text, name in str(listed)) == (name in names, name in names), (who, name)
     async with campus.service.app.state.database.reading() as session:
         assert (await one_order(session, campus.order_id))["custody"][-1]["delegate"] == "A neighbour"
+        for who in ("sender", "recipient"):  # nor in what they are given of all that is known of them
+            exported = str(await everything_of(session, await person_of(session, f"{who}@campus.example")))
+            for name in ("The porter", "A neighbour"):
+                assert (name in exported) == (name in SEEN[who]), (who, name)
 
 
 async def hands_over(campus: Campus, who: httpx.AsyncClient, name: str, stop: Stop) -> None:
