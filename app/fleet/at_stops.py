@@ -7,7 +7,7 @@ from app.fleet.errors import UnknownStop
 from app.fleet.missions import drop_stops, end_if_nothing_is_left, finish, mission_of, own_stop, start_returning
 from app.fleet.reports import Report
 from app.orders.stops import OWN_PREFIX, is_own, orders_to_return
-from app.orders.transitions import MAIL_ABOARD
+from app.orders.transitions import ENDED, MAIL_ABOARD
 from app.tables import MissionRow, MissionState, Order, OrderState, StopRow
 from protocol.parts import StopAction
 from protocol.to_server import Progress, Step
@@ -130,7 +130,8 @@ async def _not_taken(report: Report, progress: Progress, mission: MissionRow, or
 
 async def _not_taken_back(report: Report, progress: Progress, mission: MissionRow, order_id: str) -> None:
     """After a stop of ours the robot tries once more by itself; after its own it goes home with the mail."""
-    if is_own(mission.id):
+    order = await report.orders.order(report.session, order_id)
+    if is_own(mission.id) and order.state not in ENDED:  # of what has ended the robot's fault tells people
         sentence = f"Nobody took the mail back ({progress.reason}). It is still in robot {report.robot}."
         word = report.word(progress.happened_at, progress.post, sentence)
         await report.orders.move(report.session, order_id, OrderState.ATTENTION, word)

@@ -14,8 +14,9 @@ from app.fleet.receipts import judged
 from app.fleet.reports import Report
 from app.orders.codes import Holder, codes_of, delegates_of
 from app.orders.errors import TransitionRefused
+from app.orders.service import Word
 from app.orders.stops import stops_of_order
-from app.orders.transitions import TURNED_BACK
+from app.orders.transitions import ENDED, TURNED_BACK
 from app.tables import Handover, MissionRow, Order, OrderState, StopRow
 from protocol.parts import Purpose
 from protocol.to_server import HandoverReceipt
@@ -87,20 +88,32 @@ async def _move(report: Report, receipt: HandoverReceipt) -> None:
     if order.robot not in (None, report.robot):
         order.let_go_by = order.robot  # it was given to another, but this one had the mail already
     word = report.word(receipt.happened_at, receipt.post)
+    if receipt.purpose == Purpose.LOAD and order.state in ENDED:
+        await _loaded_too_late(report, order, receipt, word)
+        return
     states = await _states(report, order, receipt)
     try:
         async with savepoint(report.session):
             await report.along(order.id, states, word)
     except TransitionRefused as refused:
-        await _contradiction(report, receipt, refused)
+        await _contradiction(report, receipt, str(refused))
 
 
-async def _contradiction(report: Report, receipt: HandoverReceipt, refused: TransitionRefused) -> None:
-    """The robot brings such mail back by itself; when it is out again, nobody has to look any more."""
+async def _loaded_too_late(report: Report, order: Order, receipt: HandoverReceipt, word: Word) -> None:
+    """It is carried for nothing: a person has to know, and the robot brings it back."""
+    await _contradiction(report, receipt, f"Order {order.id} is {order.state}.")
+    order.robot = report.robot
+    if order.let_go_by == report.robot:
+        order.let_go_by = None  # it cannot drop what it has
+    await report.orders.ask_back(report.session, order, word)
+
+
+async def _contradiction(report: Report, receipt: HandoverReceipt, why: str) -> None:
+    """When such mail is out again, nobody has to look any more."""
     if receipt.purpose != Purpose.LOAD:
         await clear_alarms(report.session, report.robot, CONTRADICTION, report.now)
         return
-    sentence = f"{refused} But its mail changed hands ({receipt.purpose}) at {receipt.post}."
+    sentence = f"{why} But its mail changed hands ({receipt.purpose}) at {receipt.post}."
     await raise_alarm(report.session, report.robot, CONTRADICTION, sentence, now=report.now, post=receipt.post)
 
 

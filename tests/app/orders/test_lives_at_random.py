@@ -361,7 +361,11 @@ class LivesOfOrders(RuleBasedStateMachine):
                 self.world.act(name, "sender")
             await self.world.speak(name)
             assert robot.outbox.waiting() == 0
-        for order in await self.world.rows(Order):
+        orders = {order.id: order for order in await self.world.rows(Order)}
+        for robot in self.world.robots.values():
+            if robot.duties.held.mission is None and any(orders[one].state in ENDED for one in robot.duties.held.cargo):
+                await self.world.recall(robot.name)  # its alarm says that it has mail aboard
+        for order in orders.values():
             if order.state is S.ATTENTION:
                 to = "returning" if order.state_before_attention in MAIL_ABOARD else "queued"
                 await self.world.change(self.world.orders.resolve, "dispatcher", order.id, to, "so that it ends")

@@ -1,6 +1,6 @@
 """Ends that lives at random did not come to, told as they went."""
 
-from app.tables import MissionRow, OrderState
+from app.tables import Alarm, MissionRow, OrderState
 from tests.app.orders.lives import World
 from tests.app.orders.what_holds import Record
 
@@ -52,6 +52,50 @@ async def left_aboard(world: World) -> str:
     assert await world.state(order_id) is OrderState.ATTENTION
     assert world.robots["r1"].duties.held.mission is None
     return order_id
+
+
+async def loaded_too_late(world: World) -> str:
+    """Given up on by a dispatcher, while its robot stands where it gets the mail, and gets it."""
+    order_id = await world.place("post3", "post5")
+    await world.goes_on("r1", "arrives")
+    await world.set_online("r1", False)
+    await world.change(world.orders.stop_for_attention, "dispatcher", order_id, "It is not heard of.")
+    await world.change(world.orders.resolve, "dispatcher", order_id, "cancelled", None)
+    world.act("r1", "sender")
+    await world.set_online("r1", True)
+    await world.speak("r1")
+    return order_id
+
+
+async def ringing(world: World) -> set[str]:
+    return {alarm.name for alarm in await world.rows(Alarm) if alarm.cleared_at is None}
+
+
+async def test_mail_that_came_aboard_when_its_order_had_ended_rings_and_is_brought_back(world: World) -> None:
+    order_id = await loaded_too_late(world)
+    assert "custody_contradicts_order" in await ringing(world)
+    for _ in range(3):
+        await world.goes_on("r1", *["sender"] * 3)
+    assert world.where[order_id] == "sender", "nobody carried it to its recipient"
+    assert await world.state(order_id) is OrderState.CANCELLED
+    assert "custody_contradicts_order" not in await ringing(world)
+    assert await world.rows(MissionRow, state="active") == []
+    await Record(world).check()
+
+
+async def test_what_nobody_took_back_of_an_order_that_has_ended_is_brought_again_by_a_robot_that_is_recalled(
+    world: World,
+) -> None:
+    order_id = await loaded_too_late(world)
+    for _ in range(3):
+        await world.goes_on("r1", *["nobody comes"] * 6)
+    assert world.where[order_id] == "r1"
+    assert {"custody_contradicts_order", "mail_aboard"} <= await ringing(world)
+    await world.recall("r1")
+    await world.goes_on("r1", *["sender"] * 6)
+    assert world.where[order_id] == "sender"
+    assert not {"custody_contradicts_order", "mail_aboard", "transition_refused"} & await ringing(world)
+    await Record(world).check()
 
 
 async def test_a_mission_whose_mail_is_out_before_it_is_told_is_over(world: World) -> None:
