@@ -16,6 +16,7 @@ from starlette.staticfiles import StaticFiles
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.errors import problem_answer
+from app.page_files import NPM_MODULES, PageFiles, add_page_files
 
 log = structlog.get_logger(__name__)
 
@@ -28,6 +29,7 @@ NOT_PAGES: Final = frozenset(
         "package-lock.json",
         "tsconfig.json",
         "make_pages.py",
+        NPM_MODULES,
         "openapi_types.d.ts",
         "api_types.ts",
     }
@@ -45,6 +47,7 @@ def add_pages(app: FastAPI, folder: Path) -> None:
         else:
             log.warning("the pages lack a package: run `make setup`", package=package)
     if folder.is_dir():
+        add_page_files(app, PageFiles(folder, NOT_PAGES))
         app.frontend("/", directory=folder, fallback=None)
     else:
         log.warning("there are no pages", folder=str(folder))

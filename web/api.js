@@ -24,12 +24,13 @@ export class NoAnswer extends Error {}
 
 /**
  * @param {string} path
- * @param {{method?: string, body?: unknown, headers?: Record<string, string>}} [request]
+ * @param {{method?: string, body?: unknown, headers?: Record<string, string>, cache?: RequestCache}} [request]
  * @returns {Promise<any>} the JSON of the answer, or null where it has none
  */
-async function ask(path, { method = "GET", body, headers = {} } = {}) {
+async function ask(path, { method = "GET", body, headers = {}, cache } = {}) {
   const answer = await send(path, {
     method,
+    cache,
     headers: { Accept: "application/json", ...(body ? { "Content-Type": "application/json" } : {}), ...headers },
     body: body ? JSON.stringify(body) : undefined,
   });
@@ -56,10 +57,11 @@ const orderPath = (id) => `/orders/${encodeURIComponent(id)}`;
 /** @returns {Promise<Api.About>} */
 export const about = () => ask("/about");
 
-/** @returns {Promise<Api.Person | null>} who is signed in here, null for nobody */
-export async function me() {
+/** @param {{fresh?: boolean}} [wish] `fresh`: from the service or not at all
+ *  @returns {Promise<Api.Person | null>} who is signed in here, null for nobody */
+export async function me({ fresh = false } = {}) {
   try {
-    return await ask("/me");
+    return await ask("/me", { cache: fresh ? "no-store" : "default" });
   } catch (problem) {
     if (problem instanceof ApiProblem && problem.status === 401) return null;
     throw problem;
@@ -276,6 +278,9 @@ export const changeNoticeWishes = (muted) => ask("/me/notices", { method: "PUT",
 /** No more notices there. @param {string} id @returns {Promise<null>} */
 export const removeDevice = (id) => ask(`/me/devices/${encodeURIComponent(id)}`, { method: "DELETE" });
 
+/** Have notices shown by this browser. @param {PushSubscriptionJSON} subscription @returns {Promise<{id: string}>} */
+export const addDevice = ({ endpoint, keys }) => ask("/me/devices", { method: "POST", body: { endpoint, keys } });
+
 /** @param {string} url @returns {Promise<Api.NewWebhook>} its secret is shown this once */
 export const setWebhook = (url) => ask("/me/webhook", { method: "PUT", body: { url } });
 
@@ -334,3 +339,9 @@ export const aboutOrder = (id) => new URL(BASE + orderPath(id), location.origin)
 /** Whether somebody else may be signed in afterwards. @param {string} method @param {URL} url */
 export const changesSession = (method, url) =>
   (method !== "GET" && SESSION.test(url.pathname)) || url.pathname.startsWith(BASE + "/sign-in");
+/** @param {string} id */
+export function aboutCode(id) {
+  const code = aboutOrder(id) + "/code";
+  return { code: new URL(code), picture: new URL(code + ".svg") };
+}
+

@@ -46,6 +46,10 @@ export const wantedFrom = (search) => Object.fromEntries(new URLSearchParams(sea
 export const orderFrom = (search) => new URLSearchParams(search).get("order");
 
 /** Told to delegates, who may not follow the order: the mail that they got has a link of their own. */
+/** The order page, filled in. @param {WantedOrder} wanted */
+export const orderPage = (wanted) =>
+  "/?" + new URLSearchParams(Object.entries(wanted).flatMap(([name, value]) => (typeof value === "string" ? [[name, value]] : [])));
+
 const OF_DELEGATES = ["delegated", "delegation_over"];
 
 /** What a notice leads to. @param {import("./api_types.ts").Notice} notice */

@@ -2,6 +2,7 @@
 what the service sends, from its OpenAPI document. `--check` says what is not up to date instead.
 
 *.html               their `modulepreload` lines, so that no module waits for another to be read
+npm_modules.json     what any module of the pages needs of npm: the service worker keeps it
 openapi_types.d.ts   a type for each schema; `api_types.ts` gives them the names that the pages use
 """
 
@@ -19,6 +20,8 @@ from typing import Any, Final
 
 WEB: Final = Path(__file__).parent
 TYPES: Final = "openapi_types.d.ts"
+NPM_MODULES: Final = "npm_modules.json"
+MADE_BY_THE_SERVICE: Final = {"/page_files.js"}
 IMPORT: Final = re.compile(
     r"""(?:^|[;\s}])(?:import|export)\s*(?:[\w$*{][^"';]*?from)?\s*["']([^"']+)["']""", re.MULTILINE
 )
@@ -48,10 +51,17 @@ def modules_behind(first: str, import_map: Mapping[str, str]) -> set[str]:
     while waiting:
         module = waiting.pop()
         text = re.sub(r"/\*.*?\*/", "", file_of(module).read_text(encoding="utf-8"), flags=re.DOTALL)
-        new = {resolve(module, name, import_map) for name in IMPORT.findall(text)} - found
+        new = {resolve(module, name, import_map) for name in IMPORT.findall(text)} - found - MADE_BY_THE_SERVICE
         waiting += new
         found |= new
     return found - {first}
+
+
+def npm_modules(import_map: Mapping[str, str]) -> str:
+    """Those behind any module of ours, also behind one that is fetched only when it is needed."""
+    ours = [file for file in WEB.rglob("*.js") if "node_modules" not in file.parts]
+    behind = set().union(*(modules_behind(f"/{file.relative_to(WEB)}", import_map) for file in ours))
+    return json.dumps(sorted(module for module in behind if module.startswith("/npm/")), indent=2) + "\n"
 
 
 def resolve(module: str, name: str, import_map: Mapping[str, str]) -> str:
@@ -89,7 +99,8 @@ def made_files() -> dict[Path, str]:
     from client.make_client import document  # the checkout is on the path only now
 
     pages = {page: with_preloads(page.read_text(encoding="utf-8")) for page in sorted(WEB.glob("*.html"))}
-    return pages | {WEB / TYPES: types_of(document())}
+    import_map = json.loads(_only(IMPORT_MAP, next(iter(pages.values()))))["imports"]
+    return pages | {WEB / NPM_MODULES: npm_modules(import_map), WEB / TYPES: types_of(document())}
 
 
 def main() -> None:

@@ -3,7 +3,9 @@ import { html, render } from "lit";
 import * as api from "./api.js";
 import "./elements/page_shell.js";
 import { startLive } from "./live.js";
+import { keptOrders } from "./outbox.js";
 import { keepServerTime } from "./server_clock.js";
+import { beginSession } from "./session.js";
 import { chooseLanguage, loadTexts, t } from "./texts.js";
 /** @import { About, Person } from "./api_types.ts" */
 /** @import { PageName } from "./links.js" */
@@ -20,10 +22,24 @@ export async function openPage(page, content) {
     await loadTexts(chooseLanguage(person ? [person.language] : navigator.languages, about.languages));
     document.title = `${t(person ? `title.${page}` : "title.sign_in")} · ${t("app.name")}`;
     keepServerTime(about);
+    beginSession(person);
+    const kept = person ? await keptOrders(person.id).catch(() => []) : [];
+    if (kept.length) await import("./elements/kept_orders.js");
     const draw = () => person && content({ about, person });
-    render(html`<page-shell .page=${page} .about=${about} .person=${person} .content=${draw}></page-shell>`, root);
+    render(
+      html`<page-shell .page=${page} .about=${about} .person=${person} .content=${draw} .kept=${kept}></page-shell>`,
+      root,
+    );
     if (person) startLive();
+    afterwards(() => import("./with_worker.js").then(({ workOffline }) => workOffline(person)));
   });
+}
+
+/** What nobody waits for is done once the page stands. @param {() => unknown} work */
+function afterwards(work) {
+  const whenIdle = () => ("requestIdleCallback" in window ? requestIdleCallback(work, { timeout: 3_000 }) : setTimeout(work, 500));
+  if (document.readyState === "complete") whenIdle();
+  else addEventListener("load", whenIdle, { once: true });
 }
 
 /**

@@ -1,49 +1,51 @@
 /**
- * Sending an order so that a double tap, a lost answer or a reload is still one order: its key is kept, for as long as
- * this tab lives, until the service has answered.
+ * Sending an order so that a double tap, a lost answer, a reload or no network at all is still one order: it lies in the
+ * outbox, with its key, until the service has answered.
  * @import { Order, WantedOrder } from "./api_types.ts"
+ * @import { KeptOrder } from "./outbox.js"
  */
 import * as api from "./api.js";
+import { announce, discard, inSession, isRefusal, keep, keptOrders, sendLater } from "./outbox.js";
 
-const KEPT = "order-without-answer";
 const TRY_AGAIN_AFTER_MS = [700, 2_500];
 
-/** @returns {{key: string, wanted: WantedOrder} | null} */
-const kept = () => JSON.parse(sessionStorage.getItem(KEPT) ?? "null");
+/** There was no answer: the order is kept, and is sent by itself when there is a network. */
+export class KeptForLater extends Error {}
 
-/** The order that was sent and never answered, if there is one. */
-export const unansweredOrder = () => kept()?.wanted ?? null;
-
-/** @param {WantedOrder} wanted @returns {Promise<Order>} */
-export async function placeOrder(wanted) {
-  const key = keyFor(wanted);
-  sessionStorage.setItem(KEPT, JSON.stringify({ key, wanted }));
+/** @param {WantedOrder} wanted @param {string} person_id @returns {Promise<Order>} throws KeptForLater, ApiProblem */
+export async function placeOrder(wanted, person_id) {
+  const kept = await keptAs(wanted, person_id);
   try {
-    const order = await persist(() => api.placeOrder(wanted, key));
-    sessionStorage.removeItem(KEPT);
+    const order = await inSession(() => persist(() => api.placeOrder(wanted, kept.key)));
+    await discard(kept.key);
     return order;
   } catch (problem) {
-    if (isFinal(problem)) sessionStorage.removeItem(KEPT);
-    throw problem;
+    if (!(problem instanceof api.NoAnswer) && !(problem instanceof api.ApiProblem)) throw problem;
+    if (isRefusal(problem)) await discard(kept.key);
+    if (problem instanceof api.ApiProblem && problem.status < 500) throw problem;
+    announce();
+    await sendLater();
+    throw new KeptForLater();
   }
 }
 
-/** @param {WantedOrder} wanted */
-function keyFor(wanted) {
-  const before = kept();
-  return before && JSON.stringify(before.wanted) === JSON.stringify(wanted) ? before.key : crypto.randomUUID();
+/** The same order that waits for its answer already is that order. @param {WantedOrder} wanted @param {string} person_id @returns {Promise<KeptOrder>} */
+async function keptAs(wanted, person_id) {
+  const waiting = (await keptOrders(person_id)).filter(({ order_id, refusal }) => !order_id && !refusal);
+  const before = waiting.find((kept) => JSON.stringify(kept.wanted) === JSON.stringify(wanted));
+  if (before) return before;
+  const kept = { key: crypto.randomUUID(), person_id, wanted, at: new Date().toISOString(), order_id: null, refusal: null };
+  await keep(kept);
+  return kept;
 }
-
-/** The service has refused; anything else may still have become an order. @param {unknown} problem */
-const isFinal = (problem) => problem instanceof api.ApiProblem && problem.status < 500 && problem.status !== 409;
 
 /** @template T @param {() => Promise<T>} attempt @returns {Promise<T>} */
 async function persist(attempt) {
-  for (const pause_ms of TRY_AGAIN_AFTER_MS) {
+  for (const pause_ms of navigator.onLine ? TRY_AGAIN_AFTER_MS : []) {
     try {
       return await attempt();
     } catch (problem) {
-      if (isFinal(problem)) throw problem;
+      if (isRefusal(problem)) throw problem;
       await new Promise((resolve) => setTimeout(resolve, pause_ms));
     }
   }

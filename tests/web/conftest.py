@@ -70,7 +70,8 @@ async def visit(chromium: Browser, playwright_here: Playwright, service: Service
         async def come(
             name: str = "ada", on: str = "desk", at: Service = service, signed_in: bool = True, **options: Any
         ) -> Visitor:
-            context = {"locale": "en-CA", **device(playwright_here, on), **options}
+            # A worker answers for the network that many tests cut: only tests of the worker let it in.
+            context = {"locale": "en-CA", "service_workers": "block", **device(playwright_here, on), **options}
             email = f"{name}.n{next(_newcomers)}@campus.example"
             visitor = await visitors.enter_async_context(Visitor(chromium, at, email, context))
             return await visitor.sign_in() if signed_in else visitor

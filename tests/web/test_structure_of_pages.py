@@ -32,7 +32,7 @@ def test_what_is_made_of_other_files_is_up_to_date():
     """The pages' lists of modules, so that none waits for another, and the types of what the service sends."""
     made = make_pages.made_files()
     assert [file.name for file, text in made.items() if file.read_text(encoding="utf-8") != text] == []
-    assert len(made) == len(PAGES) + 1
+    assert len(made) == len(PAGES) + 2
 
 
 def test_only_one_file_knows_addresses_of_the_service():

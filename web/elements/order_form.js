@@ -2,9 +2,10 @@
 import { html, nothing } from "lit";
 import * as api from "../api.js";
 import { followPage } from "../links.js";
-import { placeOrder, unansweredOrder } from "../place_order.js";
+import { KeptForLater, placeOrder } from "../place_order.js";
 import { titleOf } from "../posts.js";
 import { atFields } from "../problems.js";
+import { personHere } from "../session.js";
 import { t } from "../texts.js";
 import { estimateView } from "./estimate_view.js";
 import { field, problemLine } from "./field.js";
@@ -43,7 +44,6 @@ export class OrderForm extends PageElement {
     /** @type {Record<string, string>} */
     this.problems = {};
     this.sending = false;
-    this.unanswered = unansweredOrder() !== null;
   }
 
   /** @param {Map<string, unknown>} changed */
@@ -55,7 +55,6 @@ export class OrderForm extends PageElement {
 
   render() {
     return html`<form class="card" novalidate @submit=${this.#submit} @input=${this.#read}>
-      ${this.unanswered ? html`<p class="note" role="status">${t("order.unanswered")}</p>` : nothing}
       <fieldset class="route">
         <legend class="unseen">${t("order.route")}</legend>
         ${this.#postField("from_post", t("order.from"))} ${this.#postField("to_post", t("order.to"))}
@@ -154,10 +153,11 @@ export class OrderForm extends PageElement {
     if (Object.keys(this.problems).length) return this.focusOn("[aria-invalid]");
     this.sending = true;
     try {
-      location.assign(followPage((await placeOrder(this.wanted)).id));
+      location.assign(followPage((await placeOrder(this.wanted, personHere()?.id ?? "")).id));
     } catch (failure) {
+      // The shell shows what is kept; the form is free for the next one.
+      if (failure instanceof KeptForLater) return this.#want({ to_post: "", recipient: "", description: "" });
       this.problems = atFields(failure, FIELD_OF_CODE);
-      if (failure instanceof api.NoAnswer) this.problems = { form: t("error.no_answer_order") };
       this.focusOn("[aria-invalid]");
     } finally {
       this.sending = false;

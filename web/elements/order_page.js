@@ -4,7 +4,6 @@ import * as api from "../api.js";
 import { wantedFrom } from "../links.js";
 import { OnLive } from "../live.js";
 import { hasEnded } from "../order_words.js";
-import { unansweredOrder } from "../place_order.js";
 import { loadMap } from "../posts.js";
 import { inWords } from "../problems.js";
 import { t } from "../texts.js";
@@ -32,7 +31,7 @@ export class OrderPage extends PageElement {
     /** @type {WantedOrder} */
     this.wanted = {
       ...{ from_post: "", to_post: "", recipient: "", description: "" },
-      ...(unansweredOrder() ?? wantedFrom(location.search)),
+      ...wantedFrom(location.search),
     };
     this.problem = "";
     new OnLive(this, {

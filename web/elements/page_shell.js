@@ -3,6 +3,8 @@ import { html, nothing } from "lit";
 import * as api from "../api.js";
 import { mayOpen, PAGES } from "../links.js";
 import { OnLive, stopLive } from "../live.js";
+import { keptOrders, onKept } from "../outbox.js";
+import { signOut } from "../session.js";
 import { counted, t } from "../texts.js";
 import { icon } from "./icon.js";
 import { noRole } from "./no_role.js";
@@ -11,6 +13,9 @@ import { PageElement } from "./page_element.js";
 import "./sign_in.js";
 /** @import { About, Person } from "../api_types.ts" */
 /** @import { PageName } from "../links.js" */
+/** @import { KeptOrder } from "../outbox.js" */
+/** @import { NewVersion } from "../with_worker.js" */
+/** A browser's own offer to install. @typedef {Event & {prompt: () => Promise<unknown>}} InstallOffer */
 
 const ENTRIES = /** @type {const} */ ([
   ["order", "send"],
@@ -26,6 +31,9 @@ export class PageShell extends PageElement {
     about: { attribute: false },
     person: { attribute: false },
     content: { attribute: false },
+    kept: { attribute: false },
+    takeNewVersion: { state: true },
+    installOffer: { state: true },
     unread: { state: true },
     connected: { state: true },
   };
@@ -40,6 +48,13 @@ export class PageShell extends PageElement {
     this.person = null;
     /** @type {() => unknown} */
     this.content = () => nothing;
+    /** @type {KeptOrder[]} orders that wait on this device, when the page was opened */
+    this.kept = [];
+    this.keptJustNow = false;
+    /** @type {(() => void) | null} */
+    this.takeNewVersion = null;
+    /** @type {InstallOffer | null} */
+    this.installOffer = null;
     this.unread = 0;
     this.connected = true;
     new OnLive(this, {
@@ -47,6 +62,24 @@ export class PageShell extends PageElement {
       connected: (connected) => this.#nowConnected(connected),
     });
     this.addEventListener("notices-read", () => this.#count());
+    addEventListener("new-version", (event) => (this.takeNewVersion = /** @type {NewVersion} */ (event).detail.take));
+    addEventListener("beforeinstallprompt", (event) => this.#offer(/** @type {InstallOffer} */ (event)));
+    addEventListener("appinstalled", () => (this.installOffer = null));
+    onKept(() => this.#showKept());
+  }
+
+  /** The first one that is kept; its element sees to the others. */
+  async #showKept() {
+    if (!this.person || this.kept.length) return;
+    await import("./kept_orders.js");
+    this.keptJustNow = true;
+    this.kept = await keptOrders(this.person.id);
+  }
+
+  /** Said in the account sheet, not across the page. @param {InstallOffer} offer */
+  #offer(offer) {
+    offer.preventDefault();
+    this.installOffer = offer;
   }
 
   firstUpdated() {
@@ -61,12 +94,22 @@ export class PageShell extends PageElement {
         ${this.person ? [this.#navigation(this.person), this.#account(this.person)] : nothing}
       </header>
       ${this.connected ? nothing : html`<p class="banner" role="status">${icon("network")}${t("app.reconnecting")}</p>`}
+      ${this.takeNewVersion ? this.#newVersion(this.takeNewVersion) : nothing}
       <main id="content" tabindex="-1">
+        ${this.person && this.kept.length ? html`<kept-orders .person_id=${this.person.id} .kept=${this.kept}
+          ?justNow=${this.keptJustNow}></kept-orders>` : nothing}
         ${this.person ? this.#page(this.person) : html`<sign-in .about=${this.about}></sign-in>`}
       </main>
       ${this.person && this.page !== "notices" ? html`<notice-toast></notice-toast>` : nothing}
       ${this.about?.simulated ? html`<footer class="foot">${t("app.demo")}</footer>` : nothing}
     `;
+  }
+
+  /** @param {() => void} take */
+  #newVersion(take) {
+    return html`<div class="banner new-version" role="status">
+      <span>${t("app.new_version")}</span><button @click=${take}>${t("app.new_version.take")}</button>
+    </div>`;
   }
 
   /** @param {Person} person */
@@ -102,20 +145,34 @@ export class PageShell extends PageElement {
           <a class="entry" href=${PAGES.settings} aria-current=${this.page === "settings" ? "page" : nothing}>
             ${icon("settings")}${t("nav.settings")}
           </a>
+          <a class="entry" href=${PAGES.order + "?help"}>${icon("help")}${t("help.open")}</a>
+          ${this.installOffer ? this.#install(this.installOffer) : nothing}
           <button class="entry" @click=${this.#signOut}>${icon("leave")}${t("account.sign_out")}</button>
         </div>
       </div>
     </details>`;
   }
 
+  /** @param {InstallOffer} offer */
+  #install(offer) {
+    const accept = () => {
+      this.installOffer = null;
+      offer.prompt();
+    };
+    return html`<button class="entry" @click=${accept}>${icon("install")}${t("install.offer")}</button>`;
+  }
+
   async #signOut() {
     stopLive();
-    await api.signOut();
+    await signOut();
     location.assign(PAGES.order);
   }
 
   async #count() {
-    if (this.person) this.unread = (await api.notices()).unread;
+    const inbox = this.person && (await api.notices().catch(() => null));
+    if (!inbox) return;
+    this.unread = inbox.unread;
+    await navigator.setAppBadge?.(this.unread).catch(() => undefined);
   }
 
   /** @param {boolean} connected */

@@ -1,0 +1,101 @@
+/** Orders that are kept on this device: those that wait for a network, what became of them, and a way to mend them. */
+import { html, nothing } from "lit";
+import { followPage, orderPage } from "../links.js";
+import { OnLive } from "../live.js";
+import { discard, keptOrders, onKept, sendKept } from "../outbox.js";
+import { loadMap, titleOf } from "../posts.js";
+import { hasText, t } from "../texts.js";
+import { problemLine } from "./field.js";
+import { icon } from "./icon.js";
+import { PageElement } from "./page_element.js";
+/** @import { CampusMap } from "../api_types.ts" */
+/** @import { KeptOrder } from "../outbox.js" */
+
+export class KeptOrders extends PageElement {
+  static properties = { person_id: { attribute: false }, kept: { attribute: false }, justNow: { type: Boolean }, map: { state: true } };
+
+  #stop = () => {};
+  #send = () => void sendKept().catch(() => undefined);
+
+  constructor() {
+    super();
+    this.person_id = "";
+    /** @type {KeptOrder[]} */
+    this.kept = [];
+    /** Whether an order was kept while the page was open: then its person is taken to it. */
+    this.justNow = false;
+    /** @type {CampusMap | null} */
+    this.map = null;
+    // A stream that is open again is the surest sign of a network.
+    new OnLive(this, { connected: (connected) => connected && this.#send() });
+  }
+
+  connectedCallback() {
+    super.connectedCallback();
+    this.#stop = onKept(() => this.#look());
+    addEventListener("online", this.#send);
+  }
+
+  disconnectedCallback() {
+    super.disconnectedCallback();
+    this.#stop();
+    removeEventListener("online", this.#send);
+  }
+
+  async firstUpdated() {
+    if (this.justNow) this.focusOn(".kept");
+    this.#send();
+    this.map = await loadMap().catch(() => null);
+  }
+
+  async #look() {
+    const before = this.kept.length;
+    this.kept = await keptOrders(this.person_id);
+    if (this.kept.length > before) this.focusOn(".kept");
+  }
+
+  render() {
+    if (!this.kept.length) return nothing;
+    return html`<section class="kept" aria-labelledby="kept-title" tabindex="-1">
+      <h2 id="kept-title">${t("offline.kept")}</h2>
+      <ul role="status">${this.kept.map((order) => this.#order(order))}</ul>
+    </section>`;
+  }
+
+  /** @param {KeptOrder} order */
+  #order(order) {
+    const { wanted, order_id, refusal } = order;
+    return html`<li>
+      <div>
+        <strong>${this.#title(wanted.from_post)}${icon("arrow")}<span class="unseen">→</span>${this.#title(wanted.to_post)}</strong>
+        <span>${t("offline.for", { recipient: wanted.recipient })}</span>
+        ${refusal ? problemLine(inWords(refusal)) : html`<span>${t(order_id ? "offline.sent" : "offline.waiting")}</span>`}
+      </div>
+      <div class="choices">
+        ${order_id ? html`<a class="button" href=${followPage(order_id)} @click=${() => discard(order.key)}>${t("offline.follow")}</a>` : nothing}
+        ${refusal ? html`<button @click=${() => mend(order)}>${t("offline.mend")}</button>` : nothing}
+        <button class="quiet" @click=${() => discard(order.key)}>${t(order_id ? "offline.put_away" : "offline.discard")}</button>
+      </div>
+    </li>`;
+  }
+
+  /** @param {string} post */
+  #title(post) {
+    return this.map ? titleOf(this.map, post) : post;
+  }
+}
+
+/** @param {NonNullable<KeptOrder["refusal"]>} refusal */
+function inWords({ code, detail, fields }) {
+  const field = fields.find((name) => hasText(`error.malformed.${name}`));
+  if (field) return t(`error.malformed.${field}`);
+  return hasText(`error.${code}`) ? t(`error.${code}`) : detail;
+}
+
+/** Back into the form; sent from there, it is another order. @param {KeptOrder} order */
+async function mend({ key, wanted }) {
+  await discard(key);
+  location.assign(orderPage(wanted));
+}
+
+customElements.define("kept-orders", KeptOrders);

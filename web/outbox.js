@@ -1,0 +1,105 @@
+/**
+ * Orders that the service has not answered yet. Each has its key and its person, and survives the page, the tab and the
+ * browser; it is sent until there is an answer, under the session of the person who placed it and under no other.
+ * Page and worker use the same box.
+ * @import { WantedOrder } from "./api_types.ts"
+ * @typedef {{code: string, detail: string, fields: string[]}} Refusal
+ * @typedef {{key: string, person_id: string, wanted: WantedOrder, at: string, order_id: string | null, refusal: Refusal | null}} KeptOrder
+ *   waiting, or sent as `order_id`, or refused
+ */
+import * as api from "./api.js";
+
+export const SYNC_TAG = "orders";
+const LOCK = "session";
+const BOX = "orders";
+/** The service knows a key for a day; after that, sending it again might be a second order. */
+const SENT_BY_ITSELF_MS = 23 * 3_600_000;
+const changes = typeof BroadcastChannel === "undefined" ? null : new BroadcastChannel("outbox");
+
+/** @returns {Promise<IDBDatabase>} */
+function database() {
+  const opening = indexedDB.open("campus-mail", 1);
+  opening.onupgradeneeded = () => opening.result.createObjectStore(BOX, { keyPath: "key" });
+  return settled(opening);
+}
+
+/** @template T @param {IDBRequest<T>} request @returns {Promise<T>} */
+const settled = (request) =>
+  new Promise((resolve, reject) => {
+    request.onsuccess = () => resolve(request.result);
+    request.onerror = () => reject(request.error);
+  });
+
+/** @template T @param {IDBTransactionMode} mode @param {(box: IDBObjectStore) => IDBRequest<T>} use @returns {Promise<T>} */
+async function inBox(mode, use) {
+  const opened = await database();
+  try {
+    return await settled(use(opened.transaction(BOX, mode).objectStore(BOX)));
+  } finally {
+    opened.close();
+  }
+}
+
+/** Oldest first. @param {string} person_id @returns {Promise<KeptOrder[]>} */
+export async function keptOrders(person_id) {
+  const all = /** @type {KeptOrder[]} */ (await inBox("readonly", (box) => box.getAll()));
+  return all.filter((kept) => kept.person_id === person_id).sort((a, b) => a.at.localeCompare(b.at));
+}
+
+/** @param {KeptOrder} kept */
+export const keep = (kept) => inBox("readwrite", (box) => box.put(kept));
+
+/** Every page shows what is kept now. */
+export const announce = () => changes?.postMessage("changed");
+
+/** @param {string} key */
+export async function discard(key) {
+  await inBox("readwrite", (box) => box.delete(key));
+  announce();
+}
+
+/** Tells whenever the box has changed, by whichever page or worker. @param {() => void} tell @returns {() => void} an end to it */
+export function onKept(tell) {
+  const channel = new BroadcastChannel("outbox");
+  channel.onmessage = tell;
+  return () => channel.close();
+}
+
+/** Nobody signs in or out while an order is being sent. @template T @param {() => Promise<T>} act @returns {Promise<T>} */
+export const inSession = async (act) => await (navigator.locks ? navigator.locks.request(LOCK, act) : act());
+
+/** The service has refused; anything else may still become an order, or has already. @param {unknown} problem */
+export const isRefusal = (problem) =>
+  problem instanceof api.ApiProblem && problem.status < 500 && ![401, 409, 429].includes(problem.status);
+
+/** Sends what waits of whoever is signed in. Throws NoAnswer where there is still no network. */
+export const sendKept = () =>
+  inSession(async () => {
+    const person = await api.me({ fresh: true });
+    if (!person) return;
+    for (const kept of await keptOrders(person.id)) if (!kept.order_id && !kept.refusal) await sendOne(kept);
+    announce();
+  });
+
+/** @param {KeptOrder} kept */
+async function sendOne(kept) {
+  const isOld = Date.now() - Date.parse(kept.at) > SENT_BY_ITSELF_MS;
+  try {
+    if (isOld) throw new api.ApiProblem(422, { code: "kept_too_long" });
+    await keep({ ...kept, order_id: (await api.placeOrder(kept.wanted, kept.key)).id });
+  } catch (problem) {
+    if (!isRefusal(problem)) throw problem;
+    await refuse(kept, /** @type {api.ApiProblem} */ (problem));
+  }
+}
+
+/** @param {KeptOrder} kept @param {api.ApiProblem} problem */
+async function refuse(kept, { code, message, fields }) {
+  await keep({ ...kept, refusal: { code, detail: message, fields } });
+}
+
+/** Has the worker send it as soon as there is a network, where browsers do that. */
+export async function sendLater() {
+  const registration = await navigator.serviceWorker?.getRegistration();
+  await registration?.sync?.register(SYNC_TAG).catch(() => undefined);
+}

@@ -1,0 +1,6 @@
+// The service makes this module: what its pages are made of (app/page_files.py).
+
+/** Changes with any of the files. */
+export const VERSION: string;
+/** Their addresses. */
+export const FILES: string[];

@@ -1,0 +1,27 @@
+/** Puts the service worker in, once the page stands, and says when a new version of the pages is there. */
+import { checkPush } from "./push.js";
+/** @import { Person } from "./api_types.ts" */
+
+/** What a page hears when a new version is there: `take` changes to it. @typedef {CustomEvent<{take: () => void}>} NewVersion */
+
+/** @param {Person | null} person */
+export async function workOffline(person) {
+  if (!("serviceWorker" in navigator)) return;
+  const wasControlled = navigator.serviceWorker.controller !== null;
+  const registration = await navigator.serviceWorker.register("/service_worker.js", { type: "module", updateViaCache: "none" });
+  const look = () => registration.active && registration.waiting && sayNewVersion(() => takeOver(registration));
+  look();
+  registration.addEventListener("updatefound", () => registration.installing?.addEventListener("statechange", look));
+  // Another page has changed to it: this one goes on with its own files until its person likes to change too.
+  navigator.serviceWorker.addEventListener("controllerchange", () => wasControlled && sayNewVersion(() => location.reload()));
+  if (person) await checkPush(person.id);
+}
+
+/** @param {() => void} take */
+const sayNewVersion = (take) => dispatchEvent(new CustomEvent("new-version", { detail: { take } }));
+
+/** @param {ServiceWorkerRegistration} registration */
+function takeOver(registration) {
+  navigator.serviceWorker.addEventListener("controllerchange", () => location.reload());
+  registration.waiting?.postMessage("take over");
+}

@@ -1,0 +1,61 @@
+/** Notices that the service pushes: shown, counted on the app's icon, and opened with a tap. */
+import * as api from "../api.js";
+import { pageOf, PAGES } from "../links.js";
+import { keepOrder } from "./kept_answers.js";
+/** @import { Notice } from "../api_types.ts" */
+/** @typedef {Pick<Notice, "kind" | "order_id" | "title" | "body" | "at"> & {tag: string, language: string}} Pushed what app/notify sends */
+
+const NAME = "Campus Mail";
+/** Somebody stands before a robot, or is about to. */
+const STAYS = ["robot_here", "robot_here_for_you", "at_return", "alarm"];
+
+/** Browsers insist that every push is shown, even one that cannot be read. @param {WorkerScope} worker @param {{text(): string} | null} data */
+export async function show({ registration }, data) {
+  const notice = read(data);
+  await Promise.all([
+    registration.showNotification(notice.title ?? NAME, {
+      body: notice.body,
+      tag: notice.tag,
+      lang: notice.language,
+      icon: "/icons/icon-192.png",
+      badge: "/icons/badge-96.png",
+      requireInteraction: STAYS.includes(notice.kind ?? ""),
+      data: { url: (notice.kind && pageOf(/** @type {Notice} */ (notice))) ?? PAGES.notices },
+    }),
+    count().catch(() => undefined),
+    notice.order_id ? keepOrder(notice.order_id).catch(() => undefined) : undefined,
+  ]);
+}
+
+/** @param {{text(): string} | null} data @returns {Partial<Pushed>} */
+function read(data) {
+  try {
+    const said = JSON.parse(data?.text() ?? "");
+    return typeof said?.title === "string" ? said : {};
+  } catch {
+    return {};
+  }
+}
+
+async function count() {
+  const { unread } = await api.notices({ limit: 1 });
+  await navigator.setAppBadge?.(unread);
+}
+
+/** What was told is opened: in the page that shows it already, in another, or in a new one.
+ * @param {WorkerScope} worker @param {Notification} notification */
+export async function open({ clients }, notification) {
+  notification.close();
+  const url = new URL(notification.data?.url ?? PAGES.notices, location.origin).href;
+  const pages = await clients.matchAll({ type: "window" });
+  const there = pages.find((page) => page.url === url);
+  if (there) return there.focus();
+  return clients.openWindow(url);
+}
+
+/** The push service gave this browser another address. @param {WorkerScope} worker */
+export async function renewSubscription({ registration }) {
+  const { push_key } = await api.noticeWishes();
+  const made = await registration.pushManager.subscribe({ userVisibleOnly: true, applicationServerKey: push_key });
+  await api.addDevice(made.toJSON());
+}
