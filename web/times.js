@@ -21,6 +21,17 @@ export function dayAndTime(at, now_ms) {
   return sameDay ? clockTime(at) : format({ day: "numeric", month: "short", ...CLOCK }).format(new Date(at));
 }
 
+/** "09:30" as people write it here. @param {string} at a time of day in no particular zone */
+export const wallClock = (at) => new Intl.DateTimeFormat(locale(), { ...CLOCK, timeZone: "UTC" }).format(new Date(`2024-01-01T${at}Z`));
+
+/** The name of a weekday. @param {number} day 0 is Monday @param {"long" | "short"} [style] */
+export const weekdayName = (day, style = "long") =>
+  new Intl.DateTimeFormat(locale(), { weekday: style, timeZone: "UTC" }).format(Date.UTC(2024, 0, 1 + day));
+
+/** "Monday and Friday" @param {number[]} days 0 is Monday */
+export const weekdayNames = (days) =>
+  new Intl.ListFormat(locale()).format([...days].sort().map((day) => weekdayName(day, days.length > 2 ? "short" : "long")));
+
 /** "2 min ago", from a day on the date. @param {string} at @param {number} now_ms the service's time, not the machine's */
 export function ago(at, now_ms) {
   const age_ms = now_ms - Date.parse(at);

@@ -100,6 +100,18 @@ class Visitor:
         assert answer.ok, await answer.text()
         return str((await answer.json())["id"])
 
+    async def orders(self, number: int, recipient: str) -> None:
+        """Many of them, without description; a few at a time, as the service takes so many from one person."""
+        for _ in range(number):
+            await self.order(recipient)
+
+    async def post(self, path: str, body: Any = None) -> Any:
+        """Something done without the pages."""
+        own = {"Sec-Fetch-Site": "same-origin"}
+        answer = await self.context.request.post(f"/api/v1{path}", data=body, headers=own)
+        assert answer.ok, await answer.text()
+        return await answer.json()
+
     async def name_delegate(self, order_id: str, email: str) -> None:
         """Somebody who hands over instead; without the pages too."""
         headers = {"Sec-Fetch-Site": "same-origin"}

@@ -1,22 +1,36 @@
-/** My mail: what I sent and what is coming to me, newest first. */
+/** My mail: what is coming to me and what I sent, newest first, searched as one types; and what I send again and again. */
 import { html, nothing } from "lit";
 import * as api from "../api.js";
 import { repeatPage } from "../links.js";
 import { OnLive } from "../live.js";
 import { loadMap } from "../posts.js";
 import { inWords } from "../problems.js";
-import { t } from "../texts.js";
+import { counted, t } from "../texts.js";
 import { problemLine } from "./field.js";
 import { icon } from "./icon.js";
 import { orderCard } from "./order_card.js";
 import { PageElement } from "./page_element.js";
+import "./standing_orders.js";
 /** @import { CampusMap, Order, Page } from "../api_types.ts" */
 
 const AT_ONCE = 20;
+const TYPING_MS = 250;
 const ROLES = /** @type {const} */ (["coming", "sent"]);
+const STATES = /** @type {const} */ (["all", "open", "ended"]);
 
 export class MailPage extends PageElement {
-  static properties = { map: { state: true }, lists: { state: true }, problem: { state: true } };
+  #timer = 0;
+  /** Which question was asked last: answers to earlier ones come too late. */
+  #asked = 0;
+
+  static properties = {
+    map: { state: true },
+    lists: { state: true },
+    search: { state: true },
+    state: { state: true },
+    looking: { state: true },
+    problem: { state: true },
+  };
 
   constructor() {
     super();
@@ -24,6 +38,10 @@ export class MailPage extends PageElement {
     this.map = null;
     /** @type {Record<"coming" | "sent", Page<Order>>} */
     this.lists = { coming: { items: [], next: null }, sent: { items: [], next: null } };
+    this.search = "";
+    /** @type {"all" | "open" | "ended"} */
+    this.state = "all";
+    this.looking = false;
     this.problem = "";
     new OnLive(this, { order: (order) => this.#update(order), connected: (connected) => connected && this.#fetch() });
   }
@@ -32,32 +50,80 @@ export class MailPage extends PageElement {
     this.#fetch();
   }
 
+  disconnectedCallback() {
+    super.disconnectedCallback();
+    clearTimeout(this.#timer);
+  }
+
   render() {
     const { map } = this;
     return html`<h1>${t("mail.title")}</h1>
-      ${this.problem ? problemLine(this.problem) : nothing}
+      ${this.#filter()} ${this.problem ? problemLine(this.problem) : nothing}
       ${map
-        ? html`<div class="lists">${ROLES.map((role) => this.#list(role, map))}</div>`
+        ? html`<div class="lists">${ROLES.map((role) => this.#list(role, map))}</div>
+            <standing-orders .map=${map}></standing-orders>`
         : html`<p class="waiting" role="status">${t("app.loading")}</p>`}`;
+  }
+
+  #filter() {
+    return html`<form class="finding" role="search" @submit=${(/** @type {Event} */ event) => event.preventDefault()}>
+      <div class="field">
+        <label for="field-search">${t("mail.search")}</label>
+        <input id="field-search" type="search" maxlength="100" autocomplete="off" aria-describedby="found"
+          placeholder=${t("mail.search_hint")} @input=${this.#type} />
+      </div>
+      <fieldset class="pills">
+        <legend class="unseen">${t("mail.which")}</legend>
+        ${STATES.map(
+          (state) => html`<label class="pill"><input type="radio" name="state" value=${state} .checked=${this.state === state}
+            @change=${() => this.#narrow(state)} /><span>${t(`mail.which_${state}`)}</span></label>`,
+        )}
+      </fieldset>
+      <p class="hint" id="found" role="status">${this.#found()}</p>
+    </form>`;
+  }
+
+  #found() {
+    if (!this.search || !this.map) return nothing;
+    if (this.looking) return t("mail.looking");
+    const { coming, sent } = this.lists;
+    return counted(coming.next || sent.next ? "mail.found_more" : "mail.found", coming.items.length + sent.items.length);
   }
 
   /** @param {"coming" | "sent"} role @param {CampusMap} map */
   #list(role, map) {
     const { items, next } = this.lists[role];
+    const narrowed = this.search || this.state !== "all";
     return html`<section aria-labelledby="${role}-title">
       <h2 id="${role}-title">${t(`mail.${role}`)}</h2>
       ${items.length
         ? html`<ul class="orders">${items.map((order) => orderCard(order, map, role === "sent" ? repeatLink(order) : nothing))}</ul>`
-        : html`<p class="empty">${t(`mail.none_${role}`)}</p>`}
+        : html`<p class="empty">${t(narrowed ? "mail.none_found" : `mail.none_${role}`)}</p>`}
       ${next ? html`<button class="quiet" @click=${() => this.#more(role)}>${t("mail.more")}</button>` : nothing}
     </section>`;
   }
 
-  /** @param {Order} order */
+  /** @param {InputEvent} event */
+  #type(event) {
+    const typed = /** @type {HTMLInputElement} */ (event.target).value.trim();
+    if (typed === this.search) return;
+    [this.search, this.looking] = [typed, true];
+    clearTimeout(this.#timer);
+    this.#timer = setTimeout(() => this.#fetch(), TYPING_MS);
+  }
+
+  /** @param {"all" | "open" | "ended"} state */
+  #narrow(state) {
+    this.state = state;
+    this.#fetch();
+  }
+
+  /** What is shown is brought up to date; what is new is shown if all is. @param {Order} order */
   #update(order) {
     const role = order.my_role === "recipient" ? "coming" : "sent";
     const { items, next } = this.lists[role];
     const known = items.some(({ id }) => id === order.id);
+    if (!known && (this.search || this.state !== "all")) return void this.#fetch();
     const updated = known ? items.map((item) => (item.id === order.id ? order : item)) : [order, ...items];
     this.lists = { ...this.lists, [role]: { items: updated, next } };
   }
@@ -65,15 +131,32 @@ export class MailPage extends PageElement {
   /** @param {"coming" | "sent"} role */
   async #more(role) {
     const { items, next } = this.lists[role];
-    const older = await api.orders(role, { limit: AT_ONCE, cursor: next ?? undefined });
-    this.lists = { ...this.lists, [role]: { items: [...items, ...older.items], next: older.next } };
+    const asked = this.#asked;
+    await this.#attempt(async () => {
+      const older = await this.#ask(role, next ?? undefined);
+      if (asked === this.#asked) this.lists = { ...this.lists, [role]: { items: [...items, ...older.items], next: older.next } };
+    });
+  }
+
+  /** @param {"coming" | "sent"} role @param {string} [cursor] */
+  #ask(role, cursor) {
+    return api.orders(role, { limit: AT_ONCE, cursor, state: this.state, search: this.search || undefined });
   }
 
   async #fetch() {
+    const asked = (this.#asked += 1);
+    await this.#attempt(async () => {
+      const [map, coming, sent] = await Promise.all([loadMap(), ...ROLES.map((role) => this.#ask(role))]);
+      if (asked !== this.#asked) return;
+      [this.map, this.lists, this.looking] = [map, { coming, sent }, false];
+    });
+  }
+
+  /** @param {() => Promise<unknown>} attempt */
+  async #attempt(attempt) {
     try {
-      const [map, ...lists] = await Promise.all([loadMap(), ...ROLES.map((role) => api.orders(role, { limit: AT_ONCE }))]);
-      this.map = map;
-      [this.lists, this.problem] = [{ coming: lists[0], sent: lists[1] }, ""];
+      await attempt();
+      this.problem = "";
     } catch (failure) {
       this.problem = inWords(failure);
     }
