@@ -23,6 +23,7 @@ from app.errors import (
     described_problem,
     meaning,
 )
+from app.fleet.watching import Watched
 from app.paging import BadCursor
 from app.people.errors import CrossSite, HttpsRequired, NotForScripts, RoleNeeded, ScopeNeeded
 from app.people.scopes import opened_by
@@ -52,6 +53,7 @@ TAGS: Final[Mapping[str, str]] = {
     "outbox": "For dispatchers: notices that a channel has not taken yet, and the mails in the spool.",
     "live": "Changes as they happen, as server-sent events.",
     "robots": "Where the robots were last seen and what they are doing. Their own link is `docs/protocol.md`.",
+    "upkeep": "For maintainers: watching what a robot senses and thinks.",
     "enrolment": "How a robot becomes known: one-time codes, its key, its tokens.",
     "demo": "Only while a demonstration runs: the simulated robot's camera.",
     "health": "For whoever watches over the service.",
@@ -129,6 +131,7 @@ def complete(document: Document) -> None:
     for replaced in ("HTTPValidationError", "ValidationError"):
         schemas.pop(replaced, None)
     schemas.update(_problem_schemas())
+    schemas.update(_live_schemas())
     for name, examples in EXAMPLES.items():
         if name in schemas:
             schemas[name]["examples"] = list(examples)
@@ -238,6 +241,12 @@ def _header(sentence: str) -> Document:
 def _problem_schemas() -> Document:
     schema = Problem.model_json_schema(ref_template="#/components/schemas/{model}")
     return {**schema.pop("$defs", {}), "Problem": schema}
+
+
+def _live_schemas() -> Document:
+    """Of events of the stream that no answer carries."""
+    schema = Watched.model_json_schema(ref_template="#/components/schemas/{model}", mode="serialization")
+    return {**schema.pop("$defs", {}), "Watched": schema}
 
 
 def all_codes() -> dict[str, tuple[int, str]]:

@@ -18,7 +18,7 @@ from app.enrolment import routes as enrolment_routes
 from app.enrolment.service import EnrolmentDesk
 from app.errors import add_error_answers
 from app.etags import ETags
-from app.fleet import dispatcher_routes
+from app.fleet import dispatcher_routes, watching_routes
 from app.fleet import routes as fleet_routes
 from app.fleet.intake import Intake
 from app.fleet.service import Fleet
@@ -84,6 +84,8 @@ ROUTERS = (
     live_routes.router,
     fleet_routes.router,
     dispatcher_routes.router,
+    watching_routes.router,
+    watching_routes.upkeep_router,
     enrolment_routes.router,
     handover_routes.router,
     handover_routes.dispatch_router,

@@ -120,6 +120,44 @@ export interface components {
             reason: string;
         };
         /**
+         * BatteryHistory
+         * @description What a robot told of its battery, oldest first: at most about 300 samples, those where charging began or ended
+         *     among them. `low_ratio`: below this a robot goes to charge, unless its own settings say otherwise.
+         */
+        BatteryHistory: {
+            /** Robot */
+            robot: string;
+            /**
+             * Since
+             * Format: date-time
+             */
+            since: string;
+            /**
+             * Until
+             * Format: date-time
+             */
+            until: string;
+            /** Low Ratio */
+            low_ratio: number;
+            /** Samples */
+            samples: components["schemas"]["BatterySampleView"][];
+        };
+        /**
+         * BatterySampleView
+         * @description Charge as a ratio of capacity at one moment, and whether the dock was charging.
+         */
+        BatterySampleView: {
+            /**
+             * At
+             * Format: date-time
+             */
+            at: string;
+            /** Ratio */
+            ratio: number;
+            /** Charging */
+            charging: boolean;
+        };
+        /**
          * BatteryView
          * @description Charge as a ratio of capacity.
          */
@@ -1514,6 +1552,20 @@ export interface components {
             taken: components["schemas"]["TakenCorridor"][];
         };
         /**
+         * WatchView
+         * @description `online` false: it is shown when the robot is back. `tells` false: this robot's software knows nothing of it.
+         */
+        WatchView: {
+            /** Robot */
+            robot: string;
+            /** Online */
+            online: boolean;
+            /** Tells */
+            tells: boolean;
+            /** For S */
+            for_s: number;
+        };
+        /**
          * WebhookView
          * @description An address that is told of one's notices.
          */
@@ -1638,6 +1690,349 @@ export interface components {
              * @default null
              */
             errors: components["schemas"]["FieldProblem"][] | null;
+        };
+        /**
+         * Because
+         * @description Why a goal is not reached yet: `sentence` in English; `kind` names its pattern, the rest fills that in any
+         *     language: `goal` in plan `plan` waits for `what`, for `left_s` at most, and is needed for the goals `needed_for`.
+         */
+        Because: {
+            /** Kind */
+            kind: string;
+            /** Sentence */
+            sentence: string;
+            /** Goal */
+            goal: string;
+            /**
+             * Plan
+             * @default null
+             */
+            plan: string | null;
+            /**
+             * What
+             * @default null
+             */
+            what: string | null;
+            /**
+             * Left S
+             * @default null
+             */
+            left_s: number | null;
+            /**
+             * Needed For
+             * @default []
+             */
+            needed_for: string[];
+        };
+        /**
+         * Insight
+         * @description What the robot senses and thinks, while somebody watches: at most twice a second, dropped first, never kept.
+         *
+         *     `number` counts from 1, which has all beliefs in `came` (`whole`); those after it say what `came` and `went` since
+         *     the one before. `events` wait until a plan is chosen for them, `loops` are in every tenth. `at` is the robot's time.
+         */
+        Insight: {
+            /** Number */
+            number: number;
+            /**
+             * At
+             * Format: date-time
+             */
+            at: string;
+            /** Cycle */
+            cycle: number;
+            /**
+             * Whole
+             * @default false
+             */
+            whole: boolean;
+            sensors: components["schemas"]["Sensors"];
+            /**
+             * Loops
+             * @default []
+             */
+            loops: components["schemas"]["LoopTiming"][];
+            /**
+             * Intentions
+             * @default []
+             */
+            intentions: components["schemas"]["IntentionTold"][];
+            /**
+             * Events
+             * @default []
+             */
+            events: string[];
+            /**
+             * Came
+             * @default []
+             */
+            came: string[];
+            /**
+             * Went
+             * @default []
+             */
+            went: string[];
+            /**
+             * Trace
+             * @default []
+             */
+            trace: components["schemas"]["TraceLine"][];
+            /**
+             * @default {
+             *       "beliefs": 0,
+             *       "trace": 0,
+             *       "intentions": 0
+             *     }
+             */
+            left_out: components["schemas"]["LeftOut"];
+        };
+        /**
+         * IntentionTold
+         * @description One intention: `stack` from its first cause down to what it is doing now, and why it does not go on.
+         *
+         *     `beside` are the intentions that are branches of the same plan.
+         */
+        IntentionTold: {
+            /** Number */
+            number: number;
+            /** State */
+            state: string;
+            because: components["schemas"]["Because"];
+            /** Stack */
+            stack: components["schemas"]["Means"][];
+            /**
+             * Beside
+             * @default []
+             */
+            beside: number[];
+        };
+        /**
+         * LeftOut
+         * @description How much had no room: of beliefs (`came` and `went`), of lines of the trace, of intentions.
+         */
+        LeftOut: {
+            /**
+             * Beliefs
+             * @default 0
+             */
+            beliefs: number;
+            /**
+             * Trace
+             * @default 0
+             */
+            trace: number;
+            /**
+             * Intentions
+             * @default 0
+             */
+            intentions: number;
+        };
+        /**
+         * LoopTiming
+         * @description How late the ticks of one loop began, since the robot started.
+         */
+        LoopTiming: {
+            /** Name */
+            name: string;
+            /** Ticks */
+            ticks: number;
+            /** Late P50 Ms */
+            late_p50_ms: number;
+            /** Late P99 Ms */
+            late_p99_ms: number;
+            /** Late Worst Ms */
+            late_worst_ms: number;
+        };
+        /**
+         * Means
+         * @description A goal or event of an intention, the plan that serves it, and the step that comes next (None: it is done).
+         *
+         *     `place` is where the plan is written: `mission.asl:33`.
+         *     `relevant` is how many plans there were for it, `passed_over` those that would have come first; both are known only
+         *     of what was chosen while somebody watched.
+         */
+        Means: {
+            /** Goal */
+            goal: string;
+            /** Plan */
+            plan: string;
+            /**
+             * Place
+             * @default null
+             */
+            place: string | null;
+            /**
+             * Step
+             * @default null
+             */
+            step: string | null;
+            /**
+             * Relevant
+             * @default null
+             */
+            relevant: number | null;
+            /**
+             * Passed Over
+             * @default []
+             */
+            passed_over: components["schemas"]["NotChosen"][];
+        };
+        /**
+         * NotChosen
+         * @description A plan that would have come first, and why it was not taken.
+         */
+        NotChosen: {
+            /** Plan */
+            plan: string;
+            /** Why */
+            why: string;
+        };
+        /**
+         * Sensors
+         * @description What the body feels now. `line`: left, centre, right diode over the line; `line_word` what that is taken for.
+         *
+         *     `light_bumpers` see something near; `wheels_mm_s` are the speeds really sent last, `skill` is what has the wheels.
+         *     `base_age_s` is how old the base's newest frame is, `camera_age_s` the camera's.
+         */
+        Sensors: {
+            /**
+             * Mode
+             * @default null
+             */
+            mode: string | null;
+            /**
+             * Docked
+             * @default false
+             */
+            docked: boolean;
+            /**
+             * Charging State
+             * @default null
+             */
+            charging_state: string | null;
+            /**
+             * Voltage Mv
+             * @default null
+             */
+            voltage_mv: number | null;
+            /**
+             * Current Ma
+             * @default null
+             */
+            current_ma: number | null;
+            /**
+             * Temperature C
+             * @default null
+             */
+            temperature_c: number | null;
+            /**
+             * Base Age S
+             * @default null
+             */
+            base_age_s: number | null;
+            /**
+             * Camera Age S
+             * @default null
+             */
+            camera_age_s: number | null;
+            /**
+             * Bumps
+             * @default []
+             */
+            bumps: ("left" | "right")[];
+            /**
+             * Drops
+             * @default []
+             */
+            drops: ("wheel_left" | "wheel_right" | "cliff_left" | "cliff_front_left" | "cliff_front_right" | "cliff_right")[];
+            /**
+             * Light Bumpers
+             * @default []
+             */
+            light_bumpers: ("left" | "front_left" | "centre_left" | "centre_right" | "front_right" | "right")[];
+            /**
+             * Line
+             * @default [
+             *       false,
+             *       false,
+             *       false
+             *     ]
+             */
+            line: [
+                boolean,
+                boolean,
+                boolean
+            ];
+            /** Line Word */
+            line_word: string;
+            /** Wheels Mm S */
+            wheels_mm_s: [
+                number,
+                number
+            ];
+            /**
+             * Skill
+             * @default null
+             */
+            skill: string | null;
+            /**
+             * Faults
+             * @default []
+             */
+            faults: string[];
+        };
+        /**
+         * TraceLine
+         * @description What the agent chose, did, came to believe, or gave up, in cycle `cycle`.
+         *
+         *     `chose`: a plan for an event, or none (`plan` None); `passed_over` were looked at before. `did`: a step of an
+         *     intention. `believed` and `forgot`: a belief. `gave_up`: a goal.
+         */
+        TraceLine: {
+            /** Cycle */
+            cycle: number;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "chose" | "did" | "believed" | "forgot" | "gave_up";
+            /** Text */
+            text: string;
+            /**
+             * Plan
+             * @default null
+             */
+            plan: string | null;
+            /**
+             * Place
+             * @default null
+             */
+            place: string | null;
+            /**
+             * Intention
+             * @default null
+             */
+            intention: number | null;
+            /**
+             * Passed Over
+             * @default []
+             */
+            passed_over: components["schemas"]["NotChosen"][];
+        };
+        /**
+         * Watched
+         * @description One event `insight` of the stream: what a robot senses and thinks.
+         */
+        Watched: {
+            /** Robot */
+            robot: string;
+            /**
+             * At
+             * Format: date-time
+             * @description When the service was told, by its own clock.
+             */
+            at: string;
+            insight: components["schemas"]["Insight"];
         };
     };
     responses: never;

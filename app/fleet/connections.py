@@ -4,6 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Protocol
 
 from app.fleet.outbox import Kept, Waiting
+from protocol.to_robot import Watch
 
 
 class Seat(Protocol):
@@ -14,6 +15,10 @@ class Seat(Protocol):
 
     def wake(self, news: Sequence[Waiting] = ()) -> None:
         """Something new is in the outbox: `news`, or it has to be looked for."""
+        ...
+
+    def watch(self, watch: Watch) -> bool:
+        """Somebody watches this robot; False if it does not know what that is."""
         ...
 
     def give_way(self) -> None:
@@ -50,6 +55,11 @@ class Connections:
         """Something new is in the outbox of this robot; nobody minds if it is not connected."""
         if seat := self._seats.get(robot):
             seat.wake()
+
+    def watch(self, robot: str, watch: Watch) -> bool:
+        """Somebody watches this robot; False if it is not connected, or does not know what that is."""
+        seat = self._seats.get(robot)
+        return seat is not None and seat.watch(watch)
 
     def tokens(self, robots: Iterable[str]) -> dict[str, str]:
         """What those of these robots who are connected came in with: their tokens' prefixes."""

@@ -20,13 +20,17 @@ from app.tables import RobotRow, RobotToken
 from protocol.both_ways import Ack, Error
 from protocol.envelope import TO_SERVER, Envelope, Head, parse, type_of
 from protocol.errors import ProtocolError
+from protocol.insight import Insight
 from protocol.parts import Part
+from protocol.to_robot import Watch
 from protocol.to_server import Hello
 
 GREETING_LIMIT_S: Final = 10.0
 MAX_UNACKNOWLEDGED: Final = 50
 MAX_IN_HAND: Final = 100
 """Read and not yet on the disk: a robot that says more than that is read no further."""
+OF_THE_MOMENT: Final = (Ack, Insight)
+"""What says nothing to the disk but what it acknowledges."""
 NO_JOURNAL: Final = "none"
 """On what is said before the greeting: nothing durable, so that nobody looks at it."""
 FAILED: Final = 1011
@@ -60,6 +64,8 @@ class Conversation:
         self._news: list[Waiting] = []
         self._look_again = True
         self._is_held_back = False
+        self._knows_watching = False
+        self._watch: Watch | None = None
 
     def wake(self, news: Sequence[Waiting] = ()) -> None:
         if news:
@@ -67,6 +73,13 @@ class Conversation:
         else:
             self._look_again = True
         self._wake.set()
+
+    def watch(self, watch: Watch) -> bool:
+        if self._knows_watching:
+            whole = watch.whole or (self._watch is not None and self._watch.whole)
+            self._watch = Watch(for_s=watch.for_s, whole=whole)
+            self._wake.set()
+        return self._knows_watching
 
     def give_way(self) -> None:
         if not self._end.done():
@@ -117,6 +130,9 @@ class Conversation:
         self._received_seq = greeted.received_seq
         self.acknowledged = self._sent = greeted.acknowledged_seq
         await self._send(greeted.welcome)
+        self._knows_watching = "watch" in hello.understands
+        if (watch := fleet.watching.wanted_of(self.robot)) is not None:
+            self.watch(watch)
         log.info("robot_online", robot=self.robot, journal=self.journal)
 
     async def _note_second(self, session: AsyncSession, journal_before: str) -> None:
@@ -158,7 +174,9 @@ class Conversation:
             envelope = await self._next()
             if isinstance(envelope.body, Hello) or envelope.journal != self.journal:
                 raise OutOfTurn("a connection has one hello and one journal", envelope.seq)
-            if isinstance(envelope.body, Ack) and envelope.ack <= self.acknowledged:
+            if isinstance(envelope.body, Insight):
+                self._fleet.watching.show(self.robot, envelope.body, self._fleet.clock.utc())
+            if isinstance(envelope.body, OF_THE_MOMENT) and envelope.ack <= self.acknowledged:
                 continue
             await self._room.acquire()
             had = self.acknowledged
@@ -193,6 +211,7 @@ class Conversation:
         while True:
             self._wake.clear()
             await self._answer()
+            await self._send_watch()
             await self._send_news()
             if self._look_again:
                 self._look_again = False
@@ -207,6 +226,11 @@ class Conversation:
         self._owes_ack = False
         for problem in problems:
             await self._send(problem)
+
+    async def _send_watch(self) -> None:
+        watch, self._watch = self._watch, None
+        if watch is not None:
+            await self._send(watch)
 
     async def _send_news(self) -> None:
         """What was handed over, if nothing else is to be sent before it."""

@@ -107,9 +107,11 @@ async def list_alarms(
     session: ReadingDep,
     page: PageDep,
     only_open: Annotated[bool, Query(description="Only those that are not over.")] = False,
+    robot: Annotated[str | None, Query(max_length=64, description="Only those of this robot.")] = None,
 ) -> AlarmPage:
     """List what people should look at, newest first."""
     wanted = select(Alarm).where(col(Alarm.cleared_at).is_(None)) if only_open else select(Alarm)
+    wanted = wanted if robot is None else wanted.where(Alarm.robot == robot)
     rows, following = await page.of(session, wanted, NEWEST_ALARM)
     return AlarmPage(items=[AlarmView.of(row) for row in rows], next=following)
 

@@ -43,6 +43,7 @@ async def greet(session: AsyncSession, fleet: Fleet, robot: RobotRow, envelope: 
     note_state(robot, hello.position, hello.battery)
     robot.software, robot.map_version, robot.online, robot.heard_at = hello.software, hello.map_version, True, now
     robot.takes_confirm = "confirm" in hello.understands
+    await fleet.batteries.note(session, [robot], now)
     fleet.announce(session, robot)
     resume_from = await outbox.resume_from(session, robot)
     welcome = Welcome(

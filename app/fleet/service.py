@@ -1,21 +1,24 @@
 """What can be done with robots: enrol one, tell one something, take in what one says, show them all."""
 
 import re
+import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import partial
+from functools import cached_property, partial
 
 from sqlmodel import col, select, update
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.database import Database, after_commit
 from app.fleet import outbox, traffic
+from app.fleet.battery import BatteryDiary
 from app.fleet.clocks import put_right
 from app.fleet.connections import Connections
 from app.fleet.errors import RobotExists, RobotNameInvalid, UnknownRobot
 from app.fleet.progress import Report, follow
 from app.fleet.taken import tell_of_traffic
 from app.fleet.tokens import Known, make_token
+from app.fleet.watching import Watching
 from app.live.feed import Feed, Happening
 from app.orders.robot_view import RobotView, robot_view
 from app.orders.service import Orders
@@ -84,6 +87,12 @@ class Fleet:
     orders: Orders
     connections: Connections = field(default_factory=Connections)
     on_change: list[Callable[[str], None]] = field(default_factory=list)
+    batteries: BatteryDiary = field(default_factory=BatteryDiary)
+
+    @cached_property
+    def watching(self) -> Watching:
+        """Who watches which robot."""
+        return Watching(self.connections, self.feed, time.monotonic)
 
     async def begin(self) -> None:
         """At the start of the service nobody is connected yet, whatever the last run has left behind."""

@@ -20,6 +20,7 @@ from app.keeping.namelessness import forget_orders, forget_people, forget_standi
 from app.settings import Settings
 from app.tables import (
     Alarm,
+    BatterySample,
     ClaimRow,
     EnrolmentCode,
     GrantRow,
@@ -77,6 +78,7 @@ RULES: Final = (
     Rule("alarms", ORDERS, rows(Alarm.cleared_at)),
     Rule("refused receipts", ORDERS, rows(RefusedReceipt.at)),
     Rule("commands", ORDERS, rows(RobotCommand.asked_at)),
+    Rule("battery samples", TELEMETRY, rows(BatterySample.at)),
     Rule("robot messages", TELEMETRY, rows(RobotMessage.received_at)),
     # What a robot has not acknowledged is still to be told to it, however old.
     Rule("messages to robots", TELEMETRY, rows(MessageToRobot.acked_at)),

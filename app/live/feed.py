@@ -8,7 +8,7 @@ import json
 import secrets
 import time
 from collections import deque
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Container, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
@@ -24,6 +24,8 @@ log = structlog.get_logger(__name__)
 
 REPLAYED: Final = 1000
 QUEUED: Final = 200
+WHISPERED: Final = 20
+"""So much may wait for a listener before what is only of the moment is left out for them."""
 COMES_BACK_S: Final = 60.0
 """Real seconds for which somebody who has left may come back and be given what was missed."""
 
@@ -52,9 +54,9 @@ class Happening:
 
 @dataclass(frozen=True)
 class Numbered:
-    """A happening and its place in the stream (`id` of the event)."""
+    """A happening and its place in the stream (`id` of the event); None: it has none, and is not given again."""
 
-    id: str
+    id: str | None
     happening: Happening
 
     @cached_property
@@ -93,6 +95,10 @@ class Feed(Protocol):
         """Tell whoever listens; never waits. Call it after the commit (`app.database.after_commit`)."""
         ...
 
+    def whisper(self, happening: Happening, to: Container[str]) -> None:
+        """Tell those of these people (ids) who listen now. It is not kept, and the first thing to be left out."""
+        ...
+
 
 class LocalFeed:
     """The feed of one process. Not for other threads."""
@@ -124,6 +130,12 @@ class LocalFeed:
         for queue, person in list(self._listeners.items()):
             if happening.is_for(person):
                 self._offer(queue, numbered)
+
+    def whisper(self, happening: Happening, to: Container[str]) -> None:
+        of_the_moment = Numbered(None, happening)
+        for queue, person in self._listeners.items():
+            if person.id in to and happening.is_for(person) and queue.qsize() < WHISPERED:
+                queue.put_nowait(of_the_moment)
 
     def _offer(self, queue: asyncio.Queue[Numbered | None], numbered: Numbered) -> None:
         if queue.qsize() < QUEUED:

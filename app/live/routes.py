@@ -26,7 +26,7 @@ UNBUFFERED = {"Cache-Control": "no-cache", "X-Accel-Buffering": "no"}
 EVENT = {
     "type": "object",
     "properties": {
-        "event": {"type": "string", "enum": ["order", "robot", "traffic", "notice", "resync"]},
+        "event": {"type": "string", "enum": ["order", "robot", "traffic", "notice", "insight", "resync"]},
         "data": {"type": "string", "contentMediaType": "application/json"},
         "id": {"type": "string"},
         "retry": {"type": "integer", "minimum": 0},
@@ -64,7 +64,10 @@ async def live(
     settings: SettingsDep,
     last_event_id: Annotated[str, Header(max_length=64)] = "",
 ) -> EventStream:
-    """Events `order`, `robot`, `traffic`, `notice` as they happen, as one may see them; `resync`: fetch anew."""
+    """Events `order`, `robot`, `traffic`, `notice` as they happen, as one may see them; `resync`: fetch anew.
+
+    `insight` comes to maintainers who watch a robot (`watch_robot`), has no id and is not given again.
+    """
     pieces = _pieces(user, feed, last_event_id, settings.session_check_s, lambda: still_signed_in(user))
     return EventStream(pieces, headers=UNBUFFERED)
 

@@ -31,6 +31,7 @@ OPENED_BY: Final[Mapping[str, tuple[frozenset[Scope], frozenset[Scope]]]] = {
     "standing orders": (frozenset({Scope.ORDERS_READ}), frozenset({Scope.ORDERS_WRITE})),
     "dispatch": (frozenset({Scope.DISPATCH}), frozenset({Scope.DISPATCH})),
     "robots": (frozenset({Scope.ROBOTS_READ}), frozenset({Scope.DISPATCH, Scope.MAINTAIN})),
+    "upkeep": (frozenset({Scope.MAINTAIN}), frozenset({Scope.MAINTAIN})),
     "enrolment": (frozenset({Scope.MAINTAIN}), frozenset({Scope.MAINTAIN})),
     "notices": (frozenset({Scope.NOTICES_READ}), frozenset({Scope.NOTICES_WRITE})),
     "address book": (frozenset({Scope.CONTACTS_READ}), NOTHING),

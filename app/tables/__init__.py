@@ -7,6 +7,7 @@ relationships the unit of work does not order the rows of different tables: flus
 from sqlmodel import SQLModel
 
 from app.tables import indexes as indexes
+from app.tables.battery_samples import BatterySample
 from app.tables.claims import ClaimRow, GrantRow
 from app.tables.contacts import Contact
 from app.tables.delegates import Delegate, DigitLock
@@ -34,6 +35,7 @@ metadata = SQLModel.metadata
 
 __all__ = [
     "Alarm",
+    "BatterySample",
     "ClaimRow",
     "Contact",
     "Delegate",

@@ -11,6 +11,7 @@ from campus_mail_client.models import (
     AlarmPage,
     AlarmView,
     Attention,
+    BatteryHistory,
     CodeMailed,
     CodeRequest,
     CodeView,
@@ -67,6 +68,7 @@ from campus_mail_client.models import (
     TokenPage,
     TokenWish,
     Traffic,
+    WatchView,
     Wishes,
     WishesView,
 )
@@ -529,11 +531,19 @@ class AsyncOperations:
         return answer
 
     async def list_alarms(
-        self, *, only_open: bool | None = None, limit: int | None = None, cursor: str | None = None
+        self,
+        *,
+        only_open: bool | None = None,
+        robot: str | None = None,
+        limit: int | None = None,
+        cursor: str | None = None,
     ) -> AlarmPage:
         """List what people should look at, newest first."""
         answer: AlarmPage = await self._call(
-            "GET", "/api/v1/alarms", AlarmPage, query={"only_open": only_open, "limit": limit, "cursor": cursor}
+            "GET",
+            "/api/v1/alarms",
+            AlarmPage,
+            query={"only_open": only_open, "robot": robot, "limit": limit, "cursor": cursor},
         )
         return answer
 
@@ -542,6 +552,21 @@ class AsyncOperations:
         answer: AlarmView = await self._call(
             "POST", f"/api/v1/alarms/{quote(str(alarm_id), safe='')}/acknowledge", AlarmView
         )
+        return answer
+
+    async def robot_battery(self, name: str, *, since: datetime | None = None) -> BatteryHistory:
+        """Show a robot's charge over time, as it told it."""
+        answer: BatteryHistory = await self._call(
+            "GET", f"/api/v1/robots/{quote(str(name), safe='')}/battery", BatteryHistory, query={"since": since}
+        )
+        return answer
+
+    async def watch_robot(self, name: str) -> WatchView:
+        """Watch what a robot senses and thinks: events `insight` of the live stream, for half a minute from now.
+
+        Say so again every ten seconds or so. Nothing of it is kept.
+        """
+        answer: WatchView = await self._call("POST", f"/api/v1/robots/{quote(str(name), safe='')}/watch", WatchView)
         return answer
 
     async def make_enrolment_code(self, name: str) -> EnrolmentCodeView:

@@ -73,6 +73,26 @@ class Attention(Model):
     reason: str
 
 
+class BatteryHistory(Model):
+    """What a robot told of its battery, oldest first: at most about 300 samples, those where charging began or
+    ended among them. `low_ratio`: below this a robot goes to charge, unless its own settings say otherwise.
+    """
+
+    robot: str
+    since: datetime
+    until: datetime
+    low_ratio: float
+    samples: list[BatterySampleView]
+
+
+class BatterySampleView(Model):
+    """Charge as a ratio of capacity at one moment, and whether the dock was charging."""
+
+    at: datetime
+    ratio: float
+    charging: bool
+
+
 class BatteryView(Model):
     """Charge as a ratio of capacity."""
 
@@ -836,6 +856,17 @@ class Traffic(Model):
     """Every corridor that is taken, by robot, each robot's in the order in which it was granted them."""
 
     taken: list[TakenCorridor]
+
+
+class WatchView(Model):
+    """`online` false: it is shown when the robot is back. `tells` false: this robot's software knows nothing of
+    it.
+    """
+
+    robot: str
+    online: bool
+    tells: bool
+    for_s: float
 
 
 class WebhookView(Model):

@@ -140,6 +140,8 @@ LINES: Final[dict[tuple[str, str], Line]] = {
     ("GET", "/api/v1/map/traffic"): members("robots:read"),
     ("GET", "/api/v1/robots/{name}"): Line(401, 403, 403, 403, 200, 200, "dispatch"),
     ("GET", "/api/v1/robots/{name}/commands"): Line(401, 403, 403, 403, 200, 200, "dispatch"),
+    ("GET", "/api/v1/robots/{name}/battery"): Line(401, 403, 403, 403, 200, 200, "dispatch"),
+    ("POST", "/api/v1/robots/{name}/watch"): maintainers("maintain"),
     ("POST", "/api/v1/robots/{name}/pause"): dispatchers("dispatch", 202),
     ("POST", "/api/v1/robots/{name}/resume"): dispatchers("dispatch", 202),
     ("POST", "/api/v1/robots/{name}/recall"): dispatchers("dispatch", 202),

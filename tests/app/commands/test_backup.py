@@ -53,7 +53,7 @@ def test_a_backup_says_what_it_holds_and_is_for_its_owner_alone(archive: Path) -
     assert all(len(entry["sha256"]) == 64 for entry in manifest["files"])
     assert archive.stat().st_mode & 0o777 == 0o600
     if not ON_POSTGRESQL:
-        assert (manifest["rows"]["orders"], manifest["revision"]) == (1, "0007")
+        assert (manifest["rows"]["orders"], manifest["revision"]) == (1, "0008")
 
 
 @sqlite_alone

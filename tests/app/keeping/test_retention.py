@@ -16,6 +16,7 @@ from app.keeping.housekeeper import Housekeeper
 from app.keeping.retention import RULES, retain
 from app.tables import (
     Alarm,
+    BatterySample,
     ClaimRow,
     Delegate,
     EnrolmentCode,
@@ -146,6 +147,7 @@ def technical_rows(clock: SteppedClock, order_id: str, ada: str, notice: int) ->
         Alarm(**robot, name="bumped", reason="…", at=now, cleared_at=now),
         RefusedReceipt(**robot, **place, order_id=order_id, how="code", robot_at=now, at=now, problem="bad_signature"),
         RobotCommand(**robot, command_id="c1", kind="pause", asked_by_id=ada, asked_at=now),
+        BatterySample(**robot, at=now, ratio=0.5, charging=False),
         RobotMessage(**robot, journal="j", seq=1, type="event", body={}, sent_at=now, received_at=now),
         MessageToRobot(**robot, seq=90, type="mission", body={}, created_at=now, acked_at=now),
         GrantRow(**robot, **legs, claim_id="c1", granted_at=now, cleared_at=now),
