@@ -18,7 +18,7 @@ from app.people.current_user import CurrentUser
 from app.people.rate_limits import Door, per_person
 from app.people.search import SearchText
 from app.settings import CampusDep
-from app.tables import Order
+from app.tables import Order, Person
 from maps import shortest_route
 
 router = APIRouter(tags=["orders"])
@@ -68,12 +68,12 @@ async def estimate(
     return Estimate(window=WindowView.of(window), length_m=round(length_m, 2))
 
 
-@router.post("/orders", status_code=201, dependencies=[per_person(Door.ORDERS)], responses=PLACED)
+@router.post("/orders", status_code=201, responses=PLACED)
 async def place_order(
     *,
     wish: NewOrder,
     idempotency_key: Annotated[str, Header(pattern=r"^[!-~]+$", max_length=255)],
-    user: CurrentUser,
+    user: Annotated[Person, per_person(Door.ORDERS)],
     desk: OrderDeskDep,
     response: Response,
 ) -> OrderView:

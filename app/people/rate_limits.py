@@ -21,6 +21,7 @@ from limits.aio.strategies import SlidingWindowCounterRateLimiter
 from app.errors import TooManyRequests
 from app.people.current_user import CurrentUser
 from app.settings import Settings
+from app.tables import Person
 
 HOME_BITS: Final = 64
 """Whoever has one IPv6 address has a whole network of them."""
@@ -91,10 +92,14 @@ LimitsDep = Annotated[RateLimits, Depends(_limits_of)]
 
 
 def per_person(door: Door) -> Any:
-    """For `dependencies=`: counts the signed-in person at this door."""
+    """Counts the signed-in person at this door: for `dependencies=`, or as the argument that the person is.
 
-    async def counted(request: Request, user: CurrentUser) -> None:
+    FastAPI goes through all that a dependency depends on as often as it is named: a busy route names it once.
+    """
+
+    async def counted(request: Request, user: CurrentUser) -> Person:
         await (await _limits_of(request)).count(door, user.id)
+        return user
 
     return Depends(counted)
 
