@@ -8,7 +8,8 @@ import { checkPush } from "./push.js";
 export async function workOffline(person) {
   if (!("serviceWorker" in navigator)) return;
   const wasControlled = navigator.serviceWorker.controller !== null;
-  const registration = await navigator.serviceWorker.register("/service_worker.js", { type: "module", updateViaCache: "none" });
+  const registration = await registered();
+  if (!registration) return;
   const look = () => registration.active && registration.waiting && sayNewVersion(() => takeOver(registration));
   look();
   registration.addEventListener("updatefound", () => registration.installing?.addEventListener("statechange", look));
@@ -16,6 +17,10 @@ export async function workOffline(person) {
   navigator.serviceWorker.addEventListener("controllerchange", () => wasControlled && sayNewVersion(() => location.reload()));
   if (person) await checkPush(person.id);
 }
+
+/** Where a browser has no workers made of modules, or its person wants none, pages work as long as there is a network. */
+const registered = () =>
+  navigator.serviceWorker.register("/service_worker.js", { type: "module", updateViaCache: "none" }).catch(() => undefined);
 
 /** @param {() => void} take */
 const sayNewVersion = (take) => dispatchEvent(new CustomEvent("new-version", { detail: { take } }));

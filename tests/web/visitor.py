@@ -15,6 +15,7 @@ from tests.web.service import ROOT, Service
 # Browsers write every refused request to the console. A page that asks who is signed in is refused by design.
 REFUSED = re.compile(r"Failed to load resource: the server responded with a status of 4\d\d")
 WHO_AM_I = "/api/v1/me"
+NO_WORKER = "Service Worker registration blocked by Playwright"
 AXE = ROOT / "web/node_modules/axe-core/axe.min.js"
 AXE_RUN = """async () => {
   const tags = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"];
@@ -57,7 +58,8 @@ class Visitor:
     def _hear(self, message: ConsoleMessage) -> None:
         path = re.sub(r"^https?://[^/]+", "", message.location["url"]).partition("?")[0]
         expected = path in self.refusals_expected and REFUSED.match(message.text)
-        expected = expected or (self.loses_answers and "net::ERR_FAILED" in message.text)
+        expected = expected or (self.loses_answers and "net::ERR_" in message.text)
+        expected = expected or message.text == NO_WORKER
         if message.type in ("error", "warning") and not expected:
             self.complaints.append(f"{message.text} ({path})")
 
