@@ -26,6 +26,13 @@ export const mayOpen = (page, person) => NEEDED[page]?.some((role) => person.rol
 /** The page of one robot. @param {string} name */
 export const robotPage = (name) => `/robots.html?robot=${encodeURIComponent(name)}`;
 
+/** The marker sheets for the printer; the mailroom for everybody to see. */
+export const PRINT_PAGE = "/print.html";
+export const WALL_PAGE = "/mailroom.html?wall";
+
+/** A slip to go with the mail of one order. @param {string} order_id */
+export const slipPage = (order_id) => `${PRINT_PAGE}?order=${encodeURIComponent(order_id)}`;
+
 /** @param {string} order_id */
 export const followPage = (order_id) => `/follow.html?order=${encodeURIComponent(order_id)}`;
 
@@ -39,6 +46,10 @@ export const repeatPage = (order) =>
     description: order.description ?? "",
   });
 
+/** The order page, filled in. @param {WantedOrder} wanted */
+export const orderPage = (wanted) =>
+  "/?" + new URLSearchParams(Object.entries(wanted).flatMap(([name, value]) => (typeof value === "string" ? [[name, value]] : [])));
+
 /** What `repeatPage` asked for. @param {string} search @returns {Partial<WantedOrder>} */
 export const wantedFrom = (search) => Object.fromEntries(new URLSearchParams(search));
 
@@ -46,10 +57,6 @@ export const wantedFrom = (search) => Object.fromEntries(new URLSearchParams(sea
 export const orderFrom = (search) => new URLSearchParams(search).get("order");
 
 /** Told to delegates, who may not follow the order: the mail that they got has a link of their own. */
-/** The order page, filled in. @param {WantedOrder} wanted */
-export const orderPage = (wanted) =>
-  "/?" + new URLSearchParams(Object.entries(wanted).flatMap(([name, value]) => (typeof value === "string" ? [[name, value]] : [])));
-
 const OF_DELEGATES = ["delegated", "delegation_over"];
 
 /** What a notice leads to. @param {import("./api_types.ts").Notice} notice */

@@ -57,6 +57,11 @@ class Service:
         self._process.send_signal(signal.SIGTERM)
         self._process.wait(10)
 
+    @property
+    def folder(self) -> Path:
+        """Its data."""
+        return self._folder
+
     def _is_ready(self) -> bool:
         with contextlib.suppress(httpx.HTTPError):
             return httpx.get(f"{self.url}/readyz").status_code == httpx.codes.OK

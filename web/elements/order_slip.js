@@ -1,0 +1,33 @@
+/** A slip to go with the mail: who, from where, to where, and the code or the link. */
+import { html, nothing } from "lit";
+import { titleOf } from "../posts.js";
+import { serverNow } from "../server_clock.js";
+import { t } from "../texts.js";
+import { dayAndTime } from "../times.js";
+/** @import { CampusMap, Order, ShownCode } from "../api_types.ts" */
+
+/** @param {Order} order @param {CampusMap} map @param {ShownCode | null} code @param {string} link where it is followed */
+export const orderSlip = (order, map, code, link) => html`<article class="slip" aria-label=${t("print.slip")}>
+  <header><img src="/icons/icon.svg" alt="" width="40" height="40" /><strong>${t("app.name")}</strong></header>
+  <dl>
+    ${row("print.from", titleOf(map, order.from_post), order.sender.name)}
+    ${row("print.to", titleOf(map, order.to_post), order.recipient.name)}
+    ${order.description ? row("order.description", order.description) : nothing}
+    ${row("print.ordered", dayAndTime(order.created_at, serverNow()))}
+    ${row("print.number", html`<code>${order.id}</code>`)}
+  </dl>
+  ${code ? withCode(code) : html`<p class="link">${t("print.follow")}<br /><code>${link}</code></p>`}
+</article>`;
+
+/** @param {string} label @param {unknown} value @param {string} [more] */
+const row = (label, value, more) => html`<div><dt>${t(label)}</dt><dd><strong>${value}</strong>${more ? html`<br />${more}` : nothing}</dd></div>`;
+
+/** @param {ShownCode} code */
+const withCode = ({ purpose, picture, expires_at }) => html`<figure>
+  <img src=${picture} alt=${t("code.image")} width="200" height="200" />
+  <figcaption>
+    <strong>${t(`code.title.${purpose}`)}</strong>
+    <span>${t(`code.how.${purpose}.1`)} ${t(`code.how.${purpose}.2`)}</span>
+    <span>${t("code.expires", { time: dayAndTime(expires_at, serverNow()) })}</span>
+  </figcaption>
+</figure>`;

@@ -1,0 +1,53 @@
+/** Orders as a list: where each stands, why it waits, and what can be done with it. */
+import { html, nothing } from "lit";
+import { repeat } from "lit-html/directives/repeat.js";
+import { followPage, robotPage } from "../links.js";
+import { since, whyItWaits } from "../mailroom_words.js";
+import { hasEnded } from "../order_words.js";
+import { titleOf } from "../posts.js";
+import { serverNow } from "../server_clock.js";
+import { t } from "../texts.js";
+import { ago, dayAndTime, windowText } from "../times.js";
+import { icon } from "./icon.js";
+/** @import { CampusMap, Order } from "../api_types.ts" */
+
+/**
+ * @param {Order[]} orders @param {CampusMap} map
+ * @param {(order: Order) => string} whose what stands for its people
+ * @param {((order: Order) => void) | null} act null: on a wall, where nothing can be done
+ */
+export const queueList = (orders, map, whose, act) => html`<ul class="queue">
+  ${repeat(orders, ({ id }) => id, (order) => html`<li class=${order.state}>
+    <span class="badge ${order.state}">${t(`badge.${order.state}`)}</span>
+    <div class="what">
+      <strong>${titleOf(map, order.from_post)}${icon("arrow")}<span class="unseen">→</span>${titleOf(map, order.to_post)}</strong>
+      ${act ? html`<a href=${followPage(order.id)}>${whose(order)}</a>` : html`<span>${whose(order)}</span>`}
+      ${act && order.description ? html`<span class="hint">${order.description}</span>` : nothing}
+    </div>
+    <div class="why-now">${hasEnded(order) ? order.why : whyItWaits(order, map)}${priorityMark(order)}</div>
+    <div class="when">
+      <span>${robotOf(order, act !== null)}${age(order)}</span>
+      ${order.window && !hasEnded(order) ? html`<span>${t("mailroom.window", { window: windowText(order.window) })}</span>` : nothing}
+    </div>
+    ${act ? html`<button type="button" class="act" @click=${() => act(order)}>${t("mailroom.act")}<span class="unseen">: ${whose(order)}</span></button>` : nothing}
+  </li>`)}
+</ul>`;
+
+/** @param {Order} order */
+function priorityMark({ priority }) {
+  if (priority === "normal") return nothing;
+  return html` <span class="mark">${t(`mailroom.priority.${priority}`)}</span>`;
+}
+
+/** @param {Order} order @param {boolean} linked */
+function robotOf({ robot }, linked) {
+  if (!robot) return nothing;
+  const title = t("robot.name", { name: robot.name });
+  return html`${linked ? html`<a href=${robotPage(robot.name)}>${title}</a>` : title} · `;
+}
+
+/** @param {Order} order */
+function age(order) {
+  const now_ms = serverNow();
+  return hasEnded(order) ? dayAndTime(order.updated_at, now_ms) : ago(since(order), now_ms);
+}
