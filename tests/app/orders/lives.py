@@ -114,7 +114,7 @@ class PlayedRobot:
             body=message,
         )
         intake.hear(self, envelope)
-        async with asyncio.timeout(5):
+        async with asyncio.timeout(60):  # real seconds, on a machine that may be busy with other things
             await self._done.wait()
 
 
