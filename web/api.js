@@ -83,6 +83,9 @@ export const signOut = () => ask("/session", { method: "DELETE" });
 /** @returns {Promise<Api.CampusMap>} */
 export const campusMap = () => ask("/map");
 
+/** Who holds which corridor, as far as I may see it. @returns {Promise<Api.Traffic>} */
+export const traffic = () => ask("/map/traffic");
+
 /** @param {string} from_post @param {string} to_post @returns {Promise<Api.Estimate>} */
 export const estimate = (from_post, to_post) => ask("/estimate" + query({ from_post, to_post }));
 
@@ -204,6 +207,31 @@ export const recallRobot = (name, reason) => tell(robotPath(name) + "/recall", {
 /** It stands still at once. @param {string} name @param {string} reason @returns {Promise<Api.Command>} */
 export const stopRobot = (name, reason) => tell(robotPath(name) + "/emergency-stop", { reason });
 
+/** @param {string} name @returns {Promise<Api.RobotDetails>} */
+export const robot = (name) => ask(robotPath(name));
+
+/** What it was told, newest first. @param {string} name @param {{limit?: number}} page @returns {Promise<Api.Page<Api.Command>>} */
+export const robotCommands = (name, page) => ask(robotPath(name) + "/commands" + query(page));
+
+/** What went wrong with it, newest first. @param {string} robot @param {{limit?: number, cursor?: string}} page
+ *  @returns {Promise<Api.Page<Api.Alarm>>} */
+export const robotAlarms = (robot, page) => ask("/alarms" + query({ robot, ...page }));
+
+/** @param {string} name @param {string} since @returns {Promise<Api.BatteryHistory>} */
+export const batteryHistory = (name, since) => ask(robotPath(name) + "/battery" + query({ since }));
+
+/** For half a minute it tells what it senses and thinks, as events `insight`. @param {string} name @returns {Promise<Api.Watch>} */
+export const watchRobot = (name) => tell(robotPath(name) + "/watch");
+
+/** @param {string} name @returns {Promise<Api.EnrolmentCode>} it is shown this once */
+export const makeEnrolmentCode = (name) => tell(robotPath(name) + "/enrolment-codes");
+
+/** @param {string} name @param {{limit?: number}} page @returns {Promise<Api.Page<Api.RobotToken>>} newest first */
+export const robotTokens = (name, page) => ask(robotPath(name) + "/tokens" + query(page));
+
+/** @param {string} name @param {string} prefix @returns {Promise<null>} */
+export const revokeRobotToken = (name, prefix) => ask(`${robotPath(name)}/tokens/${prefix}`, { method: "DELETE" });
+
 /** Those that are not over, newest first. @returns {Promise<Api.Page<Api.Alarm>>} */
 export const openAlarms = () => ask("/alarms" + query({ only_open: "true", limit: 100 }));
 
@@ -275,11 +303,11 @@ export const noticeWishes = () => ask("/me/notices");
 /** @param {Api.NoticeWishes["muted"]} muted @returns {Promise<Api.NoticeWishes>} */
 export const changeNoticeWishes = (muted) => ask("/me/notices", { method: "PUT", body: { muted } });
 
-/** No more notices there. @param {string} id @returns {Promise<null>} */
-export const removeDevice = (id) => ask(`/me/devices/${encodeURIComponent(id)}`, { method: "DELETE" });
-
 /** Have notices shown by this browser. @param {PushSubscriptionJSON} subscription @returns {Promise<{id: string}>} */
 export const addDevice = ({ endpoint, keys }) => ask("/me/devices", { method: "POST", body: { endpoint, keys } });
+
+/** No more notices there. @param {string} id @returns {Promise<null>} */
+export const removeDevice = (id) => ask(`/me/devices/${encodeURIComponent(id)}`, { method: "DELETE" });
 
 /** @param {string} url @returns {Promise<Api.NewWebhook>} its secret is shown this once */
 export const setWebhook = (url) => ask("/me/webhook", { method: "PUT", body: { url } });
@@ -336,12 +364,12 @@ export const isOrder = (url) => ORDER.test(url.pathname);
 /** @param {string} id */
 export const aboutOrder = (id) => new URL(BASE + orderPath(id), location.origin);
 
-/** Whether somebody else may be signed in afterwards. @param {string} method @param {URL} url */
-export const changesSession = (method, url) =>
-  (method !== "GET" && SESSION.test(url.pathname)) || url.pathname.startsWith(BASE + "/sign-in");
 /** @param {string} id */
 export function aboutCode(id) {
   const code = aboutOrder(id) + "/code";
   return { code: new URL(code), picture: new URL(code + ".svg") };
 }
 
+/** Whether somebody else may be signed in afterwards. @param {string} method @param {URL} url */
+export const changesSession = (method, url) =>
+  (method !== "GET" && SESSION.test(url.pathname)) || url.pathname.startsWith(BASE + "/sign-in");

@@ -13,6 +13,10 @@ export type Party = Schemas["Somebody"];
 export type CampusMap = Schemas["MapView"];
 export type MapPost = Schemas["PostView"];
 export type MapCorridor = Schemas["CorridorView"];
+export type Traffic = Schemas["Traffic"];
+export type TakenCorridor = Schemas["TakenCorridor"];
+/** All that this robot holds now. */
+export interface RobotTraffic { robot: string; taken: TakenCorridor[] }
 
 export type ArrivalWindow = Schemas["WindowView"];
 export type Estimate = Schemas["Estimate"];
@@ -53,6 +57,21 @@ export type MadeToken = Schemas["NewTokenView"];
 export type WalkUpOrder = WantedOrder & { on_behalf_of: string; priority: Order["priority"] };
 export type Alarm = Schemas["AlarmView"];
 export type Command = Schemas["CommandView"];
+export type RobotDetails = Schemas["RobotDetails"];
+export type BatteryHistory = Schemas["BatteryHistory"];
+export type EnrolmentCode = Schemas["EnrolmentCodeView"];
+export type RobotToken = Schemas["RobotTokenView"];
+export type Watch = Schemas["WatchView"];
+/** What is sent always has all its fields, those with a default too. */
+type Told<T> = T extends (infer Item)[] ? Told<Item>[] : T extends object ? { [K in keyof T]-?: Told<T[K]> } : T;
+export type Watched = Told<Schemas["Watched"]>;
+export type Insight = Watched["insight"];
+export type Sensors = Insight["sensors"];
+export type IntentionTold = Insight["intentions"][number];
+export type Because = IntentionTold["because"];
+export type Means = IntentionTold["stack"][number];
+export type NotChosen = Means["passed_over"][number];
+export type TraceLine = Insight["trace"][number];
 export type Sending = Schemas["SendingView"];
 export type SpooledMail = Schemas["SpooledMail"];
 export type SpooledText = Schemas["SpooledText"];

@@ -1,119 +1,112 @@
 /**
- * From metres to a drawing: where posts, corridors and labels lie. Pure: nothing here touches the page.
- * @import { CampusMap } from "./api_types.ts"
+ * From metres to a drawing: where posts and corridors lie, and the frame around all of it. Pure: nothing here touches
+ * the page. Lengths are units of the drawing at its plain size; a map is worked out once.
+ * @import { CampusMap, MapCorridor, MapPost } from "./api_types.ts"
  * @typedef {{x: number, y: number}} Point
  * @typedef {{x: number, y: number, width: number, height: number}} Box
- * @typedef {{x: number, y: number, anchor: "start" | "end" | "middle", lines: string[]}} Label
- * @typedef {{name: string, lines: string[]}} Wording what stands beside a post, line by line
+ * @typedef {MapPost & Point} DrawnPost
+ * @typedef {MapCorridor & {points: Point[]}} DrawnCorridor
+ * @typedef {{posts: readonly DrawnPost[], corridors: readonly DrawnCorridor[], frame: Box}} Drawing
  */
+import { placeLabels } from "./map_labels.js";
 
 /** Units of drawing per post and direction: a map of many posts needs more room for their names. */
 const ROOM = { width: 82, height: 100 };
-const MARGIN = 18;
-const LINE_HEIGHT = 15;
-const CHARACTER_WIDTH = 7.2;
-const GAP = 19;
+/** Around all of it: room for robots that stand on the outermost posts. */
+const MARGIN = 28;
+/** As wide as a phone: a narrower frame would only be blown up, and what is noted beside posts needs the room. */
+const NARROWEST = 370;
 
-/** Puts the campus into a space that grows with its posts, north up. @param {CampusMap} map */
-export function drawing(map) {
+/** @template {WeakKey} Key @template Value @param {(key: Key) => Value} make @returns {(key: Key) => Value} */
+export function onceFor(make) {
+  /** @type {WeakMap<Key, Value>} */
+  const made = new WeakMap();
+  return (key) => {
+    const known = made.get(key);
+    if (known !== undefined) return known;
+    const value = make(key);
+    made.set(key, value);
+    return value;
+  };
+}
+
+/** Puts the campus into a space that grows with its posts, north up. */
+export const drawing = onceFor((/** @type {CampusMap} */ map) => {
+  const placed = place(map);
+  const names = placed.posts.map(({ name, title }) => ({ name, title, notes: [], important: true, robots: 0 }));
+  const { boxes } = placeLabels(placed, names, null);
+  const points = [...placed.posts, ...placed.corridors.flatMap(({ points }) => points)];
+  const frame = around([...boxes, ...points.map(({ x, y }) => ({ x, y, width: 0, height: 0 }))]);
+  return { ...placed, frame };
+});
+
+/** @param {CampusMap} map */
+function place(map) {
   const all = [...map.posts.map((post) => [post.x_m, post.y_m]), ...map.corridors.flatMap((corridor) => corridor.tape)];
   const [west, east] = ends(all.map(([x_m]) => x_m));
   const [south, north] = ends(all.map(([, y_m]) => y_m));
   const room = Math.sqrt(map.posts.length);
   const scale = Math.min((ROOM.width * room) / (east - west || 1), (ROOM.height * room) / (north - south || 1));
   /** @param {number} x_m @param {number} y_m @returns {Point} */
-  const place = (x_m, y_m) => ({ x: (x_m - west) * scale, y: (north - y_m) * scale });
+  const at = (x_m, y_m) => ({ x: (x_m - west) * scale, y: (north - y_m) * scale });
   return {
-    posts: map.posts.map((post) => ({ ...post, ...place(post.x_m, post.y_m) })),
-    corridors: map.corridors.map((corridor) => ({
-      ...corridor,
-      points: corridor.tape.map(([x_m, y_m]) => place(x_m, y_m)),
-    })),
+    posts: map.posts.map((post) => ({ ...post, ...at(post.x_m, post.y_m) })),
+    corridors: map.corridors.map((corridor) => ({ ...corridor, points: corridor.tape.map(([x_m, y_m]) => at(x_m, y_m)) })),
   };
 }
 
+/**
+ * The same, spread: places further from each other by this factor. The last one is kept, as most redraw it.
+ * @param {Drawing} drawn @param {number} factor @returns {Drawing}
+ */
+export function spread(drawn, factor) {
+  const last = lastSpread.get(drawn);
+  if (last?.factor === factor) return last.result;
+  const result = {
+    posts: drawn.posts.map((post) => ({ ...post, ...times(post, factor) })),
+    corridors: drawn.corridors.map((corridor) => ({ ...corridor, points: corridor.points.map((point) => times(point, factor)) })),
+    frame: { ...times(drawn.frame, factor), width: drawn.frame.width * factor, height: drawn.frame.height * factor },
+  };
+  lastSpread.set(drawn, { factor, result });
+  return result;
+}
+
+/** @type {WeakMap<Drawing, {factor: number, result: Drawing}>} */
+const lastSpread = new WeakMap();
+
+/** @param {Point} point @param {number} factor */
+const times = ({ x, y }, factor) => ({ x: x * factor, y: y * factor });
+
 /** @param {number[]} values @returns {[number, number]} */
 const ends = (values) => [Math.min(...values), Math.max(...values)];
-
-/** A title in lines that are short enough to stand beside a post. @param {string} title */
-export function inLines(title) {
-  if (title.length <= 11) return [title];
-  const spaces = [...title.matchAll(/ (?![/&–-])/g)].map(({ index }) => index);
-  if (!spaces.length) return [title];
-  const [middlemost] = spaces.sort((a, b) => Math.abs(a - title.length / 2) - Math.abs(b - title.length / 2));
-  return [title.slice(0, middlemost), title.slice(middlemost + 1)];
-}
-
-/**
- * Finds every label the side of its post where it covers least: no corridor, no post, no other label.
- * @param {ReturnType<typeof drawing>} drawn @param {Wording[]} wordings in the order in which they may choose
- * @returns {{labels: Map<string, Label>, view: Box}} `view` holds everything that is drawn
- */
-export function placeLabels(drawn, wordings) {
-  const obstacles = [...drawn.corridors.flatMap(({ points }) => alongPath(points)), ...drawn.posts];
-  /** @type {Box[]} */
-  const taken = [];
-  const labels = new Map();
-  for (const { name, lines } of wordings) {
-    const post = drawn.posts.find((candidate) => candidate.name === name);
-    if (!post) continue;
-    const sides = candidates(post, lines).map((side) => ({ ...side, cost: cost(side.box, obstacles, taken) + side.dislike }));
-    const best = sides.reduce((a, b) => (b.cost < a.cost ? b : a));
-    taken.push(best.box);
-    labels.set(name, best.label);
-  }
-  return { labels, view: around([...taken, ...obstacles.map(({ x, y }) => ({ x, y, width: 0, height: 0 }))]) };
-}
-
-/** @param {Point} post @param {string[]} lines */
-function candidates({ x, y }, lines) {
-  const width = Math.max(...lines.map((line) => line.length)) * CHARACTER_WIDTH;
-  const height = lines.length * LINE_HEIGHT;
-  const middle = y - height / 2;
-  const low = y - LINE_HEIGHT / 2;
-  return [
-    side("start", x + GAP, middle, 0),
-    side("end", x - GAP, middle, 0.1),
-    side("middle", x, y + GAP, 0.2),
-    side("middle", x, y - GAP - height, 0.3),
-    side("start", x + GAP, low + GAP, 0.4),
-    side("end", x - GAP, low + GAP, 0.5),
-    side("start", x + GAP, low - GAP - height + LINE_HEIGHT, 0.6),
-    side("end", x - GAP, low - GAP - height + LINE_HEIGHT, 0.7),
-  ];
-
-  /** @param {Label["anchor"]} anchor @param {number} at @param {number} top @param {number} dislike */
-  function side(anchor, at, top, dislike) {
-    const left = { start: at, end: at - width, middle: at - width / 2 }[anchor];
-    const label = { x: at, y: top + LINE_HEIGHT * 0.76, anchor, lines };
-    return { box: { x: left, y: top, width, height }, label, dislike };
-  }
-}
-
-/** @param {Box} box @param {Point[]} obstacles @param {Box[]} taken */
-const cost = (box, obstacles, taken) =>
-  obstacles.filter((point) => inside(point, box)).length + 20 * taken.filter((other) => overlap(box, other)).length;
-
-/** @param {Point} point @param {Box} box */
-const inside = ({ x, y }, box) =>
-  x > box.x - 4 && x < box.x + box.width + 4 && y > box.y - 3 && y < box.y + box.height + 3;
-
-/** @param {Box} a @param {Box} b */
-const overlap = (a, b) => a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
-
-/** Points along a line, close enough that no label slips between them. @param {Point[]} points */
-const alongPath = (points) =>
-  points.slice(1).flatMap((end, i) => {
-    const steps = Math.ceil(Math.hypot(end.x - points[i].x, end.y - points[i].y) / 5);
-    return Array.from({ length: steps + 1 }, (_, step) => between(points[i], end, step / steps));
-  });
-
-/** @param {Point} a @param {Point} b @param {number} part 0 at a, 1 at b @returns {Point} */
-export const between = (a, b, part) => ({ x: a.x + (b.x - a.x) * part, y: a.y + (b.y - a.y) * part });
 
 /** @param {Box[]} boxes @returns {Box} */
 function around(boxes) {
   const [left, right] = ends(boxes.flatMap((box) => [box.x, box.x + box.width]));
   const [top, bottom] = ends(boxes.flatMap((box) => [box.y, box.y + box.height]));
-  return { x: left - MARGIN, y: top - MARGIN, width: right - left + 2 * MARGIN, height: bottom - top + 2 * MARGIN };
+  const width = Math.max(right - left + 2 * MARGIN, NARROWEST);
+  return { x: (left + right - width) / 2, y: top - MARGIN, width, height: bottom - top + 2 * MARGIN };
 }
+
+/** The corridor between two neighbours as somebody drives it. @param {Drawing} drawn @param {string} from @param {string} to @returns {Point[]} */
+export function pointsFrom(drawn, from, to) {
+  const corridor = drawn.corridors.find(({ a, b }) => (a === from && b === to) || (b === from && a === to));
+  if (!corridor) return [];
+  return corridor.a === from ? corridor.points : [...corridor.points].reverse();
+}
+
+/** The middle of a way, and the direction there in degrees. @param {Point[]} points */
+export function middleOf(points) {
+  const lengths = points.slice(1).map((end, i) => Math.hypot(end.x - points[i].x, end.y - points[i].y));
+  let left = lengths.reduce((sum, length) => sum + length, 0) / 2;
+  const i = lengths.findIndex((length) => (left -= length) <= 0);
+  const [a, b] = [points[i], points[i + 1]];
+  const part = 1 + left / (lengths[i] || 1);
+  return { ...between(a, b, part), degrees: (Math.atan2(b.y - a.y, b.x - a.x) * 180) / Math.PI };
+}
+
+/** @param {Point} a @param {Point} b @param {number} part 0 at a, 1 at b @returns {Point} */
+export const between = (a, b, part) => ({ x: a.x + (b.x - a.x) * part, y: a.y + (b.y - a.y) * part });
+
+/** @param {readonly Point[]} points the `d` of a path */
+export const pathOf = (points) => "M" + points.map(({ x, y }) => `${x.toFixed(1)} ${y.toFixed(1)}`).join("L");

@@ -9,9 +9,10 @@ from maps import CampusMap, builtin_map
 
 pytestmark = pytest.mark.browser
 
-DRAW = """async ([map, robot]) => {
-  const drawn = Object.assign(document.createElement("campus-map"), {map, robot});
+DRAW = """async ([map, ...robots]) => {
+  const drawn = Object.assign(document.createElement("campus-map"), {map, robots});
   document.querySelector("main").replaceChildren(drawn);
+  await new Promise((drawn) => requestAnimationFrame(() => setTimeout(drawn, 50)));
   await drawn.updateComplete;
   const box = (element) => {
     const {x, y, width, height} = element.getBoundingClientRect();
@@ -25,14 +26,18 @@ DRAW = """async ([map, robot]) => {
 }"""
 
 
+def facts(place: object, *names: str) -> dict[str, Any]:
+    return {name: getattr(place, name) for name in names}
+
+
 def as_sent(campus: CampusMap) -> dict[str, Any]:
     """The map as the service sends it."""
     posts = [
-        {"name": post.name, "title": post.title, "x_m": post.x_m, "y_m": post.y_m, "dock": post.dock is not None}
+        {**facts(post, "name", "title", "x_m", "y_m", "mailroom", "network"), "dock": post.dock is not None}
         for post in campus.posts.values()
     ]
     corridors = [
-        {"a": one.a, "b": one.b, "length_m": one.length_m, "assumed": one.assumed, "tape": [list(p) for p in one.tape]}
+        {**facts(one, "name", "a", "b", "length_m", "assumed", "network"), "tape": [list(p) for p in one.tape]}
         for one in campus.corridors
     ]
     return {"name": campus.name, "title": campus.title, "note": campus.note, "posts": posts, "corridors": corridors}
@@ -52,7 +57,8 @@ async def test_every_post_can_be_read_and_no_label_covers_another_or_a_post(visi
     await ada.page.goto("/")
     await expect(ada.page.get_by_role("heading", name="Send a letter")).to_be_visible()
     at = "2026-01-05T09:00:00Z"
-    robot = {"last_seen": {"post": seen, "at": at}, "expected": {"post": next_post, "from": at, "to": at}}
+    robot = {"name": "r1", "last_seen": {"post": seen, "at": at}, "online": True}
+    robot |= {"expected": {"post": next_post, "from": at, "to": at}}
     drawn = await ada.page.evaluate(DRAW, [as_sent(builtin_map(name)), robot])
     labels = drawn["labels"]
     assert len(labels) == len(builtin_map(name).posts)

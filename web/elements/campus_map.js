@@ -2,81 +2,144 @@
  * The campus as lines and posts, and the robots where they were *seen*: never where they might be by now. What is
  * expected is drawn as expected. The same facts stand below it as a list.
  */
-import { html, nothing, svg } from "lit";
-import { drawing, inLines, placeLabels } from "../map_drawing.js";
+import { html, nothing } from "lit";
+import { MapCamera } from "../map_camera.js";
+import { drawing, spread } from "../map_drawing.js";
+import { factsOf } from "../map_facts.js";
+import { MapGestures } from "../map_gestures.js";
+import { placeLabels } from "../map_labels.js";
+import { aheadOf, signBox, wordingsOf } from "../map_notes.js";
+import { sizeOf, spreadOf, windowOf } from "../map_view.js";
 import { shortestWay } from "../posts.js";
-import { serverNow } from "../server_clock.js";
 import { t } from "../texts.js";
 import { Ticking } from "../ticking.js";
-import { ago, windowText } from "../times.js";
+import { corridorLines, label, postMark, silentPlaces, takenBands, takenSigns, wayLines } from "./map_parts.js";
+import { mapTools } from "./map_tools.js";
+import { mapLegend, placesInWords } from "./map_words.js";
 import { PageElement } from "./page_element.js";
 import { robotFacts } from "./robot_facts.js";
-/** @import { CampusMap, Robot } from "../api_types.ts" */
-/** @import { Label } from "../map_drawing.js" */
+/** @import { CampusMap, Robot, TakenCorridor } from "../api_types.ts" */
+/** @import { Box, Drawing, Point } from "../map_drawing.js" */
+/** @import { MapFacts } from "../map_facts.js" */
+/** @import { Place, Wording } from "../map_labels.js" */
+
+let maps = 0;
 
 export class CampusMapElement extends PageElement {
+  #camera = new MapCamera(this);
+  #gestures = new MapGestures(this.#camera, (screen) => this.#toMap(screen));
+  #resized = new ResizeObserver(() => this.#measure());
+  #hatch = `no-network-${(maps += 1)}`;
+  /** Pixels of the screen per unit of the whole map, and the room beside it in units. */
+  #pixels = 1;
+  #beside = 0;
+  /** The names as last placed, and what for. */
+  #placed = { key: "", places: /** @type {Map<string, Place>} */ (new Map()) };
+
   static properties = {
     map: { attribute: false },
+    robots: { attribute: false },
+    traffic: { attribute: false },
     from: {},
     to: {},
-    robot: { attribute: false },
-    following: { type: Boolean },
+    facts: { type: Boolean },
   };
 
   constructor() {
     super();
     /** @type {CampusMap | null} */
     this.map = null;
+    /** @type {readonly Robot[]} the robots to show */
+    this.robots = [];
+    /** @type {readonly TakenCorridor[]} who holds which corridor; what others hold than these robots is not shown */
+    this.traffic = [];
     this.from = "";
     this.to = "";
-    /** @type {Robot | null} the robot to show; null for none */
-    this.robot = null;
-    /** Whether what is known of the robot stands below it. */
-    this.following = false;
+    /** Whether what is known of the robots stands below it. */
+    this.facts = false;
     new Ticking(this);
   }
 
+  connectedCallback() {
+    super.connectedCallback();
+    this.#resized.observe(this);
+  }
+
+  disconnectedCallback() {
+    super.disconnectedCallback();
+    this.#resized.disconnect();
+  }
+
   render() {
-    if (!this.map) return nothing;
-    const drawn = drawing(this.map);
-    const { labels, view } = placeLabels(drawn, this.#wordings(this.map));
-    const words = t("map.title", { title: this.map.title });
+    const { map } = this;
+    if (!map) return nothing;
+    const facts = factsOf(map, this.robots, this.traffic);
+    const whole = drawing(map);
+    this.#camera.lookAt(whole.frame);
     return html`<figure class="campus">
-      <svg viewBox="${view.x} ${view.y} ${view.width} ${view.height}" role="img" aria-label=${words}>
-        ${drawn.corridors.map(({ points }) => svg`<path class="corridor" d=${pathOf(points)} />`)}
-        ${this.#wayPaths(drawn, this.#way(this.map), "way")}
-        ${this.#wayPaths(drawn, this.#ahead(this.map), "ahead")}
-        ${drawn.posts.map((post) => this.#post(post))}
-        ${drawn.posts.map((post) => this.#label(labels.get(post.name)))}
-      </svg>
-      ${this.following ? this.#caption(this.map) : nothing}
+      <div class="field" tabindex="0" role="group" aria-label=${t("map.area")} @keydown=${this.#gestures.key}>
+        ${this.#svg(map, whole, facts)}
+      </div>
+      ${mapTools(this.#camera, whole.posts.filter(({ name }) => facts.seen.has(name)), facts.robots.length)}
+      <figcaption>
+        ${mapLegend(facts)}
+        ${this.facts ? this.#list(map, facts) : nothing}
+        ${placesInWords(map)}
+      </figcaption>
     </figure>`;
   }
 
-  /** @param {CampusMap} map */
-  #caption(map) {
-    return html`<figcaption>
-      <p class="hint">${t("map.legend.honest")} ${map.corridors.some(({ assumed }) => assumed) ? t("map.assumed") : nothing}</p>
+  /** @param {CampusMap} map @param {Drawing} whole @param {MapFacts} facts */
+  #svg(map, whole, facts) {
+    const { view, target } = this.#camera;
+    const size = sizeOf(this.#pixels, view.zoom);
+    const { x, y, width, height } = windowOf(view, whole.frame, size);
+    const wordings = wordingsOf(map, facts, [this.from, this.to]);
+    const places = this.#places(whole, wordings, spreadOf(target, sizeOf(this.#pixels, target.zoom)), facts);
+    const drawn = spread(whole, spreadOf(view, size));
+    const { down, drag, up, wheel } = this.#gestures;
+    return html`<svg class=${this.#camera.isWhole ? "" : "closer"} viewBox="${x} ${y} ${width} ${height}" role="img"
+      aria-label=${t("map.title", { title: map.title })} @pointerdown=${down} @pointermove=${drag} @pointerup=${up}
+      @pointercancel=${up} @wheel=${wheel}>
+      ${silentPlaces(drawn, this.#hatch)} ${takenBands(drawn, facts.taken)} ${corridorLines(drawn)}
+      ${wayLines(drawn, this.#way(map), "way")} ${facts.robots.map((robot) => wayLines(drawn, aheadOf(map, robot), "ahead"))}
+      ${takenSigns(drawn, facts.taken, facts.robots.length > 1)}
+      ${drawn.posts.map((post) => postMark(post, this.#at(post.name, facts)))}
+      ${wordings.map((wording) => this.#label(drawn, wording, places.get(wording.name)))}
+    </svg>`;
+  }
+
+  /** @param {CampusMap} map @param {MapFacts} facts */
+  #list(map, facts) {
+    return html`<p class="hint">${t("map.legend.honest")} ${map.corridors.some(({ assumed }) => assumed) ? t("map.assumed") : nothing}</p>
       <h3>${t("map.facts")}</h3>
-      ${robotFacts(map, this.robot, this.from, this.to)}
-    </figcaption>`;
+      ${robotFacts(map, facts, this.from, this.to)}`;
   }
 
-  /** Posts that matter most choose their side first. @param {CampusMap} map */
-  #wordings(map) {
-    const facts = [this.robot?.last_seen?.post, this.robot?.expected?.post, this.from, this.to];
-    return map.posts
-      .map(({ name, title }) => ({ name, lines: [...inLines(title), ...this.#notes(name)] }))
-      .sort((a, b) => Number(facts.includes(b.name)) - Number(facts.includes(a.name)));
+  /** @param {string} post @param {MapFacts} facts */
+  #at(post, { seen, expected }) {
+    const isEnd = post === this.from || post === this.to;
+    return { isEnd, isGoal: post === this.to, seen: seen.get(post) ?? [], expected: expected.get(post) ?? [] };
   }
 
-  /** @param {string} post */
-  #notes(post) {
-    const { last_seen, expected } = this.robot ?? {};
-    return [
-      ...(last_seen?.post === post ? [t("map.seen_here"), ago(last_seen.at, serverNow())] : []),
-      ...(expected?.post === post ? [t("map.expected_here"), windowText(expected)] : []),
-    ];
+  /** Where the names stand: looked for again when what they say has another length, not with each second of an age.
+   *  @param {Drawing} whole @param {Wording[]} wordings @param {number} factor @param {MapFacts} facts */
+  #places(whole, wordings, factor, { taken, robots }) {
+    const signs = robots.length > 1 ? taken : [];
+    const steady = wordings.map((wording) => ({ ...wording, notes: wording.notes.map((note) => note.replace(/\d+/g, "00")) }));
+    const key = JSON.stringify([this.map?.version, this.map?.name, factor, this.#beside, steady, signs]);
+    if (key !== this.#placed.key) {
+      const drawn = spread(whole, factor);
+      const room = widened(drawn.frame, this.#beside * factor);
+      this.#placed = { key, ...placeLabels(drawn, steady, room, signs.map((sign) => signBox(drawn, sign))) };
+    }
+    return this.#placed.places;
+  }
+
+  /** @param {Drawing} drawn @param {Wording} wording @param {Place | undefined} place */
+  #label(drawn, wording, place) {
+    const post = drawn.posts.find(({ name }) => name === wording.name);
+    return post && place ? label(post, wording, place) : nothing;
   }
 
   /** @param {CampusMap} map */
@@ -84,55 +147,27 @@ export class CampusMapElement extends PageElement {
     return this.from && this.to && this.from !== this.to ? shortestWay(map, this.from, this.to) : [];
   }
 
-  /** Where the robot must be by now: somewhere between the post that saw it and the one that expects it. @param {CampusMap} map */
-  #ahead(map) {
-    const seen = this.robot?.last_seen?.post;
-    const next = this.robot?.expected?.post ?? this.robot?.towards;
-    return seen && next && seen !== next ? shortestWay(map, seen, next) : [];
+  #measure() {
+    const { width, height } = this.querySelector("svg")?.getBoundingClientRect() ?? { width: 0, height: 0 };
+    const frame = this.map && drawing(this.map).frame;
+    if (!frame || !width) return;
+    const pixels = Math.min(width / frame.width, height / frame.height);
+    if (Math.abs(pixels - this.#pixels) < 0.01) return;
+    this.#pixels = pixels;
+    this.#beside = Math.max(0, (width / pixels - frame.width) / 2);
+    this.requestUpdate();
   }
 
-  /** @param {ReturnType<typeof drawing>} drawn @param {string[]} posts @param {string} kind */
-  #wayPaths(drawn, posts, kind) {
-    return posts.slice(1).map((there, i) => {
-      const corridor = drawn.corridors.find(({ a, b }) => (a === posts[i] && b === there) || (b === posts[i] && a === there));
-      if (!corridor) return nothing;
-      const points = corridor.a === posts[i] ? corridor.points : [...corridor.points].reverse();
-      return svg`<path class=${kind} d=${pathOf(points)} />`;
-    });
-  }
-
-  /** @param {{name: string, x: number, y: number, dock: unknown}} post */
-  #post({ name, x, y, dock }) {
-    const end = name === this.from || name === this.to;
-    return svg`<g transform="translate(${x} ${y})">
-      ${dock ? svg`<rect class="dock" x="-9" y="-9" width="18" height="18" rx="5" />` : nothing}
-      <circle class=${end ? "post end" : "post"} r=${end ? 7 : 5.5} />
-      ${name === this.to ? svg`<circle class="goal" r="3" />` : nothing}
-      ${this.robot?.expected?.post === name ? svg`<circle class="expected" r="12" />` : nothing}
-      ${this.robot?.last_seen?.post === name ? seenRobot() : nothing}
-    </g>`;
-  }
-
-  /** @param {Label | undefined} label */
-  #label(label) {
-    if (!label) return nothing;
-    const titles = label.lines.length - label.lines.filter((line) => this.#isNote(line)).length;
-    return svg`<text class="label" x=${label.x} y=${label.y} text-anchor=${label.anchor}>${label.lines.map(
-      (line, i) => svg`<tspan class=${i < titles ? "name" : "note"} x=${label.x} dy=${i ? 15 : 0}>${line}</tspan>`,
-    )}</text>`;
-  }
-
-  /** @param {string} line */
-  #isNote(line) {
-    const posts = [this.robot?.last_seen?.post, this.robot?.expected?.post];
-    return posts.some((post) => post && this.#notes(post).includes(line));
+  /** From the screen into the drawing. @param {Point} screen @returns {Point} */
+  #toMap({ x, y }) {
+    const { left, top, width, height } = /** @type {Element} */ (this.querySelector("svg")).getBoundingClientRect();
+    const { view } = this.#camera;
+    const scale = this.#pixels * view.zoom;
+    return { x: view.x + (x - left - width / 2) / scale, y: view.y + (y - top - height / 2) / scale };
   }
 }
 
-const seenRobot = () => svg`<circle class="aura" r="17" />
-  <g class="robot"><circle r="11" /><path d="M-5 -2.500a3 3 0 0 1 3-3h4a3 3 0 0 1 3 3v5a3 3 0 0 1-3 3h-4a3 3 0 0 1-3-3zM-1.8 -.5v1M1.8 -.5v1M0 -5.500v-2" /></g>`;
-
-/** @param {{x: number, y: number}[]} points */
-const pathOf = (points) => "M" + points.map(({ x, y }) => `${x.toFixed(1)} ${y.toFixed(1)}`).join("L");
+/** @param {Box} frame @param {number} beside @returns {Box} */
+const widened = ({ x, y, width, height }, beside) => ({ x: x - beside, y, width: width + 2 * beside, height });
 
 customElements.define("campus-map", CampusMapElement);

@@ -7,6 +7,7 @@ import { hasEnded, isAboard, isMyTurn, reasonText, stateSentence } from "../orde
 import { loadMap } from "../posts.js";
 import { inWords } from "../problems.js";
 import { t } from "../texts.js";
+import { TrafficNow } from "../traffic.js";
 import "./campus_map.js";
 import "./cancel_order.js";
 import { orderDetails } from "./order_details.js";
@@ -25,6 +26,7 @@ export class FollowPage extends PageElement {
   /** How often something was heard. */
   #heard = 0;
   #door = this.#ownDoor();
+  #traffic = new TrafficNow(this);
 
   static properties = {
     order_id: { attribute: false },
@@ -87,8 +89,8 @@ export class FollowPage extends PageElement {
       <div class="column">
         <section class="card" aria-labelledby="map-title">
           <h2 id="map-title">${t(hasEnded(order) ? "follow.map_ended" : "follow.map")}</h2>
-          <campus-map .map=${map} .robot=${hasEnded(order) ? null : this.robot} .from=${order.from_post} .to=${order.to_post}
-            ?following=${!hasEnded(order)}></campus-map>
+          <campus-map .map=${map} .robots=${hasEnded(order) || !this.robot ? [] : [this.robot]} .traffic=${this.#traffic.taken}
+            .from=${order.from_post} .to=${order.to_post} ?facts=${!hasEnded(order)}></campus-map>
         </section>
         ${orderDetails(order)}
         <div class="choices">
@@ -129,6 +131,7 @@ export class FollowPage extends PageElement {
   /** @param {Order} order */
   #show(order) {
     if (this.order && order.version < this.order.version) return;
+    if (this.order && order.robot?.name !== this.order.robot?.name) this.#traffic.fetch();
     this.order = order;
     this.robot = order.robot;
   }

@@ -1,42 +1,65 @@
-/** What is known of a robot, as a list: everything that the map shows, and why it waits. */
+/** What is known of the robots on a map, as a list: everything that the map shows of them, and why they do it. */
 import { html, nothing } from "lit";
+import { conditionsOf, isSilentAsExpected } from "../map_facts.js";
 import { reasonText } from "../order_words.js";
 import { titleOf } from "../posts.js";
 import { serverNow } from "../server_clock.js";
 import { t } from "../texts.js";
-import { ago, percent, windowText } from "../times.js";
+import { ago, clockTime, percent, windowText } from "../times.js";
 import { icon } from "./icon.js";
 /** @import { CampusMap, Robot } from "../api_types.ts" */
+/** @import { MapFacts } from "../map_facts.js" */
 
-/** @param {CampusMap} map @param {Robot | null} robot @param {string} from @param {string} to */
-export function robotFacts(map, robot, from, to) {
-  return html`<ul class="facts">
-    ${robot ? aboutRobot(map, robot) : fact("robot", t("map.no_robot"))}
-    ${fact("arrow", t("map.from_fact", { post: titleOf(map, from) }))}
-    ${fact("pin", t("map.to_fact", { post: titleOf(map, to) }))}
-  </ul>`;
+/** @param {CampusMap} map @param {MapFacts} facts @param {string} from @param {string} to */
+export function robotFacts(map, facts, from, to) {
+  const { robots } = facts;
+  const ends = from && to ? [fact("arrow", t("map.from_fact", { post: titleOf(map, from) })), fact("pin", t("map.to_fact", { post: titleOf(map, to) }))] : [];
+  if (robots.length > 1) return html`<ul class="facts several">${robots.map((robot) => ofSeveral(map, facts, robot))}${ends}</ul>`;
+  const none = fact("robot", t(ends.length ? "map.no_robot" : "map.no_robots"));
+  return html`<ul class="facts">${robots.length ? aboutRobot(map, facts, robots[0]) : none}${ends}</ul>`;
 }
+
+/** @param {CampusMap} map @param {MapFacts} facts @param {Robot} robot */
+const ofSeveral = (map, facts, robot) => html`<li>
+  <strong>${t("robot.name", { name: robot.name })}</strong>
+  <ul class="facts">${aboutRobot(map, facts, robot)}</ul>
+</li>`;
+
+/** @param {CampusMap} map @param {MapFacts} facts @param {Robot} robot */
+const aboutRobot = (map, facts, robot) => [
+  fact("robot", seenText(map, robot)),
+  aheadFact(map, robot),
+  conditionsOf(robot).includes("stopped") ? fact("warning", t("map.stopped")) : nothing,
+  robot.why ? fact("send", reasonText(robot.why, robot.why_words, map)) : nothing,
+  facts.taken.filter((taken) => taken.robot === robot.name).map((taken) => fact("corridor", takenText(map, taken))),
+  conditionsOf(robot).includes("offline") ? fact("network", silentText(map, facts, robot)) : nothing,
+  batteryFact(robot),
+];
 
 /** @param {CampusMap} map @param {Robot} robot */
-function aboutRobot(map, { last_seen, expected, towards, battery, online, heard_at, activity, why, why_words }) {
-  const now_ms = serverNow();
-  return [
-    fact(
-      "robot",
-      last_seen ? t("map.seen", { post: titleOf(map, last_seen.post), ago: ago(last_seen.at, now_ms) }) : t("map.never_seen"),
-    ),
-    expected
-      ? fact("clock", t("map.expected", { post: titleOf(map, expected.post), window: windowText(expected) }))
-      : towards && activity === "driving"
-        ? fact("clock", t("map.towards", { post: titleOf(map, towards) }))
-        : nothing,
-    why && activity === "driving" ? fact("send", reasonText(why, why_words, map)) : nothing,
-    online || !heard_at ? nothing : fact("network", t("robot.offline", { ago: ago(heard_at, now_ms) })),
-    battery
-      ? fact("battery", t(battery.charging ? "robot.charging" : "robot.battery", { charge: percent(battery.ratio) }))
-      : nothing,
-  ];
+const seenText = (map, { last_seen }) =>
+  last_seen ? t("map.seen", { post: titleOf(map, last_seen.post), ago: ago(last_seen.at, serverNow()) }) : t("map.never_seen");
+
+/** @param {CampusMap} map @param {Robot} robot */
+function aheadFact(map, { expected, towards, activity }) {
+  if (expected) return fact("clock", t("map.expected", { post: titleOf(map, expected.post), window: windowText(expected) }));
+  return towards && activity === "driving" ? fact("clock", t("map.towards", { post: titleOf(map, towards) })) : nothing;
 }
+
+/** @param {CampusMap} map @param {{from_post: string, to_post: string, since: string}} taken */
+const takenText = (map, { from_post, to_post, since }) =>
+  t("map.taken", { from: titleOf(map, from_post), to: titleOf(map, to_post), time: clockTime(since) });
+
+/** @param {CampusMap} map @param {MapFacts} facts @param {Robot} robot */
+function silentText(map, { taken }, robot) {
+  const values = { ago: ago(robot.heard_at ?? "", serverNow()) };
+  if (isSilentAsExpected(map, robot, taken)) return t("map.silent_as_expected", values);
+  return t(robot.activity === "stopped" ? "map.offline" : "robot.offline", values);
+}
+
+/** @param {Robot} robot */
+const batteryFact = ({ battery }) =>
+  battery ? fact("battery", t(battery.charging ? "robot.charging" : "robot.battery", { charge: percent(battery.ratio) })) : nothing;
 
 /** @param {Parameters<typeof icon>[0]} drawing @param {string} text */
 const fact = (drawing, text) => html`<li>${icon(drawing)}<span>${text}</span></li>`;

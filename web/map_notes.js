@@ -1,0 +1,55 @@
+/**
+ * What stands beside each post of a map, and where else there is something to be kept clear.
+ * @import { CampusMap, Robot, TakenCorridor } from "./api_types.ts"
+ * @import { Box, Drawing } from "./map_drawing.js"
+ * @import { MapFacts } from "./map_facts.js"
+ * @import { Wording } from "./map_labels.js"
+ */
+import { middleOf, pointsFrom } from "./map_drawing.js";
+import { conditionsOf, nextPost } from "./map_facts.js";
+import { shortestWay } from "./posts.js";
+import { serverNow } from "./server_clock.js";
+import { t } from "./texts.js";
+import { ago, windowText } from "./times.js";
+
+/** Posts that matter most choose their side first. @param {CampusMap} map @param {MapFacts} facts
+ *  @param {readonly string[]} ends of the way that is shown @returns {Wording[]} */
+export function wordingsOf(map, { seen, expected, robots }, ends) {
+  return map.posts
+    .map(({ name, title, dock, mailroom }) => {
+      const [here, coming] = [seen.get(name) ?? [], expected.get(name) ?? []];
+      const important = ends.includes(name) || here.length + coming.length > 0;
+      const rank = (important ? 4 : 0) + (mailroom ? 2 : 0) + (dock ? 1 : 0);
+      return { name, title, notes: notesOf(here, coming, robots.length === 1), important, robots: here.length, rank };
+    })
+    .sort((a, b) => b.rank - a.rank);
+}
+
+/** What is said at a post of the robots there; of several in a line each, the rest is in the list. @param {readonly Robot[]} seen @param {readonly Robot[]} expected @param {boolean} alone */
+function notesOf(seen, expected, alone) {
+  const now_ms = serverNow();
+  return [
+    ...seen.flatMap((robot) => {
+      const conditions = conditionsOf(robot).map((condition) => t(`map.is.${condition}`));
+      const age = ago(robot.last_seen?.at ?? "", now_ms);
+      return alone ? [t("map.seen_here"), age, ...conditions] : [[robot.name, ...conditions, age].join(" · ")];
+    }),
+    ...expected.flatMap((robot) =>
+      alone && robot.expected ? [t("map.expected_here"), windowText(robot.expected)] : [t("map.robot.expected", { robot: robot.name })],
+    ),
+  ];
+}
+
+/** The posts between which a robot must be by now. @param {CampusMap} map @param {Robot} robot */
+export function aheadOf(map, robot) {
+  const [seen, next] = [robot.last_seen?.post, nextPost(robot)];
+  return seen && next && seen !== next ? shortestWay(map, seen, next) : [];
+}
+
+/** Room for the name of who holds a corridor. @param {Drawing} drawn @param {TakenCorridor} taken @returns {Box} */
+export function signBox(drawn, { robot, from_post, to_post }) {
+  const points = pointsFrom(drawn, from_post, to_post);
+  const { x, y } = points.length ? middleOf(points) : { x: 0, y: 0 };
+  const width = robot.length * 7 + 6;
+  return { x: x - width / 2, y: y - 20, width, height: 26 };
+}
