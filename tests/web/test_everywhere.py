@@ -8,7 +8,7 @@ from playwright.async_api import expect
 pytestmark = pytest.mark.browser
 
 BOB = "bob.martin@campus.example"
-PAGES = ["/", "/mail.html", "/notices.html", "/follow.html?order={}"]
+PAGES = ["/", "/mail.html", "/notices.html", "/follow.html?order={}", "/settings.html"]
 NO_OVERFLOW = "() => document.documentElement.scrollWidth <= document.documentElement.clientWidth"
 GROUND = "() => getComputedStyle(document.documentElement).backgroundColor.match(/[0-9.]+/g).map(Number)"
 SMALL_TARGETS = """() => [...document.querySelectorAll("a, button, input, select, summary")]

@@ -1,0 +1,102 @@
+"""What people settle for themselves; each part saves by itself, and says so."""
+
+import re
+
+import pytest
+from playwright.async_api import expect
+
+from tests.web.visitor import Visitor
+
+pytestmark = pytest.mark.browser
+
+NO_OVERFLOW = "() => document.documentElement.scrollWidth <= document.documentElement.clientWidth"
+
+
+async def test_language_name_post_and_notices_are_changed_and_kept(visit):
+    ada: Visitor = await visit("ada.king", on="phone", viewport={"width": 320, "height": 640})
+    page = ada.page
+    await page.goto("/")
+    await page.locator("summary").filter(has_text="Account").click()
+    await page.get_by_role("link", name="Settings").click()
+    me = page.get_by_role("region", name="About me")
+    await me.get_by_label("Name").fill("Augusta Ada King")
+    await me.get_by_label("Usual post").select_option("Post 2")
+    await expect(me.get_by_role("status")).to_have_text("Saved")
+    await me.get_by_label("Language").select_option("Français")
+    await expect(page.get_by_role("heading", level=1)).to_have_text("Réglages")
+    await expect(page).to_have_title(re.compile("^Réglages"))
+    await expect(page.get_by_role("link", name="Mon courrier")).to_be_visible()
+
+    notices = page.get_by_role("region", name="Avis")
+    await notices.get_by_role("checkbox", name="Remise, E-mail").uncheck()
+    await expect(notices.get_by_role("status")).to_have_text("Enregistré")
+    assert await page.evaluate(NO_OVERFLOW)
+    await ada.assert_accessible()
+    await page.reload()
+    await expect(page.get_by_role("checkbox", name="Remise, E-mail")).not_to_be_checked()
+    person = await ada.api("/me")
+    assert (person["name"], person["language"], person["usual_post"]) == ("Augusta Ada King", "fr", "post2")
+
+
+async def test_the_address_book_is_kept_with_the_keyboard_alone(visit):
+    ada: Visitor = await visit("ada.king")
+    page = ada.page
+    await ada.order("bob.martin@campus.example")
+    await page.goto("/settings.html")
+    book = page.get_by_role("region", name="Address book")
+    await book.get_by_role("button", name="Save, Bob Martin").focus()
+    await page.keyboard.press("Enter")
+    await expect(book.get_by_label("Name in your book")).to_be_focused()
+    await page.keyboard.press("Control+a")
+    await page.keyboard.type("Bob next door")
+    await page.keyboard.press("Tab")
+    await page.keyboard.type("Post 3")
+    await page.keyboard.press("Tab")
+    await page.keyboard.press("Enter")
+    bob = book.get_by_role("listitem").filter(has_text="Bob next door")
+    await expect(bob).to_contain_text("bob.martin@campus.example · Post 3")
+    await book.get_by_label("E-mail address").fill("porter")
+    await page.keyboard.press("Enter")
+    await expect(book.get_by_role("alert")).to_have_text("This is not an e-mail address.")
+    await bob.get_by_role("button", name="Forget, Bob next door").click()
+    await expect(book.get_by_role("status")).to_contain_text("Forgotten")
+    await expect(book.get_by_role("listitem")).to_have_text(re.compile("Bob Martin"))
+
+
+async def test_sessions_are_ended_and_a_scripts_token_is_shown_once_and_revoked(visit):
+    ada: Visitor = await visit("ada.king")
+    elsewhere: Visitor = await visit(signed_in=False)
+    elsewhere.email = ada.email
+    await elsewhere.sign_in()
+    page = ada.page
+    await page.goto("/settings.html")
+    sessions = page.get_by_role("region", name="Where you are signed in")
+    await expect(sessions.get_by_role("listitem")).to_have_count(2)
+    await sessions.get_by_role("button", name="End all others").click()
+    await page.get_by_role("button", name="Yes, end them").click()
+    await expect(sessions.get_by_role("listitem")).to_have_count(1)
+    assert (await elsewhere.context.request.get("/api/v1/me")).status == 401
+
+    tokens = page.get_by_role("region", name="Tokens for scripts")
+    await tokens.get_by_role("button", name="Make the token").click()
+    await expect(tokens.get_by_role("alert")).to_have_text("Say what it is for.")
+    await tokens.get_by_label("What it is for").fill("Night report")
+    await tokens.get_by_role("checkbox", name="See my orders").check()
+    await tokens.get_by_role("button", name="Make the token").click()
+    token = await tokens.get_by_role("group", name=re.compile("^The token")).locator("code").inner_text()
+    bearer = {"Authorization": f"Bearer {token}"}
+    script = await elsewhere.context.request.get("/api/v1/orders", headers=bearer)
+    assert script.ok
+    await ada.assert_accessible()
+    await page.reload()
+    await expect(tokens.get_by_text("Night report")).to_be_visible()
+    await expect(page.get_by_text(token)).to_have_count(0)
+    await tokens.get_by_role("button", name="Revoke, Night report").click()
+    await expect(tokens.get_by_text("Night report")).to_have_count(0)
+    assert (await elsewhere.context.request.get("/api/v1/orders", headers=bearer)).status == 401
+
+    hook = page.get_by_role("region", name="Webhook")
+    ada.refusals_expected.add("/api/v1/me/webhook")
+    await hook.get_by_label("Address").fill("https://127.0.0.1/told")
+    await hook.get_by_role("button", name="Send notices there").click()
+    await expect(hook.get_by_role("alert")).to_contain_text("This address cannot be used")

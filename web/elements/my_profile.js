@@ -1,0 +1,65 @@
+/** My name, the language of pages and notices, and the post where I usually am. */
+import { html } from "lit";
+import * as api from "../api.js";
+import { speak } from "../language.js";
+import { t } from "../texts.js";
+import { field } from "./field.js";
+import { SettingsPart } from "./settings_part.js";
+/** @import { AboutMe, CampusMap, Person } from "../api_types.ts" */
+
+// Each in its own words: whoever looks for theirs may read no other.
+const LANGUAGES = { en: "English", fr: "Français" };
+
+export class MyProfile extends SettingsPart {
+  static properties = { person: { attribute: false }, map: { attribute: false } };
+
+  constructor() {
+    super();
+    /** @type {Person | null} */
+    this.person = null;
+    /** @type {CampusMap | null} */
+    this.map = null;
+  }
+
+  render() {
+    const { person, map } = this;
+    if (!person || !map) return html``;
+    return this.card(
+      "profile",
+      html`<form @submit=${(/** @type {Event} */ event) => event.preventDefault()} @change=${this.#change}>
+        ${field({ name: "name", label: t("settings.name"), hint: t("settings.name_hint") }, ({ id, describedBy }) => html`<input id=${id} name="name"
+          autocomplete="name" maxlength="200" required .value=${person.name} aria-describedby=${describedBy} />`)}
+        <div class="pair">
+          ${field({ name: "language", label: t("settings.language") }, ({ id }) => html`<select id=${id} name="language">
+            ${Object.entries(LANGUAGES).map(([tag, name]) => html`<option value=${tag} lang=${tag} .selected=${tag === person.language}>${name}</option>`)}
+          </select>`)}
+          ${field({ name: "usual_post", label: t("settings.usual_post") }, ({ id }) => html`<select id=${id} name="usual_post">
+            <option value="" .selected=${!person.usual_post}>${t("settings.no_post")}</option>
+            ${map.posts.map(({ name, title }) => html`<option value=${name} .selected=${name === person.usual_post}>${title}</option>`)}
+          </select>`)}
+        </div>
+      </form>`,
+    );
+  }
+
+  /** @param {Event} event */
+  async #change({ target }) {
+    const { name, value } = /** @type {HTMLInputElement | HTMLSelectElement} */ (target);
+    const text = value.trim();
+    if (name === "name" && !text) return void (this.problem = t("settings.name_missing"));
+    const changes = /** @type {AboutMe} */ ({ [name]: name === "usual_post" ? text || null : text });
+    await this.attempt(async () => (this.person = await api.changeMe(changes)));
+    if (this.problem || !this.person) return;
+    if (name === "language") await this.#speak(this.person.language);
+    this.said = t("settings.saved");
+    this.dispatchEvent(new CustomEvent("me", { detail: this.person, bubbles: true }));
+  }
+
+  /** @param {string} language */
+  async #speak(language) {
+    await speak(language);
+    document.title = `${t("title.settings")} · ${t("app.name")}`;
+  }
+}
+
+customElements.define("my-profile", MyProfile);

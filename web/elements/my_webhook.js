@@ -1,0 +1,64 @@
+/** An address of mine that is told of my notices; the secret that signs them is shown once. */
+import { html, nothing } from "lit";
+import * as api from "../api.js";
+import { serverNow } from "../server_clock.js";
+import { t } from "../texts.js";
+import { dayAndTime } from "../times.js";
+import { field } from "./field.js";
+import { shownOnce } from "./shown_once.js";
+import { SettingsPart, remark } from "./settings_part.js";
+/** @import { NoticeWishes } from "../api_types.ts" */
+
+export class MyWebhook extends SettingsPart {
+  static properties = { wishes: { attribute: false }, secret: { state: true } };
+
+  constructor() {
+    super();
+    /** @type {NoticeWishes | null} */
+    this.wishes = null;
+    this.secret = "";
+  }
+
+  render() {
+    if (!this.wishes) return nothing;
+    const { webhook } = this.wishes;
+    return this.card(
+      "webhook",
+      html`${webhook
+          ? html`<ul class="rows"><li>
+              <span><strong>${webhook.url}</strong>${remark(t("settings.since"), dayAndTime(webhook.created_at, serverNow()))}</span>
+              <button class="quiet danger" aria-label="${t("settings.remove")}, ${webhook.url}" @click=${this.#remove}>${t("settings.remove")}</button>
+            </li></ul>`
+          : nothing}
+        ${this.secret ? shownOnce("webhook-secret", t("settings.secret"), this.secret) : nothing}
+        <form novalidate @submit=${this.#set}>
+          ${field({ name: "url", label: t(webhook ? "settings.url_other" : "settings.url") }, ({ id }) => html`<input id=${id} name="url" type="url"
+            inputmode="url" autocomplete="off" required maxlength="1000" placeholder="https://" />`)}
+          <button ?disabled=${this.busy}>${t("settings.url_set")}</button>
+        </form>`,
+    );
+  }
+
+  /** @param {SubmitEvent} event */
+  async #set(event) {
+    event.preventDefault();
+    const input = /** @type {HTMLInputElement} */ (this.querySelector("[name=url]"));
+    const url = input.value.trim();
+    if (!url || input.validity.typeMismatch) return void (this.problem = t("settings.url_missing"));
+    const done = await this.attempt(async () => (this.secret = (await api.setWebhook(url)).secret), t("settings.saved"));
+    if (!done) return;
+    input.value = "";
+    this.#tell();
+  }
+
+  async #remove() {
+    if (await this.attempt(api.removeWebhook, t("settings.removed"))) this.#tell();
+    this.secret = "";
+  }
+
+  async #tell() {
+    this.dispatchEvent(new CustomEvent("wishes", { detail: await api.noticeWishes(), bubbles: true }));
+  }
+}
+
+customElements.define("my-webhook", MyWebhook);
