@@ -43,6 +43,13 @@ export function ago(at, now_ms) {
   return relative.format(-Math.floor(age_ms / HOUR_MS), "hour");
 }
 
+/** "14:05:07" @param {string} at */
+export const clockSeconds = (at) => format({ ...CLOCK, second: "2-digit" }).format(new Date(at));
+
+/** "1,234.5" @param {number} value @param {number} digits behind the point */
+export const decimal = (value, digits) =>
+  new Intl.NumberFormat(locale(), { minimumFractionDigits: digits, maximumFractionDigits: digits }).format(value);
+
 /** "85 %" @param {number} ratio */
 export const percent = (ratio) => new Intl.NumberFormat(locale(), { style: "percent" }).format(ratio);
 

@@ -1,0 +1,90 @@
+/** What a dispatcher can tell a robot, and what it answered to what it was told last. */
+import { html, nothing } from "lit";
+import * as api from "../api.js";
+import { pause, recall, resume, stop } from "../mailroom_actions.js";
+import { inWords } from "../problems.js";
+import { serverNow } from "../server_clock.js";
+import { t } from "../texts.js";
+import { ago } from "../times.js";
+import "./ask_dialog.js";
+import { problemLine } from "./field.js";
+import { PageElement } from "./page_element.js";
+/** @import { Command, Robot } from "../api_types.ts" */
+/** @import { AskDialog } from "./ask_dialog.js" */
+/** @import { Action } from "../mailroom_actions.js" */
+
+const SHOWN = 8;
+
+export class RobotCommands extends PageElement {
+  static properties = {
+    robot: { attribute: false },
+    may: { type: Boolean },
+    commands: { state: true },
+    problem: { state: true },
+  };
+
+  constructor() {
+    super();
+    /** @type {Robot | null} */
+    this.robot = null;
+    /** Whether this person may tell it anything. */
+    this.may = false;
+    /** @type {Command[]} */
+    this.commands = [];
+    this.problem = "";
+  }
+
+  /** A robot that says something may have answered. @param {Map<string, unknown>} changed */
+  updated(changed) {
+    if (changed.has("robot") && this.robot) this.#fetch(this.robot.name);
+  }
+
+  render() {
+    const { robot } = this;
+    if (!robot) return nothing;
+    return html`${this.may ? this.#buttons(robot) : html`<p class="hint">${t("robots.dispatchers_tell")}</p>`}
+      ${this.problem ? problemLine(this.problem) : nothing}
+      ${this.commands.length
+        ? html`<h3>${t("robots.told")}</h3>
+            <ul class="told">${this.commands.map(toldLine)}</ul>`
+        : nothing}
+      <ask-dialog @done=${() => this.#fetch(robot.name)}></ask-dialog>`;
+  }
+
+  /** @param {Robot} robot */
+  #buttons(robot) {
+    /** @param {Action} action */
+    const button = (action) => html`<button type="button" class=${action.danger ? "danger" : ""} @click=${() => this.#ask(action)}>
+      ${t(`mailroom.do.${action.name}`)}
+    </button>`;
+    return html`<div class="choices">${[pause(robot), resume(robot), recall(robot), stop(robot)].map(button)}</div>`;
+  }
+
+  /** @param {Action} action */
+  #ask(action) {
+    const dialog = /** @type {AskDialog} */ (this.querySelector("ask-dialog"));
+    dialog.ask([action], t("robot.name", { name: this.robot?.name ?? "" }));
+  }
+
+  /** @param {string} name */
+  async #fetch(name) {
+    try {
+      this.commands = (await api.robotCommands(name, { limit: SHOWN })).items;
+      this.problem = "";
+    } catch (failure) {
+      this.problem = inWords(failure);
+    }
+  }
+}
+
+/** @param {Command} command */
+function toldLine({ kind, asked_at, accepted, reason, online }) {
+  const answer = accepted === null ? (online ? "waits" : "has_not_heard") : accepted ? "did" : "refused";
+  return html`<li class=${answer}>
+    <strong>${t(`robots.command.${kind}`)}</strong>
+    <span>${t(`robots.answer.${answer}`)}${reason ? html`: ${reason}` : nothing}</span>
+    <time datetime=${asked_at}>${ago(asked_at, serverNow())}</time>
+  </li>`;
+}
+
+customElements.define("robot-commands", RobotCommands);
