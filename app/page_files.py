@@ -13,6 +13,7 @@ from fastapi.responses import Response
 ADDRESS: Final = "/page_files.js"
 KEPT: Final = frozenset({".html", ".js", ".css", ".json", ".svg"})
 """Pictures of the app for the home screen are fetched by the system once, not by pages."""
+WORKER: Final = "/service_worker.js"
 NPM_MODULES: Final = "npm_modules.json"
 VERSION_CHARACTERS: Final = 16
 
@@ -33,10 +34,15 @@ class PageFiles:
             self._module, self._seen = _written(files), seen
         return self._module
 
+    def worker(self) -> bytes:
+        """The service worker of this version."""
+        version = self.module().partition(b"\n")[0]
+        return (self._folder / WORKER[1:]).read_bytes() + b"// " + version + b"\n"
+
     def _files(self) -> Iterator[tuple[str, Path]]:
         for path in self._folder.rglob("*"):
             place = path.relative_to(self._folder)
-            if place.parts[0] in self._not_pages or path.suffix not in KEPT or place.name == "service_worker.js":
+            if place.parts[0] in self._not_pages or path.suffix not in KEPT or place.name == WORKER[1:]:
                 continue
             yield "/" if str(place) == "index.html" else f"/{place.as_posix()}", path
         for address in json.loads((self._folder / NPM_MODULES).read_text(encoding="utf-8")):
@@ -54,8 +60,12 @@ def _written(files: dict[str, Path]) -> bytes:
 
 
 def add_page_files(app: FastAPI, files: PageFiles) -> None:
-    """Serve the module that names them."""
+    """Serve the module that names them, and the worker, whose own bytes must change for browsers to look at it anew."""
 
     @app.get(ADDRESS, include_in_schema=False)
     async def page_files() -> Response:
         return Response(await asyncio.to_thread(files.module), media_type="text/javascript")
+
+    @app.get(WORKER, include_in_schema=False)
+    async def service_worker() -> Response:
+        return Response(await asyncio.to_thread(files.worker), media_type="text/javascript")

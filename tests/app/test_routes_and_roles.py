@@ -61,6 +61,7 @@ LINES: Final[dict[tuple[str, str], Line]] = {
     ("GET", "/version"): OPEN,
     ("GET", "/metrics"): OPEN,  # to this machine, where all these ask from; to others see test_metrics
     ("GET", "/page_files.js"): OPEN,
+    ("GET", "/service_worker.js"): OPEN,
     ("GET", "/api/v1/openapi.json"): OPEN,
     ("GET", "/api/v1/about"): OPEN,
     ("GET", "/api/v1/map"): OPEN,

@@ -58,7 +58,7 @@ export class KeptOrders extends PageElement {
     if (!this.kept.length) return nothing;
     return html`<section class="kept" aria-labelledby="kept-title" tabindex="-1">
       <h2 id="kept-title">${t("offline.kept")}</h2>
-      <ul role="status">${this.kept.map((order) => this.#order(order))}</ul>
+      <div role="status"><ul>${this.kept.map((order) => this.#order(order))}</ul></div>
     </section>`;
   }
 

@@ -37,8 +37,16 @@ async function keep(request, fresh) {
   const cache = await caches.open(KEPT);
   if (!fresh.ok) return void (await cache.delete(request));
   if (isList(url)) return keepOpen(cache, request, await fresh.json());
-  if (isOrder(url) && !isOwnAndOpen(await fresh.clone().json())) return forgetOrder(cache, url);
+  if (isOrder(url)) return keepIfOpen(cache, request, fresh);
   await cache.put(request, fresh);
+}
+
+/** @param {Cache} cache @param {Request} request @param {Response} fresh */
+async function keepIfOpen(cache, request, fresh) {
+  const order = /** @type {Order} */ (await fresh.clone().json());
+  if (!isOwnAndOpen(order)) return forgetOrder(cache, new URL(request.url));
+  await cache.put(request, fresh);
+  await keepCode(cache, order);
 }
 
 /** Whoever was signed in here before. @param {Request} request @param {Response} me */
@@ -54,21 +62,27 @@ async function keepOpen(cache, request, page) {
   const ended = page.items.filter(hasEnded).map(({ id }) => aboutOrder(id));
   await cache.put(request, Response.json({ ...page, items, next: null }));
   await Promise.all(ended.map((url) => forgetOrder(cache, url)));
-  for (const { id, my_code } of items) {
-    const isThere = my_code && (await cache.match(aboutCode(id).code, { ignoreVary: true }));
-    if (my_code && !isThere) await keepOrder(id);
-  }
+  for (const order of items) await keepIfOpen(cache, new Request(aboutOrder(order.id)), Response.json(order));
 }
 
 /** An order with its code, for a robot that waits where there is no network: fetched while there is one. @param {string} id */
-export async function keepOrder(id) {
-  const asked_in = era;
+export const keepOrder = (id) => fetchAndKeep(aboutOrder(id));
+
+/** The code for what its person does next; one for what is done would only mislead. @param {Cache} cache @param {Order} order */
+async function keepCode(cache, { id, my_code }) {
   const { code, picture } = aboutCode(id);
-  for (const url of [aboutOrder(id), code, picture]) {
-    const request = new Request(url);
-    const fresh = await fetch(request);
-    if (era === asked_in) await keep(request, fresh);
-  }
+  const before = await cache.match(code, { ignoreVary: true });
+  if (before && (await before.json()).purpose === my_code) return;
+  await Promise.all([cache.delete(code), cache.delete(picture)]);
+  if (my_code) await Promise.all([fetchAndKeep(code), fetchAndKeep(picture)]);
+}
+
+/** @param {URL} url */
+async function fetchAndKeep(url) {
+  const asked_in = era;
+  const request = new Request(url);
+  const fresh = await fetch(request);
+  if (era === asked_in) await keep(request, fresh);
 }
 
 /** @param {Order} order */
