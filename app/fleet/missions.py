@@ -24,7 +24,11 @@ async def mission_of(report: Report, progress: Progress) -> MissionRow:
         return await _adopt(report, progress)
     if mission is None or mission.robot != report.robot:
         raise UnknownMission(f"{report.robot} was given no mission {progress.mission_id}")
-    if progress.step is Step.DEPARTED and not is_own(mission.id) and mission.state is MissionState.ACTIVE:
+    if (
+        progress.step in (Step.ACCEPTED, Step.DEPARTED)
+        and not is_own(mission.id)
+        and mission.state is MissionState.ACTIVE
+    ):
         await _end_own(report)  # a robot holds one mission at a time
     return mission
 
@@ -48,7 +52,9 @@ async def _adopt(report: Report, progress: Progress) -> MissionRow:
 
 
 async def _was_begun(report: Report, mission: MissionRow) -> bool:
-    """Whether the robot has held it: one that it has only been told of is still to come."""
+    """Whether the robot has held it: one that it has only been told of, or an update of it, is still to come."""
+    if 0 < mission.accepted_update < mission.told_update:
+        return False
     touched = select(StopRow.id).where(StopRow.mission_id == mission.id, col(StopRow.departed_at).is_not(None))
     return mission.accepted_at is not None or (await report.session.exec(touched.limit(1))).first() is not None
 

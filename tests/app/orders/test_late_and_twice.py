@@ -138,6 +138,22 @@ async def test_mail_comes_aboard_once_whoever_says_that_it_has_it_too(world: Wor
     await Record(world).check()
 
 
+async def test_an_update_that_crosses_with_the_robots_own_way_back_is_what_it_does_and_all_of_it_ends(
+    world: World,
+) -> None:
+    order_id = await world.place("post3", "post5")
+    await world.goes_on("r1", "sender")
+    world.act("r1", "no way")
+    world.act("r1", "")  # it has finished, and goes back by itself
+    await world.change(world.orders.recall, "sender", order_id)
+    await world.goes_on("r1")
+    await Record(world).check()
+    await world.goes_on("r1", *ALL_DONE)
+    assert await world.state(order_id) is S.RETURNED
+    assert await world.rows(MissionRow, state="active") == []
+    await Record(world).check()
+
+
 async def given_to_r2(world: World, order_id: str) -> None:
     """By a dispatcher, while r1 is out of network."""
     await world.set_online("r1", False)
