@@ -220,8 +220,9 @@ export const robotAlarms = (robot, page) => ask("/alarms" + query({ robot, ...pa
 /** @param {string} name @param {string} since @returns {Promise<Api.BatteryHistory>} */
 export const batteryHistory = (name, since) => ask(robotPath(name) + "/battery" + query({ since }));
 
-/** For half a minute it tells what it senses and thinks, as events `insight`. @param {string} name @returns {Promise<Api.Watch>} */
-export const watchRobot = (name) => tell(robotPath(name) + "/watch");
+/** For half a minute it tells what it senses and thinks, as events `insight`. @param {string} name
+ *  @param {boolean} anew whether to begin with all that it believes @returns {Promise<Api.Watch>} */
+export const watchRobot = (name, anew) => tell(robotPath(name) + "/watch" + query({ anew: `${anew}` }));
 
 /** @param {string} name @returns {Promise<Api.EnrolmentCode>} it is shown this once */
 export const makeEnrolmentCode = (name) => tell(robotPath(name) + "/enrolment-codes");

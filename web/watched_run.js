@@ -28,6 +28,8 @@ export class WatchedRun {
   #count = 0;
   /** @type {Set<string>} */
   #beliefs = new Set();
+  /** The number of the insight up to which none is missing; 0: the first is. */
+  #believed_until = 0;
   /** @type {Seen} */
   seen = { insight: null, loops: [], beliefs: [], changes: [], lines: [], told: 0, missed: 0, left_out: 0 };
 
@@ -63,8 +65,14 @@ export class WatchedRun {
     this.#dropped += 1;
   }
 
+  /** Whether all beliefs have to be told again: none were yet, or some news are missing. */
+  get isIncomplete() {
+    return this.#believed_until !== this.seen.insight?.number;
+  }
+
   /** @param {Insight} insight */
-  #believe({ whole, came, went }) {
+  #believe({ number, whole, came, went }) {
+    if (whole || this.#believed_until === number - 1) this.#believed_until = number;
     if (whole) this.#beliefs.clear();
     for (const text of went) this.#beliefs.delete(text);
     for (const text of came) this.#beliefs.add(text);

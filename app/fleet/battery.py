@@ -33,8 +33,8 @@ class BatteryDiary:
             await (await connection_of(session)).execute(_KEEP, due)
 
     def _is_due(self, robot: RobotRow, now: datetime) -> bool:
-        if robot.battery_ratio is None:
-            return False
+        if not robot.battery_ratio:
+            return False  # a robot that has not heard its base yet says 0; one that is empty says nothing
         at, charging = self._noted.get(robot.name, (None, False))
         return at is None or charging != robot.charging or now - at >= EVERY
 

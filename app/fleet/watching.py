@@ -43,11 +43,12 @@ class Watching:
     stopwatch: Callable[[], float]
     _watchers: dict[str, dict[str, float]] = field(default_factory=dict)
 
-    def watch(self, robot: str, person_id: str) -> bool:
-        """Somebody looks, or still does; False if this robot is not there, or knows nothing of being watched."""
+    def watch(self, robot: str, person_id: str, anew: bool = False) -> bool:
+        """Somebody looks, or still does, perhaps on another page (`anew`); False if this robot is not there, or knows
+        nothing of being watched."""
         now_s = self.stopwatch()
         watchers = self._at(robot, now_s)
-        is_new = person_id not in watchers
+        is_new = anew or person_id not in watchers
         self._watchers[robot] = {**watchers, person_id: now_s + HOLDS_S}
         return self.seats.watch(robot, Watch(for_s=HOLDS_S, whole=is_new))
 

@@ -52,13 +52,19 @@ class BatteryHistory(BaseModel):
 
 
 @upkeep_router.post("/robots/{name}/watch", responses=problems(UnknownRobot, RoleNeeded))
-async def watch_robot(name: RobotName, maintainer: Maintainer, session: ReadingDep, fleet: FleetDep) -> WatchView:
+async def watch_robot(
+    name: RobotName,
+    maintainer: Maintainer,
+    session: ReadingDep,
+    fleet: FleetDep,
+    anew: Annotated[bool, Query(description="Begin with all that it believes: for who has seen nothing yet.")] = False,
+) -> WatchView:
     """Watch what a robot senses and thinks: events `insight` of the live stream, for half a minute from now.
 
     Say so again every ten seconds or so. Nothing of it is kept.
     """
     robot = await known_robot(session, name)
-    tells = fleet.watching.watch(name, maintainer.id)
+    tells = fleet.watching.watch(name, maintainer.id, anew)
     return WatchView(robot=name, online=robot.online, tells=tells, for_s=HOLDS_S)
 
 

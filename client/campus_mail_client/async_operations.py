@@ -561,12 +561,14 @@ class AsyncOperations:
         )
         return answer
 
-    async def watch_robot(self, name: str) -> WatchView:
+    async def watch_robot(self, name: str, *, anew: bool | None = None) -> WatchView:
         """Watch what a robot senses and thinks: events `insight` of the live stream, for half a minute from now.
 
         Say so again every ten seconds or so. Nothing of it is kept.
         """
-        answer: WatchView = await self._call("POST", f"/api/v1/robots/{quote(str(name), safe='')}/watch", WatchView)
+        answer: WatchView = await self._call(
+            "POST", f"/api/v1/robots/{quote(str(name), safe='')}/watch", WatchView, query={"anew": anew}
+        )
         return answer
 
     async def make_enrolment_code(self, name: str) -> EnrolmentCodeView:

@@ -545,12 +545,14 @@ class Operations:
         )
         return answer
 
-    def watch_robot(self, name: str) -> WatchView:
+    def watch_robot(self, name: str, *, anew: bool | None = None) -> WatchView:
         """Watch what a robot senses and thinks: events `insight` of the live stream, for half a minute from now.
 
         Say so again every ten seconds or so. Nothing of it is kept.
         """
-        answer: WatchView = self._call("POST", f"/api/v1/robots/{quote(str(name), safe='')}/watch", WatchView)
+        answer: WatchView = self._call(
+            "POST", f"/api/v1/robots/{quote(str(name), safe='')}/watch", WatchView, query={"anew": anew}
+        )
         return answer
 
     def make_enrolment_code(self, name: str) -> EnrolmentCodeView:

@@ -21,7 +21,7 @@ function intention({ number, state, because, stack, beside }) {
   return html`<li>
     <details open>
       <summary>
-        <code translate="no">${stack[0]?.goal ?? because.goal}</code>
+        ${t("mind.intention", { number })}
         <span class="badge ${state}">${hasText(`mind.state.${state}`) ? t(`mind.state.${state}`) : state}</span>
       </summary>
       <p class="because">${becauseText(because)}</p>

@@ -69,20 +69,20 @@ export class RobotPage extends PageElement {
   /** @param {RobotDetails} details @param {CampusMap} map */
   #parts(details, map) {
     return html`<div class="robot-parts">
-      <section class="card" aria-labelledby="now-title">
+      <section class="card of-now" aria-labelledby="now-title">
         <h2 id="now-title">${t("robots.now")}</h2>
         ${now(details.robot, map)}
         <robot-commands .robot=${details.robot} .may=${this.isDispatcher}></robot-commands>
       </section>
       <robot-battery class="card" .robot=${this.robot}></robot-battery>
+      <section class="card about" aria-labelledby="about-title">
+        <h2 id="about-title">${t("robots.about")}</h2>
+        ${about(details)}
+      </section>
       ${this.isMaintainer
         ? html`<robot-watch .robot=${this.robot} .online=${details.robot.online}></robot-watch>`
         : html`<section class="card"><h2>${t("mind.title")}</h2><p class="hint">${t("mind.maintainers")}</p></section>`}
       <robot-faults class="card" .robot=${this.robot} .map=${map}></robot-faults>
-      <section class="card" aria-labelledby="about-title">
-        <h2 id="about-title">${t("robots.about")}</h2>
-        ${about(details)}
-      </section>
       ${this.isMaintainer ? html`<robot-keys class="card" .robot=${this.robot}></robot-keys>` : nothing}
     </div>`;
   }

@@ -124,7 +124,7 @@ export class RobotWatch extends PageElement {
 
   async #say() {
     try {
-      const watch = await api.watchRobot(this.robot);
+      const watch = await api.watchRobot(this.robot, this.#run.isIncomplete);
       [this.tells, this.online, this.problem] = [watch.tells, watch.online, ""];
     } catch (failure) {
       this.problem = inWords(failure);
