@@ -15,7 +15,7 @@
  * @property {boolean} [danger]
  */
 import * as api from "./api.js";
-import { digitsAreLocked, isMailAboard, isRobotComing, orderTitle, robotStands, stateBeforeAttention } from "./mailroom_words.js";
+import { digitsAreLocked, isMailAboard, isRobotComing, robotStands, stateBeforeAttention } from "./mailroom_words.js";
 import { hasEnded } from "./order_words.js";
 import { t } from "./texts.js";
 
@@ -41,7 +41,7 @@ export function orderActions(order, robots) {
 }
 
 /** @param {Order} order @returns {Pick<Action, "names">} */
-const named = (order) => ({ names: { order: orderTitle(order) } });
+const named = (order) => ({ names: { order: t("mailroom.mail_of", { sender: order.sender.name, recipient: order.recipient.name }) } });
 
 /** @param {Order} order @returns {Action} */
 export function resolve(order) {

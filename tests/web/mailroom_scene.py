@@ -12,7 +12,7 @@ from app.orders.service import Word
 from app.orders.transitions import By
 from app.people.service import set_roles
 from app.settings import Settings
-from app.tables import Alarm, Notice, Order, OrderState, OutgoingNotice, Priority, RobotRow, Role
+from app.tables import Alarm, DigitLock, Notice, Order, OrderState, OutgoingNotice, Priority, RobotRow, Role
 from protocol.clock import RealClock
 from tests.web.service import Service
 
@@ -104,6 +104,7 @@ class Scene:
                 session, ids[0], OrderState.ATTENTION, Word(By.ROBOT, robot="r1", reason=reason)
             )
             await self.state.orders.note(session, ids[1], "digits_locked", Word(By.RECIPIENT))
+            session.add(DigitLock(order_id=ids[1], wrong_tries=5, locked_at=now))
             alarm = Alarm(robot="r1", name="stall", reason=reason, post="post2", at=now - timedelta(minutes=3))
             session.add(alarm)
             stopped = await session.get_one(RobotRow, "r2")

@@ -12,7 +12,7 @@ import { TrafficNow } from "../traffic.js";
 import "./ask_dialog.js";
 import "./campus_map.js";
 import { problemLine } from "./field.js";
-import { mailroomTools } from "./mailroom_tools.js";
+import { mailroomDialogs, mailroomTools } from "./mailroom_tools.js";
 import "./order_queue.js";
 import { PageElement } from "./page_element.js";
 import { robotBoard } from "./robot_board.js";
@@ -70,7 +70,8 @@ export class MailroomPage extends PageElement {
           </section>
         </div>
       </div>
-      <ask-dialog @done=${this.#done} @refused=${() => this.now.fetch()}></ask-dialog>`;
+      <ask-dialog @done=${this.#done} @refused=${() => this.now.fetch()}></ask-dialog>
+      ${mailroomDialogs()}`;
   }
 
   /** @param {CampusMap} map */

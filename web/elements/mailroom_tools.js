@@ -16,8 +16,10 @@ export const mailroomTools = () => html`<div class="tools">
     <button type="button" @click=${() => open("export-orders")}>${t("mailroom.export")}</button>
     <a class="button" href=${PRINT_PAGE}>${t("mailroom.print")}</a>
     <a class="button" href=${WALL_PAGE}>${t("mailroom.wall")}</a>
-  </div>
-  <walk-up-order></walk-up-order><unsent-mail></unsent-mail><export-orders></export-orders>`;
+  </div>`;
+
+/** The dialogs that they open, empty until then. */
+export const mailroomDialogs = () => html`<div><walk-up-order></walk-up-order><unsent-mail></unsent-mail><export-orders></export-orders></div>`;
 
 /** @param {keyof typeof PARTS} name */
 async function open(name) {

@@ -78,7 +78,7 @@ export class PrintPage extends PageElement {
         ${this.#buttons(sheets.length)}
       </div>
       <div class="sheets">
-        ${repeat(sheets, (post, i) => `${post.name}-${i}`, ({ name, title }) => html`<img class="sheet" src=${api.markerPicture(name)} alt=${t("print.marker_of", { post: title })} />`)}
+        ${repeat(sheets, (post, i) => `${post.name}-${i}`, ({ name, title }) => html`<img class="marker-sheet" src=${api.markerPicture(name)} alt=${t("print.marker_of", { post: title })} />`)}
       </div>`;
   }
 

@@ -52,7 +52,8 @@ const button = (text, about, press) =>
 
 /** @param {Alarm} alarm @param {CampusMap} map @param {Doing | null} doing */
 function ofAlarm(alarm, map, doing) {
-  const what = t("mailroom.wrong.alarm", { robot: alarm.robot, post: titleOf(map, alarm.post) || t("mailroom.somewhere") });
+  const name = t("robot.name", { name: alarm.robot });
+  const what = alarm.post ? t("mailroom.wrong.alarm", { robot: name, post: titleOf(map, alarm.post) }) : name;
   const why = hasText(`why.fault.${alarm.name}`) ? t(`why.fault.${alarm.name}`) : t("why.in_english", { sentence: alarm.reason });
   return line(what, why, alarm.at, doing && button(t("alarm.acknowledge"), what, () => doing.acknowledge(alarm)));
 }
@@ -71,7 +72,7 @@ function ofOrder(order, map, doing) {
 /** @param {Order} order @param {CampusMap} map @param {Doing | null} doing */
 function ofLocked(order, map, doing) {
   const what = t("mailroom.wrong.locked", { way: orderWay(order, map) });
-  return line(what, t("mailroom.wrong.locked_why"), null,
+  return line(what, doing ? t("mailroom.wrong.locked_why") : "", null,
     doing && button(t("mailroom.do.release"), orderTitle(order), () => doing.ask(release(order), orderTitle(order))));
 }
 
