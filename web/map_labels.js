@@ -3,12 +3,13 @@
  * @import { Box, DrawnCorridor, DrawnPost, Point } from "./map_drawing.js"
  * @typedef {{name: string, title: string, notes: readonly string[], important: boolean, robots: number}} Wording what
  *   stands beside a post, and how many robots stand on it; what is not important is left out where it has no room
- * @typedef {{x: number, y: number, anchor: "start" | "end" | "middle"}} Place from its post on, the first line's start
+ * @typedef {{x: number, y: number, anchor: "start" | "end" | "middle", folded: boolean}} Place from its post on, the first
+ *   line's start; `folded`: long notes in two lines each
  * @typedef {{posts: readonly DrawnPost[], corridors: readonly DrawnCorridor[]}} Places
  */
 
 export const LINE_HEIGHT = 15;
-const CHARACTER_WIDTH = { title: 7.2, note: 6.4 };
+const CHARACTER_WIDTH = { title: 7.7, note: 6.4 };
 /** From a post's middle to its label. */
 const GAP = 19;
 /** Of each of several robots at one post. */
@@ -19,7 +20,9 @@ const APART = 6;
 const NEAR = 9;
 /** What it costs to cover another label or post, or to lie outside of the frame; a point of a corridor costs 1. */
 const COVERS = 20;
-const OUTSIDE = 30;
+const OUTSIDE = 45;
+/** What it costs to need more lines. */
+const FOLDED = 2;
 
 /** A title in lines that are short enough to stand beside a post. @param {string} title */
 export function inLines(title) {
@@ -62,7 +65,7 @@ export function placeLabels(drawn, wordings, frame, kept = []) {
   for (const wording of wordings) {
     const post = posts.get(wording.name);
     if (!post) continue;
-    const sides = candidates(post, wording, frame).map((side) => ({ ...side, cost: side.dislike + cost(side.box, wording.name) }));
+    const sides = [false, true].flatMap((folded) => candidates(post, wording, folded, frame)).map((side) => ({ ...side, cost: side.dislike + cost(side.box, wording.name) }));
     const best = sides.reduce((a, b) => (b.cost < a.cost ? b : a));
     if (best.cost >= COVERS && !wording.important) continue;
     taken.push(best.box);
@@ -77,6 +80,9 @@ export function placeLabels(drawn, wordings, frame, kept = []) {
   }
 }
 
+/** @param {Pick<Wording, "notes">} wording @param {boolean} folded */
+export const notesIn = ({ notes }, folded) => (folded ? notes.flatMap((note) => note.split(/(?<= · [^·]*) · /)) : notes);
+
 /** A circle around so many robots. @param {number} count */
 export const crowdRadius = (count) => (count > 1 ? Math.max(...robotPlaces(count).map(({ x, y }) => Math.hypot(x, y))) + 15 : 17);
 
@@ -87,13 +93,14 @@ function occupied(post, robots) {
   return [{ name: post.name, x: post.x - half, y: post.y - half, width: 2 * half, height: 2 * half }];
 }
 
-/** @param {Point} post @param {Wording} wording @param {Box | null} frame */
-function candidates({ x, y }, { title, notes, robots }, frame) {
-  const lines = inLines(title);
+/** @param {Point} post @param {Wording} wording @param {boolean} folded @param {Box | null} frame */
+function candidates({ x, y }, wording, folded, frame) {
+  const lines = inLines(wording.title);
+  const notes = notesIn(wording, folded);
   const widths = [...lines.map((line) => line.length * CHARACTER_WIDTH.title), ...notes.map((note) => note.length * CHARACTER_WIDTH.note)];
   const width = Math.max(...widths);
   const height = (lines.length + notes.length) * LINE_HEIGHT;
-  const gap = robots > 1 ? crowdRadius(robots) + 7 : GAP;
+  const gap = wording.robots > 1 ? crowdRadius(wording.robots) + 7 : GAP;
   const low = y - LINE_HEIGHT / 2;
   return [
     side("start", x + gap, y - height / 2, 0),
@@ -111,7 +118,7 @@ function candidates({ x, y }, { title, notes, robots }, frame) {
     const wanted = { start: at, end: at - width, middle: at - width / 2 }[anchor];
     const left = anchor === "middle" && frame ? pushedInto(frame, wanted, width) : wanted;
     const box = { x: left, y: top, width, height };
-    return { box, place: { x: at + left - wanted - x, y: top + LINE_HEIGHT * 0.76 - y, anchor }, dislike };
+    return { box, place: { x: at + left - wanted - x, y: top + LINE_HEIGHT * 0.76 - y, anchor, folded }, dislike: dislike + (folded ? FOLDED : 0) };
   }
 }
 

@@ -8,7 +8,7 @@ export const CLOSEST = 6;
 /** How close "to the robot" goes. */
 const NEAR = 2.5;
 /** Around what is to be seen. */
-const ROOM = 70;
+const ROOM = 95;
 /** Pixels of a plain letter that can just be read, and that are comfortable. */
 const LETTER = { drawn: 13, readable: 10 };
 

@@ -81,11 +81,11 @@ export class CampusMapElement extends PageElement {
         ${this.#svg(map, whole, facts)}
       </div>
       ${mapTools(this.#camera, whole.posts.filter(({ name }) => facts.seen.has(name)), facts.robots.length)}
-      <figcaption>
+      <div class="told">
         ${mapLegend(facts)}
         ${this.facts ? this.#list(map, facts) : nothing}
         ${placesInWords(map)}
-      </figcaption>
+      </div>
     </figure>`;
   }
 
@@ -152,9 +152,9 @@ export class CampusMapElement extends PageElement {
     const frame = this.map && drawing(this.map).frame;
     if (!frame || !width) return;
     const pixels = Math.min(width / frame.width, height / frame.height);
-    if (Math.abs(pixels - this.#pixels) < 0.01) return;
-    this.#pixels = pixels;
-    this.#beside = Math.max(0, (width / pixels - frame.width) / 2);
+    const beside = Math.round(Math.max(0, width / pixels - frame.width) / 2);
+    if (Math.abs(pixels - this.#pixels) < 0.01 && beside === this.#beside) return;
+    [this.#pixels, this.#beside] = [pixels, beside];
     this.requestUpdate();
   }
 

@@ -2,7 +2,7 @@
 import { nothing, svg } from "lit";
 import { middleOf, pathOf, pointsFrom } from "../map_drawing.js";
 import { conditionsOf } from "../map_facts.js";
-import { crowdRadius, inLines, LINE_HEIGHT, robotPlaces } from "../map_labels.js";
+import { crowdRadius, inLines, LINE_HEIGHT, notesIn, robotPlaces } from "../map_labels.js";
 /** @import { Robot, TakenCorridor } from "../api_types.ts" */
 /** @import { DrawnPost, Drawing } from "../map_drawing.js" */
 /** @import { Place, Wording } from "../map_labels.js" */
@@ -80,10 +80,10 @@ function robotMark(robot, { x, y }, post) {
 }
 
 /** @param {DrawnPost} post @param {Wording} wording @param {Place} place */
-export function label(post, { title, notes }, place) {
-  const titles = inLines(title);
+export function label(post, wording, place) {
+  const titles = inLines(wording.title);
   const x = post.x + place.x;
-  return svg`<text class="label" x=${x} y=${post.y + place.y} text-anchor=${place.anchor}>${[...titles, ...notes].map(
+  return svg`<text class="label" x=${x} y=${post.y + place.y} text-anchor=${place.anchor}>${[...titles, ...notesIn(wording, place.folded)].map(
     (line, i) => svg`<tspan class=${i < titles.length ? "name" : "note"} x=${x} dy=${i ? LINE_HEIGHT : 0}>${line}</tspan>`,
   )}</text>`;
 }

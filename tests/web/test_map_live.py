@@ -1,0 +1,111 @@
+"""The follow page for a long time: what changes is drawn, nothing else, and nothing is left behind."""
+
+import asyncio
+import re
+from collections.abc import AsyncIterator, Iterator
+
+import pytest
+import pytest_asyncio
+from playwright.async_api import CDPSession, Page, expect
+
+from protocol.clock import RealClock
+from protocol.parts import Activity, Battery, Leg, Position
+from protocol.to_server import Claim, Clear, Snapshot, Step, Why
+from tests.app.fleet.playing import PlayedRobot
+from tests.web.service import Service
+
+pytestmark = pytest.mark.browser
+
+CHANGES = 300
+HEAP_SLACK_BYTES = 300_000
+WAY = ("post5", "post3", "post2", "post1")
+LEG = Leg(from_post="post3", to_post="post2")
+
+
+@pytest.fixture(scope="module")
+def roads(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
+    with Service(tmp_path_factory.mktemp("roads")) as service:
+        yield service
+
+
+@pytest_asyncio.fixture(loop_scope="session")
+async def robot(roads: Service) -> AsyncIterator[PlayedRobot]:
+    robot = PlayedRobot(RealClock())
+    async with robot.connected(roads.link, await roads.enrol_robot("r1")):
+        await robot.greet("post5")
+        yield robot
+
+
+async def drives_about(robot: PlayedRobot, changes: int, battery: float) -> None:
+    """Seen here and there, for one reason or another; at last at post5 with this much in its battery."""
+    for number in reversed(range(changes)):
+        post, towards = WAY[number % len(WAY)], WAY[(number + 1) % len(WAY)]
+        position = Position(post=post, towards=towards, seen_at=robot.clock.utc())
+        ratio = battery if number == 0 else 0.3 + number % 50 / 100
+        activity = Activity.DRIVING if number % 5 == 0 else Activity.WAITING
+        await robot.say(Snapshot(position=position, activity=activity, battery=Battery(ratio=ratio)))
+        await robot.say(Why(sentence=f"Driving towards {towards}"))
+        await asyncio.sleep(0.015)
+
+
+async def left_behind(browser: CDPSession) -> dict[str, float]:
+    """What there is once all that nobody holds is gone."""
+    for _ in range(3):
+        await browser.send("HeapProfiler.collectGarbage")
+    metrics = (await browser.send("Performance.getMetrics"))["metrics"]
+    return {one["name"]: one["value"] for one in metrics}
+
+
+CHANGED = """(map) => new Promise((told) => {
+  const places = [];
+  const observer = new MutationObserver((changes) => places.push(...changes.map(({target}) => {
+    const element = target.nodeType === Node.TEXT_NODE ? target.parentElement : target;
+    return element?.closest(".note, .facts")?.getAttribute("class") ?? element?.outerHTML.slice(0, 80) ?? "gone";
+  })));
+  observer.observe(map, {subtree: true, childList: true, attributes: true, characterData: true});
+  setTimeout(() => (observer.disconnect(), told(places)), 2_500);
+})"""
+
+
+async def battery_is(page: Page, percent: int) -> None:
+    await expect(page.get_by_text(f"Battery {percent}%")).to_be_visible()
+
+
+async def test_after_hundreds_of_changes_the_page_is_as_light_as_before(visit, roads: Service, robot: PlayedRobot):
+    ada = await visit(at=roads)
+    page = ada.page
+    order_id = await ada.order("bob.martin@campus.example")
+    mission = await robot.mission()
+    await robot.ends(await robot.report(mission, Step.ACCEPTED))
+    await drives_about(robot, 1, battery=0.9)
+    await page.goto(f"/follow.html?order={order_id}")
+    facts = page.get_by_role("region", name="Where the robot is")
+    await expect(facts.get_by_text(re.compile("^Last seen at"))).to_be_visible()
+
+    await robot.say(Claim(claim_id="c1", legs=(LEG,)))
+    await expect(facts.get_by_text(re.compile("^May be in the corridor from Post 3 to Post 2, since"))).to_be_visible()
+    await expect(facts.locator("path.taken[data-robot]")).to_have_count(1)
+    await robot.say(Clear(leg=LEG))
+    await expect(facts.locator("path.taken[data-robot]")).to_have_count(0)
+
+    browser = await page.context.new_cdp_session(page)
+    await browser.send("Performance.enable")
+    await drives_about(robot, 40, battery=0.91)
+    await battery_is(page, 91)
+    before = await left_behind(browser)
+    heard: list[str] = []
+    browser.on("Network.eventSourceMessageReceived", lambda event: heard.append(event["eventName"]))
+    await browser.send("Network.enable")
+    while heard.count("robot") < CHANGES:  # what comes at once is told at once
+        await drives_about(robot, 50, battery=0.92)
+        await battery_is(page, 92)
+    await browser.send("Network.disable")
+    after = await left_behind(browser)
+    assert after["Nodes"] <= before["Nodes"] + 5
+    assert after["JSEventListeners"] <= before["JSEventListeners"]
+    assert after["JSHeapUsedSize"] <= before["JSHeapUsedSize"] + HEAP_SLACK_BYTES
+
+    await expect(facts.get_by_text(re.compile(r"^Last seen at Post 5, \d+ sec"))).to_be_visible()
+    changed = await page.locator("campus-map").evaluate(CHANGED)
+    assert changed, "ages grow"
+    assert set(changed) <= {"note", "facts"}, "and nothing else is drawn again"
