@@ -40,6 +40,9 @@ export const isAboard = (order) => order.state === "carrying" || order.state ===
 /** Where the robot waits for each code. */
 const AT_ME = { load: "at_sender", receive: "at_recipient", return: "at_return" };
 
+/** Whether a robot stands somewhere and waits for a hand-over. @param {Order} order */
+export const isAtAStop = (order) => Object.values(AT_ME).includes(order.state);
+
 /** Whether the robot is there and waits for me. @param {Order} order */
 export const isMyTurn = (order) => order.my_code !== null && AT_ME[order.my_code] === order.state;
 
@@ -77,12 +80,18 @@ export function stages(order) {
   }));
 }
 
+/** What is told besides the states. */
+const TOLD_TOO = ["wait_extended", "delegate_named", "delegate_revoked", "return_requested", "delayed"];
+
+/** @param {OrderEvent} event @param {Record<string, string>} values */
+const happening = ({ kind, state }, values) => t(kind === "moved" ? `timeline.${state}` : `timeline.event.${kind}`, values);
+
 /** Everything that happened, then what is still to come on the usual way. @param {Order} order @param {CampusMap} map @returns {Entry[]} */
 export function timeline(order, map) {
   const values = names(order, map);
-  const happened = order.events.filter(({ kind }) => kind === "moved").map((event) => ({
+  const happened = order.events.filter(({ kind }) => kind === "moved" || TOLD_TOO.includes(kind)).map((event) => ({
     state: event.state,
-    text: t(`timeline.${event.state}`, event.robot ? { ...values, robot: t("robot.name", { name: event.robot }) } : values),
+    text: happening(event, event.robot ? { ...values, robot: t("robot.name", { name: event.robot }) } : values),
     event,
   }));
   const reached = WAY.indexOf(order.state);

@@ -258,6 +258,45 @@ async def test_cancelling_with_a_robot_on_its_way_waits_for_the_robots_answer(de
     await expect(ada.page.get_by_role("heading", level=1)).to_have_text("Cancelled")
 
 
+async def test_a_delegate_digits_a_longer_wait_and_not_now(demonstration, visit):
+    ada = await visit("ada.king", at=demonstration.service)
+    bob = await visit("bob.martin", on="phone", at=demonstration.service)
+    order_id = await ada.order(bob.email)
+    await demonstration.is_given_a_mission()
+    await demonstration.reports(Step.ARRIVED, StopAction.LOAD)
+    for page in (ada.page, bob.page):
+        await page.goto(f"/follow.html?order={order_id}")
+    await ada.page.get_by_text("Let somebody else meet the robot").click()
+    await ada.page.get_by_label("Their name").fill("The porter")
+    await ada.page.keyboard.press("Enter")
+    await expect(ada.page.get_by_role("img", name="Code for The porter")).to_be_visible()
+    porter = ada.page.get_by_role("listitem").filter(has_text="you pass the code on")
+    await ada.assert_accessible()
+    await porter.get_by_role("button", name="Take it back, The porter").click()
+    await expect(ada.page.get_by_role("img", name="Code for The porter")).to_be_hidden()
+    waiting = ada.page.get_by_role("region", name="The robot is waiting")
+    until = await waiting.get_by_role("status").inner_text()
+    await waiting.get_by_role("button", name="5 more minutes").click()
+    await expect(waiting.get_by_role("status")).not_to_have_text(until)
+
+    digits = await ada.page.get_by_role("region", name="Your code to load the robot").locator("strong").inner_text()
+    await bob.page.get_by_text("Type six digits instead").click()
+    await bob.page.get_by_label("Six digits").fill("12 34")
+    await bob.page.keyboard.press("Enter")
+    await expect(bob.page.get_by_label("Six digits")).to_have_accessible_description(re.compile("Type all six digits"))
+    await bob.page.get_by_label("Six digits").fill(digits)
+    await bob.page.keyboard.press("Enter")
+    await demonstration.hands_over_as_asked(StopAction.LOAD)
+    await expect(bob.page.get_by_role("heading", level=1)).to_have_text("A letter is on its way to you")
+    hands = bob.page.get_by_role("region", name="In whose hands").get_by_role("listitem")
+    await expect(hands.nth(1)).to_contain_text("confirmed with the digits of Ada King")
+    await bob.page.get_by_role("button", name="I cannot take it now").click()
+    await bob.page.get_by_role("button", name="Yes, send it back").click()
+    for page in (ada.page, bob.page):
+        await expect(page.get_by_text("The robot has been asked to bring it back.")).to_be_visible()
+    await bob.assert_accessible()
+
+
 async def test_a_recipient_without_account_takes_the_letter_by_the_link_in_the_mail(demonstration, visit):
     ada = await visit("ada.king", at=demonstration.service)
     guest = await visit("grace.hill", on="phone", at=demonstration.service, signed_in=False)
@@ -275,6 +314,15 @@ async def test_a_recipient_without_account_takes_the_letter_by_the_link_in_the_m
     await demonstration.is_seen("post4", towards=None)
     await demonstration.reports(Step.ARRIVED, StopAction.RECEIVE)
     await expect(standing).to_have_text(f"{demonstration.title} is waiting for you at Post 4")
+    await guest.page.get_by_role("button", name="Français").click()
+    await expect(standing).to_contain_text("vous attend à Post 4")
+    async with guest.without_network():
+        await expect(guest.page.get_by_text(re.compile("^Pas de réseau.*Votre code marche quand même"))).to_be_visible()
+    await guest.page.get_by_role("button", name="English").click()
+    await guest.page.get_by_text("Let somebody else meet the robot").click()
+    await guest.page.get_by_label("Their name").fill("The porter")
+    await guest.page.keyboard.press("Enter")
+    await expect(guest.page.get_by_role("img", name="Code for The porter")).to_be_visible()
     await guest.assert_accessible()
     await code.get_by_role("button", name="Without the camera: I am taking it out now").click()
     await expect(code.get_by_text("The robot has been asked.")).to_be_visible()

@@ -1,24 +1,27 @@
 /** One order, followed: where it stands, when it arrives, what to do, where the robot was seen, what has happened. */
 import { html, nothing } from "lit";
 import * as api from "../api.js";
-import { repeatPage, PAGES } from "../links.js";
+import { PAGES } from "../links.js";
 import { OnLive } from "../live.js";
-import { hasEnded, isAboard, isMyTurn, reasonText, stateSentence } from "../order_words.js";
+import { hasEnded, isAtAStop, isMyTurn, reasonText, stateSentence } from "../order_words.js";
 import { loadMap } from "../posts.js";
 import { inWords } from "../problems.js";
 import { t } from "../texts.js";
 import { TrafficNow } from "../traffic.js";
 import "./campus_map.js";
-import "./cancel_order.js";
+import { orderActions } from "./order_actions.js";
+import { orderCustody } from "./order_custody.js";
 import { orderDetails } from "./order_details.js";
 import { orderStanding } from "./order_standing.js";
 import { orderTimeline } from "./order_timeline.js";
 import { problemLine } from "./field.js";
 import "./handover_code.js";
-import { icon } from "./icon.js";
+import "./opens_later.js";
 import { PageElement } from "./page_element.js";
+import "./wait_longer.js";
 /** @import { CampusMap, Order, Robot } from "../api_types.ts" */
 /** @import { Door } from "./handover_code.js" */
+/** @import { Naming } from "./order_delegates.js" */
 
 const WAITING = ["waiting", "charging", "stopped"];
 
@@ -26,6 +29,7 @@ export class FollowPage extends PageElement {
   /** How often something was heard. */
   #heard = 0;
   #door = this.#ownDoor();
+  #ownNaming = this.#naming();
   #traffic = new TrafficNow(this);
 
   static properties = {
@@ -61,14 +65,28 @@ export class FollowPage extends PageElement {
 
   /** @param {Map<string, unknown>} changed */
   willUpdate(changed) {
-    if (changed.has("order_id") || changed.has("demo")) this.#door = this.#ownDoor();
+    if (changed.has("order_id") || changed.has("demo")) [this.#door, this.#ownNaming] = [this.#ownDoor(), this.#naming()];
   }
 
   /** How I come to my code, and to the robot. @returns {Door} */
   #ownDoor() {
     const id = this.order_id;
     const showToCamera = this.demo ? () => api.showCodeToCamera(id) : null;
-    return { code: () => api.handoverCode(id), handOver: () => api.handOver(id), showToCamera };
+    return { code: () => api.handoverCode(id), handOver: (digits) => api.handOver(id, digits), showToCamera };
+  }
+
+  /** How I name somebody to meet the robot for me. @returns {Naming} */
+  #naming() {
+    const id = this.order_id;
+    return {
+      name: async (wish) => {
+        const delegate = await api.nameDelegate(id, wish);
+        return { delegate, code: await api.delegateCode(id, delegate.id) };
+      },
+      list: () => api.delegates(id),
+      revoke: (delegate_id) => api.revokeDelegate(id, delegate_id),
+      code: (delegate_id) => api.delegateCode(id, delegate_id),
+    };
   }
 
   render() {
@@ -80,7 +98,8 @@ export class FollowPage extends PageElement {
         ${orderStanding(order, map)}
         <handover-code .door=${this.#door} .purpose=${order.my_code} .needed=${isMyTurn(order)}
           .asked=${order.handover_requested !== null}></handover-code>
-        ${this.#why(order, map)}
+        ${isMyTurn(order) ? html`<wait-longer .order=${order} @changed=${(/** @type {CustomEvent<Order>} */ event) => this.#show(event.detail)}></wait-longer>` : nothing}
+        ${this.#why(order, map)} ${this.#others(order)}
         <section class="card" aria-labelledby="timeline-title">
           <h2 id="timeline-title">${t("follow.timeline")}</h2>
           ${orderTimeline(order, map)}
@@ -92,15 +111,7 @@ export class FollowPage extends PageElement {
           <campus-map .map=${map} .robots=${hasEnded(order) || !this.robot ? [] : [this.robot]} .traffic=${this.#traffic.taken}
             .from=${order.from_post} .to=${order.to_post} ?facts=${!hasEnded(order)}></campus-map>
         </section>
-        ${orderDetails(order)}
-        <div class="choices">
-          ${order.my_role === "sender" && hasEnded(order)
-            ? html`<a class="button" href=${repeatPage(order)}>${icon("repeat")}${t("follow.again")}</a>`
-            : nothing}
-          ${order.can_cancel
-            ? html`<cancel-order .order_id=${order.id} .aboard=${isAboard(order)} @changed=${(/** @type {CustomEvent<Order>} */ event) => this.#show(event.detail)}></cancel-order>`
-            : nothing}
-        </div>
+        ${orderCustody(order)} ${orderDetails(order)} ${orderActions(order, (changed) => this.#show(changed))}
       </div>
     </div>`;
   }
@@ -118,6 +129,21 @@ export class FollowPage extends PageElement {
       <h2 id="why-title">${t("follow.why")}</h2>
       <p>${reasonText(why, why_words, map)}</p>
     </section>`;
+  }
+
+  /** What is rarely done: somebody else meets the robot; digits instead of the camera. @param {Order} order */
+  #others(order) {
+    const isMine = order.my_role === "recipient" ? !hasEnded(order) : order.my_role === "sender" && order.my_code !== null;
+    return [
+      isAtAStop(order)
+        ? html`<opens-later .label=${t("follow.digits.open")} .drawing=${"dial"} .load=${() => import("./digits_entry.js")}
+            .content=${() => html`<digits-entry .door=${this.#door}></digits-entry>`}></opens-later>`
+        : nothing,
+      isMine
+        ? html`<opens-later .label=${t("delegate.open")} .load=${() => import("./order_delegates.js")}
+            .content=${() => html`<order-delegates .naming=${this.#ownNaming}></order-delegates>`}></opens-later>`
+        : nothing,
+    ];
   }
 
   #notHere() {

@@ -11,7 +11,7 @@ import { PageElement } from "./page_element.js";
 
 /**
  * How somebody comes to their code and to the robot: signed in, or by the link in a mail.
- * @typedef {{code: () => Promise<ShownCode>, handOver: () => Promise<unknown>, showToCamera: (() => Promise<unknown>) | null}} Door
+ * @typedef {{code: () => Promise<ShownCode>, handOver: (digits?: string) => Promise<unknown>, showToCamera: (() => Promise<unknown>) | null}} Door
  */
 
 export class HandoverCodeElement extends PageElement {
@@ -67,11 +67,19 @@ export class HandoverCodeElement extends PageElement {
           <li>${t(`code.how.${purpose}.2`)}</li>
         </ol>
         <p class="hint">${t("code.offline")}</p>
-        ${this.#validity()} ${this.needed ? this.#withoutCode(purpose) : nothing}
+        ${this.#digits()} ${this.#validity()} ${this.needed ? this.#withoutCode(purpose) : nothing}
         <p role="status">${this.asked ? t("code.asked") : this.said}</p>
         ${this.problem ? problemLine(this.problem) : nothing}
       </div>
     </div>`;
+  }
+
+  /** To be said to whoever types them: they do the same as the picture, and need a network. */
+  #digits() {
+    const { code } = this;
+    if (!code) return nothing;
+    if (code.digits_locked) return html`<p class="hint">${t("error.digits_locked")}</p>`;
+    return html`<p class="hint">${t("code.digits")} <strong class="number">${code.digits.slice(0, 3)}&nbsp;${code.digits.slice(3)}</strong></p>`;
   }
 
   #validity() {
@@ -96,7 +104,7 @@ export class HandoverCodeElement extends PageElement {
 
   async #handOver() {
     await this.#attempt(async (door) => {
-      await door.handOver();
+      await door.handOver("");
       this.said = t("code.asked");
     });
   }

@@ -14,6 +14,7 @@ const DRAWINGS = {
   repeat: svg`<path d="M4 11a7.5 7.5 0 0 1 13.3-3.500L20 10M20 4.500V10h-5.500M20 13a7.5 7.5 0 0 1-13.3 3.500L4 14M4 19.500V14h5.5"/>`,
   robot: svg`<rect x="4.5" y="8" width="15" height="11" rx="4"/><path d="M12 8V4.500M9.3 13v1M14.7 13v1"/><circle cx="12" cy="3.8" r=".8"/>`,
   battery: svg`<rect x="3" y="8" width="16" height="8.5" rx="2"/><path d="M21.5 11v2.500M6 11v2.500M9 11v2.5"/>`,
+  dial: svg`<path d="M6 5.500v1M12 5.500v1M18 5.500v1M6 11.500v1M12 11.500v1M18 11.500v1M6 17.500v1M12 17.500v1M18 17.500v1"/>`,
   tray: svg`<path d="M4.500 5h15l1.500 9.500V19H3v-4.500zM3 14.500h5.500a3.500 3.500 0 0 0 7 0H21"/>`,
   settings: svg`<path d="M4 7h9M19 7h1M4 17h1M11 17h9"/><circle cx="16" cy="7" r="2.800"/><circle cx="8" cy="17" r="2.800"/>`,
   leave: svg`<path d="M10 4.500H6.500a2 2 0 0 0-2 2v11a2 2 0 0 0 2 2H10M14.500 8l4 4-4 4M18.500 12H9.500"/>`,

@@ -1,19 +1,26 @@
 /** One order for whoever came by the link in a mail: where it stands, the code, "not now". No account, no event stream. */
 import { html, nothing } from "lit";
 import * as api from "../api.js";
-import { hasEnded, isMyTurn, stateSentence } from "../order_words.js";
+import { speak } from "../language.js";
+import { hasEnded, isAtAStop, isMyTurn, stateSentence } from "../order_words.js";
 import { loadMap } from "../posts.js";
 import { inWords } from "../problems.js";
 import { t } from "../texts.js";
 import { problemLine } from "./field.js";
 import "./handover_code.js";
+import { icon } from "./icon.js";
+import "./opens_later.js";
+import { asking, mayRefuse, notNowWords } from "./order_actions.js";
 import { orderDetails } from "./order_details.js";
 import { orderStanding } from "./order_standing.js";
 import { orderTimeline } from "./order_timeline.js";
 import { PageElement } from "./page_element.js";
 /** @import { CampusMap, Order } from "../api_types.ts" */
+/** @import { Naming } from "./order_delegates.js" */
 
 const LOOK_EVERY_MS = 5_000;
+// Each in its own words: whoever looks for theirs may read no other.
+const LANGUAGES = { en: "English", fr: "Français" };
 
 export class OneOrder extends PageElement {
   #timer = 0;
@@ -23,6 +30,7 @@ export class OneOrder extends PageElement {
     order: { state: true },
     map: { state: true },
     problem: { state: true },
+    unreached: { state: true },
   };
 
   constructor() {
@@ -33,11 +41,15 @@ export class OneOrder extends PageElement {
     /** @type {CampusMap | null} */
     this.map = null;
     this.problem = "";
+    /** Whether the service could not be asked just now: what is shown is what was known last. */
+    this.unreached = false;
     this.door = {
       code: () => api.linkedCode(this.token),
-      handOver: () => api.linkedHandOver(this.token),
+      handOver: (/** @type {string | undefined} */ digits) => api.linkedHandOver(this.token, digits),
       showToCamera: null,
     };
+    /** Whoever has no account sees each code this once. @type {Naming} */
+    this.naming = { name: (wish) => api.linkedDelegate(this.token, wish), list: null, revoke: notHere, code: notHere };
   }
 
   connectedCallback() {
@@ -57,12 +69,17 @@ export class OneOrder extends PageElement {
   render() {
     const { order, map } = this;
     if (!order || !map) return this.problem ? this.#refused() : html`<p class="waiting" role="status">${t("app.loading")}</p>`;
-    return html`<div class="follow">
+    return html`${this.#languages()}
+      ${this.unreached ? html`<p class="banner" role="status">${icon("network")}${t("one_order.unreached")}</p>` : nothing}
+      <div class="follow">
       <div class="column">
         ${orderStanding(order, map)}
         <handover-code .door=${this.door} .purpose=${order.my_code} .needed=${isMyTurn(order)}
           .asked=${order.handover_requested !== null}></handover-code>
-        ${order.state === "at_recipient" && order.my_role === "recipient" ? html`<button class="quiet" @click=${this.#notNow}>${t("one_order.not_now")}</button>` : nothing}
+        ${this.#others(order)}
+        ${mayRefuse(order)
+          ? html`<div class="choices">${asking(notNowWords(order), () => api.linkedNotNow(this.token), (changed) => (this.order = changed))}</div>`
+          : nothing}
         ${this.problem ? problemLine(this.problem) : nothing}
       </div>
       <div class="column">
@@ -77,6 +94,28 @@ export class OneOrder extends PageElement {
       <h2 id="timeline-title">${t("follow.timeline")}</h2>
       ${orderTimeline(order, map)}
     </section>`;
+  }
+
+  /** @param {Order} order */
+  #others(order) {
+    return [
+      isAtAStop(order)
+        ? html`<opens-later .label=${t("follow.digits.open")} .drawing=${"dial"} .load=${() => import("./digits_entry.js")}
+            .content=${() => html`<digits-entry .door=${this.door}></digits-entry>`}></opens-later>`
+        : nothing,
+      order.my_role === "recipient" && !hasEnded(order)
+        ? html`<opens-later .label=${t("delegate.open")} .load=${() => import("./order_delegates.js")}
+            .content=${() => html`<order-delegates .naming=${this.naming}></order-delegates>`}></opens-later>`
+        : nothing,
+    ];
+  }
+
+  #languages() {
+    return html`<p class="languages">
+      ${Object.entries(LANGUAGES)
+        .filter(([tag]) => tag !== document.documentElement.lang)
+        .map(([tag, name]) => html`<button class="quiet" lang=${tag} @click=${() => speak(tag)}>${name}</button>`)}
+    </p>`;
   }
 
   updated() {
@@ -98,19 +137,19 @@ export class OneOrder extends PageElement {
     });
   }
 
-  async #notNow() {
-    await this.#attempt(async () => (this.order = await api.linkedNotNow(this.token)));
-  }
-
   /** @param {() => Promise<unknown>} attempt */
   async #attempt(attempt) {
     try {
       await attempt();
-      this.problem = "";
+      [this.problem, this.unreached] = ["", false];
     } catch (failure) {
-      this.problem = inWords(failure);
+      this.unreached = failure instanceof api.NoAnswer && this.order !== null;
+      this.problem = this.unreached ? "" : inWords(failure);
     }
   }
 }
+
+/** The service lists no delegates by a link. */
+const notHere = () => Promise.reject(new Error());
 
 customElements.define("one-order", OneOrder);

@@ -11,7 +11,7 @@ const TOLD_LATER_MS = 30_000;
 /** @param {Order} order @param {CampusMap} map */
 export function orderTimeline(order, map) {
   const entries = timeline(order, map);
-  const latest = entries.filter(({ event }) => event).length - 1;
+  const latest = entries.findLastIndex(({ event }) => event?.kind === "moved");
   return html`<ol class="timeline">
     ${entries.map(({ text, event }, i) => {
       const time = event && (event.robot_at ?? event.at);
