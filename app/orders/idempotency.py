@@ -10,7 +10,7 @@ from datetime import datetime, timedelta
 from hashlib import sha256
 from typing import Any, Final
 
-from sqlalchemy import bindparam, delete, select, tuple_
+from sqlalchemy import bindparam, delete, select
 from sqlmodel import col
 from sqlmodel.ext.asyncio.session import AsyncSession
 
@@ -75,8 +75,12 @@ class Earlier:
 async def earlier_answers(session: AsyncSession, keys: Sequence[Key], now: datetime) -> dict[Key, Earlier]:
     """What was answered to these before, if anything."""
     connection = await connection_of(session)
+    people, names = {person for person, _ in keys}, {name for _, name in keys}
+    rows = await connection.execute(_KEPT, {"people": list(people), "names": list(names)})
     earlier = {}
-    for row in (await connection.execute(_KEPT, {"keys": keys})).all():
+    for row in rows.all():
+        if (row.person_id, row.key) not in keys:
+            continue  # of another who calls theirs the same
         if row.created_at < now - KEPT:
             # Whoever keeps house deletes the others, which stand in nobody's way.
             await connection.execute(_FORGOTTEN, {"person": row.person_id, "name": row.key})
@@ -98,7 +102,7 @@ def key_row(person_id: str, key: str, wish: NewOrder, answer: Answer, now: datet
     }
 
 
-# Put together once: that takes longer than asking.
+# Put together once: that takes longer than asking. Not by pairs, for which SQLite reads the whole table.
 _KEPT: Final = select(
     col(IdempotencyKey.person_id),
     col(IdempotencyKey.key),
@@ -106,7 +110,10 @@ _KEPT: Final = select(
     col(IdempotencyKey.body_hash),
     col(IdempotencyKey.headers),
     col(IdempotencyKey.answer),
-).where(tuple_(col(IdempotencyKey.person_id), col(IdempotencyKey.key)).in_(bindparam("keys", expanding=True)))
+).where(
+    col(IdempotencyKey.person_id).in_(bindparam("people", expanding=True)),
+    col(IdempotencyKey.key).in_(bindparam("names", expanding=True)),
+)
 _FORGOTTEN: Final = delete(IdempotencyKey).where(
     col(IdempotencyKey.person_id) == bindparam("person"), col(IdempotencyKey.key) == bindparam("name")
 )
