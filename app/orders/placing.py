@@ -85,11 +85,13 @@ class Placing(Ledger):
     async def _parties(self, session: AsyncSession, person: Person, wish: Wish, known: dict[str, Person]) -> Parties:
         if (wish.on_behalf_of or wish.priority is Priority.HIGH) and not person.has_role(Role.DISPATCHER):
             raise errors.ForDispatchers("Only a dispatcher orders for somebody else, or with high priority.")
-        recipient = await self._somebody(session, wish.recipient, known, errors.UnknownRecipient)
+        self._check_known(wish.recipient, known, errors.UnknownRecipient)
         if not wish.on_behalf_of or wish.on_behalf_of == person.email:
-            return Parties(person, recipient)
-        sender = await self._somebody(session, wish.on_behalf_of, known, errors.UnknownSender)
-        return Parties(sender, recipient, person)
+            return Parties(person, await self._somebody(session, wish.recipient, known))
+        self._check_known(wish.on_behalf_of, known, errors.UnknownSender)
+        # Both are looked at before either is made: of an order that is refused nobody stays behind.
+        recipient = await self._somebody(session, wish.recipient, known)
+        return Parties(await self._somebody(session, wish.on_behalf_of, known), recipient, person)
 
     async def place(
         self, session: AsyncSession, parties: Parties, wish: Wish, standing: StandingOrder, occurs_on: str
@@ -150,13 +152,13 @@ class Placing(Ledger):
         for one in drafts:
             self.publish(session, one.facts)
 
-    async def _somebody(
-        self, session: AsyncSession, email: str, known: dict[str, Person], unknown: type[Unprocessable]
-    ) -> Person:
+    def _check_known(self, email: str, known: Mapping[str, Person], unknown: type[Unprocessable]) -> None:
+        if email not in known and not may_be_sent_mail(email, self.settings):
+            domains = ", ".join(self.settings.allowed_domains)
+            raise unknown(f"Nobody here has the address {email}. New addresses are those of {domains}.")
+
+    async def _somebody(self, session: AsyncSession, email: str, known: dict[str, Person]) -> Person:
         if email not in known:
-            if not may_be_sent_mail(email, self.settings):
-                domains = ", ".join(self.settings.allowed_domains)
-                raise unknown(f"Nobody here has the address {email}. New addresses are those of {domains}.")
             known[email] = await self.desk.person(session, email, self.clock.utc())
         return known[email]
 

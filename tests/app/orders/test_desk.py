@@ -10,9 +10,10 @@ from sqlmodel import select
 
 from app.errors import ServiceError
 from app.orders.desk import AT_ONCE, OrderDesk, Placed
-from app.orders.errors import UnknownPost, UnknownRecipient
+from app.orders.errors import KeyReused, StillRunning, UnknownPost, UnknownRecipient, UnknownSender
 from app.orders.schemas import NewOrder
-from app.tables import Person
+from app.people.service import set_roles
+from app.tables import Person, Role
 from tests.app.conftest import RECIPIENT, SENDER, Browser, Mailroom
 
 NEWCOMER = "new.comer@campus.example"
@@ -32,6 +33,14 @@ class Crowd:
     async def _people(self) -> list[Person]:
         async with self._app.state.database.reading() as session:
             return list((await session.exec(select(Person))).all())
+
+    def dispatches(self, email: str) -> None:
+        async def promote() -> None:
+            async with self._app.state.database.transaction() as session:
+                person = (await session.exec(select(Person).where(Person.email == email))).one()
+                set_roles(person, {Role.DISPATCHER}, set())
+
+        self._mailroom.call(promote)
 
     def ask(self, *wishes: dict[str, Any], key: str = "k") -> list[Placed | BaseException]:
         made = [NewOrder.model_validate({"from_post": "post1", "to_post": "post4", **wish}) for wish in wishes]
@@ -76,6 +85,17 @@ def test_of_an_order_that_is_refused_nothing_is_kept_nor_its_recipient(crowd: Cr
     assert [one["kind"] for one in sender.get("/api/v1/notices").json()["items"]] == ["accepted"]
 
 
+def test_of_an_order_for_somebody_who_is_not_of_here_its_new_recipient_is_not_kept(crowd: Crowd) -> None:
+    crowd.dispatches(SENDER)
+    refused, placed = crowd.ask(
+        {"recipient": NEWCOMER, "on_behalf_of": "eve@elsewhere.example"},
+        {"recipient": RECIPIENT, "on_behalf_of": "walk.up@campus.example"},
+    )
+    assert isinstance(refused, UnknownSender) and isinstance(placed, Placed)
+    assert placed.view.my_role == "dispatcher"
+    assert {NEWCOMER, "walk.up@campus.example"} & crowd.people().keys() == {"walk.up@campus.example"}
+
+
 def test_two_orders_to_the_same_newcomer_make_one_person(crowd: Crowd) -> None:
     first, second = crowd.ask({"recipient": NEWCOMER}, {"recipient": NEWCOMER})
     assert isinstance(first, Placed) and isinstance(second, Placed)
@@ -112,3 +132,44 @@ def test_where_a_round_fails_each_of_its_orders_is_tried_by_itself(crowd: Crowd,
     assert isinstance(failed, Exception) and not isinstance(failed, ServiceError)
     assert isinstance(placed, Placed)
     assert [one["id"] for one in sender.get("/api/v1/orders").json()["items"]] == [placed.view.id]
+
+
+def wish(**changes: Any) -> NewOrder:
+    return NewOrder.model_validate({"from_post": "post1", "to_post": "post4", "recipient": RECIPIENT, **changes})
+
+
+def test_a_key_is_one_persons_and_one_request_at_a_time(crowd: Crowd) -> None:
+    people = crowd.people()
+    me, other = people[SENDER], people[RECIPIENT]
+
+    async def at_once() -> list[Placed | BaseException]:
+        theirs = crowd.desk.place(other, "k", wish(recipient=SENDER))
+        mine = [crowd.desk.place(me, "k", wish()), crowd.desk.place(me, "k", wish())]
+        return await asyncio.gather(theirs, *mine, return_exceptions=True)
+
+    theirs, first, second = crowd._mailroom.call(at_once)
+    assert isinstance(theirs, Placed) and isinstance(first, Placed) and isinstance(second, StillRunning)
+    again, new = crowd._mailroom.call(both, crowd.desk, (me, "k", wish()), (other, "l", wish()))
+    assert (again.again, again.view.id, new.again) == (True, first.view.id, False)
+
+
+@pytest.mark.parametrize(("changes", "expected"), [({}, Placed), ({"description": "Other keys."}, KeyReused)])
+def test_whoever_hangs_up_while_they_wait_has_ordered_once_whatever_they_ask_next(
+    crowd: Crowd, sender: Browser, changes: dict[str, Any], expected: type
+) -> None:
+    person = crowd.people()[SENDER]
+
+    async def twice() -> list[Placed | BaseException]:
+        first = asyncio.create_task(crowd.desk.place(person, "k", wish()))
+        await asyncio.sleep(0)  # it waits by now
+        first.cancel()
+        await asyncio.wait([first])
+        return await asyncio.gather(crowd.desk.place(person, "k", wish(**changes)), return_exceptions=True)
+
+    (second,) = crowd._mailroom.call(twice)
+    assert isinstance(second, expected)
+    assert len(sender.get("/api/v1/orders").json()["items"]) == 1
+
+
+async def both(desk: OrderDesk, *asked: tuple[Person, str, NewOrder]) -> list[Placed]:
+    return list(await asyncio.gather(*(desk.place(*one) for one in asked)))
