@@ -57,6 +57,24 @@ def test_orders_robots_and_notices_are_counted(
     assert [value for key, value in requests.items() if {"/api/v1/orders", "POST", "2xx"} <= set(key)] == [3]
 
 
+def test_what_anybody_makes_up_is_not_counted_by_its_name(watcher: Watcher, sender: Browser) -> None:
+    for path in ("/nowhere", "/api/v1/nowhere", "/api/v1/orders/made-up"):
+        sender.get(path)
+    for method in ("BREW", "HEAD"):
+        assert sender.request(method, "/api/v1/orders").status_code == 405
+    counted = {
+        key[1:3]: value for key, value in watcher.figures().items() if key[0] == "campus_mail_http_requests_total"
+    }
+    assert counted["/api/v1/orders/{order_id}", "GET"] == 1
+    assert counted["/api/v1/orders", "other"] == 2
+    assert {path for path, _ in counted} == {
+        "/api/v1/sign-in/codes",
+        "/api/v1/sign-in",
+        "/api/v1/orders",
+        "/api/v1/orders/{order_id}",
+    }
+
+
 def test_how_far_a_promise_was_off_is_counted_once(
     watcher: Watcher, sender: Browser, mailroom: Mailroom, clock: SteppedClock
 ) -> None:
