@@ -102,12 +102,13 @@ function drawn(history) {
 /** @param {BatteryHistory} history */
 function said(history) {
   const { samples } = history;
+  const times = charges(history).length;
   const [first, low, last] = [samples[0], lowest(samples), samples[samples.length - 1]];
   const now_ms = serverNow();
   return [
     t("robots.battery.from_to", { from: percent(first.ratio), to: percent(last.ratio) }),
     t("robots.battery.lowest", { ratio: percent(low.ratio), time: dayAndTime(low.at, now_ms) }),
-    counted("robots.battery.charged", charges(history).length),
+    times ? counted("robots.battery.charged", times) : "",
   ].join(" ");
 }
 

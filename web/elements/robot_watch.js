@@ -50,19 +50,23 @@ export class RobotWatch extends PageElement {
     this.beliefFilter = this.traceFilter = this.kind = "";
     new OnLive(this, {
       insight: (watched) => this.#take(watched),
-      connected: (connected) => connected && this.isConnected && this.#say(),
+      connected: (connected) => connected && this.hasUpdated && this.#say(),
     });
   }
 
   connectedCallback() {
     super.connectedCallback();
-    this.#run = new WatchedRun(this.robot);
     this.#timer = setInterval(() => document.hidden || this.#say(), SAY_AGAIN_MS);
   }
 
   disconnectedCallback() {
     super.disconnectedCallback();
     clearInterval(this.#timer);
+  }
+
+  /** @param {Map<string, unknown>} changed */
+  willUpdate(changed) {
+    if (changed.has("robot")) this.#run = new WatchedRun(this.robot);
   }
 
   firstUpdated() {
