@@ -11,6 +11,7 @@ from maps import CampusMap, builtin_map
 pytestmark = pytest.mark.browser
 
 DRAW = """async ([map, ...robots]) => {
+  await import("/elements/campus_map.js");
   const drawn = Object.assign(document.createElement("campus-map"), {map, robots});
   document.querySelector("main").replaceChildren(drawn);
   await new Promise((drawn) => requestAnimationFrame(() => setTimeout(drawn, 50)));
@@ -145,6 +146,7 @@ async def drawn(page: Page, *scene: Any) -> Locator:
 
 
 SCENE = """async ([map, robots, traffic]) => {
+  await import("/elements/campus_map.js");
   const at = (s) => new Date(Date.now() + 1000 * s).toISOString();
   const known = robots.map(({seen, to, ...robot}) => ({
     last_seen: {post: seen, at: at(-130)}, expected: to ? {post: to, from: at(60), to: at(240)} : null, towards: to,

@@ -77,13 +77,13 @@ export class CampusMapElement extends PageElement {
     const whole = drawing(map);
     this.#camera.lookAt(whole.frame);
     return html`<figure class="campus">
-      <div class="field" tabindex="0" role="group" aria-label=${t("map.area")} @keydown=${this.#gestures.key}>
+      <div class="area" tabindex="0" role="group" aria-label=${t("map.area")} @keydown=${this.#gestures.key}>
         ${this.#svg(map, whole, facts)}
       </div>
       ${mapTools(this.#camera, whole.posts.filter(({ name }) => facts.seen.has(name)), facts.robots.length)}
-      <div class="told">
+      <div class="map-told">
         ${mapLegend(facts)}
-        ${this.facts ? this.#list(map, facts) : nothing}
+        ${this.#list(map, facts)}
         ${placesInWords(map)}
       </div>
     </figure>`;
@@ -109,11 +109,14 @@ export class CampusMapElement extends PageElement {
     </svg>`;
   }
 
-  /** @param {CampusMap} map @param {MapFacts} facts */
+  /** Folded up where the robots are told of elsewhere on the page. @param {CampusMap} map @param {MapFacts} facts */
   #list(map, facts) {
+    if (!this.facts && !facts.robots.length) return nothing;
+    const list = robotFacts(map, facts, this.from, this.to);
+    if (!this.facts) return html`<details class="places"><summary>${t("map.facts")}</summary>${list}</details>`;
     return html`<p class="hint">${t("map.legend.honest")} ${map.corridors.some(({ assumed }) => assumed) ? t("map.assumed") : nothing}</p>
       <h3>${t("map.facts")}</h3>
-      ${robotFacts(map, facts, this.from, this.to)}`;
+      ${list}`;
   }
 
   /** @param {string} post @param {MapFacts} facts */

@@ -7,7 +7,7 @@ import { icon } from "./icon.js";
 /** @import { Point } from "../map_drawing.js" */
 
 /** @param {MapCamera} camera @param {readonly Point[]} seen where robots were seen @param {number} robots */
-export const mapTools = (camera, seen, robots) => html`<div class="tools" role="group" aria-label=${t("map.tools")}>
+export const mapTools = (camera, seen, robots) => html`<div class="map-tools" role="group" aria-label=${t("map.tools")}>
   ${seen.length ? tool("robot", t(robots === 1 ? "map.to_robot" : "map.to_robots"), false, () => camera.show(seen)) : nothing}
   ${tool("whole", t("map.whole"), camera.isWhole, camera.showWhole)}
   ${tool("farther", t("map.farther"), camera.isWhole, () => camera.zoom(1 / STEP))}
