@@ -1,0 +1,151 @@
+"""The robots' page, with a real daemon that drives through a simulated tunnel."""
+
+import json
+import re
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+import pytest_asyncio
+from playwright.async_api import Page, expect
+
+from app.database import Database
+from app.people.service import find_person, set_roles
+from app.settings import Settings
+from app.tables import Role
+from tests.web.service import ROOT, Service
+from tests.web.test_everywhere import NO_OVERFLOW, SMALL_TARGETS
+
+pytestmark = pytest.mark.browser
+SPEED = "3"
+"""Simulated seconds in one of ours: to the first corner in a moment, and still driving at the end of a test."""
+
+
+@pytest.fixture(scope="module")
+def tunnel(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
+    with Service(tmp_path_factory.mktemp("tunnel")) as service:
+        yield service
+
+
+@pytest_asyncio.fixture(scope="module", loop_scope="session")
+async def robot(tunnel: Service) -> str:
+    token = tunnel.folder / "r1.token"
+    token.write_text(await tunnel.enrol_robot("r1"))
+    token.chmod(0o600)
+    return str(token)
+
+
+@pytest.fixture(scope="module")
+def daemon(tunnel: Service, robot: str) -> Iterator[None]:
+    """As anybody would start it."""
+    command = [sys.executable, "-m", "robot", "run", "--simulated", "--name", "r1", "--map", "test_track"]
+    command += ["--server", tunnel.link, "--token-file", robot, "--data", str(tunnel.folder / "r1"), "--speed", SPEED]
+    with (tunnel.folder / "robot.log").open("wb") as log:
+        process = subprocess.Popen(command, cwd=ROOT, stdout=log, stderr=log)
+    yield
+    process.terminate()
+    process.wait(10)
+
+
+async def give_roles(service: Service, email: str, *roles: Role) -> None:
+    database = Database(Settings(data=service.folder).url_of_database)
+    async with database.transaction() as session:
+        person = await find_person(session, email)
+        assert person is not None
+        set_roles(person, set(roles), {Role.MAINTAINER, Role.DISPATCHER} - set(roles))
+    await database.close()
+
+
+async def assert_fits_and_is_accessible(page: Page) -> None:
+    assert await page.evaluate(NO_OVERFLOW)
+    assert await page.evaluate(SMALL_TARGETS) == []
+
+
+async def test_a_maintainer_watches_a_driving_robot_holds_the_view_filters_and_takes_the_run_away(
+    tunnel, daemon, visit, tmp_path: Path
+):
+    mira = await visit("mira.klein", at=tunnel)
+    await give_roles(tunnel, mira.email, Role.MAINTAINER, Role.DISPATCHER)
+    await mira.order("bob.martin@campus.example")
+    page = mira.page
+    await page.goto("/robots.html")
+    await page.get_by_role("link", name=re.compile("Robot r1")).click()
+    intends, feels, believes, trace = (
+        page.get_by_role("region", name=name, exact=False)
+        for name in ("What it intends", "What it feels", "What it believes", "What it did and chose")
+    )
+    await expect(intends.get_by_text("+!go_to(post1)", exact=True)).to_be_visible()
+    await expect(intends.get_by_text(re.compile(r"waits for action follow_line\."))).to_be_visible()
+    await expect(feels.get_by_text("follows the line")).to_be_visible()
+    await intends.get_by_role("listitem").filter(has_text="+!go_to(post1)").get_by_text("Why this plan").last.click()
+    await expect(intends.get_by_text(re.compile(r"^at\(post1\) does not hold"))).to_be_visible()
+    await expect(believes.get_by_text(re.compile(r"came:")).first).to_be_attached()
+    await mira.assert_accessible()
+
+    await page.get_by_role("button", name="Pause the view").click()
+    newest = await trace.get_by_role("listitem").first.inner_text()
+    await expect(page.get_by_text(re.compile(r"Held still; [2-9]\d* reports came meanwhile"))).to_be_visible()
+    assert await trace.get_by_role("listitem").first.inner_text() == newest
+    await trace.get_by_label("Only lines with").fill("LINE(")
+    await expect(trace.get_by_text(re.compile(r"^\d+ of \d+ lines"))).to_be_visible()
+    texts = await trace.get_by_role("listitem").all_inner_texts()
+    assert texts
+    assert all("line(" in text for text in texts)
+    await trace.get_by_label("What", exact=True).select_option("forgot")
+    assert all("forgot" in text for text in await trace.get_by_role("listitem").all_inner_texts())
+    await page.get_by_role("button", name="Resume the view").click()
+    await expect(page.get_by_text("Live, as the robot tells it")).to_be_visible()
+
+    async with page.expect_download() as downloading:
+        await page.get_by_role("button", name="Download this run").click()
+    download = await downloading.value
+    assert re.fullmatch(r"r1-[0-9T-]+\.jsonl", download.suggested_filename)
+    await download.save_as(tmp_path / "run.jsonl")
+    head, first, *later = map(json.loads, (tmp_path / "run.jsonl").read_text().splitlines())
+    assert (head["campus_mail_watched_run"], head["robot"], head["insights"]) == (1, "r1", len(later) + 1)
+    assert first["insight"]["whole"]
+    assert len(first["insight"]["came"]) > 20
+    numbers = [one["insight"]["number"] for one in later]
+    assert numbers == list(range(2, len(later) + 2)), "while it was held still, too"
+
+    await page.get_by_role("button", name="Stop", exact=True).click()
+    await page.get_by_role("dialog").get_by_role("button", name=re.compile("top")).click()
+    told = page.get_by_role("region", name="Now").get_by_role("listitem").filter(has_text="Stop at once")
+    await expect(told).to_contain_text("done")
+    await expect(feels.get_by_text("emergency stop")).to_be_visible()
+    await page.get_by_role("button", name="Make a one-time code").click()
+    await expect(page.get_by_text("Type this at robot r1. It is shown once.")).to_be_visible()
+    await page.emulate_media(color_scheme="dark")
+    await mira.assert_accessible()
+
+
+async def test_on_a_small_phone_in_french_and_for_a_dispatcher_without_the_mind(tunnel, daemon, visit):
+    small = {"viewport": {"width": 320, "height": 640}, "locale": "fr-CA"}
+    marc = await visit("marc.roy", on="phone", at=tunnel, color_scheme="dark", **small)
+    await give_roles(tunnel, marc.email, Role.MAINTAINER)
+    await marc.page.goto("/robots.html?robot=r1")
+    await expect(marc.page.get_by_role("heading", name="Ce qu’il croit")).to_be_visible()
+    await expect(marc.page.get_by_role("img", name=re.compile("^De "))).to_be_visible()
+    await expect(marc.page.get_by_role("button", name="Pause", exact=True)).to_have_count(0)
+    await marc.page.get_by_text(re.compile("^Tout \\(")).click()
+    await assert_fits_and_is_accessible(marc.page)
+    await marc.assert_accessible()
+    await give_roles(tunnel, marc.email, Role.DISPATCHER)
+    await marc.page.reload()
+    await expect(marc.page.get_by_role("button", name="Pause", exact=True)).to_be_visible()
+    await expect(marc.page.get_by_text(re.compile("^Les responsables techniques voient ici"))).to_be_visible()
+    await expect(marc.page.get_by_role("heading", name="Ce qu’il croit")).to_have_count(0)
+    await marc.page.goto("/robots.html")
+    await expect(marc.page.get_by_role("link", name=re.compile("Le robot r1"))).to_be_visible()
+    await assert_fits_and_is_accessible(marc.page)
+    await marc.assert_accessible()
+
+
+async def test_whoever_lacks_the_role_is_told_so(tunnel, visit):
+    ada = await visit("ada.king", at=tunnel)
+    await ada.page.goto("/robots.html?robot=r1")
+    await expect(ada.page.get_by_role("heading", name="This page is for others")).to_be_visible()
+    watch = await ada.context.request.post("/api/v1/robots/r1/watch", headers={"Sec-Fetch-Site": "same-origin"})
+    assert watch.status == 403
