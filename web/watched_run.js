@@ -22,8 +22,9 @@ const MOST_KEPT = 7_200;
 const FORMAT = 1;
 
 export class WatchedRun {
-  /** @type {Watched[]} */
+  /** As text, which takes least room. @type {string[]} */
   #record = [];
+  #began = "";
   #dropped = 0;
   #count = 0;
   /** @type {Set<string>} */
@@ -59,7 +60,8 @@ export class WatchedRun {
 
   /** @param {Watched} watched */
   #keep(watched) {
-    this.#record.push(watched);
+    this.#began ||= watched.at;
+    this.#record.push(JSON.stringify(watched));
     if (this.#record.length <= MOST_KEPT) return;
     this.#record.shift();
     this.#dropped += 1;
@@ -93,12 +95,11 @@ export class WatchedRun {
   /** One JSON object a line: what this is, then everything as the service sent it. */
   asJsonLines() {
     const head = { campus_mail_watched_run: FORMAT, robot: this.robot, insights: this.#record.length, dropped: this.#dropped };
-    return [head, ...this.#record].map((line) => `${JSON.stringify(line)}\n`).join("");
+    return [JSON.stringify(head), ...this.#record].map((line) => `${line}\n`).join("");
   }
 
   /** A name for the file, from when it begins. */
   get fileName() {
-    const began = this.#record[0]?.at ?? new Date().toISOString();
-    return `${this.robot}-${began.slice(0, 19).replaceAll(":", "-")}.jsonl`;
+    return `${this.robot}-${this.#began.slice(0, 19).replaceAll(":", "-")}.jsonl`;
   }
 }

@@ -33,7 +33,7 @@ export class RobotBattery extends PageElement {
     /** @type {BatteryHistory | null} */
     this.history = null;
     this.problem = "";
-    this.fetched_ms = 0;
+    this.fetched_ms = -LOOK_AGAIN_MS;
     new Ticking(this, LOOK_AGAIN_MS);
   }
 

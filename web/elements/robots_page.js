@@ -30,13 +30,9 @@ export class RobotsPage extends PageElement {
     /** @type {CampusMap | null} */
     this.map = null;
     this.problem = "";
-    this.fetched_ms = 0;
+    this.fetched_ms = -LOOK_AGAIN_MS;
     new Ticking(this, 5_000);
     new OnLive(this, { robot: (robot) => this.#update(robot), connected: (connected) => connected && this.#fetch() });
-  }
-
-  firstUpdated() {
-    this.#fetch();
   }
 
   render() {
@@ -53,12 +49,16 @@ export class RobotsPage extends PageElement {
     </ul>`;
   }
 
-  /** Alarms have no event of their own: they are looked at again when a robot says something. @param {Robot} robot */
+  /** Alarms have no event of their own: they are looked at again every so often. */
+  updated() {
+    if (performance.now() > this.fetched_ms + LOOK_AGAIN_MS) this.#fetch();
+  }
+
+  /** @param {Robot} robot */
   #update(robot) {
     const robots = /** @type {Robot[]} */ (this.robots ?? []);
     const known = robots.some(({ name }) => name === robot.name);
     this.robots = known ? robots.map((one) => (one.name === robot.name ? robot : one)) : [...robots, robot];
-    if (performance.now() > this.fetched_ms + LOOK_AGAIN_MS) this.#fetch();
   }
 
   async #fetch() {

@@ -5,15 +5,21 @@ from datetime import timedelta
 from itertools import pairwise
 from pathlib import Path
 
+from fastapi import FastAPI
+
 from app.fleet.battery import SHOWN, samples_since
+from app.fleet.service import enrol
 from app.fleet.watching import HOLDS_S, Watching
 from app.live.feed import WHISPERED, Happening, LocalFeed
-from app.tables import BatterySample, Person, RobotRow, Role
+from app.people.service import set_roles
+from app.tables import Alarm, BatterySample, Person, RobotRow, Role
 from protocol.clock import SteppedClock
 from protocol.insight import Insight
 from protocol.parts import Activity, Battery, Position
 from protocol.to_robot import Watch
 from protocol.to_server import Snapshot
+from robot.config import BatterySettings
+from tests.app.conftest import SENDER, Browser, Mailroom
 from tests.app.fleet.playing import PlayedRobot, Service, until
 
 EXAMPLE = Path(__file__).parents[3] / "protocol/examples/insight.json"
@@ -142,3 +148,30 @@ async def test_a_long_history_is_thinned_and_keeps_its_ends_and_every_change(ser
     changes = [at for (_, _, before), (at, _, charging) in pairwise(shown) if charging != before]
     assert changes == [begin + timedelta(minutes=700), begin + timedelta(minutes=705)]
     assert len(later) == 100, "few are shown as they are"
+
+
+def test_maintainers_see_one_robots_faults_and_charge_and_are_told_whether_it_tells(
+    app: FastAPI, sender: Browser, mailroom: Mailroom, clock: SteppedClock
+) -> None:
+    now = clock.utc()
+
+    async def begin() -> None:
+        async with app.state.database.transaction() as session:
+            set_roles(await app.state.sign_in_desk.person(session, SENDER, now), {Role.MAINTAINER}, set())
+            for name in ("r1", "r2"):
+                if name == "r2":
+                    await enrol(session, clock, name)
+                session.add(Alarm(robot=name, name="bump", reason=f"{name} was bumped", at=now))
+            session.add(BatterySample(robot="r1", at=now - timedelta(hours=30), ratio=0.9, charging=False))
+            session.add(BatterySample(robot="r1", at=now - timedelta(hours=2), ratio=0.4, charging=True))
+
+    mailroom.call(begin)
+    assert [one["reason"] for one in sender.get("/api/v1/alarms?robot=r1").json()["items"]] == ["r1 was bumped"]
+    of_a_day = sender.get("/api/v1/robots/r1/battery").json()
+    assert [(one["ratio"], one["charging"]) for one in of_a_day["samples"]] == [(0.4, True)]
+    assert of_a_day["low_ratio"] == BatterySettings().low_ratio, "the robots' own setting, unless theirs says otherwise"
+    longer = sender.get("/api/v1/robots/r1/battery", params={"since": (now - timedelta(days=2)).isoformat()}).json()
+    assert [one["ratio"] for one in longer["samples"]] == [0.9, 0.4]
+    watch = sender.post("/api/v1/robots/r1/watch", headers={"Sec-Fetch-Site": "same-origin"}).json()
+    assert watch == {"robot": "r1", "online": False, "tells": False, "for_s": HOLDS_S}
+    assert sender.get("/api/v1/robots/r3/battery").json()["code"] == "unknown_robot"
