@@ -9,7 +9,7 @@
  */
 
 export const LINE_HEIGHT = 15;
-const CHARACTER_WIDTH = { title: 7.7, note: 6.4 };
+const CHARACTER_WIDTH = { title: 7.7, note: 6.7 };
 /** From a post's middle to its label. */
 const GAP = 19;
 /** Of each of several robots at one post. */
