@@ -14,6 +14,7 @@ from app.handover.routes import HandOversDep
 from app.orders.errors import NoCodeForYou, UnknownOrder
 from app.people.current_user import CurrentUser
 from app.settings import SettingsDep
+from app.tables.columns import STORABLE
 
 router = APIRouter(tags=["demo"])
 
@@ -35,7 +36,7 @@ class DoorClosed(Conflict):
 class ShowCode(BaseModel):
     """Which order's code to show; it must be this person's turn."""
 
-    order_id: Annotated[str, StringConstraints(max_length=64)]
+    order_id: Annotated[str, StringConstraints(max_length=64, pattern=STORABLE)]
 
 
 class Shown(BaseModel):

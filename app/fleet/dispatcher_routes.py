@@ -20,6 +20,7 @@ from app.people.current_user import Dispatcher, DispatcherOrMaintainer
 from app.people.errors import RoleNeeded
 from app.settings import ClockDep
 from app.tables import Alarm, Person, RobotCommand
+from app.tables.columns import STORABLE
 from protocol.to_robot import EmergencyStop, Pause, Recall, Resume
 
 router = APIRouter(tags=["dispatch"])
@@ -107,7 +108,9 @@ async def list_alarms(
     session: ReadingDep,
     page: PageDep,
     only_open: Annotated[bool, Query(description="Only those that are not over.")] = False,
-    robot: Annotated[str | None, Query(max_length=64, description="Only those of this robot.")] = None,
+    robot: Annotated[
+        str | None, Query(max_length=64, pattern=STORABLE, description="Only those of this robot.")
+    ] = None,
 ) -> AlarmPage:
     """List what people should look at, newest first."""
     wanted = select(Alarm).where(col(Alarm.cleared_at).is_(None)) if only_open else select(Alarm)

@@ -7,6 +7,7 @@ from pydantic import BaseModel, ConfigDict, StringConstraints
 
 from app.orders.robot_view import RobotView
 from app.tables import Alarm, RobotCommand, RobotRow
+from app.tables.columns import STORABLE
 
 
 class CommandReason(BaseModel):
@@ -14,7 +15,7 @@ class CommandReason(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    reason: Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=500)]
+    reason: Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=500, pattern=STORABLE)]
 
 
 class CommandView(BaseModel):

@@ -9,6 +9,7 @@ from app.orders.codes import HandoverCode
 from app.people.schemas import Email
 from app.server_key import ServerKey
 from app.tables import Delegate
+from app.tables.columns import STORABLE
 
 PurposeName = Literal["load", "receive", "return"]
 
@@ -60,7 +61,7 @@ class NewDelegate(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    name: Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=200)]
+    name: Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=200, pattern=STORABLE)]
     email: Email | None = None
     purpose: PurposeName | None = None
 

@@ -14,12 +14,13 @@ from app.orders.routes import OrderId, OrdersDep
 from app.orders.schemas import OrderView, etag_of
 from app.people.current_user import CurrentUser, Dispatcher
 from app.tables import Person, Priority
+from app.tables.columns import STORABLE
 
 router = APIRouter(tags=["orders"])
 dispatch_router = APIRouter(tags=["dispatch"])
 
 IfMatch = Annotated[str, Header(max_length=200)]
-Reason = Annotated[str, StringConstraints(max_length=400, strip_whitespace=True)]
+Reason = Annotated[str, StringConstraints(max_length=400, strip_whitespace=True, pattern=STORABLE)]
 KNOWN: Final = (errors.UnknownOrder, errors.OrderChanged)
 LONGEST_WAIT_S: Final = 7200
 
@@ -95,7 +96,7 @@ class IntoHands(Body):
 class Reassignment(Body):
     """Which robot shall fetch it; null: any other."""
 
-    robot: Annotated[str, StringConstraints(max_length=64)] | None = None
+    robot: Annotated[str, StringConstraints(max_length=64, pattern=STORABLE)] | None = None
 
 
 class PriorityChange(Body):

@@ -12,6 +12,7 @@ from app.orders.window import Window
 from app.paging import PageOf
 from app.people.schemas import Email
 from app.tables import OrderState, Priority
+from app.tables.columns import STORABLE
 from app.texts.reasons import Words
 
 PostName = Annotated[str, StringConstraints(pattern=r"^[A-Za-z][A-Za-z0-9_]*$", max_length=64)]
@@ -31,7 +32,9 @@ class Wish(BaseModel):
     from_post: PostName
     to_post: PostName
     recipient: Email
-    description: Annotated[str, StringConstraints(max_length=500, strip_whitespace=True)] | None = None
+    description: Annotated[str, StringConstraints(max_length=500, strip_whitespace=True, pattern=STORABLE)] | None = (
+        None
+    )
     priority: Annotated[Priority, Field(description="`high` is for dispatchers.")] = Priority.NORMAL
     on_behalf_of: EmailOfSomebody = None
 

@@ -10,6 +10,7 @@ from app.paging import PageOf
 from app.people.contacts import Known
 from app.people.scopes import Scope
 from app.tables import Person, PersonSession, PersonToken, Role
+from app.tables.columns import STORABLE
 
 # The pattern of HTML's <input type=email>, with a dot in the domain.
 EMAIL = re.compile(
@@ -68,9 +69,9 @@ class AboutMe(BaseModel):
 
     model_config = ConfigDict(extra="forbid", json_schema_extra=_without_defaults)
 
-    name: Annotated[str, StringConstraints(min_length=1, max_length=200, strip_whitespace=True)] = ""
+    name: Annotated[str, StringConstraints(min_length=1, max_length=200, strip_whitespace=True, pattern=STORABLE)] = ""
     language: Literal["en", "fr"] = "en"
-    usual_post: Annotated[str, StringConstraints(max_length=64)] | None = None
+    usual_post: Annotated[str, StringConstraints(max_length=64, pattern=STORABLE)] | None = None
 
 
 class SessionView(BaseModel):
@@ -97,7 +98,7 @@ class TokenWish(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    name: Annotated[str, StringConstraints(min_length=1, max_length=100, strip_whitespace=True)]
+    name: Annotated[str, StringConstraints(min_length=1, max_length=100, strip_whitespace=True, pattern=STORABLE)]
     scopes: list[Scope] = Field(min_length=1, max_length=len(Scope))
     days: int = Field(90, ge=1, le=366, description="For how many days it is to be good.")
 
@@ -132,8 +133,8 @@ class ContactWish(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    label: Annotated[str, StringConstraints(max_length=100, strip_whitespace=True)] = ""
-    post: Annotated[str, StringConstraints(max_length=64)] | None = None
+    label: Annotated[str, StringConstraints(max_length=100, strip_whitespace=True, pattern=STORABLE)] = ""
+    post: Annotated[str, StringConstraints(max_length=64, pattern=STORABLE)] | None = None
 
 
 class ContactView(BaseModel):

@@ -6,8 +6,9 @@ from pydantic import StringConstraints
 from sqlalchemy import ColumnElement, or_
 from sqlmodel import col
 
-SearchText = Annotated[str, StringConstraints(max_length=100, pattern=r"^[^\x00]*$")]
-"""PostgreSQL refuses a zero byte in a text."""
+from app.tables.columns import STORABLE
+
+SearchText = Annotated[str, StringConstraints(max_length=100, pattern=STORABLE)]
 
 
 def says(search: str, *columns: Any) -> ColumnElement[bool]:
