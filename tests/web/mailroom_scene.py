@@ -82,7 +82,9 @@ class Scene:
                 not_before=self.clock.utc() + timedelta(hours=2) if what == "Books" else None,
                 priority=Priority.LOW if what == "Exam sheets" else Priority.NORMAL,
             )
-            order_id = (await self.state.orders.create(session, person, wish)).id
+            draft = await self.state.orders.draft(session, person, wish, {person.email: person})
+            await self.state.orders.write(session, [draft])
+            order_id = draft.facts.order.id
             await self._go(session, order_id, robot, _way_to(to))
             order = await session.get_one(Order, order_id)
             order.created_at -= timedelta(seconds=waits_s)

@@ -20,7 +20,8 @@ import { robotBoard } from "./robot_board.js";
 import { wrongList } from "./wrong_list.js";
 /** @import { Order } from "../api_types.ts" */
 
-const SHOWN = 8;
+/** So many fit on a screen of 1080 lines beside everything that can be wrong. */
+const SHOWN = 6;
 
 export class MailroomWall extends PageElement {
   now = new MailroomNow(this);
@@ -44,8 +45,8 @@ export class MailroomWall extends PageElement {
     const unseen = orders.length - SHOWN;
     return html`<div class="wall-head">
         <h1>${map.title}</h1>
-        <time>${clockTime(new Date(serverNow()).toISOString())}</time>
         <a class="button quiet" href=${PAGES.mailroom}>${t("mailroom.wall.leave")}</a>
+        <time>${clockTime(new Date(serverNow()).toISOString())}</time>
       </div>
       ${problem ? problemLine(problem) : nothing}
       ${wrongList(whatIsWrong(known), map, null)}

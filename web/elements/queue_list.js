@@ -18,15 +18,17 @@ import { icon } from "./icon.js";
  */
 export const queueList = (orders, map, whose, act) => html`<ul class="queue">
   ${repeat(orders, ({ id }) => id, (order) => html`<li class=${order.state}>
-    <span class="badge ${order.state}">${t(`badge.${order.state}`)}</span>
     <div class="what">
-      <strong>${titleOf(map, order.from_post)}${icon("arrow")}<span class="unseen">→</span>${titleOf(map, order.to_post)}</strong>
+      <div class="way">
+        <strong>${titleOf(map, order.from_post)}${icon("arrow")}<span class="unseen">→</span>${titleOf(map, order.to_post)}</strong>
+        <span class="badge ${order.state}">${t(`badge.${order.state}`)}</span>
+      </div>
       ${act ? html`<a href=${followPage(order.id)}>${whose(order)}</a>` : html`<span>${whose(order)}</span>`}
       ${act && order.description ? html`<span class="hint">${order.description}</span>` : nothing}
     </div>
     <div class="why-now">${hasEnded(order) ? order.why : whyItWaits(order, map)}${priorityMark(order)}</div>
     <div class="when">
-      <span>${robotOf(order, act !== null)}${age(order)}</span>
+      ${robotOf(order, act !== null)}<span>${age(order)}</span>
       ${order.window && !hasEnded(order) ? html`<span>${t("mailroom.window", { window: windowText(order.window) })}</span>` : nothing}
     </div>
     ${act ? html`<button type="button" class="act" @click=${() => act(order)}>${t("mailroom.act")}<span class="unseen">: ${whose(order)}</span></button>` : nothing}
@@ -43,7 +45,7 @@ function priorityMark({ priority }) {
 function robotOf({ robot }, linked) {
   if (!robot) return nothing;
   const title = t("robot.name", { name: robot.name });
-  return html`${linked ? html`<a href=${robotPage(robot.name)}>${title}</a>` : title} · `;
+  return html`<span>${linked ? html`<a href=${robotPage(robot.name)}>${title}</a>` : title}</span>`;
 }
 
 /** @param {Order} order */

@@ -23,8 +23,8 @@ export class UnsentMail extends PageElement {
 
   constructor() {
     super();
-    /** @type {Page<Sending>} */
-    this.waiting = { items: [], next: null };
+    /** @type {Page<Sending> | null} null until it is known */
+    this.waiting = null;
     /** @type {SpooledMail[]} */
     this.spool = [];
     /** @type {SpooledText | null} the mail that is being read */
@@ -48,12 +48,14 @@ export class UnsentMail extends PageElement {
   }
 
   #lists() {
+    const { waiting } = this;
+    if (!waiting) return html`<h2 id="unsent-title" tabindex="-1">${t("mailroom.unsent")}</h2>${this.problem ? problemLine(this.problem) : html`<p>${t("app.loading")}</p>`}`;
     return html`<h2 id="unsent-title" tabindex="-1">${t("mailroom.unsent")}</h2>
       <p role="status">${this.said}</p>
       ${this.problem ? problemLine(this.problem) : nothing}
       <h3>${t("mailroom.outbox")}</h3>
-      ${this.waiting.items.length ? this.#outbox() : html`<p class="hint">${t("mailroom.outbox.none")}</p>`}
-      ${this.waiting.next ? html`<button type="button" class="quiet" @click=${this.#more}>${t("mailroom.more")}</button>` : nothing}
+      ${waiting.items.length ? this.#outbox(waiting.items) : html`<p class="hint">${t("mailroom.outbox.none")}</p>`}
+      ${waiting.next ? html`<button type="button" class="quiet" @click=${() => this.#more(waiting)}>${t("mailroom.more")}</button>` : nothing}
       <h3>${t("mailroom.spool")}</h3>
       <p class="hint">${t(this.spool.length ? "mailroom.spool.hint" : "mailroom.spool.none")}</p>
       <ul class="letters">
@@ -66,9 +68,10 @@ export class UnsentMail extends PageElement {
       <button type="button" class="quiet" @click=${this.#close}>${t("mailroom.close")}</button>`;
   }
 
-  #outbox() {
+  /** @param {Sending[]} sendings */
+  #outbox(sendings) {
     return html`<ul class="letters">
-      ${repeat(this.waiting.items, ({ id }) => id, (sending) => html`<li class="sending">
+      ${repeat(sendings, ({ id }) => id, (sending) => html`<li class="sending">
         <div>
           <strong>${sending.email}</strong>
           <span>${t(`mailroom.channel.${sending.channel}`)} · ${t(sending.gave_up_at ? "mailroom.gave_up" : "mailroom.tries", { tries: sending.tries, ago: ago(sending.created_at, serverNow()) })}</span>
@@ -95,10 +98,11 @@ export class UnsentMail extends PageElement {
     });
   }
 
-  async #more() {
+  /** @param {Page<Sending>} waiting */
+  async #more({ items, next }) {
     await this.#attempt(async () => {
-      const older = await api.notSent({ limit: AT_ONCE, cursor: this.waiting.next ?? undefined });
-      this.waiting = { items: [...this.waiting.items, ...older.items], next: older.next };
+      const older = await api.notSent({ limit: AT_ONCE, cursor: next ?? undefined });
+      this.waiting = { items: [...items, ...older.items], next: older.next };
     });
   }
 
