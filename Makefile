@@ -6,7 +6,7 @@ BIN := .venv/bin
 ARGS ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help setup setup-robot test check format demo serve robot bench bench-mind bench-body bench-service bench-paper bench-service-kills fuzz-mind client pages fuzz-api pin clean
+.PHONY: help setup setup-robot test check format demo serve robot bench bench-mind bench-body bench-service bench-paper bench-pages bench-service-kills fuzz-mind client pages icons fuzz-api pin clean
 # A recipe that fails must not leave its stamp behind.
 .DELETE_ON_ERROR:
 
@@ -60,6 +60,9 @@ bench-service: setup ## Measure the service from outside, client and server on a
 bench-paper: setup ## The paper's evaluation again, its own program beside ours: JSON and plots
 	@$(BIN)/python -m benchmarks.paper $(ARGS)
 
+bench-pages: setup ## Measure the pages as a slow phone opens them: kB, time until they can be used, shifts; JSON
+	@$(BIN)/python -m benchmarks.pages $(ARGS)
+
 bench-service-kills: setup ## Kill the service 300 times under load: what it has kept and told; prints JSON
 	@$(BIN)/python -m benchmarks.service_kills $(ARGS)
 
@@ -71,6 +74,9 @@ client: setup ## Write the Python client anew from the API document
 
 pages: setup ## Write what follows from other files into web/: lists of modules, the types of the API
 	@$(BIN)/python web/make_pages.py
+
+icons: setup ## Draw the app's icons from our SVG
+	@$(BIN)/python web/make_icons.py
 
 fuzz-api: setup ## Let schemathesis look for answers that the API document does not promise, twenty minutes long
 	@CAMPUS_MAIL_FUZZ_S=300 $(BIN)/python -m pytest -q --timeout 900 tests/app/test_api_fuzz.py $(ARGS)

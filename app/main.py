@@ -9,7 +9,7 @@ import structlog
 from fastapi import FastAPI
 from starlette.datastructures import State
 
-from app import about, demo_camera, marker_sheets, metrics, one_order, order_export
+from app import about, asset_links, demo_camera, marker_sheets, metrics, one_order, order_export
 from app.api_document import DocumentedApi
 from app.body_limit import BodyLimit
 from app.database import Database
@@ -115,6 +115,7 @@ def create_app(settings: Settings, clock: Clock, outside: Outside | None = None)
     for router in ROUTERS:
         app.include_router(router, prefix=API)
     app.include_router(about.root_router)
+    app.include_router(asset_links.router)
     app.include_router(metrics.router)
     add_pages(app, settings.pages)
     app.add_middleware(RequestFigures, registry=app.state.metrics.registry)

@@ -1,19 +1,33 @@
-"""What the pages are made of, and a version that changes with any of it: the service worker keeps these files."""
+"""What the pages are made of, and a version that changes with any of it: the service worker keeps these files.
+
+Some are put together here, so that a first page asks for less: the styles of every page in one file, and the texts
+without those that only some pages or only mails have.
+"""
 
 import asyncio
 import json
-from collections.abc import Iterator
+from collections.abc import Awaitable, Callable, Iterator
+from functools import partial
 from hashlib import sha256
 from pathlib import Path
 from typing import Final
 
-from fastapi import FastAPI
+from fastapi import FastAPI, Request
 from fastapi.responses import Response
 
-ADDRESS: Final = "/page_files.js"
+from app.texts import LANGUAGES
+
+MODULE: Final = "/page_files.js"
+WORKER: Final = "/service_worker.js"
+STYLES: Final = "/styles/everywhere.css"
+STYLES_OF: Final = ("tokens", "base", "shell", "controls")
+TEXTS: Final = "/texts/{language}.everyday.json"
+NOT_EVERYDAY: Final = frozenset(
+    {"email", "notice", "mailroom", "print", "alarm", "robots", "mind", "sensor", "settings"}
+)
+"""Families of texts for mails and for the pages that `texts.js` names."""
 KEPT: Final = frozenset({".html", ".js", ".css", ".json", ".svg"})
 """Pictures of the app for the home screen are fetched by the system once, not by pages."""
-WORKER: Final = "/service_worker.js"
 NPM_MODULES: Final = "npm_modules.json"
 VERSION_CHARACTERS: Final = 16
 
@@ -31,13 +45,23 @@ class PageFiles:
         files = dict(sorted(self._files()))
         seen = {address: path.stat().st_mtime_ns for address, path in files.items()}
         if seen != self._seen or not self._module:
-            self._module, self._seen = _written(files), seen
+            self._module, self._seen = self._written(files), seen
         return self._module
 
     def worker(self) -> bytes:
-        """The service worker of this version."""
+        """The service worker of this version: browsers look at it anew when its own bytes have changed."""
         version = self.module().partition(b"\n")[0]
         return (self._folder / WORKER[1:]).read_bytes() + b"// " + version + b"\n"
+
+    def styles(self) -> bytes:
+        """The styles that every page has."""
+        return b"\n".join((self._folder / f"styles/{name}.css").read_bytes() for name in STYLES_OF)
+
+    def everyday_texts(self, language: str) -> bytes:
+        """The texts of one language that the everyday pages use."""
+        texts = json.loads((self._folder / f"texts/{language}.json").read_bytes())
+        everyday = {key: text for key, text in texts.items() if key.partition(".")[0] not in NOT_EVERYDAY}
+        return json.dumps(everyday, ensure_ascii=False, separators=(",", ":")).encode()
 
     def _files(self) -> Iterator[tuple[str, Path]]:
         for path in self._folder.rglob("*"):
@@ -50,22 +74,34 @@ class PageFiles:
             if path.is_file():
                 yield address, path
 
-
-def _written(files: dict[str, Path]) -> bytes:
-    version = sha256()
-    for address, path in files.items():
-        version.update(address.encode() + b"\0" + sha256(path.read_bytes()).digest())
-    name = version.hexdigest()[:VERSION_CHARACTERS]
-    return f"export const VERSION = {json.dumps(name)};\nexport const FILES = {json.dumps(list(files))};\n".encode()
+    def _written(self, files: dict[str, Path]) -> bytes:
+        version = sha256()
+        for address, path in files.items():
+            version.update(address.encode() + b"\0" + sha256(path.read_bytes()).digest())
+        parts = {f"/styles/{name}.css" for name in STYLES_OF}
+        made = [STYLES, *(TEXTS.format(language=language) for language in LANGUAGES)]
+        addresses = json.dumps([*(address for address in files if address not in parts), *made])
+        name = json.dumps(version.hexdigest()[:VERSION_CHARACTERS])
+        return f"export const VERSION = {name};\nexport const FILES = {addresses};\n".encode()
 
 
 def add_page_files(app: FastAPI, files: PageFiles) -> None:
-    """Serve the module that names them, and the worker, whose own bytes must change for browsers to look at it anew."""
+    """Serve what is not simply a file of the folder."""
+    for address, media_type, read in (
+        (MODULE, "text/javascript", files.module),
+        (WORKER, "text/javascript", files.worker),
+        (STYLES, "text/css", files.styles),
+        *((TEXTS.format(language=one), "application/json", partial(files.everyday_texts, one)) for one in LANGUAGES),
+    ):
+        app.get(address, include_in_schema=False)(_made(media_type, read))
 
-    @app.get(ADDRESS, include_in_schema=False)
-    async def page_files() -> Response:
-        return Response(await asyncio.to_thread(files.module), media_type="text/javascript")
 
-    @app.get(WORKER, include_in_schema=False)
-    async def service_worker() -> Response:
-        return Response(await asyncio.to_thread(files.worker), media_type="text/javascript")
+def _made(media_type: str, read: Callable[[], bytes]) -> Callable[[Request], Awaitable[Response]]:
+    async def made(request: Request) -> Response:
+        content = await asyncio.to_thread(read)
+        tag = f'"{sha256(content).hexdigest()[:VERSION_CHARACTERS]}"'
+        if tag in request.headers.get("if-none-match", ""):
+            return Response(status_code=304, headers={"ETag": tag})
+        return Response(content, media_type=media_type, headers={"ETag": tag})
+
+    return made

@@ -16,7 +16,7 @@ from starlette.staticfiles import StaticFiles
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.errors import problem_answer
-from app.page_files import NPM_MODULES, PageFiles, add_page_files
+from app.page_files import NPM_MODULES, WORKER, PageFiles, add_page_files
 
 log = structlog.get_logger(__name__)
 
@@ -29,12 +29,18 @@ NOT_PAGES: Final = frozenset(
         "package-lock.json",
         "tsconfig.json",
         "make_pages.py",
+        "make_icons.py",
+        "page_files.d.ts",
+        "worker_types.d.ts",
         NPM_MODULES,
         "openapi_types.d.ts",
         "api_types.ts",
     }
 )
 """What lies in the pages' folder and is for those who work on them."""
+PARTS_OF_A_PAGE: Final = frozenset({"text/javascript", "text/css"})
+"""What says nothing by itself: the page that asks for it has said what it may do. A page has dozens of them."""
+OF_EVERY_ANSWER: Final = frozenset({"X-Content-Type-Options", "Cache-Control"})
 IMPORT_MAP = re.compile(rb'<script type="importmap">(.*?)</script>', re.DOTALL)
 
 
@@ -114,8 +120,10 @@ class SafeHeaders:
         async def send_safely(message: Message) -> None:
             if message["type"] == "http.response.start":
                 headers = MutableHeaders(scope=message)
+                is_part = scope["path"] != WORKER and headers.get("content-type", "").split(";")[0] in PARTS_OF_A_PAGE
                 for name, value in self._headers.items():
-                    headers.setdefault(name, value)
+                    if not is_part or name in OF_EVERY_ANSWER:
+                        headers.setdefault(name, value)
                 if scope["scheme"] == "https":
                     headers.setdefault("Strict-Transport-Security", "max-age=31536000")
             await send(message)

@@ -5,6 +5,7 @@ Secrets come from files: the server key lives in its own file, and any setting m
 """
 
 import os
+import re
 from pathlib import Path
 from typing import Annotated, Final, Literal, Self
 from urllib.parse import urlsplit
@@ -48,6 +49,10 @@ class Settings(BaseSettings):
         description="File with the key that hand-over codes derive from; default: `server.key` in the data folder.",
     )
     pages: Path = Field(ROOT / "web", description="Folder of the pages.")
+    android_package: str = Field("", description="Name of an Android app that opens these pages as its own.")
+    android_fingerprints: tuple[str, ...] = Field(
+        (), description="SHA-256 fingerprints of the certificates that sign it (JSON list), as AB:CD:…"
+    )
     map: str = Field("test_track", description="Campus map: the name of a built-in one, or a file.")
     public_url: str = Field("", description="Address of the pages in mails, such as https://mail.campus.example.")
     allowed_domains: tuple[str, ...] = Field(
@@ -147,6 +152,14 @@ class Settings(BaseSettings):
     clock_file: Path | None = Field(None, description="Shared scaled clock of a demonstration; default: real time.")
     demo_door: Path | None = Field(None, description="Door of a simulated robot; set by the demonstration alone.")
     log_level: str = Field("INFO", description="DEBUG, INFO, WARNING or ERROR.")
+
+    @field_validator("android_fingerprints")
+    @classmethod
+    def _fingerprints_are_whole(cls, fingerprints: tuple[str, ...]) -> tuple[str, ...]:
+        for one in fingerprints:
+            if not re.fullmatch(r"[0-9A-F]{2}(:[0-9A-F]{2}){31}", one):
+                raise ValueError(f"{one!r} is no SHA-256 fingerprint; one is 32 pairs of hex digits: AB:CD:…")
+        return fingerprints
 
     @field_validator("allowed_domains")
     @classmethod

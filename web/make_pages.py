@@ -29,14 +29,19 @@ IMPORT_MAP: Final = re.compile(r"<script type=\"importmap\">(.*?)</script>", re.
 PRELOADS: Final = re.compile(
     r"(?:    <link rel=\"modulepreload\" href=\"[^\"]+\" />\n)*(?=    <script type=\"module\")"
 )
-FIRST: Final = re.compile(r'<script type="module" src="([^"]+)"')
+SCRIPTS: Final = re.compile(r'<script type="module" src="([^"]+)"')
 
 
 def with_preloads(html: str) -> str:
-    """The page with a line for each module behind its first one, in the order of their names."""
+    """The page with a line for each module behind its scripts, in the order of their names; first what the first script
+    needs, since it begins as soon as it has that."""
     import_map = json.loads(_only(IMPORT_MAP, html))["imports"]
-    modules = sorted(modules_behind(_only(FIRST, html), import_map))
-    return PRELOADS.sub("".join(f'    <link rel="modulepreload" href="{one}" />\n' for one in modules), html, count=1)
+    early, *scripts = SCRIPTS.findall(html)
+    modules = dict.fromkeys([early, *sorted(modules_behind(early, import_map))])
+    for script in scripts:
+        modules |= dict.fromkeys(sorted(modules_behind(script, import_map)))
+    lines = [f'    <link rel="modulepreload" href="{one}" />\n' for one in modules]
+    return PRELOADS.sub("".join(lines), html, count=1)
 
 
 def _only(pattern: re.Pattern[str], html: str) -> str:

@@ -1,13 +1,14 @@
 /** Opens a page: who is there, in which language, what time it is; then draws the page inside the shell. */
 import { html, render } from "lit";
 import * as api from "./api.js";
+import { first, rememberLanguage } from "./early.js";
 import "./elements/page_shell.js";
 import { startLive } from "./live.js";
-import { keptOrders } from "./outbox.js";
 import { keepServerTime } from "./server_clock.js";
-import { beginSession } from "./session.js";
+import { beginSession, hasKept } from "./session.js";
 import { chooseLanguage, loadTexts, t } from "./texts.js";
 /** @import { About, Person } from "./api_types.ts" */
+/** @import { PageShell } from "./elements/page_shell.js" */
 /** @import { PageName } from "./links.js" */
 
 const LANGUAGES_WITHOUT_SERVICE = ["en", "fr"];
@@ -18,21 +19,29 @@ const LANGUAGES_WITHOUT_SERVICE = ["en", "fr"];
  */
 export async function openPage(page, content) {
   await orSayThatNobodyAnswers(async (root) => {
-    const [about, person] = await Promise.all([api.about(), api.me()]);
-    await loadTexts(chooseLanguage(person ? [person.language] : navigator.languages, about.languages));
+    const [about, person] = await first();
+    const language = chooseLanguage(person ? [person.language] : navigator.languages, about.languages);
+    rememberLanguage(language);
+    await Promise.all([loadTexts(language), person ? undefined : import("./elements/sign_in.js")]);
     document.title = `${t(person ? `title.${page}` : "title.sign_in")} · ${t("app.name")}`;
     keepServerTime(about);
     beginSession(person);
-    const kept = person ? await keptOrders(person.id).catch(() => []) : [];
-    if (kept.length) await import("./elements/kept_orders.js");
+    const kept = person && hasKept() ? await keptHere(person) : [];
     const draw = () => person && content({ about, person });
     render(
       html`<page-shell .page=${page} .about=${about} .person=${person} .content=${draw} .kept=${kept}></page-shell>`,
       root,
     );
     if (person) startLive();
-    afterwards(() => import("./with_worker.js").then(({ workOffline }) => workOffline(person)));
+    const shell = /** @type {PageShell} */ (root.querySelector("page-shell"));
+    afterwards(() => import("./after_opening.js").then(({ afterOpening }) => afterOpening(shell, person)));
   });
+}
+
+/** Orders that wait on this device have their room from the start. @param {Person} person */
+async function keptHere(person) {
+  const [{ keptOrders }] = await Promise.all([import("./outbox.js"), import("./elements/kept_orders.js")]);
+  return keptOrders(person.id).catch(() => []);
 }
 
 /** What nobody waits for is done once the page stands. @param {() => unknown} work */
@@ -48,7 +57,7 @@ function afterwards(work) {
  */
 export async function openPageForGuest(title, content) {
   await orSayThatNobodyAnswers(async (root) => {
-    const about = await api.about();
+    const [about] = await first();
     await loadTexts(chooseLanguage(navigator.languages, about.languages));
     document.title = `${t(title)} · ${t("app.name")}`;
     keepServerTime(about);

@@ -46,6 +46,9 @@ export async function keptOrders(person_id) {
   return all.filter((kept) => kept.person_id === person_id).sort((a, b) => a.at.localeCompare(b.at));
 }
 
+/** Whether there are any, of whomever. */
+export const anyKept = async () => (await inBox("readonly", (box) => box.count())) > 0;
+
 /** @param {KeptOrder} kept */
 export const keep = (kept) => inBox("readwrite", (box) => box.put(kept));
 

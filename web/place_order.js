@@ -6,6 +6,7 @@
  */
 import * as api from "./api.js";
 import { announce, discard, inSession, isRefusal, keep, keptOrders, sendLater } from "./outbox.js";
+import { sayKept } from "./session.js";
 
 const TRY_AGAIN_AFTER_MS = [700, 2_500];
 
@@ -23,6 +24,7 @@ export async function placeOrder(wanted, person_id) {
     if (!(problem instanceof api.NoAnswer) && !(problem instanceof api.ApiProblem)) throw problem;
     if (isRefusal(problem)) await discard(kept.key);
     if (problem instanceof api.ApiProblem && problem.status < 500) throw problem;
+    sayKept(true);
     announce();
     await sendLater();
     throw new KeptForLater();

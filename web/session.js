@@ -1,6 +1,5 @@
 /** Who is signed in on this page, and what goes with them when they sign out. */
 import * as api from "./api.js";
-import { inSession } from "./outbox.js";
 /** @import { Person } from "./api_types.ts" */
 
 /** @type {Person | null} */
@@ -13,9 +12,16 @@ export function beginSession(who) {
 
 export const personHere = () => person;
 
+/** Whether this device keeps unsent orders of anybody: said here for whoever cannot wait for the outbox to be opened. */
+const KEPT = "orders-kept";
+export const hasKept = () => localStorage.getItem(KEPT) !== null;
+
+/** @param {boolean} some */
+export const sayKept = (some) => (some ? localStorage.setItem(KEPT, "") : localStorage.removeItem(KEPT));
+
 /** Nothing of theirs stays on the device but orders that wait to be sent: those wait for them. */
 export async function signOut() {
-  const { endPush } = await import("./push.js");
+  const [{ endPush }, { inSession }] = await Promise.all([import("./push.js"), import("./outbox.js")]);
   await endPush().catch(() => undefined);
   await inSession(api.signOut);
   await Promise.all([caches.delete("answers"), navigator.clearAppBadge?.()]).catch(() => undefined);

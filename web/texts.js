@@ -15,11 +15,29 @@ export function chooseLanguage(wanted, known) {
   return plain.find((tag) => known.includes(tag)) ?? known[0] ?? "en";
 }
 
+/** Each is asked for once per page. @type {Map<string, Promise<Record<string, string>>>} */
+const asked = new Map();
+
+/** @param {string} wanted */
+export function fetchTexts(wanted) {
+  const texts = asked.get(wanted) ?? fetched(wanted);
+  asked.set(wanted, texts);
+  return texts;
+}
+
+/** Pages with texts of their own, which the everyday ones need not fetch (app/page_files.py leaves them out). */
+const WITH_ALL_TEXTS = ["/mailroom.html", "/robots.html", "/print.html", "/settings.html"];
+
+/** @param {string} wanted @returns {Promise<Record<string, string>>} */
+async function fetched(wanted) {
+  const answer = await fetch(`/texts/${wanted}${WITH_ALL_TEXTS.includes(location.pathname) ? "" : ".everyday"}.json`);
+  if (!answer.ok) throw new Error(`no texts for ${wanted}`);
+  return answer.json();
+}
+
 /** @param {string} wanted */
 export async function loadTexts(wanted) {
-  const answer = await fetch(`/texts/${wanted}.json`);
-  if (!answer.ok) throw new Error(`no texts for ${wanted}`);
-  catalogue = await answer.json();
+  catalogue = await fetchTexts(wanted);
   language = wanted;
   document.documentElement.lang = wanted;
 }

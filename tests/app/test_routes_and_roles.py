@@ -60,8 +60,12 @@ LINES: Final[dict[tuple[str, str], Line]] = {
     ("GET", "/readyz"): OPEN,
     ("GET", "/version"): OPEN,
     ("GET", "/metrics"): OPEN,  # to this machine, where all these ask from; to others see test_metrics
+    ("GET", "/.well-known/assetlinks.json"): NOT_SET_UP,
     ("GET", "/page_files.js"): OPEN,
     ("GET", "/service_worker.js"): OPEN,
+    ("GET", "/styles/everywhere.css"): OPEN,
+    ("GET", "/texts/en.everyday.json"): OPEN,
+    ("GET", "/texts/fr.everyday.json"): OPEN,
     ("GET", "/api/v1/openapi.json"): OPEN,
     ("GET", "/api/v1/about"): OPEN,
     ("GET", "/api/v1/map"): OPEN,

@@ -2,8 +2,9 @@
 import { html, nothing } from "lit";
 import { followPage, orderPage } from "../links.js";
 import { OnLive } from "../live.js";
-import { discard, keptOrders, onKept, sendKept } from "../outbox.js";
+import { anyKept, discard, keptOrders, onKept, sendKept } from "../outbox.js";
 import { loadMap, titleOf } from "../posts.js";
+import { sayKept } from "../session.js";
 import { hasText, t } from "../texts.js";
 import { problemLine } from "./field.js";
 import { icon } from "./icon.js";
@@ -51,6 +52,7 @@ export class KeptOrders extends PageElement {
   async #look() {
     const before = this.kept.length;
     this.kept = await keptOrders(this.person_id);
+    sayKept(await anyKept());
     if (this.kept.length > before) this.focusOn(".kept");
   }
 

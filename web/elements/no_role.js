@@ -3,11 +3,25 @@ import { html } from "lit";
 import { PAGES } from "../links.js";
 import { t } from "../texts.js";
 import { icon } from "./icon.js";
+import { PageElement } from "./page_element.js";
 /** @import { PageName } from "../links.js" */
 
-/** @param {PageName} page one that `mayOpen` refuses */
-export const noRole = (page) => html`<section class="blank">
-  <h1>${t("nav.no_role.title")}</h1>
-  <p>${t(`nav.no_role.${page}`)}</p>
-  <a class="button" href=${PAGES.order}>${icon("send")}${t("nav.no_role.back")}</a>
-</section>`;
+export class NoRole extends PageElement {
+  static properties = { page: {} };
+
+  constructor() {
+    super();
+    /** @type {PageName} one that `mayOpen` refuses */
+    this.page = "mailroom";
+  }
+
+  render() {
+    return html`<section class="blank">
+      <h1>${t("nav.no_role.title")}</h1>
+      <p>${t(`nav.no_role.${this.page}`)}</p>
+      <a class="button" href=${PAGES.order}>${icon("send")}${t("nav.no_role.back")}</a>
+    </section>`;
+  }
+}
+
+customElements.define("no-role", NoRole);

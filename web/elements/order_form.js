@@ -2,7 +2,6 @@
 import { html, nothing } from "lit";
 import * as api from "../api.js";
 import { followPage } from "../links.js";
-import { KeptForLater, placeOrder } from "../place_order.js";
 import { titleOf } from "../posts.js";
 import { atFields } from "../problems.js";
 import { personHere } from "../session.js";
@@ -152,6 +151,7 @@ export class OrderForm extends PageElement {
     this.problems = this.#missing();
     if (Object.keys(this.problems).length) return this.focusOn("[aria-invalid]");
     this.sending = true;
+    const { KeptForLater, placeOrder } = await import("../place_order.js");
     try {
       location.assign(followPage((await placeOrder(this.wanted, personHere()?.id ?? "")).id));
     } catch (failure) {

@@ -1,13 +1,13 @@
 /** The first page: what is under way, and the form for the next letter beside the map. */
 import { html, nothing } from "lit";
-import * as api from "../api.js";
+import { newestOrders } from "../early.js";
 import { wantedFrom } from "../links.js";
 import { OnLive } from "../live.js";
 import { hasEnded } from "../order_words.js";
 import { loadMap } from "../posts.js";
 import { inWords } from "../problems.js";
 import { t } from "../texts.js";
-import "./campus_map.js";
+import { whenSeen } from "../when_seen.js";
 import { problemLine } from "./field.js";
 import { orderCard } from "./order_card.js";
 import "./order_form.js";
@@ -44,6 +44,12 @@ export class OrderPage extends PageElement {
     this.#fetch();
   }
 
+  /** @param {Map<string, unknown>} changed */
+  updated(changed) {
+    const overview = changed.has("map") && this.querySelector(".overview");
+    if (overview) whenSeen(overview, () => import("./campus_map.js"));
+  }
+
   render() {
     const { map } = this;
     if (!map) return this.problem ? problemLine(this.problem) : html`<p class="waiting" role="status">${t("app.loading")}</p>`;
@@ -77,7 +83,7 @@ export class OrderPage extends PageElement {
 
   async #fetch() {
     try {
-      const [map, mine] = await Promise.all([loadMap(), api.orders("all", { limit: 20 })]);
+      const [map, mine] = await Promise.all([loadMap(), newestOrders()]);
       this.map = map;
       this.orders = mine.items;
       const newest = mine.items.find(({ my_role }) => my_role === "sender");

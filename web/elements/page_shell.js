@@ -3,14 +3,10 @@ import { html, nothing } from "lit";
 import * as api from "../api.js";
 import { mayOpen, PAGES } from "../links.js";
 import { OnLive, stopLive } from "../live.js";
-import { keptOrders, onKept } from "../outbox.js";
 import { signOut } from "../session.js";
 import { counted, t } from "../texts.js";
 import { icon } from "./icon.js";
-import { noRole } from "./no_role.js";
-import "./notice_toast.js";
 import { PageElement } from "./page_element.js";
-import "./sign_in.js";
 /** @import { About, Person } from "../api_types.ts" */
 /** @import { PageName } from "../links.js" */
 /** @import { KeptOrder } from "../outbox.js" */
@@ -65,15 +61,6 @@ export class PageShell extends PageElement {
     addEventListener("new-version", (event) => (this.takeNewVersion = /** @type {NewVersion} */ (event).detail.take));
     addEventListener("beforeinstallprompt", (event) => this.#offer(/** @type {InstallOffer} */ (event)));
     addEventListener("appinstalled", () => (this.installOffer = null));
-    onKept(() => this.#showKept());
-  }
-
-  /** The first one that is kept; its element sees to the others. */
-  async #showKept() {
-    if (!this.person || this.kept.length) return;
-    await import("./kept_orders.js");
-    this.keptJustNow = true;
-    this.kept = await keptOrders(this.person.id);
   }
 
   /** Said in the account sheet, not across the page. @param {InstallOffer} offer */
@@ -114,7 +101,9 @@ export class PageShell extends PageElement {
 
   /** @param {Person} person */
   #page(person) {
-    return mayOpen(this.page, person) ? this.content() : noRole(this.page);
+    if (mayOpen(this.page, person)) return this.content();
+    import("./no_role.js");
+    return html`<no-role .page=${this.page}></no-role>`;
   }
 
   /** @param {Person} person */

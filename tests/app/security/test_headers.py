@@ -15,6 +15,7 @@ ANSWERS = {
     # path: status
     "/": 200,
     "/index.html": 200,
+    "/service_worker.js": 200,
     "/nothing-here": 404,
     "/package.json": 404,
     "/healthz": 200,
@@ -51,6 +52,14 @@ def test_every_answer_says_what_browsers_must_not_do(secure: TestClient, path: s
     assert headers["Cache-Control"] in {"no-cache", "no-store"}
     assert int(re.fullmatch(r"max-age=(\d+).*", headers["Strict-Transport-Security"])[1]) >= 15_768_000  # type: ignore[index]
     assert "server" not in headers, "which version of what runs here is nobody's business"
+
+
+@pytest.mark.parametrize("path", ["/api.js", "/styles/everywhere.css", "/npm/lit-html/lit-html.js"])
+def test_a_part_of_a_page_is_short_of_words_but_never_taken_for_something_else(secure: TestClient, path: str) -> None:
+    headers = secure.get(path).headers
+    assert headers["X-Content-Type-Options"] == "nosniff"
+    assert headers["Cache-Control"] == "no-cache"
+    assert {"Content-Security-Policy", "Permissions-Policy"}.isdisjoint(headers)
 
 
 def test_without_https_nobody_is_told_to_insist_on_it(nobody: TestClient) -> None:

@@ -1,0 +1,127 @@
+"""Measure the pages as a slow phone opens them: what is transferred, when they can be used, what moves."""
+
+import asyncio
+import json
+import os
+import platform
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+from statistics import median
+from typing import Annotated, Any, Final
+
+import typer
+from playwright.async_api import Browser
+
+from app.orders.schemas import NewOrder
+from benchmarks.body.report import Wanted, missed, say, table
+from benchmarks.pages import visits
+from benchmarks.pages.visits import PHONE, Visit, a_browser, visit
+from benchmarks.service.filling import Account, Filling, campus, fill
+from benchmarks.service.servers import Server, service
+from benchmarks.service.web_client import Visitor
+
+EARLIER_ORDERS: Final = 40
+FORM: Final = "[name=from_post]"
+STANDING: Final = ".standing h1"
+FIRST: Final = (
+    Wanted("transferred_kb", at_most=100, unit="kB"),
+    Wanted("usable_ms", at_most=1500, unit="ms"),
+    Wanted("layout_shift", at_most=0.05),
+)
+PARTS: Final = {
+    "order": FIRST,
+    "order_again": (Wanted("usable_ms", at_most=1000, unit="ms"), Wanted("layout_shift", at_most=0.05)),
+    "follow": FIRST,
+}
+"""First visits have an empty browser; `order_again` is the second one, which the service worker answers."""
+
+app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
+
+
+@app.command()
+def measure(
+    *,
+    runs: Annotated[int, typer.Option(min=1, help="Visits of each page; the median counts.")] = 5,
+    as_json: Annotated[bool, typer.Option("--json", help="JSON alone, without the table.")] = False,
+) -> None:
+    """Print what was measured, as JSON, beside what is wanted. Ends with 1 if anything wanted was missed.
+
+    A page can be used when the field "from" (followed: the sentence that says where the letter is) is visible and
+    enabled. The browser's own throttling makes the phone: the person is signed in, the cache is empty.
+    """
+    seen = _visits(runs)
+    reports = {name: _report(seen[name], wanted) for name, wanted in PARTS.items()}
+    if not as_json:
+        say("\n" + table(reports))
+    print(json.dumps({"machine": _machine(), "runs": runs, "parts": reports}, indent=2))
+    raise typer.Exit(bool(missed(reports)))
+
+
+def _report(seen: Sequence[Visit], wanted: Sequence[Wanted]) -> dict[str, Any]:
+    names = ("usable_ms", "transferred_kb", "requests", "layout_shift")
+    figures: dict[str, Any] = {name: round(median(getattr(one, name) for one in seen), 3) for name in names}
+    figures["each_usable_ms"] = [round(one.usable_ms) for one in seen]
+    return {"figures": figures, "wanted": [one.judged(figures) for one in wanted]}
+
+
+def _machine() -> dict[str, Any]:
+    phone = {"cpu_times_slower": visits.CPU_TIMES_SLOWER, "round_trip_ms": visits.ROUND_TRIP_MS}
+    phone |= {"down_bytes_s": round(visits.DOWN_BYTES_S)}
+    return {"python": platform.python_version(), "system": platform.platform(), "cores": os.cpu_count(), **phone}
+
+
+def _visits(runs: int) -> dict[str, list[Visit]]:
+    async def somebody(filling: Filling) -> Account:
+        accounts = await filling.people(3)
+        await filling.history(accounts, EARLIER_ORDERS)
+        return accounts[0]
+
+    with tempfile.TemporaryDirectory() as folder:
+        account = fill(Path(folder), somebody)
+        with service(Path(folder)) as server:
+            return asyncio.run(_visit_all(server, account, runs))
+
+
+async def _visit_all(server: Server, account: Account, runs: int) -> dict[str, list[Visit]]:
+    seen: dict[str, list[Visit]] = {name: [] for name in PARTS}
+    order_id = await _an_order(server, account)
+    async with a_browser() as browser:
+        for run in range(runs):
+            say(f"  visit {run + 1} of {runs}")
+            for name, found in (await _visit_once(browser, server, account, order_id)).items():
+                seen[name].append(found)
+    return seen
+
+
+async def _visit_once(browser: Browser, server: Server, account: Account, order_id: str) -> dict[str, Visit]:
+    origin = f"http://127.0.0.1:{server.port}"
+    cookie: Any = {"name": "session", "value": account.cookie, "url": origin}
+    seen = {}
+    for pages in (
+        {"order": ("/", FORM), "order_again": ("/", FORM)},
+        {"follow": (f"/follow.html?order={order_id}", STANDING)},
+    ):
+        context = await browser.new_context(base_url=origin, **PHONE)
+        await context.add_cookies([cookie])
+        for name, (address, usable) in pages.items():
+            seen[name] = await visit(context, address, usable)
+            await visits.until_kept(context)
+        await context.close()
+    return seen
+
+
+async def _an_order(server: Server, account: Account) -> str:
+    """One that is under way, to be followed and to stand on the order page."""
+    client = Visitor(server.port, account.cookie)
+    posts = list(campus().posts)
+    wish = NewOrder(from_post=posts[0], to_post=posts[-1], recipient="person.1@campus.example")
+    answer = await client.post(
+        "/api/v1/orders", wish.model_dump(mode="json", exclude_unset=True), "Idempotency-Key: bench\r\n"
+    )
+    client.close()
+    return str(answer.json()["id"])
+
+
+if __name__ == "__main__":
+    app()

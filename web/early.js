@@ -1,0 +1,38 @@
+/**
+ * What every page asks the service, asked while the other modules are still on their way. A page takes each answer once;
+ * whoever asks again asks anew.
+ */
+import * as api from "./api.js";
+import { loadMap } from "./posts.js";
+import { fetchTexts } from "./texts.js";
+/** @import { Order, Page } from "./api_types.ts" */
+
+const LANGUAGE = "language";
+const WITH_MAP = ["/", "/mail.html", "/follow.html"];
+/** What is under way, and whom one wrote to last. */
+const NEWEST = { limit: 6 };
+
+/** The language that was chosen last on this device: known before anybody says who is here. */
+const language = localStorage.getItem(LANGUAGE) ?? navigator.languages[0]?.split("-")[0] ?? "en";
+
+const about = api.about();
+const me = api.me();
+fetchTexts(language).catch(() => undefined);
+/** @type {Promise<Page<Order>> | null} */
+let orders = location.pathname === "/" ? me.then((person) => (person ? api.orders("all", NEWEST) : { items: [], next: null })) : null;
+const map = WITH_MAP.includes(location.pathname) ? loadMap() : null;
+// Whoever needs an answer hears of its failure; nobody else has to.
+for (const answer of [about, me, orders, map]) answer?.catch(() => undefined);
+
+/** The first answers, for the page that is being opened. */
+export const first = () => Promise.all([about, me]);
+
+/** My newest orders. */
+export function newestOrders() {
+  const answer = orders ?? api.orders("all", NEWEST);
+  orders = null;
+  return answer;
+}
+
+/** @param {string} chosen */
+export const rememberLanguage = (chosen) => localStorage.setItem(LANGUAGE, chosen);
