@@ -21,6 +21,8 @@ const SAY_AGAIN_MS = 10_000;
 
 export class RobotWatch extends PageElement {
   #timer = 0;
+  /** Seconds may have passed since this page was looked at last. */
+  #back = () => document.hidden || this.#say();
   /** @type {WatchedRun} */
   #run = new WatchedRun("");
 
@@ -56,12 +58,14 @@ export class RobotWatch extends PageElement {
 
   connectedCallback() {
     super.connectedCallback();
-    this.#timer = setInterval(() => document.hidden || this.#say(), SAY_AGAIN_MS);
+    this.#timer = setInterval(this.#back, SAY_AGAIN_MS);
+    document.addEventListener("visibilitychange", this.#back);
   }
 
   disconnectedCallback() {
     super.disconnectedCallback();
     clearInterval(this.#timer);
+    document.removeEventListener("visibilitychange", this.#back);
   }
 
   /** @param {Map<string, unknown>} changed */

@@ -93,7 +93,8 @@ function robotCard(robot, alarms, map) {
 }
 
 /** What it is doing, in one word. @param {Robot} robot */
-export function robotState({ activity, online }) {
+export function robotState({ activity, online, heard_at }) {
+  if (!heard_at) return html`<span class="badge over">${t("robots.never_heard")}</span>`;
   if (!online) return html`<span class="badge away">${t("robots.no_network")}</span>`;
   return html`<span class="badge ${activity}">${t(`mailroom.activity.${activity}`)}</span>`;
 }
