@@ -18,6 +18,8 @@ export class MapCamera {
   view = whole(NOTHING);
   /** Where that is going: names are placed for this, so that they do not jump on the way. */
   target = this.view;
+  /** What was last asked for by a button or key: names keep inside of it. Fingers that drag it about do not change it. */
+  framed = this.view;
 
   /** @param {ReactiveControllerHost} host */
   constructor(host) {
@@ -35,7 +37,7 @@ export class MapCamera {
     if (frame === this.#frame) return;
     cancelAnimationFrame(this.#animation);
     this.#frame = frame;
-    this.view = this.target = whole(frame);
+    this.view = this.target = this.framed = whole(frame);
   }
 
   get isWhole() {
@@ -46,13 +48,13 @@ export class MapCamera {
     return this.target.zoom === CLOSEST;
   }
 
-  showWhole = () => this.#glide(whole(this.#frame));
+  showWhole = () => this.#look(whole(this.#frame));
 
   /** @param {readonly Point[]} points */
-  show = (points) => this.#glide(showing(points, this.#frame));
+  show = (points) => this.#look(showing(points, this.#frame));
 
   /** @param {number} factor */
-  zoom = (factor) => this.#glide(zoomed(this.target, this.#frame, factor));
+  zoom = (factor) => this.#look(zoomed(this.target, this.#frame, factor));
 
   /** As fingers or a wheel say, at once. @param {number} factor @param {Point} at */
   zoomAt(factor, at) {
@@ -69,6 +71,12 @@ export class MapCamera {
     const { width, height } = this.#frame;
     const { zoom } = this.target;
     this.#glide(moved(this.target, this.#frame, (right * width) / zoom, (down * height) / zoom));
+  }
+
+  /** @param {View} view */
+  #look(view) {
+    this.framed = view;
+    this.#glide(view);
   }
 
   /** @param {View} view */

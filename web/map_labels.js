@@ -52,7 +52,7 @@ export function robotPlaces(count) {
 /**
  * Finds every label the side of its post where it covers least: no corridor, no post, no other label.
  * @param {Places} drawn @param {readonly Wording[]} wordings in the order in which they may choose
- * @param {Box | null} frame that none may leave @param {readonly Box[]} [kept] clear for something else
+ * @param {Box | null} frame that none of a post in it may leave @param {readonly Box[]} [kept] clear for something else
  * @returns {{places: Map<string, Place>, boxes: Box[]}}
  */
 export function placeLabels(drawn, wordings, frame, kept = []) {
@@ -65,7 +65,10 @@ export function placeLabels(drawn, wordings, frame, kept = []) {
   for (const wording of wordings) {
     const post = posts.get(wording.name);
     if (!post) continue;
-    const sides = [false, true].flatMap((folded) => candidates(post, wording, folded, frame)).map((side) => ({ ...side, cost: side.dislike + cost(side.box, wording.name) }));
+    const room = frame && within({ ...post, width: 0, height: 0 }, frame) ? frame : null;
+    const sides = foldings(wording)
+      .flatMap((folded) => candidates(post, wording, folded, room))
+      .map((side) => ({ ...side, cost: side.dislike + cost(side.box, wording.name, room) }));
     const best = sides.reduce((a, b) => (b.cost < a.cost ? b : a));
     if (best.cost >= COVERS && !wording.important) continue;
     taken.push(best.box);
@@ -73,15 +76,18 @@ export function placeLabels(drawn, wordings, frame, kept = []) {
   }
   return { places, boxes: taken };
 
-  /** @param {Box} box @param {string} own */
-  function cost(box, own) {
+  /** @param {Box} box @param {string} own @param {Box | null} room */
+  function cost(box, own, room) {
     const covered = [...taken, ...kept, ...around.filter(({ name }) => name !== own)].filter((other) => overlap(box, other)).length;
-    return obstacles.filter((point) => inside(point, box)).length + COVERS * covered + (frame && !within(box, frame) ? OUTSIDE : 0);
+    return obstacles.filter((point) => inside(point, box)).length + COVERS * covered + (room && !within(box, room) ? OUTSIDE : 0);
   }
 }
 
 /** @param {Pick<Wording, "notes">} wording @param {boolean} folded */
 export const notesIn = ({ notes }, folded) => (folded ? notes.flatMap((note) => note.split(/(?<= · [^·]*) · /)) : notes);
+
+/** @param {Wording} wording */
+const foldings = (wording) => (notesIn(wording, true).length > wording.notes.length ? [false, true] : [false]);
 
 /** A circle around so many robots. @param {number} count */
 export const crowdRadius = (count) => (count > 1 ? Math.max(...robotPlaces(count).map(({ x, y }) => Math.hypot(x, y))) + 15 : 17);

@@ -183,6 +183,9 @@ async def test_the_map_is_brought_closer_and_moved_by_buttons_wheel_and_keys(vis
     await page.get_by_role("button", name="To the robot").click()
     robot, frame = await svg.locator(".robot").bounding_box(), await svg.bounding_box()
     assert robot and frame and frame["x"] < robot["x"] < frame["x"] + frame["width"]
+    for note in ("last seen", "expected"):
+        label = await svg.locator(".label", has_text=note).bounding_box()
+        assert label and frame["x"] <= label["x"] and label["x"] + label["width"] <= frame["x"] + frame["width"]
     await area.focus()
     for key, axis, sign in [("ArrowRight", 0, 1), ("ArrowDown", 1, 1), ("ArrowLeft", 0, -1)]:
         before = await svg.evaluate(BOX)

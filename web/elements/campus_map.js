@@ -91,11 +91,13 @@ export class CampusMapElement extends PageElement {
 
   /** @param {CampusMap} map @param {Drawing} whole @param {MapFacts} facts */
   #svg(map, whole, facts) {
-    const { view, target } = this.#camera;
+    const { view, target, framed } = this.#camera;
     const size = sizeOf(this.#pixels, view.zoom);
     const { x, y, width, height } = windowOf(view, whole.frame, size);
     const wordings = wordingsOf(map, facts, [this.from, this.to]);
-    const places = this.#places(whole, wordings, spreadOf(target, sizeOf(this.#pixels, target.zoom)), facts);
+    const letters = sizeOf(this.#pixels, target.zoom);
+    const seen = framed.zoom === target.zoom && framed.zoom > 1 ? windowOf(framed, whole.frame, letters) : null;
+    const places = this.#places(whole, wordings, { factor: spreadOf(target, letters), seen, beside: this.#beside / letters }, facts);
     const drawn = spread(whole, spreadOf(view, size));
     const { down, drag, up, wheel } = this.#gestures;
     return html`<svg class=${this.#camera.isWhole ? "" : "closer"} viewBox="${x} ${y} ${width} ${height}" role="img"
@@ -126,15 +128,16 @@ export class CampusMapElement extends PageElement {
   }
 
   /** Where the names stand: looked for again when what they say has another length, not with each second of an age.
-   *  @param {Drawing} whole @param {Wording[]} wordings @param {number} factor @param {MapFacts} facts */
-  #places(whole, wordings, factor, { taken, robots }) {
+   *  @param {Drawing} whole @param {Wording[]} wordings @param {{factor: number, seen: Box | null, beside: number}} room `seen`: if not
+   *  the whole @param {MapFacts} facts */
+  #places(whole, wordings, room, { taken, robots }) {
     const signs = robots.length > 1 ? taken : [];
     const steady = wordings.map((wording) => ({ ...wording, notes: wording.notes.map((note) => note.replace(/\d+/g, "00")) }));
-    const key = JSON.stringify([this.map?.version, this.map?.name, factor, this.#beside, steady, signs]);
+    const key = JSON.stringify([this.map?.version, this.map?.name, room, steady, signs]);
     if (key !== this.#placed.key) {
-      const drawn = spread(whole, factor);
-      const room = widened(drawn.frame, this.#beside * factor);
-      this.#placed = { key, ...placeLabels(drawn, steady, room, signs.map((sign) => signBox(drawn, sign))) };
+      const drawn = spread(whole, room.factor);
+      const inside = widened(room.seen ?? drawn.frame, room.beside);
+      this.#placed = { key, ...placeLabels(drawn, steady, inside, signs.map((sign) => signBox(drawn, sign))) };
     }
     return this.#placed.places;
   }
