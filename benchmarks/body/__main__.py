@@ -20,6 +20,7 @@ PARTS = {
     "missions": "seeded missions with faults: delivered or handed to a person, none lost, none claimed falsely",
     "kills": "SIGKILL of the daemon at random moments of missions: what the restarted one knows",
     "hour": "a simulated hour: time on the wall, processor, memory and lag of the loops",
+    "watched": "what it costs the mind that somebody watches it, and that nobody does",
 }
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
