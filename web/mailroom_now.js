@@ -12,6 +12,7 @@ import { inWords } from "./problems.js";
 const AT_ONCE = 100;
 /** Alarms and mail that was given up have no events of their own: they are looked at again when something happens. */
 const LOOK_AGAIN_MS = 3_000;
+const SOON_MS = 200;
 const LOOK_ANYWAY_MS = 30_000;
 
 /** @implements {ReactiveController} */
@@ -106,12 +107,13 @@ export class MailroomNow {
 
   /** Not more often than is of use. */
   lookAgain() {
-    clearTimeout(this.#timer);
-    this.#timer = setTimeout(() => this.look(), Math.max(200, this.#lookedAt_ms + LOOK_AGAIN_MS - performance.now()));
+    const pause_ms = Math.max(SOON_MS, this.#lookedAt_ms + LOOK_AGAIN_MS - performance.now());
+    this.#timer ||= setTimeout(() => this.look(), pause_ms);
   }
 
   async look() {
-    this.#lookedAt_ms = performance.now();
+    clearTimeout(this.#timer);
+    [this.#timer, this.#lookedAt_ms] = [0, performance.now()];
     await this.#attempt(async () => {
       const [alarms, givenUp] = await Promise.all([api.openAlarms(), api.notSent({ given_up: "true", limit: AT_ONCE })]);
       [this.alarms, this.givenUp] = [alarms.items, givenUp.items];

@@ -83,6 +83,9 @@ export function whyItWaits(order, map) {
   return wait_until && robotStands(order) ? t("mailroom.why.until", { why, time: clockTime(wait_until) }) : why;
 }
 
+/** For a wall: a reason that somebody has typed may name people. @param {Order} order */
+export const withoutOwnWords = (order) => (order.why_words ? order : { ...order, why: null });
+
 /** Somebody wants it back, and its robot has not turned round yet. @param {Order} order */
 const hasWish = (order) => order.return_requested || (order.cancel_requested && isRobotComing(order));
 

@@ -90,6 +90,17 @@ class Scene:
             order.created_at -= timedelta(seconds=waits_s)
         return str(order_id)
 
+    async def is_ordered_for_later(self, count: int) -> list[str]:
+        """So many orders that no robot fetches today. Their ids."""
+        later = self.clock.utc() + timedelta(days=1)
+        async with self.state.database.transaction() as session:
+            person = await self.state.sign_in_desk.person(session, "ada.lovelace@campus.example", self.clock.utc())
+            known = {person.email: person}
+            wish = NewOrder(from_post="post1", to_post="post4", recipient=person.email, not_before=later)
+            drafts = [await self.state.orders.draft(session, person, wish, known) for _ in range(count)]
+            await self.state.orders.write(session, drafts)
+        return [draft.facts.order.id for draft in drafts]
+
     async def _go(self, session: Any, order_id: str, robot: str | None, way: Sequence[str]) -> None:
         for state in way:
             by = By.DISPATCHER if state == "assigned" else By.ROBOT

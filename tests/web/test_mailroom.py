@@ -288,7 +288,7 @@ async def test_a_wall_shows_the_campus_at_work_and_nobodys_full_name(busy_campus
     await expect(page.get_by_role("region", name="Map").get_by_role("img").first).to_be_visible()
     await expect(page.get_by_role("time")).to_have_text(re.compile(r"^\d{1,2}:\d\d"))
     text = await page.get_by_role("main").inner_text()
-    for secret in ("Grace", "Ada", "Lovelace to Bob", "@campus.example", "blue envelope"):
+    for secret in ("Grace", "Ada", "Lovelace to Bob", "@campus.example", "blue envelope", "The lid does not close"):
         assert secret not in text
     await expect(page.get_by_role("button")).to_have_count(0)
 
@@ -317,3 +317,17 @@ async def test_others_are_told_whose_page_this_is(quiet_campus, visit):
         await expect(ada.page.get_by_role("heading", level=1)).to_be_visible()
         await expect(ada.page.get_by_text(re.compile("dispatchers"))).to_be_visible()
         await expect(ada.page.get_by_role("link", name="Mailroom")).to_have_count(0)
+
+
+async def test_a_long_queue_goes_on_where_the_page_ends(quiet_campus, visit):
+    ids = [order_id for _ in range(3) for order_id in await quiet_campus.scene.is_ordered_for_later(35)]
+    dana = await quiet_campus.dispatcher(visit)
+    await dana.page.goto(MAILROOM)
+    rows = dana.page.get_by_role("region", name=re.compile("^Under way")).get_by_role("listitem")
+    more = dana.page.get_by_role("button", name="Show more")
+    await more.focus()
+    before = await rows.count()
+    assert before >= 100
+    await dana.page.keyboard.press("Enter")
+    await expect(more).to_be_hidden()
+    assert await rows.count() >= len(ids) > 100

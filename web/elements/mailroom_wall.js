@@ -5,7 +5,7 @@
 import { html, nothing } from "lit";
 import { PAGES } from "../links.js";
 import { MailroomNow } from "../mailroom_now.js";
-import { shortName, sorted, whatIsWrong } from "../mailroom_words.js";
+import { shortName, sorted, whatIsWrong, withoutOwnWords } from "../mailroom_words.js";
 import { serverNow } from "../server_clock.js";
 import { t } from "../texts.js";
 import { Ticking } from "../ticking.js";
@@ -21,7 +21,7 @@ import { wrongList } from "./wrong_list.js";
 /** @import { Order } from "../api_types.ts" */
 
 /** So many fit on a screen of 1080 lines beside everything that can be wrong. */
-const SHOWN = 6;
+const SHOWN = 8;
 
 export class MailroomWall extends PageElement {
   now = new MailroomNow(this);
@@ -53,7 +53,7 @@ export class MailroomWall extends PageElement {
       <div class="wall-columns">
         <section aria-labelledby="queue-title">
           <h2 id="queue-title">${t("mailroom.queue")} <span class="count">${orders.length}</span></h2>
-          ${orders.length ? queueList(orders.slice(0, SHOWN), map, whoseShort, null) : html`<p class="empty">${t("mailroom.queue_empty")}</p>`}
+          ${orders.length ? queueList(orders.slice(0, SHOWN).map(withoutOwnWords), map, whoseShort, null) : html`<p class="empty">${t("mailroom.queue_empty")}</p>`}
           ${unseen > 0 ? html`<p class="hint">${t("mailroom.wall.more", { count: unseen })}</p>` : nothing}
         </section>
         <section aria-labelledby="robots-title">
