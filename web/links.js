@@ -50,8 +50,11 @@ export const repeatPage = (order) =>
 export const orderPage = (wanted) =>
   "/?" + new URLSearchParams(Object.entries(wanted).flatMap(([name, value]) => (typeof value === "string" ? [[name, value]] : [])));
 
+const WANTED = ["from_post", "to_post", "recipient", "description", "not_before"];
+
 /** What `repeatPage` asked for. @param {string} search @returns {Partial<WantedOrder>} */
-export const wantedFrom = (search) => Object.fromEntries(new URLSearchParams(search));
+export const wantedFrom = (search) =>
+  Object.fromEntries([...new URLSearchParams(search)].filter(([name]) => WANTED.includes(name)));
 
 /** @param {string} search the order that a follow page is about; null if the address names none */
 export const orderFrom = (search) => new URLSearchParams(search).get("order");

@@ -8,6 +8,7 @@ from playwright.async_api import Page, Route, expect
 pytestmark = pytest.mark.browser
 
 BOB = "bob.martin@campus.example"
+PLACE = "(element) => [element.getBoundingClientRect().top + scrollY, element.offsetHeight]"
 
 
 async def fill(page: Page, recipient: str = BOB, from_post: str = "Post 1", to_post: str = "Post 4", what: str = ""):
@@ -26,18 +27,18 @@ async def test_the_time_of_arrival_is_shown_as_an_assumption_before_anything_is_
     await ada.page.goto("/")
     await expect(ada.page.get_by_text("Choose both posts to see when it arrives.")).to_be_visible()
     button = ada.page.get_by_role("button", name="Send the robot")
-    place = await button.bounding_box()
+    place = await button.evaluate(PLACE)
     await fill(ada.page)
     await expect(ada.page.get_by_role("status").get_by_text(re.compile("Arrives"))).to_be_visible()
     await expect(
         ada.page.get_by_text("An assumption from the map’s 6 m, not yet from measured journeys.")
     ).to_be_visible()
-    assert await button.bounding_box() == place, "nothing moves under a finger"
+    assert await button.evaluate(PLACE) == place, "nothing moves under a finger"
     time = ada.page.locator(".estimate strong")
     await time.evaluate("time => (time.textContent = '11:58 a.m. – 12:04 p.m.')")
     fits = "({ parentElement: box }) => box.scrollWidth <= box.clientWidth"
     assert await time.evaluate(fits), "the time of day that takes most room has room"
-    assert await button.bounding_box() == place
+    assert await button.evaluate(PLACE) == place
     assert (await ada.api("/orders"))["items"] == []
 
 
@@ -148,7 +149,9 @@ async def test_an_order_without_any_answer_is_kept_and_sent_again_with_its_key_a
     await page.route(re.compile("/api/v1/orders$"), lose)
     await send(page)
     kept = page.get_by_role("region", name="Kept on this device")
-    await expect(kept.get_by_text("Will be sent by itself as soon as there is a network, and only once.")).to_be_visible()
+    await expect(
+        kept.get_by_text("Will be sent by itself as soon as there is a network, and only once.")
+    ).to_be_visible()
     await page.unroute_all()
     async with page.expect_request(re.compile("/api/v1/orders$")) as sent:
         await page.reload()
@@ -194,3 +197,82 @@ async def test_an_order_of_others_is_not_here(visit):
     await eve.page.goto(f"/follow.html?order={order_id}")
     await expect(eve.page.get_by_role("heading", name="This letter is not here")).to_be_visible()
     await expect(eve.page.get_by_text("or it is not yours to see")).to_be_visible()
+
+
+async def test_a_recipient_is_chosen_from_those_one_knows_with_the_keyboard(visit):
+    ada = await visit()
+    page = ada.page
+    for name in ("bob.martin", "bea.lund", "cleo.wong"):
+        await ada.order(f"{name}@campus.example")
+    await ada.put("/me/contacts/bea.lund@campus.example", {"label": "Bea next door", "post": "post2"})
+    await page.goto("/")
+    recipient = page.get_by_role("combobox", name="Recipient’s e-mail")
+    await recipient.focus()
+    offers = page.get_by_role("listbox", name="People you know").get_by_role("option")
+    await expect(offers).to_have_count(3)
+    await page.keyboard.type("b")
+    await expect(offers).to_have_count(2)
+    await expect(page.get_by_text("2 people you know")).to_have_count(1)
+    await page.keyboard.press("ArrowDown")
+    await expect(recipient).to_have_attribute("aria-activedescendant", "contact-offer-0")
+    await expect(offers.first).to_have_attribute("aria-selected", "true")
+    await ada.assert_accessible()
+    await page.keyboard.press("Escape")
+    await expect(offers).to_have_count(0)
+    await page.keyboard.type("ea")
+    await expect(offers).to_have_text([re.compile("Bea next door")])
+    await page.keyboard.press("ArrowUp")
+    await page.keyboard.press("Enter")
+    await expect(recipient).to_have_value("bea.lund@campus.example")
+    await expect(page.get_by_label("To", exact=True)).to_have_value("post2")  # where they are found
+
+
+async def test_a_letter_is_ordered_for_later_and_again_and_again(visit):
+    ada = await visit(on="phone", timezone_id="America/Toronto")
+    page = ada.page
+    await page.goto("/")
+    await fill(page, what="Later")
+    window = page.locator(".estimate strong")
+    now = await window.inner_text()
+    await page.get_by_role("radio", name="Later").check()
+    await page.get_by_label("Not before").fill("2027-05-03T09:30")
+    await expect(window).not_to_have_text(now)
+    await expect(window).to_contain_text("9:3")
+    await page.get_by_role("button", name="Send the robot then").click()
+    await expect(page.get_by_role("heading", level=1)).to_have_text("Looking for a robot")
+    assert (await ada.api("/orders"))["items"][0]["not_before"] == "2027-05-03T13:30:00Z"
+
+    await page.goto("/")
+    await fill(page, what="Payroll")
+    await page.get_by_role("radio", name="Again and again").check()
+    days = page.get_by_role("group", name="On which days?").get_by_role("checkbox")
+    await expect(days).to_have_count(7)
+    for day in await days.all():
+        await day.uncheck()
+    await page.get_by_role("button", name="Send it each time").click()
+    await expect(page.get_by_text("Say when.")).to_be_visible()
+    await page.get_by_role("checkbox", name="Monday").check()
+    await page.get_by_label("At", exact=True).fill("08:15")
+    await ada.assert_accessible()
+    await page.get_by_role("button", name="Send it each time").click()
+    payroll = page.get_by_role("region", name="Again and again").get_by_role("listitem")
+    await expect(payroll).to_contain_text("every Monday at 8:15 a.m.")
+
+
+async def test_a_newcomer_is_told_how_it_works_until_they_have_understood(visit):
+    ada = await visit(on="phone", locale="fr-CA")
+    page = ada.page
+    await page.goto("/")
+    steps = page.get_by_role("region", name="Comment ça marche")
+    await expect(steps.get_by_role("listitem")).to_have_count(3)
+    await ada.assert_accessible()
+    await steps.get_by_role("button", name="Compris").click()
+    await expect(steps).to_be_hidden()
+    await page.reload()
+    await expect(page.get_by_label("De", exact=True)).to_be_visible()
+    await expect(steps).to_be_hidden()
+    await page.locator("summary").first.click()
+    await page.get_by_role("link", name="Comment ça marche").click()
+    await expect(steps).to_be_visible()
+    await page.get_by_text("Que veut dire cette heure").click()
+    await expect(page.get_by_text(re.compile("^Entre ces deux heures"))).to_be_visible()

@@ -109,8 +109,15 @@ class Visitor:
 
     async def post(self, path: str, body: Any = None) -> Any:
         """Something done without the pages."""
+        return await self._do("POST", path, body)
+
+    async def put(self, path: str, body: Any) -> Any:
+        """Something set without the pages."""
+        return await self._do("PUT", path, body)
+
+    async def _do(self, method: str, path: str, body: Any) -> Any:
         own = {"Sec-Fetch-Site": "same-origin"}
-        answer = await self.context.request.post(f"/api/v1{path}", data=body, headers=own)
+        answer = await self.context.request.fetch(f"/api/v1{path}", method=method, data=body, headers=own)
         assert answer.ok, await answer.text()
         return await answer.json()
 

@@ -5,6 +5,7 @@ import { serverNow } from "../server_clock.js";
 import { t } from "../texts.js";
 import { dayAndTime } from "../times.js";
 import { problemLine } from "./field.js";
+import { helpWords } from "./help_words.js";
 import { icon } from "./icon.js";
 import { PageElement } from "./page_element.js";
 /** @import { Purpose, ShownCode } from "../api_types.ts" */
@@ -67,6 +68,7 @@ export class HandoverCodeElement extends PageElement {
           <li>${t(`code.how.${purpose}.2`)}</li>
         </ol>
         <p class="hint">${t("code.offline")}</p>
+        ${helpWords("code")}
         ${this.#digits()} ${this.#validity()} ${this.needed ? this.#withoutCode(purpose) : nothing}
         <p role="status">${this.asked ? t("code.asked") : this.said}</p>
         ${this.problem ? problemLine(this.problem) : nothing}

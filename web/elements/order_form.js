@@ -1,16 +1,20 @@
 /** The order form: from, to, for whom, what. Shows when it would arrive before anything is ordered. */
 import { html, nothing } from "lit";
 import * as api from "../api.js";
-import { followPage } from "../links.js";
-import { titleOf } from "../posts.js";
+import { looksLikeEmail } from "../email.js";
+import { followPage, PAGES } from "../links.js";
 import { atFields } from "../problems.js";
+import { serverNow } from "../server_clock.js";
 import { personHere } from "../session.js";
 import { t } from "../texts.js";
 import { estimateView } from "./estimate_view.js";
 import { field, problemLine } from "./field.js";
+import { helpWords } from "./help_words.js";
 import { icon } from "./icon.js";
 import { PageElement } from "./page_element.js";
-/** @import { CampusMap, Estimate, Order, WantedOrder } from "../api_types.ts" */
+import { recentRecipients } from "./recent_recipients.js";
+/** @import { CampusMap, Contact, Estimate, Order, WantedOrder } from "../api_types.ts" */
+/** @import { Schedule } from "./order_schedule.js" */
 
 const FIELD_OF_CODE = {
   unknown_post: "to_post",
@@ -18,7 +22,8 @@ const FIELD_OF_CODE = {
   no_way: "to_post",
   unknown_recipient: "recipient",
 };
-const RECENT = 3;
+const DAY_MS = 86_400_000;
+const WHENS = /** @type {const} */ (["now", "later", "again"]);
 
 export class OrderForm extends PageElement {
   static properties = {
@@ -28,6 +33,8 @@ export class OrderForm extends PageElement {
     estimate: { state: true },
     problems: { state: true },
     sending: { state: true },
+    when: { state: true },
+    schedule: { state: true },
   };
 
   constructor() {
@@ -43,12 +50,17 @@ export class OrderForm extends PageElement {
     /** @type {Record<string, string>} */
     this.problems = {};
     this.sending = false;
+    /** @type {"now" | "later" | "again"} */
+    this.when = "now";
+    /** @type {Schedule} */
+    this.schedule = {};
   }
 
   /** @param {Map<string, unknown>} changed */
   willUpdate(changed) {
     const before = /** @type {WantedOrder | undefined} */ (changed.get("wanted"));
     const { from_post, to_post } = this.wanted;
+    if (changed.has("wanted") && !before && this.wanted.not_before) this.#mend(this.wanted.not_before);
     if (changed.has("wanted") && (before?.from_post !== from_post || before?.to_post !== to_post)) this.#look();
   }
 
@@ -58,12 +70,8 @@ export class OrderForm extends PageElement {
         <legend class="unseen">${t("order.route")}</legend>
         ${this.#postField("from_post", t("order.from"))} ${this.#postField("to_post", t("order.to"))}
       </fieldset>
-      ${field(
-        { name: "recipient", label: t("order.recipient"), problem: this.problems.recipient },
-        ({ id, describedBy, invalid }) => html`<input id=${id} name="recipient" type="email" autocomplete="off" required
-          .value=${this.wanted.recipient} aria-describedby=${describedBy} aria-invalid=${invalid} />`,
-      )}
-      ${this.#recent()}
+      ${this.#recipientField()}
+      ${this.map ? recentRecipients(this.map, this.sent, (order) => this.#repeat(order)) : nothing}
       ${field(
         {
           ...{ name: "description", label: t("order.description"), hint: t("order.description_hint") },
@@ -72,9 +80,9 @@ export class OrderForm extends PageElement {
         ({ id, describedBy, invalid }) => html`<input id=${id} name="description" maxlength="200" autocomplete="off"
           .value=${this.wanted.description} aria-describedby=${describedBy} aria-invalid=${invalid} />`,
       )}
-      ${estimateView(this.estimate)} ${this.problems.form ? problemLine(this.problems.form) : nothing}
+      ${this.#whenField()} ${estimateView(this.estimate, this.#later_ms())} ${helpWords("window")} ${this.problems.form ? problemLine(this.problems.form) : nothing}
       <button class="main" aria-disabled=${this.sending ? "true" : nothing}>
-        ${icon("send")}${t(this.sending ? "order.sending" : "order.send")}
+        ${icon("send")}${t(this.sending ? "order.sending" : `order.send_${this.when}`)}
       </button>
     </form>`;
   }
@@ -89,17 +97,53 @@ export class OrderForm extends PageElement {
     </select>`);
   }
 
-  #recent() {
-    const { map } = this;
-    const recent = map ? recentRecipients(this.sent) : [];
-    if (!map || !recent.length) return nothing;
-    return html`<div class="recent" role="group" aria-label=${t("order.recent")}>
-      ${recent.map(
-        (order) => html`<button type="button" @click=${() => this.#repeat(order)}>
-          <span>${order.recipient.name}</span><span class="unseen">, </span><small>${titleOf(map, order.to_post)}</small>
-        </button>`,
-      )}
-    </div>`;
+  /** The list of those I know is fetched when somebody comes to the field. */
+  #recipientField() {
+    return field(
+      { name: "recipient", label: t("order.recipient"), problem: this.problems.recipient },
+      ({ id, describedBy, invalid }) => html`<input id=${id} name="recipient" inputmode="email" autocomplete="off" autocapitalize="off"
+          spellcheck="false" required role="combobox" aria-autocomplete="list" aria-expanded="false" aria-controls="contact-offers"
+          .value=${this.wanted.recipient} aria-describedby=${describedBy} aria-invalid=${invalid} @focus=${loadOffers}
+        /><contact-offers @chosen=${(/** @type {CustomEvent<Contact>} */ { detail }) => this.#sendTo(detail)}></contact-offers>`,
+    );
+  }
+
+  #whenField() {
+    return html`<fieldset class="pills">
+        <legend>${t("order.when")}</legend>
+        ${WHENS.map(
+          (when) => html`<label class="pill"><input type="radio" name="when" value=${when} .checked=${this.when === when}
+            @input=${(/** @type {Event} */ event) => event.stopPropagation()} @change=${() => this.#when(when)} /><span>${t(`order.when_${when}`)}</span></label>`,
+        )}
+      </fieldset>
+      ${this.when === "now"
+        ? nothing
+        : html`<order-schedule .kind=${this.when} .schedule=${this.schedule} .problem=${this.problems.when ?? ""}
+            @scheduled=${(/** @type {CustomEvent<Schedule>} */ { detail }) => (this.schedule = detail)}></order-schedule>`}`;
+  }
+
+  /** @param {"now" | "later" | "again"} when */
+  async #when(when) {
+    if (when !== "now") await import("./order_schedule.js");
+    this.when = when;
+  }
+
+  /** An order for later that was not taken. @param {string} not_before */
+  #mend(not_before) {
+    this.schedule = { not_before };
+    this.#when("later");
+  }
+
+  /** By how much the robot comes later than it would now. */
+  #later_ms() {
+    const { not_before, at } = this.schedule;
+    if (this.when === "again" && at) return untilTime(at);
+    return this.when === "later" && not_before ? Math.max(0, Date.parse(not_before) - serverNow()) : 0;
+  }
+
+  /** @param {Contact} contact */
+  #sendTo({ email, post }) {
+    this.#want({ recipient: email, to_post: this.wanted.to_post || post || "" });
   }
 
   /** @param {Order} order */
@@ -153,7 +197,7 @@ export class OrderForm extends PageElement {
     this.sending = true;
     const { KeptForLater, placeOrder } = await import("../place_order.js");
     try {
-      location.assign(followPage((await placeOrder(this.wanted, personHere()?.id ?? "")).id));
+      location.assign(await this.#place(placeOrder));
     } catch (failure) {
       // The shell shows what is kept; the form is free for the next one.
       if (failure instanceof KeptForLater) return this.#want({ to_post: "", recipient: "", description: "" });
@@ -164,24 +208,43 @@ export class OrderForm extends PageElement {
     }
   }
 
+  /** Where it is followed. @param {typeof import("../place_order.js").placeOrder} placeOrder @returns {Promise<string>} */
+  async #place(placeOrder) {
+    const { weekdays = [], at = "", zone = "", until, not_before } = this.schedule;
+    if (this.when === "again") {
+      const { not_before: _, ...wanted } = this.wanted;
+      await api.placeStandingOrder({ ...wanted, weekdays, at, zone, until });
+      return PAGES.mail;
+    }
+    const wanted = { ...this.wanted, not_before: this.when === "later" ? not_before : undefined };
+    return followPage((await placeOrder(wanted, personHere()?.id ?? "")).id);
+  }
+
   /** What a person can see for themselves; everything else is the service's to judge. @returns {Record<string, string>} */
   #missing() {
     const { from_post, to_post, recipient } = this.wanted;
-    const input = /** @type {HTMLInputElement} */ (this.querySelector("[name=recipient]"));
     return {
       ...(from_post ? {} : { from_post: t("error.missing_from_post") }),
       ...(to_post ? {} : { to_post: t("error.missing_to_post") }),
       ...(recipient ? {} : { recipient: t("error.missing_recipient") }),
-      ...(input.validity.typeMismatch ? { recipient: t("error.malformed.recipient") } : {}),
+      ...(recipient && !looksLikeEmail(recipient) ? { recipient: t("error.malformed.recipient") } : {}),
+      ...(this.#isScheduled() ? {} : { when: t("error.missing_when") }),
     };
+  }
+
+  #isScheduled() {
+    const { not_before, weekdays, at } = this.schedule;
+    return this.when === "now" || (this.when === "later" ? Boolean(not_before) : Boolean(weekdays?.length && at));
   }
 }
 
-/** The newest order to each person. @param {Order[]} sent */
-function recentRecipients(sent) {
-  const newest = new Map();
-  for (const order of sent) if (!newest.has(order.recipient.email)) newest.set(order.recipient.email, order);
-  return [...newest.values()].slice(0, RECENT);
+/** How long until it is this time of the day. @param {string} at local, "09:30" */
+function untilTime(at) {
+  const [hour, minute] = at.split(":").map(Number);
+  const then = new Date(serverNow());
+  return (then.setHours(hour, minute, 0, 0) - serverNow() + DAY_MS) % DAY_MS;
 }
+
+const loadOffers = () => import("./contact_offers.js");
 
 customElements.define("order-form", OrderForm);

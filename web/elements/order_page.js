@@ -1,6 +1,7 @@
 /** The first page: what is under way, and the form for the next letter beside the map. */
 import { html, nothing } from "lit";
 import { newestOrders } from "../early.js";
+import { wantsFirstHelp } from "../first_help.js";
 import { wantedFrom } from "../links.js";
 import { OnLive } from "../live.js";
 import { hasEnded } from "../order_words.js";
@@ -20,6 +21,7 @@ export class OrderPage extends PageElement {
     orders: { state: true },
     wanted: { state: true },
     problem: { state: true },
+    help: { state: true },
   };
 
   constructor() {
@@ -34,6 +36,7 @@ export class OrderPage extends PageElement {
       ...wantedFrom(location.search),
     };
     this.problem = "";
+    this.help = false;
     new OnLive(this, {
       order: (order) => (this.orders = [order, ...this.orders.filter(({ id }) => id !== order.id)]),
       connected: (connected) => connected && this.#fetch(),
@@ -54,7 +57,7 @@ export class OrderPage extends PageElement {
     const { map } = this;
     if (!map) return this.problem ? problemLine(this.problem) : html`<p class="waiting" role="status">${t("app.loading")}</p>`;
     return html`
-      ${this.#underWay(map)}
+      ${this.help ? html`<first-steps @put-away=${() => (this.help = false)}></first-steps>` : nothing} ${this.#underWay(map)}
       <div class="ordering">
         <div>
           <h1>${t("order.title")}</h1>
@@ -86,6 +89,8 @@ export class OrderPage extends PageElement {
       const [map, mine] = await Promise.all([loadMap(), newestOrders()]);
       this.map = map;
       this.orders = mine.items;
+      this.help ||= wantsFirstHelp(!mine.items.length);
+      if (this.help) import("./first_steps.js");
       const newest = mine.items.find(({ my_role }) => my_role === "sender");
       if (newest && !this.wanted.from_post) this.wanted = { ...this.wanted, from_post: newest.from_post };
     } catch (failure) {

@@ -4,6 +4,7 @@ import { hasEnded, nextSentence, stages, stateSentence } from "../order_words.js
 import { titleOf } from "../posts.js";
 import { t } from "../texts.js";
 import { arrivalWindow } from "./arrival_window.js";
+import { helpWords } from "./help_words.js";
 import { icon } from "./icon.js";
 /** @import { CampusMap, Order } from "../api_types.ts" */
 
@@ -12,7 +13,7 @@ export const orderStanding = (order, map) => html`<section class="standing ${ord
   <p class="ends">${titleOf(map, order.from_post)}${icon("arrow")}<span class="unseen">→</span>${titleOf(map, order.to_post)}</p>
   <h1 aria-live="polite">${stateSentence(order, map)}</h1>
   <p class="next">${nextSentence(order, map)}</p>
-  ${hasEnded(order) ? nothing : arrivalWindow(order, map)} ${way(order)}
+  ${hasEnded(order) ? nothing : arrivalWindow(order, map)} ${way(order)} ${hasEnded(order) ? nothing : helpWords("meeting")}
 </section>`;
 
 /** @param {Order} order */
