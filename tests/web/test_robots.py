@@ -143,6 +143,53 @@ async def test_on_a_small_phone_in_french_and_for_a_dispatcher_without_the_mind(
     await marc.assert_accessible()
 
 
+WATCH_LONG = """async () => {
+  const { WatchedRun } = await import("/watched_run.js");
+  const run = new WatchedRun("r1");
+  const at = "2026-01-05T09:00:00Z";
+  const empty = { at, cycle: 1, loops: [], intentions: [], events: [], came: [], went: [], trace: [] };
+  const nothing = { ...empty, whole: false, left_out: { trace: 0 } };
+  const tell = (number, more) => run.take({ robot: "r1", at, insight: { ...nothing, number, ...more } });
+  const states = [run.isIncomplete];
+  tell(1, { whole: true, came: ["b", "a"] });
+  states.push(run.isIncomplete);
+  tell(2, { went: ["b"], came: ["c"] });
+  tell(5, { trace: Array(2500).fill({ cycle: 1, kind: "did", text: "x" }), left_out: { trace: 7 } });
+  states.push(run.isIncomplete);
+  const { beliefs, changes, lines, missed, left_out } = run.seen;
+  for (let number = 6; number < 7300; number += 1) tell(number, {});
+  const [head, ...rest] = run.asJsonLines().trim().split("\\n").map(JSON.parse);
+  tell(1, { whole: true, came: ["d"] });
+  return {
+    states: [...states, run.isIncomplete], beliefs, lines: lines.length, missed, left_out, head, rest: rest.length,
+    changes: changes.map(({ came, text }) => (came ? "+" : "-") + text), after: run.seen.beliefs,
+  };
+}"""
+CHARGED = """async () => {
+  const { charges, curve, some } = await import("/battery_facts.js");
+  const at = (minute) => new Date(Date.UTC(2026, 0, 5, 9, minute)).toISOString();
+  const sample = (minute, ratio, charging = false) => ({ at: at(minute), ratio, charging });
+  const samples = [sample(0, 0.4), sample(1, 0.3, true), sample(2, 0.5, true), sample(3, 0.6)];
+  samples.push(sample(40, 0.2, true), sample(41, 0.3, true));
+  const history = { robot: "r1", since: at(0), until: at(60), low_ratio: 0.25, samples };
+  const times = charges(history).map(({ from_ratio, to_ratio }) => [from_ratio, to_ratio]);
+  return { times, pieces: curve(history).split("M").length - 1, some: some([...Array(100).keys()], 5).length };
+}"""
+
+
+async def test_what_was_watched_is_bounded_and_what_is_missing_is_known(tunnel, visit):
+    ada = await visit("ada.king", at=tunnel)
+    await ada.page.goto("/robots.html")
+    told = await ada.page.evaluate(WATCH_LONG)
+    assert told["states"] == [True, False, True, False], "nothing told yet, all told, some missing, all told again"
+    assert (told["beliefs"], told["changes"], told["after"]) == (["a", "c"], ["+c", "-b"], ["d"])
+    assert (told["lines"], told["missed"], told["left_out"]) == (2000, 2, 7)
+    assert told["head"] == {"campus_mail_watched_run": 1, "robot": "r1", "insights": 7200, "dropped": 97}
+    assert told["rest"] == 7200
+    charged = await ada.page.evaluate(CHARGED)
+    assert charged == {"times": [[0.3, 0.6], [0.2, 0.3]], "pieces": 2, "some": 5}, "a silence is no line"
+
+
 async def test_whoever_lacks_the_role_is_told_so(tunnel, visit):
     ada = await visit("ada.king", at=tunnel)
     await ada.page.goto("/robots.html?robot=r1")
