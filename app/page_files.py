@@ -15,6 +15,7 @@ from typing import Final
 from fastapi import FastAPI, Request
 from fastapi.responses import Response
 
+from app.errors import problem_answer
 from app.texts import LANGUAGES
 
 MODULE: Final = "/page_files.js"
@@ -69,7 +70,8 @@ class PageFiles:
             if place.parts[0] in self._not_pages or path.suffix not in KEPT or place.name == WORKER[1:]:
                 continue
             yield "/" if str(place) == "index.html" else f"/{place.as_posix()}", path
-        for address in json.loads((self._folder / NPM_MODULES).read_text(encoding="utf-8")):
+        listed = self._folder / NPM_MODULES
+        for address in json.loads(listed.read_text(encoding="utf-8")) if listed.is_file() else ():
             path = self._folder / address.replace("/npm/", "node_modules/", 1)
             if path.is_file():
                 yield address, path
@@ -98,7 +100,10 @@ def add_page_files(app: FastAPI, files: PageFiles) -> None:
 
 def _made(media_type: str, read: Callable[[], bytes]) -> Callable[[Request], Awaitable[Response]]:
     async def made(request: Request) -> Response:
-        content = await asyncio.to_thread(read)
+        try:
+            content = await asyncio.to_thread(read)
+        except FileNotFoundError:
+            return problem_answer(404, "not_found", "This service has no such pages.")
         tag = f'"{sha256(content).hexdigest()[:VERSION_CHARACTERS]}"'
         if tag in request.headers.get("if-none-match", ""):
             return Response(status_code=304, headers={"ETag": tag})

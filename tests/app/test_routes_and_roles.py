@@ -62,10 +62,11 @@ LINES: Final[dict[tuple[str, str], Line]] = {
     ("GET", "/metrics"): OPEN,  # to this machine, where all these ask from; to others see test_metrics
     ("GET", "/.well-known/assetlinks.json"): NOT_SET_UP,
     ("GET", "/page_files.js"): OPEN,
-    ("GET", "/service_worker.js"): OPEN,
-    ("GET", "/styles/everywhere.css"): OPEN,
-    ("GET", "/texts/en.everyday.json"): OPEN,
-    ("GET", "/texts/fr.everyday.json"): OPEN,
+    # Open as well; but this service's folder of pages has nothing that they are made of.
+    ("GET", "/service_worker.js"): NOT_SET_UP,
+    ("GET", "/styles/everywhere.css"): NOT_SET_UP,
+    ("GET", "/texts/en.everyday.json"): NOT_SET_UP,
+    ("GET", "/texts/fr.everyday.json"): NOT_SET_UP,
     ("GET", "/api/v1/openapi.json"): OPEN,
     ("GET", "/api/v1/about"): OPEN,
     ("GET", "/api/v1/map"): OPEN,

@@ -2,11 +2,8 @@
 
 import json
 
-import httpx
 import pytest
 from playwright.async_api import expect
-
-from tests.web.service import Service
 
 pytestmark = pytest.mark.browser
 OFFER = """() => {
@@ -17,7 +14,7 @@ OFFER = """() => {
 }"""
 
 
-async def test_a_browser_finds_nothing_that_keeps_it_from_installing_the_pages(visit, service: Service):
+async def test_a_browser_finds_nothing_that_keeps_it_from_installing_the_pages(visit):
     ada = await visit(on="phone", service_workers="allow")
     page = ada.page
     await page.goto("/")
@@ -32,9 +29,9 @@ async def test_a_browser_finds_nothing_that_keeps_it_from_installing_the_pages(v
     manifest = json.loads(told["data"])
     assert manifest["id"] == manifest["scope"] == "/"
     for icon in manifest["icons"]:
-        assert httpx.get(service.url + icon["src"]).headers["content-type"].startswith(icon["type"])
+        assert (await ada.context.request.get(icon["src"])).headers["content-type"].startswith(icon["type"])
     for shortcut in manifest["shortcuts"]:
-        assert httpx.get(service.url + shortcut["url"]).status_code == httpx.codes.OK
+        assert (await ada.context.request.get(shortcut["url"])).ok
 
 
 async def test_installing_is_offered_in_the_account_sheet_and_nowhere_else(visit):
