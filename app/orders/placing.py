@@ -58,12 +58,6 @@ class Placing(Ledger):
             raise errors.SamePost("From and to are the same post: there is nothing to carry.")
         return window
 
-    async def create(self, session: AsyncSession, person: Person, wish: NewOrder) -> OrderView:
-        """Queue one new order. Raises what `draft` does."""
-        draft = await self.draft(session, person, wish, await look_up_people(session, wish.addresses))
-        await self.write(session, [draft])
-        return self.first_view(draft, person)
-
     async def draft(self, session: AsyncSession, person: Person, wish: NewOrder, known: dict[str, Person]) -> Draft:
         """What `person` orders; `known` are the people by their addresses, and grow with it.
 

@@ -23,6 +23,7 @@ from app.people.sessions import new_session
 from app.people.tokens import issue_token
 from app.tables import Alarm, Notice, OrderState, OutgoingNotice, Person, PersonSession, Role
 from tests.app.conftest import Mailroom
+from tests.app.placed import placed
 
 PEOPLE: Final = {
     # who: address, roles beyond member
@@ -184,9 +185,8 @@ class Everybody:
     async def _order(self, session: AsyncSession, sender: Person, recipient: str) -> str:
         orders = self.app.state.orders
         wish = NewOrder(from_post="post1", to_post="post4", recipient=recipient)
-        view = await orders.create(session, sender, wish)
-        await orders.move(session, view.id, OrderState.ASSIGNED, Word(By.DISPATCHER, robot="r1"))
-        order_id: str = view.id
+        order_id = await placed(orders, session, sender, wish)
+        await orders.move(session, order_id, OrderState.ASSIGNED, Word(By.DISPATCHER, robot="r1"))
         return order_id
 
 

@@ -1,6 +1,7 @@
 """Dispatch in the running service: woken by orders and robots, robust to restarts, one mission per robot."""
 
 from collections.abc import AsyncIterator
+from typing import Any
 
 import pytest
 
@@ -12,6 +13,7 @@ from protocol.clock import SteppedClock
 from protocol.parts import Activity, Battery
 from protocol.to_server import Event, Snapshot, Step
 from tests.app.fleet.playing import PlayedRobot, Service, at_post, serving, until
+from tests.app.placed import placed
 
 
 @pytest.fixture
@@ -87,14 +89,19 @@ async def test_more_orders_than_are_given_at_once_all_get_a_robot_and_nobody_is_
             sender = await state.sign_in_desk.person(session, "sender@campus.example", clock.utc())
             for _ in range(number):
                 wish = NewOrder(from_post="post1", to_post="post4", recipient="recipient@campus.example")
-                await state.orders.create(session, sender, wish)
+                await placed(state.orders, session, sender, wish)
 
         async def all_assigned() -> bool:
             return len(await service.rows(Order, state="assigned")) == number
 
+        async def all_told() -> bool:
+            told.extend(heard.get_nowait().happening for _ in range(heard.qsize()))
+            return len([one for one in told if one.event == "order"]) >= 2 * number
+
+        told: list[Any] = []
         await until(all_assigned)
-        views = [heard.get_nowait().happening for _ in range(heard.qsize())]
-    assert [one.data().why for one in views if one.event == "order"] == [None] * 2 * number
+        await until(all_told)  # a commit is seen by others a moment before it is told of
+    assert [one.data().why for one in told if one.event == "order"] == [None] * 2 * number
 
 
 async def test_what_waits_is_taken_along_where_it_is_on_the_way_and_only_as_much_as_a_robot_can_carry(

@@ -26,6 +26,7 @@ from protocol.envelope import DURABLE, TO_ROBOT, Envelope, parse, type_of
 from protocol.parts import Battery, Part, Position, Received, Stop
 from protocol.to_robot import Mission, Verifiers, Welcome
 from protocol.to_server import Event, HandoverReceipt, Hello, Progress, Step
+from tests.app.placed import placed
 
 
 async def until(what: Callable[[], Awaitable[object]], limit_s: float = 5.0) -> Any:
@@ -58,7 +59,7 @@ class Service:
         async with state.database.transaction() as session:
             sender = await state.sign_in_desk.person(session, "sender@campus.example", state.clock.utc())
             wish = NewOrder(from_post=from_post, to_post=to_post, recipient="recipient@campus.example")
-            return str((await state.orders.create(session, sender, wish)).id)
+            return await placed(state.orders, session, sender, wish)
 
     async def cancel(self, order_id: str) -> None:
         state = self.app.state

@@ -18,6 +18,7 @@ from app.settings import Settings
 from app.tables import OrderState, OutgoingNotice, Person, RobotRow
 from protocol.clock import SteppedClock
 from tests.app.conftest import RECIPIENT, SENDER
+from tests.app.placed import placed
 
 
 @dataclass(frozen=True)
@@ -47,8 +48,7 @@ class Office:
         sender = await self.person(SENDER)
         async with self.state.database.transaction() as session:
             wish = NewOrder(from_post="post1", to_post="post4", recipient=RECIPIENT)
-            order_id: str = (await self.state.orders.create(session, sender, wish)).id
-        return order_id
+            return await placed(self.state.orders, session, sender, wish)
 
     async def move(self, order_id: str, *states: str) -> None:
         for state in states:

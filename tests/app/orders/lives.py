@@ -41,6 +41,7 @@ from robot.duties import Duties
 from robot.memory import Incoming, Memory
 from robot.outbox import Outbox
 from robot.store import Store
+from tests.app.placed import placed
 
 TRACK = builtin_map("test_track")
 
@@ -178,7 +179,7 @@ class World:
     async def place(self, from_post: str, to_post: str) -> str:
         wish = NewOrder(from_post=from_post, to_post=to_post, recipient="recipient@campus.example")
         async with self.database.transaction() as session:
-            order_id = str((await self.orders.create(session, self.people["sender"], wish)).id)
+            order_id = await placed(self.orders, session, self.people["sender"], wish)
         self.where[order_id] = "sender"
         return order_id
 
