@@ -1,7 +1,6 @@
 /** The order form: from, to, for whom, what. Shows when it would arrive before anything is ordered. */
 import { html, nothing } from "lit";
 import * as api from "../api.js";
-import { looksLikeEmail } from "../email.js";
 import { followPage, PAGES } from "../links.js";
 import { atFields } from "../problems.js";
 import { serverNow } from "../server_clock.js";
@@ -82,7 +81,7 @@ export class OrderForm extends PageElement {
       )}
       ${this.#whenField()} ${estimateView(this.estimate, this.#later_ms())} ${helpWords("window")} ${this.problems.form ? problemLine(this.problems.form) : nothing}
       <button class="main" aria-disabled=${this.sending ? "true" : nothing}>
-        ${icon("send")}${t(this.sending ? "order.sending" : `order.send_${this.when}`)}
+        ${icon("send")}${t(this.sending ? "order.sending" : `order.send.${this.when}`)}
       </button>
     </form>`;
   }
@@ -113,7 +112,7 @@ export class OrderForm extends PageElement {
         <legend>${t("order.when")}</legend>
         ${WHENS.map(
           (when) => html`<label class="pill"><input type="radio" name="when" value=${when} .checked=${this.when === when}
-            @input=${(/** @type {Event} */ event) => event.stopPropagation()} @change=${() => this.#when(when)} /><span>${t(`order.when_${when}`)}</span></label>`,
+            @input=${(/** @type {Event} */ event) => event.stopPropagation()} @change=${() => this.#when(when)} /><span>${t(`order.when.${when}`)}</span></label>`,
         )}
       </fieldset>
       ${this.when === "now"
@@ -188,14 +187,18 @@ export class OrderForm extends PageElement {
     this.problems = { ...this.problems, ...problems };
   }
 
-  /** @param {SubmitEvent} event */
+  /** One at a time, however often it is tapped. @param {SubmitEvent} event */
   async #submit(event) {
     event.preventDefault();
     if (this.sending) return;
-    this.problems = this.#missing();
-    if (Object.keys(this.problems).length) return this.focusOn("[aria-invalid]");
     this.sending = true;
-    const { KeptForLater, placeOrder } = await import("../place_order.js");
+    await this.#send().finally(() => (this.sending = false));
+  }
+
+  async #send() {
+    const [{ looksLikeEmail }, { KeptForLater, placeOrder }] = await Promise.all([import("../email.js"), import("../place_order.js")]);
+    this.problems = this.#missing(looksLikeEmail);
+    if (Object.keys(this.problems).length) return void this.focusOn("[aria-invalid]");
     try {
       location.assign(await this.#place(placeOrder));
     } catch (failure) {
@@ -203,8 +206,6 @@ export class OrderForm extends PageElement {
       if (failure instanceof KeptForLater) return this.#want({ to_post: "", recipient: "", description: "" });
       this.problems = atFields(failure, FIELD_OF_CODE);
       this.focusOn("[aria-invalid]");
-    } finally {
-      this.sending = false;
     }
   }
 
@@ -220,8 +221,9 @@ export class OrderForm extends PageElement {
     return followPage((await placeOrder(wanted, personHere()?.id ?? "")).id);
   }
 
-  /** What a person can see for themselves; everything else is the service's to judge. @returns {Record<string, string>} */
-  #missing() {
+  /** What a person can see for themselves; everything else is the service's to judge.
+   *  @param {(text: string) => boolean} looksLikeEmail @returns {Record<string, string>} */
+  #missing(looksLikeEmail) {
     const { from_post, to_post, recipient } = this.wanted;
     return {
       ...(from_post ? {} : { from_post: t("error.missing_from_post") }),
