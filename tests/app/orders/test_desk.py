@@ -14,7 +14,7 @@ from app.orders.errors import KeyReused, StillRunning, UnknownPost, UnknownRecip
 from app.orders.schemas import NewOrder
 from app.people.service import set_roles
 from app.tables import Person, Role
-from tests.app.conftest import RECIPIENT, SENDER, Browser, Mailroom
+from tests.app.conftest import RECIPIENT, SENDER, Browser, Mailroom, sqlite_alone
 
 NEWCOMER = "new.comer@campus.example"
 
@@ -173,3 +173,29 @@ def test_whoever_hangs_up_while_they_wait_has_ordered_once_whatever_they_ask_nex
 
 async def both(desk: OrderDesk, *asked: tuple[Person, str, NewOrder]) -> list[Placed]:
     return list(await asyncio.gather(*(desk.place(*one) for one in asked)))
+
+
+async def leave_room_for(app: FastAPI, pages: int) -> None:
+    """The disk is full when the database has grown by so many pages: for the connections that are used next."""
+    connections = [await app.state.database.engine.connect() for _ in range(5)]
+    for one in connections:
+        has = (await one.exec_driver_sql("PRAGMA page_count")).scalar_one()
+        await one.exec_driver_sql(f"PRAGMA max_page_count={has + pages}")
+        await one.close()
+
+
+@sqlite_alone
+def test_on_a_full_disk_some_orders_find_room_and_the_others_are_placed_by_their_keys_once_there_is_more(
+    app: FastAPI, crowd: Crowd, sender: Browser
+) -> None:
+    wishes = [{"recipient": RECIPIENT, "description": "x" * 500} for _ in range(AT_ONCE)]
+    crowd._mailroom.call(leave_room_for, app, 1)
+    before = crowd.ask(*wishes)
+    placed = [one.view.id for one in before if isinstance(one, Placed)]
+    assert len(placed) < AT_ONCE
+    assert {one["id"] for one in sender.get("/api/v1/orders?limit=100").json()["items"]} == set(placed)
+    crowd._mailroom.call(leave_room_for, app, 10_000)
+    after = [one for one in crowd.ask(*wishes) if isinstance(one, Placed)]
+    assert len(after) == AT_ONCE
+    assert {one.view.id for one in after if one.again} == set(placed)
+    assert len(sender.get("/api/v1/orders?limit=100").json()["items"]) == AT_ONCE
