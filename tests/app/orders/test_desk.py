@@ -175,13 +175,20 @@ async def both(desk: OrderDesk, *asked: tuple[Person, str, NewOrder]) -> list[Pl
     return list(await asyncio.gather(*(desk.place(*one) for one in asked)))
 
 
-async def leave_room_for(app: FastAPI, pages: int) -> None:
-    """The disk is full when the database has grown by so many pages: for the connections that are used next."""
-    connections = [await app.state.database.engine.connect() for _ in range(5)]
-    for one in connections:
-        has = (await one.exec_driver_sql("PRAGMA page_count")).scalar_one()
-        await one.exec_driver_sql(f"PRAGMA max_page_count={has + pages}")
-        await one.close()
+class Disk:
+    """It is full when the database has grown to so many pages."""
+
+    def __init__(self, app: FastAPI) -> None:
+        self._engine = app.state.database.engine
+        self.pages = 1_000_000
+        event.listen(self._engine.sync_engine, "begin", self._limit)
+
+    def _limit(self, connection: Any) -> None:
+        connection.connection.driver_connection.remember(f"PRAGMA max_page_count={self.pages}")
+
+    async def has_room_for(self, pages: int) -> None:
+        async with self._engine.connect() as connection:
+            self.pages = (await connection.exec_driver_sql("PRAGMA page_count")).scalar_one() + pages
 
 
 @sqlite_alone
@@ -189,12 +196,13 @@ def test_on_a_full_disk_some_orders_find_room_and_the_others_are_placed_by_their
     app: FastAPI, crowd: Crowd, sender: Browser
 ) -> None:
     wishes = [{"recipient": RECIPIENT, "description": "x" * 500} for _ in range(AT_ONCE)]
-    crowd._mailroom.call(leave_room_for, app, 1)
+    disk = Disk(app)
+    crowd._mailroom.call(disk.has_room_for, 1)
     before = crowd.ask(*wishes)
     placed = [one.view.id for one in before if isinstance(one, Placed)]
     assert len(placed) < AT_ONCE
     assert {one["id"] for one in sender.get("/api/v1/orders?limit=100").json()["items"]} == set(placed)
-    crowd._mailroom.call(leave_room_for, app, 10_000)
+    crowd._mailroom.call(disk.has_room_for, 10_000)
     after = [one for one in crowd.ask(*wishes) if isinstance(one, Placed)]
     assert len(after) == AT_ONCE
     assert {one.view.id for one in after if one.again} == set(placed)
