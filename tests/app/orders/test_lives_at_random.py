@@ -10,6 +10,7 @@ from pathlib import Path
 from random import Random
 from typing import Any
 
+import pytest
 from hypothesis import HealthCheck, Phase, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
@@ -387,4 +388,5 @@ LivesOfOrders.TestCase.settings = settings(
     deadline=None,
     suppress_health_check=list(HealthCheck),
 )
-TestLivesOfOrders = LivesOfOrders.TestCase
+# Twenty seconds of work: on a machine that is busy with other things much longer.
+TestLivesOfOrders = pytest.mark.timeout(400)(LivesOfOrders.TestCase)

@@ -154,6 +154,7 @@ def test_whether_somebody_needs_a_link_is_one_question(
         named = sender.post(f"/api/v1/orders/{order_id}/delegates", json=wish)
         if name == "let go":
             assert sender.delete(named.headers["Location"].removesuffix("/code")).status_code == 204
+    mailroom.send_mails()  # whose writer asks the same
     emails = {"signed in": RECIPIENT, SENDER: SENDER}
     got: dict[str, tuple[bool, int]] = {}
     for who in LINKED:
