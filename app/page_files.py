@@ -89,12 +89,13 @@ class PageFiles:
 
 def add_page_files(app: FastAPI, files: PageFiles) -> None:
     """Serve what is not simply a file of the folder."""
-    for address, media_type, read in (
+    made: tuple[tuple[str, str, Callable[[], bytes]], ...] = (
         (MODULE, "text/javascript", files.module),
         (WORKER, "text/javascript", files.worker),
         (STYLES, "text/css", files.styles),
         *((TEXTS.format(language=one), "application/json", partial(files.everyday_texts, one)) for one in LANGUAGES),
-    ):
+    )
+    for address, media_type, read in made:
         app.get(address, include_in_schema=False)(_made(media_type, read))
 
 

@@ -1,6 +1,6 @@
 /** What nobody waits for, done once a page stands: notices that pop up, orders that wait on this device, the worker. */
 import "./elements/notice_toast.js";
-import { keptOrders, onKept } from "./outbox.js";
+import { onKept } from "./session.js";
 import { workOffline } from "./with_worker.js";
 /** @import { Person } from "./api_types.ts" */
 /** @import { PageShell } from "./elements/page_shell.js" */
@@ -14,7 +14,7 @@ export async function afterOpening(shell, person) {
 /** Its element sees to all others. @param {PageShell} shell @param {Person} person */
 async function showFirstKept(shell, person) {
   if (shell.kept.length) return;
-  await import("./elements/kept_orders.js");
+  const [{ keptOrders }] = await Promise.all([import("./outbox.js"), import("./elements/kept_orders.js")]);
   shell.keptJustNow = true;
   shell.kept = await keptOrders(person.id);
 }

@@ -3,6 +3,7 @@
  * whoever asks again asks anew.
  */
 import * as api from "./api.js";
+import { orderFrom } from "./links.js";
 import { loadMap } from "./posts.js";
 import { fetchTexts } from "./texts.js";
 /** @import { Order, Page } from "./api_types.ts" */
@@ -20,9 +21,12 @@ const me = api.me();
 fetchTexts(language).catch(() => undefined);
 /** @type {Promise<Page<Order>> | null} */
 let orders = location.pathname === "/" ? me.then((person) => (person ? api.orders("all", NEWEST) : { items: [], next: null })) : null;
+const order_id = orderFrom(location.search);
+/** @type {Promise<Order | null> | null} */
+let followed = location.pathname === "/follow.html" ? me.then((person) => (person && order_id ? api.order(order_id) : null)) : null;
 const map = WITH_MAP.includes(location.pathname) ? loadMap() : null;
 // Whoever needs an answer hears of its failure; nobody else has to.
-for (const answer of [about, me, orders, map]) answer?.catch(() => undefined);
+for (const answer of [about, me, orders, followed, map]) answer?.catch(() => undefined);
 
 /** The first answers, for the page that is being opened. */
 export const first = () => Promise.all([about, me]);
@@ -32,6 +36,14 @@ export function newestOrders() {
   const answer = orders ?? api.orders("all", NEWEST);
   orders = null;
   return answer;
+}
+
+/** The order that the page was opened for. @param {string} id @returns {Promise<Order>} */
+export async function followedOrder(id) {
+  const asked = followed;
+  followed = null;
+  const answer = await asked;
+  return answer?.id === id ? answer : api.order(id);
 }
 
 /** @param {string} chosen */

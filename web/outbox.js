@@ -61,13 +61,6 @@ export async function discard(key) {
   announce();
 }
 
-/** Tells whenever the box has changed, by whichever page or worker. @param {() => void} tell @returns {() => void} an end to it */
-export function onKept(tell) {
-  const channel = new BroadcastChannel("outbox");
-  channel.onmessage = tell;
-  return () => channel.close();
-}
-
 /** Nobody signs in or out while an order is being sent. @template T @param {() => Promise<T>} act @returns {Promise<T>} */
 export const inSession = async (act) => await (navigator.locks ? navigator.locks.request(LOCK, act) : act());
 

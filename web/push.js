@@ -3,15 +3,14 @@
  * @typedef {"unsupported" | "refused" | "off" | "on"} PushState
  */
 import * as api from "./api.js";
+import { PUSH_DEVICE } from "./session.js";
 import { t } from "./texts.js";
 
-/** Where this browser remembers whom it shows notices, and as what the service knows it. */
-const DEVICE = "push-device";
 
 const isSupported = () => "serviceWorker" in navigator && "PushManager" in window && "Notification" in window;
 
 /** @returns {{id: string, endpoint: string, person_id: string} | null} */
-const device = () => JSON.parse(localStorage.getItem(DEVICE) ?? "null");
+const device = () => JSON.parse(localStorage.getItem(PUSH_DEVICE) ?? "null");
 
 /** What a state means, and what can be done about it. @param {PushState} state */
 export const pushWords = (state) => t(`push.${state}`);
@@ -35,7 +34,7 @@ export async function startPush(person_id) {
 /** This device shows nothing any more, and the service sends it nothing. @returns {Promise<PushState>} */
 export async function endPush() {
   const known = device();
-  localStorage.removeItem(DEVICE);
+  localStorage.removeItem(PUSH_DEVICE);
   await (await subscription())?.unsubscribe();
   if (known) await api.removeDevice(known.id).catch(unlessGone);
   return pushState();
@@ -53,7 +52,7 @@ export async function checkPush(person_id) {
 /** @param {string} person_id @param {PushSubscription} made */
 async function tellService(person_id, made) {
   const { id } = await api.addDevice(made.toJSON());
-  localStorage.setItem(DEVICE, JSON.stringify({ id, endpoint: made.endpoint, person_id }));
+  localStorage.setItem(PUSH_DEVICE, JSON.stringify({ id, endpoint: made.endpoint, person_id }));
 }
 
 async function subscribed() {

@@ -19,6 +19,17 @@ export const hasKept = () => localStorage.getItem(KEPT) !== null;
 /** @param {boolean} some */
 export const sayKept = (some) => (some ? localStorage.setItem(KEPT, "") : localStorage.removeItem(KEPT));
 
+/** Where this browser remembers whom it shows notices, and as what the service knows it. */
+export const PUSH_DEVICE = "push-device";
+export const hasPush = () => localStorage.getItem(PUSH_DEVICE) !== null;
+
+/** Tells whenever the outbox has changed, by whichever page or worker. @param {() => void} tell @returns {() => void} an end to it */
+export function onKept(tell) {
+  const channel = new BroadcastChannel("outbox");
+  channel.onmessage = tell;
+  return () => channel.close();
+}
+
 /** Nothing of theirs stays on the device but orders that wait to be sent: those wait for them. */
 export async function signOut() {
   const [{ endPush }, { inSession }] = await Promise.all([import("./push.js"), import("./outbox.js")]);

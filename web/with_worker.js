@@ -1,5 +1,5 @@
 /** Puts the service worker in, once the page stands, and says when a new version of the pages is there. */
-import { checkPush } from "./push.js";
+import { hasPush } from "./session.js";
 /** @import { Person } from "./api_types.ts" */
 
 /** What a page hears when a new version is there: `take` changes to it. @typedef {CustomEvent<{take: () => void}>} NewVersion */
@@ -15,7 +15,7 @@ export async function workOffline(person) {
   registration.addEventListener("updatefound", () => registration.installing?.addEventListener("statechange", look));
   // Another page has changed to it: this one goes on with its own files until its person likes to change too.
   navigator.serviceWorker.addEventListener("controllerchange", () => wasControlled && sayNewVersion(() => location.reload()));
-  if (person) await checkPush(person.id);
+  if (person && hasPush()) await (await import("./push.js")).checkPush(person.id);
 }
 
 /** Where a browser has no workers made of modules, or its person wants none, pages work as long as there is a network. */

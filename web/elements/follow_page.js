@@ -1,6 +1,7 @@
 /** One order, followed: where it stands, when it arrives, what to do, where the robot was seen, what has happened. */
 import { html, nothing } from "lit";
 import * as api from "../api.js";
+import { followedOrder } from "../early.js";
 import { PAGES } from "../links.js";
 import { OnLive } from "../live.js";
 import { hasEnded, isAtAStop, isMyTurn, reasonText, stateSentence } from "../order_words.js";
@@ -8,7 +9,6 @@ import { loadMap } from "../posts.js";
 import { inWords } from "../problems.js";
 import { t } from "../texts.js";
 import { TrafficNow } from "../traffic.js";
-import "./campus_map.js";
 import { orderActions } from "./order_actions.js";
 import { orderCustody } from "./order_custody.js";
 import { orderDetails } from "./order_details.js";
@@ -106,7 +106,7 @@ export class FollowPage extends PageElement {
         </section>
       </div>
       <div class="column">
-        <section class="card" aria-labelledby="map-title">
+        <section class="card where" aria-labelledby="map-title">
           <h2 id="map-title">${t(hasEnded(order) ? "follow.map_ended" : "follow.map")}</h2>
           <campus-map .map=${map} .robots=${hasEnded(order) || !this.robot ? [] : [this.robot]} .traffic=${this.#traffic.taken}
             .from=${order.from_post} .to=${order.to_post} ?facts=${!hasEnded(order)}></campus-map>
@@ -117,6 +117,8 @@ export class FollowPage extends PageElement {
   }
 
   updated() {
+    // After the words: where the letter stands is what people come for.
+    if (this.order && this.map) import("./campus_map.js");
     if (this.order && this.map) document.title = `${stateSentence(this.order, this.map)} · ${t("app.name")}`;
   }
 
@@ -184,7 +186,7 @@ export class FollowPage extends PageElement {
 
   async #ask() {
     try {
-      const [map, order] = await Promise.all([loadMap(), api.order(this.order_id)]);
+      const [map, order] = await Promise.all([loadMap(), followedOrder(this.order_id)]);
       [this.map, this.problem] = [map, ""];
       this.#show(order);
     } catch (failure) {

@@ -2,9 +2,9 @@
 import { html, nothing } from "lit";
 import { followPage, orderPage } from "../links.js";
 import { OnLive } from "../live.js";
-import { anyKept, discard, keptOrders, onKept, sendKept } from "../outbox.js";
+import { anyKept, discard, keptOrders, sendKept } from "../outbox.js";
 import { loadMap, titleOf } from "../posts.js";
-import { sayKept } from "../session.js";
+import { onKept, sayKept } from "../session.js";
 import { hasText, t } from "../texts.js";
 import { problemLine } from "./field.js";
 import { icon } from "./icon.js";
