@@ -2,7 +2,7 @@
 
 from datetime import UTC, datetime
 from enum import StrEnum
-from typing import Annotated
+from typing import Annotated, Final
 
 from pydantic import AwareDatetime, BaseModel, ConfigDict, Field, StringConstraints
 
@@ -10,7 +10,10 @@ PostName = Annotated[str, StringConstraints(pattern=r"^[a-z][A-Za-z0-9_]*$", max
 """A post as the map spells it: also an AgentSpeak atom, so that it can stand in a belief."""
 
 Identifier = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]*$", max_length=64)]
-Sentence = Annotated[str, StringConstraints(max_length=500)]
+LONGEST_SENTENCE: Final = 500
+Sentence = Annotated[str, StringConstraints(max_length=LONGEST_SENTENCE, pattern=r"^[^\x00]*$")]
+"""What people read. PostgreSQL stores no zero byte: a message with one would fail again and again."""
+
 Ratio = Annotated[float, Field(ge=0.0, le=1.0)]
 Seq = Annotated[int, Field(ge=1, le=2**53)]
 """A number in a journal; what every database and every JSON reader can hold."""
@@ -21,6 +24,11 @@ Moment = Annotated[AwareDatetime, Field(ge=datetime(1970, 1, 1, tzinfo=UTC), lt=
 Sha256Hex = Annotated[str, StringConstraints(pattern=r"^[0-9a-f]{64}$")]
 Signature = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9+/]{86}==$")]
 """64 bytes of Ed25519 as base64."""
+
+
+def sentence(text: object) -> str:
+    """Any text as what a message may carry: cut, and without zero bytes."""
+    return str(text).replace("\x00", "")[:LONGEST_SENTENCE]
 
 
 class Part(BaseModel):

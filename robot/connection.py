@@ -17,7 +17,7 @@ from protocol.clock import Clock
 from protocol.envelope import TO_ROBOT, Envelope, parse, type_of
 from protocol.errors import ProtocolError
 from protocol.insight import Insight
-from protocol.parts import Part
+from protocol.parts import Part, sentence
 from protocol.sequence import Reception
 from protocol.to_robot import Watch, Welcome
 from protocol.to_server import Hello, Snapshot, Why
@@ -167,7 +167,7 @@ class Connection:
             return parse(text, TO_ROBOT)
         except ProtocolError as error:
             # A message that we cannot read must be known to those who can update one side or the other.
-            await self._send(Error(code=error.code, message=str(error)[:500], seq=error.seq))
+            await self._send(Error(code=error.code, message=sentence(error), seq=error.seq))
             await self._socket.close(4400, error.code)
             raise
 

@@ -21,7 +21,7 @@ from protocol.both_ways import Ack, Error
 from protocol.envelope import TO_SERVER, Envelope, Head, parse, type_of
 from protocol.errors import ProtocolError
 from protocol.insight import Insight
-from protocol.parts import Part
+from protocol.parts import Part, sentence
 from protocol.to_robot import Watch
 from protocol.to_server import Hello
 
@@ -97,7 +97,9 @@ class Conversation:
             await self._close(TOKEN_REFUSED, "token revoked")
         except ProtocolError as error:
             log.warning("robot_refused", robot=self.robot, code=error.code, sentence=str(error))
-            await self._close(PROTOCOL_BROKEN, error.code, Error(code=error.code, message=said(error), seq=error.seq))
+            await self._close(
+                PROTOCOL_BROKEN, error.code, Error(code=error.code, message=sentence(error), seq=error.seq)
+            )
         except Exception:
             # Our mistake: the robot keeps what it had to say and comes back; whoever reads the log can help it.
             log.exception("conversation_failed", robot=self.robot)
@@ -295,11 +297,6 @@ class Conversation:
                 robot.online = False
                 fleet.announce(session, robot)
         log.info("robot_offline", robot=self.robot)
-
-
-def said(error: Exception) -> str:
-    """An error's sentence, no longer than a message may carry."""
-    return str(error)[:500]
 
 
 async def robot_row(session: AsyncSession, name: str) -> RobotRow:

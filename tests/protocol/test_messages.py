@@ -17,7 +17,7 @@ from protocol.both_ways import Error
 from protocol.envelope import DURABLE, MAX_MESSAGE_BYTES, TO_ROBOT, TO_SERVER, Envelope, parse, type_of
 from protocol.errors import MalformedMessage, MessageTooLarge, NewerVersion, ProtocolError, UnknownMessage
 from protocol.example_files import EXAMPLES, examples_of
-from protocol.parts import Part
+from protocol.parts import Part, sentence
 
 ROOT = Path(__file__).parents[2]
 EVERY = {**TO_SERVER, **TO_ROBOT}
@@ -96,6 +96,14 @@ def test_messages_are_frozen_and_exact() -> None:
 def test_numbers_and_times_that_no_database_could_keep_are_malformed(stem: str, place: str, value: object) -> None:
     with pytest.raises(MalformedMessage, match=place):
         parse(json.dumps({**example(stem), place: value}), EVERY)
+
+
+def test_a_sentence_with_a_zero_byte_is_malformed_since_postgresql_could_not_keep_it() -> None:
+    raw = example("why")
+    raw["body"]["sentence"] = "It waits\x00."
+    with pytest.raises(MalformedMessage, match="sentence"):
+        parse(json.dumps(raw), TO_SERVER)
+    assert sentence("It waits\x00." + 600 * "!") == ("It waits." + 600 * "!")[:500]
 
 
 @pytest.mark.parametrize("stem", ["mission", "grant", "welcome"])
