@@ -52,6 +52,9 @@ export const anyKept = async () => (await inBox("readonly", (box) => box.count()
 /** @param {KeptOrder} kept */
 export const keep = (kept) => inBox("readwrite", (box) => box.put(kept));
 
+/** Neither sent nor refused. @param {KeptOrder} kept */
+export const isWaiting = (kept) => !kept.order_id && !kept.refusal;
+
 /** Every page shows what is kept now. */
 export const announce = () => changes?.postMessage("changed");
 
@@ -73,7 +76,7 @@ export const sendKept = () =>
   inSession(async () => {
     const person = await api.me({ fresh: true });
     if (!person) return;
-    for (const kept of await keptOrders(person.id)) if (!kept.order_id && !kept.refusal) await sendOne(kept);
+    for (const kept of (await keptOrders(person.id)).filter(isWaiting)) await sendOne(kept);
     announce();
   });
 

@@ -5,7 +5,7 @@
  * @import { KeptOrder } from "./outbox.js"
  */
 import * as api from "./api.js";
-import { announce, discard, inSession, isRefusal, keep, keptOrders, sendLater } from "./outbox.js";
+import { announce, discard, inSession, isRefusal, isWaiting, keep, keptOrders, sendLater } from "./outbox.js";
 import { sayKept } from "./session.js";
 
 const TRY_AGAIN_AFTER_MS = [700, 2_500];
@@ -33,7 +33,7 @@ export async function placeOrder(wanted, person_id) {
 
 /** The same order that waits for its answer already is that order. @param {WantedOrder} wanted @param {string} person_id @returns {Promise<KeptOrder>} */
 async function keptAs(wanted, person_id) {
-  const waiting = (await keptOrders(person_id)).filter(({ order_id, refusal }) => !order_id && !refusal);
+  const waiting = (await keptOrders(person_id)).filter(isWaiting);
   const before = waiting.find((kept) => JSON.stringify(kept.wanted) === JSON.stringify(wanted));
   if (before) return before;
   const kept = { key: crypto.randomUUID(), person_id, wanted, at: new Date().toISOString(), order_id: null, refusal: null };

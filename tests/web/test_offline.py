@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from playwright.async_api import Page, expect
+from playwright.async_api import Page, Route, expect
 
 from app.page_files import PageFiles
 from protocol.clock import RealClock
@@ -88,6 +88,27 @@ async def test_in_a_tunnel_pages_open_an_order_is_kept_and_it_is_sent_once_when_
     assert [order["description"] for order in (await ada.api("/orders"))["items"]] == ["Keys"]
 
 
+async def test_an_order_whose_answers_are_lost_while_all_else_goes_well_is_sent_again_by_itself_and_is_one(visit):
+    ada = await visit("ada.king", on="phone")
+    page, lost = ada.page, []
+    ada.loses_answers = True
+
+    async def lose_some(route: Route) -> None:
+        if route.request.method == "POST" and len(lost) < 4:  # three tries of the form, one of the outbox
+            lost.append(await route.fetch())
+            await route.abort()
+        else:
+            await route.continue_()
+
+    await page.route(re.compile("/api/v1/orders$"), lose_some)
+    await page.goto("/")
+    await fill(page, what="Keys")
+    await send(page)
+    await expect(page.get_by_role("region", name=KEPT).get_by_text("Sent.")).to_be_visible()
+    assert [answer.status for answer in lost] == [201] * 4
+    assert [order["description"] for order in (await ada.api("/orders"))["items"]] == ["Keys"]
+
+
 async def test_what_is_refused_later_is_said_and_can_be_mended_or_thrown_away(visit):
     ada = await come_with_worker(visit)
     page = ada.page
@@ -146,7 +167,7 @@ async def test_the_files_of_the_pages_have_a_version_that_changes_with_any_of_th
         (tmp_path / name).write_text(text)
     files = PageFiles(tmp_path, frozenset({"npm_modules.json"}))
     before = files.module()
-    assert json.loads(before.split(b"FILES = ")[1].rstrip(b";\n")) [:2] == ["/", "/a.js"]
+    assert json.loads(before.split(b"FILES = ")[1].rstrip(b";\n"))[:2] == ["/", "/a.js"]
     assert files.module() == before
     (tmp_path / "a.js").write_text("2")
     assert files.module() != before

@@ -2,7 +2,7 @@
 import { html, nothing } from "lit";
 import { followPage, orderPage } from "../links.js";
 import { OnLive } from "../live.js";
-import { anyKept, discard, keptOrders, sendKept } from "../outbox.js";
+import { anyKept, discard, isWaiting, keptOrders, sendKept } from "../outbox.js";
 import { loadMap, titleOf } from "../posts.js";
 import { onKept, sayKept } from "../session.js";
 import { hasText, t } from "../texts.js";
@@ -12,11 +12,15 @@ import { PageElement } from "./page_element.js";
 /** @import { CampusMap } from "../api_types.ts" */
 /** @import { KeptOrder } from "../outbox.js" */
 
+/** An answer may get lost while the stream stays open and the browser says nothing of its network. */
+const TRY_AGAIN_MS = 5_000;
+
 export class KeptOrders extends PageElement {
   static properties = { person_id: { attribute: false }, kept: { attribute: false }, justNow: { type: Boolean }, map: { state: true } };
 
   #stop = () => {};
-  #send = () => void sendKept().catch(() => undefined);
+  #timer = 0;
+  #send = () => sendKept().catch(() => undefined).then(() => this.#look());
 
   constructor() {
     super();
@@ -35,12 +39,14 @@ export class KeptOrders extends PageElement {
     super.connectedCallback();
     this.#stop = onKept(() => this.#look());
     addEventListener("online", this.#send);
+    this.#timer = setInterval(() => !document.hidden && this.kept.some(isWaiting) && this.#send(), TRY_AGAIN_MS);
   }
 
   disconnectedCallback() {
     super.disconnectedCallback();
     this.#stop();
     removeEventListener("online", this.#send);
+    clearInterval(this.#timer);
   }
 
   async firstUpdated() {
