@@ -23,6 +23,7 @@ from app.errors import (
     described_problem,
     meaning,
 )
+from app.fleet.taken import RobotTraffic
 from app.fleet.watching import Watched
 from app.paging import BadCursor
 from app.people.errors import CrossSite, HttpsRequired, NotForScripts, RoleNeeded, ScopeNeeded
@@ -245,8 +246,11 @@ def _problem_schemas() -> Document:
 
 def _live_schemas() -> Document:
     """Of events of the stream that no answer carries."""
-    schema = Watched.model_json_schema(ref_template="#/components/schemas/{model}", mode="serialization")
-    return {**schema.pop("$defs", {}), "Watched": schema}
+    found: Document = {}
+    for told in (Watched, RobotTraffic):
+        schema = told.model_json_schema(ref_template="#/components/schemas/{model}", mode="serialization")
+        found |= {**schema.pop("$defs", {}), told.__name__: schema}
+    return found
 
 
 def all_codes() -> dict[str, tuple[int, str]]:

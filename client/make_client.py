@@ -118,9 +118,12 @@ def _models(openapi: Schema) -> Iterator[str]:
 
 
 def _used_schemas(openapi: Schema) -> dict[str, Schema]:
-    """Those that the client's operations and the stream speak of; error answers are exceptions."""
+    """Those that the client's made operations speak of; error answers are exceptions.
+
+    The stream tells the same, and what a robot senses and thinks, which the pages alone look at.
+    """
     schemas = openapi["components"]["schemas"]
-    waiting = [one for _, _, one in _for_programs(openapi)]
+    waiting = [one for _, _, one in _for_programs(openapi) if one["operationId"] not in BY_HAND]
     used: dict[str, Schema] = {}
     while waiting:
         for name in re.findall(r"#/components/schemas/([A-Za-z0-9_]+)", str(waiting.pop())):

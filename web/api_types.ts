@@ -16,7 +16,7 @@ export type MapCorridor = Schemas["CorridorView"];
 export type Traffic = Schemas["Traffic"];
 export type TakenCorridor = Schemas["TakenCorridor"];
 /** All that this robot holds now. */
-export interface RobotTraffic { robot: string; taken: TakenCorridor[] }
+export type RobotTraffic = Schemas["RobotTraffic"];
 
 export type ArrivalWindow = Schemas["WindowView"];
 export type Estimate = Schemas["Estimate"];

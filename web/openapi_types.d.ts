@@ -2034,6 +2034,16 @@ export interface components {
             at: string;
             insight: components["schemas"]["Insight"];
         };
+        /**
+         * RobotTraffic
+         * @description Every corridor that this robot holds now: it replaces what was known of it.
+         */
+        RobotTraffic: {
+            /** Robot */
+            robot: string;
+            /** Taken */
+            taken: components["schemas"]["TakenCorridor"][];
+        };
     };
     responses: never;
     parameters: never;

@@ -23,11 +23,17 @@ KEEP_ALIVE_S = 15.0
 """Real seconds. A proxy closes what is silent for long."""
 UNBUFFERED = {"Cache-Control": "no-cache", "X-Accel-Buffering": "no"}
 
+TOLD = ("OrderView", "RobotView", "RobotTraffic", "NoticeView", "Watched")
+"""What the data of the events is, `resync` apart, whose data is empty."""
 EVENT = {
     "type": "object",
     "properties": {
         "event": {"type": "string", "enum": ["order", "robot", "traffic", "notice", "insight", "resync"]},
-        "data": {"type": "string", "contentMediaType": "application/json"},
+        "data": {
+            "type": "string",
+            "contentMediaType": "application/json",
+            "contentSchema": {"anyOf": [{"$ref": f"#/components/schemas/{name}"} for name in TOLD]},
+        },
         "id": {"type": "string"},
         "retry": {"type": "integer", "minimum": 0},
     },

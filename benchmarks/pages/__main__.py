@@ -5,7 +5,8 @@ import json
 import os
 import platform
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Sequence, Set
+from enum import StrEnum
 from pathlib import Path
 from statistics import median
 from typing import Annotated, Any, Final
@@ -29,18 +30,28 @@ FIRST: Final = (
     Wanted("usable_ms", at_most=1500, unit="ms"),
     Wanted("layout_shift", at_most=0.05),
 )
-PARTS: Final = {
-    "order": FIRST,
-    "order_again": (Wanted("usable_ms", at_most=1000, unit="ms"), Wanted("layout_shift", at_most=0.05)),
-    "follow": FIRST[1:],
+
+
+class Page(StrEnum):
+    """What is visited. A first visit has an empty browser; a second one is answered by the service worker."""
+
+    ORDER = "order"
+    ORDER_AGAIN = "order_again"
+    FOLLOW = "follow"
+
+
+PARTS: Final[dict[Page, tuple[Wanted, ...]]] = {
+    Page.ORDER: FIRST,
+    Page.ORDER_AGAIN: (Wanted("usable_ms", at_most=1000, unit="ms"), Wanted("layout_shift", at_most=0.05)),
+    Page.FOLLOW: FIRST[1:],
 }
-"""First visits have an empty browser; `order_again` is the second one, which the service worker answers."""
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
 
 
 @app.command()
 def measure(
+    pages: Annotated[list[Page] | None, typer.Argument(help="Which; all of them if none is named.")] = None,
     *,
     runs: Annotated[int, typer.Option(min=1, help="Visits of each page; the median counts.")] = 5,
     as_json: Annotated[bool, typer.Option("--json", help="JSON alone, without the table.")] = False,
@@ -50,8 +61,9 @@ def measure(
     A page can be used when the field "from" (followed: the sentence that says where the letter is) is visible and
     enabled. The browser's own throttling makes the phone: the person is signed in, the cache is empty.
     """
-    seen = _visits(runs)
-    reports = {name: _report(seen[name], wanted) for name, wanted in PARTS.items()}
+    wanted = {page: PARTS[page] for page in pages or PARTS}
+    seen = _visits(runs, set(wanted))
+    reports = {page: _report(seen[page], bounds) for page, bounds in wanted.items()}
     if not as_json:
         say("\n" + table(reports))
     print(json.dumps({"machine": _machine(), "runs": runs, "parts": reports}, indent=2))
@@ -71,7 +83,7 @@ def _machine() -> dict[str, Any]:
     return {"python": platform.python_version(), "system": platform.platform(), "cores": os.cpu_count(), **phone}
 
 
-def _visits(runs: int) -> dict[str, list[Visit]]:
+def _visits(runs: int, wanted: Set[Page]) -> dict[Page, list[Visit]]:
     async def somebody(filling: Filling) -> Account:
         accounts = await filling.people(3)
         await filling.history(accounts, EARLIER_ORDERS)
@@ -80,35 +92,42 @@ def _visits(runs: int) -> dict[str, list[Visit]]:
     with tempfile.TemporaryDirectory() as folder:
         account = fill(Path(folder), somebody)
         with service(Path(folder)) as server:
-            return asyncio.run(_visit_all(server, account, runs))
+            return asyncio.run(_visit_all(server, account, runs, wanted))
 
 
-async def _visit_all(server: Server, account: Account, runs: int) -> dict[str, list[Visit]]:
-    seen: dict[str, list[Visit]] = {name: [] for name in PARTS}
+async def _visit_all(server: Server, account: Account, runs: int, wanted: Set[Page]) -> dict[Page, list[Visit]]:
+    seen: dict[Page, list[Visit]] = {page: [] for page in wanted}
     order_id = await _an_order(server, account)
     async with a_browser() as browser:
         for run in range(runs):
             say(f"  visit {run + 1} of {runs}")
-            for name, found in (await _visit_once(browser, server, account, order_id)).items():
-                seen[name].append(found)
+            for page, found in (await _visit_once(browser, server, account, order_id, wanted)).items():
+                seen.get(page, []).append(found)
     return seen
 
 
-async def _visit_once(browser: Browser, server: Server, account: Account, order_id: str) -> dict[str, Visit]:
+async def _visit_once(
+    browser: Browser, server: Server, account: Account, order_id: str, wanted: Set[Page]
+) -> dict[Page, Visit]:
     origin = f"http://127.0.0.1:{server.port}"
     cookie: Any = {"name": "session", "value": account.cookie, "url": origin}
-    seen = {}
-    for pages in (
-        {"order": ("/", FORM), "order_again": ("/", FORM)},
-        {"follow": (f"/follow.html?order={order_id}", STANDING)},
-    ):
+    seen: dict[Page, Visit] = {}
+    followed = (f"/follow.html?order={order_id}", STANDING)
+    for visits_in_order in _in_one_browser(wanted):
         context = await browser.new_context(base_url=origin, **PHONE)
         await context.add_cookies([cookie])
-        for name, (address, usable) in pages.items():
-            seen[name] = await visit(context, address, usable)
-            await visits.until_kept(context)
+        for page in visits_in_order:
+            seen[page] = await visit(context, *(followed if page is Page.FOLLOW else ("/", FORM)))
+            if page != visits_in_order[-1]:
+                await visits.until_kept(context)
         await context.close()
     return seen
+
+
+def _in_one_browser(wanted: Set[Page]) -> list[list[Page]]:
+    """The second visit of a page has a first one before it."""
+    orders = [Page.ORDER, Page.ORDER_AGAIN] if Page.ORDER_AGAIN in wanted else [Page.ORDER]
+    return [*([orders] if wanted - {Page.FOLLOW} else []), *([[Page.FOLLOW]] if Page.FOLLOW in wanted else [])]
 
 
 async def _an_order(server: Server, account: Account) -> str:
