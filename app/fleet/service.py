@@ -135,15 +135,22 @@ class Fleet:
 
     def announce(self, session: AsyncSession, robot: RobotRow, is_seen: bool = True) -> None:
         """After the commit: whoever waits for robots looks again, and pages see it as it is now, if that is news."""
-        view = robot_view(robot, self.campus, self.settings) if is_seen else None
+        tell = self._news_of(robot) if is_seen else None
 
         def say() -> None:
-            if view is not None:
-                self.feed.publish(Happening("robot", view))
+            if tell is not None:
+                tell()
             for call in self.on_change:
                 call(robot.name)
 
         after_commit(session, say)
+
+    def _news_of(self, robot: RobotRow) -> Callable[[], None]:
+        """As it is now: what goes out after the commit must not be what was written later. Put together for listeners
+        alone, since a fleet reports more often than anybody looks."""
+        if not self.feed.is_heard:
+            return self.feed.pass_over
+        return partial(self.feed.publish, Happening("robot", robot_view(robot, self.campus, self.settings)))
 
     def have_spoken(self, session: AsyncSession, robots: Iterable[str]) -> None:
         """After the commit: these robots are as pages know them, but whoever waits for robots looks again."""

@@ -11,7 +11,7 @@ from typing import Annotated, Any
 
 import typer
 
-from benchmarks.body.report import missed, say, table
+from benchmarks.body.report import log_to_error_stream, missed, say, table
 from benchmarks.service.pinned import pin
 from benchmarks.service.samples import Samples
 from benchmarks.service.servers import LOAD_CORE, SERVER_CORE
@@ -51,6 +51,7 @@ def measure(
     unknown = [name for name in parts or () if name not in PARTS]
     if unknown:
         raise typer.BadParameter(f"no part is called {', '.join(unknown)}; there are {', '.join(PARTS)}")
+    log_to_error_stream()
     machine = _machine()
     # A load generator that looks for garbage among a thousand robots stands still for 0.2 s, and would call that the
     # service's: some seconds of garbage fit into memory.
