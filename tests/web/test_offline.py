@@ -1,22 +1,23 @@
 """Without a network: pages open, orders are kept and sent once, codes are at hand, and nothing is left for others."""
 
+import asyncio
 import json
 import os
 import re
 import shutil
-from collections.abc import AsyncIterator, Iterator
+from collections.abc import AsyncIterator, Awaitable, Callable, Iterator
 from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any
 
 import pytest
-from playwright.async_api import Page, Route, expect
+from playwright.async_api import CDPSession, Page, Route, expect
 
 from app.page_files import PageFiles
 from protocol.clock import RealClock
 from protocol.parts import StopAction
 from protocol.to_server import Step
-from tests.app.fleet.playing import PlayedRobot
+from tests.app.fleet.playing import PlayedRobot, until
 from tests.web.service import ROOT, Service
 from tests.web.test_order import fill, send
 from tests.web.visitor import Visitor
@@ -29,6 +30,7 @@ KEPT_ANSWERS = """async () => {
   return answers.map(({ url }) => url.replace(/.*v1/, "")).sort();
 }"""
 KEPT = "Kept on this device"
+ASKED_TO_SYNC = "async () => (await navigator.serviceWorker.ready).sync.getTags()"
 IS_DRAWN = "(image) => image.complete && image.naturalWidth > 0"
 
 
@@ -48,6 +50,22 @@ async def come_with_worker(visit, name: str = "ada", **options: Any) -> Visitor:
     await expect(person.page.get_by_role("heading", name="Send a letter")).to_be_visible()
     await person.page.wait_for_function(WORKER_IS_THERE)
     return person
+
+
+async def worker_of(person: Visitor) -> Callable[..., Awaitable[Any]]:
+    """Fires events in this person's worker as the browser does, from a page that is none of ours."""
+    browser: CDPSession = await person.context.new_cdp_session(await person.context.new_page())
+    found: asyncio.Future[str] = asyncio.get_running_loop().create_future()
+
+    def hear(event: dict[str, list[dict[str, str]]]) -> None:
+        if event["registrations"] and not found.done():
+            found.set_result(event["registrations"][-1]["registrationId"])
+
+    browser.on("ServiceWorker.workerRegistrationUpdated", hear)
+    await browser.send("ServiceWorker.enable")
+    async with asyncio.timeout(15):
+        to = {"origin": person.service.url, "registrationId": await found}
+    return lambda event, **facts: browser.send(f"ServiceWorker.{event}", {**to, **facts})
 
 
 async def is_kept(page: Page, address: str) -> None:
@@ -86,6 +104,30 @@ async def test_in_a_tunnel_pages_open_an_order_is_kept_and_it_is_sent_once_when_
     await kept.get_by_role("link", name="Follow it").click()
     await expect(page.get_by_role("heading", name="Looking for a robot")).to_be_visible()
     assert [order["description"] for order in (await ada.api("/orders"))["items"]] == ["Keys"]
+
+
+async def test_a_kept_order_is_sent_once_by_the_worker_though_no_page_is_open_any_more(visit):
+    ada = await come_with_worker(visit, "ada.king", permissions=["background-sync"])
+    page, fire = ada.page, await worker_of(ada)
+    async with no_network(ada):
+        await fill(page, what="Keys")
+        await send(page)
+        kept = page.get_by_role("region", name=KEPT)
+        await expect(kept.get_by_text("Will be sent by itself")).to_be_visible()
+        assert await page.evaluate(ASKED_TO_SYNC) == ["orders"], "the browser is to wake the worker"
+        await page.close()
+    # Once for the network, once more since browsers do so when the first attempt seemed to fail.
+    for is_last in (False, True):
+        await fire("dispatchSyncEvent", tag="orders", lastChance=is_last)
+
+    async def ordered() -> list[str]:
+        return [order["description"] for order in (await ada.api("/orders"))["items"]]
+
+    await until(ordered, limit_s=15)
+    page = await ada.new_page()
+    await page.goto("/")
+    await expect(page.get_by_role("region", name=KEPT).get_by_text("Sent.")).to_be_visible()
+    assert await ordered() == ["Keys"]
 
 
 async def test_an_order_whose_answers_are_lost_while_all_else_goes_well_is_sent_again_by_itself_and_is_one(visit):

@@ -1,14 +1,19 @@
 """Notices that a phone shows by itself: pushed into the service worker, as a push service does."""
 
-import asyncio
 import json
 import re
-from collections.abc import Awaitable, Callable
+from collections.abc import AsyncIterator, Awaitable, Callable
+from pathlib import Path
+from typing import Any
 
 import pytest
-from playwright.async_api import CDPSession, expect
+import pytest_asyncio
+from playwright.async_api import Playwright, expect
 
-from tests.web.test_offline import WORKER_IS_THERE
+from tests.app.fleet.playing import until
+from tests.web.conftest import QUIET
+from tests.web.service import Service
+from tests.web.test_offline import WORKER_IS_THERE, worker_of
 from tests.web.visitor import Visitor
 
 pytestmark = pytest.mark.browser
@@ -24,20 +29,33 @@ SHOWN = """async (tags) => {
 }"""
 
 
+# A browser lets a worker open windows for the finger of a person alone: the event is made here, and where it would lead
+# is noted. The notice, the windows and the inbox are real.
+TAP = """async (title) => {
+  const soon = async (look) => {
+    for (let tries = 0; tries < 400; tries += 1) {
+      const seen = await look();
+      if (seen) return seen;
+      await new Promise((resolve) => setTimeout(resolve, 50));
+    }
+    throw new Error(`not seen: ${look}`);
+  };
+  const shown = async () => (await registration.getNotifications()).filter((one) => one.title === title);
+  let leads = null;
+  clients.openWindow = async (url) => void (leads = ["opens", url]);
+  WindowClient.prototype.focus = async function () { leads = ["focuses", this.url]; };
+  const [first] = await soon(async () => (await shown()).length && shown());
+  const before = (await shown()).length;
+  dispatchEvent(new NotificationEvent("notificationclick", { notification: first }));
+  await soon(async () => leads && (await shown()).length < before);
+  return { leads, left: (await shown()).length };
+}"""
+
+
 async def push_to(ada: Visitor) -> Callable[[str], Awaitable[object]]:
-    """What a push service does: it hands a text to the worker of this page."""
-    browser: CDPSession = await ada.context.new_cdp_session(ada.page)
-    found: asyncio.Future[str] = asyncio.get_running_loop().create_future()
-
-    def hear(event: dict[str, list[dict[str, str]]]) -> None:
-        if event["registrations"] and not found.done():
-            found.set_result(event["registrations"][-1]["registrationId"])
-
-    browser.on("ServiceWorker.workerRegistrationUpdated", hear)
-    await browser.send("ServiceWorker.enable")
-    async with asyncio.timeout(15):
-        to = {"origin": ada.service.url, "registrationId": await found}
-    return lambda text: browser.send("ServiceWorker.deliverPushMessage", {**to, "data": text})
+    """What a push service does: it hands a text to the worker."""
+    fire = await worker_of(ada)
+    return lambda text: fire("deliverPushMessage", data=text)
 
 
 async def test_a_pushed_notice_is_shown_once_and_leads_to_its_letter_and_an_unreadable_one_to_the_notices(visit):
@@ -69,6 +87,92 @@ async def test_a_pushed_notice_is_shown_once_and_leads_to_its_letter_and_an_unre
     assert (one["title"], one["body"], one["lang"]) == (notice["title"], notice["body"], "en")
     await page.goto(one["url"])
     await expect(page.get_by_role("heading", name="Looking for a robot")).to_be_visible()
+
+
+async def told(ada: Visitor, order_id: str) -> dict[str, str]:
+    """What is pushed of the newest thing that Ada was told of this order."""
+
+    async def notices() -> list[dict[str, str]]:
+        return [one for one in (await ada.api("/notices"))["items"] if one["order_id"] == order_id]
+
+    newest = (await until(notices, limit_s=15))[0]
+    notice = {name: newest[name] for name in ("kind", "order_id", "title", "body", "at")}
+    return {**notice, "tag": f"{order_id}/{notice['kind']}", "language": "en"}
+
+
+async def tap(ada: Visitor, title: str) -> dict[str, Any]:
+    """On a notice that is shown; where it leads, and how many are shown still."""
+    (worker,) = ada.context.service_workers
+    return await worker.evaluate(TAP, title)
+
+
+async def test_a_tap_on_a_notice_leads_to_its_letter_in_the_window_that_shows_it_or_in_a_new_one(visit):
+    ada = await visit(on="phone", service_workers="allow", permissions=["notifications"])
+    page, url = ada.page, ada.service.url
+    await page.goto("/")
+    await page.wait_for_function(WORKER_IS_THERE)
+    push = await push_to(ada)
+    order_id = await ada.order("bob.martin@campus.example")
+    notice = await told(ada, order_id)
+    letter = f"{url}/follow.html?order={order_id}"
+    await push(json.dumps(notice))
+    assert await tap(ada, notice["title"]) == {"leads": ["opens", letter], "left": 0}, "the form stays as it was"
+
+    async def nothing_is_unread() -> bool:
+        return bool((await ada.api("/notices"))["unread"] == 0)
+
+    await until(nothing_is_unread, limit_s=15)
+    await page.goto(f"{letter}#content")
+    await expect(page.get_by_role("heading", name="Looking for a robot")).to_be_visible()
+    await push(json.dumps({**notice, "tag": "told once more"}))
+    assert await tap(ada, notice["title"]) == {"leads": ["focuses", f"{letter}#content"], "left": 0}
+    await push("not what the service sends")
+    assert (await tap(ada, "Campus Mail"))["leads"] == ["opens", f"{url}/notices.html"]
+
+
+@pytest_asyncio.fixture(loop_scope="session")
+async def installed(
+    playwright_here: Playwright, service: Service, tmp_path: Path, browser_type_launch_args: dict[str, Any]
+) -> AsyncIterator[Visitor]:
+    """Ada, who has installed the app: in a browser that keeps things, since a test's usual window installs nothing."""
+    arguments = {**browser_type_launch_args, "args": [*browser_type_launch_args.get("args", []), *QUIET]}
+    options = {"base_url": service.url, "locale": "en-CA", "permissions": ["notifications"]}
+    context = await playwright_here.chromium.launch_persistent_context(str(tmp_path), **arguments, **options)
+    assert context.browser is not None
+    ada = Visitor(context.browser, service, "ada.installed@campus.example", options)
+    ada.context = context
+    ada.page = await ada.new_page()
+    await ada.sign_in()
+    await ada.page.goto("/")
+    await ada.page.wait_for_function(WORKER_IS_THERE)
+    yield ada
+    await context.close()
+    assert not ada.complaints
+
+
+async def test_the_installed_apps_icon_counts_what_is_unread_until_it_is_read(installed: Visitor):
+    ada = installed
+    browser = await ada.context.new_cdp_session(await ada.context.new_page())
+    app = {"manifestId": f"{ada.service.url}/"}
+    asked = await ada.context.new_cdp_session(ada.page)
+    assert (await asked.send("Page.getInstallabilityErrors"))["installabilityErrors"] == []
+    await browser.send("PWA.install", {**app, "installUrlOrBundleUrl": f"{ada.service.url}/"})
+
+    async def counts(number: int) -> None:
+        async def does() -> bool:
+            return bool((await browser.send("PWA.getOsAppState", app))["badgeCount"] == number)
+
+        await until(does, limit_s=15)
+
+    push = await push_to(ada)
+    await ada.page.close()
+    for what in ("Keys", "Books"):
+        await push(json.dumps(await told(ada, await ada.order("bob.martin@campus.example", what=what))))
+    await counts(2)
+    page = await ada.new_page()
+    await page.goto("/notices.html")
+    await page.get_by_role("button", name="Mark all as read").click()
+    await counts(0)
 
 
 async def test_pages_know_how_a_device_stands_with_notices(visit):

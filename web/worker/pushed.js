@@ -11,7 +11,7 @@ const STAYS = ["robot_here", "robot_here_for_you", "at_return", "alarm"];
 
 /** Browsers insist that every push is shown, even one that cannot be read. @param {WorkerScope} worker @param {{text(): string} | null} data */
 export async function show({ registration }, data) {
-  const notice = read(data);
+  const notice = understood(data);
   await Promise.all([
     registration.showNotification(notice.title ?? NAME, {
       body: notice.body,
@@ -20,7 +20,7 @@ export async function show({ registration }, data) {
       icon: "/icons/icon-192.png",
       badge: "/icons/badge-96.png",
       requireInteraction: STAYS.includes(notice.kind ?? ""),
-      data: { url: (notice.kind && pageOf(/** @type {Notice} */ (notice))) ?? PAGES.notices },
+      data: { url: (notice.kind && pageOf(/** @type {Notice} */ (notice))) ?? PAGES.notices, kind: notice.kind, at: notice.at },
     }),
     count().catch(() => undefined),
     notice.order_id ? keepOrder(notice.order_id).catch(() => undefined) : undefined,
@@ -28,7 +28,7 @@ export async function show({ registration }, data) {
 }
 
 /** @param {{text(): string} | null} data @returns {Partial<Pushed>} */
-function read(data) {
+function understood(data) {
   try {
     const said = JSON.parse(data?.text() ?? "");
     return typeof said?.title === "string" ? said : {};
@@ -42,15 +42,28 @@ async function count() {
   await navigator.setAppBadge?.(unread);
 }
 
-/** What was told is opened: in the page that shows it already, in another, or in a new one.
- * @param {WorkerScope} worker @param {Notification} notification */
+/** What was told is opened, and need not be counted any more. @param {WorkerScope} worker @param {Notification} notification */
 export async function open({ clients }, notification) {
   notification.close();
-  const url = new URL(notification.data?.url ?? PAGES.notices, location.origin).href;
+  await Promise.all([lead(clients, notification.data?.url), read(notification.data).catch(() => undefined)]);
+}
+
+/** To the page that shows it already, or to a new one: no other is taken from under somebody's hands.
+ * @param {WorkerScope["clients"]} clients @param {string | undefined} address */
+async function lead(clients, address) {
+  const url = new URL(address ?? PAGES.notices, location.origin).href;
   const pages = await clients.matchAll({ type: "window" });
-  const there = pages.find((page) => page.url === url);
-  if (there) return there.focus();
-  return clients.openWindow(url);
+  const there = pages.find((page) => page.url.split("#")[0] === url);
+  return there ? there.focus() : clients.openWindow(url);
+}
+
+/** Of the inbox too. @param {Partial<Pushed> | null} told */
+async function read(told) {
+  const at = Date.parse(told?.at ?? "");
+  const { items } = await api.notices();
+  const ids = items.filter((one) => !one.read && one.kind === told?.kind && Date.parse(one.at) === at).map(({ id }) => id);
+  if (ids.length) await api.markRead(ids);
+  await count();
 }
 
 /** The push service gave this browser another address. @param {WorkerScope} worker */
