@@ -87,7 +87,7 @@ class DocumentedApi(FastAPI):
     def __init__(self, **settings: Any) -> None:
         tags = [{"name": name, "description": sentence} for name, sentence in TAGS.items()]
         super().__init__(
-            **settings, description=DESCRIPTION, openapi_tags=tags, generate_unique_id_function=_operation_id
+            **settings, description=DESCRIPTION, openapi_tags=tags, generate_unique_id_function=operation_id
         )
 
     def openapi(self) -> Document:
@@ -101,7 +101,7 @@ def _first_sentence(description: str) -> str:
     return " ".join(description.split()).partition(". ")[0].removesuffix(".")
 
 
-def _operation_id(route: APIRoute) -> str:
+def operation_id(route: APIRoute) -> str:
     return route.name
 
 

@@ -2,6 +2,7 @@
 
 import asyncio
 import sqlite3
+from functools import cache
 from pathlib import Path
 
 from alembic import command
@@ -42,8 +43,17 @@ async def bring_to_head(database: Database) -> None:
         async with database.rebuilding() as connection:
             await connection.run_sync(_bring_to_head)
     except (DBAPIError, OSError, sqlite3.Error) as error:
-        why = error.orig if isinstance(error, DBAPIError) else error
-        raise DatabaseUnusable(f"The database {database.name} cannot be used: {why}.") from error
+        raise DatabaseUnusable(f"The database {database.name} cannot be used: {_first_of(error)}.") from error
+
+
+def _first_of(error: BaseException) -> BaseException:
+    """What went wrong first: a full disk, say, and not what was refused because of it."""
+    first = error.orig if isinstance(error, DBAPIError) and error.orig is not None else error
+    while error.__context__ is not None:
+        error = error.__context__
+        if isinstance(error, sqlite3.Error):
+            first = error
+    return first
 
 
 async def is_at_head(database: Database) -> bool:
@@ -65,9 +75,10 @@ def _bring_to_head(connection: Connection) -> None:
     revision = revision_of(connection)
     if revision is not None:
         refuse_unknown(revision)
-    config = Config(INI)
-    config.attributes["connection"] = connection
-    command.upgrade(config, "head")
+    if revision != _scripts().get_current_head():  # at most starts there is nothing to run
+        config = Config(INI)
+        config.attributes["connection"] = connection
+        command.upgrade(config, "head")
     if connection.dialect.name == "sqlite" and (
         orphans := connection.exec_driver_sql("PRAGMA foreign_key_check").all()
     ):
@@ -90,5 +101,6 @@ def revision_of(connection: Connection) -> str | None:
     return MigrationContext.configure(connection).get_current_revision()
 
 
+@cache
 def _scripts() -> ScriptDirectory:
     return ScriptDirectory.from_config(Config(INI))

@@ -65,7 +65,7 @@ class OutboxWorker:
                     await asyncio.sleep(rest_s(asyncio.get_running_loop().time() - begun_s))
                 else:
                     await self._wait_for_bell()
-                    await asyncio.sleep(GATHER_S)
+                    await asyncio.sleep(0 if self._stopping else GATHER_S)
             await self._finish()
         except asyncio.CancelledError:
             self._cut_off()
