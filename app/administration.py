@@ -10,15 +10,26 @@ from app.database import Database
 from app.enrolment.service import EnrolmentDesk
 from app.errors import StartError
 from app.fleet import service as fleet
-from app.people.service import find_person, make_person, set_roles
+from app.people.schemas import EMAIL
+from app.people.service import find_person, is_allowed, make_person, set_roles
 from app.schema_version import bring_to_head
 from app.server_key import open_server_key
 from app.settings import Settings, make_data_folder, open_clock
-from app.tables import Role
+from app.tables import Person, Role
 
 
 class UnknownRole(StartError):
     """Somebody asked for a role that there is not."""
+
+
+class CannotSignIn(StartError):
+    """Somebody new was to have a role, by an address with which nobody can sign in."""
+
+    def __init__(self, email: str, domains: tuple[str, ...]) -> None:
+        super().__init__(
+            f"{email} could not sign in: addresses of {', '.join(domains)} can. "
+            "Correct it, or set CAMPUS_MAIL_ALLOWED_DOMAINS."
+        )
 
 
 @asynccontextmanager
@@ -41,14 +52,19 @@ async def migrate(settings: Settings) -> None:
 
 
 async def change_roles(settings: Settings, email: str, add: list[str], remove: list[str]) -> list[str]:
-    """Give and take roles; the roles afterwards. Somebody new is made. Raises UnknownRole."""
+    """Give and take roles; the roles afterwards. Somebody new is made. Raises UnknownRole, CannotSignIn."""
     given, taken = _roles(add), _roles(remove)
     async with database_at_head(settings) as session:
-        person = await find_person(session, email.lower())
-        person = person or make_person(email.lower(), settings.default_language, open_clock(settings).utc())
+        person = await find_person(session, email.lower()) or _newcomer(settings, email.lower())
         set_roles(person, given, taken)
         session.add(person)
         return person.roles
+
+
+def _newcomer(settings: Settings, email: str) -> Person:
+    if not EMAIL.fullmatch(email) or not is_allowed(email, settings):
+        raise CannotSignIn(email, settings.allowed_domains)
+    return make_person(email, settings.default_language, open_clock(settings).utc())
 
 
 def _roles(names: list[str]) -> set[Role]:

@@ -5,26 +5,38 @@ Secrets come from files: the server key lives in its own file, and any setting m
 """
 
 import os
-import re
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated, Final, Literal, Self
-from urllib.parse import urlsplit
-from zoneinfo import ZoneInfo, available_timezones
+from zoneinfo import ZoneInfo
 
 from fastapi import Depends
-from limits import parse
-from pydantic import Field, SecretStr, field_validator, model_validator
+from pydantic import Field, SecretStr, model_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict
 from starlette.requests import HTTPConnection
 
 from app.errors import StartError
+from app.setting_kinds import (
+    THIS_MACHINE,
+    Authorities,
+    Contact,
+    Domains,
+    Fingerprints,
+    Issuer,
+    Language,
+    Limit,
+    LogLevel,
+    MailAddress,
+    SmtpTls,
+    WholeAddress,
+    Zone,
+)
+from app.settings_errors import in_sentences, slips
 from maps import CampusMap, CampusMapError, find_map
 from protocol.clock import Clock, RealClock, SharedClock
 
 ROOT = Path(__file__).parents[1]
-SmtpTls = Literal["starttls", "tls", "none"]
 SMTP_PORTS: Final = {"starttls": 587, "tls": 465, "none": 25}
-THIS_MACHINE: Final = frozenset({"localhost", "127.0.0.1", "::1"})
 
 
 class Settings(BaseSettings):
@@ -50,35 +62,39 @@ class Settings(BaseSettings):
     )
     pages: Path = Field(ROOT / "web", description="Folder of the pages.")
     android_package: str = Field("", description="Name of an Android app that opens these pages as its own.")
-    android_fingerprints: tuple[str, ...] = Field(
+    android_fingerprints: Fingerprints = Field(
         (), description="SHA-256 fingerprints of the certificates that sign it (JSON list), as AB:CD:…"
     )
     map: str = Field("test_track", description="Campus map: the name of a built-in one, or a file.")
-    public_url: str = Field("", description="Address of the pages in mails, such as https://mail.campus.example.")
-    allowed_domains: tuple[str, ...] = Field(
+    public_url: WholeAddress = Field(
+        "", description="Address of the pages in mails, such as https://mail.campus.example."
+    )
+    allowed_domains: Domains = Field(
         ("campus.example",), description="Mail domains whose people may sign in and be sent mail (JSON list)."
     )
     allow_outside_recipients: bool = Field(
         False, description="Whether mail may be sent to people of other domains; they follow it by the link they get."
     )
-    mail_from: str = Field("mail@campus.example", description="Sender of the service's mails.")
+    mail_from: MailAddress = Field("mail@campus.example", description="Sender of the service's mails.")
     smtp_host: str = Field("", description="Mail server; empty: mails are files in the spool folder.")
     smtp_port: int = Field(0, ge=0, le=65535, description="Its port; 0: the usual one, 587, 465 or 25 by smtp_tls.")
     smtp_tls: SmtpTls = Field("starttls", description="starttls, tls, or none for a server on this machine.")
     smtp_user: str = Field("", description="Account at the mail server; empty: none is needed.")
     smtp_password: SecretStr = Field(SecretStr(""), description="Its password; give it as a file.")
-    smtp_ca_file: Path | None = Field(None, description="Authorities to trust, if not the system's own (PEM).")
+    smtp_ca_file: Authorities = Field(None, description="Authorities to trust, if not the system's own (PEM).")
     smtp_timeout_s: float = Field(30, gt=0, description="How long the mail server may take for each answer.")
     push_key_file: Path | None = Field(
         None, description="File with the key of Web Push (VAPID); default: `push.key` in the data folder."
     )
-    push_contact: str = Field("", description="Whom a push service may write to, as mailto:…; default: mail_from.")
-    webhook_url: str = Field("", description="Address that is told of every notice, whoever it is for.")
+    push_contact: Contact = Field("", description="Whom a push service may write to, as mailto:…; default: mail_from.")
+    webhook_url: WholeAddress = Field("", description="Address that is told of every notice, whoever it is for.")
     webhook_secret: SecretStr = Field(
         SecretStr(""), description="What signs them: at least 24 characters; give it as a file."
     )
-    default_language: str = Field("en", description="Language of people who have not chosen one: en or fr.")
-    time_zone: str = Field("", description="Zone of times in mails, such as America/Toronto; empty: the machine's own.")
+    default_language: Language = Field("en", description="Language of people who have not chosen one: en or fr.")
+    time_zone: Zone = Field(
+        "", description="Zone of times in mails, such as America/Toronto; empty: the machine's own."
+    )
     sign_in_code_lifetime_s: float = Field(600, gt=0, description="How long a mailed sign-in code is good for.")
     session_lifetime_s: float = Field(30 * 86400, gt=0, description="How long a browser stays signed in.")
     session_check_s: float = Field(
@@ -89,7 +105,7 @@ class Settings(BaseSettings):
         60, gt=0, description="How long a tap or digits at a hand-over are good for on their way to the robot."
     )
     enrolment_code_lifetime_s: float = Field(900, gt=0, description="How long a robot's enrolment code is good for.")
-    oidc_issuer: str = Field(
+    oidc_issuer: Issuer = Field(
         "", description="Issuer of the campus's OpenID Connect sign-in, such as https://login.campus.example."
     )
     oidc_client_id: str = Field("", description="What this service is called there.")
@@ -97,18 +113,24 @@ class Settings(BaseSettings):
     link_lifetime_s: float = Field(
         14 * 86400, gt=0, description="How long the link to one order, in mails to people without account, is good for."
     )
-    sign_in_codes_per_address: str = Field("10 per 15 minutes", description="Sign-in codes mailed to one mail address.")
-    sign_in_tries_per_host: str = Field("200 per 15 minutes", description="Sign-in requests from one network address.")
-    orders_per_person: str = Field("600 per hour", description="Orders that one person may place.")
-    changes_per_person: str = Field(
+    sign_in_codes_per_address: Limit = Field(
+        "10 per 15 minutes", description="Sign-in codes mailed to one mail address."
+    )
+    sign_in_tries_per_host: Limit = Field(
+        "200 per 15 minutes", description="Sign-in requests from one network address."
+    )
+    orders_per_person: Limit = Field("600 per hour", description="Orders that one person may place.")
+    changes_per_person: Limit = Field(
         "600 per hour", description="Changes that one person may make to contacts, tokens and the like."
     )
     streams_per_person: int = Field(20, gt=0, description="Event streams that one person may have open at a time.")
-    digits_tries_per_host: str = Field("60 per 15 minutes", description="Six digits typed from one network address.")
-    enrolment_tries_per_host: str = Field(
+    digits_tries_per_host: Limit = Field("60 per 15 minutes", description="Six digits typed from one network address.")
+    enrolment_tries_per_host: Limit = Field(
         "30 per 15 minutes", description="Robots' enrolment codes tried from one network address."
     )
-    link_tries_per_host: str = Field("300 per 15 minutes", description="Links of mails used from one network address.")
+    link_tries_per_host: Limit = Field(
+        "300 per 15 minutes", description="Links of mails used from one network address."
+    )
     assumed_speed_m_s: float = Field(0.15, gt=0, description="Assumed mean speed of a robot, for arrival windows.")
     assumed_handover_s: float = Field(120, ge=0, description="Assumed time of one hand-over, for arrival windows.")
     near_s: float = Field(
@@ -151,52 +173,7 @@ class Settings(BaseSettings):
     )
     clock_file: Path | None = Field(None, description="Shared scaled clock of a demonstration; default: real time.")
     demo_door: Path | None = Field(None, description="Door of a simulated robot; set by the demonstration alone.")
-    log_level: str = Field("INFO", description="DEBUG, INFO, WARNING or ERROR.")
-
-    @field_validator("android_fingerprints")
-    @classmethod
-    def _fingerprints_are_whole(cls, fingerprints: tuple[str, ...]) -> tuple[str, ...]:
-        for one in fingerprints:
-            if not re.fullmatch(r"[0-9A-F]{2}(:[0-9A-F]{2}){31}", one):
-                raise ValueError(f"{one!r} is no SHA-256 fingerprint; one is 32 pairs of hex digits: AB:CD:…")
-        return fingerprints
-
-    @field_validator("allowed_domains")
-    @classmethod
-    def _lower_case(cls, domains: tuple[str, ...]) -> tuple[str, ...]:
-        return tuple(domain.lower().removeprefix("@") for domain in domains)
-
-    @field_validator(
-        "sign_in_codes_per_address",
-        "sign_in_tries_per_host",
-        "orders_per_person",
-        "changes_per_person",
-        "digits_tries_per_host",
-        "enrolment_tries_per_host",
-        "link_tries_per_host",
-    )
-    @classmethod
-    def _limit_is_readable(cls, limit: str) -> str:
-        try:
-            parse(limit)
-        except ValueError:
-            raise ValueError(f"{limit!r} is no limit; one is written like 10 per 15 minutes") from None
-        return limit
-
-    @field_validator("oidc_issuer")
-    @classmethod
-    def _issuer_is_https(cls, issuer: str) -> str:
-        url = urlsplit(issuer)
-        if issuer and url.scheme != "https" and url.hostname not in {"localhost", "127.0.0.1", "::1"}:
-            raise ValueError("the issuer's address begins with https://")
-        return issuer
-
-    @field_validator("time_zone")
-    @classmethod
-    def _zone_is_known(cls, name: str) -> str:
-        if name and name not in available_timezones():
-            raise ValueError(f"there is no time zone {name!r}; zones are named like America/Toronto")
-        return name
+    log_level: LogLevel = Field("INFO", description="DEBUG, INFO, WARNING or ERROR.")
 
     @model_validator(mode="after")
     def _secrets_travel_encrypted(self) -> Self:
@@ -204,6 +181,12 @@ class Settings(BaseSettings):
             raise ValueError(f"smtp_tls is none, but {self.smtp_host} is another machine: set it to starttls or tls")
         if self.webhook_url and len(self.webhook_secret.get_secret_value()) < 24:
             raise ValueError("webhook_url needs a webhook_secret of at least 24 characters")
+        return self
+
+    @model_validator(mode="after")
+    def _the_providers_client_is_named(self) -> Self:
+        if bool(self.oidc_issuer) != bool(self.oidc_client_id):
+            raise ValueError("oidc_issuer and oidc_client_id go together: set both, or neither")
         return self
 
     @property
@@ -238,12 +221,24 @@ class Settings(BaseSettings):
 def load_settings() -> Settings:
     """Settings from the environment and the folder of secrets. Raises StartError."""
     secrets_dir = os.environ.get("CAMPUS_MAIL_SECRETS_DIR")
-    if secrets_dir and not Path(secrets_dir).is_dir():
-        raise StartError(f"CAMPUS_MAIL_SECRETS_DIR={secrets_dir} is no folder. Make it, or unset the variable.")
+    _refuse_slips(os.environ)
     try:
+        if secrets_dir:
+            _refuse_slips(file.name for file in Path(secrets_dir).iterdir())
         return Settings(_secrets_dir=secrets_dir)
+    except OSError as error:
+        raise StartError(
+            f"CAMPUS_MAIL_SECRETS_DIR={secrets_dir} cannot be read: {error.strerror}. "
+            "Name a folder that this user can read, or unset the variable."
+        ) from None
     except ValueError as error:
-        raise StartError(f"The settings cannot be used. {error}") from error
+        raise StartError(f"The settings cannot be used. {in_sentences(error, Settings.model_fields)}") from None
+
+
+def _refuse_slips(given: Iterable[str]) -> None:
+    """What somebody has set and nobody reads is worse than an error: they rely on it."""
+    for name, meant in slips(given, Settings.model_fields).items():
+        raise StartError(f"There is no setting {name}. Did you mean {meant}?")
 
 
 def open_clock(settings: Settings) -> Clock:
@@ -270,7 +265,10 @@ def make_data_folder(settings: Settings) -> None:
         settings.data.mkdir(parents=True, exist_ok=True)
         settings.data.chmod(0o700)
     except OSError as error:
-        raise StartError(f"The data folder {settings.data} cannot be made: {error}. Set CAMPUS_MAIL_DATA.") from error
+        raise StartError(
+            f"The data folder {settings.data} cannot be made: {error.strerror}. Set CAMPUS_MAIL_DATA to one that "
+            "this user may write to."
+        ) from error
 
 
 async def _settings_of(connection: HTTPConnection) -> Settings:

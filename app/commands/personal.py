@@ -25,7 +25,8 @@ def export(
     if as_json:
         say_json({"to": str(to), "rows": counts})
     else:
-        typer.echo(f"{to}: {', '.join(f'{count} {name}' for name, count in counts.items())}")
+        rows = ", ".join(f"{count} {name}" for name, count in counts.items())
+        typer.echo(f"{to}: who they are, {rows or 'and nothing besides'}")
 
 
 def erase(

@@ -7,14 +7,16 @@ import contextlib
 import json
 import sys
 from collections.abc import Iterable, Iterator, Sequence
-from typing import Annotated, Any
+from typing import Annotated, Any, NoReturn
 
 import typer
 from rich.console import Console
 from rich.table import Table
+from sqlalchemy.exc import DBAPIError
 
 from app.errors import ServiceError, StartError
 from app.settings import Settings, load_settings
+from app.settings_errors import in_sentences
 
 FOUND_WRONG, CANNOT = 1, 2
 # Whatever is piped somewhere is not cut to the width of a terminal that is not there.
@@ -30,12 +32,23 @@ class Refused(StartError):
 
 @contextlib.contextmanager
 def errors_in_words() -> Iterator[None]:
-    """A named error is a sentence on stderr and exit code 2, never a traceback."""
+    """What keeps a command from its work is a sentence on stderr and exit code 2, never a traceback.
+
+    Of its own accord a command speaks of what it knows; a disk that is full or gone may show anywhere.
+    """
     try:
         yield
     except (StartError, ServiceError) as error:
-        typer.echo(f"campus-mail: {error}", err=True)
-        raise typer.Exit(CANNOT) from None
+        _say_why(str(error))
+    except DBAPIError as error:
+        _say_why(f"The database could not be used, and nothing was changed: {error.orig}.")
+    except OSError as error:
+        _say_why(f"{error.filename or 'Something'} could not be used: {error.strerror or error}.")
+
+
+def _say_why(sentence: str) -> NoReturn:
+    typer.echo(f"campus-mail: {sentence}", err=True)
+    raise typer.Exit(CANNOT) from None
 
 
 def settings_with(**given: object) -> Settings:
@@ -45,7 +58,7 @@ def settings_with(**given: object) -> Settings:
     try:
         return Settings.model_validate({**settings.model_dump(), **wanted})
     except ValueError as error:
-        raise StartError(f"The options cannot be used. {error}") from error
+        raise StartError(f"The options cannot be used. {in_sentences(error, Settings.model_fields)}") from None
 
 
 def console() -> Console:

@@ -149,14 +149,18 @@ def opened(archive: Path, beside: Path) -> Iterator[tuple[Path, Manifest]]:
                 file.extractall(folder, filter="data")
             manifest = Manifest.model_validate_json((Path(folder) / MANIFEST).read_text())
         except (OSError, tarfile.TarError, EOFError, ValidationError, json.JSONDecodeError) as error:
-            raise BackupUnusable(f"{archive} is no backup of Campus Mail: {_reason(error)}.") from error
+            raise _not_opened(archive, error) from error
         _compare(archive, Path(folder), manifest)
         check_copy(Path(folder), archive.name)
         yield Path(folder), manifest
 
 
-def _reason(error: Exception) -> str:
-    return "its manifest cannot be read" if isinstance(error, ValidationError) else str(error)
+def _not_opened(archive: Path, error: Exception) -> BackupUnusable:
+    """A file that cannot be read, or a disk without room for what is in it, says nothing against the archive."""
+    if isinstance(error, OSError) and error.strerror:
+        return BackupUnusable(f"{archive} cannot be opened: {error.strerror}. Nothing has been changed.")
+    reason = "its manifest cannot be read" if isinstance(error, ValidationError) else str(error)
+    return BackupUnusable(f"{archive} is no backup of Campus Mail: {reason}.")
 
 
 def _compare(archive: Path, folder: Path, manifest: Manifest) -> None:

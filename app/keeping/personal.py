@@ -96,7 +96,9 @@ def write_documents(documents: dict[str, Any], to: Path) -> None:
     try:
         _write_archive(texts, to) if to.suffix == ".zip" else _write_folder(texts, to)
     except OSError as error:
-        raise StartError(f"{to} cannot be written: {error.strerror}. Choose another place: --to FOLDER.") from None
+        raise StartError(
+            f"{to} cannot be written: {error.strerror}. Choose another place: --to FOLDER, or --to FILE.zip."
+        ) from None
 
 
 def _write_archive(texts: dict[str, str], to: Path) -> None:

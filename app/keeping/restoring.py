@@ -42,7 +42,7 @@ def restore(
             if aside is not None:
                 dump_postgresql(url, aside / POSTGRESQL_COPY)
             load_postgresql(url, folder / POSTGRESQL_COPY)
-        _put_in_place(settings, url, folder, manifest)
+        _put_in_place(settings, url, folder, manifest, aside)
         return manifest, aside
 
 
@@ -74,8 +74,31 @@ def _put_aside(settings: Settings, files: list[Path], now: datetime) -> Path:
     return aside
 
 
-def _put_in_place(settings: Settings, url: URL, folder: Path, manifest: Manifest) -> None:
+def _put_in_place(settings: Settings, url: URL, folder: Path, manifest: Manifest, aside: Path | None) -> None:
     places = {SQLITE_COPY: Path(url.database or ""), **keys_of(settings)}
-    for file in manifest.files:
-        if file.name in places and file.name != POSTGRESQL_COPY:
-            shutil.move(folder / file.name, places[file.name])
+    files = [file.name for file in manifest.files if file.name in places and file.name != POSTGRESQL_COPY]
+    put: list[Path] = []
+    try:
+        for name in files:
+            shutil.move(folder / name, places[name])
+            put.append(places[name])
+    except OSError as error:
+        if manifest.database == "postgresql":
+            done = "The database is restored, its keys are not: take them out of the archive."
+        else:
+            _put_back(put, [*places.values()], aside)
+            done = "Nothing has been changed."
+        raise RestoreRefused(f"{error.filename} cannot be written: {error.strerror}. {done}") from None
+
+
+def _put_back(put: list[Path], places: list[Path], aside: Path | None) -> None:
+    """As it was: away with what came out of the archive, and what was put aside comes back to where it was."""
+    for path in put:
+        path.unlink()
+    if aside is None:
+        return
+    homes = {path.name: path.parent for path in places}
+    for kept in list(aside.iterdir()):
+        database = kept.name.removesuffix("-wal").removesuffix("-shm")
+        shutil.move(kept, homes[database] / kept.name)
+    aside.rmdir()

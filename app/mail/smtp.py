@@ -15,7 +15,8 @@ from typing import Final
 import aiosmtplib
 from pydantic import SecretStr
 
-from app.settings import Settings, SmtpTls
+from app.setting_kinds import SmtpTls
+from app.settings import Settings
 
 REFUSED_FOR_GOOD: Final = range(500, 600)
 

@@ -3,11 +3,12 @@
 import json
 from collections.abc import Mapping
 from functools import cache
-from typing import Final
+from typing import Final, get_args
 
+from app.setting_kinds import Language
 from app.settings import ROOT
 
-LANGUAGES: Final = ("en", "fr")
+LANGUAGES: Final[tuple[str, ...]] = get_args(Language)
 FOLDER: Final = ROOT / "web" / "texts"
 
 

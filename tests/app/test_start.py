@@ -3,6 +3,8 @@
 import asyncio
 import logging
 import os
+import resource
+import signal
 import sqlite3
 import subprocess
 import sys
@@ -202,11 +204,61 @@ def test_settings_come_from_the_environment_and_secrets_from_files(
 
 
 @pytest.mark.parametrize(
-    ("name", "value"), [("PORT", "many"), ("ALLOWED_DOMAINS", "no list"), ("TIME_ZONE", "Mars/Olympus")]
+    ("name", "value", "wanted"),
+    [
+        ("PORT", "many", "TCP port to listen on"),
+        ("PORT", "99999", "less than or equal to 65535"),
+        ("ALLOWED_DOMAINS", "campus.example", "Write it as JSON"),
+        ("TIME_ZONE", "Mars/Olympus", "America/Toronto"),
+        ("LOG_LEVEL", "LOUD", "'WARNING'"),
+        ("DEFAULT_LANGUAGE", "de", "'fr'"),
+        ("PUBLIC_URL", "mail.campus.example", "a whole address is wanted, such as https://"),
+        ("MAIL_FROM", "the mailroom", "a mail address is wanted"),
+        ("PUSH_CONTACT", "me", "mailto:"),
+        ("SMTP_CA_FILE", "/nowhere/ca.pem", "No such file"),
+        ("OIDC_ISSUER", "https://login.campus.example", "oidc_client_id"),
+        ("ORDERS_PER_PERSON", "lots", "10 per 15 minutes"),
+        ("WEBHOOK_SECRET", "short", ""),
+    ],
 )
-def test_a_setting_that_cannot_be_used_is_named(monkeypatch: pytest.MonkeyPatch, name: str, value: str) -> None:
+def test_a_setting_that_cannot_be_used_is_named_and_what_is_wanted_is_said(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, value: str, wanted: str
+) -> None:
+    monkeypatch.setenv("CAMPUS_MAIL_DATA", str(tmp_path / "data"))
     monkeypatch.setenv(f"CAMPUS_MAIL_{name}", value)
-    with pytest.raises(StartError, match=f"(?i){name}"):
+    if name == "WEBHOOK_SECRET":
+        monkeypatch.setenv("CAMPUS_MAIL_WEBHOOK_URL", "http://127.0.0.1:9")
+    ran = CliRunner().invoke(commands, ["serve", "--port", "0"])
+    assert (ran.exit_code, ran.stdout) == (2, "")
+    assert name.lower() in ran.stderr.lower()
+    assert wanted.lower() in ran.stderr.lower()
+    assert len(ran.stderr.splitlines()) == 1, "a sentence"
+    assert not (tmp_path / "data").exists()
+
+
+@pytest.mark.parametrize(("slip", "meant"), [("PROT", "PORT"), ("PUBLIC_ULR", "PUBLIC_URL"), ("SMTPHOST", "SMTP_HOST")])
+def test_a_setting_under_a_name_that_there_is_not_is_not_passed_over(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, slip: str, meant: str
+) -> None:
+    monkeypatch.setenv(f"CAMPUS_MAIL_{slip}", "1")
+    with pytest.raises(StartError, match=f"no setting CAMPUS_MAIL_{slip}. Did you mean CAMPUS_MAIL_{meant}"):
+        load_settings()
+    monkeypatch.delenv(f"CAMPUS_MAIL_{slip}")
+    (tmp_path / f"campus_mail_{slip.lower()}").write_text("1")
+    monkeypatch.setenv("CAMPUS_MAIL_SECRETS_DIR", str(tmp_path))
+    with pytest.raises(StartError, match=f"Did you mean CAMPUS_MAIL_{meant}"):
+        load_settings()
+
+
+def test_variables_of_other_programs_beside_the_service_are_left_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("URL", "TOKEN", "ROBOT_CONFIG"):
+        monkeypatch.setenv(f"CAMPUS_MAIL_{name}", "something")
+    assert load_settings().port == Settings().port
+
+
+def test_a_folder_of_secrets_that_is_not_there_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("CAMPUS_MAIL_SECRETS_DIR", "/nowhere/secrets")
+    with pytest.raises(StartError, match="/nowhere/secrets cannot be read: No such file or directory"):
         load_settings()
 
 
@@ -252,6 +304,62 @@ def test_roles_are_given_on_the_command_line(tmp_path: Path, monkeypatch: pytest
     refused = CliRunner().invoke(commands, ["people", "role", "dan@campus.example", "--add", "boss"])
     assert (refused.exit_code, refused.stdout) == (2, "")
     assert "There are: member, dispatcher, maintainer" in refused.stderr
+
+
+@pytest.mark.parametrize("address", ["nonsense", "dan@elsewhere.example"])
+def test_nobody_gets_a_role_who_could_never_sign_in(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, address: str
+) -> None:
+    monkeypatch.setenv("CAMPUS_MAIL_DATA", str(tmp_path / "data"))
+    refused = CliRunner().invoke(commands, ["people", "role", address, "--add", "maintainer"])
+    assert (refused.exit_code, refused.stdout) == (2, "")
+    assert f"{address} could not sign in: addresses of campus.example can" in refused.stderr
+    assert CliRunner().invoke(commands, ["people", "list"]).stdout == "Nobody yet.\n"
+
+
+@sqlite_alone
+def test_a_command_that_the_database_fails_says_so_and_changes_nothing(settings: Settings) -> None:
+    asyncio.run(migrate(settings))
+    refuses = "create trigger full before insert on people begin select raise(abort, 'database or disk is full'); end"
+    with sqlite3.connect(settings.data / "campus-mail.sqlite") as plain:
+        plain.execute(refuses)
+    plain.close()
+    environment = {"CAMPUS_MAIL_DATA": str(settings.data)}
+    given = ["people", "role", "dan@campus.example", "--add", "maintainer"]
+    ran = CliRunner(env=environment).invoke(commands, given)
+    assert (ran.exit_code, ran.stdout) == (2, "")
+    assert ran.stderr.splitlines() == [
+        "campus-mail: The database could not be used, and nothing was changed: database or disk is full."
+    ]
+    assert CliRunner(env=environment).invoke(commands, ["people", "list"]).stdout == "Nobody yet.\n"
+
+
+@sqlite_alone
+def test_a_first_start_on_a_full_disk_says_that_it_is_full(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("CAMPUS_MAIL_DATA", str(tmp_path / "data"))
+    ran = _with_files_no_larger_than(100_000, [sys.executable, "-m", "app", "migrate"])
+    assert ran.returncode == 2
+    assert "full" in ran.stderr or "disk I/O error" in ran.stderr
+
+
+def _with_files_no_larger_than(bytes_: int, command_line: list[str]) -> subprocess.CompletedProcess[str]:
+    def limit() -> None:
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (bytes_, bytes_))
+
+    return subprocess.run(
+        command_line, cwd=ROOT, capture_output=True, text=True, timeout=60, check=False, preexec_fn=limit
+    )
+
+
+def test_a_key_for_which_there_is_no_room_leaves_no_file_behind(tmp_path: Path) -> None:
+    script = f"import sys; sys.path.insert(0, {str(ROOT)!r})\n" + (
+        "from pathlib import Path\nfrom app.server_key import open_server_key\n"
+        f"open_server_key(Path({str(tmp_path / 'server.key')!r}))"
+    )
+    ran = _with_files_no_larger_than(10, [sys.executable, "-B", "-c", script])
+    assert "server.key cannot be used" in ran.stderr
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_robot_is_enrolled_once_and_given_a_new_token_on_demand(

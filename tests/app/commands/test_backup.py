@@ -83,6 +83,20 @@ def test_nothing_is_overwritten_and_what_was_there_is_kept_aside(
     assert kept & {"campus-mail.sqlite", "campus-mail.dump"}
 
 
+@sqlite_alone
+def test_a_restore_that_cannot_put_everything_in_place_leaves_what_was_there(
+    archive: Path, ask: Ask, run: Run, settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("CAMPUS_MAIL_SERVER_KEY_FILE", "/nowhere/server.key")
+    refused = run("restore", str(archive), "--replace")
+    assert (refused.exit_code, refused.stdout) == (2, "")
+    assert (
+        "/nowhere/server.key cannot be written: No such file or directory. Nothing has been changed" in refused.stderr
+    )
+    assert len(ask("orders", "list")) == 2
+    assert list(settings.data.glob("before-restore-*")) == []
+
+
 def test_a_service_that_runs_is_not_restored_over(archive: Path, run: Run, settings: Settings) -> None:
     with the_only_one(settings, "…"):
         refused = run("restore", str(archive), "--replace")

@@ -1,0 +1,92 @@
+"""Kinds of values that a setting can have: each refuses what would go wrong only later, and says what is wanted."""
+
+import re
+import ssl
+from pathlib import Path
+from typing import Annotated, Final, Literal
+from urllib.parse import urlsplit
+from zoneinfo import available_timezones
+
+from limits import parse
+from pydantic import AfterValidator, BeforeValidator
+
+THIS_MACHINE: Final = frozenset({"localhost", "127.0.0.1", "::1"})
+
+
+def _capitals(level: object) -> object:
+    return level.upper() if isinstance(level, str) else level
+
+
+def _readable_limit(limit: str) -> str:
+    try:
+        parse(limit)
+    except ValueError:
+        raise ValueError(f"{limit!r} is no limit; one is written like 10 per 15 minutes") from None
+    return limit
+
+
+def _known_zone(name: str) -> str:
+    if name and name not in available_timezones():
+        raise ValueError(f"there is no time zone {name!r}; zones are named like America/Toronto")
+    return name
+
+
+def _lower_case(domains: tuple[str, ...]) -> tuple[str, ...]:
+    return tuple(domain.lower().removeprefix("@") for domain in domains)
+
+
+def _whole_address(address: str) -> str:
+    url = urlsplit(address)
+    if address and not (url.scheme in {"http", "https"} and url.hostname):
+        raise ValueError("a whole address is wanted, such as https://mail.campus.example")
+    return address
+
+
+def _https_elsewhere(address: str) -> str:
+    url = urlsplit(address)
+    if address and url.scheme != "https" and url.hostname not in THIS_MACHINE:
+        raise ValueError("the address begins with https://")
+    return address
+
+
+def _mail_address(address: str) -> str:
+    if not re.fullmatch(r"[^@\s<>]+@[^@\s<>]+", address):
+        raise ValueError("a mail address is wanted, such as mail@campus.example")
+    return address
+
+
+def _contact(contact: str) -> str:
+    if contact and not contact.startswith(("mailto:", "https://")):
+        raise ValueError("it begins with mailto: or https://")
+    return contact
+
+
+def _readable_authorities(file: Path | None) -> Path | None:
+    if file is None:
+        return None
+    try:
+        ssl.create_default_context(cafile=file)
+    except OSError as error:  # SSLError is one
+        raise ValueError(f"{file} cannot be used: {error.strerror or error}") from None
+    return file
+
+
+def _whole_fingerprints(fingerprints: tuple[str, ...]) -> tuple[str, ...]:
+    for one in fingerprints:
+        if not re.fullmatch(r"[0-9A-F]{2}(:[0-9A-F]{2}){31}", one):
+            raise ValueError(f"{one!r} is no SHA-256 fingerprint; one is 32 pairs of hex digits: AB:CD:…")
+    return fingerprints
+
+
+SmtpTls = Literal["starttls", "tls", "none"]
+Language = Literal["en", "fr"]
+LogLevel = Annotated[Literal["DEBUG", "INFO", "WARNING", "ERROR"], BeforeValidator(_capitals)]
+Limit = Annotated[str, AfterValidator(_readable_limit)]
+Zone = Annotated[str, AfterValidator(_known_zone)]
+Domains = Annotated[tuple[str, ...], AfterValidator(_lower_case)]
+Fingerprints = Annotated[tuple[str, ...], AfterValidator(_whole_fingerprints)]
+WholeAddress = Annotated[str, AfterValidator(_whole_address)]
+Issuer = Annotated[str, AfterValidator(_https_elsewhere)]
+MailAddress = Annotated[str, AfterValidator(_mail_address)]
+Contact = Annotated[str, AfterValidator(_contact)]
+Authorities = Annotated[Path | None, AfterValidator(_readable_authorities)]
