@@ -1,6 +1,6 @@
 /**
- * What every page asks the service, asked while the other modules are still on their way. A page takes each answer once;
- * whoever asks again asks anew.
+ * What every page asks the service, asked while the other modules are still on their way; what its address does not tell
+ * is on its way already, by the page's head (make_pages.py). A page takes each answer once; whoever asks again asks anew.
  */
 import * as api from "./api.js";
 import { orderFrom } from "./links.js";
@@ -19,11 +19,11 @@ const language = localStorage.getItem(LANGUAGE) ?? navigator.languages[0]?.split
 const about = api.about();
 const me = api.me();
 fetchTexts(language).catch(() => undefined);
-/** @type {Promise<Page<Order>> | null} */
-let orders = location.pathname === "/" ? me.then((person) => (person ? api.orders("all", NEWEST) : { items: [], next: null })) : null;
+/** Asked before it is known who is here: nobody is refused it. @type {Promise<Page<Order>> | null} */
+let orders = location.pathname === "/" ? api.orders("all", NEWEST) : null;
 const order_id = orderFrom(location.search);
-/** @type {Promise<Order | null> | null} */
-let followed = location.pathname === "/follow.html" ? me.then((person) => (person && order_id ? api.order(order_id) : null)) : null;
+/** @type {Promise<Order> | null} */
+let followed = location.pathname === "/follow.html" && order_id ? api.order(order_id) : null;
 const map = WITH_MAP.includes(location.pathname) ? loadMap() : null;
 // Whoever needs an answer hears of its failure; nobody else has to.
 for (const answer of [about, me, orders, followed, map]) answer?.catch(() => undefined);

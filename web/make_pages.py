@@ -1,7 +1,8 @@
 """`make pages` writes what follows from other files: each page's list of the modules that it needs, and the types of
 what the service sends, from its OpenAPI document. `--check` says what is not up to date instead.
 
-*.html               their `modulepreload` lines, so that no module waits for another to be read
+*.html               their `preload` and `modulepreload` lines, so that no module waits for another to be read and no
+                     answer of the service for a module
 npm_modules.json     what any module of the pages needs of npm: the service worker keeps it
 openapi_types.d.ts   a type for each schema; `api_types.ts` gives them the names that the pages use
 """
@@ -27,20 +28,30 @@ IMPORT: Final = re.compile(
 )
 IMPORT_MAP: Final = re.compile(r"<script type=\"importmap\">(.*?)</script>", re.DOTALL)
 PRELOADS: Final = re.compile(
-    r"(?:    <link rel=\"modulepreload\" href=\"[^\"]+\" />\n)*(?=    <script type=\"module\")"
+    r"(?:    <link rel=\"(?:module)?preload\" [^>]+ />\n)*(?=    <script type=\"module\")"
 )
+MODULE: Final = '    <link rel="modulepreload" href="{}" />\n'
+ANSWER: Final = '    <link rel="preload" as="fetch" href="{}" crossorigin />\n'
+ASKED_BY_ALL: Final = ("/api/v1/about", "/api/v1/me")
+ASKED_BY: Final[Mapping[str, tuple[str, ...]]] = {
+    "index.html": ("/api/v1/map", "/api/v1/orders?role=all&amp;limit=6"),
+    "mail.html": ("/api/v1/map",),
+    "follow.html": ("/api/v1/map",),
+}
+"""What `early.js` asks for whatever the page's address is: begun while `early.js` is still on its way."""
 SCRIPTS: Final = re.compile(r'<script type="module" src="([^"]+)"')
 
 
-def with_preloads(html: str) -> str:
-    """The page with a line for each module behind its scripts, in the order of their names; first what the first script
-    needs, since it begins as soon as it has that."""
+def with_preloads(name: str, html: str) -> str:
+    """The page with a line for each module behind its scripts, in the order of their names; before them what the first
+    script needs, since it begins as soon as it has that, and the answers that it asks for."""
     import_map = json.loads(_only(IMPORT_MAP, html))["imports"]
     early, *scripts = SCRIPTS.findall(html)
-    modules = dict.fromkeys([early, *sorted(modules_behind(early, import_map))])
-    for script in scripts:
-        modules |= dict.fromkeys(sorted(modules_behind(script, import_map)))
-    lines = [f'    <link rel="modulepreload" href="{one}" />\n' for one in modules]
+    first = [early, *sorted(modules_behind(early, import_map))]
+    behind = (one for script in scripts for one in (*sorted(modules_behind(script, import_map)), script))
+    others = [one for one in dict.fromkeys(behind) if one not in first]
+    answers = [*ASKED_BY_ALL, *ASKED_BY.get(name, ())]
+    lines = [*map(MODULE.format, first), *map(ANSWER.format, answers), *map(MODULE.format, others)]
     return PRELOADS.sub("".join(lines), html, count=1)
 
 
@@ -103,7 +114,7 @@ def made_files() -> dict[Path, str]:
     sys.path[:0] = [str(WEB.parent)]
     from client.make_client import document  # the checkout is on the path only now
 
-    pages = {page: with_preloads(page.read_text(encoding="utf-8")) for page in sorted(WEB.glob("*.html"))}
+    pages = {page: with_preloads(page.name, page.read_text(encoding="utf-8")) for page in sorted(WEB.glob("*.html"))}
     import_map = json.loads(_only(IMPORT_MAP, next(iter(pages.values()))))["imports"]
     return pages | {WEB / NPM_MODULES: npm_modules(import_map), WEB / TYPES: types_of(document())}
 

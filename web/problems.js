@@ -2,6 +2,14 @@
 import { ApiProblem, NoAnswer } from "./api.js";
 import { hasText, t } from "./texts.js";
 
+/** Beside which field of an order it is said that the service does not take it. */
+export const FIELD_OF_CODE = {
+  unknown_post: "to_post",
+  same_post: "to_post",
+  no_way: "to_post",
+  unknown_recipient: "recipient",
+};
+
 /** A sentence about any failure. @param {unknown} failure */
 export function inWords(failure) {
   if (failure instanceof NoAnswer) return t("error.no_answer");

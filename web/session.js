@@ -1,4 +1,4 @@
-/** Who is signed in on this page, and what goes with them when they sign out. */
+/** Who is signed in on this page, what this browser remembers for them, and what goes with them when they sign out. */
 import * as api from "./api.js";
 /** @import { Person } from "./api_types.ts" */
 
@@ -22,6 +22,21 @@ export const sayKept = (some) => (some ? localStorage.setItem(KEPT, "") : localS
 /** Where this browser remembers whom it shows notices, and as what the service knows it. */
 export const PUSH_DEVICE = "push-device";
 export const hasPush = () => localStorage.getItem(PUSH_DEVICE) !== null;
+
+/** Whether somebody is told how it goes: on asking, and without as long as they have sent nothing and not put it away. */
+const PUT_AWAY = "first-steps-put-away";
+
+/** @param {boolean} isNew */
+export const wantsFirstHelp = (isNew) =>
+  new URLSearchParams(location.search).has("help") || (isNew && localStorage.getItem(PUT_AWAY) === null);
+
+/** Never again by itself. */
+export function putFirstHelpAway() {
+  localStorage.setItem(PUT_AWAY, "yes");
+  const here = new URL(location.href);
+  here.searchParams.delete("help");
+  history.replaceState(history.state, "", here);
+}
 
 /** Tells whenever the outbox has changed, by whichever page or worker. @param {() => void} tell @returns {() => void} an end to it */
 export function onKept(tell) {

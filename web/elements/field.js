@@ -1,4 +1,4 @@
-/** A labelled field with its hint and its problem, wired together for screen readers. */
+/** A labelled field with its hint and its problem, wired together for screen readers; what is said beside fields. */
 import { html, nothing } from "lit";
 import { t } from "../texts.js";
 import { icon } from "./icon.js";
@@ -25,3 +25,9 @@ export function field({ name, label, hint, problem, optional }, control) {
 /** @param {string} text @param {string} [id] */
 export const problemLine = (text, id) =>
   html`<p class="problem" role="alert" id=${id ?? nothing}>${icon("warning")}<span>${text}</span></p>`;
+
+/** A question that people have at this very place, with its answer folded away. @param {"window" | "code" | "meeting"} about */
+export const helpWords = (about) => html`<details class="helping">
+  <summary>${t(`help.${about}.question`)}</summary>
+  <p>${t(`help.${about}.answer`)}</p>
+</details>`;

@@ -1,6 +1,6 @@
 /** How it goes, for whoever is here for the first time: three steps, put away by a tap, found again under the account. */
 import { html, svg } from "lit";
-import { putFirstHelpAway } from "../first_help.js";
+import { putFirstHelpAway } from "../session.js";
 import { t } from "../texts.js";
 import { icon } from "./icon.js";
 import { PageElement } from "./page_element.js";

@@ -4,8 +4,7 @@ import { inWords } from "../problems.js";
 import { serverNow } from "../server_clock.js";
 import { t } from "../texts.js";
 import { dayAndTime } from "../times.js";
-import { problemLine } from "./field.js";
-import { helpWords } from "./help_words.js";
+import { helpWords, problemLine } from "./field.js";
 import { icon } from "./icon.js";
 import { PageElement } from "./page_element.js";
 /** @import { Purpose, ShownCode } from "../api_types.ts" */

@@ -1,27 +1,15 @@
-/** The order form: from, to, for whom, what. Shows when it would arrive before anything is ordered. */
+/** The order form: from, to, for whom, what, when. */
 import { html, nothing } from "lit";
-import * as api from "../api.js";
-import { followPage, PAGES } from "../links.js";
-import { atFields } from "../problems.js";
-import { serverNow } from "../server_clock.js";
-import { personHere } from "../session.js";
+import { titleOf } from "../posts.js";
 import { t } from "../texts.js";
-import { estimateView } from "./estimate_view.js";
-import { field, problemLine } from "./field.js";
-import { helpWords } from "./help_words.js";
+import { field, helpWords, problemLine } from "./field.js";
 import { icon } from "./icon.js";
 import { PageElement } from "./page_element.js";
-import { recentRecipients } from "./recent_recipients.js";
-/** @import { CampusMap, Contact, Estimate, Order, WantedOrder } from "../api_types.ts" */
-/** @import { Schedule } from "./order_schedule.js" */
+/** @import { CampusMap, Contact, Order, WantedOrder } from "../api_types.ts" */
+/** @import { Refused } from "./order_estimate.js" */
+/** @import { Schedule, When } from "./order_schedule.js" */
 
-const FIELD_OF_CODE = {
-  unknown_post: "to_post",
-  same_post: "to_post",
-  no_way: "to_post",
-  unknown_recipient: "recipient",
-};
-const DAY_MS = 86_400_000;
+const RECENT = 3;
 const WHENS = /** @type {const} */ (["now", "later", "again"]);
 
 export class OrderForm extends PageElement {
@@ -29,7 +17,6 @@ export class OrderForm extends PageElement {
     map: { attribute: false },
     wanted: { attribute: false },
     sent: { attribute: false },
-    estimate: { state: true },
     problems: { state: true },
     sending: { state: true },
     when: { state: true },
@@ -44,12 +31,10 @@ export class OrderForm extends PageElement {
     this.wanted = { from_post: "", to_post: "", recipient: "", description: "" };
     /** @type {Order[]} earlier orders, newest first */
     this.sent = [];
-    /** @type {Estimate | "looking" | null} */
-    this.estimate = null;
     /** @type {Record<string, string>} */
     this.problems = {};
     this.sending = false;
-    /** @type {"now" | "later" | "again"} */
+    /** @type {When} */
     this.when = "now";
     /** @type {Schedule} */
     this.schedule = {};
@@ -57,20 +42,21 @@ export class OrderForm extends PageElement {
 
   /** @param {Map<string, unknown>} changed */
   willUpdate(changed) {
-    const before = /** @type {WantedOrder | undefined} */ (changed.get("wanted"));
-    const { from_post, to_post } = this.wanted;
-    if (changed.has("wanted") && !before && this.wanted.not_before) this.#mend(this.wanted.not_before);
-    if (changed.has("wanted") && (before?.from_post !== from_post || before?.to_post !== to_post)) this.#look();
+    if (changed.has("wanted") && !changed.get("wanted") && this.wanted.not_before) this.#mend(this.wanted.not_before);
+  }
+
+  /** What else the form needs has its room, and is fetched once the form stands. */
+  firstUpdated() {
+    import("./order_estimate.js");
   }
 
   render() {
-    return html`<form class="card" novalidate @submit=${this.#submit} @input=${this.#read}>
+    return html`<form class="card" novalidate @submit=${this.#submit} @input=${this.#read} @focusin=${begin}>
       <fieldset class="route">
         <legend class="unseen">${t("order.route")}</legend>
         ${this.#postField("from_post", t("order.from"))} ${this.#postField("to_post", t("order.to"))}
       </fieldset>
-      ${this.#recipientField()}
-      ${this.map ? recentRecipients(this.map, this.sent, (order) => this.#repeat(order)) : nothing}
+      ${this.#recipientField()} ${this.#recentRecipients()}
       ${field(
         {
           ...{ name: "description", label: t("order.description"), hint: t("order.description_hint") },
@@ -79,7 +65,7 @@ export class OrderForm extends PageElement {
         ({ id, describedBy, invalid }) => html`<input id=${id} name="description" maxlength="200" autocomplete="off"
           .value=${this.wanted.description} aria-describedby=${describedBy} aria-invalid=${invalid} />`,
       )}
-      ${this.#whenField()} ${estimateView(this.estimate, this.#later_ms())} ${helpWords("window")} ${this.problems.form ? problemLine(this.problems.form) : nothing}
+      ${this.#whenField()} ${this.#estimate()} ${helpWords("window")} ${this.problems.form ? problemLine(this.problems.form) : nothing}
       <button class="main" aria-disabled=${this.sending ? "true" : nothing}>
         ${icon("send")}${t(this.sending ? "order.sending" : `order.send.${this.when}`)}
       </button>
@@ -107,6 +93,24 @@ export class OrderForm extends PageElement {
     );
   }
 
+  /** Those I sent something last, each a tap away. */
+  #recentRecipients() {
+    const recent = newestToEach(this.sent).slice(0, RECENT);
+    if (!recent.length) return nothing;
+    return html`<div class="recent" role="group" aria-label=${t("order.recent")}>
+      ${recent.map(
+        (order) => html`<button type="button" @click=${() => this.#repeat(order)}>
+          <span>${order.recipient.name}</span><span class="unseen">, </span><small>${this.map ? titleOf(this.map, order.to_post) : nothing}</small>
+        </button>`,
+      )}
+    </div>`;
+  }
+
+  #estimate() {
+    return html`<order-estimate class="estimate" role="status" .from=${this.wanted.from_post} .to=${this.wanted.to_post} .when=${this.when}
+      .schedule=${this.schedule} @refused=${(/** @type {Refused} */ { detail }) => this.#say(detail)}></order-estimate>`;
+  }
+
   #whenField() {
     return html`<fieldset class="pills">
         <legend>${t("order.when")}</legend>
@@ -121,7 +125,7 @@ export class OrderForm extends PageElement {
             @scheduled=${(/** @type {CustomEvent<Schedule>} */ { detail }) => (this.schedule = detail)}></order-schedule>`}`;
   }
 
-  /** @param {"now" | "later" | "again"} when */
+  /** @param {When} when */
   async #when(when) {
     if (when !== "now") await import("./order_schedule.js");
     this.when = when;
@@ -131,13 +135,6 @@ export class OrderForm extends PageElement {
   #mend(not_before) {
     this.schedule = { not_before };
     this.#when("later");
-  }
-
-  /** By how much the robot comes later than it would now. */
-  #later_ms() {
-    const { not_before, at } = this.schedule;
-    if (this.when === "again" && at) return untilTime(at);
-    return this.when === "later" && not_before ? Math.max(0, Date.parse(not_before) - serverNow()) : 0;
   }
 
   /** @param {Contact} contact */
@@ -164,24 +161,6 @@ export class OrderForm extends PageElement {
     this.dispatchEvent(new CustomEvent("wanted", { detail: this.wanted }));
   }
 
-  /** Asks when it would arrive, each time that the ends of the way change. */
-  async #look() {
-    const { from_post, to_post } = this.wanted;
-    const stillWanted = () => from_post === this.wanted.from_post && to_post === this.wanted.to_post;
-    this.estimate = null;
-    if (!from_post || !to_post) return;
-    if (from_post === to_post) return this.#say({ to_post: t("error.same_post") });
-    this.estimate = "looking";
-    try {
-      const estimate = await api.estimate(from_post, to_post);
-      if (stillWanted()) this.estimate = estimate;
-    } catch (failure) {
-      if (!stillWanted()) return;
-      this.estimate = null;
-      this.#say(atFields(failure, FIELD_OF_CODE));
-    }
-  }
-
   /** Beside what is said already. @param {Record<string, string>} problems */
   #say(problems) {
     this.problems = { ...this.problems, ...problems };
@@ -196,57 +175,27 @@ export class OrderForm extends PageElement {
   }
 
   async #send() {
-    const [{ looksLikeEmail }, { KeptForLater, placeOrder }] = await Promise.all([import("../email.js"), import("../place_order.js")]);
-    this.problems = this.#missing(looksLikeEmail);
-    if (Object.keys(this.problems).length) return void this.focusOn("[aria-invalid]");
-    try {
-      location.assign(await this.#place(placeOrder));
-    } catch (failure) {
-      // The shell shows what is kept; the form is free for the next one.
-      if (failure instanceof KeptForLater) return this.#want({ to_post: "", recipient: "", description: "" });
-      this.problems = atFields(failure, FIELD_OF_CODE);
-      this.focusOn("[aria-invalid]");
-    }
-  }
-
-  /** Where it is followed. @param {typeof import("../place_order.js").placeOrder} placeOrder @returns {Promise<string>} */
-  async #place(placeOrder) {
-    const { weekdays = [], at = "", zone = "", until, not_before } = this.schedule;
-    if (this.when === "again") {
-      const { not_before: _, ...wanted } = this.wanted;
-      await api.placeStandingOrder({ ...wanted, weekdays, at, zone, until });
-      return PAGES.mail;
-    }
-    const wanted = { ...this.wanted, not_before: this.when === "later" ? not_before : undefined };
-    return followPage((await placeOrder(wanted, personHere()?.id ?? "")).id);
-  }
-
-  /** What a person can see for themselves; everything else is the service's to judge.
-   *  @param {(text: string) => boolean} looksLikeEmail @returns {Record<string, string>} */
-  #missing(looksLikeEmail) {
-    const { from_post, to_post, recipient } = this.wanted;
-    return {
-      ...(from_post ? {} : { from_post: t("error.missing_from_post") }),
-      ...(to_post ? {} : { to_post: t("error.missing_to_post") }),
-      ...(recipient ? {} : { recipient: t("error.missing_recipient") }),
-      ...(recipient && !looksLikeEmail(recipient) ? { recipient: t("error.malformed.recipient") } : {}),
-      ...(this.#isScheduled() ? {} : { when: t("error.missing_when") }),
-    };
-  }
-
-  #isScheduled() {
-    const { not_before, weekdays, at } = this.schedule;
-    return this.when === "now" || (this.when === "later" ? Boolean(not_before) : Boolean(weekdays?.length && at));
+    const { sendOrder } = await loadEnd();
+    this.problems = {};
+    const { page, kept, problems = {} } = await sendOrder(this);
+    this.problems = problems;
+    if (page) return location.assign(page);
+    // The shell shows what is kept; the form is free for the next one.
+    if (kept) return this.#want({ to_post: "", recipient: "", description: "" });
+    this.focusOn("[aria-invalid]");
   }
 }
 
-/** How long until it is this time of the day. @param {string} at local, "09:30" */
-function untilTime(at) {
-  const [hour, minute] = at.split(":").map(Number);
-  const then = new Date(serverNow());
-  return (then.setHours(hour, minute, 0, 0) - serverNow() + DAY_MS) % DAY_MS;
+/** @param {Order[]} sent newest first */
+function newestToEach(sent) {
+  const newest = new Map();
+  for (const order of sent) if (!newest.has(order.recipient.email)) newest.set(order.recipient.email, order);
+  return /** @type {Order[]} */ ([...newest.values()]);
 }
 
+const loadEnd = () => import("../send_order.js");
+/** Who begins to fill it in has its end at hand. */
+const begin = () => void loadEnd().catch(() => undefined);
 const loadOffers = () => import("./contact_offers.js");
 
 customElements.define("order-form", OrderForm);

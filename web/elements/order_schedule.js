@@ -6,6 +6,7 @@ import { weekdayName } from "../times.js";
 import { field, problemLine } from "./field.js";
 import { PageElement } from "./page_element.js";
 
+/** @typedef {"now" | "later" | "again"} When */
 /** @typedef {{not_before?: string, weekdays?: number[], at?: string, zone?: string, until?: string | null}} Schedule */
 
 const MINUTE_MS = 60_000;

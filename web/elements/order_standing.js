@@ -4,7 +4,7 @@ import { hasEnded, nextSentence, stages, stateSentence } from "../order_words.js
 import { titleOf } from "../posts.js";
 import { t } from "../texts.js";
 import { arrivalWindow } from "./arrival_window.js";
-import { helpWords } from "./help_words.js";
+import { helpWords } from "./field.js";
 import { icon } from "./icon.js";
 /** @import { CampusMap, Order } from "../api_types.ts" */
 

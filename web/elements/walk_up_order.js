@@ -4,7 +4,7 @@ import * as api from "../api.js";
 import { followPage, slipPage } from "../links.js";
 import { orderTitle } from "../mailroom_words.js";
 import { loadMap } from "../posts.js";
-import { atFields } from "../problems.js";
+import { atFields, FIELD_OF_CODE } from "../problems.js";
 import { t } from "../texts.js";
 import { field, problemLine } from "./field.js";
 import { icon } from "./icon.js";
@@ -13,10 +13,6 @@ import "./person_box.js";
 /** @import { CampusMap, Order, WalkUpOrder } from "../api_types.ts" */
 /** @import { PersonBox } from "./person_box.js" */
 
-const FIELD_OF_CODE = {
-  ...{ unknown_sender: "sender", unknown_recipient: "recipient" },
-  ...{ unknown_post: "to_post", same_post: "to_post", no_way: "to_post" },
-};
 /** @type {WalkUpOrder} */
 const NOTHING = { on_behalf_of: "", recipient: "", from_post: "", to_post: "", description: "", priority: "normal" };
 const PRIORITIES = /** @type {const} */ (["normal", "high", "low"]);
@@ -142,7 +138,7 @@ export class WalkUpOrderElement extends PageElement {
       this.placed = await api.placeOrder(this.wanted, this.#key);
       this.focusOn("#walk-up-title");
     } catch (failure) {
-      const { on_behalf_of, ...problems } = atFields(failure, FIELD_OF_CODE);
+      const { on_behalf_of, ...problems } = atFields(failure, { ...FIELD_OF_CODE, unknown_sender: "sender" });
       this.problems = on_behalf_of ? { ...problems, sender: on_behalf_of } : problems;
       if (failure instanceof api.NoAnswer) this.problems = { form: t("error.no_answer_order") };
       this.focusOn("[aria-invalid]");
