@@ -12,8 +12,8 @@ from playwright.async_api import Browser, BrowserContext, ConsoleMessage, Page
 
 from tests.web.service import ROOT, Service
 
-# Browsers write every refused request to the console. A page asks who is signed in, and for their orders, before it knows
-# whether anybody is: nobody is refused by design.
+# Browsers write every refused request to the console. A page asks who is signed in, and for their orders, before it
+# knows whether anybody is: nobody is refused by design.
 REFUSED = re.compile(r"Failed to load resource: the server responded with a status of 4\d\d")
 NOBODY = re.compile(r"Failed to load resource: the server responded with a status of 401")
 WHO_AM_I = "/api/v1/me"
