@@ -313,6 +313,9 @@ export const removeDevice = (id) => ask(`/me/devices/${encodeURIComponent(id)}`,
 /** @param {string} url @returns {Promise<Api.NewWebhook>} its secret is shown this once */
 export const setWebhook = (url) => ask("/me/webhook", { method: "PUT", body: { url } });
 
+/** Something posted there now. @returns {Promise<Api.Trial>} */
+export const tryWebhook = () => ask("/me/webhook/trial", { method: "POST" });
+
 /** @returns {Promise<null>} */
 export const removeWebhook = () => ask("/me/webhook", { method: "DELETE" });
 

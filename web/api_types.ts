@@ -48,6 +48,7 @@ export type AboutMe = Schemas["AboutMe"];
 export type Contact = Schemas["ContactView"];
 export type NoticeWishes = Schemas["WishesView"];
 export type NewWebhook = Schemas["NewWebhookView"];
+export type Trial = Schemas["TrialView"];
 export type OpenSession = Schemas["SessionView"];
 export type Token = Schemas["TokenView"];
 export type NewToken = Schemas["TokenWish"];

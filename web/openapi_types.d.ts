@@ -1552,6 +1552,27 @@ export interface components {
             taken: components["schemas"]["TakenCorridor"][];
         };
         /**
+         * TrialView
+         * @description What became of a delivery for trial.
+         */
+        TrialView: {
+            /**
+             * Is Good
+             * @description Whether the receiver took it: its answer was 2xx.
+             */
+            is_good: boolean;
+            /**
+             * Status
+             * @description What it answered; null: nothing.
+             */
+            status: number | null;
+            /**
+             * Problem
+             * @description Why there was no answer.
+             */
+            problem: string | null;
+        };
+        /**
          * WatchView
          * @description `online` false: it is shown when the robot is back. `tells` false: this robot's software knows nothing of it.
          */

@@ -80,9 +80,14 @@ async def set_webhook(session: AsyncSession, person: Person, url: str, now: date
     return row
 
 
-async def remove_webhook(session: AsyncSession, person: Person) -> None:
+async def my_webhook(session: AsyncSession, person: Person) -> Webhook:
     """Raises NoWebhook."""
     row = await webhook_of(session, person.id)
     if row is None:
         raise NoWebhook("You have no webhook.")
-    await session.delete(row)
+    return row
+
+
+async def remove_webhook(session: AsyncSession, person: Person) -> None:
+    """Raises NoWebhook."""
+    await session.delete(await my_webhook(session, person))

@@ -11,11 +11,13 @@ from app.notify import devices
 from app.notify.channels.webhook import secret_of
 from app.notify.errors import BadSubscription, MutedEverywhere, NoWebhook, UnknownDevice
 from app.notify.push_key import PushKey
+from app.notify.trial import try_webhook
 from app.notify.wish_schemas import (
     DeviceView,
     NewDevice,
     NewWebhook,
     NewWebhookView,
+    TrialView,
     WebhookView,
     Wishes,
     WishesView,
@@ -23,6 +25,7 @@ from app.notify.wish_schemas import (
 from app.notify.wishes import CHANNELS, MUST_REACH, is_muted_everywhere, muted_of
 from app.outside import Outside, TargetRefused
 from app.people.current_user import AtBrowser, CurrentUser
+from app.people.rate_limits import Door, per_person
 from app.server_key import ServerKey
 from app.settings import ClockDep
 from app.tables import NoticeKind, NoticeWishes, Person
@@ -121,6 +124,16 @@ async def set_webhook(
     async with database.transaction() as session:
         row = await devices.set_webhook(session, user, wish.url, clock.utc())
     return NewWebhookView(url=row.url, created_at=row.created_at, secret=secret_of(key, row.id))
+
+
+@router.post("/me/webhook/trial", dependencies=[per_person(Door.CHANGES)], responses=problems(401, 403, 429, NoWebhook))
+async def try_my_webhook(
+    user: AtBrowser, database: DatabaseDep, outside: OutsideDep, key: ServerKeyDep, clock: ClockDep
+) -> TrialView:
+    """Post something to my webhook now, signed like a notice, and say what it answered."""
+    async with database.reading() as session:
+        row = await devices.my_webhook(session, user)
+    return await try_webhook(outside, key, row, user, clock.utc())
 
 
 @router.delete("/me/webhook", status_code=204, responses=problems(401, 403, NoWebhook))

@@ -42,6 +42,14 @@ class NewWebhookView(WebhookView):
     secret: str
 
 
+class TrialView(BaseModel):
+    """What became of a delivery for trial."""
+
+    is_good: bool = Field(description="Whether the receiver took it: its answer was 2xx.")
+    status: int | None = Field(description="What it answered; null: nothing.")
+    problem: str | None = Field(description="Why there was no answer.")
+
+
 class WishesView(BaseModel):
     """What somebody is told, and where. The inbox has everything; `muted` says what a channel does not carry."""
 

@@ -68,6 +68,7 @@ from campus_mail_client.models import (
     TokenPage,
     TokenWish,
     Traffic,
+    TrialView,
     WatchView,
     Wishes,
     WishesView,
@@ -444,6 +445,11 @@ class AsyncOperations:
     async def remove_webhook(self) -> None:
         """Nothing is posted there any more."""
         await self._call("DELETE", "/api/v1/me/webhook", None)
+
+    async def try_my_webhook(self) -> TrialView:
+        """Post something to my webhook now, signed like a notice, and say what it answered."""
+        answer: TrialView = await self._call("POST", "/api/v1/me/webhook/trial", TrialView)
+        return answer
 
     async def not_sent(
         self, *, given_up: bool | None = None, limit: int | None = None, cursor: str | None = None

@@ -858,6 +858,14 @@ class Traffic(Model):
     taken: list[TakenCorridor]
 
 
+class TrialView(Model):
+    """What became of a delivery for trial."""
+
+    is_good: bool
+    status: int | None
+    problem: str | None
+
+
 class WatchView(Model):
     """`online` false: it is shown when the robot is back. `tells` false: this robot's software knows nothing of
     it.

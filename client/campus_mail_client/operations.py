@@ -68,6 +68,7 @@ from campus_mail_client.models import (
     TokenPage,
     TokenWish,
     Traffic,
+    TrialView,
     WatchView,
     Wishes,
     WishesView,
@@ -438,6 +439,11 @@ class Operations:
     def remove_webhook(self) -> None:
         """Nothing is posted there any more."""
         self._call("DELETE", "/api/v1/me/webhook", None)
+
+    def try_my_webhook(self) -> TrialView:
+        """Post something to my webhook now, signed like a notice, and say what it answered."""
+        answer: TrialView = self._call("POST", "/api/v1/me/webhook/trial", TrialView)
+        return answer
 
     def not_sent(
         self, *, given_up: bool | None = None, limit: int | None = None, cursor: str | None = None

@@ -136,6 +136,7 @@ LINES: Final[dict[tuple[str, str], Line]] = {
     ("POST", "/api/v1/me/devices"): members("none", 422),  # this page's keys are no browser's
     ("DELETE", "/api/v1/me/devices/{device_id}"): Line(401, 404, 404, 204, 404, 404, "none"),
     ("PUT", "/api/v1/me/webhook"): members("none", 422),  # to a machine behind the walls
+    ("POST", "/api/v1/me/webhook/trial"): Line(401, 404, 404, 200, 404, 404, "none"),
     ("DELETE", "/api/v1/me/webhook"): Line(401, 404, 404, 204, 404, 404, "none"),
     ("GET", "/api/v1/outbox"): dispatchers("none"),
     ("POST", "/api/v1/outbox/{sending_id}/retry"): dispatchers("none", 202),

@@ -1,10 +1,21 @@
 """What people settle for themselves; each part saves by itself, and says so."""
 
 import re
+from collections.abc import AsyncIterator
+from pathlib import Path
 
 import pytest
+import pytest_asyncio
 from playwright.async_api import expect
 
+from app.notify.channels.webhook import secret_bytes
+from app.outside import Outside
+from app.settings import Settings
+from protocol.clock import RealClock
+from tests.app.fleet.playing import serving
+from tests.app.notify.receivers import receiving
+from tests.app.notify.test_webhooks import is_signed
+from tests.web.service import Service
 from tests.web.visitor import Visitor
 
 pytestmark = pytest.mark.browser
@@ -100,3 +111,35 @@ async def test_sessions_are_ended_and_a_scripts_token_is_shown_once_and_revoked(
     await hook.get_by_label("Address").fill("https://127.0.0.1/told")
     await hook.get_by_role("button", name="Send notices there").click()
     await expect(hook.get_by_role("alert")).to_contain_text("This address cannot be used")
+
+
+@pytest_asyncio.fixture(loop_scope="session")
+async def open_service(tmp_path: Path) -> AsyncIterator[Service]:
+    """One that posts to this machine too, as none does that was not made so in its code."""
+    service = Service(tmp_path)
+    settings = Settings(data=tmp_path, public_url=service.url)
+    async with serving(settings, RealClock(), outside=Outside(allow_private=True)) as here:
+        service.url = f"http://127.0.0.1:{here.port}"
+        yield service
+
+
+async def test_a_webhook_is_tried_at_a_tap_and_says_whether_it_hears_or_why_not(open_service, visit):
+    ada: Visitor = await visit("ada.king", at=open_service, on="phone")
+    page = ada.page
+    await page.goto("/settings.html#webhook")
+    hook = page.get_by_role("region", name="Webhook")
+    with receiving() as receiver:
+        receiver.answers = [204, 503]
+        await hook.get_by_label("Address").fill(f"{receiver.url}/told")
+        await hook.get_by_role("button", name="Send notices there").click()
+        secret = await hook.get_by_role("group", name=re.compile("^The secret")).locator("code").inner_text()
+        await hook.get_by_role("button", name="Try it").click()
+        await expect(hook.get_by_role("status")).to_have_text("It answered 204: it hears your notices.")
+        (heard,) = receiver.received
+        assert (heard.path, is_signed(heard, secret_bytes(secret))) == ("/told", True)
+        await ada.assert_accessible()
+        await hook.get_by_role("button", name="Try it").click()
+        await expect(hook.get_by_role("alert")).to_contain_text("It answered 503; anything but 200 to 299")
+    await hook.get_by_role("button", name="Try it").click()
+    await expect(hook.get_by_role("alert")).to_contain_text("It did not answer (no answer: ConnectError)")
+    await ada.assert_accessible()

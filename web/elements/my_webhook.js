@@ -1,4 +1,4 @@
-/** An address of mine that is told of my notices; the secret that signs them is shown once. */
+/** An address of mine that is told of my notices, and may be tried; the secret that signs them is shown once. */
 import { html, nothing } from "lit";
 import * as api from "../api.js";
 import { serverNow } from "../server_clock.js";
@@ -7,7 +7,7 @@ import { dayAndTime } from "../times.js";
 import { field } from "./field.js";
 import { shownOnce } from "./shown_once.js";
 import { SettingsPart, remark } from "./settings_part.js";
-/** @import { NoticeWishes } from "../api_types.ts" */
+/** @import { NoticeWishes, Trial } from "../api_types.ts" */
 
 export class MyWebhook extends SettingsPart {
   static properties = { wishes: { attribute: false }, secret: { state: true } };
@@ -27,7 +27,10 @@ export class MyWebhook extends SettingsPart {
       html`${webhook
           ? html`<ul class="rows"><li>
               <span><strong>${webhook.url}</strong>${remark(t("settings.since"), dayAndTime(webhook.created_at, serverNow()))}</span>
-              <button class="quiet danger" aria-label="${t("settings.remove")}, ${webhook.url}" @click=${this.#remove}>${t("settings.remove")}</button>
+              <span class="does">
+                <button class="quiet" aria-label="${t("settings.try")}, ${webhook.url}" ?disabled=${this.busy} @click=${this.#try}>${t("settings.try")}</button>
+                <button class="quiet danger" aria-label="${t("settings.remove")}, ${webhook.url}" @click=${this.#remove}>${t("settings.remove")}</button>
+              </span>
             </li></ul>`
           : nothing}
         ${this.secret ? shownOnce("webhook-secret", t("settings.secret"), this.secret) : nothing}
@@ -49,6 +52,20 @@ export class MyWebhook extends SettingsPart {
     if (!done) return;
     input.value = "";
     this.#tell();
+  }
+
+  /** Its program may have the secret by now: what a notice would meet there is seen at once. */
+  async #try() {
+    /** @type {Trial | null} */
+    let trial = null;
+    const done = await this.attempt(async () => (trial = await api.tryWebhook()));
+    if (done && trial) this.#say(trial);
+  }
+
+  /** @param {Trial} trial */
+  #say({ is_good, status, problem }) {
+    if (is_good) this.said = t("settings.tried", { status: `${status}` });
+    else this.problem = status === null ? t("settings.tried_silent", { problem: problem ?? "" }) : t("settings.tried_refused", { status });
   }
 
   async #remove() {

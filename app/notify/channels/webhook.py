@@ -17,7 +17,7 @@ from sqlmodel import col, delete
 
 from app.database import Database
 from app.notify.channels.interface import NotSent, Sending
-from app.notify.channels.posting import post
+from app.notify.channels.posting import Answer, post
 from app.notify.routing import SERVICE
 from app.notify.wishes import WEBHOOK
 from app.server_key import ServerKey
@@ -74,6 +74,18 @@ def body_of(sending: Sending) -> bytes:
     return json.dumps(told, ensure_ascii=False).encode()
 
 
+async def deliver(address: Address, key: str, body: bytes, now: datetime) -> Answer:
+    """One try, signed. Raises NotSent if there was no answer."""
+    headers = {
+        "Content-Type": "application/json",
+        "User-Agent": "Campus-Mail",
+        "webhook-id": key,
+        "webhook-timestamp": str(round(now.timestamp())),
+        "webhook-signature": signature(address.secret, key, now, body),
+    }
+    return await post(address.client, address.url, body, headers)
+
+
 @dataclass
 class WebhookChannel:
     """`outside` reaches the public network alone; `service` is the address that the operator set, if any."""
@@ -89,15 +101,7 @@ class WebhookChannel:
 
     async def send(self, sending: Sending) -> None:
         address = await self._address(sending)
-        body, now = body_of(sending), self.clock.utc()
-        headers = {
-            "Content-Type": "application/json",
-            "User-Agent": "Campus-Mail",
-            "webhook-id": sending.key,
-            "webhook-timestamp": str(round(now.timestamp())),
-            "webhook-signature": signature(address.secret, sending.key, now, body),
-        }
-        answer = await post(address.client, address.url, body, headers)
+        answer = await deliver(address, sending.key, body_of(sending), self.clock.utc())
         if answer.status == GONE and sending.target != SERVICE:
             await self._forget(sending)
             raise NotSent("the receiver has ended its webhook", for_good=True)

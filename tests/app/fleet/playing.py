@@ -19,6 +19,7 @@ from app.fleet.attentive import AttentiveSocket
 from app.fleet.service import enrol
 from app.main import create_app
 from app.orders.schemas import NewOrder
+from app.outside import Outside
 from app.settings import Settings
 from app.tables import Order, OrderEvent
 from protocol.clock import Clock
@@ -88,10 +89,12 @@ class Service:
 
 
 @asynccontextmanager
-async def serving(settings: Settings, clock: Clock, ping_s: float = 10.0) -> AsyncIterator[Service]:
+async def serving(
+    settings: Settings, clock: Clock, ping_s: float = 10.0, outside: Outside | None = None
+) -> AsyncIterator[Service]:
     """The service from start to stop; again with the same settings, it is a restart."""
     listening = socket.create_server(("127.0.0.1", 0))
-    app = create_app(settings, clock)
+    app = create_app(settings, clock, outside)
     config = uvicorn.Config(
         app,
         log_config=None,
