@@ -1,30 +1,45 @@
-/** Keeps a screen that hangs on a wall from going dark, where the browser can. @import { ReactiveController, ReactiveControllerHost } from "lit" */
+/** Keeps a screen from going dark where nobody touches it, where the browser can. @import { ReactiveController, ReactiveControllerHost } from "lit" */
 
 /** @implements {ReactiveController} */
 export class StaysAwake {
-  /** @type {WakeLockSentinel | null} */
+  /** @type {Promise<WakeLockSentinel | null> | null} */
   #lock = null;
-  #whenSeen = () => void this.#hold();
+  #isConnected = false;
+  #whenSeen = () => this.#settle();
 
-  /** @param {ReactiveControllerHost} host */
-  constructor(host) {
+  /** @param {ReactiveControllerHost} host @param {() => boolean} [isNeeded] looked at whenever the host has been drawn */
+  constructor(host, isNeeded = () => true) {
+    this.isNeeded = isNeeded;
     host.addController(this);
   }
 
   hostConnected() {
-    // A lock ends when the page is hidden.
+    this.#isConnected = true;
+    // A browser ends the lock of a page that is hidden; whoever comes back wants it again.
     document.addEventListener("visibilitychange", this.#whenSeen);
-    this.#hold();
+    this.#settle();
+  }
+
+  hostUpdated() {
+    this.#settle();
   }
 
   hostDisconnected() {
+    this.#isConnected = false;
     document.removeEventListener("visibilitychange", this.#whenSeen);
-    this.#lock?.release();
+    this.#settle();
   }
 
-  async #hold() {
-    if (document.hidden || !("wakeLock" in navigator)) return;
-    // Refused on a nearly empty battery: then the screen goes dark as it would anyway.
-    this.#lock = await navigator.wakeLock.request("screen").catch(() => null);
+  #settle() {
+    const isWanted = this.#isConnected && !document.hidden && this.isNeeded();
+    if (isWanted && !this.#lock) this.#lock = this.#ask();
+    if (isWanted || !this.#lock) return;
+    this.#lock.then((lock) => lock?.release());
+    this.#lock = null;
+  }
+
+  /** Refused on a nearly empty battery: then the screen goes dark as it would anyway. @returns {Promise<WakeLockSentinel | null>} */
+  async #ask() {
+    return "wakeLock" in navigator ? navigator.wakeLock.request("screen").catch(() => null) : null;
   }
 }

@@ -30,6 +30,17 @@ KEPT_ANSWERS = """async () => {
   return answers.map(({ url }) => url.replace(/.*v1/, "")).sort();
 }"""
 KEPT = "Kept on this device"
+LOCKS = """window.locks = [];
+const request = WakeLock.prototype.request;
+WakeLock.prototype.request = async function (kind) {
+  const lock = await request.call(this, kind);
+  window.locks.push(lock);
+  return lock;
+};"""
+HIDE = """(hidden) => {
+  Object.defineProperty(document, "hidden", { value: hidden, configurable: true });
+  document.dispatchEvent(new Event("visibilitychange"));
+}"""
 ASKED_TO_SYNC = "async () => (await navigator.serviceWorker.ready).sync.getTags()"
 IS_DRAWN = "(image) => image.complete && image.naturalWidth > 0"
 
@@ -232,6 +243,18 @@ def own_service(tmp_path_factory: pytest.TempPathFactory, own_pages: Path) -> It
         yield service
 
 
+async def the_screen_stays_on_while_it_is_seen(page: Page) -> None:
+    """Windows of tests are never hidden: the page is told that it is."""
+    held = "(wanted) => window.locks.filter((lock) => !lock.released).length === wanted"
+    await page.wait_for_function(held, arg=1)
+    for hidden in (True, False):
+        await page.evaluate(HIDE, hidden)
+        await page.wait_for_function(held, arg=int(not hidden))
+    assert await page.evaluate("window.locks.length") == 2
+    await page.get_by_text("Show the code").click()
+    await page.wait_for_function(held, arg=0)
+
+
 async def test_a_code_is_at_hand_in_the_tunnel_though_its_page_was_never_opened_and_gone_with_the_order(
     visit, own_service: Service
 ):
@@ -243,6 +266,7 @@ async def test_a_code_is_at_hand_in_the_tunnel_though_its_page_was_never_opened_
         order_id = await ada.order("bob.martin@campus.example")
         mission = await robot.mission()
         (load,) = [stop for stop in mission.stops if stop.action is StopAction.LOAD]
+        await page.add_init_script(LOCKS)
         await page.reload()
         await is_kept(page, f"/orders/{order_id}/code.svg")
         async with no_network(ada):
@@ -251,6 +275,7 @@ async def test_a_code_is_at_hand_in_the_tunnel_though_its_page_was_never_opened_
             image = page.get_by_role("img", name="QR code for the robot’s camera")
             await expect(image).to_be_visible()
             assert await image.evaluate(IS_DRAWN)
+            await the_screen_stays_on_while_it_is_seen(page)
         await robot.report(mission, Step.ACCEPTED)
         await robot.ends(await robot.report(mission, Step.ARRIVED, load))
         await robot.ends(await robot.say(robot.receipt(load)))

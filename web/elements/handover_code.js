@@ -21,9 +21,12 @@ export class HandoverCodeElement extends PageElement {
     needed: { type: Boolean },
     asked: { type: Boolean },
     code: { state: true },
+    opened: { state: true },
     problem: { state: true },
     said: { state: true },
   };
+  /** @type {import("../stays_awake.js").StaysAwake | null} */
+  #awake = null;
 
   constructor() {
     super();
@@ -37,6 +40,8 @@ export class HandoverCodeElement extends PageElement {
     this.asked = false;
     /** @type {ShownCode | null} */
     this.code = null;
+    /** Whether its person looks at it before it is needed. */
+    this.opened = false;
     this.problem = "";
     this.said = "";
   }
@@ -46,6 +51,17 @@ export class HandoverCodeElement extends PageElement {
     if (changed.has("purpose") || changed.has("door")) this.#fetch();
   }
 
+  get isShown() {
+    return this.code !== null && (this.needed || this.opened);
+  }
+
+  /** A screen that goes dark cannot be held to a camera. */
+  async updated() {
+    if (!this.isShown || this.#awake) return;
+    const { StaysAwake } = await import("../stays_awake.js");
+    this.#awake ??= new StaysAwake(this, () => this.isShown);
+  }
+
   render() {
     if (!this.purpose) return nothing;
     return html`<section class="card code" aria-labelledby="code-title">
@@ -53,7 +69,7 @@ export class HandoverCodeElement extends PageElement {
       ${this.needed
         ? this.#open(this.purpose)
         : html`<p>${t("code.later")}</p>
-            <details><summary>${t("code.show")}</summary>${this.#open(this.purpose)}</details>`}
+            <details @toggle=${this.#toggled}><summary>${t("code.show")}</summary>${this.#open(this.purpose)}</details>`}
     </section>`;
   }
 
@@ -95,6 +111,11 @@ export class HandoverCodeElement extends PageElement {
       ${this.door?.showToCamera ? camera : nothing}
       <button class="quiet" ?disabled=${this.asked} @click=${this.#handOver}>${t(`code.tap.${purpose}`)}</button>
     </div>`;
+  }
+
+  /** @param {Event} event */
+  #toggled(event) {
+    this.opened = /** @type {HTMLDetailsElement} */ (event.target).open;
   }
 
   async #fetch() {
