@@ -17,7 +17,7 @@ export function orderCard(order, map, action = nothing) {
       <span class="badge ${order.state}">${t(`badge.${order.state}`)}</span>
       <span class="who">${order.description || other}</span>
       <span class="ends">${titleOf(map, order.from_post)}${icon("arrow")}<span class="unseen">→</span>${titleOf(map, order.to_post)}</span>
-      <span class="when">${order.description ? html`${other} · ` : nothing}${when(order)}</span>
+      <span class="when">${order.description ? html`${other} · ` : nothing}<span>${when(order)}</span></span>
     </a>
     ${action}
   </li>`;
