@@ -78,10 +78,11 @@ class SharedClock:
             self._memory = mmap.mmap(file.fileno(), _LAYOUT.size)
 
     @classmethod
-    def create(cls, path: Path, speed: float) -> "SharedClock":
-        """Make a clock that starts at the machine's own time and runs `speed` times as fast."""
+    def create(cls, path: Path, speed: float, starts_at: datetime | None = None) -> "SharedClock":
+        """Make a clock that starts at `starts_at`, or the machine's own time, and runs `speed` times as fast."""
         real = time.monotonic()
-        path.write_bytes(_LAYOUT.pack(0, real, real, speed, time.time() - real))
+        utc_s = starts_at.timestamp() if starts_at else time.time()
+        path.write_bytes(_LAYOUT.pack(0, real, real, speed, utc_s - real))
         return cls(path)
 
     def _read(self) -> tuple[float, float, float, float]:

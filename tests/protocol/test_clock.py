@@ -4,6 +4,7 @@ import os
 import subprocess
 import sys
 import time
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 import pytest
@@ -96,3 +97,9 @@ def test_the_real_clock_is_the_machines() -> None:
     clock = RealClock()
     assert clock.now() == pytest.approx(time.monotonic(), abs=0.5)
     assert clock.utc().timestamp() == pytest.approx(time.time(), abs=0.5)
+
+
+def test_a_shared_clock_starts_when_it_is_told_to(tmp_path: Path) -> None:
+    morning = datetime(2026, 10, 14, 14, 24, tzinfo=UTC)
+    clock = SharedClock.create(tmp_path / "clock", speed=1e-6, starts_at=morning)
+    assert abs(clock.utc() - morning) < timedelta(seconds=0.1)

@@ -13,7 +13,7 @@ from app.orders.transitions import By
 from app.people.service import set_roles
 from app.settings import Settings
 from app.tables import Alarm, DigitLock, Notice, Order, OrderState, OutgoingNotice, Priority, RobotRow, Role
-from protocol.clock import RealClock
+from protocol.clock import Clock, RealClock
 from tests.web.service import Service
 
 WAY: Final = ("assigned", "to_sender", "at_sender", "carrying", "at_recipient", "returning", "at_return")
@@ -50,9 +50,13 @@ ORDERS: Final = (
 class Scene:
     """Writes to the service's database as its own parts would."""
 
-    def __init__(self, service: Service) -> None:
-        settings = Settings(data=service.folder, public_url=service.url, pages=service.folder / "none")
-        self.clock = RealClock()
+    def __init__(
+        self, service: Service, clock: Clock | None = None, campus: str = "test_track", zone: str = ""
+    ) -> None:
+        settings = Settings(
+            data=service.folder, public_url=service.url, pages=service.folder / "none", map=campus, time_zone=zone
+        )
+        self.clock = clock or RealClock()
         self.state = create_app(settings, self.clock).state
 
     async def make_dispatcher(self, email: str) -> None:
@@ -118,8 +122,8 @@ class Scene:
             )
             await self.state.orders.note(session, ids[1], "digits_locked", Word(By.RECIPIENT))
             session.add(DigitLock(order_id=ids[1], wrong_tries=5, locked_at=now))
-            alarm = Alarm(robot="r1", name="stall", reason=reason, post="post2", at=now - timedelta(minutes=3))
-            session.add(alarm)
+            at_post = (await session.get_one(RobotRow, "r1")).post
+            session.add(Alarm(robot="r1", name="stall", reason=reason, post=at_post, at=now - timedelta(minutes=3)))
             stopped = await session.get_one(RobotRow, "r2")
             stopped.activity, stopped.why = "stopped", "Something stands in the robot's way."
             silent = await session.get_one(RobotRow, "r4")
