@@ -26,7 +26,7 @@ const PRIORITIES = ["high", "normal", "low"];
 
 /** What can be done with an order now, the likeliest first. @param {Order} order @param {Robot[]} robots @returns {Action[]} */
 export function orderActions(order, robots) {
-  if (hasEnded(order)) return [];
+  if (hasEnded(order)) return order.custody.at(-1)?.holder === "robot" ? [hold(order)] : [];
   const stuck = order.state === "attention";
   const waits = order.state === "queued" || isRobotComing(order);
   return [

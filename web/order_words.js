@@ -81,7 +81,7 @@ export function stages(order) {
 }
 
 /** What is told besides the states. */
-const TOLD_TOO = ["wait_extended", "delegate_named", "delegate_revoked", "return_requested", "delayed"];
+const TOLD_TOO = ["wait_extended", "delegate_named", "delegate_revoked", "return_requested", "delayed", "taken_out"];
 
 /** @param {OrderEvent} event @param {Record<string, string>} values */
 const happening = ({ kind, state }, values) => t(kind === "moved" ? `timeline.${state}` : `timeline.event.${kind}`, values);

@@ -203,7 +203,7 @@ class Dispatcher:
             order.let_go_by = None
             if robot is not None:
                 # What a person has taken out by hand, the robot only has to forget.
-                by_hand = order.state is OrderState.HELD
+                by_hand = await self._fleet.orders.is_taken_by_hand(session, order)
                 drop = Cancel(command_id=new_command_id("cancel"), order_id=order.id, by_hand=by_hand)
                 await ask(session, self._fleet, robot, drop)
 

@@ -1,6 +1,7 @@
 """Something about a robot that a person should look at. Kept until it is over; logged at once."""
 
 from datetime import datetime
+from typing import Final
 
 import structlog
 from sqlmodel import col, select, update
@@ -9,6 +10,7 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 from app.notify.service import tell_dispatchers
 from app.tables import Alarm
 
+CONTRADICTION: Final = "custody_contradicts_order"
 log = structlog.get_logger(__name__)
 
 
@@ -25,7 +27,9 @@ async def raise_alarm(
         await tell_dispatchers(session, alarm)
 
 
-async def clear_alarms(session: AsyncSession, robot: str, name: str, now: datetime) -> None:
-    """It is over."""
+async def clear_alarms(session: AsyncSession, robot: str, name: str, now: datetime, about: str = "") -> None:
+    """It is over. `about`: only what speaks of this, an order's id say; others of the name go on ringing."""
     over = update(Alarm).where(col(Alarm.robot) == robot, col(Alarm.name) == name, col(Alarm.cleared_at).is_(None))
+    if about:
+        over = over.where(col(Alarm.reason).contains(about, autoescape=True))
     await session.exec(over.values(cleared_at=now))

@@ -4,7 +4,7 @@ from typing import Final
 
 from sqlmodel import col, select
 
-from app.fleet.alarms import raise_alarm
+from app.fleet.alarms import CONTRADICTION, clear_alarms, raise_alarm
 from app.fleet.commands import answered
 from app.fleet.missions import drop_order, drop_stops, end_what_is_empty, let_go_of
 from app.fleet.reports import Report
@@ -40,6 +40,8 @@ async def _let_go(report: Report, answer: CommandAnswer, order_id: str) -> None:
     is_theirs = order.robot == report.robot
     if answer.accepted:
         await drop_stops(report, order_id)
+        # It has nothing of this order any more: what came aboard too late was taken out by hand.
+        await clear_alarms(report.session, report.robot, CONTRADICTION, report.now, about=order_id)
         wished = order.cancel_requested_at or order.reassign_requested_at
         if is_theirs and order.state in ROBOT_COMING and wished:
             await drop_order(report, order, report.word(answer.happened_at, None, answer.reason))

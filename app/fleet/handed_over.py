@@ -7,7 +7,7 @@ from typing import Final
 from sqlmodel import col, select
 
 from app.database import savepoint
-from app.fleet.alarms import clear_alarms, raise_alarm
+from app.fleet.alarms import CONTRADICTION, clear_alarms, raise_alarm
 from app.fleet.errors import UnknownStop
 from app.fleet.missions import end_if_nothing_is_left
 from app.fleet.receipts import judged
@@ -33,7 +33,6 @@ TAKEN_BACK_BY: Final[Mapping[Holder, OrderState]] = {
     Holder.MAILROOM: OrderState.HELD,
     Holder.RECIPIENT: OrderState.DELIVERED,
 }
-CONTRADICTION: Final = "custody_contradicts_order"
 
 
 async def follow_receipt(report: Report, receipt: HandoverReceipt) -> None:
@@ -111,7 +110,7 @@ async def _loaded_too_late(report: Report, order: Order, receipt: HandoverReceip
 async def _contradiction(report: Report, receipt: HandoverReceipt, why: str) -> None:
     """When such mail is out again, nobody has to look any more."""
     if receipt.purpose != Purpose.LOAD:
-        await clear_alarms(report.session, report.robot, CONTRADICTION, report.now)
+        await clear_alarms(report.session, report.robot, CONTRADICTION, report.now, about=receipt.order_id)
         return
     sentence = f"{why} But its mail changed hands ({receipt.purpose}) at {receipt.post}."
     await raise_alarm(report.session, report.robot, CONTRADICTION, sentence, now=report.now, post=receipt.post)

@@ -2,6 +2,7 @@
 
 from typing import Final, Literal
 
+from sqlmodel import select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.orders import errors, stops
@@ -16,6 +17,9 @@ from protocol.parts import Purpose, StopAction
 WayOut = Literal["resume", "returning", "held", "queued", "cancelled"]
 PRIORITY_CHANGED: Final = "priority_changed"
 REASSIGNED: Final = "reassigned"
+BY_HAND: Final = "dispatcher"
+TAKEN_OUT: Final = "taken_out"
+"""By hand, of mail whose order had ended already: the order stays as it ended."""
 DESTINATION: Final = {
     OrderState.CARRYING: StopAction.RECEIVE,
     OrderState.AT_RECIPIENT: StopAction.RECEIVE,
@@ -87,10 +91,20 @@ class Intervening(Returning):
         """Custody by a dispatcher's word, the only one that no robot has written; the robot is told to forget it."""
         if order.state is OrderState.HELD:
             return  # the mailroom has it already
+        if order.state in ENDED and await self.robot_with_mail(session, order) is None:
+            raise errors.TransitionRefused(f"Order {order.id} is {order.state}, and no robot has its mail.")
         if order.robot is not None:
             order.let_go_by = order.robot
             session.add(self._taken_by_hand(order, word))
-        await self.move(session, order.id, OrderState.HELD, word)
+        if order.state in ENDED:
+            await self.note(session, order.id, TAKEN_OUT, word)
+        else:
+            await self.move(session, order.id, OrderState.HELD, word)
+
+    async def is_taken_by_hand(self, session: AsyncSession, order: Order) -> bool:
+        """Whether the mail is out on a dispatcher's word: the robot that had it does not know."""
+        by_hand = select(Handover.id).where(Handover.order_id == order.id, Handover.how == BY_HAND)
+        return (await session.exec(by_hand.limit(1))).first() is not None
 
     def _taken_by_hand(self, order: Order, word: Word) -> Handover:
         return Handover(
@@ -99,7 +113,7 @@ class Intervening(Returning):
             purpose=Purpose.RETURN,
             robot=order.robot or "",
             post=self.return_post(order),
-            how="dispatcher",
+            how=BY_HAND,
             holder="mailroom",
             person_id=word.person_id,
             robot_at=self.clock.utc(),

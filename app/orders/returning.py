@@ -6,16 +6,17 @@ The robot is asked by an update of its mission; until it says that it has turned
 from datetime import timedelta
 from typing import Final
 
+from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.orders import errors, stops
 from app.orders.ledger import Ledger, Word
 from app.orders.schemas import OrderView
-from app.orders.transitions import CARRIED, TURNED_BACK, By
+from app.orders.transitions import CARRIED, ENDED, TURNED_BACK, By
 from app.orders.views import load_facts, order_view
-from app.tables import Order, Person
+from app.tables import Handover, Order, Person
 from maps import shortest_route
-from protocol.parts import StopAction
+from protocol.parts import Purpose, StopAction
 
 RETURN_REQUESTED: Final = "return_requested"
 
@@ -42,11 +43,21 @@ class Returning(Ledger):
 
     async def call_back(self, session: AsyncSession, order: Order, word: Word) -> None:
         """Raises NotRecallable; asked for once."""
+        if order.state in ENDED and (robot := await self.robot_with_mail(session, order)):
+            if not await stops.stops_of_order(session, order.id, robot):
+                await self.ask_back(session, order, word)
+            return
         if order.state not in CARRIED | TURNED_BACK:
             raise errors.NotRecallable(f"The order is {order.state}: there is no mail aboard that could turn back.")
         if order.state in CARRIED and order.return_requested_at is None:
             order.cancel_requested_at, order.cancel_requested_by = self.clock.utc(), word.by
             await self.ask_back(session, order, word)
+
+    async def robot_with_mail(self, session: AsyncSession, order: Order) -> str | None:
+        """Which robot has the mail of an order by its chain of custody, whatever the order's state says."""
+        newest = select(Handover).where(Handover.order_id == order.id).order_by(col(Handover.id).desc()).limit(1)
+        last = (await session.exec(newest)).first()
+        return last.robot if last is not None and last.purpose == Purpose.LOAD else None
 
     async def not_now(self, session: AsyncSession, person: Person, order_id: str, if_match: str = "") -> OrderView:
         """The recipient cannot take it now: it goes back. Raises UnknownOrder, OrderChanged, NotRecallable."""

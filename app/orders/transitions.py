@@ -63,8 +63,8 @@ TURNED_BACK: Final = frozenset({S.RETURNING, S.AT_RETURN})
 MAIL_ABOARD: Final = CARRIED | TURNED_BACK
 ROBOT_COMING: Final = frozenset({S.ASSIGNED, S.TO_SENDER, S.AT_SENDER})
 
-LOADED: Final = frozenset(S) - {S.QUEUED, S.EXPIRED} - ROBOT_COMING
-"""Where mail may have changed hands; of a cancelled one only if the robot contradicts."""
+LOADED: Final = frozenset(S) - {S.QUEUED} - ROBOT_COMING
+"""Where mail may have changed hands; of one that is cancelled or expired only if the robot contradicts."""
 WAY: Final = (
     S.QUEUED,
     S.ASSIGNED,

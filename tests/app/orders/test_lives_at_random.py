@@ -191,9 +191,9 @@ class LivesOfOrders(RuleBasedStateMachine):
         """Only what is in a robot can be taken out of it."""
         order_id = self.order(number)
         state = self.run(self.world.rows(Order, id=order_id))[0].state
-        if self.world.where[order_id] not in self.world.robots or state not in {S.ATTENTION, S.AT_RETURN}:
+        if self.world.where[order_id] not in self.world.robots or state not in {S.ATTENTION, S.AT_RETURN, *ENDED}:
             return
-        if state is S.AT_RETURN:
+        if state is not S.ATTENTION:
             done = self.tries(self.world.orders.hold, "dispatcher", order_id, "fetched")
         else:
             done = self.tries(self.world.orders.resolve, "dispatcher", order_id, "held", "fetched")

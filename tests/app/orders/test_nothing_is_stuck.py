@@ -1,6 +1,10 @@
 """Ends that lives at random did not come to, told as they went."""
 
-from app.tables import Alarm, MissionRow, OrderState
+import pytest
+
+from app.fleet.alarms import raise_alarm
+from app.orders.errors import TransitionRefused
+from app.tables import Alarm, MissionRow, Order, OrderEvent, OrderState
 from tests.app.orders.lives import World
 from tests.app.orders.what_holds import Record
 
@@ -96,6 +100,55 @@ async def test_what_nobody_took_back_of_an_order_that_has_ended_is_brought_again
     assert world.where[order_id] == "sender"
     assert not {"custody_contradicts_order", "mail_aboard", "transition_refused"} & await ringing(world)
     await Record(world).check()
+
+
+async def test_mail_of_an_order_that_has_ended_is_taken_out_by_hand_and_its_robot_is_free(world: World) -> None:
+    order_id = await loaded_too_late(world)
+    await world.change(world.orders.hold, "dispatcher", order_id, "Fetched at the post.")
+    world.where[order_id] = "mailroom"
+    await world.goes_on("r1")
+    await world.goes_on("r1")
+    assert await world.state(order_id) is OrderState.CANCELLED, "ended means ended"
+    (order,) = await world.rows(Order, id=order_id)
+    (told,) = [one for one in await world.rows(OrderEvent, order_id=order_id) if one.seq == order.version]
+    assert (told.kind, told.reason) == ("taken_out", "Fetched at the post.")
+    assert world.robots["r1"].duties.held.cargo == ()
+    assert await ringing(world) == set()
+    assert await world.rows(MissionRow, state="active") == []
+    await Record(world).check()
+    with pytest.raises(TransitionRefused, match="no robot has its mail"):
+        await world.change(world.orders.hold, "dispatcher", order_id, "Once more.")
+    another = await world.place("post3", "post5")
+    await world.goes_on("r1", *["sender"] * 6)
+    assert await world.state(another) is OrderState.DELIVERED
+
+
+async def test_mail_of_an_order_that_has_ended_is_brought_again_when_it_is_called_back(world: World) -> None:
+    order_id = await loaded_too_late(world)
+    for _ in range(3):
+        await world.goes_on("r1", *["nobody comes"] * 6)
+    assert world.where[order_id] == "r1"
+    await world.change(world.orders.recall, "dispatcher", order_id)
+    await world.change(world.orders.recall, "dispatcher", order_id)
+    for _ in range(3):
+        await world.goes_on("r1", *["sender"] * 6)
+    assert world.where[order_id] == "sender"
+    assert await world.state(order_id) is OrderState.CANCELLED
+    assert not {"custody_contradicts_order", "mail_aboard"} & await ringing(world)
+    await Record(world).check()
+
+
+async def test_two_mails_that_should_not_be_aboard_ring_apart_until_each_is_out(world: World) -> None:
+    one = await loaded_too_late(world)
+    now = world.clock.utc()
+    async with world.database.transaction() as session:
+        await raise_alarm(session, "r1", "custody_contradicts_order", "Order another is cancelled. But …", now=now)
+    assert [alarm.name for alarm in await world.rows(Alarm, cleared_at=None)] == ["custody_contradicts_order"] * 2
+    await world.change(world.orders.hold, "dispatcher", one, None)
+    world.where[one] = "mailroom"
+    await world.goes_on("r1")
+    (left,) = await world.rows(Alarm, cleared_at=None)
+    assert left.reason.startswith("Order another")
 
 
 async def test_a_mission_whose_mail_is_out_before_it_is_told_is_over(world: World) -> None:
