@@ -58,6 +58,37 @@ async def give_roles(service: Service, email: str, *roles: Role) -> None:
     await database.close()
 
 
+async def walks_the_tree(page: Page) -> None:
+    """With the arrows alone; Tab comes to the tree once, and on again."""
+    tree = page.get_by_role("tree", name="What it intends")
+    await expect(tree.locator("[tabindex='0']")).to_have_count(1)
+    await page.get_by_role("button", name="Download this run").focus()
+    await page.keyboard.press("Tab")
+    await expect(tree.locator(":focus")).to_have_count(1)
+    first = tree.get_by_role("treeitem").first
+    await page.keyboard.press("Home")
+    await expect(first).to_be_focused()
+    await expect(first).to_have_accessible_name(re.compile("^Intention "))
+    await expect(first).to_have_attribute("aria-expanded", "true")
+    goal = first.get_by_role("treeitem").first
+    await page.keyboard.press("ArrowRight")
+    await expect(goal).to_be_focused()
+    await page.keyboard.press("ArrowLeft")
+    if await first.evaluate("item => item !== document.activeElement"):  # the goal was open: first it is closed
+        await page.keyboard.press("ArrowLeft")
+    await expect(first).to_be_focused()
+    await page.keyboard.press("ArrowLeft")
+    await expect(first).to_have_attribute("aria-expanded", "false")
+    await expect(goal).to_be_hidden()
+    await page.keyboard.press("Enter")
+    await expect(goal).to_be_visible()
+    await page.keyboard.press("End")
+    await expect(first).not_to_be_focused()
+    await expect(tree.locator("[tabindex='0']")).to_have_count(1)
+    await page.keyboard.press("Tab")
+    await expect(tree.locator(":focus")).to_have_count(0)
+
+
 async def assert_fits_and_is_accessible(page: Page) -> None:
     assert await page.evaluate(NO_OVERFLOW)
     assert await page.evaluate(SMALL_TARGETS) == []
@@ -79,12 +110,13 @@ async def test_a_maintainer_watches_a_driving_robot_holds_the_view_filters_and_t
     await expect(intends.get_by_text("+!go_to(post1)", exact=True)).to_be_visible()
     await expect(intends.get_by_text(re.compile(r"waits for action follow_line\."))).to_be_visible()
     await expect(feels.get_by_text("follows the line")).to_be_visible()
-    await intends.get_by_role("listitem").filter(has_text="+!go_to(post1)").get_by_text("Why this plan").last.click()
+    await intends.get_by_role("treeitem").filter(has_text="+!go_to(post1)").get_by_text("Why this plan").last.click()
     await expect(intends.get_by_text(re.compile(r"^at\(post1\) does not hold"))).to_be_visible()
     await expect(believes.get_by_text(re.compile(r"came:")).first).to_be_attached()
     await mira.assert_accessible()
 
     await page.get_by_role("button", name="Pause the view").click()
+    await walks_the_tree(page)
     newest = await trace.get_by_role("listitem").first.inner_text()
     await expect(page.get_by_text(re.compile(r"Held still; [2-9]\d* reports came meanwhile"))).to_be_visible()
     assert await trace.get_by_role("listitem").first.inner_text() == newest

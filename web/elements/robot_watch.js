@@ -10,7 +10,7 @@ import { counted, t } from "../texts.js";
 import { WatchedRun } from "../watched_run.js";
 import { beliefList } from "./belief_list.js";
 import { problemLine } from "./field.js";
-import { intentionTree } from "./intention_tree.js";
+import "./intention_tree.js";
 import { PageElement } from "./page_element.js";
 import { planTrace } from "./plan_trace.js";
 import { sensorPanel } from "./sensor_panel.js";
@@ -94,7 +94,7 @@ export class RobotWatch extends PageElement {
   #parts(seen, insight) {
     return html`<section class="card intends" aria-labelledby="mind-title">
         <h2 id="mind-title">${t("mind.title")}</h2>
-        ${intentionTree(insight)}
+        <intention-tree .insight=${insight}></intention-tree>
       </section>
       <section class="card senses" aria-labelledby="sensor-title">
         <h2 id="sensor-title">${t("sensor.title")}</h2>
