@@ -6,7 +6,7 @@ BIN := .venv/bin
 ARGS ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help setup setup-robot test check format demo serve robot bench bench-mind bench-body bench-service bench-paper bench-pages bench-service-kills fuzz-mind client pages icons fuzz-api pin clean
+.PHONY: help setup setup-robot test check format demo serve robot bench bench-mind bench-body bench-service bench-paper bench-pages bench-service-kills fuzz-mind client pages icons screenshots fuzz-api pin clean
 # A recipe that fails must not leave its stamp behind.
 .DELETE_ON_ERROR:
 
@@ -77,6 +77,9 @@ pages: setup ## Write what follows from other files into web/: lists of modules,
 
 icons: setup ## Draw the app's icons from our SVG
 	@$(BIN)/python web/make_icons.py
+
+screenshots: setup ## Take pictures of every page into docs/pictures/pages (ARGS="--only follow" takes one)
+	@$(BIN)/python -m tests.web.pictures $(ARGS)
 
 fuzz-api: setup ## Let schemathesis look for answers that the API document does not promise, twenty minutes long
 	@CAMPUS_MAIL_FUZZ_S=300 $(BIN)/python -m pytest -q --timeout 900 tests/app/test_api_fuzz.py $(ARGS)
