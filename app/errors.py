@@ -24,10 +24,12 @@ from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
 from pydantic import BaseModel
+from sqlalchemy.exc import DBAPIError, InterfaceError, OperationalError
 from starlette.exceptions import HTTPException
 from starlette.routing import Match
 
 PROBLEM_JSON = "application/problem+json"
+TRY_AGAIN_S: Final = 5
 METHODS = ("GET", "POST", "PUT", "PATCH", "DELETE")
 log = structlog.get_logger(__name__)
 
@@ -137,6 +139,7 @@ GENERAL: Final[Mapping[str, tuple[int, str]]] = {
     "unsupported_media_type": (415, "Bodies are taken as application/json alone."),
     "invalid_request": (422, "A field of the body, the path, the query or a header does not fit; `errors` names it."),
     "http_error": (500, "Another refusal of the web server, by its status."),
+    "database_away": (503, "The database is gone, locked or its disk full; Retry-After says when to try again."),
     "unforeseen": (500, "A mistake of the service; it is in its log."),
     "not_ready": (503, "The service should get no requests now; `detail` says why."),
 }
@@ -200,12 +203,25 @@ def add_error_answers(app: FastAPI) -> None:
     app.add_exception_handler(ServiceError, _answer_service_error)
     app.add_exception_handler(RequestValidationError, _answer_invalid)
     app.add_exception_handler(HTTPException, _answer_http)
+    # A server that is not there refuses before any driver is asked.
+    for away in (OperationalError, InterfaceError, ConnectionRefusedError):
+        app.add_exception_handler(away, _answer_database)
     app.add_exception_handler(Exception, _answer_unforeseen)
 
 
 async def _answer_service_error(request: Request, error: Exception) -> JSONResponse:
     assert isinstance(error, ServiceError)  # noqa: S101  # registered for this class alone
-    return problem_answer(error.status, error.code, error.sentence, error.headers)
+    # RFC 9110 wants to be told how one can prove who one is; browsers ask nobody for a bearer's token.
+    how = {"WWW-Authenticate": "Bearer"} if error.status == HTTPStatus.UNAUTHORIZED else {}
+    return problem_answer(error.status, error.code, error.sentence, {**how, **error.headers})
+
+
+async def _answer_database(request: Request, error: Exception) -> JSONResponse:
+    """Not the caller's fault, and over by itself or by the operator's hand: worth another try."""
+    why = error.orig if isinstance(error, DBAPIError) else error
+    log.error("database_away", path=request.url.path, why=str(why))
+    sentence = "The database cannot be used just now, and this may not have been done. Try again in a moment."
+    return problem_answer(503, "database_away", sentence, {"Retry-After": str(TRY_AGAIN_S)})
 
 
 async def _answer_invalid(request: Request, error: Exception) -> JSONResponse:

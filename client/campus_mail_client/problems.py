@@ -60,6 +60,12 @@ class CrossSite(Problem):
     code = "cross_site"
 
 
+class DatabaseAway(Problem):
+    """The database is gone, locked or its disk full; Retry-After says when to try again. (503)"""
+
+    code = "database_away"
+
+
 class DigitsLocked(Problem):
     """Five wrong ones: a dispatcher has to release the digits. The QR code works. (409)"""
 
@@ -544,6 +550,7 @@ BY_CODE: Final[Mapping[str, type[Problem]]] = {
     "codes_expired": CodesExpired,
     "conflict": Conflict,
     "cross_site": CrossSite,
+    "database_away": DatabaseAway,
     "digits_locked": DigitsLocked,
     "door_closed": DoorClosed,
     "email_not_verified": EmailNotVerified,

@@ -1,12 +1,15 @@
 """Every error is a problem document with a stable code, and no answer gives away what it should not."""
 
+import sqlite3
+
 import pytest
 from fastapi import FastAPI
 from fastapi.testclient import TestClient
 
 from app.api_document import operations
 from app.errors import PROBLEM_JSON
-from tests.app.conftest import Browser
+from app.settings import Settings
+from tests.app.conftest import Browser, sqlite_alone
 
 
 @pytest.mark.parametrize(
@@ -62,6 +65,32 @@ def test_what_nobody_foresaw_is_a_problem_without_its_inside(app: FastAPI, nobod
     answer = nobody.get("/broken")
     assert (answer.status_code, answer.json()["code"]) == (500, "unforeseen")
     assert "inside" not in answer.text
+
+
+@sqlite_alone
+def test_while_the_database_cannot_be_written_people_are_asked_to_try_again(
+    settings: Settings, sender: Browser
+) -> None:
+    """As on a full disk: the same order, tried again with its key once there is room, is placed once."""
+    file = settings.data / "campus-mail.sqlite"
+    with sqlite3.connect(file) as plain:
+        plain.execute("create trigger full before insert on orders begin select nobody_knows_this(); end")
+    plain.close()
+    refused = sender.order("once")
+    assert (refused.status_code, refused.json()["code"]) == (503, "database_away")
+    assert refused.headers["Retry-After"] == "5"
+    assert "nobody_knows" not in refused.text
+    with sqlite3.connect(file) as plain:
+        plain.execute("drop trigger full")
+    plain.close()
+    assert sender.order("once").status_code == 201
+    assert len(sender.get("/api/v1/orders").json()["items"]) == 1
+
+
+def test_who_is_nobody_is_told_how_to_say_who_they_are(nobody: TestClient) -> None:
+    assert nobody.get("/api/v1/orders").headers["WWW-Authenticate"] == "Bearer"
+    wrong = nobody.get("/api/v1/orders", headers={"Authorization": "Bearer cmp_00000000_wrong"})
+    assert wrong.headers["WWW-Authenticate"] == 'Bearer error="invalid_token"'
 
 
 def closed_routes(app: FastAPI) -> list[tuple[str, str]]:
