@@ -18,7 +18,7 @@ from tests.web.pictures.stage import Stage
 
 Theme = Literal["light", "dark"]
 THEMES: Final[tuple[Theme, ...]] = ("light", "dark")
-COLOURS: Final = 128
+COLOURS: Final = 96
 DRIVER: Final = "r5"
 
 
@@ -98,7 +98,7 @@ async def _take_one(stage: Stage, day: CampusDay, picture: Picture, on: str, sho
 def _write(png: bytes, file: Path) -> None:
     """A page has few colours: with a palette every letter stays sharp, in two thirds of the bytes."""
     picture = Image.open(BytesIO(png)).convert("RGB")
-    few = picture.quantize(COLOURS, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
+    few = picture.quantize(COLOURS, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
     few.convert("RGB").save(file, "WEBP", lossless=True, method=6)
 
 
