@@ -10,6 +10,7 @@ import sys
 import time
 from collections.abc import Mapping
 from email import message_from_bytes, policy
+from email.message import EmailMessage
 from pathlib import Path
 
 import httpx
@@ -103,10 +104,22 @@ class Service:
             time.sleep(0.05)
         raise AssertionError(f"no link was mailed to {email}")
 
+    def subjects_mailed_to(self, email: str, at_least: int) -> list[str]:
+        """Of all that they were told by mail, the first first; not of what let them in."""
+        until_s, subjects = time.monotonic() + MAIL_LIMIT_S, list[str]()
+        while len(subjects) < at_least and time.monotonic() < until_s:
+            time.sleep(0.05)
+            subjects = [str(mail["Subject"]) for mail in reversed(self._newest_mails_to(email))]
+            subjects = [subject for subject in subjects if "sign-in code" not in subject]
+        return subjects
+
     def _mails_to(self, email: str) -> list[str]:
+        return [mail.get_body(("plain",)).get_content() for mail in self._newest_mails_to(email)]
+
+    def _newest_mails_to(self, email: str) -> list[EmailMessage]:
         files = sorted((self._folder / "spool").glob("*.eml"), key=lambda file: file.stat().st_mtime_ns, reverse=True)
         mails = [message_from_bytes(file.read_bytes(), policy=policy.default) for file in files]
-        return [mail.get_body(("plain",)).get_content() for mail in mails if mail["To"] == email]
+        return [mail for mail in mails if mail["To"] == email]
 
 
 def _free_port() -> int:

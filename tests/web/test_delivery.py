@@ -1,7 +1,7 @@
 """Two people and a robot: a letter from the form to the hand, seen on both people's pages as it happens."""
 
 import re
-from collections.abc import AsyncIterator, Iterator
+from collections.abc import AsyncIterator, Iterator, Sequence
 from hashlib import sha256
 
 import pytest
@@ -15,6 +15,7 @@ from protocol.to_server import CommandAnswer, Event, Snapshot, Step, Why
 from tests.app.fleet.playing import PlayedRobot
 from tests.web.camera import Camera
 from tests.web.service import Service
+from tests.web.visitor import Visitor
 
 pytestmark = pytest.mark.browser
 IS_DRAWN = "(image) => image.complete && image.naturalWidth > 0"
@@ -93,13 +94,26 @@ async def demonstration(
         yield Demonstration(demo_service, robot, camera)
 
 
-async def follow_the_newest_notice(page: Page, title: str) -> None:
-    notices = page.get_by_role("link", name=re.compile("unread.*Notices|Notices.*unread"))
-    await notices.click()
-    await page.get_by_role("link", name=re.compile(title)).click()
+async def follow_what_is_told(page: Page, title: str) -> None:
+    """On whatever page one is."""
+    await page.get_by_role("status").get_by_role("link", name=re.compile(title)).click()
 
 
-async def test_a_letter_is_ordered_loaded_carried_and_received_by_two_people(demonstration, visit):
+async def is_told(person: Visitor, titles: Sequence[str]) -> None:
+    """Each once among the notices, and the same by mail."""
+    page = person.page
+    await page.get_by_role("link", name=re.compile("Notices")).click()
+    await expect(page.get_by_role("heading", level=1)).to_have_text("Notices")
+    await expect(page.locator(".notices li")).to_have_count(len(titles))
+    for title in titles:
+        await expect(page.get_by_role("link", name=re.compile(title))).to_have_count(1)
+    mailed = person.service.subjects_mailed_to(person.email, len(titles))
+    assert [next(title for title in titles if re.search(title, subject)) for subject in mailed] == list(titles)
+
+
+async def test_two_people_and_a_robot_ordered_loaded_by_code_followed_received_by_code_and_both_told(
+    demonstration, visit
+):
     robot = demonstration.title
     ada = await visit("ada.king", on="phone", at=demonstration.service)
     bob = await visit("bob.martin", on="desk", at=demonstration.service, color_scheme="dark")
@@ -144,7 +158,7 @@ async def test_a_letter_is_ordered_loaded_carried_and_received_by_two_people(dem
     await expect(ada.page.get_by_role("button", name="Cancel this order")).to_be_hidden()
     await expect(ada.page.get_by_role("button", name="Have it brought back")).to_be_visible()
 
-    await follow_the_newest_notice(bob.page, "is on its way to you")
+    await follow_what_is_told(bob.page, "is on its way to you")
     standing_for_bob = bob.page.get_by_role("heading", level=1)
     await expect(standing_for_bob).to_have_text("A letter is on its way to you")
     code_of_bob = bob.page.get_by_role("region", name="Your code to take the letter")
@@ -168,9 +182,12 @@ async def test_a_letter_is_ordered_loaded_carried_and_received_by_two_people(dem
         timeline = page.get_by_role("region", name="So far, and next").get_by_role("listitem")
         await expect(timeline).to_have_count(7)
         await expect(timeline.last).to_contain_text(re.compile("Taken by Bob Martin .*, confirmed"))
-    await ada.page.get_by_role("link", name=re.compile("Notices")).click()
-    for title in ("Order accepted", "near Post 1", "waiting at Post 1", "Delivered"):
-        await expect(ada.page.get_by_role("link", name=re.compile(title))).to_have_count(1)
+        hands = page.get_by_role("region", name="In whose hands").get_by_role("listitem")
+        await expect(hands).to_contain_text(
+            [re.compile("Ada King"), re.compile("with the code of Ada"), re.compile("with the code of Bob")]
+        )
+    await is_told(ada, ("Order accepted", "near Post 1", "waiting at Post 1", "Delivered"))
+    await is_told(bob, ("is on its way to you", "waiting for you at Post 4", "Delivered"))
 
 
 def name_suffix(visitor):
