@@ -8,6 +8,7 @@ import { workOffline } from "./with_worker.js";
 /** @param {PageShell} shell @param {Person | null} person */
 export async function afterOpening(shell, person) {
   if (person) onKept(() => showFirstKept(shell, person));
+  addEventListener("keydown", () => import("./keeps_keyboard.js").then(({ keepKeyboard }) => keepKeyboard()), { once: true });
   await workOffline(person);
 }
 

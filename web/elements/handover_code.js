@@ -109,7 +109,7 @@ export class HandoverCodeElement extends PageElement {
     const camera = html`<button class="main" @click=${this.#showToCamera}>${icon("camera")}${t("code.camera")}</button>`;
     return html`<div class="choices">
       ${this.door?.showToCamera ? camera : nothing}
-      <button class="quiet" ?disabled=${this.asked} @click=${this.#handOver}>${t(`code.tap.${purpose}`)}</button>
+      <button class="quiet" aria-disabled=${this.asked ? "true" : nothing} @click=${this.#handOver}>${t(`code.tap.${purpose}`)}</button>
     </div>`;
   }
 
@@ -125,6 +125,7 @@ export class HandoverCodeElement extends PageElement {
   }
 
   async #handOver() {
+    if (this.asked) return;
     await this.#attempt(async (door) => {
       await door.handOver("");
       this.said = t("code.asked");

@@ -13,6 +13,9 @@ const RECENT = 3;
 const WHENS = /** @type {const} */ (["now", "later", "again"]);
 
 export class OrderForm extends PageElement {
+  /** What was chosen last: what is fetched for an earlier choice comes too late. @type {"now" | "later" | "again"} */
+  #chosen = "now";
+
   static properties = {
     map: { attribute: false },
     wanted: { attribute: false },
@@ -127,8 +130,9 @@ export class OrderForm extends PageElement {
 
   /** @param {When} when */
   async #when(when) {
+    this.#chosen = when;
     if (when !== "now") await import("./order_schedule.js");
-    this.when = when;
+    if (when === this.#chosen) this.when = when;
   }
 
   /** An order for later that was not taken. @param {string} not_before */

@@ -1,0 +1,65 @@
+"""A keyboard alone: whoever has no pointer reaches everything by Tab, and sees at each stop where they are."""
+
+import re
+from typing import Any, Final
+
+from playwright.async_api import Page
+
+from tests.web.service import ROOT
+
+EYES: Final = (ROOT / "tests/web/keys.js").read_text(encoding="utf-8")
+IS_ASKED_FOR: Final = "() => performance.getEntriesByType('resource').some(({name}) => /keeps_keyboard/.test(name))"
+MOST_STOPS: Final = 250
+
+
+class Keyboard:
+    """Presses keys and never points; a stop that nobody could see, or that is nowhere, fails the test at once."""
+
+    def __init__(self, page: Page) -> None:
+        self.page = page
+
+    async def press(self, *keys: str) -> None:
+        for key in keys:
+            await self.page.keyboard.press(key)
+
+    async def type(self, text: str) -> None:
+        await self.page.keyboard.type(text)
+
+    async def stands(self) -> None:
+        """What looks after the keyboard comes once a page stands, at the first key."""
+        while not await self.page.evaluate(IS_ASKED_FOR):
+            await self.press("Shift")
+        await self.page.evaluate("() => import('/keeps_keyboard.js')")
+
+    async def to(self, name: str, key: str = "Tab") -> None:
+        """On to the next stop whose name begins like this."""
+        passed: list[str] = []
+        for _ in range(MOST_STOPS):
+            await self.press(key)
+            here = await self.here()
+            if re.match(name, here):
+                return
+            passed.append(here)
+        raise AssertionError(f"the keyboard does not come to {name}, only to {passed}")
+
+    async def here(self) -> str:
+        """The name of what has the keyboard; empty where nothing has it."""
+        here: dict[str, Any] = await self._ask("here")
+        assert not here["wrong"], here["wrong"]
+        return str(here["name"])
+
+    async def walk(self) -> list[str]:
+        """From the beginning of the page, or of an open dialog, to its end: every stop on the way."""
+        stops: list[str] = []
+        while len(stops) < MOST_STOPS:
+            await self.press("Tab")
+            here = await self.here()
+            if not here or (stops and here == stops[0] and not await self._ask("missed")):
+                break
+            stops.append(here)
+        missed = await self._ask("missed")
+        assert not missed, f"the keyboard never comes to {missed}, only to {stops}"
+        return stops
+
+    async def _ask(self, what: str) -> Any:
+        return await self.page.evaluate(f"() => (window.keys || ({EYES}, window.keys)).{what}()")
