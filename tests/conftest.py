@@ -41,8 +41,13 @@ def find_chromium() -> str | None:
     return next(filter(None, map(shutil.which, NAMES_OF_CHROMIUM)), None)
 
 
+@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Without a browser its tests are taken out and counted; CAMPUS_MAIL_REQUIRE_BROWSER makes that a failure."""
+    """Without a browser its tests are taken out and counted; CAMPUS_MAIL_REQUIRE_BROWSER makes that a failure.
+
+    What joins real processes takes longest and comes first: else one of the workers would end long after the others.
+    """
+    items.sort(key=lambda item: item.get_closest_marker("system") is None)
     browser_tests = [item for item in items if item.get_closest_marker("browser")]
     if not browser_tests or find_chromium():
         return

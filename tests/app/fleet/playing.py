@@ -135,7 +135,9 @@ class PlayedRobot:
     @asynccontextmanager
     async def connected(self, url: str, token: str) -> AsyncIterator["PlayedRobot"]:
         headers = {"Authorization": f"Bearer {token}"}
-        async with connect(url, additional_headers=headers, proxy=None, close_timeout=0.5) as self.socket:
+        # A busy machine may take its time to let a robot in: none of these tests is about that.
+        patient = connect(url, additional_headers=headers, proxy=None, open_timeout=60, close_timeout=0.5)
+        async with patient as self.socket:
             yield self
 
     async def say(self, message: Part, seq: int | None = None, **envelope: Any) -> int:
