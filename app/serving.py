@@ -91,7 +91,10 @@ def check_tls(settings: Settings) -> None:
     try:
         ssl.create_default_context(ssl.Purpose.CLIENT_AUTH).load_cert_chain(settings.tls_cert, settings.tls_key)
     except OSError as error:  # SSLError is one
-        raise StartError(f"The certificate {settings.tls_cert} and its key cannot be used: {error}.") from error
+        why = "they do not belong together, or one is not PEM" if isinstance(error, ssl.SSLError) else error.strerror
+        raise StartError(
+            f"The certificate {settings.tls_cert} and the key {settings.tls_key} cannot be used: {why}."
+        ) from error
 
 
 def config_of(app: FastAPI) -> uvicorn.Config:

@@ -75,8 +75,14 @@ def say_table(columns: Sequence[str], rows: Iterable[Sequence[Any]], nothing: st
     """What a person reads; `nothing` is the sentence for no rows."""
     table = Table(*columns, box=None, pad_edge=False)
     for row in rows:
-        table.add_row(*("–" if value is None else str(value) for value in row))
+        table.add_row(*(_in_words(value) for value in row))
     if table.row_count:
         console().print(table, markup=False)
     else:
         typer.echo(nothing)
+
+
+def _in_words(value: object) -> str:
+    if value is None or value == []:
+        return "–"
+    return ", ".join(str(one) for one in value) if isinstance(value, list) else str(value)

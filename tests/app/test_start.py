@@ -27,11 +27,12 @@ from app.errors import StartError
 from app.logs import redact
 from app.schema_version import INI, DatabaseUnusable, NewerDatabase, bring_to_head, is_at_head
 from app.server_key import open_server_key
-from app.serving import PortTaken, listen
+from app.serving import PortTaken, listen, serve
 from app.settings import Settings, load_settings, open_clock, open_map
 from app.tables import Person
 from app.tables.columns import NaiveTime
 from tests.app.conftest import sqlite_alone
+from tests.app.notify.receivers import certificate
 
 ROOT = INI.parent
 
@@ -386,3 +387,19 @@ def test_no_secret_reaches_a_log() -> None:
     for secret in ("0123456789abcdef", "12345678,", "abc.def", "aB-c", "Bearer", "secret"):
         assert secret not in said
     assert "cf179875c3a1ccbd" in said
+
+
+def test_certificate_and_key_that_do_not_fit_are_named_before_anything_is_made(tmp_path: Path) -> None:
+    (tmp_path / "one").mkdir()
+    (tmp_path / "other").mkdir()
+    chain, _ = certificate(tmp_path / "one")
+    certificate(tmp_path / "other")
+    settings = Settings(data=tmp_path / "data", tls_cert=chain, tls_key=tmp_path / "other" / "server.key")
+    with pytest.raises(StartError, match="do not belong together"):
+        serve(settings)
+    absent = settings.model_copy(update={"tls_key": tmp_path / "nowhere.key"})
+    with pytest.raises(StartError, match=r"nowhere\.key cannot be used: No such file or directory"):
+        serve(absent)
+    with pytest.raises(StartError, match="both are needed"):
+        serve(settings.model_copy(update={"tls_key": None}))
+    assert not (tmp_path / "data").exists()
