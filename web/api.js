@@ -138,6 +138,9 @@ export const standingOrders = (page = {}) => ask("/standing-orders" + query(page
 /** @param {string} id @param {"pause" | "resume" | "end"} what @returns {Promise<Api.StandingOrder>} */
 export const changeStandingOrder = (id, what) => ask(`/standing-orders/${encodeURIComponent(id)}/${what}`, { method: "POST" });
 
+/** The address of the order's page as a QR code. @param {string} id */
+export const pagePicture = (id) => `${BASE}${orderPath(id)}/page.svg`;
+
 /** My code, with the address of its picture. @param {string} id @returns {Promise<Api.ShownCode>} */
 export const handoverCode = async (id) => withPicture(await ask(orderPath(id) + "/code"));
 

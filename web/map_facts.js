@@ -1,17 +1,18 @@
 /**
  * What a map shows and its list says: both are made of these facts, so that the drawing says nothing that the list does not. Pure.
- * @import { CampusMap, MapCorridor, MapPost, Robot, TakenCorridor } from "./api_types.ts"
+ * @import { Alarm, CampusMap, MapCorridor, MapPost, Robot, TakenCorridor } from "./api_types.ts"
  * @typedef {"stopped" | "charging" | "offline"} Condition
  * @typedef {object} MapFacts
  * @property {readonly Robot[]} robots by name
  * @property {Map<string, Robot[]>} seen who was last seen at which post
  * @property {Map<string, Robot[]>} expected who is expected at which post
  * @property {readonly TakenCorridor[]} taken by these robots, on this map
+ * @property {readonly Alarm[]} closed for the robot that turned back in it
  * @property {{posts: MapPost[], corridors: MapCorridor[]}} silent where there is no network
  */
 
-/** @param {CampusMap} map @param {readonly Robot[]} robots @param {readonly TakenCorridor[]} traffic @returns {MapFacts} */
-export function factsOf(map, robots, traffic) {
+/** @param {CampusMap} map @param {readonly Robot[]} robots @param {readonly TakenCorridor[]} traffic @param {readonly Alarm[]} alarms @returns {MapFacts} */
+export function factsOf(map, robots, traffic, alarms) {
   const posts = new Set(map.posts.map(({ name }) => name));
   const shown = [...robots].sort((a, b) => a.name.localeCompare(b.name, undefined, { numeric: true }));
   /** @param {(robot: Robot) => string | undefined} post */
@@ -21,6 +22,7 @@ export function factsOf(map, robots, traffic) {
     seen: grouped(({ last_seen }) => last_seen?.post),
     expected: grouped(({ expected }) => expected?.post),
     taken: traffic.filter(({ robot, corridor }) => shown.some(({ name }) => name === robot) && corridorNamed(map, corridor)),
+    closed: alarms.filter(({ corridor, cleared_at }) => corridor && !cleared_at && corridorNamed(map, corridor)),
     silent: { posts: map.posts.filter(({ network }) => !network), corridors: map.corridors.filter(({ network }) => !network) },
   };
 }

@@ -86,6 +86,8 @@ export interface components {
         /**
          * AlarmView
          * @description Something about a robot that a person should look at; over when `cleared_at` says so.
+         *
+         *     `corridor`: the one that the robot found closed, and in which it goes nowhere until the alarm is over.
          */
         AlarmView: {
             /** Id */
@@ -98,6 +100,8 @@ export interface components {
             reason: string;
             /** Post */
             post: string | null;
+            /** Corridor */
+            corridor: string | null;
             /**
              * At
              * Format: date-time

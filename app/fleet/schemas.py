@@ -5,6 +5,7 @@ from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, StringConstraints
 
+from app.fleet.closed_ways import closed_corridor
 from app.orders.robot_view import RobotView
 from app.tables import Alarm, RobotCommand, RobotRow
 from app.tables.columns import STORABLE
@@ -40,20 +41,24 @@ class CommandView(BaseModel):
 
 
 class AlarmView(BaseModel):
-    """Something about a robot that a person should look at; over when `cleared_at` says so."""
+    """Something about a robot that a person should look at; over when `cleared_at` says so.
+
+    `corridor`: the one that the robot found closed, and in which it goes nowhere until the alarm is over.
+    """
 
     id: int
     robot: str
     name: str
     reason: str
     post: str | None
+    corridor: str | None
     at: datetime
     cleared_at: datetime | None
     acknowledged_at: datetime | None
 
     @classmethod
     def of(cls, row: Alarm) -> "AlarmView":
-        return cls.model_validate(row, from_attributes=True)
+        return cls.model_validate({**row.model_dump(), "corridor": closed_corridor(row.name, row.reason)})
 
 
 class RobotDetails(BaseModel):

@@ -1,6 +1,6 @@
 """Handing over: codes, taps, digits, delegates."""
 
-from typing import Annotated, Any, Final
+from typing import Annotated, Final
 
 from fastapi import APIRouter, Depends, Path, Request, Response
 
@@ -12,7 +12,7 @@ from app.handover.schemas import CodeView, Delegates, DelegateView, HandoverAske
 from app.handover.service import HandOvers
 from app.orders.codes import HandoverCode, code_svg
 from app.orders.errors import NoCodeForYou, UnknownOrder
-from app.orders.routes import OrderId, OrdersDep
+from app.orders.routes import PICTURE, OrderId, OrdersDep
 from app.orders.schemas import OrderView
 from app.people.current_user import CurrentUser, Dispatcher
 from app.people.errors import AddressNotAllowed, RoleNeeded
@@ -23,7 +23,6 @@ dispatch_router = APIRouter(tags=["dispatch"])
 
 DelegateId = Annotated[str, Path(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]*$", max_length=64)]
 NOT_KEPT: Final = {"Cache-Control": "no-store"}
-PICTURE: Final[dict[int | str, dict[str, Any]]] = {200: {"content": {"image/svg+xml": {"schema": {"type": "string"}}}}}
 ASKED = problems(
     UnknownOrder,
     errors.NotYourTurn,

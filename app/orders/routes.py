@@ -1,6 +1,6 @@
 """Ordering, following, cancelling."""
 
-from typing import Annotated
+from typing import Annotated, Any, Final
 
 from fastapi import APIRouter, Depends, Header, Path, Query, Request, Response
 from sqlmodel import col
@@ -8,6 +8,7 @@ from sqlmodel import col
 from app.database import ReadingDep, SessionDep
 from app.errors import TooManyRequests, answering, problems
 from app.orders import errors
+from app.orders.codes import code_svg
 from app.orders.desk import OrderDesk
 from app.orders.finding import Looked, RoleInList, StateInList
 from app.orders.schemas import Estimate, NewOrder, OrderPage, OrderView, PostName, WindowView, etag_of
@@ -17,12 +18,13 @@ from app.paging import PAGED, PageDep, Sorting
 from app.people.current_user import CurrentUser
 from app.people.rate_limits import Door, per_person
 from app.people.search import SearchText
-from app.settings import CampusDep
+from app.settings import CampusDep, SettingsDep
 from app.tables import Order, Person
 from maps import shortest_route
 
 router = APIRouter(tags=["orders"])
 
+PICTURE: Final[dict[int | str, dict[str, Any]]] = {200: {"content": {"image/svg+xml": {"schema": {"type": "string"}}}}}
 OrderId = Annotated[str, Path(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]*$", max_length=64)]
 NEWEST_FIRST = Sorting("orders", col(Order.created_at), col(Order.id), descending=True)
 SEARCHED = "Part of the description, of the other side's name or mail address, or of a post's name or title."
@@ -110,6 +112,23 @@ async def one_order(
     view = await orders.view(session, user, order_id)
     response.headers["ETag"] = etag_of(view)
     return view
+
+
+@router.get(
+    "/orders/{order_id}/page.svg", response_class=Response, responses={**PICTURE, **problems(errors.UnknownOrder)}
+)
+async def order_page_picture(
+    order_id: OrderId,
+    user: CurrentUser,
+    orders: OrdersDep,
+    session: ReadingDep,
+    settings: SettingsDep,
+    request: Request,
+) -> Response:
+    """The address of the order's page as a QR code: from paper or from another screen to a phone."""
+    await orders.view(session, user, order_id)
+    home = (settings.public_url or str(request.base_url)).rstrip("/")
+    return Response(code_svg(f"{home}/follow.html?order={order_id}"), media_type="image/svg+xml")
 
 
 @router.post("/orders/{order_id}/cancel", responses=CHANGED)

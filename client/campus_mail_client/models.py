@@ -55,13 +55,17 @@ class AlarmPage(Model):
 
 
 class AlarmView(Model):
-    """Something about a robot that a person should look at; over when `cleared_at` says so."""
+    """Something about a robot that a person should look at; over when `cleared_at` says so.
+
+    `corridor`: the one that the robot found closed, and in which it goes nowhere until the alarm is over.
+    """
 
     id: int
     robot: str
     name: str
     reason: str
     post: str | None
+    corridor: str | None
     at: datetime
     cleared_at: datetime | None
     acknowledged_at: datetime | None

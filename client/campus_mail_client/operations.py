@@ -131,6 +131,11 @@ class Operations:
         answer: OrderView = self._call("GET", f"/api/v1/orders/{quote(str(order_id), safe='')}", OrderView)
         return answer
 
+    def order_page_picture(self, order_id: str) -> bytes:
+        """The address of the order's page as a QR code: from paper or from another screen to a phone."""
+        answer: bytes = self._call("GET", f"/api/v1/orders/{quote(str(order_id), safe='')}/page.svg", bytes)
+        return answer
+
     def cancel_order(self, order_id: str, *, if_match: str | None = None) -> OrderView:
         """Cancel, at once or (with a robot on its way) as soon as the robot answers."""
         answer: OrderView = self._call(

@@ -87,12 +87,16 @@ def release(hands: Hands, _: Sequence[Value], __: float) -> Run:
     return AtOnce()
 
 
+def turned_back(leg: Leg, why: str) -> str:
+    """What people are told; the service reads from it which corridor is closed."""
+    return f"The robot turned back in the corridor from {leg.from_post} to {leg.to_post}. {CLOSED_BY[why]}."
+
+
 def mark_blocked(hands: Hands, arguments: Sequence[Value], now: float) -> Run:
     leg, why = hands.navigator.corridor, str(arguments[0])
     if leg is None:
         return AtOnce(Ended("not_in_a_corridor"))
-    reason = f"The robot turned back in the corridor from {leg.from_post} to {leg.to_post}. {CLOSED_BY[why]}."
-    hands.duties.report_fault(WAY_BLOCKED, reason, hands.place)
+    hands.duties.report_fault(WAY_BLOCKED, turned_back(leg, why), hands.place)
     # Last: killed in between, the robot tells after its restart that it tries this way again, and does.
     hands.navigator.closed.close(leg, now)
     return AtOnce()

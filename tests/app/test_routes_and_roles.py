@@ -101,6 +101,7 @@ LINES: Final[dict[tuple[str, str], Line]] = {
     ("GET", "/api/v1/orders"): members("orders:read"),
     ("GET", "/api/v1/orders/{order_id}"): Line(401, 404, 200, 200, 200, 404, "orders:read"),
     ("GET", "/api/v1/orders/{order_id}/code"): Line(401, 404, 404, 200, 404, 404, "orders:read"),
+    ("GET", "/api/v1/orders/{order_id}/page.svg"): Line(401, 404, 200, 200, 200, 404, "orders:read"),
     ("GET", "/api/v1/orders/{order_id}/code.svg"): Line(401, 404, 404, 200, 404, 404, "orders:read"),
     ("POST", "/api/v1/orders/{order_id}/handover"): Line(401, 404, 409, 409, 409, 404, "orders:write"),
     ("POST", "/api/v1/orders/{order_id}/digits/release"): dispatchers("dispatch"),

@@ -13,9 +13,10 @@ from playwright.async_api import Page, expect
 
 from maps import find_map
 from protocol.clock import RealClock
-from protocol.parts import StopAction
+from protocol.parts import Leg, StopAction
 from protocol.to_robot import EmergencyStop, Pause
 from protocol.to_server import Event, Fault, Step, Why
+from robot.action.corridors import turned_back
 from tests.app.fleet.playing import PlayedRobot
 from tests.web.conftest import Visit
 from tests.web.mailroom_scene import Scene
@@ -27,6 +28,7 @@ pytestmark = pytest.mark.browser
 
 DISPATCHER = "dana.desk"
 MAILROOM = "/mailroom.html"
+IS_DRAWN = "(image) => image.complete && image.naturalWidth > 0"
 SHEET_MM = """() => [...document.querySelectorAll(".marker-sheet")].map((sheet) => {
   const {width, height} = sheet.getBoundingClientRect();
   return [width, height].map((px) => Math.round(px * 254 / 96) / 10).join(" × ");
@@ -155,6 +157,28 @@ async def test_a_robot_is_paused_let_go_on_and_stopped_by_keyboard_alone(quiet_c
     assert heard.reason == "Stopped from the mailroom"
 
 
+async def test_a_corridor_that_a_robot_found_closed_is_shown_until_it_is_tried_again(quiet_campus, robot, visit):
+    dana = await quiet_campus.dispatcher(visit)
+    page = dana.page
+    told = {"name": "way_blocked", "happened_at": robot.clock.utc(), "post": "post3"}
+    reason = turned_back(Leg(from_post="post3", to_post="post4"), "blocked")
+    await robot.ends(await robot.say(Event(happened=Fault(reason=reason, **told))))
+    await page.goto(MAILROOM)
+    way = page.get_by_role("region", name="The paper's test track")
+    await expect(page.get_by_role("region", name="What is wrong").get_by_text(reason)).to_be_visible()
+    await expect(way.locator(".shut[data-corridor]")).to_have_count(1)
+    await expect(way.get_by_text("Closed: a robot turned back in this corridor")).to_be_visible()
+    await way.get_by_text("The same in words").click()
+    await expect(
+        way.get_by_text(re.compile("^Found the corridor between Post 3 and Post 4 closed at "))
+    ).to_be_visible()
+    await dana.assert_accessible()
+    again = Fault(cleared=True, reason="The robot tries that way again.", **told)
+    await robot.ends(await robot.say(Event(happened=again)))
+    await robot.say(Why(sentence="Driving towards post4"))
+    await expect(way.locator(".shut[data-corridor]")).to_have_count(0, timeout=40_000)
+
+
 async def test_an_order_for_somebody_at_the_desk_is_placed_by_keyboard_and_printed(quiet_campus, visit):
     grace = await visit("grace.hill", at=quiet_campus.service)
     bob = await visit("bob.martin", at=quiet_campus.service)
@@ -190,16 +214,26 @@ async def test_an_order_for_somebody_at_the_desk_is_placed_by_keyboard_and_print
     await page.get_by_role("link", name="Print a slip").focus()
     await page.keyboard.press("Enter")
     slip = page.get_by_role("article", name="Slip for the mail")
-    for words in ("Grace Hill", "Bob Martin", "Post 2", "Post 4", "follow.html"):
+    for words in ("Grace Hill", "Bob Martin", "Post 2", "Post 4", "follow.html", "is told when one comes"):
         await expect(slip).to_contain_text(words)
+    await expect(page.get_by_text(re.compile("^No robot is on this order yet. Its code comes"))).to_be_visible()
+    for_phones = slip.get_by_role("img", name="QR code of the order’s page")
+    assert await for_phones.evaluate(IS_DRAWN)
     order_id = page.url.partition("order=")[2]
     order = await dana.api(f"/orders/{order_id}")
     assert (order["sender"]["email"], order["recipient"]["email"]) == (grace.email, bob.email)
     assert order["placed_by"]["email"] == dana.email
+    await dana.assert_accessible()
     await page.emulate_media(media="print")
     await expect(page.get_by_role("navigation")).to_be_hidden()
     await expect(page.get_by_role("button", name="Print")).to_be_hidden()
     await expect(slip).to_be_visible()
+
+    robot = PlayedRobot(RealClock(), "walk-up", journal="journal-of-walk-up")
+    async with robot.connected(quiet_campus.service.link, await quiet_campus.service.enrol_robot("walk-up")):
+        await robot.greet("post5", map_version=find_map("test_track").version)
+        await expect(slip.get_by_role("img", name="QR code for the robot’s camera")).to_be_visible()
+        await expect(for_phones).to_be_hidden()
 
 
 async def test_everything_that_is_wrong_has_its_next_action(busy_campus, visit, tmp_path: Path):
@@ -277,6 +311,22 @@ async def test_the_mailroom_is_accessible_on_a_desk_on_a_phone_and_on_a_wall(
         assert await page.evaluate(NO_OVERFLOW), address
         small = await page.evaluate(SMALL_TARGETS)
         assert [one for one in small if "checkbox" not in one["name"]] == [], address  # its label is large enough
+
+
+async def test_on_a_phone_each_part_of_the_mailroom_is_a_tap_away_however_far_one_has_come(busy_campus, visit):
+    dana = await busy_campus.dispatcher(visit, on="phone")
+    page = dana.page
+    await page.goto(MAILROOM)
+    parts = page.get_by_role("navigation", name="On this page")
+    titles = {"Map": "The paper's test track", "Under way": "Under way", "Robots": "Robots", "Wrong": "What is wrong"}
+    for part, title in titles.items():
+        await parts.get_by_role("link", name=re.compile(f"^{part}")).click()
+        heading = page.get_by_role("heading", level=2, name=re.compile(f"^{title}"))
+        await expect(heading).to_be_focused()
+        await expect(heading).to_be_in_viewport()
+        await expect(parts).to_be_in_viewport()
+    await page.set_viewport_size({"width": 1280, "height": 860})
+    await expect(parts).to_be_hidden()
 
 
 async def test_a_wall_shows_the_campus_at_work_and_nobodys_full_name(busy_campus, visit):

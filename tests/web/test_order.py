@@ -214,7 +214,7 @@ async def test_a_recipient_is_chosen_from_those_one_knows_with_the_keyboard(visi
     await expect(offers).to_have_count(2)
     await expect(page.get_by_text("2 people you know")).to_have_count(1)
     await page.keyboard.press("ArrowDown")
-    await expect(recipient).to_have_attribute("aria-activedescendant", "contact-offer-0")
+    await expect(recipient).to_have_attribute("aria-activedescendant", "contact-offers-0")
     await expect(offers.first).to_have_attribute("aria-selected", "true")
     await ada.assert_accessible()
     await page.keyboard.press("Escape")

@@ -13,12 +13,12 @@ import { sizeOf, spreadOf, windowOf } from "../map_view.js";
 import { shortestWay } from "../posts.js";
 import { t } from "../texts.js";
 import { Ticking } from "../ticking.js";
-import { corridorLines, label, postMark, silentPlaces, takenBands, takenSigns, wayLines } from "./map_parts.js";
+import { closedSigns, corridorLines, label, postMark, silentPlaces, takenBands, takenSigns, wayLines } from "./map_parts.js";
 import { mapTools } from "./map_tools.js";
 import { mapLegend, placesInWords } from "./map_words.js";
 import { PageElement } from "./page_element.js";
 import { robotFacts } from "./robot_facts.js";
-/** @import { CampusMap, Robot, TakenCorridor } from "../api_types.ts" */
+/** @import { Alarm, CampusMap, Robot, TakenCorridor } from "../api_types.ts" */
 /** @import { Box, Drawing, Point } from "../map_drawing.js" */
 /** @import { MapFacts } from "../map_facts.js" */
 /** @import { Place, Wording } from "../map_labels.js" */
@@ -40,6 +40,7 @@ export class CampusMapElement extends PageElement {
     map: { attribute: false },
     robots: { attribute: false },
     traffic: { attribute: false },
+    alarms: { attribute: false },
     from: {},
     to: {},
     facts: { type: Boolean },
@@ -53,6 +54,8 @@ export class CampusMapElement extends PageElement {
     this.robots = [];
     /** @type {readonly TakenCorridor[]} who holds which corridor; what others hold than these robots is not shown */
     this.traffic = [];
+    /** @type {readonly Alarm[]} of which some say that a corridor is closed */
+    this.alarms = [];
     this.from = "";
     this.to = "";
     /** Whether what is known of the robots stands below it. */
@@ -73,7 +76,7 @@ export class CampusMapElement extends PageElement {
   render() {
     const { map } = this;
     if (!map) return nothing;
-    const facts = factsOf(map, this.robots, this.traffic);
+    const facts = factsOf(map, this.robots, this.traffic, this.alarms);
     const whole = drawing(map);
     this.#camera.lookAt(whole.frame);
     return html`<figure class="campus">
@@ -105,7 +108,7 @@ export class CampusMapElement extends PageElement {
       @pointercancel=${up} @wheel=${wheel}>
       ${silentPlaces(drawn, this.#hatch)} ${takenBands(drawn, facts.taken)} ${corridorLines(drawn)}
       ${wayLines(drawn, this.#way(map), "way")} ${facts.robots.map((robot) => wayLines(drawn, aheadOf(map, robot), "ahead"))}
-      ${takenSigns(drawn, facts.taken, facts.robots.length > 1)}
+      ${takenSigns(drawn, facts.taken, facts.robots.length > 1)} ${closedSigns(drawn, facts.closed)}
       ${drawn.posts.map((post) => postMark(post, this.#at(post.name, facts)))}
       ${wordings.map((wording) => this.#label(drawn, wording, places.get(wording.name)))}
     </svg>`;

@@ -16,6 +16,7 @@ import { mailroomDialogs, mailroomTools } from "./mailroom_tools.js";
 import "./order_queue.js";
 import { PageElement } from "./page_element.js";
 import { robotBoard } from "./robot_board.js";
+import { sectionLinks } from "./section_links.js";
 import { wrongList } from "./wrong_list.js";
 /** @import { Alarm, CampusMap, Command, Order, Sending } from "../api_types.ts" */
 /** @import { Action } from "../mailroom_actions.js" */
@@ -49,24 +50,31 @@ export class MailroomPage extends PageElement {
     const { map, problem } = this.now;
     if (!map) return problem ? problemLine(problem) : html`<p class="waiting" role="status">${t("app.loading")}</p>`;
     const { known } = this.now;
+    const wrongs = whatIsWrong(known);
     return html`<div class="title-line">
         <h1>${t("mailroom.title")}</h1>
         ${mailroomTools()}
       </div>
+      ${sectionLinks([
+        { id: "wrong-title", label: t("mailroom.section.wrong"), count: wrongs.length, wrong: true },
+        { id: "queue-title", label: t("mailroom.queue"), count: known.orders.length },
+        { id: "robots-title", label: t("mailroom.robots"), count: known.robots.length },
+        { id: "map-title", label: t("mailroom.map") },
+      ])}
       <p class="said" role="status">${this.said}</p>
       ${this.problem || problem ? problemLine(this.problem || problem) : nothing}
-      ${this.#wrong(map)}
+      ${this.#wrong(wrongs, map)}
       <div class="mailroom">
         <order-queue .map=${map} .orders=${known.orders} ?more=${this.now.more !== null} @more=${() => this.now.fetchMore()}
           @act=${(/** @type {CustomEvent<Order>} */ event) => this.#act(event.detail)}></order-queue>
         <div class="side">
           <section class="card" aria-labelledby="robots-title">
-            <h2 id="robots-title">${t("mailroom.robots")} <span class="count">${known.robots.length}</span></h2>
+            <h2 id="robots-title" tabindex="-1">${t("mailroom.robots")} <span class="count">${known.robots.length}</span></h2>
             ${robotBoard(known.robots, known.alarms, map, this.#doing)}
           </section>
           <section class="card" aria-labelledby="map-title">
-            <h2 id="map-title">${map.title}</h2>
-            <campus-map .map=${map} .robots=${known.robots} .traffic=${this.traffic.taken}></campus-map>
+            <h2 id="map-title" tabindex="-1">${map.title}</h2>
+            <campus-map .map=${map} .robots=${known.robots} .traffic=${this.traffic.taken} .alarms=${known.alarms}></campus-map>
           </section>
         </div>
       </div>
@@ -74,9 +82,8 @@ export class MailroomPage extends PageElement {
       ${mailroomDialogs()}`;
   }
 
-  /** @param {CampusMap} map */
-  #wrong(map) {
-    const wrongs = whatIsWrong(this.now.known);
+  /** @param {ReturnType<typeof whatIsWrong>} wrongs @param {CampusMap} map */
+  #wrong(wrongs, map) {
     return html`<section class="card wrong" aria-labelledby="wrong-title">
       <h2 id="wrong-title" tabindex="-1">${t("mailroom.wrong")}
         ${wrongs.length ? html`<span class="count">${wrongs.length}</span>` : nothing}</h2>

@@ -62,7 +62,7 @@ export class MailroomWall extends PageElement {
         </section>
         <section aria-labelledby="map-title">
           <h2 id="map-title">${t("mailroom.map")}</h2>
-          <campus-map .map=${map} .robots=${known.robots} .traffic=${this.traffic.taken}></campus-map>
+          <campus-map .map=${map} .robots=${known.robots} .traffic=${this.traffic.taken} .alarms=${known.alarms}></campus-map>
         </section>
       </div>`;
   }

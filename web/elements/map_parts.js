@@ -3,9 +3,11 @@ import { nothing, svg } from "lit";
 import { middleOf, pathOf, pointsFrom } from "../map_drawing.js";
 import { conditionsOf } from "../map_facts.js";
 import { crowdRadius, inLines, LINE_HEIGHT, notesIn, robotPlaces } from "../map_labels.js";
-/** @import { Robot, TakenCorridor } from "../api_types.ts" */
+/** @import { Alarm, Robot, TakenCorridor } from "../api_types.ts" */
 /** @import { DrawnPost, Drawing } from "../map_drawing.js" */
 /** @import { Place, Wording } from "../map_labels.js" */
+
+export const NO_WAY = svg`<circle r="8" /><path d="M-4.500 0h9" />`;
 
 /** Corridors and posts without network, hatched. @param {Drawing} drawn @param {string} pattern its id on this page */
 export const silentPlaces = ({ posts, corridors }, pattern) => svg`
@@ -41,6 +43,15 @@ export const takenSigns = (drawn, taken, named) =>
       ${named ? svg`<text y="-8" text-anchor="middle">${robot}</text>` : nothing}
     </g>`;
   });
+
+/** Where robots turned back. @param {Drawing} drawn @param {readonly Alarm[]} closed */
+export const closedSigns = (drawn, closed) =>
+  drawn.corridors
+    .filter(({ name }) => closed.some(({ corridor }) => corridor === name))
+    .map(({ name, points }) => {
+      const { x, y } = middleOf(points);
+      return svg`<g class="shut" data-corridor=${name} transform="translate(${x} ${y})">${NO_WAY}</g>`;
+    });
 
 /** @param {Drawing} drawn @param {readonly string[]} posts @param {"way" | "ahead"} kind */
 export const wayLines = (drawn, posts, kind) =>

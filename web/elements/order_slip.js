@@ -1,5 +1,6 @@
-/** A slip to go with the mail: who, from where, to where, and the code or the link. */
+/** A slip to go with the mail: who, from where, to where, and the code for the robot or the order's page for a phone. */
 import { html, nothing } from "lit";
+import { pagePicture } from "../api.js";
 import { titleOf } from "../posts.js";
 import { serverNow } from "../server_clock.js";
 import { t } from "../texts.js";
@@ -16,11 +17,21 @@ export const orderSlip = (order, map, code, link) => html`<article class="slip" 
     ${row("print.ordered", dayAndTime(order.created_at, serverNow()))}
     ${row("print.number", html`<code>${order.id}</code>`)}
   </dl>
-  ${code ? withCode(code) : html`<p class="link">${t("print.follow")}<br /><code>${link}</code></p>`}
+  ${code ? withCode(code) : withLink(order, link)}
 </article>`;
 
 /** @param {string} label @param {unknown} value @param {string} [more] */
 const row = (label, value, more) => html`<div><dt>${t(label)}</dt><dd><strong>${value}</strong>${more ? html`<br />${more}` : nothing}</dd></div>`;
+
+/** One picture on a slip, never two: this one is for a phone, the robot would refuse it. @param {Order} order @param {string} link */
+const withLink = ({ id, state, sender }, link) => html`<figure>
+  <img src=${pagePicture(id)} alt=${t("print.page_code")} width="200" height="200" />
+  <figcaption>
+    <strong>${t("print.page_code.for")}</strong>
+    ${state === "queued" ? html`<span>${t("print.next", { sender: sender.name })}</span>` : nothing}
+    <span class="link">${t("print.follow")}<br /><code>${link}</code></span>
+  </figcaption>
+</figure>`;
 
 /** @param {ShownCode} code */
 const withCode = ({ purpose, picture, expires_at }) => html`<figure>

@@ -3,8 +3,10 @@ import { html } from "lit";
 import { repeat } from "lit-html/directives/repeat.js";
 import * as api from "../api.js";
 import { followPage, PAGES } from "../links.js";
+import { OnLive } from "../live.js";
 import { loadMap } from "../posts.js";
 import { inWords } from "../problems.js";
+import { personHere } from "../session.js";
 import { counted, t } from "../texts.js";
 import { problemLine } from "./field.js";
 import { icon } from "./icon.js";
@@ -37,6 +39,10 @@ export class PrintPage extends PageElement {
     /** @type {Set<string>} posts whose sheets are printed */
     this.chosen = new Set();
     this.problem = "";
+    new OnLive(this, {
+      order: (order) => order.id === this.order_id && this.#lookAgain(),
+      connected: (connected) => connected && this.#lookAgain(),
+    });
   }
 
   firstUpdated() {
@@ -54,10 +60,15 @@ export class PrintPage extends PageElement {
     if (!this.order) return problemLine(this.problem);
     return html`<div class="before-print">
         <h1>${t("print.slip")}</h1>
-        <p class="lead">${t(this.code ? "print.slip.with_code" : "print.slip.without_code")}</p>
+        <p class="lead" role="status">${t(`print.slip.${this.code ? "with_code" : this.#isAwaited(this.order) ? "waits" : "without_code"}`)}</p>
         ${this.#buttons()}
       </div>
       ${orderSlip(this.order, map, this.code, new URL(followPage(this.order.id), location.href).href)}`;
+  }
+
+  /** Whether its code is to be shown here once there is one. @param {Order} order */
+  #isAwaited({ state, placed_by }) {
+    return state === "queued" && placed_by !== null && placed_by.email === personHere()?.email;
   }
 
   /** @param {CampusMap} map */
@@ -99,12 +110,28 @@ export class PrintPage extends PageElement {
     this.chosen = chosen;
   }
 
+  /** A slip that is not printed yet gets its code as soon as there is one. Asked for: what all dispatchers hear of has no code. */
+  async #lookAgain() {
+    if (!this.order) return;
+    try {
+      this.order = await api.order(this.order.id);
+      await this.#fetchCode(this.order);
+    } catch {
+      // What is known stays.
+    }
+  }
+
+  /** @param {Order | null} order */
+  async #fetchCode(order) {
+    this.code = order && (order.my_code || TURNED_BACK.includes(order.state)) ? await theirCode(order.id) : null;
+  }
+
   async #fetch() {
     try {
       const [map, order] = await Promise.all([loadMap(), this.order_id === null ? null : api.order(this.order_id)]);
       [this.map, this.order] = [map, order];
       this.chosen = new Set(map.posts.map(({ name }) => name));
-      if (order && (order.my_code || TURNED_BACK.includes(order.state))) this.code = await theirCode(order.id);
+      await this.#fetchCode(order);
     } catch (failure) {
       this.problem = failure instanceof api.ApiProblem && failure.status === 404 ? t("follow.unknown.body") : inWords(failure);
       this.map ??= await loadMap().catch(() => null);

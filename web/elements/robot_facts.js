@@ -7,7 +7,7 @@ import { serverNow } from "../server_clock.js";
 import { t } from "../texts.js";
 import { ago, clockTime, percent, windowText } from "../times.js";
 import { icon } from "./icon.js";
-/** @import { CampusMap, Robot } from "../api_types.ts" */
+/** @import { Alarm, CampusMap, Robot } from "../api_types.ts" */
 /** @import { MapFacts } from "../map_facts.js" */
 
 /** @param {CampusMap} map @param {MapFacts} facts @param {string} from @param {string} to */
@@ -32,6 +32,7 @@ const aboutRobot = (map, facts, robot) => [
   conditionsOf(robot).includes("stopped") ? fact("warning", t("map.stopped")) : nothing,
   robot.why ? fact("send", reasonText(robot.why, robot.why_words, map)) : nothing,
   facts.taken.filter((taken) => taken.robot === robot.name).map((taken) => fact("corridor", takenText(map, taken))),
+  facts.closed.filter((alarm) => alarm.robot === robot.name).map((alarm) => fact("warning", closedText(map, alarm))),
   conditionsOf(robot).includes("offline") ? fact("network", silentText(map, facts, robot)) : nothing,
   batteryFact(robot),
 ];
@@ -49,6 +50,12 @@ function aheadFact(map, { expected, towards, activity }) {
 /** @param {CampusMap} map @param {{from_post: string, to_post: string, since: string}} taken */
 const takenText = (map, { from_post, to_post, since }) =>
   t("map.taken", { from: titleOf(map, from_post), to: titleOf(map, to_post), time: clockTime(since) });
+
+/** @param {CampusMap} map @param {Alarm} alarm */
+function closedText(map, { corridor, at }) {
+  const { a, b } = map.corridors.find(({ name }) => name === corridor) ?? { a: "", b: "" };
+  return t("map.closed", { from: titleOf(map, a), to: titleOf(map, b), time: clockTime(at) });
+}
 
 /** @param {CampusMap} map @param {MapFacts} facts @param {Robot} robot */
 function silentText(map, { taken }, robot) {

@@ -86,6 +86,7 @@ export class RobotWatch extends PageElement {
         </button>
         <button type="button" ?disabled=${!insight} @click=${this.#download}>${t("mind.download")}</button>
       </div>
+      ${insight ? html`<p class="hint">${t("mind.download.hint")}</p>` : nothing}
       ${this.problem ? problemLine(this.problem) : nothing}
       ${insight ? this.#parts(this.seen, insight) : nothing}`;
   }
