@@ -27,10 +27,10 @@ IMPORT: Final = re.compile(
     r"""(?:^|[;\s}])(?:import|export)\s*(?:[\w$*{][^"';]*?from)?\s*["']([^"']+)["']""", re.MULTILINE
 )
 IMPORT_MAP: Final = re.compile(r"<script type=\"importmap\">(.*?)</script>", re.DOTALL)
-PRELOADS: Final = re.compile(
-    r"(?:    <link rel=\"(?:module)?preload\" [^>]+ />\n)*(?=    <script type=\"module\")"
-)
+PRELOADS: Final = re.compile(r"(?:    <link rel=\"(?:module)?preload\" [^>]+ />\n)*(?=    <script type=\"module\")")
 MODULE: Final = '    <link rel="modulepreload" href="{}" />\n'
+LATER_MODULE: Final = '    <link rel="modulepreload" href="{}" fetchpriority="low" />\n'
+"""The page needs all of them; but what scripts ask for meanwhile, as the texts, shall not wait behind them."""
 ANSWER: Final = '    <link rel="preload" as="fetch" href="{}" crossorigin />\n'
 ASKED_BY_ALL: Final = ("/api/v1/about", "/api/v1/me")
 ASKED_BY: Final[Mapping[str, tuple[str, ...]]] = {
@@ -51,7 +51,7 @@ def with_preloads(name: str, html: str) -> str:
     behind = (one for script in scripts for one in (*sorted(modules_behind(script, import_map)), script))
     others = [one for one in dict.fromkeys(behind) if one not in first]
     answers = [*ASKED_BY_ALL, *ASKED_BY.get(name, ())]
-    lines = [*map(MODULE.format, first), *map(ANSWER.format, answers), *map(MODULE.format, others)]
+    lines = [*map(MODULE.format, first), *map(ANSWER.format, answers), *map(LATER_MODULE.format, others)]
     return PRELOADS.sub("".join(lines), html, count=1)
 
 

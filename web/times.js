@@ -5,8 +5,17 @@ const HOUR_MS = 3_600_000;
 const DAY_MS = 24 * HOUR_MS;
 const JUST_NOW_MS = 5_000;
 
+/** One of each kind: a phone takes 10 ms to make one. @type {Map<string, Intl.DateTimeFormat>} */
+const formats = new Map();
+
 /** @param {Intl.DateTimeFormatOptions} options */
-const format = (options) => new Intl.DateTimeFormat(locale(), options);
+function format(options) {
+  const kind = locale() + JSON.stringify(options);
+  const known = formats.get(kind) ?? new Intl.DateTimeFormat(locale(), options);
+  formats.set(kind, known);
+  return known;
+}
+
 const CLOCK = /** @type {const} */ ({ hour: "numeric", minute: "2-digit" });
 
 /** "14:05" @param {string} at */
@@ -22,11 +31,11 @@ export function dayAndTime(at, now_ms) {
 }
 
 /** "09:30" as people write it here. @param {string} at a time of day in no particular zone */
-export const wallClock = (at) => new Intl.DateTimeFormat(locale(), { ...CLOCK, timeZone: "UTC" }).format(new Date(`2024-01-01T${at}Z`));
+export const wallClock = (at) => format({ ...CLOCK, timeZone: "UTC" }).format(new Date(`2024-01-01T${at}Z`));
 
 /** The name of a weekday. @param {number} day 0 is Monday @param {"long" | "short"} [style] */
 export const weekdayName = (day, style = "long") =>
-  new Intl.DateTimeFormat(locale(), { weekday: style, timeZone: "UTC" }).format(Date.UTC(2024, 0, 1 + day));
+  format({ weekday: style, timeZone: "UTC" }).format(Date.UTC(2024, 0, 1 + day));
 
 /** "Monday and Friday" @param {number[]} days 0 is Monday */
 export const weekdayNames = (days) =>

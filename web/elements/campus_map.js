@@ -11,6 +11,7 @@ import { placeLabels } from "../map_labels.js";
 import { aheadOf, signBox, wordingsOf } from "../map_notes.js";
 import { sizeOf, spreadOf, windowOf } from "../map_view.js";
 import { shortestWay } from "../posts.js";
+import { withStyles } from "../styles_later.js";
 import { t } from "../texts.js";
 import { Ticking } from "../ticking.js";
 import { closedSigns, corridorLines, label, postMark, silentPlaces, takenBands, takenSigns, wayLines } from "./map_parts.js";
@@ -179,4 +180,5 @@ export class CampusMapElement extends PageElement {
 /** @param {Box} frame @param {number} beside @returns {Box} */
 const widened = ({ x, y, width, height }, beside) => ({ x: x - beside, y, width: width + 2 * beside, height });
 
+await withStyles("/styles/map.css");
 customElements.define("campus-map", CampusMapElement);

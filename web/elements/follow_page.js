@@ -118,7 +118,7 @@ export class FollowPage extends PageElement {
 
   updated() {
     // After the words: where the letter stands is what people come for.
-    if (this.order && this.map) import("./campus_map.js");
+    if (this.order && this.map) import("../map_later.js").then(({ fetchMap }) => fetchMap());
     if (this.order && this.map) document.title = `${stateSentence(this.order, this.map)} · ${t("app.name")}`;
   }
 

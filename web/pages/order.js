@@ -49,7 +49,7 @@ export class OrderPage extends PageElement {
   /** @param {Map<string, unknown>} changed */
   updated(changed) {
     const overview = changed.has("map") && this.querySelector(".overview");
-    if (overview) mapWhenSeen(overview);
+    if (overview) import("../map_later.js").then(({ fetchMapWhenSeen }) => fetchMapWhenSeen(overview));
   }
 
   render() {
@@ -96,12 +96,6 @@ export class OrderPage extends PageElement {
       this.problem = await inWords(failure);
     }
   }
-}
-
-/** @param {Element} overview */
-async function mapWhenSeen(overview) {
-  const { whenSeen } = await import("../when_seen.js");
-  whenSeen(overview, () => import("../elements/campus_map.js"));
 }
 
 /** Who cannot be asked for the words does not answer either. @param {unknown} failure */

@@ -1,0 +1,19 @@
+/** The map comes after the words: fetched with its styles at once, or when it comes into view. */
+import { withStyles } from "./styles_later.js";
+
+const BEFORE = "200px";
+
+export const fetchMap = () => Promise.all([withStyles("/styles/map.css"), import("./elements/campus_map.js")]);
+
+/** @param {Element} place where it has its room */
+export function fetchMapWhenSeen(place) {
+  const eye = new IntersectionObserver(
+    (seen) => {
+      if (!seen.some(({ isIntersecting }) => isIntersecting)) return;
+      eye.disconnect();
+      fetchMap();
+    },
+    { rootMargin: BEFORE },
+  );
+  eye.observe(place);
+}
