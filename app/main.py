@@ -46,7 +46,7 @@ from app.orders.desk import OrderDesk
 from app.orders.service import Orders
 from app.orders.standing import StandingOrders
 from app.orders.timer import Timer
-from app.outside import TIMEOUT_S, Outside, trusted
+from app.outside import TIMEOUT_S, Outside, trusted_here
 from app.pages import GzippedPages, SafeHeaders, add_pages, content_security_policy
 from app.people import everybody_routes, my_routes, oidc_routes
 from app.people import routes as people_routes
@@ -169,7 +169,7 @@ def _outbox_worker(state: State, settings: Settings, clock: Clock) -> OutboxWork
     """The channels that notices take. `state.http` reaches the public network alone."""
     state.push_key, state.http = open_push_key(settings.push_key_path), state.outside.client()
     # Its address was set by the operator, who may well have a program on the campus's own network.
-    state.service_http = httpx.AsyncClient(verify=trusted(), timeout=TIMEOUT_S, trust_env=False)
+    state.service_http = httpx.AsyncClient(verify=trusted_here(), timeout=TIMEOUT_S, trust_env=False)
     secret = settings.webhook_secret.get_secret_value()
     service = Address(settings.webhook_url, secret_bytes(secret), state.service_http) if settings.webhook_url else None
     channels = (

@@ -100,6 +100,15 @@ def trusted() -> ssl.SSLContext:
     return httpx.create_ssl_context(trust_env=False)
 
 
+@cache
+def trusted_here() -> ssl.SSLContext:
+    """The same, and whom this machine trusts besides (its store, SSL_CERT_FILE): for addresses that the operator has
+    set. A campus may sign the certificates of its own servers."""
+    context = httpx.create_ssl_context(trust_env=False)
+    context.load_default_certs()
+    return context
+
+
 def _parsed(url: str) -> httpx.URL:
     try:
         return httpx.URL(url)

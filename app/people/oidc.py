@@ -21,6 +21,7 @@ from joserfc.errors import JoseError
 from joserfc.jwk import KeySet
 from sqlmodel.ext.asyncio.session import AsyncSession
 
+from app.outside import trusted_here
 from app.people.errors import (
     AddressNotAllowed,
     EmailNotVerified,
@@ -157,6 +158,7 @@ class Provider:
             redirect_uri=redirect_uri,
             code_challenge_method="S256",
             timeout=TIMEOUT_S,
+            verify=trusted_here(),
         )
 
     async def about(self) -> dict[str, Any]:
@@ -209,7 +211,7 @@ def _access_token(token: dict[str, Any]) -> dict[str, Any]:
 async def _read(address: str, bearer: str = "") -> dict[str, Any]:
     headers = {"Authorization": f"Bearer {bearer}"} if bearer else {}
     try:
-        async with httpx.AsyncClient(timeout=TIMEOUT_S) as client:
+        async with httpx.AsyncClient(timeout=TIMEOUT_S, verify=trusted_here()) as client:
             answer = await client.get(address, headers=headers)
             answer.raise_for_status()
             said: dict[str, Any] = answer.json()
