@@ -5,10 +5,14 @@ from pathlib import Path
 
 import pytest
 
+from app.page_files import NOT_EVERYDAY
 from web import make_pages
 
 WEB = Path(__file__).parents[2] / "web"
 PAGES = sorted(WEB.glob("*.html"))
+WITH_ALL_TEXTS = re.compile(r"const WITH_ALL_TEXTS = \[(.*?)\]")
+LATER = re.compile(r"\bimport\(\"([^\"]+)\"\)")
+TEXT = re.compile(r"\b(?:t|counted|hasText)\((?:[^()\"`]*\? ?)?[\"`](\w+)\.")
 SCRIPTS = [path for path in sorted(WEB.rglob("*.js")) if "node_modules" not in path.parts]
 IMPORT_MAP = re.compile(r"<script type=\"importmap\">(.*?)</script>", re.DOTALL)
 
@@ -42,3 +46,34 @@ def test_only_one_file_knows_addresses_of_the_service():
 @pytest.mark.parametrize("folder", [WEB, WEB.parent / ".ci/lint"], ids=["pages", "lint"])
 def test_a_lock_file_names_no_host(folder):
     assert "://" not in (folder / "package-lock.json").read_text(encoding="utf-8")
+
+
+def everyday_modules() -> set[str]:
+    """Every module of ours that an everyday page may fetch, at once or later."""
+    listed = WITH_ALL_TEXTS.search((WEB / "texts.js").read_text(encoding="utf-8"))
+    assert listed
+    pages = [page for page in PAGES if f'"/{page.name}"' not in listed[1]]
+    assert {page.name for page in PAGES} - {page.name for page in pages} == set(
+        re.findall(r"/([\w-]+\.html)", listed[1])
+    )
+    html = "".join(page.read_text(encoding="utf-8") for page in pages)
+    waiting, found = [one for one in re.findall(r"/[\w/.@-]+\.js", html) if not one.startswith("/npm/")], set()
+    while waiting:
+        module = waiting.pop()
+        if module in found or module == "/page_files.js" or module.startswith("/npm/"):
+            continue
+        found.add(module)
+        text = make_pages.file_of(module).read_text(encoding="utf-8")
+        names = [*LATER.findall(text), *(one for one in make_pages.IMPORT.findall(text) if one.startswith("."))]
+        waiting += [make_pages.resolve(module, name, {}) for name in names]
+    return found
+
+
+def test_everyday_pages_need_no_text_that_they_are_not_sent():
+    modules = everyday_modules()
+    assert {"/pages/order.js", "/elements/follow_page.js", "/elements/campus_map.js", "/push.js"} <= modules
+    texts = {module: make_pages.file_of(module).read_text(encoding="utf-8") for module in modules}
+    missed = {
+        (module, family) for module, text in texts.items() for family in TEXT.findall(text) if family in NOT_EVERYDAY
+    }
+    assert not missed
