@@ -121,6 +121,7 @@ export class RobotWatch extends PageElement {
   /** @param {Watched} watched */
   #take(watched) {
     if (watched.robot !== this.robot) return;
+    this.tells = true; // whatever was thought of it while it was away
     this.#run.take(watched);
     if (this.held === null) this.seen = this.#run.seen;
     else this.requestUpdate();
