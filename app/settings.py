@@ -220,7 +220,8 @@ class Settings(BaseSettings):
 
 def load_settings() -> Settings:
     """Settings from the environment and the folder of secrets. Raises StartError."""
-    secrets_dir = os.environ.get("CAMPUS_MAIL_SECRETS_DIR")
+    # Without a folder of our own: the one in which systemd hands over what LoadCredential= names.
+    secrets_dir = os.environ.get("CAMPUS_MAIL_SECRETS_DIR") or os.environ.get("CREDENTIALS_DIRECTORY")
     _refuse_slips(os.environ)
     try:
         if secrets_dir:
@@ -228,8 +229,8 @@ def load_settings() -> Settings:
         return Settings(_secrets_dir=secrets_dir)
     except OSError as error:
         raise StartError(
-            f"CAMPUS_MAIL_SECRETS_DIR={secrets_dir} cannot be read: {error.strerror}. "
-            "Name a folder that this user can read, or unset the variable."
+            f"The folder of secrets {secrets_dir} cannot be read: {error.strerror}. "
+            "Name one that this user can read, or unset CAMPUS_MAIL_SECRETS_DIR."
         ) from None
     except ValueError as error:
         raise StartError(f"The settings cannot be used. {in_sentences(error, Settings.model_fields)}") from None

@@ -23,6 +23,14 @@ def test_systemd_finds_nothing_wrong_with_the_units(tmp_path: Path) -> None:
     assert [line for line in ran.stderr.splitlines() if "campus-mail" in line] == []
 
 
+def test_service_backup_and_commands_have_the_same_secrets() -> None:
+    """A backup without the database's address would be one of another database."""
+    handed_over = "LoadCredential=campus_mail:/etc/campus-mail/secrets"
+    for name in ("campus-mail.service", "campus-mail-backup.service"):
+        assert handed_over in (DEPLOY / name).read_text().splitlines()
+    assert f"--property={handed_over}" in (ROOT / "docs" / "service-operation.md").read_text()
+
+
 def test_no_proxy_shows_the_figures_or_holds_back_an_event() -> None:
     nginx, caddy = ((DEPLOY / name).read_text() for name in ("nginx.conf", "Caddyfile"))
     assert "location = /metrics { return 404; }" in nginx

@@ -263,6 +263,14 @@ def test_a_folder_of_secrets_that_is_not_there_is_named(monkeypatch: pytest.Monk
         load_settings()
 
 
+def test_secrets_come_as_systemd_hands_them_over(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "campus_mail_metrics_token").write_text("of the unit\n")
+    monkeypatch.setenv("CREDENTIALS_DIRECTORY", str(tmp_path))
+    assert load_settings().metrics_token.get_secret_value() == "of the unit"
+    monkeypatch.setenv("CAMPUS_MAIL_SECRETS_DIR", str(tmp_path.parent))
+    assert load_settings().metrics_token.get_secret_value() == "", "a folder of our own goes first"
+
+
 def test_every_setting_is_described_in_the_docs() -> None:
     page = (ROOT / "docs" / "service.md").read_text()
     for name, field in Settings.model_fields.items():
