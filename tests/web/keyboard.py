@@ -50,7 +50,7 @@ class Keyboard:
 
     async def walk(self) -> list[str]:
         """From the beginning of the page, or of an open dialog, to its end: every stop on the way."""
-        stops: list[str] = []
+        stops, _ = list[str](), await self.here()
         while len(stops) < MOST_STOPS:
             await self.press("Tab")
             here = await self.here()

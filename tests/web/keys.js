@@ -11,8 +11,9 @@
       .map((name) => (name ?? "").trim()).find(Boolean)?.replace(/\s+/g, " ") ?? element.name ?? element.localName;
   };
 
-  /** What shows that it is here: its own ring, or that of the pill which it lies under; a date's own button has the browser's. */
-  const hasRing = (element) => element.matches("input:not(:focus)") || [element, element.nextElementSibling].filter(Boolean).some((one) => {
+  /** What shows that it is here: its own ring, or that of the pill which it lies under; a date's own button has the
+   *  browser's, and a heading that can only be read needs none. */
+  const hasRing = (element) => element.matches("input:not(:focus), [tabindex='-1']") || [element, element.nextElementSibling].filter(Boolean).some((one) => {
     const { outlineStyle, outlineWidth } = getComputedStyle(one);
     return outlineStyle !== "none" && parseFloat(outlineWidth) >= 2;
   });
