@@ -47,7 +47,7 @@ from app.orders.service import Orders
 from app.orders.standing import StandingOrders
 from app.orders.timer import Timer
 from app.outside import TIMEOUT_S, Outside, trusted_here
-from app.pages import GzippedPages, SafeHeaders, add_pages, content_security_policy
+from app.pages import CompressedPages, SafeHeaders, add_pages, content_security_policy
 from app.people import everybody_routes, my_routes, oidc_routes
 from app.people import routes as people_routes
 from app.people.links import Links
@@ -120,7 +120,7 @@ def create_app(settings: Settings, clock: Clock, outside: Outside | None = None)
     app.add_middleware(RefusedHandshakes)
     app.add_middleware(ETags)
     app.add_middleware(BodyLimit)
-    app.add_middleware(GzippedPages)
+    app.add_middleware(CompressedPages)
     app.add_middleware(SafeHeaders, policy=content_security_policy(settings.pages))
     app.add_middleware(RequestLog)
     return app

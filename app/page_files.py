@@ -26,7 +26,7 @@ TEXTS: Final = "/texts/{language}.everyday.json"
 NOT_EVERYDAY: Final = frozenset(
     {"email", "notice", "mailroom", "print", "alarm", "robots", "mind", "sensor", "settings"}
 )
-"""Families of texts for mails and for the pages that `texts.js` names; a test says if another page needs one of them."""
+"""Families of texts for mails and for the pages that `texts.js` names; a test says if another page needs one."""
 KEPT: Final = frozenset({".html", ".js", ".css", ".json", ".svg"})
 """Pictures of the app for the home screen are fetched by the system once, not by pages."""
 NPM_MODULES: Final = "npm_modules.json"

@@ -11,10 +11,10 @@ from typing import Final
 import structlog
 from fastapi import FastAPI
 from starlette.datastructures import Headers, MutableHeaders
-from starlette.middleware.gzip import GZipMiddleware
 from starlette.staticfiles import StaticFiles
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from app.compressed import Compressed
 from app.errors import problem_answer
 from app.page_files import NPM_MODULES, WORKER, PageFiles, add_page_files
 
@@ -79,7 +79,7 @@ def content_security_policy(folder: Path) -> str:
     )
 
 
-class GzippedPages:
+class CompressedPages:
     """Compresses pages, and hides what is none.
 
     The API is left as it is: its answers hold secrets next to what others wrote, which a compressed length gives away
@@ -87,7 +87,7 @@ class GzippedPages:
     """
 
     def __init__(self, app: ASGIApp) -> None:
-        self._plain, self._gzipped = app, GZipMiddleware(app)
+        self._plain, self._compressed = app, Compressed(app)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] == "http" and is_hidden(scope["path"]):
@@ -95,7 +95,7 @@ class GzippedPages:
         elif scope["type"] != "http" or scope["path"].startswith("/api/") or "range" in Headers(scope=scope):
             await self._plain(scope, receive, send)
         else:
-            await self._gzipped(scope, receive, send)
+            await self._compressed(scope, receive, send)
 
 
 class SafeHeaders:

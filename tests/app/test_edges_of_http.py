@@ -6,6 +6,7 @@ import json
 from collections.abc import Iterator
 from pathlib import Path
 
+import brotli
 import httpx
 import pytest
 from websockets.asyncio.client import connect
@@ -102,6 +103,16 @@ def test_pages_are_compressed_and_the_api_is_not(served: Served, pages: Path, se
         assert page.headers["vary"] == "Accept-Encoding"
         assert "content-security-policy" in page.headers
         assert gzip.decompress(b"".join(page.iter_raw())).decode() == text
+    with httpx.stream("GET", f"{served.url}/long.html", headers={"Accept-Encoding": "gzip, deflate, br, zstd"}) as page:
+        assert page.headers["content-encoding"] == "br"
+        assert page.headers["vary"] == "Accept-Encoding"
+        assert brotli.decompress(b"".join(page.iter_raw())).decode() == text
+    (pages / "long.html").write_text(text + "<p>And more</p>")
+    with httpx.stream("GET", f"{served.url}/long.html", headers={"Accept-Encoding": "br;q=0, gzip"}) as page:
+        assert gzip.decompress(b"".join(page.iter_raw())).decode() == text + "<p>And more</p>", "as it is now"
+    with httpx.stream("GET", f"{served.url}/long.html", headers={"Accept-Encoding": "br"}) as page:
+        assert brotli.decompress(b"".join(page.iter_raw())).decode() == text + "<p>And more</p>", "as it is now"
+    (pages / "long.html").write_text(text)
     plain = httpx.get(f"{served.url}/long.html", headers={"Accept-Encoding": "identity"})
     assert ("content-encoding" in plain.headers, plain.text) == (False, text)
     part = httpx.get(f"{served.url}/long.html", headers={"Accept-Encoding": "gzip", "Range": "bytes=3-8"})
