@@ -8,7 +8,6 @@ from playwright.async_api import expect
 pytestmark = pytest.mark.browser
 
 BOB = "bob.martin@campus.example"
-PAGES = ["/", "/mail.html", "/notices.html", "/follow.html?order={}", "/settings.html"]
 NO_OVERFLOW = "() => document.documentElement.scrollWidth <= document.documentElement.clientWidth"
 GROUND = "() => getComputedStyle(document.documentElement).backgroundColor.match(/[0-9.]+/g).map(Number)"
 SMALL_TARGETS = """() => [...document.querySelectorAll("a, button, input, select, summary")]
@@ -17,31 +16,14 @@ SMALL_TARGETS = """() => [...document.querySelectorAll("a, button, input, select
   .filter(({height}) => height < 43.5)"""
 
 
-@pytest.mark.parametrize("theme", ["light", "dark"])
-async def test_all_pages_are_accessible_and_fit_320_pixels_in_either_theme(visit, theme):
-    ada = await visit(on="phone", viewport={"width": 320, "height": 640}, color_scheme=theme)
-    order_id = await ada.order(BOB, what="A very long description-without-any-space-in-a-good-part-of-it")
-    for address in PAGES:
-        await ada.page.goto(address.format(order_id))
-        await expect(ada.page.get_by_role("heading", level=1)).to_be_visible()
-        await expect(ada.page.get_by_text("One moment")).to_be_hidden()
-        await ada.assert_accessible()
-        assert await ada.page.evaluate(NO_OVERFLOW), address
-        assert await ada.page.evaluate(SMALL_TARGETS) == [], address
-        brightness = sum((await ada.page.evaluate(GROUND))[:3]) / 3
-        assert (brightness > 200) == (theme == "light")
-
-
-async def test_the_sign_in_and_a_refused_form_are_accessible(visit):
-    ada = await visit(on="phone", signed_in=False)
-    await ada.page.goto("/")
-    await expect(ada.page.get_by_label("E-mail address")).to_be_visible()
-    await ada.assert_accessible()
-    await ada.sign_in()
-    await ada.page.reload()
-    await ada.page.get_by_role("button", name="Send the robot").click()
-    await expect(ada.page.get_by_text("Say who it is for.")).to_be_visible()
-    await ada.assert_accessible()
+async def test_a_theme_is_that_of_the_device_and_changes_with_it(visit):
+    """What else holds in both themes is seen in every state (test_every_state.py)."""
+    ada = await visit(on="phone", color_scheme="dark")
+    await ada.page.goto("/mail.html")
+    await expect(ada.page.get_by_role("heading", level=1)).to_be_visible()
+    assert sum((await ada.page.evaluate(GROUND))[:3]) / 3 < 55
+    await ada.page.emulate_media(color_scheme="light")
+    assert sum((await ada.page.evaluate(GROUND))[:3]) / 3 > 200
 
 
 async def test_a_french_speaker_orders_in_french(visit):
