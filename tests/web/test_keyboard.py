@@ -7,11 +7,18 @@ import pytest
 import pytest_asyncio
 from playwright.async_api import expect
 
+from tests.web.full_campus import Campus, full_campus
 from tests.web.keyboard import Keyboard
 
 pytestmark = pytest.mark.browser
 
 BOB = "bob.martin@campus.example"
+
+
+@pytest_asyncio.fixture(scope="module", loop_scope="session")
+async def campus(tmp_path_factory: pytest.TempPathFactory) -> AsyncIterator[Campus]:
+    async with full_campus(tmp_path_factory.mktemp("keyboard")) as campus:
+        yield campus
 
 
 async def test_somebody_signs_in_sends_a_letter_follows_it_cancels_it_and_settles_their_language_by_keys(
@@ -91,3 +98,82 @@ async def test_somebody_signs_in_sends_a_letter_follows_it_cancels_it_and_settle
     await keys.to("Remise, E-mail")
     await keys.press("Space")
     await expect(page.get_by_role("checkbox", name="Remise, E-mail")).not_to_be_checked()
+
+
+async def test_a_dispatcher_orders_for_somebody_pauses_a_robot_acts_on_an_order_and_prints_by_keys(visit, campus):
+    dana = await campus.staff(visit)
+    page, keys = dana.page, Keyboard(dana.page)
+    dialog = page.get_by_role("dialog")
+    await page.goto("/mailroom.html")
+    await expect(page.get_by_role("button", name=re.compile("^I see to it"))).to_be_visible()
+    await keys.stands()
+    await keys.to("Order at the desk")
+    await keys.press("Enter")
+    await expect(dialog).to_be_visible()
+    stops = await keys.walk()
+    assert stops[0].startswith("Who gets it"), "it begins at the first field, and nothing behind the dialog is come to"
+    await keys.press("Escape")
+    assert await keys.here() == "Order at the desk"
+
+    await keys.to("I see to it")
+    await keys.press("Enter")
+    await expect(page.get_by_text("Seen to: The lid does not close.")).to_be_visible()
+    assert (await keys.here()).startswith("What is wrong"), "what was pressed is gone"
+    await keys.to("Decide")
+    await keys.press("Enter", "ArrowDown", "Enter")
+    await expect(page.get_by_text(re.compile("^Decided: "))).to_be_visible()
+    await expect(page.locator(":focus")).to_be_visible()
+    await keys.to("Act.*Bob Martin to Grace Hill")
+    await keys.press("Enter")
+    await expect(dialog).to_be_visible()
+    await keys.to("Change the priority")
+    await keys.press("Enter")
+    await expect(page.get_by_role("radio", name="Normal priority")).to_be_focused()
+    await keys.press("ArrowUp", "Enter")
+    await expect(page.get_by_text(re.compile("^The priority of .* is set"))).to_be_visible()
+    assert (await keys.here()).startswith("Act")
+
+    await keys.to("Robot r1")
+    await keys.press("Enter")
+    await expect(page.get_by_role("heading", level=1)).to_have_text("Robot r1")
+    await expect(page.get_by_role("button", name="Recall")).to_be_visible()
+    await keys.to("Recall")
+    await keys.press("Enter")
+    await expect(page.get_by_label("Reason")).to_be_focused()
+    await keys.type("A parade")
+    await keys.press("Enter")
+    await expect(page.get_by_role("listitem").filter(has_text="Come back")).to_be_visible()
+    assert await keys.here() == "Recall"
+
+    await page.goto("/print.html")
+    await expect(page.get_by_role("button", name="Print 9 sheets")).to_be_visible()
+    await keys.to("Post 3")
+    await keys.press("Space")
+    await expect(page.get_by_role("button", name="Print 6 sheets")).to_be_visible()
+    await page.evaluate("() => addEventListener('beforeprint', () => (document.title = 'printed'))")
+    await keys.to("Print 6 sheets")
+    await keys.press("Enter")
+    await expect(page).to_have_title("printed")
+
+
+async def test_somebody_without_account_sees_their_code_and_says_not_now_by_keys(visit, campus):
+    guest = await visit("grace.hopper", at=campus.service, signed_in=False, reduced_motion="reduce")
+    await campus.order_of("bob.martin", guest.email.partition("@")[0], "carrying")
+    page, keys = guest.page, Keyboard(guest.page)
+    await page.goto(campus.service.link_mailed_to(guest.email))
+    await expect(page.get_by_text("Show the code")).to_be_visible()
+    await keys.stands()
+    await keys.to("Show the code")
+    await keys.press("Enter")
+    await expect(page.get_by_role("img", name="QR code for the robot’s camera")).to_be_visible()
+    await keys.to("I cannot take it now")
+    await keys.press("Enter", "Escape")
+    assert await keys.here() == "I cannot take it now"
+    await keys.press("Enter")
+    await keys.to("Yes, send it back")
+    await keys.press("Enter")
+    await expect(page.get_by_text("The robot has been asked to bring it back.")).to_be_visible()
+    await expect(page.locator(":focus")).to_be_visible()  # somewhere, though what was pressed is gone
+    await keys.to("Français", "Shift+Tab")
+    await keys.press("Enter")
+    await expect(page.get_by_role("button", name="English")).to_be_visible()
