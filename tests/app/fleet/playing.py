@@ -29,8 +29,11 @@ from protocol.to_robot import Mission, Verifiers, Welcome
 from protocol.to_server import Event, HandoverReceipt, Hello, Progress, Step
 from tests.app.placed import placed
 
+WITHIN_S = 30.0
+"""What comes at all comes at once, but on a busy machine."""
 
-async def until(what: Callable[[], Awaitable[object]], limit_s: float = 5.0) -> Any:
+
+async def until(what: Callable[[], Awaitable[object]], limit_s: float = WITHIN_S) -> Any:
     """Look until there is something to see."""
     end_s = time.monotonic() + limit_s
     while not (seen := await what()):
@@ -154,7 +157,7 @@ class PlayedRobot:
         assert self.socket is not None
         await self.socket.send(text)
 
-    async def hear(self, kind: str, limit_s: float = 5.0) -> Envelope:
+    async def hear(self, kind: str, limit_s: float = WITHIN_S) -> Envelope:
         """The next message of this type; what else comes is remembered in `heard`."""
         assert self.socket is not None
         async with asyncio.timeout(limit_s):
