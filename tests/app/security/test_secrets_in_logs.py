@@ -56,6 +56,7 @@ def running(settings: Settings) -> Iterator[Running]:
         "CAMPUS_MAIL_PUBLIC_URL": "https://mail.campus.example",
         "CAMPUS_MAIL_ALLOW_OUTSIDE_RECIPIENTS": "true",
         "CAMPUS_MAIL_OIDC_ISSUER": "http://127.0.0.1:9",
+        "CAMPUS_MAIL_OIDC_CLIENT_ID": "campus-mail",
         "CAMPUS_MAIL_OIDC_CLIENT_SECRET": running.secrets["client secret"],
     }
     asyncio.run(change_roles(settings, SENDER, ["maintainer", "dispatcher"], []))
