@@ -11,6 +11,7 @@ NOT_DONE = frozenset({429, 503})
 """The service says that it has done nothing."""
 PERHAPS_DONE = frozenset({502, 504})
 STILL_RUNNING = "still_running"
+DATABASE_AWAY = "database_away"
 
 
 @dataclass(frozen=True)
@@ -33,6 +34,8 @@ class Retrying:
 
 def may_repeat_after_answer(method: str, headers: Mapping[str, str], status: int, code: str) -> bool:
     """Whether an answer invites to the same request again."""
+    if code == DATABASE_AWAY:  # its last word may have been lost on the way
+        return is_repeatable(method, headers)
     if status in NOT_DONE or code == STILL_RUNNING:
         return True
     return status in PERHAPS_DONE and is_repeatable(method, headers)

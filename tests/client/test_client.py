@@ -181,3 +181,10 @@ def test_what_may_be_sent_again() -> None:
     assert may_repeat_after_answer("POST", key, 409, "still_running")
     assert not may_repeat_after_answer("POST", {}, 504, "")
     assert not may_repeat_after_answer("GET", {}, 404, "unknown_order")
+
+
+def test_what_a_lost_database_may_have_done_is_repeated_only_where_twice_is_once() -> None:
+    assert may_repeat_after_answer("GET", {}, 503, "database_away")
+    assert may_repeat_after_answer("POST", {"Idempotency-Key": "k"}, 503, "database_away")
+    assert not may_repeat_after_answer("POST", {}, 503, "database_away")
+    assert may_repeat_after_answer("POST", {}, 503, "not_ready")
