@@ -140,7 +140,9 @@ async def test_every_page_speaks_french_stands_still_and_lets_a_keyboard_through
         await looker.look_at_words(address)
         await looker.moving(address)
         await page.set_viewport_size(NARROW)
-        stops = await Keyboard(page).walk()
+        keys = Keyboard(page)
+        await keys.stands()
+        stops = await keys.walk()
         assert ("wall" in address) or stops[0] == "Aller au contenu", address
     guest = await visit("grace.hopper", at=campus.service, signed_in=False, locale="fr-CA", reduced_motion="reduce")
     await campus.order_of("bob.martin", name_of(guest), "at_recipient")
