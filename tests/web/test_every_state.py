@@ -161,7 +161,8 @@ async def test_without_that_wish_a_way_is_seen_to_move(visit, campus):
     ada = await visit("ada.king", at=campus.service, reduced_motion="no-preference")
     order_id = await campus.order_of(name_of(ada), "bob.martin", "carrying")
     await stands(ada.page, f"/follow.html?order={order_id}")
-    await expect(ada.page.locator(".ahead").first).to_be_visible()
+    await expect(ada.page.locator("svg .ahead").first).to_be_attached()  # a level line has no height to be seen by
+    await ada.page.wait_for_function("() => document.getAnimations().length > 0")
     looker = Looker(ada)
     await looker.moving("follow")
     assert any("ahead" in one for one in looker.wrong)
