@@ -61,11 +61,12 @@ async def _drop_the_rest(report: Report, receipt: HandoverReceipt) -> None:
 
 
 async def _check_chain(report: Report, receipt: HandoverReceipt) -> None:
-    """A robot gives what it was given, and mail comes aboard once."""
+    """A robot gives what it was given, and mail comes aboard once, unless it was given back: a robot that was given up
+    on and heard nothing of it may get it again."""
     before = select(Handover).where(Handover.order_id == receipt.order_id).order_by(col(Handover.id).desc())
     last = (await report.session.exec(before.limit(1))).first()
     has_it = last is not None and (last.purpose, last.robot) == (Purpose.LOAD, report.robot)
-    if receipt.purpose == Purpose.LOAD and last is not None:
+    if receipt.purpose == Purpose.LOAD and last is not None and last.purpose != Purpose.RETURN:
         raise TransitionRefused(f"The mail of order {receipt.order_id} has been loaded before.")
     if receipt.purpose != Purpose.LOAD and not has_it:
         raise TransitionRefused(f"Robot {report.robot} does not have the mail of order {receipt.order_id}.")

@@ -102,6 +102,52 @@ async def test_what_nobody_took_back_of_an_order_that_has_ended_is_brought_again
     await Record(world).check()
 
 
+async def given_back_by_one_and_offered_to_another(world: World) -> str:
+    """Its sender has it again and the order has ended; r1, given up on, stands there still and has heard nothing."""
+    order_id = await world.place("post3", "post5")
+    await world.goes_on("r1", "arrives")
+    await world.set_online("r1", False)
+    await world.change(world.orders.stop_for_attention, "dispatcher", order_id, "It is not heard of.")
+    await world.change(world.orders.resolve, "dispatcher", order_id, "queued", None)
+    await world.set_online("r2", True)
+    await world.goes_on("r2", "sender")
+    await world.change(world.orders.recall, "sender", order_id)
+    await world.goes_on("r2", *["sender"] * 4)
+    assert await world.state(order_id) is OrderState.RETURNED
+    return order_id
+
+
+async def test_mail_that_was_given_back_and_loaded_again_is_known_to_be_aboard_and_rings_until_it_is_out(
+    world: World,
+) -> None:
+    order_id = await given_back_by_one_and_offered_to_another(world)
+    world.act("r1", "sender")
+    await world.set_online("r1", True)
+    await world.speak("r1")
+    await Record(world).check()
+    assert "custody_contradicts_order" in await ringing(world)
+    assert world.where[order_id] == "r1"
+    for _ in range(3):
+        await world.goes_on("r1", *["sender"] * 6)
+    assert world.where[order_id] == "recipient", "the robot was on its way there before it heard"
+    assert await world.state(order_id) is OrderState.RETURNED, "ended means ended"
+    assert "custody_contradicts_order" not in await ringing(world)
+    assert await world.rows(MissionRow, state="active") == []
+    await Record(world).check()
+
+
+async def test_mail_that_was_given_back_loaded_again_and_delivered_unheard_is_with_its_recipient(world: World) -> None:
+    order_id = await given_back_by_one_and_offered_to_another(world)
+    for luck in ("sender", "recipient", "recipient"):
+        world.act("r1", luck)
+    assert world.where[order_id] == "recipient"
+    await world.set_online("r1", True)
+    await world.speak("r1")
+    await Record(world).check()
+    assert await world.state(order_id) is OrderState.RETURNED, "ended means ended"
+    assert world.robots["r1"].duties.held.cargo == ()
+
+
 async def test_mail_of_an_order_that_has_ended_is_taken_out_by_hand_and_its_robot_is_free(world: World) -> None:
     order_id = await loaded_too_late(world)
     await world.change(world.orders.hold, "dispatcher", order_id, "Fetched at the post.")

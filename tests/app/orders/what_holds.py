@@ -9,6 +9,7 @@ from app.orders.telling import ONCE, TOLD
 from app.orders.transitions import MAIL_ABOARD, ROBOT_COMING, By, is_allowed
 from app.tables import Handover, MissionRow, Notice, Order, OrderEvent, StopRow
 from app.tables import OrderState as S
+from protocol.parts import Purpose
 from tests.app.orders.lives import World
 
 ENDED = frozenset({S.DELIVERED, S.RETURNED, S.HELD, S.EXPIRED, S.CANCELLED})
@@ -93,8 +94,11 @@ class Record:
         assert all(one.since <= two.since for one, two in pairwise(chain))
         holder = chain[-1].name or chain[-1].holder
         state = order.state_before_attention or order.state
+        is_loaded_again = sum(one.purpose == Purpose.LOAD for one in handovers) > 1
         if state in MAIL_ABOARD:
             assert holder == order.robot
+        elif is_loaded_again:
+            assert state in ENDED, "only what has come back and ended can be loaded again, by a robot that knew nothing"
         elif state is S.QUEUED or state in ROBOT_COMING or state is S.RETURNED:
             assert holder == "sender"
         elif state in {S.DELIVERED, S.HELD}:
