@@ -35,3 +35,19 @@ async def test_what_ends_an_order_is_fetched_when_somebody_begins_one(visit):
     assert not {*PLACE_AN_ORDER} & {*await ada.page.evaluate(ADDRESSES)}
     async with ada.page.expect_response("**/place_order.js"):
         await ada.page.get_by_label("From").focus()
+
+
+async def test_an_order_whose_end_could_not_be_fetched_says_so_and_goes_out_when_it_is_tapped_again(visit):
+    """The network went away between the form and the tap, on the very first visit: nothing of the page is kept yet."""
+    ada = await visit(on="phone")
+    await ada.page.route("**/send_order.js", lambda route: route.abort())
+    await ada.page.goto("/")
+    await ada.page.get_by_label("From").select_option("Post 1")
+    await ada.page.get_by_label("To", exact=True).select_option("Post 4")
+    await ada.page.get_by_label("Recipient’s e-mail").fill("bob.martin@campus.example")
+    await ada.page.get_by_role("button", name="Send the robot").click()
+    await expect(ada.page.get_by_text("No answer. Check your network and try again.")).to_be_visible()
+    await ada.page.unroute("**/send_order.js")
+    await ada.page.get_by_role("button", name="Send the robot").click()
+    await ada.page.wait_for_url("**/follow.html*")
+    ada.complaints.clear()  # of the answers that were cut off here

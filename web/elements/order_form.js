@@ -179,9 +179,10 @@ export class OrderForm extends PageElement {
   }
 
   async #send() {
-    const { sendOrder } = await loadEnd();
+    const end = await loadEnd().catch(() => undefined);
+    if (!end) return this.#say({ form: t("error.no_answer") });
     this.problems = {};
-    const { page, kept, problems = {} } = await sendOrder(this);
+    const { page, kept, problems = {} } = await end.sendOrder(this);
     this.problems = problems;
     if (page) return location.assign(page);
     // The shell shows what is kept; the form is free for the next one.
