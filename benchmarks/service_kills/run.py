@@ -1,7 +1,6 @@
 """One run: a service under load, killed again and again, then left in peace until all is delivered, then judged."""
 
 import asyncio
-import math
 import signal
 import time
 from collections import Counter
@@ -142,24 +141,28 @@ class _Scene:
 
     async def _all_is_done(self) -> bool:
         """Robots idle and heard, and nothing owed to anybody; False if it stands still before that."""
-        least, since_s = math.inf, time.monotonic()
-        while owed := sum(not robot.is_idle for robot in self._robots) + await asyncio.to_thread(self._owed):
-            if owed < least:
-                least, since_s = owed, time.monotonic()
+        most, since_s = -1, time.monotonic()
+        while True:
+            done, owed = await asyncio.to_thread(self._done_and_owed)
+            if not owed and all(robot.is_idle for robot in self._robots):
+                return True
+            # What is owed may grow meanwhile: each order that goes on has more to tell.
+            if done > most:
+                most, since_s = done, time.monotonic()
             if time.monotonic() > since_s + STANDS_STILL_S:
                 return False
             await asyncio.sleep(0.2)
-        return True
 
-    def _owed(self) -> int:
-        """How many things somebody still waits for."""
+    def _done_and_owed(self) -> tuple[int, int]:
+        """How much is over, and how much somebody still waits for."""
         tables = self._tables("orders", "notices", "outbox", "server_outbox")
-        return (
-            sum(row["state"] not in ("delivered", "cancelled", "expired") for row in tables["orders"])
-            + sum(row["routed_at"] is None for row in tables["notices"])
-            + sum(row["sent_at"] is None for row in tables["outbox"])
-            + sum(row["acked_at"] is None for row in tables["server_outbox"])
-        )
+        is_over = [
+            *(row["state"] in ("delivered", "cancelled", "expired") for row in tables["orders"]),
+            *(row["routed_at"] is not None for row in tables["notices"]),
+            *(row["sent_at"] is not None for row in tables["outbox"]),
+            *(row["acked_at"] is not None for row in tables["server_outbox"]),
+        ]
+        return sum(is_over), len(is_over) - sum(is_over)
 
     def _tables(self, *names: str) -> dict[str, list[dict[str, Any]]]:
         engine = create_engine(f"sqlite:///{self._victim.folder / 'data' / 'campus-mail.sqlite'}")
