@@ -6,7 +6,7 @@ BIN := .venv/bin
 ARGS ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help setup setup-robot test check format demo serve robot bench bench-mind bench-body bench-service bench-paper bench-pages bench-service-kills fuzz-mind client pages icons screenshots fuzz-api pin clean
+.PHONY: help setup setup-robot test check format demo serve robot bench bench-mind bench-body bench-service bench-paper bench-pages bench-service-kills bench-fleet fuzz-mind client pages icons screenshots fuzz-api pin clean
 # A recipe that fails must not leave its stamp behind.
 .DELETE_ON_ERROR:
 
@@ -66,6 +66,9 @@ bench-pages: setup ## Measure the pages as a slow phone opens them: kB, time unt
 bench-service-kills: setup ## Kill the service 300 times under load: what it has kept and told; prints JSON
 	@$(BIN)/python -m benchmarks.service_kills $(ARGS)
 
+bench-fleet: setup ## Measure the fleet in an event simulation: every small map, throughput, deadlocks; JSON and plots
+	@$(BIN)/python -m benchmarks.fleet $(ARGS)
+
 fuzz-mind: setup ## Feed the mind 10,000 mangled programs: each is read and run, or what is wrong is named
 	@$(BIN)/python -m benchmarks.fuzz_mind $(ARGS)
 
@@ -86,7 +89,7 @@ fuzz-api: setup ## Let schemathesis look for answers that the API document does 
 
 pin: setup ## Write constraints.txt anew from pyproject.toml
 	$(BIN)/pip install --quiet uv
-	$(BIN)/uv pip compile --universal --python-version 3.11 --extra develop --no-header --no-annotate \
+	$(BIN)/uv pip compile --universal --python-version 3.11 --extra develop --extra yardstick --no-header --no-annotate \
 	  --no-emit-index-url --output-file constraints.txt --upgrade --quiet pyproject.toml
 	git diff --stat constraints.txt
 

@@ -17,6 +17,8 @@ ROBOT: Final = {
     "battery": {"ratio": 0.81, "charging": False},
     "why": "I am carrying mail to post4.",
     "why_words": None,
+    "waits_for": None,
+    "taken_out_at": None,
     "heard_at": "2026-01-05T09:03:14Z",
 }
 PROBLEM: Final = {
@@ -49,8 +51,10 @@ EXAMPLES: Final[Mapping[str, tuple[Mapping[str, Any], ...]]] = {
     "Reassignment": ({"robot": "r2"}, {"robot": None}),
     "Attention": ({"reason": "The lid of r1 does not close."},),
     "Resolution": ({"to": "returning", "reason": "The corridor stays closed today."},),
+    "PassingOn": ({"post": "post3", "reason": "Its battery is flat."}, {"post": None}),
     "IntoHands": ({"reason": "Fetched by hand at post2."},),
     "CommandReason": ({"reason": "The corridor is being cleaned."},),
+    "WayIsOpen": ({"corridor": "post2-post3"},),
     "Enrolment": ({"name": "r1", "code": "7KQ2-M4XD", "public_key": "A" * 43 + "="},),
     "ShowCode": ({"order_id": "1f2e3d4c5b6a7988"},),
     # notices; the keys of the browser are those of RFC 8291

@@ -18,6 +18,7 @@ PARAMETERS: Final[Mapping[str, str]] = {
     "email": "A mail address.",
     "file": "A mail's file in the spool.",
     "name": "A robot's name.",
+    "corridor": "A corridor, by its two posts as the map names it, such as post2-post3.",
     "order_id": "An order's id.",
     "person_id": "A person's id.",
     "post": "A post's name on the map.",

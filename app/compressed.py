@@ -2,6 +2,7 @@
 
 import asyncio
 import gzip
+import posixpath
 from collections.abc import Callable
 from functools import partial
 from typing import Final
@@ -28,14 +29,19 @@ def encoding_for(accepted: str) -> str | None:
 
 
 class Compressed:
-    """Compresses what its application answers. What has an ETag is kept: one body for each path and encoding."""
+    """Compresses what its application answers. What has an ETag is kept: one body for each path and encoding.
+
+    A file answers to endless spellings of its path, and is kept under one.
+    """
 
     def __init__(self, app: ASGIApp) -> None:
-        self._app, self._kept = app, Kept()
+        self._app = app
+        self.kept = Kept()
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         encoding = encoding_for(Headers(scope=scope).get("accept-encoding", "")) if scope["method"] == "GET" else None
-        await self._app(scope, receive, _Answer(send, scope["path"], encoding, self._kept).send)
+        path = posixpath.normpath(scope["path"]).strip("/")
+        await self._app(scope, receive, _Answer(send, path, encoding, self.kept).send)
 
 
 class _Answer:

@@ -18,11 +18,14 @@ from app.dispatch.service import Dispatcher
 from app.enrolment import routes as enrolment_routes
 from app.enrolment.service import EnrolmentDesk
 from app.errors import add_error_answers
+from app.estimates import routes as estimates_routes
 from app.etags import ETags
-from app.fleet import dispatcher_routes, watching_routes
+from app.fleet import corridor_routes, dispatcher_routes, watching_routes
 from app.fleet import routes as fleet_routes
+from app.fleet.foreseen import Foreseen
 from app.fleet.intake import Intake
 from app.fleet.service import Fleet
+from app.fleet.traffic_desk import TrafficDesk
 from app.handover import routes as handover_routes
 from app.handover.delegates import Delegating
 from app.handover.service import HandOvers
@@ -85,8 +88,11 @@ ROUTERS = (
     live_routes.router,
     fleet_routes.router,
     dispatcher_routes.router,
+    corridor_routes.router,
+    corridor_routes.reading_router,
     watching_routes.router,
     watching_routes.upkeep_router,
+    estimates_routes.router,
     enrolment_routes.router,
     handover_routes.router,
     handover_routes.dispatch_router,
@@ -157,11 +163,14 @@ def _add_parts(app: FastAPI, settings: Settings, clock: Clock) -> None:
     state.links = Links(state.database, state.server_key, settings, clock)
     state.enrolment_desk = EnrolmentDesk(settings, state.server_key, clock)
     state.fleet = Fleet(state.database, state.campus, settings, clock, state.feed, state.orders)
+    state.orders.on_change.append(state.fleet.learning.wake)
     state.hand_overs, state.delegating = HandOvers(state.fleet), Delegating(state.fleet)
     state.intake = Intake(state.fleet)
     state.outbox_worker = _outbox_worker(state, settings, clock)
     state.orders.on_change.append(lambda order_id: state.outbox_worker.wake())
     state.dispatcher = Dispatcher(state.fleet)
+    state.traffic_desk = TrafficDesk(state.fleet) if settings.traffic == "timetable" else None
+    state.foreseen = Foreseen(state.fleet, state.traffic_desk) if state.traffic_desk is not None else None
     state.housekeeper = Housekeeper(state.database, settings, clock)
 
 
@@ -203,9 +212,19 @@ def _code_picture(key: ServerKey) -> CodePicture:
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     await bring_to_head(app.state.database)
     await app.state.fleet.begin()
+    await app.state.fleet.learning.begin()
+    await app.state.fleet.spending.learn()
     state = app.state
     await asyncio.to_thread(state.mailer.begin)
-    workers = {"dispatch": state.dispatcher, "timer": state.timer, "housekeeping": state.housekeeper}
+    workers = {
+        "dispatch": state.dispatcher,
+        "timer": state.timer,
+        "housekeeping": state.housekeeper,
+        "estimates": state.fleet.learning,
+        "spending": state.fleet.spending,
+    }
+    if state.traffic_desk is not None:
+        workers |= {"traffic": state.traffic_desk, "foreseen": state.foreseen}
     background = [asyncio.create_task(_keep_running(name, worker.run)) for name, worker in workers.items()]
     outbox = asyncio.create_task(_keep_running("outbox", state.outbox_worker.run))
     try:

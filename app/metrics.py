@@ -19,6 +19,7 @@ from starlette.requests import HTTPConnection
 
 from app.database import ReadingDep
 from app.errors import Forbidden, problems
+from app.estimates.score import Score
 from app.notify.lag import outbox_lag
 from app.settings import ClockDep, Settings, SettingsDep
 from app.tables import Alarm, Order, OrderState, RobotRow
@@ -55,6 +56,14 @@ class Metrics:
         self._given_up = self._gauge("notices_given_up", "Notices that a channel has given up.", "channel")
         self._lag = self._gauge("notices_lag_seconds", "Age of the oldest notice that is still owed.")
         self._alarms = self._gauge("alarms", "Alarms that are not over, by name.", "name")
+        self._scored = self._gauge("estimates_scored", "Latest orders by which the estimates are judged.")
+        self._inside = self._gauge(
+            "estimates_inside_ratio", "Share of them that came between p10 and p90; 0.8 is meant."
+        )
+        self._off = self._gauge("estimates_median_error_ratio", "How far the middle was off, by whose estimate.", "by")
+        self._loss = self._gauge(
+            "estimates_pinball_seconds", "Mean loss of the three quantiles, by whose estimate.", "by"
+        )
         off = "How far it was delivered from the middle of the window that was told last."
         late = "Delivered after the end of the window that was told last."
         name, registry = "campus_mail_estimate_error_seconds", self.registry
@@ -77,6 +86,14 @@ class Metrics:
         _set_all(self._alarms, dict((await session.exec(names)).all()))
         await self._gather_errors(session, now)
         return generate_latest(self.registry)
+
+    def judge(self, score: Score | None) -> None:
+        """How good estimates have lately been, beside what the lengths on the map alone would have told."""
+        if score is not None:
+            self._scored.set(score.count)
+            self._inside.set(score.inside)
+            _set_all(self._off, {"told": score.median_error, "map": score.median_error_by_map})
+            _set_all(self._loss, {"told": score.pinball_s, "map": score.pinball_by_map_s})
 
     async def _gather_orders(self, session: AsyncSession, now: datetime) -> None:
         since = func.min(func.coalesce(col(Order.not_before), col(Order.updated_at)))
@@ -140,5 +157,6 @@ async def _door(
 async def metrics(connection: HTTPConnection, session: ReadingDep, clock: ClockDep) -> Response:
     """Figures for Prometheus, in its text format; for this machine alone, or by the operator's token."""
     gathered: Metrics = connection.app.state.metrics
+    gathered.judge(connection.app.state.orders.estimates.score())
     content = await gathered.gather(session, clock.utc())
     return Response(content, headers={"Content-Type": CONTENT_TYPE_PLAIN_0_0_4})

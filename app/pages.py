@@ -40,6 +40,8 @@ NOT_PAGES: Final = frozenset(
 """What lies in the pages' folder and is for those who work on them."""
 PARTS_OF_A_PAGE: Final = frozenset({"text/javascript", "text/css"})
 """What says nothing by itself: the page that asks for it has said what it may do. A page has dozens of them."""
+SAME_FOR_EVERYBODY: Final = "/api/v1/map"
+"""No secret is in it and nothing that anybody sent."""
 OF_EVERY_ANSWER: Final = frozenset({"X-Content-Type-Options", "Cache-Control"})
 IMPORT_MAP = re.compile(rb'<script type="importmap">(.*?)</script>', re.DOTALL)
 
@@ -82,8 +84,9 @@ def content_security_policy(folder: Path) -> str:
 class CompressedPages:
     """Compresses pages, and hides what is none.
 
-    The API is left as it is: its answers hold secrets next to what others wrote, which a compressed length gives away
-    bit by bit (BREACH), and its event stream must not be held back. Ranges are of the file as it lies on the disk.
+    The API is left as it is, but for the map: its answers hold secrets next to what others wrote, which a compressed
+    length gives away bit by bit (BREACH), and its event stream must not be held back. Ranges are of the file as it lies
+    on the disk.
     """
 
     def __init__(self, app: ASGIApp) -> None:
@@ -92,10 +95,15 @@ class CompressedPages:
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] == "http" and is_hidden(scope["path"]):
             await problem_answer(404, "not_found", "This is not a page.")(scope, receive, send)
-        elif scope["type"] != "http" or scope["path"].startswith("/api/") or "range" in Headers(scope=scope):
-            await self._plain(scope, receive, send)
-        else:
+        elif scope["type"] == "http" and _may_be_compressed(scope):
             await self._compressed(scope, receive, send)
+        else:
+            await self._plain(scope, receive, send)
+
+
+def _may_be_compressed(scope: Scope) -> bool:
+    is_private = scope["path"].startswith("/api/") and scope["path"] != SAME_FOR_EVERYBODY
+    return not is_private and "range" not in Headers(scope=scope)
 
 
 class SafeHeaders:

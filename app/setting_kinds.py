@@ -31,6 +31,18 @@ def _known_zone(name: str) -> str:
     return name
 
 
+def hours_between(hours: str) -> range:
+    """The whole hours of a day that are meant by 8-18: from eight until six in the evening."""
+    first, _, end = hours.partition("-")
+    return range(int(first), int(end))
+
+
+def _office_hours(hours: str) -> str:
+    if not re.fullmatch(r"\d{1,2}-\d{1,2}", hours) or not hours_between(hours) or hours_between(hours).stop > 24:
+        raise ValueError(f"{hours!r} are no office hours; whole hours of one day are wanted, such as 8-18")
+    return hours
+
+
 def _lower_case(domains: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(domain.lower().removeprefix("@") for domain in domains)
 
@@ -83,6 +95,7 @@ Language = Literal["en", "fr"]
 LogLevel = Annotated[Literal["DEBUG", "INFO", "WARNING", "ERROR"], BeforeValidator(_capitals)]
 Limit = Annotated[str, AfterValidator(_readable_limit)]
 Zone = Annotated[str, AfterValidator(_known_zone)]
+OfficeHours = Annotated[str, AfterValidator(_office_hours)]
 Domains = Annotated[tuple[str, ...], AfterValidator(_lower_case)]
 Fingerprints = Annotated[tuple[str, ...], AfterValidator(_whole_fingerprints)]
 WholeAddress = Annotated[str, AfterValidator(_whole_address)]

@@ -27,9 +27,11 @@ from app.setting_kinds import (
     Limit,
     LogLevel,
     MailAddress,
+    OfficeHours,
     SmtpTls,
     WholeAddress,
     Zone,
+    hours_between,
 )
 from app.settings_errors import in_sentences, slips
 from maps import CampusMap, CampusMapError, find_map
@@ -133,6 +135,15 @@ class Settings(BaseSettings):
     )
     assumed_speed_m_s: float = Field(0.15, gt=0, description="Assumed mean speed of a robot, for arrival windows.")
     assumed_handover_s: float = Field(120, ge=0, description="Assumed time of one hand-over, for arrival windows.")
+    office_hours: OfficeHours = Field(
+        "8-18", description="When people are in their offices from Monday to Friday and come sooner, such as 8-18."
+    )
+    assumed_drive_s: float = Field(
+        7200, gt=0, description="How long a full battery is assumed to last a robot that drives all the time."
+    )
+    assumed_stand_s: float = Field(
+        19000, gt=0, description="How long it is assumed to last a robot that stands; longer than assumed_drive_s."
+    )
     near_s: float = Field(
         180, ge=0, description="The sender is told that the robot is near when it is one post away, or so long at most."
     )
@@ -145,6 +156,12 @@ class Settings(BaseSettings):
     )
     queue_limit_s: float = Field(86400, gt=0, description="An order that no robot has fetched for so long expires.")
     delayed_after_s: float = Field(600, gt=0, description="So long after its window an order counts as delayed.")
+    traffic: Literal["at_once", "timetable"] = Field(
+        "at_once", description="How corridors are granted: at once, for one robot alone, or by the timetable of all."
+    )
+    vanished_after_s: float = Field(
+        900, gt=0, description="A robot that was not heard of for so long is gone round, and people are told."
+    )
     robot_capacity: int = Field(2, ge=1, description="How many items a robot carries at once.")
     detour_ratio: float = Field(
         0.5,
@@ -184,6 +201,12 @@ class Settings(BaseSettings):
         return self
 
     @model_validator(mode="after")
+    def _driving_costs_more_than_standing(self) -> Self:
+        if self.assumed_drive_s >= self.assumed_stand_s:
+            raise ValueError("assumed_drive_s must be below assumed_stand_s: driving costs more than standing")
+        return self
+
+    @model_validator(mode="after")
     def _the_providers_client_is_named(self) -> Self:
         if bool(self.oidc_issuer) != bool(self.oidc_client_id):
             raise ValueError("oidc_issuer and oidc_client_id go together: set both, or neither")
@@ -208,6 +231,10 @@ class Settings(BaseSettings):
     @property
     def zone(self) -> ZoneInfo | None:
         return ZoneInfo(self.time_zone) if self.time_zone else None
+
+    @property
+    def hours_of_offices(self) -> range:
+        return hours_between(self.office_hours)
 
     @property
     def spool_folder(self) -> Path:

@@ -7,13 +7,14 @@ import json
 from dataclasses import asdict
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 from rich.console import Console
 from rich.table import Table
 
 from maps.campus_map import CampusMap, Post, find_map, map_path
+from maps.carrying import ASSUMED_SPEED_M_S, Carrying, carrying
 from maps.check import check_file
 from maps.errors import MapError, NoRoute, UnknownPost
 from maps.problem import Problem
@@ -27,8 +28,15 @@ NOT_SO, MISUSE = 1, 2
 
 
 @cli.command()
-def check(where: MapArgument, as_json: AsJson = False) -> None:
-    """Name every problem of a map: one-way corridors, unknown or unreachable posts, missing docks, unseen markers.
+def check(
+    where: MapArgument,
+    as_json: AsJson = False,
+    speed_m_s: Annotated[
+        float, typer.Option("--speed", min=0.01, help="How fast robots drive, in m/s.")
+    ] = ASSUMED_SPEED_M_S,
+) -> None:
+    """Name every problem of a map: one-way corridors, unknown or unreachable posts, missing docks, unseen markers; and
+    how many robots it can carry, and why.
 
     Exit status: 0 fit for robots (there may be warnings), 1 not fit, 2 not readable.
     """
@@ -39,11 +47,18 @@ def check(where: MapArgument, as_json: AsJson = False) -> None:
         _unreadable(error, as_json)
         raise typer.Exit(MISUSE) from error
     errors = sum(problem.severity == "error" for problem in problems)
+    carried = None if errors else carrying(find_map(path), speed_m_s)
     if as_json:
-        print(json.dumps({"map": str(path), "problems": [asdict(problem) for problem in problems]}, indent=2))
+        print(json.dumps(_as_facts(path, problems, carried), indent=2))
     else:
         _print_problems(path, problems)
+        print(carried or "How many robots it carries is said when the errors are mended.")
     raise typer.Exit(NOT_SO if errors else 0)
+
+
+def _as_facts(path: Path, problems: tuple[Problem, ...], carried: Carrying | None) -> dict[str, Any]:
+    said = None if carried is None else {**asdict(carried), "why": str(carried)}
+    return {"map": str(path), "problems": [asdict(problem) for problem in problems], "carries": said}
 
 
 def _unreadable(error: MapError, as_json: bool) -> None:

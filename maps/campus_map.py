@@ -49,7 +49,8 @@ class Dock:
 
 @dataclass(frozen=True)
 class Post:
-    """A place where a robot can stop. `bays` is how many can stand there clear of the line; `tag`: see `maps.tags`.
+    """A place where a robot can stop. `bays` is how many can stand there clear of the line; `homes` how many have their
+    home place there, clear of the bays too, the dock among them; `tag`: see `maps.tags`.
 
     `network` False: no robot is heard there.
     """
@@ -64,6 +65,7 @@ class Post:
     mailroom: bool = False
     tag: int | None = None
     network: bool = True
+    homes: int = 0
 
     @property
     def point(self) -> Point:
@@ -72,7 +74,10 @@ class Post:
 
 @dataclass(frozen=True)
 class Corridor:
-    """The line between two posts. `tape` is where it lies, from a to b, both ends included; `network`: as of a post."""
+    """The line between two posts. `tape` is where it lies, from a to b, both ends included; `network`: as of a post.
+
+    `following_s`: robots may follow each other in it, so many seconds apart; None: it is for one robot at a time.
+    """
 
     a: str
     b: str
@@ -80,6 +85,7 @@ class Corridor:
     assumed: bool
     tape: tuple[Point, ...]
     network: bool = True
+    following_s: float | None = None
 
     @property
     def name(self) -> str:
@@ -194,14 +200,15 @@ def _corridor(row: CorridorRow, points: Mapping[str, Point]) -> Corridor:
     # Two of the same point in a row have no direction between them.
     path = (path[0], *(there for here, there in pairwise(path) if here != there))
     tape = rounded(path, row.bend_radius_m)
-    return Corridor(a, b, row.length_m or path_length_m(tape), row.assumed, tape, row.network)
+    return Corridor(a, b, row.length_m or path_length_m(tape), row.assumed, tape, row.network, row.following_s)
 
 
 def _post(row: PostRow, corridors: tuple[Corridor, ...], tag: int | None) -> Post:
     dock = Dock(row.dock.x_m, row.dock.y_m, math.radians(row.dock.heading_deg)) if row.dock else None
     markers = _standard_markers(row, dock, corridors) if row.markers is None else _own_markers(row.name, row.markers)
     title = row.title or row.name
-    return Post(row.name, title, row.x_m, row.y_m, markers, dock, row.bays, row.mailroom, tag, row.network)
+    homes = int(dock is not None) if row.homes is None else row.homes
+    return Post(row.name, title, row.x_m, row.y_m, markers, dock, row.bays, row.mailroom, tag, row.network, homes)
 
 
 def _own_markers(post: str, rows: tuple[PoseRow, ...]) -> tuple[Marker, ...]:
@@ -232,5 +239,8 @@ def _fingerprint(name: str, posts: Iterable[Post], corridors: Iterable[Corridor]
 
 
 def _facts(place: Post | Corridor) -> dict[str, Any]:
-    """Network is not told of where there is some: maps that say nothing of it keep their version."""
-    return {key: value for key, value in asdict(place).items() if key != "network" or not value}
+    """Maps that say nothing of what was added later keep their version."""
+    usual: dict[str, Any] = {"network": True, "following_s": None}
+    if isinstance(place, Post):
+        usual["homes"] = int(place.dock is not None)
+    return {key: value for key, value in asdict(place).items() if key not in usual or value != usual[key]}

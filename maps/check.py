@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from maps.campus_map import CampusMap, Corridor, Marker, Post, build_map, corridor_name
+from maps.carrying import places_problems
 from maps.geometry import Point, distance_to_path_m, seen_from, wrapped
 from maps.map_file import MapFile, PostRow, load_map_file
 from maps.problem import Problem, error, warning
@@ -41,6 +42,7 @@ def _of_map(file: MapFile, campus: CampusMap) -> Iterator[Problem]:
     yield from _unreachable(campus)
     yield from _docks(campus)
     yield from _silent_docks(campus)
+    yield from places_problems(campus)
     for row in file.post:
         post = campus.post(row.name)
         yield from _sides_and_geometry(row, campus)

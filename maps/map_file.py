@@ -38,6 +38,8 @@ class PostRow(Row):
     x_m: Metres
     y_m: Metres
     bays: int = Field(default=1, ge=0)
+    # Places where a robot can rest clear of line and bays, the dock among them. Left out: one where there is a dock.
+    homes: int | None = Field(default=None, ge=0)
     mailroom: bool = False
     # False: a robot that stands here is heard of by nobody until it is back where there is network.
     network: bool = True
@@ -58,6 +60,8 @@ class CorridorRow(Row):
     network: bool = True
     via: tuple[tuple[Metres, Metres], ...] = ()
     bend_radius_m: float = Field(default=1.0, ge=0)
+    # Robots may follow each other in here, so many seconds apart. Left out: one robot at a time.
+    following_s: Annotated[float, Field(gt=0, allow_inf_nan=False)] | None = None
 
     @property
     def name(self) -> str:

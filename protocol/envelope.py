@@ -37,20 +37,24 @@ TO_ROBOT: Final[Mapping[str, type[Part]]] = {
     "verifiers": to_robot.Verifiers,
     "grant": to_robot.Grant,
     "deny": to_robot.Deny,
+    "detour": to_robot.Detour,
     "cancel": to_robot.Cancel,
     "confirm": to_robot.Confirm,
     "pause": to_robot.Pause,
     "resume": to_robot.Resume,
     "recall": to_robot.Recall,
     "emergency_stop": to_robot.EmergencyStop,
+    "open_way": to_robot.OpenWay,
+    "revoke": to_robot.Revoke,
     "watch": to_robot.Watch,
     **BOTH_WAYS,
 }
-YOUNGER: Final = ("confirm", "watch")
+YOUNGER: Final = ("confirm", "watch", "open_way", "detour", "revoke")
 """Types to robots that came later: sent only to those that name them in `hello`; an older robot would hang up."""
 
 DURABLE: Final = frozenset({"event", "claim", "clear"}) | {
-    *("mission", "verifiers", "grant", "deny", "cancel", "confirm", "pause", "resume", "recall", "emergency_stop")
+    *("mission", "verifiers", "grant", "deny", "detour"),
+    *("cancel", "confirm", "pause", "resume", "recall", "emergency_stop", "open_way", "revoke"),
 }
 """The types that are stored before they are sent, numbered, and sent again until they are acknowledged."""
 

@@ -90,10 +90,11 @@ class Position(Part):
 
 
 class Battery(Part):
-    """Charge as a ratio of capacity, and whether the dock is charging it now."""
+    """Charge as a ratio of capacity, whether the dock is charging it now, and whether it stands in one at all."""
 
     ratio: Ratio
     charging: bool = False
+    docked: bool | None = None
 
 
 class Received(Part):

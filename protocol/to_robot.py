@@ -4,7 +4,19 @@ from typing import Literal
 
 from pydantic import Field
 
-from protocol.parts import Identifier, Leg, Moment, Part, Purpose, Received, Sentence, Seq, Sha256Hex, Stop
+from protocol.parts import (
+    Identifier,
+    Leg,
+    Moment,
+    Part,
+    PostName,
+    Purpose,
+    Received,
+    Sentence,
+    Seq,
+    Sha256Hex,
+    Stop,
+)
 
 
 class Welcome(Part):
@@ -58,6 +70,17 @@ class Deny(Part):
 
     claim_id: Identifier
     avoid: tuple[Leg, ...]
+    reason: Sentence
+
+
+class Detour(Part):
+    """Go this way first, so that others can pass, and then on by its own plan. These corridors are granted with it.
+
+    It answers a claim of other corridors. A robot that has gone on from where it begins takes it for a plain grant.
+    """
+
+    claim_id: Identifier
+    legs: tuple[Leg, ...] = Field(min_length=1)
     reason: Sentence
 
 
@@ -118,6 +141,30 @@ class Recall(Part):
 
     Accepted with mail aboard, too: the robot then gives itself a mission whose stops are of the kind `return`, and
     whose id begins with `return-`; another mission takes its place.
+    """
+
+    command_id: Identifier
+    reason: Sentence
+
+
+class OpenWay(Part):
+    """A corridor in which the robot turned back is free again: whoever says so has looked.
+
+    `ends` are its two posts, in either order; it is open in both directions. A robot that has turned back in there
+    after `looked_at` by its own clock knows better and refuses; so it does if its map has no such corridor. Where it
+    was not closed there is nothing to do, which is accepted.
+    """
+
+    command_id: Identifier
+    ends: tuple[PostName, PostName]
+    looked_at: Moment
+
+
+class Revoke(Part):
+    """Everything that was granted until now is void: a person has looked where the robot was, and others may go there.
+
+    The robot stands still at once, as after an `emergency_stop`, and forgets where it is. When somebody has let it go
+    again it stands on until it sees a marker or is in a dock; then it says where it is, and claims anew.
     """
 
     command_id: Identifier

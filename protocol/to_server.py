@@ -29,7 +29,8 @@ class Hello(Part):
     """The first message on every connection: where to resume from, and what the robot knows of itself.
 
     `received` is what it last had from the server, `resume_from` the lowest `seq` of its own journal that can still
-    come. `understands` names the messages younger than the protocol that this robot knows; it is sent no others.
+    come. `understands` names the messages younger than the protocol that this robot knows; it is sent no others. `home`
+    is the post of its own dock.
     """
 
     received: Received = Received()
@@ -41,6 +42,7 @@ class Hello(Part):
     software: Sentence
     map_version: Sentence
     understands: tuple[Identifier, ...] = ()
+    home: PostName | None = None
 
 
 class Snapshot(Part):
@@ -137,7 +139,7 @@ class Fault(Part):
 
 
 class CommandAnswer(Part):
-    """What became of a cancel, confirm, pause, resume, recall or emergency_stop: `command_id` is the one it carried."""
+    """What became of a command (`cancel`, `pause`, `open_way` …): `command_id` is the one it carried."""
 
     kind: Literal["answer"] = "answer"
     command_id: Identifier
@@ -153,16 +155,25 @@ class Event(Part):
 
 
 class Claim(Part):
-    """I would like to enter these corridors in this order, and take a bay at the far end of the last one."""
+    """I would like to enter these corridors in this order, and take a bay at the far end of the last one.
+
+    `goal` is the post that I am going to now; the corridors behind it are for what comes after that.
+    """
 
     claim_id: Identifier
     legs: tuple[Leg, ...] = Field(min_length=1)
+    goal: PostName | None = None
 
 
 class Clear(Part):
-    """I am clear of this corridor: the only thing that ever frees it."""
+    """I am clear of this corridor: the only thing that ever frees it.
+
+    `post` is where I was seen last: the corridor's far end when I have driven through it, its near end when I give it
+    back.
+    """
 
     leg: Leg
+    post: PostName | None = None
 
 
 class Why(Part):

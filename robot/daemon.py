@@ -152,6 +152,7 @@ class Daemon:
             software=SOFTWARE,
             map_version=self.mind.hands.navigator.campus.version,
             understands=YOUNGER,
+            home=self.mind.hands.navigator.home,
         )
 
     def close(self, now: float) -> None:

@@ -7,18 +7,33 @@ may be interrupted and begun again at its present stop at any time.
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from datetime import datetime, timedelta
-from typing import Final, Literal, Protocol
+from typing import Final, Literal
 
 from protocol.ids import new_uuid
 from protocol.parts import Leg, Part, Purpose, Stop
-from protocol.to_robot import Cancel, Confirm, Deny, EmergencyStop, Grant, Mission, Pause, Recall, Resume, Verifiers
+from protocol.to_robot import (
+    Cancel,
+    Confirm,
+    Deny,
+    Detour,
+    EmergencyStop,
+    Grant,
+    Mission,
+    OpenWay,
+    Pause,
+    Recall,
+    Resume,
+    Revoke,
+    Verifiers,
+)
 from protocol.to_server import Charge, Claim, Clear, CommandAnswer, Event, Fault, HandoverReceipt, Progress, Step
 from robot.custody import Custody, Proof, Sign, opening
 from robot.errors import RobotError
-from robot.held import Held
-from robot.memory import Incoming, Memory
+from robot.held import REVOKED, Held
+from robot.memory import Memory
 from robot.outbox import Outbox
 from robot.returns import is_own, return_mission
+from robot.server import Server
 from robot.store import Store
 
 ChargeStep = Literal["low", "charging", "charged"]
@@ -28,17 +43,6 @@ MAIL_ABOARD: Final = "mail_aboard"
 
 class NoSuchStop(RobotError):
     """A report names a stop that the mission held does not have."""
-
-
-class Server(Protocol):
-    """The link, as far as it concerns duties."""
-
-    def incoming(self) -> Sequence[Incoming]: ...
-
-    def wake(self) -> None: ...
-
-    @property
-    def online(self) -> bool: ...
 
 
 class Duties:
@@ -54,7 +58,7 @@ class Duties:
         mailroom: str | None = None,
         sign: Sign | None = None,
     ) -> None:
-        self._store, self.memory, self.outbox, self._utc = store, memory, outbox, utc
+        self._store, self.memory, self.outbox, self.utc = store, memory, outbox, utc
         self._server, self._mailroom = server, mailroom
         self.custody = Custody(memory, outbox, utc, sign)
         self._denied: dict[str, Deny] = {}
@@ -63,6 +67,11 @@ class Duties:
         """Somebody at the service has looked, and lets a stopped robot go again; the mind passes it on."""
         self.stop_asked = False
         """Somebody at the service wants it to stand still at once; the mind passes it on, if the link has not yet."""
+        self.open_way: Callable[[OpenWay, float], str | None] = lambda _, __: "This robot has no map yet."
+        """Takes a corridor for open again, which somebody has looked at so many seconds ago; why not, or None. The
+        navigator knows the corridors."""
+        self.forget_place_asked = False
+        """Somebody has taken it away, or will: wherever it believed to be does not count; for the navigator."""
         self.avoid: frozenset[Leg] = frozenset()
         self.revision = 0
         """Goes up with every change of what is held."""
@@ -92,6 +101,7 @@ class Duties:
                 self.memory.faults(),
                 self.memory.charge() is not None,
                 self.memory.loadings(),
+                self.memory.detour(),
             )
         self.revision += 1
 
@@ -136,7 +146,7 @@ class Duties:
             case Deny():
                 self._denied[message.claim_id] = message
                 self.avoid = frozenset(message.avoid)
-            case Grant():
+            case Grant() | Detour():
                 self.avoid -= frozenset(message.legs)
             case Cancel():
                 self._answer(message.command_id, self._cancel(message))
@@ -152,11 +162,29 @@ class Duties:
             case EmergencyStop():
                 self.rearm_asked, self.stop_asked = False, True
                 self._answer(message.command_id, None)
+            case Revoke():
+                self._revoke(message)
             case Recall():
                 self._recall()
                 self._answer(message.command_id, None)
+            case OpenWay():
+                looked_s_ago = (self.utc() - message.looked_at).total_seconds()
+                self._answer(message.command_id, self.open_way(message, looked_s_ago))
             case Verifiers():
                 pass  # memory has taken them already
+
+    def _revoke(self, wish: Revoke) -> None:
+        self.memory.revoke()
+        self._claimed, self.avoid = {}, frozenset()
+        self.rearm_asked, self.stop_asked, self.forget_place_asked = False, True, True
+        self._begin_fault(
+            REVOKED, "Its corridors were given to others. It stands until it is put down at a post.", None
+        )
+        self._answer(wish.command_id, None)
+
+    def _begin_fault(self, name: str, reason: str, post: str | None) -> None:
+        self.memory.keep_faults(self.memory.faults() | {name})
+        self._tell(Fault(name=name, happened_at=self.utc(), post=post, reason=reason))
 
     def _accepted(self, mission: Mission) -> None:
         if self.memory.first_time(mission.id, f"{Step.ACCEPTED}:{mission.update}"):
@@ -164,7 +192,7 @@ class Duties:
 
     def _answer(self, command_id: str, refusal: str | None) -> None:
         accepted = refusal is None
-        answer = CommandAnswer(command_id=command_id, accepted=accepted, happened_at=self._utc(), reason=refusal)
+        answer = CommandAnswer(command_id=command_id, accepted=accepted, happened_at=self.utc(), reason=refusal)
         self._tell(answer)
 
     def _confirm(self, wish: Confirm) -> None:
@@ -216,7 +244,7 @@ class Duties:
     ) -> Progress:
         return Progress(
             step=step,
-            happened_at=self._utc(),
+            happened_at=self.utc(),
             mission_id=mission.id,
             update=mission.update,
             stop_id=stop and stop.id,
@@ -257,17 +285,16 @@ class Duties:
 
     def _tell_not_taken(self, post: str | None) -> None:
         """Nobody took it back either: people are told which mail it is, and that it is still aboard."""
-        left, told = self.memory.cargo(), self.memory.faults()
-        if left and MAIL_ABOARD not in told:
-            self.memory.keep_faults(told | {MAIL_ABOARD})
+        left = self.memory.cargo()
+        if left and MAIL_ABOARD not in self.memory.faults():
             reason = (
                 f"Nobody took the mail of {', '.join(left)}, at its sender's post or the mailroom. It is still aboard."
             )
-            self._tell(Fault(name=MAIL_ABOARD, happened_at=self._utc(), post=post, reason=reason))
+            self._begin_fault(MAIL_ABOARD, reason, post)
 
     def codes(self, order_id: str, purpose: Purpose) -> tuple[str, ...]:
         """What opens this hand-over now, as SHA-256. For any thread, and without a look at the disk."""
-        return opening(self.held.verifiers, self.held.loadings, order_id, purpose, self._utc())
+        return opening(self.held.verifiers, self.held.loadings, order_id, purpose, self.utc())
 
     def at_stop(self, stop_id: str) -> tuple[Mission, Stop]:
         """A stop of the mission held, with its mission. Raises NoSuchStop."""
@@ -298,16 +325,19 @@ class Duties:
             if self.memory.charge() == remembered:
                 return
             self.memory.note_charge(remembered)
-            self._tell(Charge(step=step, happened_at=self._utc(), post=post, ratio=ratio))
+            self._tell(Charge(step=step, happened_at=self.utc(), post=post, ratio=ratio))
         self._told()
 
     def report_fault(self, name: str, reason: str, post: str | None, cleared: bool = False) -> None:
         """A fault begins or is over; said once until it changes."""
-        if cleared != (name in self.held.faults):
-            return
+        if cleared == (name in self.held.faults):
+            self.report_one_fault(name, reason, post, cleared, lasts=not cleared)
+
+    def report_one_fault(self, name: str, reason: str, post: str | None, cleared: bool, lasts: bool) -> None:
+        """Of several under one name, each with its own reason; `lasts`: whether any is left after this."""
         with self._store.transaction():
-            self.memory.keep_faults(self.held.faults ^ {name})
-            self._tell(Fault(name=name, cleared=cleared, happened_at=self._utc(), post=post, reason=reason))
+            self.memory.keep_faults(self.held.faults | {name} if lasts else self.held.faults - {name})
+            self._tell(Fault(name=name, cleared=cleared, happened_at=self.utc(), post=post, reason=reason))
         self._told()
 
     # Corridors.
@@ -315,14 +345,14 @@ class Duties:
     def may_enter(self, legs: Sequence[Leg]) -> bool:
         return self._server is None or all(leg in self.held.grants for leg in legs)
 
-    def claim(self, legs: Sequence[Leg]) -> str | None:
+    def claim(self, legs: Sequence[Leg], goal: str | None = None) -> str | None:
         """Ask for those of `legs` that are not granted yet, once; returns the claim's id, or None if none is needed."""
         wanted = tuple(leg for leg in dict.fromkeys(legs) if leg not in self.held.grants)
         if self._server is None or not wanted:
             return None
         if wanted not in self._claimed:
             claim_id = new_uuid()
-            self.outbox.put(Claim(claim_id=claim_id, legs=wanted))
+            self.outbox.put(Claim(claim_id=claim_id, legs=wanted, goal=goal))
             self._claimed = {wanted: claim_id}
             self._denied.clear()  # of older claims, for which nobody waits any more
             self._told()
@@ -343,7 +373,7 @@ class Duties:
         with self._store.transaction():
             for leg in granted:
                 self.memory.clear(leg)
-                self.outbox.put(Clear(leg=leg))
+                self.outbox.put(Clear(leg=leg, post=self.held.position.post))
         self._claimed = {}
         self._told()
 
@@ -351,17 +381,17 @@ class Duties:
 
     def seen(self, post: str) -> None:
         """The robot stands at a marker: remembered at once, since after a power cut nothing else tells where it is."""
-        self.memory.see(post, self._utc())
+        self.memory.see(post, self.utc())
         self._changed()
 
     def closed_ages_s(self) -> dict[str, float]:
         """The corridors in which it turned back, by name, and how long ago; just now if the clock was put back."""
-        now = self._utc()
+        now = self.utc()
         return {name: max(0.0, (now - at).total_seconds()) for name, at in self.memory.closed().items()}
 
     def keep_closed(self, ages_s: Mapping[str, float]) -> None:
         """These instead of those that were kept."""
-        now = self._utc()
+        now = self.utc()
         self.memory.keep_closed({name: now - timedelta(seconds=age_s) for name, age_s in ages_s.items()})
 
     def heading_for(self, towards: str | None) -> None:

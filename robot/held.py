@@ -2,10 +2,14 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Final
 
 from protocol.parts import Leg, MissionHeld, Position, Stop
 from protocol.to_robot import Mission, Verifier
 from robot.memory import Loading
+
+REVOKED: Final = "revoked"
+"""The fault of a robot whose corridors were given to others; until it knows where it is."""
 
 
 @dataclass(frozen=True)
@@ -27,6 +31,13 @@ class Held:
     """The battery was low, and it is not full again yet."""
     loadings: Mapping[str, Loading] = field(default_factory=dict)
     """Where the mail aboard came from."""
+    detour: Leg | None = None
+    """The corridor into which the service sends it first, so that others can pass."""
+
+    @property
+    def revoked(self) -> bool:
+        """Its corridors were given to others, and it does not know yet where it is."""
+        return REVOKED in self.faults
 
     @property
     def stop(self) -> Stop | None:

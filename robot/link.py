@@ -31,7 +31,7 @@ from protocol.clock import Clock
 from protocol.envelope import MAX_MESSAGE_BYTES
 from protocol.errors import ProtocolError
 from protocol.insight import Insight
-from protocol.to_robot import EmergencyStop, Watch
+from protocol.to_robot import EmergencyStop, Revoke, Watch
 from protocol.to_server import Hello, Snapshot, Why
 from robot.connection import Connection, Ends, LinkBroken, Newest, Rhythm
 from robot.errors import RobotError
@@ -92,7 +92,8 @@ class Link:
         rhythm: Rhythm | None = None,
         stop_at_once: Callable[[], None] = lambda: None,
     ) -> None:
-        """`stop_at_once` is called in the link's thread when an emergency stop comes: it waits for no reasoning.
+        """`stop_at_once` is called in the link's thread when an emergency stop or a `revoke` comes: it waits for no
+        reasoning.
 
         Raises InsecureServer. Whatever was received before a restart and not handled is `incoming` again.
         """
@@ -180,7 +181,7 @@ class Link:
                 self._loop.call_soon_threadsafe(call)
 
     def _deliver(self, incoming: Incoming) -> None:
-        if isinstance(incoming.message, EmergencyStop):
+        if isinstance(incoming.message, EmergencyStop | Revoke):
             self._stop_at_once()
         self._incoming.append(incoming)
         if len(self._incoming) >= MAX_INCOMING:

@@ -19,7 +19,7 @@ from protocol import sequence
 from protocol.envelope import TO_ROBOT, Envelope, type_of
 from protocol.parts import Leg, MissionHeld, Part, Position, Purpose, Received
 from protocol.sequence import Reception
-from protocol.to_robot import Grant, Mission, Verifier, Verifiers
+from protocol.to_robot import Detour, Grant, Mission, Verifier, Verifiers
 from robot.store import Store
 
 KEPT_COMMANDS: Final = 200
@@ -39,6 +39,7 @@ _DONE_OF: Final = TypeAdapter(dict[str, frozenset[str]])
 _TIMES: Final = TypeAdapter(dict[str, datetime])
 _RECEIVED: Final = TypeAdapter(Received)
 _WORD: Final = TypeAdapter[str | None](str | None)
+_LEG: Final = TypeAdapter[Leg | None](Leg | None)
 
 
 class MissionConflict(ValueError):
@@ -268,6 +269,19 @@ class Memory:
         """The robot is out of this corridor. Put the `clear` message into the outbox in the same transaction."""
         with self._store.transaction():
             self._write("grants", _LEGS, tuple(one for one in self.grants() if one != leg))
+            if self.detour() == leg:
+                self._write("detour", _LEG, None)
+
+    def revoke(self) -> None:
+        """All that was granted is void, and nobody knows where the robot is."""
+        with self._store.transaction():
+            self._write("grants", _LEGS, ())
+            self._write("detour", _LEG, None)
+            self._write("position", _POSITION, Position())
+
+    def detour(self) -> Leg | None:
+        """The corridor into which the service sends it first, for as long as it holds the grant."""
+        return self._read("detour", _LEG, None)
 
     def position(self) -> Position:
         """Where the robot was last seen."""
@@ -336,6 +350,9 @@ class Memory:
                 self.keep_verifiers(message, at)
             case Grant():
                 self.grant(message.legs)
+            case Detour():
+                self.grant(message.legs)
+                self._write("detour", _LEG, message.legs[0])
             case _:  # commands are for the daemon to carry out
                 pass
 

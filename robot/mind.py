@@ -16,13 +16,15 @@ from protocol.parts import Activity, Battery
 from protocol.to_server import Snapshot, Why
 
 from .action.actions import Actions
-from .action.corridors import WAY_BLOCKED
+from .action.corridors import WAY_BLOCKED, detour, tried_again
 from .action.hands import Hands
 from .config import PerceptMode, Settings
+from .held import REVOKED
+from .long_silence import LongSilence
 from .perception.battery import BatterySense, BatteryWord
 from .perception.percepts import perceive
 from .perception.seen import Seen, Whereabouts
-from .reasons import reason
+from .reasons import LONG_AWAY, reason
 from .reflexes import HALTING, LATCHED, TOLD
 from .skills.interfaces import View
 
@@ -47,6 +49,7 @@ class Mind:
     inbox: deque[Message] = field(default_factory=deque)
     """Messages to the agent: one is read in each cycle."""
     battery: BatterySense = field(default_factory=BatterySense)
+    silence: LongSilence = field(default_factory=LongSilence)
     cycles: int = 0
     failures: list[str] = field(default_factory=list)
     """Goals that nobody could help, in words; the newest."""
@@ -66,6 +69,8 @@ class Mind:
         self.hands.body.link(self.hands.duties.online)
         self._tell_faults(view.faults)
         self._tell_open_way()
+        self._follow_revocation(view)
+        self.silence.look(self.hands.duties.held, self.hands.duties.utc(), self.hands.duties.online, now)
         self._stop_or_rearm(view)
         self._reason(now, ended)
         self.hands.body.heartbeat(now)
@@ -135,6 +140,7 @@ class Mind:
             navigator.moved,
             navigator.astray,
             navigator.closed.names,
+            aside.to_post if (aside := detour(hands)) else None,
         )
         return Seen(
             at_s=now,
@@ -146,6 +152,7 @@ class Mind:
             home=navigator.home,
             nearest_dock=navigator.nearest_dock(),
             watch=int(now // WATCH_S),
+            unsure=self.silence.lasts is True,
         )
 
     def _tell_faults(self, faults: frozenset[str]) -> None:
@@ -155,10 +162,23 @@ class Mind:
             duties.report_fault(name, TOLD[name], self.hands.place, cleared=name not in faults)
 
     def _tell_open_way(self) -> None:
-        """A blocked way is over when its time is: then it is tried again."""
-        duties = self.hands.duties
-        if WAY_BLOCKED in duties.held.faults and not self.hands.navigator.closed.names:
+        """A closed corridor is over when its time is, or when somebody says so: then it is tried again."""
+        duties, closed = self.hands.duties, self.hands.navigator.closed
+        for name in sorted(closed.over):
+            reason, lasts = tried_again(name), bool(closed.names)
+            duties.report_one_fault(WAY_BLOCKED, reason, self.hands.place, cleared=True, lasts=lasts)
+        closed.note_told()
+        if WAY_BLOCKED in duties.held.faults and not closed.names:  # it was killed before it could tell of each
             duties.report_fault(WAY_BLOCKED, "The robot tries that way again.", self.hands.place, cleared=True)
+
+    def _follow_revocation(self, view: View) -> None:
+        """Its corridors were given to others: it stands until it has found out where it is."""
+        duties, navigator = self.hands.duties, self.hands.navigator
+        if duties.forget_place_asked:
+            duties.forget_place_asked = False
+            navigator.lose_place(view)
+        elif duties.held.revoked and (navigator.here or navigator.position.approaching):
+            duties.report_fault(REVOKED, "It knows where it is again.", navigator.at, cleared=True)
 
     def _stop_or_rearm(self, view: View) -> None:
         """What the server wants. (The Spot button re-arms in the body itself.)"""
@@ -170,8 +190,12 @@ class Mind:
         duties.stop_asked = duties.rearm_asked = False
 
     def _tell_why(self) -> None:
-        why = reason(
-            self.actions.under_way, self.hands.view, self.hands.navigator, self.hands.duties, self._is_charging
+        why = (
+            LONG_AWAY
+            if self.silence.lasts
+            else reason(
+                self.actions.under_way, self.hands.view, self.hands.navigator, self.hands.duties, self._is_charging
+            )
         )
         if why != self._why:
             self._why = why
@@ -184,6 +208,11 @@ class Mind:
         return base is not None and base.charging and self.battery.word is not BatteryWord.FULL
 
     @property
+    def _is_docked(self) -> bool:
+        base = self.hands.view.heard_base
+        return base is not None and base.docked
+
+    @property
     def why(self) -> Why | None:
         """What the robot is doing and waiting for."""
         return self._why
@@ -194,7 +223,7 @@ class Mind:
         return Snapshot(
             position=held.position,
             activity=self.activity(),
-            battery=Battery(ratio=self.battery.ratio or 0.0, charging=self._is_charging),
+            battery=Battery(ratio=self.battery.ratio or 0.0, charging=self._is_charging, docked=self._is_docked),
             cargo=held.cargo,
             mission=held.mission_held,
         )
@@ -202,7 +231,7 @@ class Mind:
     def activity(self) -> Activity:
         """In one word."""
         view = self.hands.view
-        if view.faults & HALTING:
+        if view.faults & HALTING or self.hands.duties.held.revoked:
             return Activity.STOPPED
         if view.heard_base and view.heard_base.docked and view.motion is None:
             return Activity.CHARGING if self._is_charging else Activity.IDLE

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from functools import partial
 from itertools import pairwise
 
 from maps import CampusMap, NoRoute, corridor_name, shortest_route
@@ -12,7 +13,7 @@ from robot.duties import Duties
 from robot.navigation.approach import is_aslant
 from robot.navigation.astray import FROM_MM, TO_MM, Compass, really_towards
 from robot.navigation.by_fixes import near_dock
-from robot.navigation.closed import Closed
+from robot.navigation.closed import Closed, open_way
 from robot.navigation.directions import Way, next_post
 from robot.navigation.docks import in_dock, nearest_dock, way_out
 from robot.navigation.moved import cannot_be_next, found_at, nowhere
@@ -53,6 +54,7 @@ class Navigator:
         self.towards = duties.held.position.towards
         """The post ahead, once the robot has set out."""
         self.closed = Closed(duties.closed_ages_s(), duties.keep_closed, now)
+        duties.open_way = partial(open_way, campus, self.closed)
         self._duties = duties
         self._odometry = Odometry()
         self._disturbed = 0  # by searches and bumps, so far
@@ -100,7 +102,9 @@ class Navigator:
         """Whether it is somewhere else than it believed."""
         self.position = near_dock(self.campus, self.position, view.fixes, self.home, view.at_s)
         if LIFTED in view.faults:
-            self._lose_place(view)
+            if not self._lifted:
+                self.lose_place(view, nowhere(self.position))
+            self._ignored_until_s = view.post.at_s if view.post else self._ignored_until_s
         elif post and post.at_s != self.position.seen_at_s:
             self._check_place(post, view.post_odometry)
 
@@ -124,14 +128,15 @@ class Navigator:
             self._looks(self.campus.corridor(self.here, really).heading_leaving(self.here))
             self._head_for(really)
 
-    def _lose_place(self, view: View) -> None:
-        """It is being lifted: where it is put down, only a marker can say."""
-        if not self._lifted:
-            self._lifted = self._leaving = True
-            self._lifted_from = {post for post in (self.here, self.towards, self._far_end) if post}
-            self.position, self.towards, self._far_end = nowhere(self.position), None, None
-            self._compass.set(None, view.odometry)
+    def lose_place(self, view: View, position: Position | None = None) -> None:
+        """It is being lifted (`position` is where it was), or was taken away: where it is put down, only a marker or a
+        dock can say."""
+        self._lifted = self._leaving = True
+        self._lifted_from = {post for post in (self.here, self.towards, self._far_end) if post} if position else set()
+        self.position, self.towards, self._far_end = position or Position(has_left=True), None, None
         self._ignored_until_s = view.post.at_s if view.post else self._ignored_until_s
+        self._docked = False
+        self._compass.set(None, view.odometry)
 
     def _check_place(self, post: Sighting, odometry: Odometry) -> None:
         """A marker that cannot come next: somebody has moved the robot, out of whatever corridor it held."""

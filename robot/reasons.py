@@ -16,6 +16,8 @@ from .skills.interfaces import View
 
 _STAND: Final = {fault.name: fault.told for fault in FAULTS if fault.response is not Response.NOTHING}
 """The faults that a robot stands for; others are told, but are no reason for what it does."""
+TAKEN_AWAY: Final = "Waiting to be put down at a post or in a dock"
+LONG_AWAY: Final = Why(sentence="Waiting for the service, after a long time without it", waiting_for="the network")
 _PURPOSES: Final = {
     StopAction.LOAD: "to collect mail at {post}",
     StopAction.RECEIVE: "to deliver mail at {post}",
@@ -52,6 +54,8 @@ def reason(under_way: Sequence[str], view: View, navigator: Navigator, duties: D
     goal = _PURPOSES[stop.action].format(post=stop.post) if stop else None
     for fault in sorted(view.faults & _STAND.keys()):
         return Why(sentence=_STAND[fault], goal=goal, waiting_for="a person" if fault != "bump" else "a free way")
+    if duties.held.revoked:
+        return Why(sentence=TAKEN_AWAY, goal=goal, waiting_for="a person")
     if under_way:
         sentence, waiting_for = _of_action(under_way[-1], navigator)
         if under_way[-1].startswith("claim(") and not duties.online:

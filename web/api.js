@@ -123,6 +123,10 @@ const delegatePath = (id, delegate_id) => `${orderPath(id)}/delegates/${encodeUR
 /** @param {string} id @param {string} delegate_id @returns {Promise<null>} */
 export const revokeDelegate = (id, delegate_id) => ask(delegatePath(id, delegate_id), { method: "DELETE" });
 
+/** Whom I have named, for all my orders that go on. @param {{limit?: number, cursor?: string}} page
+ *  @returns {Promise<Api.Page<Api.MyDelegate>>} newest first */
+export const myDelegates = (page) => ask("/me/delegates" + query(page));
+
 /** A delegate's code, to be passed on. @param {string} id @param {string} delegate_id @returns {Promise<Api.ShownCode>} */
 export const delegateCode = async (id, delegate_id) => withPicture(await ask(delegatePath(id, delegate_id) + "/code"));
 
@@ -210,18 +214,36 @@ export const recallRobot = (name, reason) => tell(robotPath(name) + "/recall", {
 /** It stands still at once. @param {string} name @param {string} reason @returns {Promise<Api.Command>} */
 export const stopRobot = (name, reason) => tell(robotPath(name) + "/emergency-stop", { reason });
 
+/** Its corridor is free again. @param {string} name @param {string} corridor @returns {Promise<Api.Command>} */
+export const openWay = (name, corridor) => tell(robotPath(name) + "/open-way", { corridor });
+
+/** What it holds is given to others. @param {string} name @param {string} reason @returns {Promise<Api.Command>} */
+export const takeRobotOut = (name, reason) => tell(robotPath(name) + "/take-out", { reason });
+
+/** @returns {Promise<Api.ClosedCorridors>} */
+export const closedCorridors = () => ask("/corridors/closed");
+
+/** No robot is let in any more. @param {string} name @param {string} reason @returns {Promise<Api.ClosedCorridors>} */
+export const closeCorridor = (name, reason) => tell(`/corridors/${encodeURIComponent(name)}/close`, { reason });
+
+/** @param {string} name @returns {Promise<Api.ClosedCorridors>} */
+export const openCorridor = (name) => tell(`/corridors/${encodeURIComponent(name)}/open`);
+
 /** @param {string} name @returns {Promise<Api.RobotDetails>} */
 export const robot = (name) => ask(robotPath(name));
 
 /** What it was told, newest first. @param {string} name @param {{limit?: number}} page @returns {Promise<Api.Page<Api.Command>>} */
 export const robotCommands = (name, page) => ask(robotPath(name) + "/commands" + query(page));
 
-/** What went wrong with it, newest first. @param {string} robot @param {{limit?: number, cursor?: string}} page
- *  @returns {Promise<Api.Page<Api.Alarm>>} */
+/** What went wrong with it, newest first. @param {string} robot
+ *  @param {{limit?: number, cursor?: string, only_open?: "true"}} page @returns {Promise<Api.Page<Api.Alarm>>} */
 export const robotAlarms = (robot, page) => ask("/alarms" + query({ robot, ...page }));
 
 /** @param {string} name @param {string} since @returns {Promise<Api.BatteryHistory>} */
 export const batteryHistory = (name, since) => ask(robotPath(name) + "/battery" + query({ since }));
+
+/** @returns {Promise<Api.EstimateQuality>} */
+export const estimateQuality = () => ask("/estimates");
 
 /** For half a minute it tells what it senses and thinks, as events `insight`. @param {string} name
  *  @param {boolean} anew whether to begin with all that it believes @returns {Promise<Api.Watch>} */
@@ -250,6 +272,9 @@ export const resolveOrder = (id, to, reason) => tell(orderPath(id) + "/resolve",
 
 /** The mail was taken out by hand. @param {string} id @param {string} reason "" for none @returns {Promise<Api.Order>} */
 export const holdOrder = (id, reason) => tell(orderPath(id) + "/hold", { reason: reason || null });
+
+/** The mail was taken out for another robot. @param {string} id @param {string} post @param {string} reason "" for none @returns {Promise<Api.Order>} */
+export const passOrderOn = (id, post, reason) => tell(orderPath(id) + "/pass-on", { post: post || null, reason: reason || null });
 
 /** @param {string} id @param {string} robot "" for any other @returns {Promise<Api.Order>} */
 export const reassignOrder = (id, robot) => tell(orderPath(id) + "/reassign", { robot: robot || null });

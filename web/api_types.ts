@@ -18,9 +18,14 @@ export type TakenCorridor = Schemas["TakenCorridor"];
 /** All that this robot holds now. */
 export type RobotTraffic = Schemas["RobotTraffic"];
 
+/** All corridors into which no robot is let. */
+export type ClosedCorridors = Schemas["ClosedCorridors"];
+export type ClosedCorridor = Schemas["ClosedCorridorView"];
+
 export type ArrivalWindow = Schemas["WindowView"];
 export type Estimate = Schemas["Estimate"];
 export type Robot = Schemas["RobotView"];
+export type WaitsFor = NonNullable<Robot["waits_for"]>;
 /** A sentence as a text of the catalogue and what fills its gaps. */
 export type Words = Schemas["Words"];
 
@@ -42,6 +47,7 @@ export type LinkedCode = Schemas["LinkedCode"];
 /** A code and the address of its picture. */
 export type ShownCode = Omit<HandoverCode, "svg_url"> & { picture: string };
 export type Delegate = Schemas["DelegateView"];
+export type MyDelegate = Schemas["MyDelegateView"];
 export interface NewDelegate { name: string; email?: string }
 
 export type AboutMe = Schemas["AboutMe"];
@@ -60,6 +66,7 @@ export type Alarm = Schemas["AlarmView"];
 export type Command = Schemas["CommandView"];
 export type RobotDetails = Schemas["RobotDetails"];
 export type BatteryHistory = Schemas["BatteryHistory"];
+export type EstimateQuality = Schemas["EstimateQuality"];
 export type EnrolmentCode = Schemas["EnrolmentCodeView"];
 export type RobotToken = Schemas["RobotTokenView"];
 export type Watch = Schemas["WatchView"];

@@ -1,15 +1,15 @@
 /**
  * What changes, as it changes: one EventSource per page, shared by all elements on it.
  * @import { ReactiveController, ReactiveControllerHost } from "lit"
- * @import { Notice, Order, Robot, RobotTraffic, Watched } from "./api_types.ts"
- * @typedef {{order: Order, robot: Robot, traffic: RobotTraffic, notice: Notice, insight: Watched, connected: boolean}} Changes
+ * @import { ClosedCorridors, Notice, Order, Robot, RobotTraffic, Watched } from "./api_types.ts"
+ * @typedef {{order: Order, robot: Robot, traffic: RobotTraffic, closed: ClosedCorridors, notice: Notice, insight: Watched, connected: boolean}} Changes
  */
 import * as api from "./api.js";
 
 const OPEN_AGAIN_MS = 3_000;
-const KINDS = /** @type {const} */ (["order", "robot", "traffic", "notice", "insight"]);
+const KINDS = /** @type {const} */ (["order", "robot", "traffic", "closed", "notice", "insight"]);
 
-/** Tells `order`, `robot`, `traffic` and `notice` as they come, and `connected` when the stream breaks (false) or has changes
+/** Tells `order`, `robot`, `traffic`, `closed` and `notice` as they come, and `connected` when the stream breaks (false) or has changes
  * to be fetched anew (true). */
 export class LiveFeed extends EventTarget {
   #open = /** @type {() => EventSource} */ (api.openLive);

@@ -1,7 +1,7 @@
 /**
  * What a dispatcher may do with an order or a robot: a table. The words of each stand in the catalogue under its name:
  * `mailroom.do.NAME` for the button, `.title`, `.body` for what follows from it, `.yes`.
- * @import { Order, Robot } from "./api_types.ts"
+ * @import { Alarm, CampusMap, Order, Robot } from "./api_types.ts"
  * @typedef {{value: string, label: string, hint?: string}} Choice
  * @typedef {{reason: string, choice: string}} Answer
  * @typedef {object} Action
@@ -17,15 +17,20 @@
 import * as api from "./api.js";
 import { digitsAreLocked, isMailAboard, isRobotComing, robotStands, stateBeforeAttention } from "./mailroom_words.js";
 import { hasEnded } from "./order_words.js";
-import { t } from "./texts.js";
+import { titleOf } from "./posts.js";
+import { hasText, t } from "./texts.js";
 
 const LONGER_S = [300, 900, 1800, 3600];
 const WAYS_OUT = { aboard: ["resume", "returning", "held"], notAboard: ["resume", "queued", "cancelled"] };
+const CARRIED = ["carrying", "at_recipient"];
 const ABOARD_BEFORE = ["carrying", "at_recipient", "returning", "at_return"];
 const PRIORITIES = ["high", "normal", "low"];
 
-/** What can be done with an order now, the likeliest first. @param {Order} order @param {Robot[]} robots @returns {Action[]} */
-export function orderActions(order, robots) {
+/**
+ * What can be done with an order now, the likeliest first.
+ * @param {Order} order @param {Robot[]} robots @param {CampusMap | null} map @returns {Action[]}
+ */
+export function orderActions(order, robots, map) {
   if (hasEnded(order)) return order.custody.at(-1)?.holder === "robot" ? [hold(order)] : [];
   const stuck = order.state === "attention";
   const waits = order.state === "queued" || isRobotComing(order);
@@ -35,6 +40,7 @@ export function orderActions(order, robots) {
     ...(robotStands(order) ? [wait(order)] : []),
     ...(waits ? [priority(order), reassign(order, robots)] : []),
     ...(order.state === "at_return" ? [hold(order)] : []),
+    ...(map && isOnItsWay(order) ? [passOn(order, map)] : []),
     ...(order.can_cancel ? [isMailAboard(order) ? bringBack(order) : cancel(order)] : []),
     ...(stuck || order.state === "queued" ? [] : [attention(order)]),
   ];
@@ -94,6 +100,22 @@ const hold = (order) => ({
   run: ({ reason }) => api.holdOrder(order.id, reason),
 });
 
+/** Its mail is in a robot that brings it to the recipient, or is stuck with it. @param {Order} order */
+const isOnItsWay = (order) => CARRIED.includes(order.state === "attention" ? stateBeforeAttention(order) : order.state);
+
+/** Where the robot was seen last stands first. @param {Order} order @param {CampusMap} map @returns {Action} */
+function passOn(order, map) {
+  const seen = order.robot?.last_seen?.post ?? "";
+  const posts = map.posts.filter(({ name }) => name !== order.to_post);
+  const nearest = [...posts.filter(({ name }) => name === seen), ...posts.filter(({ name }) => name !== seen)];
+  return {
+    ...named(order),
+    ...{ name: "pass_on", reason: "may", chosen: nearest[0]?.name },
+    choices: nearest.map(({ name }) => ({ value: name, label: titleOf(map, name) })),
+    run: ({ choice, reason }) => api.passOrderOn(order.id, choice, reason),
+  };
+}
+
 /** @param {Order} order @returns {Action} */
 const bringBack = (order) => ({ ...named(order), name: "bring_back", danger: true, run: () => api.cancelOrder(order.id) });
 
@@ -130,3 +152,21 @@ export const recall = ({ name }) => ({
   ...{ name: "recall", reason: "needed" },
   run: ({ reason }) => api.recallRobot(name, reason),
 });
+
+/**
+ * For each corridor that the robot of an alarm found closed, if this map has it. What the robot cannot be told now, and
+ * why, has words of its own.
+ * @param {Alarm} alarm @param {CampusMap} map @returns {Action[]}
+ */
+export function openWays({ robot, corridor }, map) {
+  return map.corridors.filter(({ name }) => name === corridor).map(({ name, a, b }) => {
+    const names = { robot, from: titleOf(map, a), to: titleOf(map, b) };
+    return { names, name: "open_way", run: () => api.openWay(robot, name).catch(inItsWords("open_way", names)) };
+  });
+}
+
+/** @param {string} action @param {Record<string, string>} names @returns {(failure: unknown) => never} */
+export const inItsWords = (action, names) => (failure) => {
+  const key = failure instanceof api.ApiProblem ? `mailroom.do.${action}.${failure.code}` : "";
+  throw hasText(key) ? new Error(t(key, names)) : failure;
+};

@@ -6,7 +6,7 @@
  *   | {kind: "locked", key: string, order: Order} | {kind: "stopped", key: string, robot: Robot}
  *   | {kind: "silent", key: string, robot: Robot} | {kind: "given_up", key: string, sending: Sending}} Wrong
  */
-import { hasEnded, reasonText } from "./order_words.js";
+import { hasEnded, isBetweenLegs, reasonText, robotWhy } from "./order_words.js";
 import { titleOf } from "./posts.js";
 import { serverNow } from "./server_clock.js";
 import { t } from "./texts.js";
@@ -79,9 +79,14 @@ export function whyItWaits(order, map) {
   if (order.state === "queued" && not_before && Date.parse(not_before) > now_ms) {
     return t("mailroom.why.not_before", { time: dayAndTime(not_before, now_ms) });
   }
-  const why = order.why ? reasonText(order.why, order.why_words, map) : t(`mailroom.why.${order.state}`);
+  if (isBetweenLegs(order) && !order.why) return t("mailroom.why.passed_on", { at: titleOf(map, order.passed_on_at_post ?? "") });
+  const why = order.why ? orderWhy(order, map) : t(`mailroom.why.${order.state}`);
   return wait_until && robotStands(order) ? t("mailroom.why.until", { why, time: clockTime(wait_until) }) : why;
 }
+
+/** Of its robot the service knows more than it says of itself. @param {Order} order @param {CampusMap} map */
+const orderWhy = ({ why, why_words, robot }, map) =>
+  robot && robot.why === why ? robotWhy(robot, map) : reasonText(why ?? "", why_words, map);
 
 /** For a wall: a reason that somebody has typed may name people. @param {Order} order */
 export const withoutOwnWords = (order) => (order.why_words ? order : { ...order, why: null });

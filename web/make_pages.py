@@ -1,8 +1,8 @@
-"""`make pages` writes what follows from other files: each page's list of the modules that it needs, and the types of
-what the service sends, from its OpenAPI document. `--check` says what is not up to date instead.
+"""`make pages` writes what follows from other files: the pages' heads from the table below and their modules, and the
+types of what the service sends, from its OpenAPI document. `--check` says what is not up to date instead.
 
-*.html               their `preload` and `modulepreload` lines, so that no module waits for another to be read and no
-                     answer of the service for a module
+*.html               one for each line of `HEADS`. Their `preload` and `modulepreload` lines are there so that no module
+                     waits for another to be read and no answer of the service for a module
 npm_modules.json     what any module of the pages needs of npm: the service worker keeps it
 openapi_types.d.ts   a type for each schema; `api_types.ts` gives them the names that the pages use
 """
@@ -15,7 +15,8 @@ import re
 import subprocess
 import sys
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
@@ -26,68 +27,122 @@ MADE_BY_THE_SERVICE: Final = {"/page_files.js"}
 IMPORT: Final = re.compile(
     r"""(?:^|[;\s}])(?:import|export)\s*(?:[\w$*{][^"';]*?from)?\s*["']([^"']+)["']""", re.MULTILINE
 )
-IMPORT_MAP: Final = re.compile(r"<script type=\"importmap\">(.*?)</script>", re.DOTALL)
-PRELOADS: Final = re.compile(r"(?:    <link rel=\"(?:module)?preload\" [^>]+ />\n)*(?=    <script type=\"module\")")
-MODULE: Final = '    <link rel="modulepreload" href="{}" />\n'
-LATER_MODULE: Final = '    <link rel="modulepreload" href="{}" fetchpriority="low" />\n'
-"""The page needs all of them; but what scripts ask for meanwhile, as the texts, shall not wait behind them."""
-ANSWER: Final = '    <link rel="preload" as="fetch" href="{}" crossorigin />\n'
-ASKED_BY_ALL: Final = ("/api/v1/about", "/api/v1/me")
-ASKED_BY: Final[Mapping[str, tuple[str, ...]]] = {
-    "index.html": ("/api/v1/map", "/api/v1/orders?role=all&amp;limit=6"),
-    "mail.html": ("/api/v1/map",),
-    "follow.html": ("/api/v1/map",),
+IMPORTS: Final = {
+    "lit": "/npm/lit-element/lit-element.js",
+    "lit-html": "/npm/lit-html/lit-html.js",
+    "lit-html/": "/npm/lit-html/",
+    "lit-element/": "/npm/lit-element/",
+    "@lit/reactive-element": "/npm/@lit/reactive-element/reactive-element.js",
 }
-"""What `early.js` asks for whatever the page's address is: begun while `early.js` is still on its way."""
-SCRIPTS: Final = re.compile(r'<script type="module" src="([^"]+)"')
+MODULE: Final = '<link rel="modulepreload" href="{}" />'
+LATER_MODULE: Final = '<link rel="modulepreload" href="{}" fetchpriority="low" />'
+"""The page needs all of them; but what scripts ask for meanwhile, as the texts, shall not wait behind them."""
+ANSWER: Final = '<link rel="preload" as="fetch" href="{}" crossorigin />'
+SCRIPT: Final = '<script type="module" src="{}"></script>'
+STYLES: Final = '<link rel="stylesheet" href="/styles/{}.css" />'
+INSTALLS: Final = '<link rel="manifest" href="/manifest.webmanifest" />'
+SAYS_NOT_WHENCE: Final = '<meta name="referrer" content="no-referrer" />'
+EARLY: Final = "/early.js"
+ASKED_BY_ALL: Final = ("/api/v1/about", "/api/v1/me")
 
 
-def with_preloads(name: str, html: str) -> str:
-    """The page with a line for each module behind its scripts, in the order of their names; before them what the first
-    script needs, since it begins as soon as it has that, and the answers that it asks for."""
-    import_map = json.loads(_only(IMPORT_MAP, html))["imports"]
-    early, *scripts = SCRIPTS.findall(html)
-    first = [early, *sorted(modules_behind(early, import_map))]
-    behind = (one for script in scripts for one in (*sorted(modules_behind(script, import_map)), script))
-    others = [one for one in dict.fromkeys(behind) if one not in first]
-    answers = [*ASKED_BY_ALL, *ASKED_BY.get(name, ())]
-    lines = [*map(MODULE.format, first), *map(ANSWER.format, answers), *map(LATER_MODULE.format, others)]
-    return PRELOADS.sub("".join(lines), html, count=1)
+@dataclass(frozen=True)
+class Head:
+    """What one page has that others have not."""
+
+    opens: str
+    """The script that draws the shell, with a place in it for what the page shows."""
+    styles: tuple[str, ...]
+    shows: str | None = None
+    """The element in that place, if it has a script of its own: the shell stands while that is on its way."""
+    answers: tuple[str, ...] = ()
+    """What `early.js` asks for whatever the page's address is: begun while `early.js` is still on its way."""
+    kind: str = INSTALLS
 
 
-def _only(pattern: re.Pattern[str], html: str) -> str:
-    (found,) = pattern.findall(html)
-    return str(found)
+HEADS: Final[Mapping[str, Head]] = {
+    "index": Head("order", ("order",), "order_page", ("/api/v1/map", "/api/v1/orders?role=all&amp;limit=6")),
+    "follow": Head("follow", ("follow",), "follow_page", ("/api/v1/map",)),
+    "mail": Head("mail", ("mail",), "mail_page", ("/api/v1/map",)),
+    "notices": Head("notices", ("notices",), "notices_page"),
+    "settings": Head("settings", ("settings",), "settings_page"),
+    "one-order": Head("one_order", ("follow",), "one_order", kind=SAYS_NOT_WHENCE),
+    "mailroom": Head("mailroom", ("map", "notices", "mailroom", "asking", "wall")),
+    "robots": Head("robots", ("asking", "robots")),
+    "print": Head("print", ("mailroom", "asking", "print")),
+}
+PAGE: Final = """<!doctype html>
+<html lang="en">
+  <head>
+    <meta charset="utf-8" />
+    <title>Campus Mail</title>
+    <meta name="viewport" content="width=device-width, initial-scale=1, viewport-fit=cover" />
+    <meta name="description" content="Robots that carry letters across the campus" />
+    <meta name="theme-color" content="#f6f3ec" media="(prefers-color-scheme: light)" />
+    <meta name="theme-color" content="#101614" media="(prefers-color-scheme: dark)" />
+    <link rel="icon" href="/icons/icon.svg" type="image/svg+xml" />
+    {lines}
+  </head>
+  <body>
+    <div id="page"></div>
+    <noscript>Campus Mail needs JavaScript to follow robots as they drive.</noscript>
+  </body>
+</html>
+"""
 
 
-def modules_behind(first: str, import_map: Mapping[str, str]) -> set[str]:
+def html_of(head: Head) -> str:
+    """A whole page: all else is drawn by its scripts."""
+    scripts = [EARLY, f"/pages/{head.opens}.js", *([f"/elements/{head.shows}.js"] if head.shows else ())]
+    lines = [
+        head.kind,
+        *map(STYLES.format, ("everywhere", *head.styles)),
+        f'<script type="importmap">{json.dumps({"imports": IMPORTS})}</script>',
+        *_begun(scripts, (*ASKED_BY_ALL, *head.answers)),
+        *map(SCRIPT.format, scripts),
+    ]
+    return PAGE.format(lines="\n    ".join(lines))
+
+
+def _begun(scripts: list[str], answers: tuple[str, ...]) -> Iterator[str]:
+    """A line for each module behind the scripts, script by script, in the order of their names; before them what the
+    first script needs, since it begins as soon as it has that, and the answers that it asks for."""
+    early, *others = ([*sorted(modules_behind(script)), script] for script in scripts)
+    first = [EARLY, *early[:-1]]
+    behind = dict.fromkeys(module for modules in others for module in modules if module not in first)
+    yield from map(MODULE.format, first)
+    yield from map(ANSWER.format, answers)
+    yield from map(LATER_MODULE.format, behind)
+
+
+def modules_behind(first: str) -> set[str]:
     """Every module that a module imports at once, at any depth, without itself; what `import()` fetches waits."""
     found: set[str] = set()
     waiting = [first]
     while waiting:
         module = waiting.pop()
         text = re.sub(r"/\*.*?\*/", "", file_of(module).read_text(encoding="utf-8"), flags=re.DOTALL)
-        new = {resolve(module, name, import_map) for name in IMPORT.findall(text)} - found - MADE_BY_THE_SERVICE
+        new = {resolve(module, name) for name in IMPORT.findall(text)} - found - MADE_BY_THE_SERVICE
         waiting += new
         found |= new
     return found - {first}
 
 
-def npm_modules(import_map: Mapping[str, str]) -> str:
+def npm_modules() -> str:
     """Those behind any module of ours, also behind one that is fetched only when it is needed."""
     ours = [file for file in WEB.rglob("*.js") if "node_modules" not in file.parts]
-    behind = set().union(*(modules_behind(f"/{file.relative_to(WEB)}", import_map) for file in ours))
+    behind = set().union(*(modules_behind(f"/{file.relative_to(WEB)}") for file in ours))
     return json.dumps(sorted(module for module in behind if module.startswith("/npm/")), indent=2) + "\n"
 
 
-def resolve(module: str, name: str, import_map: Mapping[str, str]) -> str:
+def resolve(module: str, name: str) -> str:
     """The address of what `module` imports as `name`."""
     if name.startswith("."):
         return posixpath.normpath(posixpath.join(posixpath.dirname(module), name))
-    if name in import_map:
-        return import_map[name]
-    prefix = max((key for key in import_map if key.endswith("/") and name.startswith(key)), key=len)
-    return import_map[prefix] + name.removeprefix(prefix)
+    if name in IMPORTS:
+        return IMPORTS[name]
+    prefix = max((key for key in IMPORTS if key.endswith("/") and name.startswith(key)), key=len)
+    return IMPORTS[prefix] + name.removeprefix(prefix)
 
 
 def file_of(address: str) -> Path:
@@ -110,13 +165,12 @@ def types_of(openapi: Mapping[str, Any]) -> str:
 
 
 def made_files() -> dict[Path, str]:
-    """Every file that is made or has a made part, as it should be."""
+    """Every file that is made, as it should be."""
     sys.path[:0] = [str(WEB.parent)]
     from client.make_client import document  # the checkout is on the path only now
 
-    pages = {page: with_preloads(page.name, page.read_text(encoding="utf-8")) for page in sorted(WEB.glob("*.html"))}
-    import_map = json.loads(_only(IMPORT_MAP, next(iter(pages.values()))))["imports"]
-    return pages | {WEB / NPM_MODULES: npm_modules(import_map), WEB / TYPES: types_of(document())}
+    pages = {WEB / f"{name}.html": html_of(head) for name, head in HEADS.items()}
+    return pages | {WEB / NPM_MODULES: npm_modules(), WEB / TYPES: types_of(document())}
 
 
 def main() -> None:

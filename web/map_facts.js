@@ -1,6 +1,6 @@
 /**
  * What a map shows and its list says: both are made of these facts, so that the drawing says nothing that the list does not. Pure.
- * @import { Alarm, CampusMap, MapCorridor, MapPost, Robot, TakenCorridor } from "./api_types.ts"
+ * @import { Alarm, CampusMap, ClosedCorridor, MapCorridor, MapPost, Robot, TakenCorridor } from "./api_types.ts"
  * @typedef {"stopped" | "charging" | "offline"} Condition
  * @typedef {object} MapFacts
  * @property {readonly Robot[]} robots by name
@@ -8,12 +8,16 @@
  * @property {Map<string, Robot[]>} expected who is expected at which post
  * @property {readonly TakenCorridor[]} taken by these robots, on this map
  * @property {readonly Alarm[]} closed for the robot that turned back in it
+ * @property {readonly ClosedCorridor[]} byPeople
+ * @property {readonly string[]} shut corridors that somebody has closed, or in which a robot turned back
  * @property {{posts: MapPost[], corridors: MapCorridor[]}} silent where there is no network
  */
 
-/** @param {CampusMap} map @param {readonly Robot[]} robots @param {readonly TakenCorridor[]} traffic @param {readonly Alarm[]} alarms @returns {MapFacts} */
-export function factsOf(map, robots, traffic, alarms) {
+/** @param {CampusMap} map @param {readonly Robot[]} robots @param {readonly TakenCorridor[]} traffic @param {readonly Alarm[]} alarms
+ *  @param {readonly ClosedCorridor[]} closed @returns {MapFacts} */
+export function factsOf(map, robots, traffic, alarms, closed = []) {
   const posts = new Set(map.posts.map(({ name }) => name));
+  const found = alarms.filter(({ corridor, cleared_at }) => corridor && !cleared_at && corridorNamed(map, corridor));
   const shown = [...robots].sort((a, b) => a.name.localeCompare(b.name, undefined, { numeric: true }));
   /** @param {(robot: Robot) => string | undefined} post */
   const grouped = (post) => by(shown.filter((robot) => posts.has(post(robot) ?? "")), post);
@@ -22,7 +26,9 @@ export function factsOf(map, robots, traffic, alarms) {
     seen: grouped(({ last_seen }) => last_seen?.post),
     expected: grouped(({ expected }) => expected?.post),
     taken: traffic.filter(({ robot, corridor }) => shown.some(({ name }) => name === robot) && corridorNamed(map, corridor)),
-    closed: alarms.filter(({ corridor, cleared_at }) => corridor && !cleared_at && corridorNamed(map, corridor)),
+    closed: found,
+    byPeople: closed.filter(({ corridor, by_person }) => by_person && corridorNamed(map, corridor)),
+    shut: [...found, ...closed].map(({ corridor }) => corridor ?? ""),
     silent: { posts: map.posts.filter(({ network }) => !network), corridors: map.corridors.filter(({ network }) => !network) },
   };
 }

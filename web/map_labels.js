@@ -51,7 +51,8 @@ export function robotPlaces(count) {
 
 /**
  * Finds every label the side of its post where it covers least: no corridor, no post, no other label.
- * @param {Places} drawn @param {readonly Wording[]} wordings in the order in which they may choose
+ * @param {Places} drawn @param {readonly Wording[]} wordings in the order in which they may choose, but that those with
+ *   fewer good sides choose before others that matter as much
  * @param {Box | null} frame that none of a post in it may leave @param {readonly Box[]} [kept] clear for something else
  * @returns {{places: Map<string, Place>, boxes: Box[]}}
  */
@@ -62,19 +63,27 @@ export function placeLabels(drawn, wordings, frame, kept = []) {
   const places = new Map();
   /** @type {Box[]} */
   const taken = [];
-  for (const wording of wordings) {
-    const post = posts.get(wording.name);
-    if (!post) continue;
-    const room = frame && within({ ...post, width: 0, height: 0 }, frame) ? frame : null;
-    const sides = foldings(wording)
-      .flatMap((folded) => candidates(post, wording, folded, room))
-      .map((side) => ({ ...side, cost: side.dislike + cost(side.box, wording.name, room) }));
+  const choosing = wordings.map((wording) => ({ wording, good: sidesOf(wording).filter(({ cost }) => cost < 1).length }));
+  choosing.sort((a, b) => Number(b.wording.important) - Number(a.wording.important) || a.good - b.good);
+  for (const { wording } of choosing) {
+    const sides = sidesOf(wording);
+    if (!sides.length) continue;
     const best = sides.reduce((a, b) => (b.cost < a.cost ? b : a));
     if (best.cost >= COVERS && !wording.important) continue;
     taken.push(best.box);
     places.set(wording.name, best.place);
   }
   return { places, boxes: taken };
+
+  /** @param {Wording} wording */
+  function sidesOf(wording) {
+    const post = posts.get(wording.name);
+    if (!post) return [];
+    const room = frame && within({ ...post, width: 0, height: 0 }, frame) ? frame : null;
+    return foldings(wording)
+      .flatMap((folded) => candidates(post, wording, folded, room))
+      .map((side) => ({ ...side, cost: side.dislike + cost(side.box, wording.name, room) }));
+  }
 
   /** @param {Box} box @param {string} own @param {Box | null} room */
   function cost(box, own, room) {

@@ -7,6 +7,7 @@ import { startLive } from "./live.js";
 import { keepServerTime } from "./server_clock.js";
 import { beginSession, hasKept } from "./session.js";
 import { chooseLanguage, loadTexts, t } from "./texts.js";
+import { prepareTimes } from "./times.js";
 /** @import { About, Person } from "./api_types.ts" */
 /** @import { PageShell } from "./elements/page_shell.js" */
 /** @import { PageName } from "./links.js" */
@@ -32,10 +33,20 @@ export async function openPage(page, content) {
       html`<page-shell .page=${page} .about=${about} .person=${person} .content=${draw} .kept=${kept}></page-shell>`,
       root,
     );
-    if (person) startLive();
     const shell = /** @type {PageShell} */ (root.querySelector("page-shell"));
+    requestAnimationFrame(() => setTimeout(prepareTimes));
+    await contentStands(shell);
+    if (person) startLive();
     afterwards(() => import("./after_opening.js").then(({ afterOpening }) => afterOpening(shell, person)));
   });
+}
+
+/** What a page shows may have a script of its own that is still on its way: nothing else is asked for before that.
+ *  @param {PageShell} shell */
+async function contentStands(shell) {
+  await shell.updateComplete;
+  const coming = Array.from(shell.querySelectorAll("#content > :not(:defined)"), ({ localName }) => localName);
+  await Promise.all(coming.map((name) => customElements.whenDefined(name)));
 }
 
 /** Orders that wait on this device have their room from the start. @param {Person} person */

@@ -87,7 +87,8 @@ export interface components {
          * AlarmView
          * @description Something about a robot that a person should look at; over when `cleared_at` says so.
          *
-         *     `corridor`: the one that the robot found closed, and in which it goes nowhere until the alarm is over.
+         *     `reason` is a sentence in English; `why_words` the same as a text of the catalogue, if it is one. `corridor`: the
+         *     one that the robot found closed, and in which it goes nowhere until the alarm is over.
          */
         AlarmView: {
             /** Id */
@@ -98,6 +99,7 @@ export interface components {
             name: string;
             /** Reason */
             reason: string;
+            why_words: components["schemas"]["Words"] | null;
             /** Post */
             post: string | null;
             /** Corridor */
@@ -170,6 +172,39 @@ export interface components {
             ratio: number;
             /** Charging */
             charging: boolean;
+        };
+        /**
+         * ClosedCorridorView
+         * @description A corridor into which no robot is let, since when and why: the reason of the person who has closed it, else the
+         *     words of the robot that turned back there.
+         */
+        ClosedCorridorView: {
+            /** Corridor */
+            corridor: string;
+            /** Reason */
+            reason: string;
+            /** @description What a robot says, as a text of the catalogue; null: a person's words. */
+            why_words: components["schemas"]["Words"] | null;
+            /**
+             * Closed At
+             * Format: date-time
+             */
+            closed_at: string;
+            /** By Person */
+            by_person: boolean;
+            /**
+             * Robots
+             * @description Those that turned back there, and have not tried it again.
+             */
+            robots: string[];
+        };
+        /**
+         * ClosedCorridors
+         * @description All of them, by name: it replaces what was known.
+         */
+        ClosedCorridors: {
+            /** Closed */
+            closed: components["schemas"]["ClosedCorridorView"][];
         };
         /**
          * CodeMailed
@@ -404,6 +439,33 @@ export interface components {
             created_at: string;
         };
         /**
+         * DurationView
+         * @description How long one thing takes: quantiles in seconds, of which `seen` were seen; `assumed_s` by map and settings.
+         */
+        DurationView: {
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "corridor" | "load" | "receive";
+            /** Name */
+            name: string;
+            /** From Post */
+            from_post: string | null;
+            /** To Post */
+            to_post: string | null;
+            /** Seen */
+            seen: number;
+            /** Assumed S */
+            assumed_s: number;
+            /** P10 S */
+            p10_s: number;
+            /** P50 S */
+            p50_s: number;
+            /** P90 S */
+            p90_s: number;
+        };
+        /**
          * Enrolled
          * @description The robot's token, told once and never again.
          */
@@ -458,6 +520,44 @@ export interface components {
              * @default true
              */
             assumed: boolean;
+        };
+        /**
+         * EstimateError
+         * @description One way to estimate. `median_error_ratio`: of the middle, as a share of what it took. `pinball_s`: the mean loss
+         *     of the three quantiles, in seconds; less is better.
+         */
+        EstimateError: {
+            /** Median Error Ratio */
+            median_error_ratio: number;
+            /** Pinball S */
+            pinball_s: number;
+        };
+        /**
+         * EstimateQuality
+         * @description How good arrivals were estimated of the latest orders, `scored` in number.
+         *
+         *     `assumed`: people are still told what the lengths on the map say, since too little was seen. `inside_ratio` is how
+         *     often the robot came between the times that were told (`inside_meant` is aimed at), `earlier_ratio` and
+         *     `later_ratio` how often before and after them. `by_map`: what the lengths alone would have told of the same orders.
+         *     All of it is null as long as no robot has come.
+         */
+        EstimateQuality: {
+            /** Scored */
+            scored: number;
+            /** Assumed */
+            assumed: boolean;
+            /** Inside Meant */
+            inside_meant: number;
+            /** Inside Ratio */
+            inside_ratio: number | null;
+            /** Earlier Ratio */
+            earlier_ratio: number | null;
+            /** Later Ratio */
+            later_ratio: number | null;
+            told: components["schemas"]["EstimateError"] | null;
+            by_map: components["schemas"]["EstimateError"] | null;
+            /** Durations */
+            durations: components["schemas"]["DurationView"][];
         };
         /**
          * EventView
@@ -721,6 +821,58 @@ export interface components {
             corridors: components["schemas"]["CorridorView"][];
         };
         /**
+         * MyDelegateView
+         * @description Somebody whom the caller has named, whose code is good until `expires_at`: the `post` where they meet the robot,
+         *     and for which order.
+         */
+        MyDelegateView: {
+            /** Id */
+            id: string;
+            /** Name */
+            name: string;
+            /** Email */
+            email: string | null;
+            /**
+             * Purpose
+             * @enum {string}
+             */
+            purpose: "load" | "receive" | "return";
+            /** Post */
+            post: string;
+            /**
+             * Named At
+             * Format: date-time
+             */
+            named_at: string;
+            /**
+             * Expires At
+             * Format: date-time
+             */
+            expires_at: string;
+            /** Order Id */
+            order_id: string;
+            state: components["schemas"]["OrderState"];
+            /** Description */
+            description: string | null;
+            sender: components["schemas"]["Somebody"];
+            recipient: components["schemas"]["Somebody"];
+            /**
+             * My Role
+             * @enum {string}
+             */
+            my_role: "sender" | "recipient" | "dispatcher";
+        };
+        /**
+         * MyDelegates
+         * @description Whom the caller has named for orders that go on, newest first.
+         */
+        MyDelegates: {
+            /** Items */
+            items: components["schemas"]["MyDelegateView"][];
+            /** Next */
+            next: string | null;
+        };
+        /**
          * NewDelegate
          * @description Somebody who hands over instead of the sender or the recipient. `purpose` follows from who names them.
          * @example {
@@ -957,6 +1109,8 @@ export interface components {
         /**
          * OrderView
          * @description An order as one person may see it. A delegate sees where it is, and of sender and recipient the names alone.
+         *
+         *     `passed_on_at_post`: where somebody of the mailroom has taken the mail out of one robot for another to carry it on.
          */
         OrderView: {
             /** Id */
@@ -1012,6 +1166,8 @@ export interface components {
             wait_until: string | null;
             /** Return Post */
             return_post: string | null;
+            /** Passed On At Post */
+            passed_on_at_post: string | null;
             /** Standing Order Id */
             standing_order_id: string | null;
             placed_by: components["schemas"]["Somebody"] | null;
@@ -1019,6 +1175,23 @@ export interface components {
             custody: components["schemas"]["CustodyView"][];
             /** Events */
             events: components["schemas"]["EventView"][];
+        };
+        /**
+         * PassingOn
+         * @description At which post somebody has taken the mail out of its robot for another one; null: where that was seen last.
+         * @example {
+         *       "post": "post3",
+         *       "reason": "Its battery is flat."
+         *     }
+         * @example {
+         *       "post": null
+         *     }
+         */
+        PassingOn: {
+            /** Post */
+            post?: string | null;
+            /** Reason */
+            reason?: string | null;
         };
         /**
          * PeoplePage
@@ -1187,7 +1360,9 @@ export interface components {
          * RobotView
          * @description One robot. `online` is its own axis: an offline robot goes on with what it is doing.
          *
-         *     `why` is its own sentence, in English; `why_words` the same as a text of the catalogue, if it is one.
+         *     `why` is its own sentence, in English, or the service's while it waits for others; `why_words` the same as a text of
+         *     the catalogue, if it is one. `waits_for`: the facts of that. `taken_out_at`: a person has given its corridors to
+         *     others, and it has not heard so yet.
          * @example {
          *       "name": "r1",
          *       "online": true,
@@ -1209,6 +1384,8 @@ export interface components {
          *       },
          *       "why": "I am carrying mail to post4.",
          *       "why_words": null,
+         *       "waits_for": null,
+         *       "taken_out_at": null,
          *       "heard_at": "2026-01-05T09:03:14Z"
          *     }
          */
@@ -1226,6 +1403,9 @@ export interface components {
             /** Why */
             why: string | null;
             why_words: components["schemas"]["Words"] | null;
+            waits_for: components["schemas"]["WaitsFor"] | null;
+            /** Taken Out At */
+            taken_out_at: string | null;
             /** Heard At */
             heard_at: string | null;
         };
@@ -1577,6 +1757,24 @@ export interface components {
             problem: string | null;
         };
         /**
+         * WaitsFor
+         * @description The corridor that a robot wishes to enter, the robots that have to go on before, and until about when.
+         *
+         *     `closed`: by a person, until a person opens it.
+         */
+        WaitsFor: {
+            /** From Post */
+            from_post: string;
+            /** To Post */
+            to_post: string;
+            /** Robots */
+            robots: string[];
+            /** Until */
+            until: string | null;
+            /** Closed */
+            closed: boolean;
+        };
+        /**
          * WatchView
          * @description `online` false: it is shown when the robot is back. `tells` false: this robot's software knows nothing of it.
          */
@@ -1589,6 +1787,17 @@ export interface components {
             tells: boolean;
             /** For S */
             for_s: number;
+        };
+        /**
+         * WayIsOpen
+         * @description Which corridor is free again: the name that it has on the map.
+         * @example {
+         *       "corridor": "post2-post3"
+         *     }
+         */
+        WayIsOpen: {
+            /** Corridor */
+            corridor: string;
         };
         /**
          * WebhookView

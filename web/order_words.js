@@ -1,10 +1,12 @@
 /**
  * An order in words: where it stands, what comes next, what has happened.
- * @import { CampusMap, Order, OrderEvent, OrderState, Words } from "./api_types.ts"
+ * @import { CampusMap, Order, OrderEvent, OrderState, Robot, WaitsFor, Words } from "./api_types.ts"
  * @typedef {{state: OrderState, text: string, event: OrderEvent | null}} Entry an event, or a step still to come (null)
  */
 import { titleOf } from "./posts.js";
+import { serverNow } from "./server_clock.js";
 import { hasText, t } from "./texts.js";
+import { clockTime } from "./times.js";
 
 /**
  * Why something waits, in this page's language; a sentence that the catalogue does not have is shown as it was said.
@@ -16,10 +18,27 @@ export function reasonText(said, words, map) {
   return t(words.key, post ? { ...words.facts, post: titleOf(map, post) } : words.facts);
 }
 
+/** Why a robot does what it does; of what it waits for, the service knows more than it says itself. @param {Robot} robot @param {CampusMap} map */
+export function robotWhy(robot, map) {
+  if (robot.waits_for && !robot.taken_out_at) return waitText(robot.waits_for, map) ?? reasonText(robot.why ?? "", robot.why_words, map);
+  if (robot.why_words?.key === "why.paused" && robot.last_seen) return t("why.paused_at", { post: titleOf(map, robot.last_seen.post) });
+  return reasonText(robot.why ?? "", robot.why_words, map);
+}
+
+/** "Waits for the corridor UC – Canal, taken by r2 until about 12:41" @param {WaitsFor} waits @param {CampusMap} map */
+function waitText({ from_post, to_post, robots, until, closed }, map) {
+  const names = { from: titleOf(map, from_post), to: titleOf(map, to_post), robots: robots.join(", "), time: until ? clockTime(until) : "" };
+  if (closed) return t("robot.waits.closed", names);
+  if (!robots.length) return null;
+  return t(until && Date.parse(until) > serverNow() ? "robot.waits.until" : "robot.waits.taken", names);
+}
+
 /** The usual way of an order, in order. */
 const WAY = /** @type {OrderState[]} */ ([
   "queued", "assigned", "to_sender", "at_sender", "carrying", "at_recipient", "delivered",
 ]);
+
+const LOADED = WAY.indexOf("carrying");
 
 /** What each part of the way is called, and the states in it. */
 const STAGES = /** @type {Record<string, OrderState[]>} */ ({
@@ -50,24 +69,37 @@ export const isMyTurn = (order) => order.my_code !== null && AT_ME[order.my_code
 const names = (order, map) => ({
   robot: order.robot ? t("robot.name", { name: order.robot.name }) : t("robot.some"),
   from: titleOf(map, order.from_post),
+  at: titleOf(map, order.passed_on_at_post ?? order.from_post),
   to: titleOf(map, order.to_post),
   sender: order.sender.name,
   recipient: order.recipient.name,
 });
 
-/** @param {"state" | "next"} what @param {Order} order @param {CampusMap} map */
-function sentence(what, order, map) {
-  const mine = `${what}.${order.my_role}.${order.state}`;
-  return t(hasText(mine) ? mine : `${what}.sender.${order.state}`, names(order, map));
+/** The mailroom has it until the next robot loads it. @param {Order} order */
+export const isBetweenLegs = ({ state, passed_on_at_post }) => 
+  passed_on_at_post !== null && WAY.slice(0, LOADED).includes(state);
+
+/** Nobody looks for a robot before its time. @param {Order} order @param {number} now_ms */
+function stateOf(order, now_ms) {
+  const { state, not_before } = order;
+  if (isBetweenLegs(order)) return "passed_on";
+  return state === "queued" && not_before && Date.parse(not_before) > now_ms ? "later" : state;
 }
 
-/** Where it stands, for the person who looks. @param {Order} order @param {CampusMap} map */
-export const stateSentence = (order, map) => sentence("state", order, map);
+/** @param {"state" | "next"} what @param {Order} order @param {CampusMap} map @param {number} now_ms */
+function sentence(what, order, map, now_ms) {
+  const state = stateOf(order, now_ms);
+  const mine = `${what}.${order.my_role}.${state}`;
+  return t(hasText(mine) ? mine : `${what}.sender.${state}`, names(order, map));
+}
 
-/** What happens next, or what that person is to do. @param {Order} order @param {CampusMap} map */
-export function nextSentence(order, map) {
+/** Where it stands, for the person who looks. @param {Order} order @param {CampusMap} map @param {number} now_ms */
+export const stateSentence = (order, map, now_ms) => sentence("state", order, map, now_ms);
+
+/** What happens next, or what that person is to do. @param {Order} order @param {CampusMap} map @param {number} now_ms */
+export function nextSentence(order, map, now_ms) {
   if (order.cancel_requested || order.return_requested) return t(isAboard(order) ? "bring_back.requested" : "cancel.requested");
-  return sentence("next", order, map);
+  return sentence("next", order, map, now_ms);
 }
 
 /** @param {Order} order @returns {{name: string, done: boolean, now: boolean}[]} nothing where the order left the usual way */
@@ -84,16 +116,29 @@ export function stages(order) {
 const TOLD_TOO = ["wait_extended", "delegate_named", "delegate_revoked", "return_requested", "delayed", "taken_out"];
 
 /** @param {OrderEvent} event @param {Record<string, string>} values */
-const happening = ({ kind, state }, values) => t(kind === "moved" ? `timeline.${state}` : `timeline.event.${kind}`, values);
+function happening(event, values) {
+  if (isPassingOn(event)) return t("timeline.passed_on", values);
+  return t(event.kind === "moved" ? `timeline.${event.state}` : `timeline.event.${event.kind}`, values);
+}
+
+/** Back in the queue, and somebody has said where it lies. @param {OrderEvent} event */
+const isPassingOn = ({ seq, kind, state, post, by }) =>
+  seq > 1 && kind === "moved" && state === "queued" && by === "dispatcher" && post !== null;
+
+/** The values of each event's words: after it was passed on it is fetched there. @param {Order} order @param {CampusMap} map */
+function* valuesOfEvents(order, map) {
+  let values = names(order, map);
+  for (const event of order.events) {
+    if (isPassingOn(event) && event.post) values = { ...values, from: titleOf(map, event.post), at: titleOf(map, event.post) };
+    yield { event, values: event.robot ? { ...values, robot: t("robot.name", { name: event.robot }) } : values };
+  }
+}
 
 /** Everything that happened, then what is still to come on the usual way. @param {Order} order @param {CampusMap} map @returns {Entry[]} */
 export function timeline(order, map) {
-  const values = names(order, map);
-  const happened = order.events.filter(({ kind }) => kind === "moved" || TOLD_TOO.includes(kind)).map((event) => ({
-    state: event.state,
-    text: happening(event, event.robot ? { ...values, robot: t("robot.name", { name: event.robot }) } : values),
-    event,
-  }));
+  const said = [...valuesOfEvents(order, map)].filter(({ event: { kind } }) => kind === "moved" || TOLD_TOO.includes(kind));
+  const happened = said.map(({ event, values }) => ({ state: event.state, text: happening(event, values), event }));
+  const values = { ...names(order, map), ...(isBetweenLegs(order) && { from: names(order, map).at }) };
   const reached = WAY.indexOf(order.state);
   const ahead = reached < 0 ? [] : WAY.slice(reached + 1);
   return [...happened, ...ahead.map((state) => ({ state, text: t(`timeline.to_come.${state}`, values), event: null }))];

@@ -17,6 +17,12 @@ export function loadMap() {
 /** A post's title; its name where this map does not know it. @param {CampusMap} map @param {string | null} name */
 export const titleOf = (map, name) => map.posts.find((post) => post.name === name)?.title ?? name ?? "";
 
+/** "Post 3 – Post 4" @param {CampusMap} map @param {string} corridor */
+export function corridorTitle(map, corridor) {
+  const ends = map.corridors.find(({ name }) => name === corridor);
+  return ends ? `${titleOf(map, ends.a)} – ${titleOf(map, ends.b)}` : corridor;
+}
+
 /**
  * The posts of the shortest way by corridor lengths, ends included; empty where there is none.
  * The robot plans its own: it may go round something that is in its way.

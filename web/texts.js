@@ -42,8 +42,8 @@ export async function loadTexts(wanted) {
   document.documentElement.lang = wanted;
 }
 
-/** The locale for dates: the browser's own variant of the page's language, so that an en-GB reader sees 14:05. */
-export const locale = () => navigator.languages.find((tag) => tag.startsWith(language)) ?? language;
+/** The locale of times and numbers: the catalogue's, by which mails are written too (app/texts/times.py). */
+export const locale = () => catalogue["time.locale"] ?? language;
 
 /** @param {string} key */
 export const hasText = (key) => key in catalogue;

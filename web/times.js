@@ -1,4 +1,4 @@
-/** Times as people read them, in their own locale. Times go in as the service writes them. */
+/** Times as people read them, and as mails say them (app/texts/times.py). Times go in as the service writes them. */
 import { locale, t } from "./texts.js";
 
 const HOUR_MS = 3_600_000;
@@ -17,21 +17,30 @@ function format(options) {
 }
 
 const CLOCK = /** @type {const} */ ({ hour: "numeric", minute: "2-digit" });
+const DAY_AND_CLOCK = /** @type {const} */ ({ day: "numeric", month: "short", ...CLOCK });
 
-/** "14:05" @param {string} at */
-export const clockTime = (at) => format(CLOCK).format(new Date(at));
+/** No line ends inside of "1:57 p.m.", "13 h 57" or "22 nov." @param {string} said */
+const held = (said) => said.replace(/\b \b/g, "\u00a0");
 
-/** "12:40 – 12:44" @param {{from: string, to: string}} window */
-export const windowText = ({ from, to }) => format(CLOCK).formatRange(new Date(from), new Date(to));
+/** @param {string} at @param {number} now_ms */
+const isToday = (at, now_ms) => new Date(at).toDateString() === new Date(now_ms).toDateString();
+
+/** "2:05 p.m.", "14 h 05" @param {string} at */
+export const clockTime = (at) => held(format(CLOCK).format(new Date(at)));
+
+/** "12:40 – 12:44 p.m."; with its day unless it is today's. @param {{from: string, to: string}} window @param {number} [now_ms] */
+export const windowText = ({ from, to }, now_ms = Date.parse(from)) =>
+  held(format(isToday(from, now_ms) ? CLOCK : DAY_AND_CLOCK).formatRange(new Date(from), new Date(to)));
+
+/** A phone takes 50 ms to say its first time: done before somebody waits for it. */
+export const prepareTimes = () => void windowText({ from: "2024-01-01T12:00Z", to: "2024-01-01T12:05Z" });
 
 /** A day and a time; today needs no day. @param {string} at @param {number} now_ms */
-export function dayAndTime(at, now_ms) {
-  const sameDay = format({ dateStyle: "short" }).format(new Date(at)) === format({ dateStyle: "short" }).format(now_ms);
-  return sameDay ? clockTime(at) : format({ day: "numeric", month: "short", ...CLOCK }).format(new Date(at));
-}
+export const dayAndTime = (at, now_ms) =>
+  isToday(at, now_ms) ? clockTime(at) : held(format(DAY_AND_CLOCK).format(new Date(at)));
 
-/** "09:30" as people write it here. @param {string} at a time of day in no particular zone */
-export const wallClock = (at) => format({ ...CLOCK, timeZone: "UTC" }).format(new Date(`2024-01-01T${at}Z`));
+/** "9:30 a.m." @param {string} at a time of day in no particular zone, as 09:30 */
+export const wallClock = (at) => held(format({ ...CLOCK, timeZone: "UTC" }).format(new Date(`2024-01-01T${at}Z`)));
 
 /** The name of a weekday. @param {number} day 0 is Monday @param {"long" | "short"} [style] */
 export const weekdayName = (day, style = "long") =>
@@ -52,8 +61,8 @@ export function ago(at, now_ms) {
   return relative.format(-Math.floor(age_ms / HOUR_MS), "hour");
 }
 
-/** "14:05:07" @param {string} at */
-export const clockSeconds = (at) => format({ ...CLOCK, second: "2-digit" }).format(new Date(at));
+/** "2:05:07 p.m." @param {string} at */
+export const clockSeconds = (at) => held(format({ ...CLOCK, second: "2-digit" }).format(new Date(at)));
 
 /** "1,234.5" @param {number} value @param {number} digits behind the point */
 export const decimal = (value, digits) =>

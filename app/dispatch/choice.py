@@ -1,10 +1,10 @@
 """Which robot fetches which order: a pure function of what waits, who is free, and the map.
 
-Thin: who has waited longest first (priority counts like waiting), the nearest idle robot. Predicted charge and
-timetables come later behind the same function; what is taken along on the way is `insertion.py`.
+Thin: who has waited longest first (priority counts like waiting), the nearest idle robot that has the charge for it
+(`charge.py`). Timetables come later behind the same function; what is taken along on the way is `insertion.py`.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from typing import Final
@@ -13,7 +13,8 @@ from app.tables import Priority
 from maps.ways import Ways
 
 ENOUGH_CHARGE: Final = 0.30
-"""Above the ratio at which a robot's own battery plan would take it back to the dock at once (0.25 and hysteresis)."""
+"""Not for any order: above the ratio at which a robot's own battery plan would take it back to the dock at once (0.25
+and hysteresis). What an order needs beyond that: `charge.py`."""
 HEAD_STARTS: Final = {Priority.LOW: -1, Priority.NORMAL: 0, Priority.HIGH: 1}
 
 
@@ -37,11 +38,15 @@ class WaitingOrder:
 
 @dataclass(frozen=True)
 class IdleRobot:
-    """A robot that is connected and has nothing to do. `post` is where it was last seen, if ever."""
+    """A robot that is connected and has nothing to do. `post` is where it was last seen, if ever; at `home` (a post) it
+    charges when it has nothing to do; `docked`: None if it does not tell."""
 
     name: str
     post: str | None
     battery_ratio: float | None
+    charging: bool = False
+    docked: bool | None = None
+    home: str | None = None
 
 
 @dataclass(frozen=True)
@@ -57,7 +62,13 @@ def counts_since(created_at: datetime, priority: Priority, head_start_s: float) 
     return created_at - timedelta(seconds=HEAD_STARTS[priority] * head_start_s)
 
 
-def choose_robots(waiting: Iterable[WaitingOrder], robots: Sequence[IdleRobot], ways: Ways) -> list[Assignment]:
+MayTake = Callable[[IdleRobot, WaitingOrder], bool]
+"""Whether a robot has the charge for an order."""
+
+
+def choose_robots(
+    waiting: Iterable[WaitingOrder], robots: Sequence[IdleRobot], ways: Ways, may_take: MayTake = lambda *_: True
+) -> list[Assignment]:
     """Who fetches what: the first of `waiting` (longest first) chooses first, the nearest of those who may."""
     free = {robot.name: robot for robot in robots if has_enough_charge(robot)}
     chosen = []
@@ -65,8 +76,9 @@ def choose_robots(waiting: Iterable[WaitingOrder], robots: Sequence[IdleRobot], 
         if not free:
             break
         able = [robot for robot in free.values() if order.may_go_with(robot.name)]
-        if able:
-            nearest = min(able, key=lambda robot: (ways.length_m(robot.post, order.from_post), robot.name))
+        able.sort(key=lambda robot: (ways.length_m(robot.post, order.from_post), robot.name))
+        nearest = next((robot for robot in able if may_take(robot, order)), None)
+        if nearest is not None:
             chosen.append(Assignment(order.id, nearest.name))
             del free[nearest.name]
     return chosen
@@ -86,3 +98,12 @@ def why_nobody_comes(robots: Sequence[IdleRobot], connected: int) -> str:
     if not any(has_enough_charge(robot) for robot in robots):
         return "The free robots are charging first."
     return "The robot that is to fetch it is busy."
+
+
+NOT_ENOUGH_FOR_IT: Final = "No free robot has enough charge for this way yet."
+
+
+def lacks_charge(order: WaitingOrder, robots: Sequence[IdleRobot], may_take: MayTake) -> bool:
+    """Whether it is for that alone that no free robot fetches this order, though some could work."""
+    able = [robot for robot in robots if has_enough_charge(robot) and order.may_go_with(robot.name)]
+    return bool(able) and not any(may_take(robot, order) for robot in able)

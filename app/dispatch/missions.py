@@ -35,7 +35,7 @@ async def begin_missions(
         {"id": new_id(), "robot": robot, "created_at": now, "told_update": int(told)} for _, robot in given
     ]
     stops = [
-        _stops(mission["id"], order.id, (order.from_post, order.to_post), wait_limit_s)
+        _stops(mission["id"], order.id, (order.load_post, order.to_post), wait_limit_s)
         for mission, (order, _) in zip(missions, given, strict=True)
     ]
     # All of one kind by one statement, and as values: that is most of what an order costs here.

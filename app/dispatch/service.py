@@ -14,11 +14,14 @@ from sqlalchemy import bindparam
 from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
+from app.dispatch.charge import Charges
 from app.dispatch.choice import (
+    NOT_ENOUGH_FOR_IT,
     Assignment,
     WaitingOrder,
     choose_robots,
     has_enough_charge,
+    lacks_charge,
     why_nobody_comes,
 )
 from app.dispatch.missions import begin_missions, take_along
@@ -52,6 +55,7 @@ class Dispatcher:
     def __init__(self, fleet: Fleet) -> None:
         self._fleet = fleet
         self._ways = fleet.orders.ways
+        self._charges = Charges(self._ways, fleet.settings, fleet.spending.rates)
         self._woken = asyncio.Event()
         self._stopping = False
         self._needs_robots = True
@@ -111,7 +115,7 @@ class Dispatcher:
         try:
             async with self._fleet.database.transaction() as session:
                 situation = await look(session, now, self._fleet.settings.priority_head_start_s)
-                chosen = choose_robots(situation.waiting, situation.idle, self._ways)
+                chosen = choose_robots(situation.waiting, situation.idle, self._ways, self._charges.may_take)
                 assignments = chosen[:AT_ONCE]
                 given = {one.order_id for one in assignments}
                 if len(chosen) == len(situation.waiting):
@@ -120,7 +124,7 @@ class Dispatcher:
                     given |= await self._assign_what_can_be(session, assignments, situation.waiting)
         finally:
             self._own.clear()
-        left = [order.id for order in situation.waiting if order.id not in given]
+        left = [order for order in situation.waiting if order.id not in given]
         if len(chosen) < len(situation.waiting):
             await self._explain(left)
         self._left = len(left)
@@ -176,16 +180,21 @@ class Dispatcher:
             await tell_mission(session, self._fleet, robot, mission)
         return taken
 
-    async def _explain(self, waiting: Sequence[str]) -> None:
+    async def _explain(self, waiting: Sequence[WaitingOrder]) -> None:
         """Only to those who were told something else so far. It waits for no disk: what is lost is said again."""
         async with self._fleet.database.reading() as session:
-            why = why_nobody_comes(await idle_robots(session), await connected_robots(session))
-            asked = {"order_ids": waiting, "why": why}
-            if not (await session.exec(_TOLD_OTHERWISE, params=asked)).all():
-                return
+            idle, connected = await idle_robots(session), await connected_robots(session)
+            lacking = {order.id for order in waiting if lacks_charge(order, idle, self._charges.may_take)}
+            others = [order.id for order in waiting if order.id not in lacking]
+            told = [(list(lacking), NOT_ENOUGH_FOR_IT), (others, why_nobody_comes(idle, connected))]
+            asked = [{"order_ids": order_ids, "why": why} for order_ids, why in told]
+            asked = [one for one in asked if (await session.exec(_TOLD_OTHERWISE, params=one)).all()]
+        if not asked:
+            return
         async with self._fleet.database.transaction(durable=False) as session:
-            for order_id in (await session.exec(_TOLD_OTHERWISE, params=asked)).all():
-                await self._fleet.orders.explain(session, order_id, why)
+            for one in asked:
+                for order_id in (await session.exec(_TOLD_OTHERWISE, params=one)).all():
+                    await self._fleet.orders.explain(session, order_id, str(one["why"]))
 
     # What has changed for robots.
 

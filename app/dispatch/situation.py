@@ -137,28 +137,34 @@ def _is_idle() -> ColumnElement[bool]:
         col(RobotCommand.answered_at).is_(None),
         col(RobotCommand.kind) == "recall",
     )
-    is_there = and_(col(RobotRow.online), col(RobotRow.activity) != Activity.STOPPED)
+    can_drive = and_(col(RobotRow.activity) != Activity.STOPPED, col(RobotRow.taken_out_at).is_(None))
+    is_there = and_(col(RobotRow.online), can_drive)
     return and_(is_there, ~on_mission, ~carries, ~is_recalled)
 
 
 def _nearby_robots() -> Select[Any]:
-    place = func.row_number().over(partition_by=col(RobotRow.post), order_by=col(RobotRow.name))
+    fullest_first = (col(RobotRow.battery_ratio).desc(), col(RobotRow.name))
+    place = func.row_number().over(partition_by=col(RobotRow.post), order_by=fullest_first)
     able = select(*_OF_ROBOT, place.label("place")).where(_is_idle(), col(RobotRow.battery_ratio) >= ENOUGH_CHARGE)
     ranked = able.subquery()
     is_near = ranked.c.place <= bindparam("at_each_post", type_=Integer)
     is_wanted = ranked.c.name.in_(bindparam("wanted", expanding=True))
-    return select(ranked.c.name, ranked.c.post, ranked.c.battery_ratio).where(or_(is_near, is_wanted))
+    return select(*(ranked.c[name] for name in _COLUMNS)).where(or_(is_near, is_wanted))
 
 
 # Put together once: that takes several times as long as asking.
-_OF_ROBOT: Final = (col(RobotRow.name), col(RobotRow.post), col(RobotRow.battery_ratio))
+_COLUMNS: Final = ("name", "post", "battery_ratio", "charging", "docked", "home")
+"""Of `RobotRow`, as `IdleRobot` has them."""
+_OF_ROBOT: Final = tuple(col(getattr(RobotRow, name)) for name in _COLUMNS)
 _NEARBY: Final = _nearby_robots()
 _IDLE: Final = select(*_OF_ROBOT).where(_is_idle())
 _CONNECTED: Final = select(func.count()).select_from(RobotRow).where(col(RobotRow.online))
 _IS_DROPPED: Final = and_(col(RobotCommand.kind) == "cancel", col(RobotCommand.answered_at).is_(None))
+LOAD_POST: Final = func.coalesce(col(Order.passed_on_at_post), col(Order.from_post)).label("from_post")
+"""As `Order.load_post`."""
 _WAITING: Final = (
     select(
-        *(col(Order.id), col(Order.from_post), col(Order.to_post), col(Order.wanted_robot), col(Order.avoided_robot)),
+        *(col(Order.id), LOAD_POST, col(Order.to_post), col(Order.wanted_robot), col(Order.avoided_robot)),
         *(col(Order.created_at), col(Order.priority)),
         exists().where(col(RobotCommand.order_id) == col(Order.id), _IS_DROPPED).label("is_dropped"),
     )

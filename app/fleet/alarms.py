@@ -11,6 +11,7 @@ from app.notify.service import tell_dispatchers
 from app.tables import Alarm
 
 CONTRADICTION: Final = "custody_contradicts_order"
+VANISHED: Final = "vanished"
 log = structlog.get_logger(__name__)
 
 

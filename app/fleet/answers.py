@@ -5,13 +5,13 @@ from typing import Final
 from sqlmodel import col, select
 
 from app.fleet.alarms import CONTRADICTION, clear_alarms, raise_alarm
-from app.fleet.commands import answered
+from app.fleet.commands import REVOKE, answered
 from app.fleet.missions import drop_order, drop_stops, end_what_is_empty, let_go_of
 from app.fleet.reports import Report
 from app.orders.service import Word
 from app.orders.stops import is_own, stops_of_order
 from app.orders.transitions import ROBOT_COMING, By
-from app.tables import MissionRow, MissionState, OrderState, RobotCommand
+from app.tables import MissionRow, MissionState, OrderState, RobotCommand, RobotRow
 from protocol.to_server import CommandAnswer
 
 RECALLED: Final = "The robot was recalled."
@@ -27,6 +27,8 @@ async def follow_answer(report: Report, answer: CommandAnswer) -> None:
         await _let_go(report, answer, command.order_id)
     elif command.kind == "recall" and answer.accepted:
         await _recalled(report, answer, command)
+    elif command.kind == REVOKE and answer.accepted:
+        await _taken_out(report)
     elif command.kind == "confirm" and command.order_id is not None and not answer.accepted:
         # Whoever tapped reads it on their page; nobody else has to look.
         word = report.word(answer.happened_at, None, answer.reason)
@@ -54,6 +56,13 @@ async def _let_go(report: Report, answer: CommandAnswer, order_id: str) -> None:
             # Updates have left it out meanwhile.
             (await report.session.get_one(MissionRow, stop.mission_id)).update_number += 1
         await _refused(report, answer)
+
+
+async def _taken_out(report: Report) -> None:
+    """It stands, and does not know where it is; as soon as it does, it says so."""
+    robot = await report.session.get_one(RobotRow, report.robot, with_for_update=True)
+    robot.taken_out_at = None
+    robot.post = robot.previous = robot.towards = robot.seen_at = None
 
 
 CARRIED: Final = (OrderState.CARRYING, OrderState.AT_RECIPIENT)

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from datetime import datetime
-from typing import Protocol
+from typing import Final, Protocol
 
 from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
@@ -13,10 +13,11 @@ from protocol.clock import Clock
 from protocol.envelope import type_of
 from protocol.ids import new_id
 from protocol.parts import Part
-from protocol.to_robot import Cancel, Confirm, EmergencyStop, Pause, Recall, Resume
+from protocol.to_robot import Cancel, Confirm, EmergencyStop, OpenWay, Pause, Recall, Resume, Revoke
 from protocol.to_server import CommandAnswer
 
-Command = Cancel | Confirm | Pause | Resume | Recall | EmergencyStop
+REVOKE: Final = "revoke"
+Command = Cancel | Confirm | Pause | Resume | Recall | EmergencyStop | OpenWay | Revoke
 
 
 class Teller(Protocol):
@@ -37,6 +38,15 @@ async def ask(
     session: AsyncSession, fleet: Teller, robot: RobotRow, message: Command, asked_by: str | None = None
 ) -> RobotCommand:
     """Tell a robot to do something, and remember who wanted it (`asked_by`: a person's id; None: the service)."""
+    row = note(session, fleet, robot, message, asked_by)
+    await fleet.tell(session, robot, message)
+    return row
+
+
+def note(
+    session: AsyncSession, fleet: Teller, robot: RobotRow, message: Command, asked_by: str | None = None
+) -> RobotCommand:
+    """Remember it alone: the robot is told another time."""
     confirm = message if isinstance(message, Confirm) else None
     row = RobotCommand(
         command_id=message.command_id,
@@ -45,11 +55,11 @@ async def ask(
         order_id=getattr(message, "order_id", None),
         asked_by_id=asked_by,
         asked_at=fleet.clock.utc(),
+        asked_because=getattr(message, "reason", None),
         how=confirm.how if confirm else None,
         code_sha256=confirm.by if confirm else None,
     )
     session.add(row)
-    await fleet.tell(session, robot, message)
     return row
 
 

@@ -1,6 +1,6 @@
 """Who is connected now: one robot, one socket. In memory, since a socket does not outlive its process either."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Protocol
 
 from app.fleet.outbox import Kept, Waiting
@@ -12,6 +12,7 @@ class Seat(Protocol):
 
     journal: str
     token_prefix: str
+    understands: Collection[str]
 
     def wake(self, news: Sequence[Waiting] = ()) -> None:
         """Something new is in the outbox: `news`, or it has to be looked for."""
@@ -50,6 +51,11 @@ class Connections:
     def is_seated(self, robot: str) -> bool:
         """Whether this robot is connected now."""
         return robot in self._seats
+
+    def understands(self, robot: str, word: str) -> bool:
+        """Whether this robot is connected now, and has named this message among those that it knows."""
+        seat = self._seats.get(robot)
+        return seat is not None and word in seat.understands
 
     def wake(self, robot: str) -> None:
         """Something new is in the outbox of this robot; nobody minds if it is not connected."""

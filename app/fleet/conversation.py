@@ -2,7 +2,7 @@
 
 import asyncio
 import contextlib
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import Final
 
 import structlog
@@ -65,6 +65,7 @@ class Conversation:
         self._look_again = True
         self._is_held_back = False
         self._knows_watching = False
+        self.understands: Collection[str] = ()
         self._watch: Watch | None = None
 
     def wake(self, news: Sequence[Waiting] = ()) -> None:
@@ -120,6 +121,7 @@ class Conversation:
 
     async def _take_seat(self, envelope: Envelope, hello: Hello) -> None:
         fleet = self._fleet
+        self.understands = hello.understands
         # Seated before the transaction, so that nothing that is told from its commit on can pass us by.
         before = fleet.connections.take(self.robot, self)
         async with fleet.database.transaction() as session:

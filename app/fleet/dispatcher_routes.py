@@ -10,10 +10,12 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 from app.database import ReadingDep, SessionDep
 from app.errors import problems
 from app.fleet.commands import Command, ask, new_command_id
-from app.fleet.errors import UnknownAlarm, UnknownRobot
+from app.fleet.errors import NoSuchCorridor, RobotAway, RobotGoesOn, RobotTooOld, UnknownAlarm, UnknownRobot
+from app.fleet.open_ways import open_way
 from app.fleet.routes import FleetDep, RobotName
-from app.fleet.schemas import AlarmView, CommandReason, CommandView, RobotDetails
+from app.fleet.schemas import AlarmView, CommandReason, CommandView, RobotDetails, WayIsOpen
 from app.fleet.service import Fleet, known_robot
+from app.fleet.taken_out import take_out
 from app.orders.robot_view import robot_view
 from app.paging import PAGED, PageDep, PageOf, Sorting
 from app.people.current_user import Dispatcher, DispatcherOrMaintainer
@@ -92,6 +94,29 @@ async def stop_robot(
     return await _tell(
         session, fleet, name, dispatcher, "stop", lambda id_: EmergencyStop(command_id=id_, reason=why.reason)
     )
+
+
+@router.post(
+    "/robots/{name}/open-way", status_code=202, responses={**TOLD, **problems(NoSuchCorridor, RobotAway, RobotTooOld)}
+)
+async def tell_robot_of_open_way(
+    name: RobotName, way: WayIsOpen, dispatcher: Dispatcher, session: SessionDep, fleet: FleetDep
+) -> CommandView:
+    """Tell a robot that a corridor which it took for closed is free again: whoever says so has looked."""
+    robot = await known_robot(session, name, to_change=True)
+    return CommandView.of(await open_way(session, fleet, robot, way.corridor, dispatcher), robot.online)
+
+
+@router.post("/robots/{name}/take-out", status_code=202, responses={**TOLD, **problems(RobotGoesOn, RobotTooOld)})
+async def take_robot_out(
+    name: RobotName, why: CommandReason, dispatcher: Dispatcher, session: SessionDep, fleet: FleetDep
+) -> CommandView:
+    """Give the corridors of a robot that is dead to others: whoever says so has looked, and it is in nobody's way.
+
+    It stands still when it hears so, until it is put down at a post or in a dock.
+    """
+    robot = await known_robot(session, name, to_change=True)
+    return CommandView.of(await take_out(session, fleet, robot, why.reason, dispatcher), robot.online)
 
 
 async def _tell(

@@ -4,6 +4,10 @@ ServiceError
 ├── RobotExists      a robot of this name is enrolled already
 ├── UnknownRobot     no robot of this name is
 ├── UnknownAlarm     no alarm of this number has rung
+├── NoSuchCorridor   the map has no corridor of this name
+├── RobotGoesOn      it is there, and drives or could
+├── RobotAway        it would hear of it too late
+├── RobotTooOld      its software does not know what that is
 └── RobotNameInvalid the name cannot stand in a message
 FleetError           a message that was understood and cannot be followed; it is recorded, answered and an alarm
 ├── UnknownMission   the robot speaks of a mission that it was not given
@@ -36,6 +40,30 @@ class UnknownAlarm(NotFound):
     """No alarm of this number has rung."""
 
     code = "unknown_alarm"
+
+
+class NoSuchCorridor(Unprocessable):
+    """Corridors are named by their two posts, in the order of the alphabet."""
+
+    code = "no_such_corridor"
+
+
+class RobotAway(Conflict):
+    """Until it is back, what is to be said may not hold any more. It tries the way again by itself."""
+
+    code = "robot_away"
+
+
+class RobotTooOld(Conflict):
+    """Its software is older than this message. It tries the way again by itself."""
+
+    code = "robot_too_old"
+
+
+class RobotGoesOn(Conflict):
+    """Others might meet it: stop it first."""
+
+    code = "robot_goes_on"
 
 
 class RobotNameInvalid(Unprocessable):

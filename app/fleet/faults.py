@@ -5,6 +5,7 @@ from typing import Final
 from sqlmodel import col, select
 
 from app.fleet.alarms import clear_alarms, raise_alarm
+from app.fleet.closed_ways import clear_corridor, open_corridor
 from app.fleet.reports import Report
 from app.orders.transitions import MAIL_ABOARD
 from app.tables import Alarm, OrderState
@@ -18,6 +19,9 @@ NEEDS_A_PERSON: Final = frozenset(
 
 async def follow_fault(report: Report, fault: Fault) -> None:
     """A fault begins or is over."""
+    if fault.cleared and (corridor := open_corridor(fault.name, fault.reason)):
+        await clear_corridor(report.session, report.robot, corridor, report.now)
+        return
     if fault.cleared:
         await _over(report, fault)
         return

@@ -7,9 +7,10 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.fleet import clocks, inbox, outbox, traffic
 from app.fleet.alarms import clear_alarms, raise_alarm
-from app.fleet.commands import unanswered
+from app.fleet.commands import REVOKE, unanswered
 from app.fleet.mission_updates import tell_mission
 from app.fleet.service import Fleet, note_state
+from app.fleet.taken_out import tell_again
 from app.orders.stops import active_mission
 from app.tables import RobotRow
 from protocol.envelope import Envelope
@@ -42,7 +43,8 @@ async def greet(session: AsyncSession, fleet: Fleet, robot: RobotRow, envelope: 
     await _compare_maps(session, fleet, robot, hello, now)
     note_state(robot, hello.position, hello.battery)
     robot.software, robot.map_version, robot.online, robot.heard_at = hello.software, hello.map_version, True, now
-    robot.takes_confirm = "confirm" in hello.understands
+    robot.takes_confirm, robot.home = "confirm" in hello.understands, hello.home
+    await tell_again(session, fleet, robot, understands=REVOKE in hello.understands)
     await fleet.batteries.note(session, [robot], now)
     fleet.announce(session, robot)
     resume_from = await outbox.resume_from(session, robot)

@@ -4,7 +4,7 @@ robot writes custody, and what it proves has happened. Refused is only what no c
 from collections.abc import Mapping
 from typing import Final
 
-from sqlmodel import col, select
+from sqlmodel import select
 
 from app.database import savepoint
 from app.fleet.alarms import CONTRADICTION, clear_alarms, raise_alarm
@@ -14,6 +14,7 @@ from app.fleet.receipts import judged
 from app.fleet.reports import Report
 from app.orders.codes import Holder, codes_of, delegates_of
 from app.orders.errors import TransitionRefused
+from app.orders.returning import last_handover
 from app.orders.service import Word
 from app.orders.stops import stops_of_order
 from app.orders.transitions import ENDED, TURNED_BACK
@@ -63,8 +64,7 @@ async def _drop_the_rest(report: Report, receipt: HandoverReceipt) -> None:
 async def _check_chain(report: Report, receipt: HandoverReceipt) -> None:
     """A robot gives what it was given, and mail comes aboard once, unless it was given back: a robot that was given up
     on and heard nothing of it may get it again."""
-    before = select(Handover).where(Handover.order_id == receipt.order_id).order_by(col(Handover.id).desc())
-    last = (await report.session.exec(before.limit(1))).first()
+    last = await last_handover(report.session, receipt.order_id)
     has_it = last is not None and (last.purpose, last.robot) == (Purpose.LOAD, report.robot)
     if receipt.purpose == Purpose.LOAD and last is not None and last.purpose != Purpose.RETURN:
         raise TransitionRefused(f"The mail of order {receipt.order_id} has been loaded before.")

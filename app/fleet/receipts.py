@@ -37,6 +37,11 @@ PROBLEMS: Final[Mapping[str, str]] = {
 }
 
 
+def counts_for_nothing(purpose: str, order_id: str, problem: str) -> str:
+    """What dispatchers are told; `problem` is one of PROBLEMS."""
+    return f"a receipt ({purpose}) for order {order_id} counts for nothing: {PROBLEMS[problem]}"
+
+
 class _Refused(Exception):
     """`problem` is one of PROBLEMS."""
 
@@ -120,8 +125,8 @@ async def judged(
         return await _Judge(session, key, row, order, receipt, now).handover()
     except _Refused as refused:
         session.add(_refused(robot, receipt, now, refused.problem))
-        sentence = f"a receipt ({receipt.purpose}) for order {order.id} counts for nothing: {PROBLEMS[refused.problem]}"
-        await raise_alarm(session, robot, REFUSED, sentence, now=now, post=receipt.post)
+        reason = counts_for_nothing(receipt.purpose, order.id, refused.problem)
+        await raise_alarm(session, robot, REFUSED, reason, now=now, post=receipt.post)
         return None
 
 

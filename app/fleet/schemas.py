@@ -9,6 +9,7 @@ from app.fleet.closed_ways import closed_corridor
 from app.orders.robot_view import RobotView
 from app.tables import Alarm, RobotCommand, RobotRow
 from app.tables.columns import STORABLE
+from app.texts.reasons import Words, words_of
 
 
 class CommandReason(BaseModel):
@@ -17,6 +18,14 @@ class CommandReason(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
     reason: Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=500, pattern=STORABLE)]
+
+
+class WayIsOpen(BaseModel):
+    """Which corridor is free again: the name that it has on the map."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    corridor: Annotated[str, StringConstraints(min_length=1, max_length=129, pattern=STORABLE)]
 
 
 class CommandView(BaseModel):
@@ -43,13 +52,15 @@ class CommandView(BaseModel):
 class AlarmView(BaseModel):
     """Something about a robot that a person should look at; over when `cleared_at` says so.
 
-    `corridor`: the one that the robot found closed, and in which it goes nowhere until the alarm is over.
+    `reason` is a sentence in English; `why_words` the same as a text of the catalogue, if it is one. `corridor`: the
+    one that the robot found closed, and in which it goes nowhere until the alarm is over.
     """
 
     id: int
     robot: str
     name: str
     reason: str
+    why_words: Words | None
     post: str | None
     corridor: str | None
     at: datetime
@@ -58,7 +69,8 @@ class AlarmView(BaseModel):
 
     @classmethod
     def of(cls, row: Alarm) -> "AlarmView":
-        return cls.model_validate({**row.model_dump(), "corridor": closed_corridor(row.name, row.reason)})
+        known = {"why_words": words_of(row.reason), "corridor": closed_corridor(row.name, row.reason)}
+        return cls.model_validate({**row.model_dump(), **known})
 
 
 class RobotDetails(BaseModel):

@@ -10,12 +10,16 @@ from sqlmodel import col, select, update
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.database import Database, after_commit
+from app.estimates.learning import Learning
 from app.fleet import outbox, traffic
 from app.fleet.battery import BatteryDiary
 from app.fleet.clocks import put_right
+from app.fleet.closed import tell_of_closed
+from app.fleet.closed_ways import WAY_BLOCKED
 from app.fleet.connections import Connections
 from app.fleet.errors import RobotExists, RobotNameInvalid, UnknownRobot
 from app.fleet.progress import Report, follow
+from app.fleet.spending import Spending
 from app.fleet.taken import tell_of_traffic
 from app.fleet.tokens import Known, make_token
 from app.fleet.watching import Watching
@@ -28,7 +32,8 @@ from maps import CampusMap
 from protocol.clock import Clock
 from protocol.ids import new_uuid
 from protocol.parts import Activity, Battery, Part, Position
-from protocol.to_server import Claim, Clear, Event, Snapshot, Why
+from protocol.to_robot import Grant
+from protocol.to_server import Claim, Clear, Event, Fault, Snapshot, Why
 
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,63}")
 
@@ -90,6 +95,16 @@ class Fleet:
     batteries: BatteryDiary = field(default_factory=BatteryDiary)
 
     @cached_property
+    def learning(self) -> Learning:
+        """What is learned from robots of how long things take."""
+        return Learning(self.database, self.orders.estimates, self.clock)
+
+    @cached_property
+    def spending(self) -> Spending:
+        """What is learned from robots of how much charge they need."""
+        return Spending(self.database, self.campus, self.settings)
+
+    @cached_property
     def watching(self) -> Watching:
         """Who watches which robot."""
         return Watching(self.connections, self.feed, time.monotonic)
@@ -115,9 +130,16 @@ class Fleet:
         now = self.clock.utc()
         match message:
             case Event():
-                await follow(Report(session, self.orders, robot.name, now, robot.clock_off_s), message)
+                report = Report(session, self.orders, robot.name, now, robot.clock_off_s)
+                await follow(report, message)
+                if isinstance(message.happened, Fault) and message.happened.name == WAY_BLOCKED:
+                    await tell_of_closed(session, self.feed)
+                await self.learning.hear(session, robot.name, message.happened, report.when)
             case Claim() if isinstance(robot, RobotRow):
-                reply = await traffic.answer(session, self.campus, robot.name, message, now)
+                by_timetable = self.settings.traffic == "timetable"
+                reply = await traffic.answer(session, self.campus, robot.name, message, now, by_timetable)
+                if isinstance(reply, Grant):
+                    self.learning.let_in(robot.name, reply.legs, now)
                 if reply is not None:
                     await self.tell(session, robot, reply)
                     await tell_of_traffic(session, self.feed, robot.name)
@@ -172,6 +194,6 @@ def note_state(robot: RobotRow, position: Position, battery: Battery) -> None:
     """What `hello` and `snapshot` share."""
     robot.post, robot.previous, robot.towards = position.post, position.previous, position.towards
     robot.seen_at = position.seen_at and put_right(position.seen_at, robot.clock_off_s)
-    robot.battery_ratio, robot.charging = battery.ratio, battery.charging
+    robot.battery_ratio, robot.charging, robot.docked = battery.ratio, battery.charging, battery.docked
     if battery.charging:
         robot.activity = Activity.CHARGING

@@ -1,14 +1,17 @@
-"""Who may enter which corridor. Thin: everything is granted, and recorded as it will be when it is not.
+"""Who may enter which corridor, as robots ask and say. By the timetable a claim waits here for `traffic_desk`; with the
+setting `traffic` at `at_once` everything is granted.
 
 A grant holds until the robot reports the corridor clear; no time-out ever frees one.
 """
 
 from collections.abc import Sequence
 from datetime import datetime
+from typing import Final
 
 from sqlmodel import col, select, update
 from sqlmodel.ext.asyncio.session import AsyncSession
 
+from app.fleet.closed import closed_names
 from app.fleet.errors import UnknownCorridor
 from app.tables import ClaimRow, GrantRow
 from maps import CampusMap, CampusMapError, corridor_name
@@ -16,21 +19,32 @@ from protocol.parts import Leg
 from protocol.to_robot import Deny, Grant
 from protocol.to_server import Claim, Clear
 
+ASKED_ANEW: Final = "the robot has asked for another way since"
+
 
 async def answer(
-    session: AsyncSession, campus: CampusMap, robot: str, claim: Claim, now: datetime
+    session: AsyncSession, campus: CampusMap, robot: str, claim: Claim, now: datetime, by_timetable: bool = False
 ) -> Grant | Deny | None:
-    """Grant a claim, or deny what the map does not have; None if this claim was answered before."""
+    """Grant a claim (or let it wait), deny what the map does not have; None if it waits, or was answered before."""
     if await session.get(ClaimRow, (robot, claim.claim_id)) is not None:
         return None
     unknown = _unknown(campus, claim.legs)
     reason = f"the map {campus.name} has no corridor {_name(unknown)}" if unknown else None
     legs = [leg.model_dump() for leg in claim.legs]
-    session.add(
-        ClaimRow(robot=robot, claim_id=claim.claim_id, legs=legs, at=now, granted=unknown is None, reason=reason)
-    )
+    closed = () if by_timetable or unknown else await _closed(session, robot, claim.legs)
+    if closed:
+        reason = "this corridor is closed"
+    row = ClaimRow(robot=robot, claim_id=claim.claim_id, legs=legs, at=now, goal=claim.goal, reason=reason)
+    row.granted = False if unknown or closed else None if by_timetable else True
+    if by_timetable:
+        await forget_what_waits(session, robot, ASKED_ANEW)
+    session.add(row)
     if unknown is not None:
         return Deny(claim_id=claim.claim_id, avoid=(unknown,), reason=reason or "")
+    if closed:
+        return Deny(claim_id=claim.claim_id, avoid=closed, reason=reason or "")
+    if by_timetable:
+        return None
     session.add_all(_grant(robot, claim.claim_id, leg, now) for leg in claim.legs)
     return Grant(claim_id=claim.claim_id, legs=claim.legs)
 
@@ -45,7 +59,13 @@ async def clear(session: AsyncSession, campus: CampusMap, robot: str, message: C
         col(GrantRow.from_post) == message.leg.from_post,
         col(GrantRow.cleared_at).is_(None),
     )
-    await session.exec(held.values(cleared_at=now))
+    await session.exec(held.values(cleared_at=now, left_at=message.post))
+
+
+async def forget_what_waits(session: AsyncSession, robot: str, reason: str) -> None:
+    """A robot wishes for one way at a time: what it asks for now is what it wants."""
+    waiting = update(ClaimRow).where(col(ClaimRow.robot) == robot, col(ClaimRow.granted).is_(None))
+    await session.exec(waiting.values(granted=False, reason=reason))
 
 
 async def held_by(session: AsyncSession, robot: str) -> tuple[Leg, ...]:
@@ -65,6 +85,11 @@ def _grant(robot: str, claim_id: str, leg: Leg, now: datetime) -> GrantRow:
         to_post=leg.to_post,
         granted_at=now,
     )
+
+
+async def _closed(session: AsyncSession, robot: str, legs: Sequence[Leg]) -> tuple[Leg, ...]:
+    names = await closed_names(session, found_by_others_than=robot)
+    return tuple(leg for leg in legs if _name(leg) in names)
 
 
 def _unknown(campus: CampusMap, legs: Sequence[Leg]) -> Leg | None:

@@ -4,8 +4,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Final
 
 from app.handover import errors
-from app.orders.codes import TURNS, HandoverCode, Holder, codes_of, turn_of
-from app.orders.transitions import ENDED, ROBOT_COMING
+from app.orders.codes import TURNS, HandoverCode, Holder, codes_of, mailrooms_turn, turn_of
+from app.orders.transitions import ENDED, NOTHING_ABOARD
 from app.orders.views import THEIRS, MyRole
 from app.tables import Delegate, Order, OrderState, Person, Role
 from protocol.parts import Purpose
@@ -24,7 +24,7 @@ def code_for(order: Order, person: Person, delegates: Iterable[Delegate]) -> Han
     codes = [code for code in codes_of(order, delegates) if code.purpose is turn]
     if turn is not None and turn_of(order, person.id) is turn:
         return next(code for code in codes if code.holder in (Holder.SENDER, Holder.RECIPIENT))
-    if turn is Purpose.RETURN and person.has_role(Role.DISPATCHER):
+    if (turn is Purpose.RETURN or mailrooms_turn(order)) and person.has_role(Role.DISPATCHER):
         return next(code for code in codes if code.holder is Holder.MAILROOM)
     return next((code for code in codes if code.delegate and code.delegate.email == person.email), None)
 
@@ -47,7 +47,7 @@ def purpose_to_delegate(order: Order, role: MyRole, wished: Purpose | None) -> P
     purpose = wished or THEIRS[role][0]
     if purpose not in THEIRS[role]:
         raise errors.NotYoursToDelegate("The sender names who loads or takes back, the recipient who receives.")
-    loading_is_over = order.state is not OrderState.QUEUED and order.state not in ROBOT_COMING
+    loading_is_over = order.state not in NOTHING_ABOARD or order.passed_on_at_post is not None
     if order.state in ENDED or (purpose is Purpose.LOAD and loading_is_over):
         raise errors.TooLateToDelegate("This hand-over is over: there is nothing left to be done by somebody else.")
     return purpose

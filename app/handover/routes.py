@@ -8,12 +8,23 @@ from app.database import DatabaseDep, ReadingDep, SessionDep
 from app.errors import ServiceError, problems
 from app.handover import errors
 from app.handover.delegates import Delegating
-from app.handover.schemas import CodeView, Delegates, DelegateView, HandoverAsked, HandOverWish, NewDelegate
+from app.handover.mine import named_by
+from app.handover.schemas import (
+    CodeView,
+    Delegates,
+    DelegateView,
+    HandoverAsked,
+    HandOverWish,
+    MyDelegates,
+    MyDelegateView,
+    NewDelegate,
+)
 from app.handover.service import HandOvers
 from app.orders.codes import HandoverCode, code_svg
 from app.orders.errors import NoCodeForYou, UnknownOrder
 from app.orders.routes import PICTURE, OrderId, OrdersDep
 from app.orders.schemas import OrderView
+from app.paging import PAGED, PageDep
 from app.people.current_user import CurrentUser, Dispatcher
 from app.people.errors import AddressNotAllowed, RoleNeeded
 from app.people.rate_limits import Door, per_host, per_person
@@ -115,6 +126,13 @@ async def list_delegates(
 ) -> Delegates:
     """List who may hand over for the caller, those whose code was taken back too."""
     return Delegates(items=[DelegateView.of(one) for one in await delegating.all_of(session, user, order_id)])
+
+
+@router.get("/me/delegates", responses=PAGED)
+async def my_delegates(user: CurrentUser, page: PageDep, session: ReadingDep) -> MyDelegates:
+    """List whom the caller has named to hand over, for all orders that go on; each is taken back at its order."""
+    named, following = await named_by(session, user, page)
+    return MyDelegates(items=[MyDelegateView.of(one) for one in named], next=following)
 
 
 @router.post("/orders/{order_id}/delegates", status_code=201, dependencies=[per_person(Door.CHANGES)], responses=NAMED)

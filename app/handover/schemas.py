@@ -5,11 +5,17 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 
+from app.handover.mine import Named
+from app.handover.telling import post_of
 from app.orders.codes import HandoverCode
+from app.orders.schemas import Somebody
+from app.orders.views import MyRole, somebody
+from app.paging import PageOf
 from app.people.schemas import Email
 from app.server_key import ServerKey
-from app.tables import Delegate
+from app.tables import Delegate, OrderState
 from app.tables.columns import STORABLE
+from protocol.parts import Purpose
 
 PurposeName = Literal["load", "receive", "return"]
 
@@ -85,3 +91,41 @@ class Delegates(BaseModel):
     """Everybody who was named for an order, as far as one may see them, oldest first."""
 
     items: list[DelegateView]
+
+
+class MyDelegateView(BaseModel):
+    """Somebody whom the caller has named, whose code is good until `expires_at`: the `post` where they meet the robot,
+    and for which order."""
+
+    id: str
+    name: str
+    email: str | None
+    purpose: PurposeName
+    post: str
+    named_at: datetime
+    expires_at: datetime
+    order_id: str
+    state: OrderState
+    description: str | None
+    sender: Somebody
+    recipient: Somebody
+    my_role: MyRole
+
+    @classmethod
+    def of(cls, named: Named) -> "MyDelegateView":
+        row, order = named.delegate, named.facts.order
+        return cls(
+            **DelegateView.of(row).model_dump(exclude={"revoked_at"}),
+            post=post_of(order, Purpose(row.purpose)),
+            expires_at=order.codes_expire_at,
+            order_id=order.id,
+            state=order.state,
+            description=order.description,
+            sender=somebody(named.facts.sender),
+            recipient=somebody(named.facts.recipient),
+            my_role=named.role,
+        )
+
+
+class MyDelegates(PageOf[MyDelegateView]):
+    """Whom the caller has named for orders that go on, newest first."""

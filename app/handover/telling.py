@@ -48,7 +48,7 @@ async def _tell(
     facts = {
         "sender": (await session.get_one(Person, order.sender_id)).name,
         "recipient": (await session.get_one(Person, order.recipient_id)).name,
-        "post": title_of(_post(order, Purpose(row.purpose)), orders.campus),
+        "post": title_of(post_of(order, Purpose(row.purpose)), orders.campus),
     }
     await tell(
         session,
@@ -65,7 +65,7 @@ def _key(row: Delegate, kind: NoticeKind) -> str:
     return f"{row.order_id}.{kind}.{row.id}"
 
 
-def _post(order: Order, purpose: Purpose) -> str:
+def post_of(order: Order, purpose: Purpose) -> str:
     """Where they meet the robot."""
     if purpose is Purpose.RETURN:
         return return_post_of(order)

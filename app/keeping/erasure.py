@@ -46,6 +46,7 @@ class Fate(StrEnum):
 
 FATES: Final[Mapping[str, Fate]] = {
     "alarms": Fate.STAYS,
+    "closed_corridors": Fate.STAYS,
     "contacts": Fate.GOES,
     "delegates": Fate.STAYS,
     "enrolment_codes": Fate.STAYS,

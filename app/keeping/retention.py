@@ -22,7 +22,9 @@ from app.tables import (
     Alarm,
     BatterySample,
     ClaimRow,
+    DurationRow,
     EnrolmentCode,
+    ForecastRow,
     GrantRow,
     IdempotencyKey,
     MessageToRobot,
@@ -79,6 +81,8 @@ RULES: Final = (
     Rule("refused receipts", ORDERS, rows(RefusedReceipt.at)),
     Rule("commands", ORDERS, rows(RobotCommand.asked_at)),
     Rule("battery samples", TELEMETRY, rows(BatterySample.at)),
+    Rule("durations", TELEMETRY, rows(DurationRow.at)),
+    Rule("forecasts", TELEMETRY, rows(ForecastRow.begins_at)),
     Rule("robot messages", TELEMETRY, rows(RobotMessage.received_at)),
     # What a robot has not acknowledged is still to be told to it, however old.
     Rule("messages to robots", TELEMETRY, rows(MessageToRobot.acked_at)),

@@ -1,8 +1,14 @@
 """A notice in words, the same on every channel."""
 
+from collections.abc import Iterator
+from typing import Final
+
 from app.tables import Notice
 from app.texts import text
 from app.texts.reasons import in_words
+from app.texts.times import day_and_time, of_fact
+
+TIMES: Final = ("window_from", "window_to")
 
 
 def title_of(notice: Notice, language: str) -> str:
@@ -11,4 +17,14 @@ def title_of(notice: Notice, language: str) -> str:
 
 
 def body_of(notice: Notice, language: str) -> str:
-    return text(language, f"notice.{notice.kind}.body", in_words(language, notice.facts))
+    facts = {**in_words(language, notice.facts), **dict(_times(notice, language))}
+    return text(language, f"notice.{notice.kind}.body", facts)
+
+
+def _times(notice: Notice, language: str) -> Iterator[tuple[str, str]]:
+    """Each with its day, unless that is the day of which one reads already."""
+    day = notice.at
+    for name in TIMES:
+        if at := of_fact(notice.facts.get(name, "")):
+            yield name, day_and_time(language, at, day)
+            day = at

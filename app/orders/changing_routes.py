@@ -93,6 +93,13 @@ class IntoHands(Body):
     reason: Reason | None = None
 
 
+class PassingOn(Body):
+    """At which post somebody has taken the mail out of its robot for another one; null: where that was seen last."""
+
+    post: Annotated[str, StringConstraints(max_length=64, pattern=STORABLE)] | None = None
+    reason: Reason | None = None
+
+
 class Reassignment(Body):
     """Which robot shall fetch it; null: any other."""
 
@@ -141,6 +148,15 @@ async def resolve_order(asked: ByDispatcher, resolution: Resolution) -> OrderVie
 async def hold_order(asked: ByDispatcher, into_hands: IntoHands) -> OrderView:
     """Say that the mail was taken out of the robot by hand and is held in the mailroom."""
     return asked.tagged(await asked.orders.hold(*asked.of, into_hands.reason, asked.if_match))
+
+
+@dispatch_router.post(
+    "/orders/{order_id}/pass-on",
+    responses=_answers(errors.NothingToPassOn) | problems(errors.UnknownPost, errors.SamePost),
+)
+async def pass_order_on(asked: ByDispatcher, passing_on: PassingOn) -> OrderView:
+    """Say that the mail was taken out of its robot at a post, for another robot to carry it on from there."""
+    return asked.tagged(await asked.orders.pass_on(*asked.of, passing_on.post, passing_on.reason, asked.if_match))
 
 
 @dispatch_router.post(

@@ -45,7 +45,7 @@ PURPOSE_OF_NOTICE: Final = {
 
 
 class Holder(StrEnum):
-    """Whose code it is. The mailroom's is shown by any dispatcher, and only brings mail back."""
+    """Whose code it is. The mailroom's is shown by any dispatcher: to take mail back, and to load what it passes on."""
 
     SENDER = "sender"
     RECIPIENT = "recipient"
@@ -59,7 +59,8 @@ OWN_CODES: Final = (
     (Purpose.RETURN, Holder.SENDER),
     (Purpose.RETURN, Holder.MAILROOM),
 )
-"""The codes that every order has; delegates get more."""
+"""The codes that every order has; delegates get more, and what is passed on has one more."""
+PASSED_ON: Final = (Purpose.LOAD, Holder.MAILROOM)
 
 
 @dataclass(frozen=True)
@@ -113,7 +114,8 @@ def codes_of(
     order: Order, delegates: Iterable[Delegate] = (), *, with_revoked: bool = False
 ) -> tuple[HandoverCode, ...]:
     """Every code of an order that is good for something; `with_revoked`: or was once."""
-    own = (HandoverCode(order.id, purpose, holder, order.codes_expire_at) for purpose, holder in OWN_CODES)
+    pairs = (*OWN_CODES, PASSED_ON) if order.passed_on_at_post is not None else OWN_CODES
+    own = (HandoverCode(order.id, purpose, holder, order.codes_expire_at) for purpose, holder in pairs)
     more = (
         HandoverCode(order.id, Purpose(one.purpose), Holder.DELEGATE, order.codes_expire_at, one)
         for one in delegates
@@ -150,11 +152,19 @@ async def verifiers(session: AsyncSession, key: ServerKey, orders: Sequence[Orde
 def turn_of(order: Order, person_id: str) -> Purpose | None:
     """Which code it is this person's turn to show, if any."""
     purpose = TURNS.get(order.state)
+    if purpose is Purpose.LOAD and order.passed_on_at_post is not None:
+        return None  # the mailroom has it
     if purpose is Purpose.RECEIVE:
         return purpose if person_id == order.recipient_id else None
     # Whoever placed an order for somebody at their desk loads it for them, too.
     loads_for_them = purpose is Purpose.LOAD and person_id == order.placed_by_id
     return purpose if person_id == order.sender_id or loads_for_them else None
+
+
+def mailrooms_turn(order: Order) -> Purpose | None:
+    """Whether any dispatcher is to load it: it was passed on, so that the mailroom has it."""
+    is_theirs = order.passed_on_at_post is not None and TURNS.get(order.state) is Purpose.LOAD
+    return Purpose.LOAD if is_theirs else None
 
 
 def code_svg(text: str) -> bytes:

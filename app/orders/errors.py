@@ -19,6 +19,7 @@ Conflict           ├── StillRunning
                    ├── WaitedLongEnough
                    ├── NotReassignable
                    ├── NothingToResume
+                   ├── NothingToPassOn
                    └── StandingOrderEnded
 PreconditionFailed └── OrderChanged
 """
@@ -60,6 +61,12 @@ class UnknownStandingOrder(NotFound):
     """No such standing order, or not one of this person's."""
 
     code = "unknown_standing_order"
+
+
+class NothingToPassOn(Conflict):
+    """Mail changes robots while one is bringing it to its recipient, not before or after."""
+
+    code = "nothing_to_pass_on"
 
 
 class StandingOrderEnded(Conflict):

@@ -2,14 +2,13 @@
 
 from typing import Final, Literal
 
-from sqlmodel import select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.orders import errors, stops
 from app.orders.ledger import Word
-from app.orders.returning import Returning
+from app.orders.returning import Returning, last_handover
 from app.orders.schemas import OrderView
-from app.orders.transitions import ENDED, ROBOT_COMING, By
+from app.orders.transitions import ENDED, MAIL_ABOARD, ROBOT_COMING, By
 from app.orders.views import load_facts, order_view
 from app.tables import Handover, Order, OrderState, Person, Priority, RobotRow
 from protocol.parts import Purpose, StopAction
@@ -69,9 +68,15 @@ class Intervening(Returning):
         await self.move(session, order.id, OrderState.RETURNING, word)
 
     async def _hold(self, session: AsyncSession, order: Order, before: OrderState, word: Word) -> None:
-        await self.take_into_hands(session, order, word)
+        if before in MAIL_ABOARD:
+            await self.take_into_hands(session, order, word)
+        else:  # of what was passed on: the mailroom has it already
+            order.let_go_by = order.robot
+            await self.move(session, order.id, OrderState.HELD, word)
 
     async def _queue(self, session: AsyncSession, order: Order, before: OrderState, word: Word) -> None:
+        if before in MAIL_ABOARD:
+            raise errors.TransitionRefused(f"Robot {order.robot} has the mail of order {order.id}: pass it on.")
         order.let_go_by, order.avoided_robot = order.robot, order.robot
         await self.move(session, order.id, OrderState.QUEUED, word)
 
@@ -103,8 +108,8 @@ class Intervening(Returning):
 
     async def is_taken_by_hand(self, session: AsyncSession, order: Order) -> bool:
         """Whether the mail is out on a dispatcher's word: the robot that had it does not know."""
-        by_hand = select(Handover.id).where(Handover.order_id == order.id, Handover.how == BY_HAND)
-        return (await session.exec(by_hand.limit(1))).first() is not None
+        last = await last_handover(session, order.id)
+        return last is not None and last.how == BY_HAND
 
     def _taken_by_hand(self, order: Order, word: Word) -> Handover:
         return Handover(

@@ -14,6 +14,7 @@ from sqlalchemy import insert
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.database import after_commit, connection_of
+from app.estimates.arrivals import Estimates
 from app.live.feed import Feed, Happening
 from app.notify.service import tell_all
 from app.orders import errors
@@ -21,7 +22,7 @@ from app.orders.idempotency import Running
 from app.orders.nearness import is_near
 from app.orders.schemas import OrderView
 from app.orders.telling import TOLD, facts_of, notices_about
-from app.orders.transitions import By, is_allowed, is_old_news
+from app.orders.transitions import NEVER_LEFT_ITS_SENDER, By, is_allowed, is_old_news
 from app.orders.views import MyRole, OrderFacts, load_facts, order_view, role_in
 from app.people.service import SignInDesk
 from app.server_key import ServerKey
@@ -63,6 +64,13 @@ class Ledger:
         """How far it is on this campus."""
         return Ways(self.campus)
 
+    @cached_property
+    def estimates(self) -> Estimates:
+        """How long things take on this campus, as far as it was learned."""
+        settings = self.settings
+        speed_m_s, handover_s = settings.assumed_speed_m_s, settings.assumed_handover_s
+        return Estimates(self.ways, speed_m_s, handover_s, settings.zone, settings.hours_of_offices)
+
     async def order(self, session: AsyncSession, order_id: str) -> Order:
         """The row, which nobody else changes: writers take turns. Raises UnknownOrder."""
         order = await session.get(Order, order_id)
@@ -99,9 +107,12 @@ class Ledger:
         gets a notice of it, since more follows at once. Raises UnknownOrder, TransitionRefused.
         """
         order = await self.order(session, order_id)
+        if is_passed_on(order) and to in NEVER_LEFT_ITS_SENDER:
+            to = OrderState.HELD  # by the mailroom, which has it
         if order.state is to or (word.by is By.ROBOT and is_old_news(order.state, to, order.state_before_attention)):
             return False
-        if not is_allowed(order.state, to, word.by, order.state_before_attention):
+        before = order.state_before_attention
+        if not is_allowed(order.state, to, word.by, before, is_passed_on=is_passed_on(order)):
             raise errors.TransitionRefused(f"Order {order.id} is {order.state}: {word.by} cannot make it {to}.")
         order.state_before_attention = order.state if to is OrderState.ATTENTION else None
         order.state = to
@@ -125,11 +136,19 @@ class Ledger:
         order = await self.order(session, order_id)
         if order.why != why:
             order.why = why
-            # Pages alone: who waits for changes of orders has nothing to do because of it.
-            if self.feed.is_heard:
-                self._publish_views(session, (await load_facts(session, [order]))[0])
-            else:
-                after_commit(session, self.feed.pass_over)
+            await self._show(session, order)
+
+    async def expect(self, session: AsyncSession, order: Order, begins_at: datetime, ends_at: datetime) -> None:
+        """Say when the robot should be at the recipient's, as it is foreseen now. Changes nothing else."""
+        order.window_from, order.window_to, order.window_assumed = begins_at, ends_at, False
+        await self._show(session, order)
+
+    async def _show(self, session: AsyncSession, order: Order) -> None:
+        """To pages alone: who waits for changes of orders has nothing to do because of it."""
+        if self.feed.is_heard:
+            self._publish_views(session, (await load_facts(session, [order]))[0])
+        else:
+            after_commit(session, self.feed.pass_over)
 
     async def _write(
         self, session: AsyncSession, order: Order, kind: str, word: Word, *, quietly: bool = False
@@ -150,7 +169,7 @@ class Ledger:
     async def come_nearer(self, session: AsyncSession, order_id: str, post: str | None) -> None:
         """The robot passes a post on its way to the sender, who is told once it is near. Raises UnknownOrder."""
         order = await self.order(session, order_id)
-        if order.state is OrderState.TO_SENDER and is_near(self.ways, post, order.from_post, self.settings):
+        if self._is_near(order, post):
             await self._tell(session, (await load_facts(session, [order]))[0], post)
             after_commit(session, partial(self.changed, order_id))
 
@@ -161,9 +180,12 @@ class Ledger:
         """What its people are to be told of the state that an order is in now."""
         order = facts.order
         robot_at = robot_at or (facts.robot.post if facts.robot else None)
-        nearby = order.state is OrderState.TO_SENDER and is_near(self.ways, robot_at, order.from_post, self.settings)
+        nearby = self._is_near(order, robot_at)
         gaps = facts_of(order, facts.people, self.campus, self.settings)
         return notices_about(order, gaps, facts.events, nearby, self.clock.utc())
+
+    def _is_near(self, order: Order, robot_at: str | None) -> bool:
+        return order.state is OrderState.TO_SENDER and is_near(self.ways, robot_at, order.load_post, self.settings)
 
     def publish(self, session: AsyncSession, facts: OrderFacts) -> None:
         """To sender, recipient and dispatchers, each as they may see it, and to whoever waits for changes."""
@@ -195,6 +217,11 @@ class Ledger:
     ) -> None:
         happening = Happening("order", view, person_id, role, except_for)
         after_commit(session, lambda: self.feed.publish(happening))
+
+
+def is_passed_on(order: Order) -> bool:
+    """One robot has carried it, somebody has taken it out, and another carries it further."""
+    return order.passed_on_at_post is not None
 
 
 def _begin_anew(order: Order) -> None:

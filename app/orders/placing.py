@@ -9,6 +9,7 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.database import new_row, row_of, write_all
 from app.errors import Unprocessable
+from app.estimates.learning import forecast_row
 from app.notify.service import tell_all
 from app.orders import errors
 from app.orders.ledger import Ledger, Word, event_row
@@ -17,7 +18,7 @@ from app.orders.transitions import By
 from app.orders.views import MyRole, OrderFacts, order_view
 from app.orders.window import Window, arrival_window
 from app.people.service import look_up_people, may_be_sent_mail
-from app.tables import Order, OrderEvent, OrderState, Person, Priority, Role, StandingOrder
+from app.tables import ForecastRow, Order, OrderEvent, OrderState, Person, Priority, Role, StandingOrder
 from app.tables.order_events import MOVED
 from maps import NoRoute, UnknownPost
 from protocol.ids import new_id
@@ -40,6 +41,7 @@ class Draft:
     order: Mapping[str, Any]
     event: Mapping[str, Any]
     notices: Sequence[Mapping[str, Any]]
+    forecast: Mapping[str, Any]
 
 
 class Placing(Ledger):
@@ -49,7 +51,7 @@ class Placing(Ledger):
         """When mail should arrive that is fetched from now, or later. Raises UnknownPost, SamePost, NoWay."""
         begins_at = max(self.clock.utc(), not_before or self.clock.utc())
         try:
-            window = arrival_window(self.ways, from_post, to_post, begins_at, self.settings)
+            window = arrival_window(self.estimates, from_post, to_post, begins_at)
         except UnknownPost as error:
             raise errors.UnknownPost(str(error)) from None
         except NoRoute as error:
@@ -107,8 +109,9 @@ class Placing(Ledger):
     ) -> Draft:
         now = self.clock.utc()
         lifetime = timedelta(seconds=self.settings.handover_code_lifetime_s)
+        order_id = new_id()
         row = {
-            "id": new_id(),
+            "id": order_id,
             "state": OrderState.QUEUED,
             "version": 1,
             "sender_id": parties.sender.id,
@@ -126,22 +129,24 @@ class Placing(Ledger):
             "codes_expire_at": max(now, not_before or now) + lifetime,
             "window_from": window.begins_at,
             "window_to": window.ends_at,
-            "window_assumed": True,
+            "window_assumed": window.assumed,
         }
-        return self._with_its_people(row, parties)
+        forecast = forecast_row(order_id, window.since, window.promise)
+        return self._with_its_people(row, parties, forecast)
 
-    def _with_its_people(self, row: Mapping[str, Any], parties: Parties) -> Draft:
+    def _with_its_people(self, row: Mapping[str, Any], parties: Parties, forecast: Mapping[str, Any]) -> Draft:
         order, (by, person) = new_row(Order, row), _on_whose_word(row, parties)
         event = event_row(order, MOVED, Word(by, person_id=person.id, post=order.from_post))
         # Everything that there is to know of it is at hand: nothing is read again.
         people = {one.id: one for one in (parties.sender, parties.recipient, person)}
         facts = OrderFacts(order, [row_of(OrderEvent, event)], people, None)
-        return Draft(facts, row, event, self.notices(facts))
+        return Draft(facts, row, event, self.notices(facts), forecast)
 
     async def write(self, session: AsyncSession, drafts: Sequence[Draft]) -> None:
         """Write new orders down, tell their people, and publish them after the commit."""
         await write_all(session, Order, [one.order for one in drafts])
         await write_all(session, OrderEvent, [one.event for one in drafts])
+        await write_all(session, ForecastRow, [one.forecast for one in drafts])
         await tell_all(session, [notice for one in drafts for notice in one.notices])
         for one in drafts:
             self.publish(session, one.facts)

@@ -55,8 +55,7 @@ class Returning(Ledger):
 
     async def robot_with_mail(self, session: AsyncSession, order: Order) -> str | None:
         """Which robot has the mail of an order by its chain of custody, whatever the order's state says."""
-        newest = select(Handover).where(Handover.order_id == order.id).order_by(col(Handover.id).desc()).limit(1)
-        last = (await session.exec(newest)).first()
+        last = await last_handover(session, order.id)
         return last.robot if last is not None and last.purpose == Purpose.LOAD else None
 
     async def not_now(self, session: AsyncSession, person: Person, order_id: str, if_match: str = "") -> OrderView:
@@ -88,3 +87,9 @@ class Returning(Ledger):
         now, lifetime = self.clock.utc(), timedelta(seconds=self.settings.handover_code_lifetime_s)
         order.codes_expire_at = max(order.codes_expire_at, now + lifetime)
         await stops.bring(session, order, action, post, self.settings.wait_limit_s, now)
+
+
+async def last_handover(session: AsyncSession, order_id: str) -> Handover | None:
+    """The newest link of the chain of custody: it tells who has the mail now."""
+    newest = select(Handover).where(Handover.order_id == order_id).order_by(col(Handover.id).desc()).limit(1)
+    return (await session.exec(newest)).first()

@@ -38,10 +38,25 @@ class BatteryView(BaseModel):
     charging: bool
 
 
+class WaitsFor(BaseModel):
+    """The corridor that a robot wishes to enter, the robots that have to go on before, and until about when.
+
+    `closed`: by a person, until a person opens it.
+    """
+
+    from_post: str
+    to_post: str
+    robots: list[str]
+    until: datetime | None
+    closed: bool
+
+
 class RobotView(BaseModel):
     """One robot. `online` is its own axis: an offline robot goes on with what it is doing.
 
-    `why` is its own sentence, in English; `why_words` the same as a text of the catalogue, if it is one.
+    `why` is its own sentence, in English, or the service's while it waits for others; `why_words` the same as a text of
+    the catalogue, if it is one. `waits_for`: the facts of that. `taken_out_at`: a person has given its corridors to
+    others, and it has not heard so yet.
     """
 
     name: str
@@ -53,11 +68,26 @@ class RobotView(BaseModel):
     battery: BatteryView | None
     why: str | None
     why_words: Words | None
+    waits_for: WaitsFor | None
+    taken_out_at: datetime | None
     heard_at: datetime | None
+
+
+def _why(robot: RobotRow) -> str | None:
+    """Its own sentence, unless the service knows better for what it waits."""
+    if robot.taken_out_at:
+        return "Its corridors were given to others; it takes part again when it stands at a post"
+    waits = WaitsFor.model_validate(robot.waits_for) if robot.waits_for else None
+    if waits and waits.closed:
+        return f"Waiting at {waits.from_post}: somebody has closed the corridor to {waits.to_post}"
+    if waits and waits.robots:
+        return f"Waiting at {waits.from_post} for the corridor to {waits.to_post}, after {', '.join(waits.robots)}"
+    return robot.why
 
 
 def robot_view(robot: RobotRow, campus: CampusMap, settings: Settings) -> RobotView:
     """What is said of a robot to whoever may see it."""
+    why = _why(robot)
     return RobotView(
         name=robot.name,
         online=robot.online,
@@ -66,8 +96,10 @@ def robot_view(robot: RobotRow, campus: CampusMap, settings: Settings) -> RobotV
         expected=_expected(robot, campus, settings),
         activity=Activity(robot.activity),
         battery=_battery(robot),
-        why=robot.why,
-        why_words=words_of(robot.why) if robot.why else None,
+        why=why,
+        why_words=words_of(why) if why else None,
+        waits_for=WaitsFor.model_validate(robot.waits_for) if robot.waits_for else None,
+        taken_out_at=robot.taken_out_at,
         heard_at=robot.heard_at,
     )
 

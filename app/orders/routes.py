@@ -67,7 +67,7 @@ async def estimate(
     """When mail would arrive if it were ordered now."""
     window = orders.window(from_post, to_post)
     length_m = shortest_route(campus, from_post, to_post).length_m
-    return Estimate(window=WindowView.of(window), length_m=round(length_m, 2))
+    return Estimate(window=WindowView.of(window), length_m=round(length_m, 2), assumed=window.assumed)
 
 
 @router.post("/orders", status_code=201, responses=PLACED)

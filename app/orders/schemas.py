@@ -98,7 +98,7 @@ class WindowView(BaseModel):
 
     @classmethod
     def of(cls, window: Window) -> "WindowView":
-        return cls(from_=window.begins_at, to=window.ends_at, assumed=True)
+        return cls(from_=window.begins_at, to=window.ends_at, assumed=window.assumed)
 
 
 class Estimate(BaseModel):
@@ -178,7 +178,10 @@ class HandoverRequested(BaseModel):
 
 
 class OrderView(BaseModel):
-    """An order as one person may see it. A delegate sees where it is, and of sender and recipient the names alone."""
+    """An order as one person may see it. A delegate sees where it is, and of sender and recipient the names alone.
+
+    `passed_on_at_post`: where somebody of the mailroom has taken the mail out of one robot for another to carry it on.
+    """
 
     id: str
     state: OrderState
@@ -204,6 +207,7 @@ class OrderView(BaseModel):
     not_before: datetime | None
     wait_until: datetime | None
     return_post: str | None
+    passed_on_at_post: str | None
     standing_order_id: str | None
     placed_by: Somebody | None
     custody: list[CustodyView]

@@ -6,8 +6,8 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.orders.cancelling import Cancelling
 from app.orders.codes import verifiers
-from app.orders.intervening import Intervening
 from app.orders.ledger import Word, unknown
+from app.orders.passing_on import PassingOn
 from app.orders.placing import Placing
 from app.orders.schemas import OrderView
 from app.orders.views import load_facts, view_for
@@ -19,7 +19,7 @@ __all__ = ["Orders", "Word"]
 
 
 @dataclass(frozen=True)
-class Orders(Placing, Cancelling, Intervening, Waiting):
+class Orders(Placing, Cancelling, PassingOn, Waiting):
     """The orders of one campus."""
 
     async def view(self, session: AsyncSession, person: Person, order_id: str) -> OrderView:

@@ -10,6 +10,7 @@ from app.orders.transitions import MAIL_ABOARD, By
 from app.settings import Settings
 from app.tables import NoticeKind, Order, OrderEvent, OrderState, Person
 from app.tables.order_events import MOVED
+from app.texts.times import as_fact
 from maps import CampusMap
 
 SENDER: Final = By.SENDER
@@ -28,6 +29,10 @@ class Telling:
 
 def _both(kind: NoticeKind, concerns: Callable[[Order], bool] = lambda order: True) -> tuple[Telling, Telling]:
     return Telling(SENDER, kind, concerns), Telling(RECIPIENT, kind, concerns)
+
+
+def _is_with_its_sender(order: Order) -> bool:
+    return order.passed_on_at_post is None
 
 
 def _was_called_back(order: Order) -> bool:
@@ -49,8 +54,8 @@ def _was_aboard(order: Order) -> bool:
 
 TOLD: Final[Mapping[OrderState, tuple[Telling, ...]]] = {
     OrderState.QUEUED: (Telling(SENDER, NoticeKind.ACCEPTED),),
-    OrderState.TO_SENDER: (Telling(SENDER, NoticeKind.ROBOT_NEAR, when_near=True),),
-    OrderState.AT_SENDER: (Telling(SENDER, NoticeKind.ROBOT_HERE),),
+    OrderState.TO_SENDER: (Telling(SENDER, NoticeKind.ROBOT_NEAR, _is_with_its_sender, when_near=True),),
+    OrderState.AT_SENDER: (Telling(SENDER, NoticeKind.ROBOT_HERE, _is_with_its_sender),),
     OrderState.CARRYING: (Telling(RECIPIENT, NoticeKind.ON_ITS_WAY),),
     OrderState.AT_RECIPIENT: (Telling(RECIPIENT, NoticeKind.ROBOT_HERE_FOR_YOU),),
     OrderState.DELIVERED: _both(NoticeKind.DELIVERED),
@@ -130,7 +135,7 @@ def facts_of(order: Order, people: Mapping[str, Person], campus: CampusMap, sett
         "from_post": title_of(order.from_post, campus),
         "to_post": title_of(order.to_post, campus),
         "return_post": title_of(return_post_of(order), campus),
-        **{name: at.astimezone(settings.zone).strftime("%H:%M") if at else "?" for name, at in times.items()},
+        **{name: as_fact(at, settings.zone) if at else "?" for name, at in times.items()},
     }
 
 

@@ -105,8 +105,9 @@ class Timer:
             if order.state in NOT_ON_ITS_WAY or order.window_to is None or order.window_to >= self._late_since(now):
                 return  # it has moved on, or another process has told of it
             with suppress(ServiceError):  # a post that the map has lost since: nothing better is known
-                window = self.orders.window(order.from_post, order.to_post)
+                window = self.orders.window(order.load_post, order.to_post)
                 order.window_from, order.window_to = window.begins_at, window.ends_at
+                order.window_assumed = window.assumed
             order.delayed_at = now
             if order.window_to is not None and order.window_to < now:
                 order.window_to = now  # so that it is told of now and then, not with every tick

@@ -7,6 +7,8 @@ queued | assigned | to_sender | at_sender → cancelled
 assigned | to_sender | at_sender → queued (the robot was told to let go)
 a fault → attention → the state it left
                     → queued | cancelled (nothing aboard), returning | held (mail aboard), on a dispatcher's word
+carrying | at_recipient | attention → queued (passed on: the mailroom has it, another robot carries it further)
+  and what was passed on ends held, where another order would be cancelled or expire
 """
 
 from collections.abc import Mapping
@@ -29,22 +31,24 @@ class By(StrEnum):
 S = OrderState
 SENDER, RECIPIENT, ROBOT, DISPATCHER, TIMER = By.SENDER, By.RECIPIENT, By.ROBOT, By.DISPATCHER, By.TIMER
 FAULT: Final = {S.ATTENTION: {ROBOT, DISPATCHER}}
-LET_GO: Final = {S.QUEUED: {ROBOT}, S.CANCELLED: {ROBOT, DISPATCHER}}
+LET_GO: Final = {S.QUEUED: {ROBOT}, S.CANCELLED: {ROBOT, DISPATCHER}, S.HELD: {ROBOT, DISPATCHER}}
 """From the moment a robot is on its way a wish takes effect on its word: it drops the order, whatever for."""
+PASSED_ON: Final = {S.QUEUED: {DISPATCHER}}
 
 TRANSITIONS: Final[Mapping[OrderState, Mapping[OrderState, set[By]]]] = {
     S.QUEUED: {
         S.ASSIGNED: {DISPATCHER},
         S.CANCELLED: {SENDER, DISPATCHER},
         S.EXPIRED: {TIMER},
+        S.HELD: {SENDER, DISPATCHER, TIMER},
         # A robot out of network had the mail already when a dispatcher gave the order to another.
         S.CARRYING: {ROBOT},
     },
     S.ASSIGNED: {S.TO_SENDER: {ROBOT}, **LET_GO, **FAULT},
     S.TO_SENDER: {S.AT_SENDER: {ROBOT}, **LET_GO, **FAULT},
     S.AT_SENDER: {S.CARRYING: {ROBOT}, S.EXPIRED: {ROBOT, TIMER}, **LET_GO, **FAULT},
-    S.CARRYING: {S.AT_RECIPIENT: {ROBOT}, S.RETURNING: {ROBOT, DISPATCHER}, **FAULT},
-    S.AT_RECIPIENT: {S.DELIVERED: {ROBOT}, S.RETURNING: {ROBOT, DISPATCHER, TIMER}, **FAULT},
+    S.CARRYING: {S.AT_RECIPIENT: {ROBOT}, S.RETURNING: {ROBOT, DISPATCHER}, **PASSED_ON, **FAULT},
+    S.AT_RECIPIENT: {S.DELIVERED: {ROBOT}, S.RETURNING: {ROBOT, DISPATCHER, TIMER}, **PASSED_ON, **FAULT},
     S.RETURNING: {S.AT_RETURN: {ROBOT}, S.DELIVERED: {ROBOT}, **FAULT},
     # On the way back the recipient's code opens too: what they have taken is delivered.
     S.AT_RETURN: {S.RETURNED: {ROBOT}, S.HELD: {ROBOT, DISPATCHER}, S.DELIVERED: {ROBOT}, **FAULT},
@@ -62,6 +66,9 @@ CARRIED: Final = frozenset({S.CARRYING, S.AT_RECIPIENT})
 TURNED_BACK: Final = frozenset({S.RETURNING, S.AT_RETURN})
 MAIL_ABOARD: Final = CARRIED | TURNED_BACK
 ROBOT_COMING: Final = frozenset({S.ASSIGNED, S.TO_SENDER, S.AT_SENDER})
+NOTHING_ABOARD: Final = ROBOT_COMING | {S.QUEUED}
+"""What these end in depends on who has the mail: its sender, or, if it was passed on, the mailroom."""
+NEVER_LEFT_ITS_SENDER: Final = frozenset({S.CANCELLED, S.EXPIRED})
 
 LOADED: Final = frozenset(S) - {S.QUEUED} - ROBOT_COMING
 """Where mail may have changed hands; of one that is cancelled or expired only if the robot contradicts."""
@@ -88,14 +95,30 @@ def is_old_news(state: OrderState, to: OrderState, before_attention: OrderState 
     return here in ENDED or WAY.index(to) < WAY.index(here)
 
 
-def is_allowed(state: OrderState, to: OrderState, by: By, before_attention: OrderState | None = None) -> bool:
+def is_allowed(
+    state: OrderState,
+    to: OrderState,
+    by: By,
+    before_attention: OrderState | None = None,
+    *,
+    is_passed_on: bool = False,
+) -> bool:
     """Whether `to` may follow `state` on the word of `by`; `before_attention` is where a fault struck, if one did.
+    `is_passed_on`: one robot has carried it, and another carries it further.
 
     Back to the state that was left: a dispatcher who has looked says so, or the robot, which has gone on by itself.
     """
+    if state in NOTHING_ABOARD and to in (NEVER_LEFT_ITS_SENDER if is_passed_on else {S.HELD}):
+        return False
     if state is not S.ATTENTION:
         return by in TRANSITIONS[state].get(to, set())
     if to is before_attention:
         return by in (DISPATCHER, ROBOT)
-    ways_out = {S.RETURNING, S.HELD} if before_attention in MAIL_ABOARD else {S.QUEUED, S.CANCELLED}
-    return to in ways_out and by in TRANSITIONS[state][to]
+    return to in _ways_out(before_attention, is_passed_on) and by in TRANSITIONS[state][to]
+
+
+def _ways_out(before_attention: OrderState | None, is_passed_on: bool) -> set[OrderState]:
+    """Out of attention, beside the state that was left."""
+    if before_attention in MAIL_ABOARD:
+        return {S.RETURNING, S.HELD, *((S.QUEUED,) if before_attention in CARRIED else ())}
+    return {S.QUEUED, S.HELD if is_passed_on else S.CANCELLED}

@@ -11,7 +11,7 @@ from sqlalchemy import BindParameter, bindparam
 from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.orders.codes import turn_of
+from app.orders.codes import mailrooms_turn, turn_of
 from app.orders.custody import custody_of
 from app.orders.robot_view import robot_view
 from app.orders.schemas import CustodyView, EventView, HandoverRequested, OrderView, Somebody, WindowView
@@ -35,7 +35,18 @@ OfOrder = TypeVar("OfOrder", OrderEvent, Handover)
 
 
 SHOWN_TO_DELEGATES: Final = (
-    *("id", "state", "version", "created_at", "updated_at", "from_post", "to_post", "return_post", "priority"),
+    *(
+        "id",
+        "state",
+        "version",
+        "created_at",
+        "updated_at",
+        "from_post",
+        "to_post",
+        "return_post",
+        "passed_on_at_post",
+        "priority",
+    ),
     *("not_before", "window", "wait_until", "handover_requested", "cancel_requested", "return_requested"),
 )
 """Where it is, when it comes, and whether a hand-over is still wanted."""
@@ -72,7 +83,9 @@ async def load_facts(session: AsyncSession, orders: Sequence[Order]) -> list[Ord
     people = {one.id: one for one in (await session.exec(_PEOPLE, params={"ids": list(wanted)})).all()}
     names_of_robots = {order.robot for order in orders if order.robot}
     robots = {one.name: one for one in (await session.exec(_ROBOTS, params={"ids": list(names_of_robots)})).all()}
-    handovers = await _handovers(session, [order.id for order in orders if order.state in LOADED])
+    handovers = await _handovers(
+        session, [order.id for order in orders if order.state in LOADED or order.passed_on_at_post]
+    )
     names, handovers_of = await _delegates(session, handovers), _by_order(handovers)
     return [
         OrderFacts(o, events_of[o.id], people, robots.get(o.robot or ""), handovers_of[o.id], names) for o in orders
@@ -136,15 +149,15 @@ def order_view(facts: OrderFacts, role: MyRole, person_id: str, campus: CampusMa
     order = facts.order
     robot = robot_view(facts.robot, campus, settings) if facts.robot and order.state not in ENDED else None
     why = order.why or (robot.why if robot else None)
-    turn = turn_of(order, person_id)
+    turn = turn_of(order, person_id) or (mailrooms_turn(order) if role == "dispatcher" else None)
     return OrderView(
         id=order.id,
         state=str(order.state),
         version=order.version,
         from_post=order.from_post,
         to_post=order.to_post,
-        sender=_somebody(facts.sender),
-        recipient=_somebody(facts.recipient),
+        sender=somebody(facts.sender),
+        recipient=somebody(facts.recipient),
         description=order.description,
         created_at=order.created_at,
         updated_at=order.updated_at,
@@ -162,8 +175,9 @@ def order_view(facts: OrderFacts, role: MyRole, person_id: str, campus: CampusMa
         not_before=order.not_before,
         wait_until=order.wait_until,
         return_post=order.return_post,
+        passed_on_at_post=order.passed_on_at_post,
         standing_order_id=order.standing_order_id,
-        placed_by=_somebody(facts.people[order.placed_by_id]) if order.placed_by_id else None,
+        placed_by=somebody(facts.people[order.placed_by_id]) if order.placed_by_id else None,
         custody=[CustodyView.of(held) for held in custody_of(order, facts.handovers, _names_for(role, facts))],
         events=[_event(event, may_read(role, order, event.kind, event.by)) for event in facts.events],
     )
@@ -241,7 +255,7 @@ def _window(order: Order) -> WindowView | None:
     return WindowView(from_=order.window_from, to=order.window_to, assumed=order.window_assumed)
 
 
-def _somebody(person: Person) -> Somebody:
+def somebody(person: Person) -> Somebody:
     return Somebody(email=person.email, name=person.name)
 
 

@@ -8,10 +8,11 @@ from sqlmodel import SQLModel
 
 from app.tables import indexes as indexes
 from app.tables.battery_samples import BatterySample
-from app.tables.claims import ClaimRow, GrantRow
+from app.tables.claims import ClaimRow, ClosedCorridor, GrantRow
 from app.tables.contacts import Contact
 from app.tables.delegates import Delegate, DigitLock
 from app.tables.enrolment_codes import EnrolmentCode
+from app.tables.forecasts import DurationRow, ForecastRow
 from app.tables.handovers import Handover, RefusedReceipt
 from app.tables.idempotency_keys import IdempotencyKey
 from app.tables.identities import Identity
@@ -37,10 +38,13 @@ __all__ = [
     "Alarm",
     "BatterySample",
     "ClaimRow",
+    "ClosedCorridor",
     "Contact",
     "Delegate",
     "DigitLock",
+    "DurationRow",
     "EnrolmentCode",
+    "ForecastRow",
     "GrantRow",
     "Handover",
     "IdempotencyKey",

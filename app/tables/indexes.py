@@ -9,7 +9,7 @@ from typing import Any, Final
 from sqlalchemy import Index, text
 from sqlmodel import SQLModel
 
-from app.tables.claims import GrantRow
+from app.tables.claims import ClaimRow, GrantRow
 from app.tables.missions import MissionRow
 from app.tables.notices import Notice
 from app.tables.orders import Order
@@ -30,11 +30,28 @@ UNTOLD: Final = ("ix_missions_untold", MissionRow, ("state",), "told_update < up
 WAITING: Final = ("ix_server_outbox_waiting", MessageToRobot, ("robot", "seq"), "acked_at IS NULL")
 UNANSWERED: Final = ("ix_robot_commands_unanswered", RobotCommand, ("robot", "answered_at"), None)
 # What lasts.
+CLAIMED: Final = ("ix_claims_waiting", ClaimRow, ("robot",), "granted IS NULL")
 HELD: Final = ("ix_grants_held", GrantRow, ("robot", "cleared_at"), None)
 RINGING: Final = ("ix_alarms_ringing", Alarm, ("robot", "cleared_at"), None)
+NAMED: Final = ("ix_alarms_named", Alarm, ("name",), "cleared_at IS NULL")
 UNREAD: Final = ("ix_notices_unread", Notice, ("person_id",), "read_at IS NULL")
 
-INDEXES: Final = (SENT, COMING, NEWEST, OF_ROBOT, MISSIONS, LET_GO, UNTOLD, WAITING, UNANSWERED, HELD, RINGING, UNREAD)
+INDEXES: Final = (
+    SENT,
+    COMING,
+    NEWEST,
+    OF_ROBOT,
+    MISSIONS,
+    LET_GO,
+    UNTOLD,
+    WAITING,
+    UNANSWERED,
+    CLAIMED,
+    HELD,
+    RINGING,
+    NAMED,
+    UNREAD,
+)
 
 
 def _add(name: str, table: type[SQLModel], columns: tuple[str, ...], only: str | None) -> None:

@@ -42,7 +42,8 @@ class Order(SQLModel, table=True):
     Dispatch leaves it alone until `not_before`. `placed_by_id` is who placed it for the sender. `return_post` is where
     mail that was not taken goes, `wait_until` how long the robot waits at the present stop. `…_requested_at` are wishes
     that take effect on the robot's word; `let_go_by` is a robot that is still to be told to drop this order.
-    `occurs_on` is the day of its standing order (local, as 2026-01-05).
+    `occurs_on` is the day of its standing order (local, as 2026-01-05). `passed_on_at_post` is where somebody of the
+    mailroom has the mail in hand for its next leg with another robot.
     """
 
     __tablename__ = "orders"
@@ -80,3 +81,9 @@ class Order(SQLModel, table=True):
     return_post: str | None = Field(default=None, max_length=64)
     wait_until: datetime | None = Field(default=None, sa_type=UtcTime)
     delayed_at: datetime | None = Field(default=None, sa_type=UtcTime)
+    passed_on_at_post: str | None = Field(default=None, max_length=64)
+
+    @property
+    def load_post(self) -> str:
+        """Where a robot loads it: at its sender's, or where another robot has left it."""
+        return self.passed_on_at_post or self.from_post

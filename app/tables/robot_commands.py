@@ -10,7 +10,8 @@ from app.tables.columns import UtcTime
 class RobotCommand(SQLModel, table=True):
     """One command and its one answer; `kind` is the wire name of its message. `asked_by_id` None: the service itself.
 
-    `how` and `code_sha256` are those of a `confirm`: what its receipt must repeat.
+    `asked_because`: the reason that they gave. `how` and `code_sha256` are those of a `confirm`: what its receipt must
+    repeat.
     """
 
     __tablename__ = "robot_commands"
@@ -21,6 +22,7 @@ class RobotCommand(SQLModel, table=True):
     order_id: str | None = Field(default=None, foreign_key="orders.id", index=True)
     asked_by_id: str | None = Field(default=None, foreign_key="people.id")
     asked_at: datetime = Field(sa_type=UtcTime)
+    asked_because: str | None = Field(default=None, max_length=500)
     how: str | None = Field(default=None, max_length=16)
     code_sha256: str | None = Field(default=None, max_length=64)
     answered_at: datetime | None = Field(default=None, sa_type=UtcTime)

@@ -1,7 +1,9 @@
 """The robots, what they last said of themselves, and the tokens they sign in with."""
 
 from datetime import datetime
+from typing import Any
 
+from sqlalchemy import JSON
 from sqlmodel import Field, SQLModel
 
 from app.tables.columns import UtcTime
@@ -12,7 +14,9 @@ class RobotRow(SQLModel, table=True):
 
     `online` says that its socket is open now; every start of the service begins with nobody online. `public_key`
     (Ed25519, base64) is what its receipts are signed with; None: enrolled without one. `clock_off_s` is how far its
-    clock was ahead at its last hello, or when it was seen to have been set since.
+    clock was ahead at its last hello, or when it was seen to have been set since. `home` and `docked` as it says;
+    None: it has not said. `waits_for`: the corridor it wishes to enter, for which robots, until about when.
+    `taken_out_at`: a person has given its corridors to others, and it has not heard so yet.
     """
 
     __tablename__ = "robots"
@@ -36,6 +40,10 @@ class RobotRow(SQLModel, table=True):
     public_key: str | None = Field(default=None, max_length=64)
     takes_confirm: bool = False
     clock_off_s: float = 0.0
+    home: str | None = Field(default=None, max_length=64)
+    docked: bool | None = None
+    waits_for: dict[str, Any] | None = Field(default=None, sa_type=JSON(none_as_null=True))
+    taken_out_at: datetime | None = Field(default=None, sa_type=UtcTime)
 
 
 class RobotToken(SQLModel, table=True):

@@ -1,8 +1,8 @@
 """Why an order or a robot waits, in the reader's language.
 
 Robots and the service say it in English sentences, which are kept as they were said. The catalogue has those sentences
-under `why.…`: by them a sentence is recognised, with what stands in its gaps, and then said in another language. What
-is not recognised is shown as it is, and marked as English.
+under `why.…`, those of alarms under `alarm.of.…`: by them a sentence is recognised, with what stands in its gaps, and
+then said in another language. What is not recognised is shown as it is, and marked as English.
 """
 
 import re
@@ -15,7 +15,7 @@ from pydantic import BaseModel
 
 from app.texts import catalogue, text
 
-PREFIX: Final = "why."
+PREFIXES: Final = ("why.", "alarm.of.")
 NOT_RECOGNISED: Final = "why.in_english"
 REASON: Final = "reason"
 """The gap in which another sentence may stand."""
@@ -58,7 +58,7 @@ def _inner(language: str, sentence: str) -> str:
 @cache
 def _patterns() -> tuple[tuple[str, re.Pattern[str]], ...]:
     """Sentences without gaps first: they are the surer find."""
-    texts = {key: said for key, said in catalogue("en").items() if key.startswith(PREFIX) and key != NOT_RECOGNISED}
+    texts = {key: said for key, said in catalogue("en").items() if key.startswith(PREFIXES) and key != NOT_RECOGNISED}
     return tuple((key, _pattern(said)) for key, said in sorted(texts.items(), key=lambda one: "{" in one[1]))
 
 

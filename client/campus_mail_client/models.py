@@ -57,6 +57,7 @@ class AlarmPage(Model):
 class AlarmView(Model):
     """Something about a robot that a person should look at; over when `cleared_at` says so.
 
+    `reason` is a sentence in English; `why_words` the same as a text of the catalogue, if it is one.
     `corridor`: the one that the robot found closed, and in which it goes nowhere until the alarm is over.
     """
 
@@ -64,6 +65,7 @@ class AlarmView(Model):
     robot: str
     name: str
     reason: str
+    why_words: Words | None
     post: str | None
     corridor: str | None
     at: datetime
@@ -102,6 +104,25 @@ class BatteryView(Model):
 
     ratio: float
     charging: bool
+
+
+class ClosedCorridorView(Model):
+    """A corridor into which no robot is let, since when and why: the reason of the person who has closed it, else
+    the words of the robot that turned back there.
+    """
+
+    corridor: str
+    reason: str
+    why_words: Words | None
+    closed_at: datetime
+    by_person: bool
+    robots: list[str]
+
+
+class ClosedCorridors(Model):
+    """All of them, by name: it replaces what was known."""
+
+    closed: list[ClosedCorridorView]
 
 
 class CodeMailed(Model):
@@ -232,6 +253,20 @@ class DeviceView(Model):
     created_at: datetime
 
 
+class DurationView(Model):
+    """How long one thing takes: quantiles in seconds, of which `seen` were seen; `assumed_s` by map and settings."""
+
+    kind: Literal["corridor", "load", "receive"] | str
+    name: str
+    from_post: str | None
+    to_post: str | None
+    seen: int
+    assumed_s: float
+    p10_s: float
+    p50_s: float
+    p90_s: float
+
+
 class Enrolled(Model):
     """The robot's token, told once and never again."""
 
@@ -261,6 +296,35 @@ class Estimate(Model):
     window: WindowView
     length_m: float
     assumed: bool = True
+
+
+class EstimateError(Model):
+    """One way to estimate. `median_error_ratio`: of the middle, as a share of what it took. `pinball_s`: the mean
+    loss of the three quantiles, in seconds; less is better.
+    """
+
+    median_error_ratio: float
+    pinball_s: float
+
+
+class EstimateQuality(Model):
+    """How good arrivals were estimated of the latest orders, `scored` in number.
+
+    `assumed`: people are still told what the lengths on the map say, since too little was seen. `inside_ratio`
+    is how often the robot came between the times that were told (`inside_meant` is aimed at), `earlier_ratio`
+    and `later_ratio` how often before and after them. `by_map`: what the lengths alone would have told of the
+    same orders. All of it is null as long as no robot has come.
+    """
+
+    scored: int
+    assumed: bool
+    inside_meant: float
+    inside_ratio: float | None
+    earlier_ratio: float | None
+    later_ratio: float | None
+    told: EstimateError | None
+    by_map: EstimateError | None
+    durations: list[DurationView]
 
 
 class EventView(Model):
@@ -390,6 +454,33 @@ class MapView(Model):
     note: str
     posts: list[PostView]
     corridors: list[CorridorView]
+
+
+class MyDelegateView(Model):
+    """Somebody whom the caller has named, whose code is good until `expires_at`: the `post` where they meet the
+    robot, and for which order.
+    """
+
+    id: str
+    name: str
+    email: str | None
+    purpose: Literal["load", "receive", "return"] | str
+    post: str
+    named_at: datetime
+    expires_at: datetime
+    order_id: str
+    state: OrderState
+    description: str | None
+    sender: Somebody
+    recipient: Somebody
+    my_role: Literal["sender", "recipient", "dispatcher"] | str
+
+
+class MyDelegates(Model):
+    """Whom the caller has named for orders that go on, newest first."""
+
+    items: list[MyDelegateView]
+    next: str | None
 
 
 class NewDelegate(Model):
@@ -536,7 +627,11 @@ OrderState = (
 
 
 class OrderView(Model):
-    """An order as one person may see it. A delegate sees where it is, and of sender and recipient the names alone."""
+    """An order as one person may see it. A delegate sees where it is, and of sender and recipient the names alone.
+
+    `passed_on_at_post`: where somebody of the mailroom has taken the mail out of one robot for another to carry
+    it on.
+    """
 
     id: str
     state: OrderState
@@ -562,10 +657,18 @@ class OrderView(Model):
     not_before: datetime | None
     wait_until: datetime | None
     return_post: str | None
+    passed_on_at_post: str | None
     standing_order_id: str | None
     placed_by: Somebody | None
     custody: list[CustodyView]
     events: list[EventView]
+
+
+class PassingOn(Model):
+    """At which post somebody has taken the mail out of its robot for another one; null: where that was seen last."""
+
+    post: str | None = None
+    reason: str | None = None
 
 
 class PeoplePage(Model):
@@ -669,7 +772,9 @@ class RobotTokenView(Model):
 class RobotView(Model):
     """One robot. `online` is its own axis: an offline robot goes on with what it is doing.
 
-    `why` is its own sentence, in English; `why_words` the same as a text of the catalogue, if it is one.
+    `why` is its own sentence, in English, or the service's while it waits for others; `why_words` the same as a
+    text of the catalogue, if it is one. `waits_for`: the facts of that. `taken_out_at`: a person has given its
+    corridors to others, and it has not heard so yet.
     """
 
     name: str
@@ -681,6 +786,8 @@ class RobotView(Model):
     battery: BatteryView | None
     why: str | None
     why_words: Words | None
+    waits_for: WaitsFor | None
+    taken_out_at: datetime | None
     heard_at: datetime | None
 
 
@@ -870,6 +977,19 @@ class TrialView(Model):
     problem: str | None
 
 
+class WaitsFor(Model):
+    """The corridor that a robot wishes to enter, the robots that have to go on before, and until about when.
+
+    `closed`: by a person, until a person opens it.
+    """
+
+    from_post: str
+    to_post: str
+    robots: list[str]
+    until: datetime | None
+    closed: bool
+
+
 class WatchView(Model):
     """`online` false: it is shown when the robot is back. `tells` false: this robot's software knows nothing of
     it.
@@ -879,6 +999,12 @@ class WatchView(Model):
     online: bool
     tells: bool
     for_s: float
+
+
+class WayIsOpen(Model):
+    """Which corridor is free again: the name that it has on the map."""
+
+    corridor: str
 
 
 class WebhookView(Model):

@@ -12,6 +12,7 @@ from campus_mail_client.models import (
     AlarmView,
     Attention,
     BatteryHistory,
+    ClosedCorridors,
     CodeMailed,
     CodeRequest,
     CodeView,
@@ -27,6 +28,7 @@ from campus_mail_client.models import (
     Enrolment,
     EnrolmentCodeView,
     Estimate,
+    EstimateQuality,
     HandoverAsked,
     HandOverWish,
     Inbox,
@@ -38,6 +40,7 @@ from campus_mail_client.models import (
     LinkedHandOver,
     LongerWait,
     MapView,
+    MyDelegates,
     NewDelegate,
     NewDevice,
     NewOrder,
@@ -48,6 +51,7 @@ from campus_mail_client.models import (
     NoticesRead,
     OrderPage,
     OrderView,
+    PassingOn,
     PeoplePage,
     PersonView,
     PriorityChange,
@@ -70,6 +74,7 @@ from campus_mail_client.models import (
     Traffic,
     TrialView,
     WatchView,
+    WayIsOpen,
     Wishes,
     WishesView,
 )
@@ -319,6 +324,17 @@ class Operations:
         )
         return answer
 
+    def pass_order_on(self, order_id: str, wish: PassingOn, *, if_match: str | None = None) -> OrderView:
+        """Say that the mail was taken out of its robot at a post, for another robot to carry it on from there."""
+        answer: OrderView = self._call(
+            "POST",
+            f"/api/v1/orders/{quote(str(order_id), safe='')}/pass-on",
+            OrderView,
+            body=wish,
+            headers={"If-Match": if_match},
+        )
+        return answer
+
     def reassign_order(self, order_id: str, wish: Reassignment, *, if_match: str | None = None) -> OrderView:
         """Let another robot fetch the mail. The one that is on its way lets go on its own word."""
         answer: OrderView = self._call(
@@ -527,6 +543,24 @@ class Operations:
         )
         return answer
 
+    def tell_robot_of_open_way(self, name: str, wish: WayIsOpen) -> CommandView:
+        """Tell a robot that a corridor which it took for closed is free again: whoever says so has looked."""
+        answer: CommandView = self._call(
+            "POST", f"/api/v1/robots/{quote(str(name), safe='')}/open-way", CommandView, body=wish
+        )
+        return answer
+
+    def take_robot_out(self, name: str, wish: CommandReason) -> CommandView:
+        """Give the corridors of a robot that is dead to others: whoever says so has looked, and it is in nobody's
+        way.
+
+        It stands still when it hears so, until it is put down at a post or in a dock.
+        """
+        answer: CommandView = self._call(
+            "POST", f"/api/v1/robots/{quote(str(name), safe='')}/take-out", CommandView, body=wish
+        )
+        return answer
+
     def list_alarms(
         self,
         *,
@@ -549,6 +583,27 @@ class Operations:
         answer: AlarmView = self._call("POST", f"/api/v1/alarms/{quote(str(alarm_id), safe='')}/acknowledge", AlarmView)
         return answer
 
+    def close_corridor(self, corridor: str, wish: CommandReason) -> ClosedCorridors:
+        """Let no robot into a corridor any more, until it is opened again; whoever is in there drives on."""
+        answer: ClosedCorridors = self._call(
+            "POST", f"/api/v1/corridors/{quote(str(corridor), safe='')}/close", ClosedCorridors, body=wish
+        )
+        return answer
+
+    def open_corridor(self, corridor: str) -> ClosedCorridors:
+        """Let robots into a closed corridor again: whoever says so has looked. Robots that turned back there are
+        told.
+        """
+        answer: ClosedCorridors = self._call(
+            "POST", f"/api/v1/corridors/{quote(str(corridor), safe='')}/open", ClosedCorridors
+        )
+        return answer
+
+    def closed_corridors(self) -> ClosedCorridors:
+        """List the corridors into which no robot is let: people have closed them, or robots turned back there."""
+        answer: ClosedCorridors = self._call("GET", "/api/v1/corridors/closed", ClosedCorridors)
+        return answer
+
     def robot_battery(self, name: str, *, since: datetime | None = None) -> BatteryHistory:
         """Show a robot's charge over time, as it told it."""
         answer: BatteryHistory = self._call(
@@ -564,6 +619,11 @@ class Operations:
         answer: WatchView = self._call(
             "POST", f"/api/v1/robots/{quote(str(name), safe='')}/watch", WatchView, query={"anew": anew}
         )
+        return answer
+
+    def estimate_quality(self) -> EstimateQuality:
+        """Show how good estimated arrivals were, and how long corridors and stops take."""
+        answer: EstimateQuality = self._call("GET", "/api/v1/estimates", EstimateQuality)
         return answer
 
     def make_enrolment_code(self, name: str) -> EnrolmentCodeView:
@@ -624,6 +684,13 @@ class Operations:
         """Name somebody who hands over instead, with a code of their own."""
         answer: DelegateView = self._call(
             "POST", f"/api/v1/orders/{quote(str(order_id), safe='')}/delegates", DelegateView, body=wish
+        )
+        return answer
+
+    def my_delegates(self, *, limit: int | None = None, cursor: str | None = None) -> MyDelegates:
+        """List whom the caller has named to hand over, for all orders that go on; each is taken back at its order."""
+        answer: MyDelegates = self._call(
+            "GET", "/api/v1/me/delegates", MyDelegates, query={"limit": limit, "cursor": cursor}
         )
         return answer
 

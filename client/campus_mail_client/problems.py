@@ -174,6 +174,12 @@ class NoEnrolmentCode(Problem):
     code = "no_enrolment_code"
 
 
+class NoSuchCorridor(Problem):
+    """Corridors are named by their two posts, in the order of the alphabet. (422)"""
+
+    code = "no_such_corridor"
+
+
 class NoSuchPost(Problem):
     """The campus map has no post of this name. (404)"""
 
@@ -264,6 +270,12 @@ class NotYoursToDelegate(Problem):
     code = "not_yours_to_delegate"
 
 
+class NothingToPassOn(Problem):
+    """Mail changes robots while one is bringing it to its recipient, not before or after. (409)"""
+
+    code = "nothing_to_pass_on"
+
+
 class NothingToResume(Problem):
     """The order's robot has dropped it: there is nothing to go on with. (409)"""
 
@@ -300,10 +312,22 @@ class ProviderFailed(Problem):
     code = "provider_failed"
 
 
+class RobotAway(Problem):
+    """Until it is back, what is to be said may not hold any more. It tries the way again by itself. (409)"""
+
+    code = "robot_away"
+
+
 class RobotExists(Problem):
     """Two robots of one name could not be told apart. (409)"""
 
     code = "robot_exists"
+
+
+class RobotGoesOn(Problem):
+    """Others might meet it: stop it first. (409)"""
+
+    code = "robot_goes_on"
 
 
 class RobotNameInvalid(Problem):
@@ -328,6 +352,12 @@ class RobotTakesNoTaps(Problem):
     """Its software is older than taps. The QR code works. (409)"""
 
     code = "robot_takes_no_taps"
+
+
+class RobotTooOld(Problem):
+    """Its software is older than this message. It tries the way again by itself. (409)"""
+
+    code = "robot_too_old"
 
 
 class RoleNeeded(Problem):
@@ -569,6 +599,7 @@ BY_CODE: Final[Mapping[str, type[Problem]]] = {
     "no_campus_sign_in": NoCampusSignIn,
     "no_code": NoCode,
     "no_enrolment_code": NoEnrolmentCode,
+    "no_such_corridor": NoSuchCorridor,
     "no_such_post": NoSuchPost,
     "no_way": NoWay,
     "no_webhook": NoWebhook,
@@ -584,17 +615,21 @@ BY_CODE: Final[Mapping[str, type[Problem]]] = {
     "not_waiting": NotWaiting,
     "not_your_turn": NotYourTurn,
     "not_yours_to_delegate": NotYoursToDelegate,
+    "nothing_to_pass_on": NothingToPassOn,
     "nothing_to_resume": NothingToResume,
     "oidc_refused": OidcRefused,
     "oidc_untrusted": OidcUntrusted,
     "order_changed": OrderChanged,
     "precondition_failed": PreconditionFailed,
     "provider_failed": ProviderFailed,
+    "robot_away": RobotAway,
     "robot_exists": RobotExists,
+    "robot_goes_on": RobotGoesOn,
     "robot_name_invalid": RobotNameInvalid,
     "robot_not_there": RobotNotThere,
     "robot_offline": RobotOffline,
     "robot_takes_no_taps": RobotTakesNoTaps,
+    "robot_too_old": RobotTooOld,
     "role_needed": RoleNeeded,
     "same_post": SamePost,
     "scope_needed": ScopeNeeded,

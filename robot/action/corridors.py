@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Final
 
-from maps import NoRoute, shortest_route
+from maps import NoRoute, corridor_name, shortest_route
 from protocol.parts import Leg
 
 from .arguments import Value
@@ -42,24 +42,39 @@ def _why_no_way(hands: Hands, goal: str) -> str | None:
 
 
 def claim(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
-    """Done as soon as the first corridor of the way may be entered: from post to post it is asked again."""
+    """Done as soon as the first corridor of the way may be entered: from post to post it is asked again. Done as well
+    when the service sends the robot elsewhere first, which is then perceived."""
     goal, duties, navigator = str(arguments[0]), hands.duties, hands.navigator
     closed = _why_no_way(hands, goal)
     wanted = _kept(hands) if closed else _wanted(hands, goal)
-    if navigator.at:
-        duties.clear(leg for leg in duties.held.grants if leg not in wanted)
+    _give_back(hands, wanted)
     if closed:
         duties.avoid = frozenset()  # what was denied may be open by the next time it asks
         return AtOnce(Ended(closed))
-    claim_id = duties.claim(wanted)
     first = navigator.first_legs(goal)
+    claim_id = None if detour(hands) else duties.claim(wanted, goal)
 
     def ask() -> Ended | None:
-        if duties.may_enter(first):
+        _give_back(hands, wanted)  # it may have been granted what it asked for before it changed its mind
+        if duties.may_enter(first) or detour(hands):
             return DONE
         return Ended("denied") if claim_id and duties.denial(claim_id) else None
 
     return Wait(ask)
+
+
+def _give_back(hands: Hands, wanted: Sequence[Leg]) -> None:
+    """What it does not need, as long as it stands where it is in none of it."""
+    if hands.navigator.at:
+        hands.duties.clear(leg for leg in hands.duties.held.grants if leg not in (*wanted, detour(hands)))
+
+
+def detour(hands: Hands) -> Leg | None:
+    """The corridor from here into which the service sends it, unless the robot knows that to be closed."""
+    leg, navigator = hands.duties.held.detour, hands.navigator
+    if leg is None or leg.from_post != navigator.at:
+        return None
+    return None if corridor_name(leg.from_post, leg.to_post) in navigator.closed.names else leg
 
 
 def _wanted(hands: Hands, goal: str) -> tuple[Leg, ...]:
@@ -92,11 +107,17 @@ def turned_back(leg: Leg, why: str) -> str:
     return f"The robot turned back in the corridor from {leg.from_post} to {leg.to_post}. {CLOSED_BY[why]}."
 
 
+def tried_again(corridor: str) -> str:
+    """The same, when it is over."""
+    return "The robot tries the corridor between {} and {} again.".format(*corridor.split("-"))
+
+
 def mark_blocked(hands: Hands, arguments: Sequence[Value], now: float) -> Run:
     leg, why = hands.navigator.corridor, str(arguments[0])
     if leg is None:
         return AtOnce(Ended("not_in_a_corridor"))
-    hands.duties.report_fault(WAY_BLOCKED, turned_back(leg, why), hands.place)
+    if corridor_name(leg.from_post, leg.to_post) not in hands.navigator.closed.names:
+        hands.duties.report_one_fault(WAY_BLOCKED, turned_back(leg, why), hands.place, cleared=False, lasts=True)
     # Last: killed in between, the robot tells after its restart that it tries this way again, and does.
     hands.navigator.closed.close(leg, now)
     return AtOnce()

@@ -209,8 +209,8 @@ ACTIONS: Final = (
     Action(
         "claim",
         (_POST,),
-        "ask for the corridors to a post, give back all others; done when the first may be entered, "
-        "fails with denied, way_closed, no_route",
+        "ask for the corridors to a post, give back all others; done when the first may be entered, or when "
+        "`detour` holds; fails with denied, way_closed, no_route",
         claim,
     ),
     Action("release", (), "give back every corridor that was granted, but for the one it is in", release),

@@ -15,7 +15,7 @@
 { include("travel.asl") }
 
 // What to do now: the first that holds. Safety before health before work before rest.
-purpose(stand_still)            :- halted.
+purpose(stand_still)            :- halted | revoked | unsure.
 purpose(charge)                 :- battery(low) | recharging.
 purpose(idle)                   :- docked & weak & not carrying(_).   // work is begun with enough charge to end it
 purpose(hold)                   :- paused.
@@ -27,6 +27,7 @@ purpose(idle).
 // What happens is taken up in the same order: a stop does not queue behind the mail.
 priorities([safety, health, map]).
 priority(+halted, safety).
+priority(+revoked, safety).
 priority(+battery(_), health).
 priority(+moved(_), map).
 priority(+astray(_), map).

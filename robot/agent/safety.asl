@@ -4,3 +4,8 @@
 // `halted` holds while a fault or the emergency stop keeps the wheels still until a person has seen to it.
 +halted <- say(refused); !decide.
 -halted <- !decide.
+
+// Others may be on their way through where it stood: it moves no more until a marker or a dock tells where it is.
++revoked <- !decide.
+-revoked <- !decide.
+-unsure <- !decide.

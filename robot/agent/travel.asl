@@ -5,7 +5,7 @@
 +!go_to(Post) : docked
   <- set_destination(Post);
      !permission(Post);
-     undock;
+     !come_out;
      !go_to(Post).
 +!go_to(Post) : not at(_)
   <- !reach_a_post;
@@ -24,7 +24,7 @@
 // which it turned back is entered again when there is no other way.
 +!permission(Post) : patience(Patience_s) <- !permission(Post, Patience_s).
 +!permission(Post) <- !permission(Post, 30).
-+!permission(Post, _) <- claim(Post); clear_fault(no_way).
++!permission(Post, _) <- claim(Post); clear_fault(no_way); !let_pass(Post).
 -!permission(Post, Patience_s)[reason(denied)] <- rest(15); !permission(Post, Patience_s).
 -!permission(Post, Patience_s)[reason(way_closed)]
   <- raise_fault(no_way, "every way blocked or denied");
@@ -35,6 +35,15 @@
      !permission(Post).
 -!permission(_, _)[reason(Reason), error_msg(Why)] <- .fail(reason(Reason), error_msg(Why)).
 -!permission(_, _)[error_msg(Why)] <- .fail(error_msg(Why)).
+
+// Others have to pass: the service has granted another corridor than the one asked for. From its end it goes on by its
+// own plan, which may lead back.
++!let_pass(Post) : detour(Other) & Other \== Post
+  <- !go_to(Other);
+     !tell_passed(Post);
+     set_destination(Post);
+     !permission(Post).
++!let_pass(_).
 
 // No longer than until a corridor in which it turned back counts as open again. If it takes longer others may pass; but
 // where there is no network it keeps what it was granted, since nobody could grant it anew.

@@ -126,11 +126,26 @@ PERCEPTS: Final = (
         "closed(Corridor): it turned back in there; no way leads through it for a while",
         lambda s: (f"closed({atom_or_text(name)})" for name in sorted(s.where.closed)),
     ),
+    Percept(
+        "detour",
+        "detour(Post): others have to pass, the service sends it to this neighbour first; until it has gone",
+        lambda s: [f"detour({s.where.detour})"] if s.where.detour else [],
+    ),
     Percept("fault", "fault(Name): a fault of the reflex table", lambda s: (f"fault({f})" for f in s.view.faults)),
     Percept(
         "halted",
         "a fault keeps the wheels still until a person has seen to it",
         lambda s: ["halted"] if s.halting else [],
+    ),
+    Percept(
+        "revoked",
+        "its corridors were given to others, until it knows where it is; remembered through a power cut",
+        lambda s: ["revoked"] if s.held.revoked else [],
+    ),
+    Percept(
+        "unsure",
+        "it was switched off for long with corridors granted; until the service has had time to say whose they are",
+        lambda s: ["unsure"] if s.unsure else [],
     ),
     Percept("mission", "mission(Id, Update): what is to be done", _mission),
     Percept("stop", "stop(Number, Id, Post, Action, Order, WaitLimit_s): one of its stops", _stops),

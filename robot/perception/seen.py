@@ -24,6 +24,8 @@ class Whereabouts:
     """The post that it drives towards by mistake, until it has turned round."""
     closed: frozenset[str] = frozenset()
     """Corridors, by name, in which it turned back a short while ago."""
+    detour: str | None = None
+    """The neighbour to which the service sends it first."""
 
 
 @dataclass(frozen=True)
@@ -39,4 +41,5 @@ class Seen:
     """Those of the active faults that keep the wheels still until a person has seen to them."""
     home: str | None = None
     nearest_dock: str | None = None
+    unsure: bool = False
     watch: int = 0

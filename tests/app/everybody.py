@@ -192,6 +192,7 @@ class Everybody:
 
 FIXED: Final = {
     "name": "r1",
+    "corridor": "post2-post3",
     "role": "dispatcher",
     "email": "somebody@campus.example",
     "file": "none.eml",

@@ -79,6 +79,21 @@ def test_what_goes_on_is_found_by_its_state_and_the_rest_along_its_index(
     assert f"USING INDEX {index}" in mailroom.call(plan_of, app, *walk)
 
 
+def test_whom_i_have_named_is_found_by_the_orders_that_go_on(app: FastAPI, sender: Browser, mailroom: Mailroom) -> None:
+    order_id = sender.order().json()["id"]
+    sender.post(f"/api/v1/orders/{order_id}/delegates", json={"name": "The porter"})
+    with asked(app) as questions:
+        assert len(sender.get("/api/v1/me/delegates").json()["items"]) == 1
+    # What the service asks of itself meanwhile is among them, but not for what one person has named.
+    walks = [one for one in questions if "FROM delegates" in one[0] and "delegates.named_by_id = " in one[0]]
+    plans = [mailroom.call(plan_of, app, *walk) for walk in walks]
+    assert len(plans) == 2
+    for plan in plans:
+        assert "ix_delegates_order_id" in plan
+        assert "ix_orders_state" in plan
+        assert "SCAN" not in plan
+
+
 NOT_OVER = {
     "what a robot is to be told": "ix_server_outbox_waiting",
     "robots that are to let go": "ix_orders_let_go",

@@ -28,6 +28,7 @@ def test_settings_come_from_the_environment_and_secrets_from_files(
         ("PORT", "99999", "less than or equal to 65535"),
         ("ALLOWED_DOMAINS", "campus.example", "Write it as JSON"),
         ("TIME_ZONE", "Mars/Olympus", "America/Toronto"),
+        ("OFFICE_HOURS", "18-8", "such as 8-18"),
         ("LOG_LEVEL", "LOUD", "'WARNING'"),
         ("DEFAULT_LANGUAGE", "de", "'fr'"),
         ("PUBLIC_URL", "mail.campus.example", "a whole address is wanted, such as https://"),

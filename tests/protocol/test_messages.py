@@ -208,6 +208,7 @@ def _codes_of_link(path: Path) -> set[str]:
     not_on_the_link = {
         *("protocol_error", "fleet_error"),
         *("robot_exists", "robot_name_invalid", "unknown_robot", "unknown_alarm"),
+        *("no_such_corridor", "robot_away", "robot_goes_on", "robot_too_old"),
     }
     found = set()
     for node in ast.walk(ast.parse(path.read_text())):

@@ -7,7 +7,19 @@ from typing import Any
 import pytest
 
 from protocol.parts import Leg, Part, Purpose, Stop, StopAction
-from protocol.to_robot import Cancel, Deny, EmergencyStop, Grant, Mission, Pause, Recall, Resume, Verifier, Verifiers
+from protocol.to_robot import (
+    Cancel,
+    Deny,
+    EmergencyStop,
+    Grant,
+    Mission,
+    Pause,
+    Recall,
+    Resume,
+    Revoke,
+    Verifier,
+    Verifiers,
+)
 from protocol.to_server import Step
 from robot.duties import Duties, NoSuchStop
 from robot.memory import Incoming, Memory
@@ -349,6 +361,20 @@ def test_an_emergency_stop_is_answered_and_passed_on_and_resume_takes_it_back(de
     assert (answer["command_id"], answer["accepted"], desk.duties.stop_asked) == ("c1", True, True)
     desk.hears(Resume(command_id="c2"))
     assert (desk.duties.stop_asked, desk.duties.rearm_asked) == (False, True)
+
+
+def test_what_was_granted_is_void_once_and_for_all_when_others_have_got_it(desk: Desk, store: Store) -> None:
+    desk.duties.seen("post1")
+    desk.hears(Grant(claim_id="c1", legs=(TO_POST3, TO_POST4)))
+    revoke = Revoke(command_id="v1", reason="carried into the workshop")
+    fault, answer = desk.hears(revoke)
+    assert (fault["name"], answer["command_id"], answer["accepted"]) == ("revoked", "v1", True)
+    assert (desk.duties.stop_asked, desk.duties.forget_place_asked) == (True, True)
+    again = again_of(store)
+    assert (again.held.revoked, again.held.grants, again.held.position.post) == (True, (), None), "after a restart, too"
+    desk.hears(Grant(claim_id="c2", legs=(TO_POST3,)))
+    assert desk.hears(revoke) == [], "the same one again"
+    assert desk.duties.held.grants == (TO_POST3,)
 
 
 def test_without_a_server_nobody_is_missed(store: Store) -> None:

@@ -13,7 +13,7 @@ from protocol.both_ways import Error
 from protocol.clock import RealClock
 from protocol.envelope import TO_SERVER, parse
 from protocol.parts import Battery, Position, Received
-from protocol.to_robot import Cancel, EmergencyStop, Pause, Welcome
+from protocol.to_robot import Cancel, EmergencyStop, Pause, Revoke, Welcome
 from protocol.to_server import Hello, Why
 from robot.connection import MAX_UNACKNOWLEDGED, Connection, Ends, Newest, Rhythm
 from robot.link import MAX_INCOMING, InsecureServer, LinkState, check_secure, retry_delays_s
@@ -278,8 +278,10 @@ async def test_an_emergency_stop_stops_the_robot_though_its_mind_takes_no_messag
         await until(lambda: link.online)
         await server.send(EmergencyStop(command_id="s1", reason="a child plays there"), seq=1)
         await until(lambda: server.heard[-1].ack == 1)
-        assert len(robot.stops) == 1
-        assert [one.message.command_id for one in link.incoming()] == ["s1"], "it is answered as any command is"
+        await server.send(Revoke(command_id="s2", reason="carried away"), seq=2)
+        await until(lambda: server.heard[-1].ack == 2)
+        assert len(robot.stops) == 2, "nor does one whose corridors are given to others drive on"
+        assert [one.message.command_id for one in link.incoming()] == ["s1", "s2"], "it is answered as any command is"
 
 
 @dataclass

@@ -163,7 +163,8 @@ async def test_over_a_wire_that_breaks_again_and_again_every_message_arrives_onc
     """Claims one way, grants the other, so that both journals are at work."""
     chance, count = random.Random(7), 60
     outbox, memory = Outbox(store), Memory(store)
-    async with serving(settings) as (app, port), BreakingWire(port, chance) as wire:
+    at_once = settings.model_copy(update={"traffic": "at_once"})
+    async with serving(at_once) as (app, port), BreakingWire(port, chance) as wire:
         token = await enrolled(app)
         async with linked(store, outbox, memory, wire.port, token) as link:
             granted: list[str] = []

@@ -12,6 +12,13 @@ IS_ASKED_FOR: Final = "() => performance.getEntriesByType('resource').some(({nam
 MOST_STOPS: Final = 250
 
 
+async def press(page: Page, button: str) -> None:
+    """A button whose name begins so, with the keyboard."""
+    found = page.get_by_role("button", name=re.compile(f"^{button}"))
+    await found.focus()
+    await page.keyboard.press("Enter")
+
+
 class Keyboard:
     """Presses keys and never points; a stop that nobody could see, or that is nowhere, fails the test at once."""
 

@@ -36,6 +36,15 @@
 
   const scrolls = (style) => /auto|scroll/.test(style.overflowX) || /auto|scroll/.test(style.overflowY);
 
+  /** Whether a line is not scrolled out of the box that holds it. */
+  const isInSight = ({ owner, rect }) => {
+    for (let box = owner; box && box !== document.documentElement; box = box.parentElement) {
+      const place = box.getBoundingClientRect();
+      if (scrolls(getComputedStyle(box)) && (rect.top >= place.bottom || rect.bottom <= place.top)) return false;
+    }
+    return true;
+  };
+
   const sideways = () => {
     const { scrollWidth, clientWidth } = document.documentElement;
     const dialog = document.querySelector("dialog:modal");
@@ -82,7 +91,7 @@
         if (width > SLACK && height > SLACK) found.add(`${words(one.element)} lies upon ${words(other.element)}`);
       }
     });
-    const texts = lines().map(({ owner, rect }) => ({ owner, rect, layer: layer(owner), shrunk: rect.height * 0.2 }));
+    const texts = lines().filter(isInSight).map(({ owner, rect }) => ({ owner, rect, layer: layer(owner), shrunk: rect.height * 0.2 }));
     texts.forEach((one, i) => {
       for (const other of texts.slice(i + 1)) {
         if (one.layer !== other.layer || one.owner === other.owner) continue;
@@ -143,7 +152,7 @@
     return "rgb(255, 255, 255)";
   };
   /** What a drawing tells by a line or a shape, and which of its colours tells it. */
-  const TELLING = { fill: ".campus .goal, .holder path, .robot:not(.offline) .body", stroke: ".campus .post, .way, .expected, .robot.offline .body, .curve .charge, .curve .low" };
+  const TELLING = { fill: ".campus .goal, .holder path, .shut circle, .robot:not(.offline) .body", stroke: ".corridor, .taken-edge, .hatch, .dock, .campus .post, .way, .expected, .robot.offline .body, .curve .charge, .curve .low" };
 
   /** What axe does not see: the letters of a drawing upon their halo, and the shapes that tell something. */
   const faint = () => {

@@ -68,7 +68,7 @@ class Looker:
         await self._take_measures()
         self.seen.append(state)
         self._note(state, "words", self.untranslated(await self.page.evaluate("() => looking.said()")))
-        for size, place in ((DESK, "desk"), (NARROW, "320 px")):
+        for size, place in ((DESK, "desk"), (PHONE, "phone"), (NARROW, "320 px")):
             await self._in(size, "light")
             await self._layout(state, place, POINTER_PX)
         await self._axe(state, "320 px, light")

@@ -14,7 +14,9 @@ from app.people.service import set_roles
 from app.settings import Settings
 from app.tables import Alarm, DigitLock, Notice, Order, OrderState, OutgoingNotice, Priority, RobotRow, Role
 from protocol.clock import Clock, RealClock
+from tests.web.conftest import Visit
 from tests.web.service import Service
+from tests.web.visitor import Visitor
 
 WAY: Final = ("assigned", "to_sender", "at_sender", "carrying", "at_recipient", "returning", "at_return")
 ROBOTS: Final = (
@@ -105,6 +107,15 @@ class Scene:
             await self.state.orders.write(session, drafts)
         return [draft.facts.order.id for draft in drafts]
 
+    async def lets_wait(self, robot: str, from_post: str, to_post: str, for_robot: str, minutes: float) -> None:
+        """As the timetable would have it."""
+        until = self.clock.utc() + timedelta(minutes=minutes)
+        async with self.state.database.transaction() as session:
+            row = await session.get_one(RobotRow, robot)
+            row.why = f"Waiting at {from_post} for permission to drive on"
+            way = {"from_post": from_post, "to_post": to_post, "robots": [for_robot], "closed": False}
+            row.waits_for = {**way, "until": until.isoformat()}
+
     async def _go(self, session: Any, order_id: str, robot: str | None, way: Sequence[str]) -> None:
         for state in way:
             by = By.DISPATCHER if state == "assigned" else By.ROBOT
@@ -131,6 +142,19 @@ class Scene:
             notice = (await session.exec(select(Notice).order_by(col(Notice.id)).limit(1))).one()
             given_up = {"tries": 9, "gave_up_at": now - timedelta(hours=1), "problem": "The mail server said no (550)."}
             session.add(OutgoingNotice(key="given-up", channel="mail", notice_id=notice.id, created_at=now, **given_up))
+
+
+class Campus:
+    """A service and what has been written into it."""
+
+    def __init__(self, service: Service) -> None:
+        self.service, self.scene = service, Scene(service)
+        self.orders: list[str] = []
+
+    async def dispatcher(self, visit: Visit, **options: Any) -> Visitor:
+        dana = await visit("dana.desk", at=self.service, **options)
+        await self.scene.make_dispatcher(dana.email)
+        return dana
 
 
 def _way_to(state: str) -> Sequence[str]:

@@ -117,9 +117,11 @@ class Service:
         return [mail.get_body(("plain",)).get_content() for mail in self._newest_mails_to(email)]
 
     def _newest_mails_to(self, email: str) -> list[EmailMessage]:
+        """As a mail program shows them: by what they say of their time. Several go out at the same time."""
         files = sorted((self._folder / "spool").glob("*.eml"), key=lambda file: file.stat().st_mtime_ns, reverse=True)
         mails = [message_from_bytes(file.read_bytes(), policy=policy.default) for file in files]
-        return [mail for mail in mails if mail["To"] == email]
+        theirs = [mail for mail in mails if mail["To"] == email]
+        return sorted(theirs, key=lambda mail: mail["Date"].datetime, reverse=True)
 
 
 def _free_port() -> int:

@@ -186,12 +186,17 @@ async def settling(ada: Visitor) -> States:
     page = ada.page
     ada.refusals_expected |= {"/api/v1/me/webhook"}
     await ada.put("/me/contacts/bea.lund@campus.example", {"label": "Bea next door", "post": "post2"})
+    await ada.name_delegate(await ada.order(BOB, what=LONG), "porter.of.the.old.library@campus.example")
     await stands(page, "/settings.html")
+    take_back = page.get_by_role("button", name="Take it back, The porter")
+    await expect(take_back).to_be_visible()
     tokens = page.get_by_role("region", name="Tokens for scripts")
     await expect(tokens.get_by_role("button", name="Make the token")).to_be_visible()
     yield "settings"
     await tokens.get_by_role("button", name="Make the token").click()
     await expect(tokens.get_by_role("alert")).to_be_visible()
+    await take_back.click()
+    await expect(page.get_by_text(re.compile("^Nobody at the moment"))).to_be_visible()
     await page.get_by_role("button", name="Change, Bea next door").click()
     hook = page.get_by_role("region", name="Webhook")
     await hook.get_by_label("Address").fill("https://127.0.0.1/told")

@@ -14,11 +14,11 @@ from protocol.to_robot import Cancel, Confirm, Mission, Verifiers
 from protocol.to_server import CommandAnswer, Event, Snapshot, Step, Why
 from tests.app.fleet.playing import PlayedRobot
 from tests.web.camera import Camera
+from tests.web.drawn import expect_drawn
 from tests.web.service import Service
 from tests.web.visitor import Visitor
 
 pytestmark = pytest.mark.browser
-IS_DRAWN = "(image) => image.complete && image.naturalWidth > 0"
 
 
 class Demonstration:
@@ -149,7 +149,7 @@ async def test_two_people_and_a_robot_ordered_loaded_by_code_followed_received_b
     await expect(ada.page.get_by_role("region", name="Why it waits")).to_contain_text("waiting for the sender to load")
     code = ada.page.get_by_role("region", name="Your code to load the robot")
     await expect(code.get_by_role("img", name="QR code for the robot’s camera")).to_be_visible()
-    assert await code.get_by_role("img").evaluate(IS_DRAWN)
+    await expect_drawn(code.get_by_role("img"))
     await ada.assert_accessible()
     await code.get_by_role("button", name="Hold the code to the robot’s camera (simulated)").click()
     await demonstration.checks_the_code_and_hands_over(StopAction.LOAD)
@@ -167,7 +167,7 @@ async def test_two_people_and_a_robot_ordered_loaded_by_code_followed_received_b
     async with bob.without_network():  # as in the tunnel
         await code_of_bob.get_by_text("Show the code").click()
         await expect(code_of_bob.get_by_role("img")).to_be_visible()
-        assert await code_of_bob.get_by_role("img").evaluate(IS_DRAWN)
+        await expect_drawn(code_of_bob.get_by_role("img"))
     await bob.assert_accessible()
 
     await demonstration.reports(Step.DEPARTED, StopAction.RECEIVE)
@@ -326,7 +326,7 @@ async def test_a_recipient_without_account_takes_the_letter_by_the_link_in_the_m
     await expect(standing).to_have_text("A letter is on its way to you")
     code = guest.page.get_by_role("region", name="Your code to take the letter")
     await code.get_by_text("Show the code").click()
-    assert await code.get_by_role("img").evaluate(IS_DRAWN)
+    await expect_drawn(code.get_by_role("img"))
 
     await demonstration.is_seen("post4", towards=None)
     await demonstration.reports(Step.ARRIVED, StopAction.RECEIVE)
@@ -358,7 +358,7 @@ async def test_a_delegate_sees_by_the_link_in_their_mail_where_it_is_and_their_c
     standing = porter.page.get_by_role("heading", level=1)
     await expect(standing).to_have_text(f"{demonstration.title} is waiting at Post 1")
     code = porter.page.get_by_role("region", name="Your code to load the robot")
-    assert await code.get_by_role("img").evaluate(IS_DRAWN)
+    await expect_drawn(code.get_by_role("img"))
     await expect(porter.page.get_by_text("Ada King")).to_be_visible()
     await expect(porter.page.get_by_text("ada.king@")).to_have_count(0)
     await expect(porter.page.get_by_role("heading", name="So far, and next")).to_have_count(0)

@@ -114,6 +114,10 @@ async def test_the_robots(visit, campus):
         await look_at_all(mira, states_of_staff.keeping_robots(mira, AWAY, CONNECTED))
 
 
+CODE_IS_SEEN_AT_ONCE = """() => {
+  const bar = document.querySelector(".pages").getBoundingClientRect();
+  return scrollY === 0 && document.querySelector(".qr").getBoundingClientRect().bottom <= bar.top;
+}"""
 EVERY_PAGE: tuple[str, ...] = (
     "/",
     "/mail.html",
@@ -142,6 +146,8 @@ async def test_every_page_speaks_french_stands_still_and_lets_a_keyboard_through
         await looker.look_at_words(address)
         await looker.moving(address)
         await page.set_viewport_size(NARROW)
+        if "follow" in address:
+            assert await page.evaluate(CODE_IS_SEEN_AT_ONCE), "whoever stands at the robot need not look for the code"
         keys = Keyboard(page)
         await keys.stands()
         stops = await keys.walk()

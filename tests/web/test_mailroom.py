@@ -5,47 +5,30 @@ import io
 import re
 from collections.abc import AsyncIterator, Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
 import pytest_asyncio
-from playwright.async_api import Page, expect
+from playwright.async_api import expect
 
 from maps import find_map
 from protocol.clock import RealClock
-from protocol.parts import Leg, StopAction
+from protocol.envelope import YOUNGER
+from protocol.parts import StopAction
 from protocol.to_robot import EmergencyStop, Pause
 from protocol.to_server import Event, Fault, Step, Why
-from robot.action.corridors import turned_back
 from tests.app.fleet.playing import PlayedRobot
-from tests.web.conftest import Visit
-from tests.web.mailroom_scene import Scene
+from tests.web.drawn import expect_drawn
+from tests.web.keyboard import press
+from tests.web.mailroom_scene import Campus
 from tests.web.service import Service
-from tests.web.test_everywhere import NO_OVERFLOW, SMALL_TARGETS
-from tests.web.visitor import Visitor
 
 pytestmark = pytest.mark.browser
 
-DISPATCHER = "dana.desk"
 MAILROOM = "/mailroom.html"
-IS_DRAWN = "(image) => image.complete && image.naturalWidth > 0"
 SHEET_MM = """() => [...document.querySelectorAll(".marker-sheet")].map((sheet) => {
   const {width, height} = sheet.getBoundingClientRect();
   return [width, height].map((px) => Math.round(px * 254 / 96) / 10).join(" × ");
 })"""
-
-
-class Campus:
-    """A service and what has been written into it."""
-
-    def __init__(self, service: Service) -> None:
-        self.service, self.scene = service, Scene(service)
-        self.orders: list[str] = []
-
-    async def dispatcher(self, visit: Visit, **options: Any) -> Visitor:
-        dana = await visit(DISPATCHER, at=self.service, **options)
-        await self.scene.make_dispatcher(dana.email)
-        return dana
 
 
 @pytest.fixture(scope="module")
@@ -70,15 +53,8 @@ async def robot(quiet_campus: Campus, request: pytest.FixtureRequest) -> AsyncIt
     name = f"r{len(request.node.name)}"
     robot = PlayedRobot(RealClock(), name, journal=f"journal-of-{name}")
     async with robot.connected(quiet_campus.service.link, await quiet_campus.service.enrol_robot(name)):
-        await robot.greet("post5", map_version=find_map("test_track").version)
+        await robot.greet("post5", map_version=find_map("test_track").version, understands=YOUNGER)
         yield robot
-
-
-async def press(page: Page, button: str) -> None:
-    """With the keyboard."""
-    found = page.get_by_role("button", name=re.compile(f"^{button}"))
-    await found.focus()
-    await page.keyboard.press("Enter")
 
 
 async def test_what_goes_wrong_appears_by_itself_and_is_mended_by_keyboard_alone(quiet_campus, robot, visit):
@@ -106,7 +82,7 @@ async def test_what_goes_wrong_appears_by_itself_and_is_mended_by_keyboard_alone
     await expect(wrong.get_by_text("Post 1 → Post 4 is stuck", exact=True)).to_be_visible()
     await press(page, "I see to it")
     await expect(wrong.get_by_text(f"Robot {robot.name}, Post 2", exact=True)).to_be_hidden()
-    await expect(page.get_by_text("Seen to: It stands before a drop.")).to_be_visible()
+    await expect(page.get_by_text("Seen to: The robot stands before a drop.")).to_be_visible()
     await expect(page.get_by_role("heading", name=re.compile("^What is wrong"))).to_be_focused()
 
     await press(page, "Decide")
@@ -116,6 +92,7 @@ async def test_what_goes_wrong_appears_by_itself_and_is_mended_by_keyboard_alone
     await page.keyboard.press("Escape")
     await expect(page.get_by_role("button", name=re.compile("^Decide"))).to_be_focused()
     await page.keyboard.press("Enter")
+    await expect(dialog.get_by_role("radio", name="Go on as before")).to_be_focused()
     await page.keyboard.press("ArrowDown")
     await page.keyboard.press("Enter")  # "Bring it back"
     await expect(wrong).to_contain_text("All is well")
@@ -157,28 +134,6 @@ async def test_a_robot_is_paused_let_go_on_and_stopped_by_keyboard_alone(quiet_c
     assert heard.reason == "Stopped from the mailroom"
 
 
-async def test_a_corridor_that_a_robot_found_closed_is_shown_until_it_is_tried_again(quiet_campus, robot, visit):
-    dana = await quiet_campus.dispatcher(visit)
-    page = dana.page
-    told = {"name": "way_blocked", "happened_at": robot.clock.utc(), "post": "post3"}
-    reason = turned_back(Leg(from_post="post3", to_post="post4"), "blocked")
-    await robot.ends(await robot.say(Event(happened=Fault(reason=reason, **told))))
-    await page.goto(MAILROOM)
-    way = page.get_by_role("region", name="The paper's test track")
-    await expect(page.get_by_role("region", name="What is wrong").get_by_text(reason)).to_be_visible()
-    await expect(way.locator(".shut[data-corridor]")).to_have_count(1)
-    await expect(way.get_by_text("Closed: a robot turned back in this corridor")).to_be_visible()
-    await way.get_by_text("The same in words").click()
-    await expect(
-        way.get_by_text(re.compile("^Found the corridor between Post 3 and Post 4 closed at "))
-    ).to_be_visible()
-    await dana.assert_accessible()
-    again = Fault(cleared=True, reason="The robot tries that way again.", **told)
-    await robot.ends(await robot.say(Event(happened=again)))
-    await robot.say(Why(sentence="Driving towards post4"))
-    await expect(way.locator(".shut[data-corridor]")).to_have_count(0, timeout=40_000)
-
-
 async def test_an_order_for_somebody_at_the_desk_is_placed_by_keyboard_and_printed(quiet_campus, visit):
     grace = await visit("grace.hill", at=quiet_campus.service)
     bob = await visit("bob.martin", at=quiet_campus.service)
@@ -218,7 +173,7 @@ async def test_an_order_for_somebody_at_the_desk_is_placed_by_keyboard_and_print
         await expect(slip).to_contain_text(words)
     await expect(page.get_by_text(re.compile("^No robot is on this order yet. Its code comes"))).to_be_visible()
     for_phones = slip.get_by_role("img", name="QR code of the order’s page")
-    assert await for_phones.evaluate(IS_DRAWN)
+    await expect_drawn(for_phones)
     order_id = page.url.partition("order=")[2]
     order = await dana.api(f"/orders/{order_id}")
     assert (order["sender"]["email"], order["recipient"]["email"]) == (grace.email, bob.email)
@@ -290,27 +245,6 @@ async def test_everything_that_is_wrong_has_its_next_action(busy_campus, visit, 
     await (await coming.value).save_as(table)
     lines = list(csv.DictReader(io.StringIO(table.read_text(encoding="utf-8-sig"), newline="")))
     assert {line["id"] for line in lines} == set(busy_campus.orders)
-
-
-@pytest.mark.parametrize(
-    ("on", "theme", "locale", "title"),
-    [("desk", "light", "en-CA", "Mailroom"), ("phone", "dark", "fr-CA", "Salle du courrier")],
-)
-async def test_the_mailroom_is_accessible_on_a_desk_on_a_phone_and_on_a_wall(
-    busy_campus, visit, on, theme, locale, title
-):
-    size = {"viewport": {"width": 320, "height": 640}} if on == "phone" else {}
-    dana = await busy_campus.dispatcher(visit, on=on, color_scheme=theme, locale=locale, **size)
-    page = dana.page
-    for address in (MAILROOM, f"{MAILROOM}?wall", "/print.html", f"/print.html?order={busy_campus.orders[0]}"):
-        await page.goto(address)
-        await expect(page.get_by_role("heading", level=1)).to_be_visible()
-        if address == MAILROOM:
-            await expect(page.get_by_role("heading", level=1, name=title)).to_be_visible()
-        await dana.assert_accessible()
-        assert await page.evaluate(NO_OVERFLOW), address
-        small = await page.evaluate(SMALL_TARGETS)
-        assert [one for one in small if "checkbox" not in one["name"]] == [], address  # its label is large enough
 
 
 async def test_on_a_phone_each_part_of_the_mailroom_is_a_tap_away_however_far_one_has_come(busy_campus, visit):

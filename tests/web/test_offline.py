@@ -18,6 +18,7 @@ from protocol.clock import RealClock
 from protocol.parts import StopAction
 from protocol.to_server import Step
 from tests.app.fleet.playing import PlayedRobot, until
+from tests.web.drawn import expect_drawn
 from tests.web.service import ROOT, Service
 from tests.web.test_order import fill, send
 from tests.web.visitor import Visitor
@@ -42,7 +43,6 @@ HIDE = """(hidden) => {
   document.dispatchEvent(new Event("visibilitychange"));
 }"""
 ASKED_TO_SYNC = "async () => (await navigator.serviceWorker.ready).sync.getTags()"
-IS_DRAWN = "(image) => image.complete && image.naturalWidth > 0"
 
 
 @asynccontextmanager
@@ -274,7 +274,7 @@ async def test_a_code_is_at_hand_in_the_tunnel_though_its_page_was_never_opened_
             await page.get_by_text("Show the code").click()
             image = page.get_by_role("img", name="QR code for the robot’s camera")
             await expect(image).to_be_visible()
-            assert await image.evaluate(IS_DRAWN)
+            await expect_drawn(image)
             await the_screen_stays_on_while_it_is_seen(page)
         await robot.report(mission, Step.ACCEPTED)
         await robot.ends(await robot.report(mission, Step.ARRIVED, load))

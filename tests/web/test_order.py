@@ -237,9 +237,10 @@ async def test_a_letter_is_ordered_for_later_and_again_and_again(visit):
     await page.get_by_role("radio", name="Later").check()
     await page.get_by_label("Not before").fill("2027-05-03T09:30")
     await expect(window).not_to_have_text(now)
-    await expect(window).to_contain_text("9:3")
+    await expect(window).to_contain_text("May 3, 9:3")
     await page.get_by_role("button", name="Send the robot then").click()
-    await expect(page.get_by_role("heading", level=1)).to_have_text("Looking for a robot")
+    await expect(page.get_by_role("heading", level=1)).to_have_text("Ordered for later")
+    await expect(page.locator(".standing .window")).to_contain_text("May 3, 9:3")
     assert (await ada.api("/orders"))["items"][0]["not_before"] == "2027-05-03T13:30:00Z"
 
     await page.goto("/")

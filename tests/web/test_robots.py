@@ -171,6 +171,9 @@ async def test_on_a_small_phone_in_french_and_for_a_dispatcher_without_the_mind(
     await expect(marc.page.get_by_role("heading", name="Ce qu’il croit")).to_have_count(0)
     await marc.page.goto("/robots.html")
     await expect(marc.page.get_by_role("link", name=re.compile("Le robot r1"))).to_be_visible()
+    quality = marc.page.get_by_role("region", name="Justesse des arrivées annoncées")
+    await expect(quality).to_contain_text("Aucun robot n’a encore livré d’envoi")
+    await expect(quality).to_contain_text("d’après les longueurs de la carte")
     await assert_fits_and_is_accessible(marc.page)
     await marc.assert_accessible()
 

@@ -15,6 +15,7 @@ from protocol.clock import RealClock
 from tests.app.fleet.playing import serving
 from tests.app.notify.receivers import receiving
 from tests.app.notify.test_webhooks import is_signed
+from tests.web.keyboard import Keyboard
 from tests.web.service import Service
 from tests.web.visitor import Visitor
 
@@ -36,7 +37,7 @@ async def test_language_name_post_and_notices_are_changed_and_kept(visit):
     await me.get_by_label("Language").select_option("Français")
     await expect(page.get_by_role("heading", level=1)).to_have_text("Réglages")
     await expect(page).to_have_title(re.compile("^Réglages"))
-    await expect(page.get_by_role("link", name="Mon courrier")).to_be_visible()
+    await expect(page.get_by_role("navigation", name="Pages").get_by_role("link", name="Mon courrier")).to_be_visible()
 
     notices = page.get_by_role("region", name="Avis")
     await notices.get_by_role("checkbox", name="Remise, E-mail").uncheck()
@@ -72,6 +73,31 @@ async def test_the_address_book_is_kept_with_the_keyboard_alone(visit):
     await bob.get_by_role("button", name="Forget, Bob next door").click()
     await expect(book.get_by_role("status")).to_contain_text("Forgotten")
     await expect(book.get_by_role("listitem")).to_have_text(re.compile("Bob Martin"))
+
+
+async def test_whoever_meets_the_robot_for_me_is_in_one_list_and_taken_back_there_by_keyboard(visit):
+    ada: Visitor = await visit("ada.king", locale="fr-CA")
+    page, keys = ada.page, Keyboard(ada.page)
+    letter = await ada.order("bob.martin@campus.example", what="Les clés")
+    await ada.name_delegate(letter, "porter@campus.example")
+    await ada.name_delegate(await ada.order("bea.lund@campus.example"), "porter@campus.example")
+    await page.goto("/settings.html")
+    named = page.get_by_role("region", name="Qui me remplace")
+    await expect(named.get_by_role("listitem")).to_have_count(2)
+    oldest = named.get_by_role("listitem").last
+    for told in ("The porter", "porter@campus.example", "Va la déposer à Post 1", "Expire"):
+        await expect(oldest).to_contain_text(told)
+    await ada.assert_accessible()
+    await keys.to("Le retirer, The porter, Pour Bea Lund")
+    await keys.press("Enter")
+    await expect(named.get_by_role("status")).to_contain_text("Retiré")
+    await expect(named.get_by_role("listitem")).to_have_count(1)
+    await keys.to("Le retirer, The porter, Les clés")
+    await keys.press("Enter")
+    await expect(named.get_by_text(re.compile("^Personne en ce moment"))).to_be_visible()
+    await expect(named.get_by_role("link", name="Mon courrier")).to_be_visible()
+    (delegate,) = (await ada.api(f"/orders/{letter}/delegates"))["items"]
+    assert delegate["revoked_at"], "for the robot too"
 
 
 async def test_sessions_are_ended_and_a_scripts_token_is_shown_once_and_revoked(visit):

@@ -33,7 +33,7 @@ def test_all_pages_have_the_same_import_map():
 
 
 def test_what_is_made_of_other_files_is_up_to_date():
-    """The pages' lists of modules, so that none waits for another, and the types of what the service sends."""
+    """The pages with their lists of modules, so that none waits in line, and the types of what the service sends."""
     made = make_pages.made_files()
     assert [file.name for file, text in made.items() if file.read_text(encoding="utf-8") != text] == []
     assert len(made) == len(PAGES) + 2
@@ -65,7 +65,7 @@ def everyday_modules() -> set[str]:
         found.add(module)
         text = make_pages.file_of(module).read_text(encoding="utf-8")
         names = [*LATER.findall(text), *(one for one in make_pages.IMPORT.findall(text) if one.startswith("."))]
-        waiting += [make_pages.resolve(module, name, {}) for name in names]
+        waiting += [make_pages.resolve(module, name) for name in names]
     return found
 
 

@@ -20,6 +20,7 @@ PREFIXES_BY_NAME = {
     "email.": "the service",
     "notice.": "the service",
     "why.": "reasonText",
+    "alarm.of.": "alarmText",
 }
 
 

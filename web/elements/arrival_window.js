@@ -12,7 +12,7 @@ export function arrivalWindow({ window, to_post }, map) {
   const late = Date.parse(window.to) < serverNow();
   return html`<p class="window">
     <span class="of">${t("window.label", { post: titleOf(map, to_post) })}</span>
-    <strong>${windowText(window)}</strong>
+    <strong>${windowText(window, serverNow())}</strong>
     ${late ? html`<span class="remark">${t("window.past")}</span>` : nothing}
     ${window.assumed ? html`<span class="remark">${t("window.assumed")}</span>` : nothing}
   </p>`;

@@ -19,7 +19,7 @@ import { mapTools } from "./map_tools.js";
 import { mapLegend, placesInWords } from "./map_words.js";
 import { PageElement } from "./page_element.js";
 import { robotFacts } from "./robot_facts.js";
-/** @import { Alarm, CampusMap, Robot, TakenCorridor } from "../api_types.ts" */
+/** @import { Alarm, CampusMap, ClosedCorridor, Robot, TakenCorridor } from "../api_types.ts" */
 /** @import { Box, Drawing, Point } from "../map_drawing.js" */
 /** @import { MapFacts } from "../map_facts.js" */
 /** @import { Place, Wording } from "../map_labels.js" */
@@ -42,6 +42,7 @@ export class CampusMapElement extends PageElement {
     robots: { attribute: false },
     traffic: { attribute: false },
     alarms: { attribute: false },
+    closed: { attribute: false },
     from: {},
     to: {},
     facts: { type: Boolean },
@@ -57,6 +58,8 @@ export class CampusMapElement extends PageElement {
     this.traffic = [];
     /** @type {readonly Alarm[]} of which some say that a corridor is closed */
     this.alarms = [];
+    /** @type {readonly ClosedCorridor[]} into which no robot is let */
+    this.closed = [];
     this.from = "";
     this.to = "";
     /** Whether what is known of the robots stands below it. */
@@ -77,7 +80,7 @@ export class CampusMapElement extends PageElement {
   render() {
     const { map } = this;
     if (!map) return nothing;
-    const facts = factsOf(map, this.robots, this.traffic, this.alarms);
+    const facts = factsOf(map, this.robots, this.traffic, this.alarms, this.closed);
     const whole = drawing(map);
     this.#camera.lookAt(whole.frame);
     return html`<figure class="campus">
@@ -109,7 +112,7 @@ export class CampusMapElement extends PageElement {
       @pointercancel=${up} @wheel=${wheel}>
       ${silentPlaces(drawn, this.#hatch)} ${takenBands(drawn, facts.taken)} ${corridorLines(drawn)}
       ${wayLines(drawn, this.#way(map), "way")} ${facts.robots.map((robot) => wayLines(drawn, aheadOf(map, robot), "ahead"))}
-      ${takenSigns(drawn, facts.taken, facts.robots.length > 1)} ${closedSigns(drawn, facts.closed)}
+      ${takenSigns(drawn, facts.taken, facts.robots.length > 1)} ${closedSigns(drawn, facts.shut)}
       ${drawn.posts.map((post) => postMark(post, this.#at(post.name, facts)))}
       ${wordings.map((wording) => this.#label(drawn, wording, places.get(wording.name)))}
     </svg>`;

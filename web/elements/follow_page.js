@@ -4,11 +4,13 @@ import * as api from "../api.js";
 import { followedOrder } from "../early.js";
 import { PAGES } from "../links.js";
 import { OnLive } from "../live.js";
-import { hasEnded, isAtAStop, isMyTurn, reasonText, stateSentence } from "../order_words.js";
+import { hasEnded, isAtAStop, isMyTurn, reasonText, robotWhy, stateSentence } from "../order_words.js";
 import { loadMap } from "../posts.js";
 import { inWords } from "../problems.js";
+import { serverNow } from "../server_clock.js";
 import { t } from "../texts.js";
 import { TrafficNow } from "../traffic.js";
+import { arrivalWindow } from "./arrival_window.js";
 import { orderActions } from "./order_actions.js";
 import { orderCustody } from "./order_custody.js";
 import { orderDetails } from "./order_details.js";
@@ -98,7 +100,7 @@ export class FollowPage extends PageElement {
         ${orderStanding(order, map)}
         <handover-code .door=${this.#door} .purpose=${order.my_code} .needed=${isMyTurn(order)}
           .asked=${order.handover_requested !== null}></handover-code>
-        ${isMyTurn(order) ? html`<wait-longer .order=${order} @changed=${(/** @type {CustomEvent<Order>} */ event) => this.#show(event.detail)}></wait-longer>` : nothing}
+        ${isMyTurn(order) ? this.#whileItWaits(order, map) : nothing}
         ${this.#why(order, map)} ${this.#others(order)}
         <section class="card" aria-labelledby="timeline-title">
           <h2 id="timeline-title">${t("follow.timeline")}</h2>
@@ -109,7 +111,7 @@ export class FollowPage extends PageElement {
         <section class="card where" aria-labelledby="map-title">
           <h2 id="map-title">${t(hasEnded(order) ? "follow.map_ended" : "follow.map")}</h2>
           <campus-map .map=${map} .robots=${hasEnded(order) || !this.robot ? [] : [this.robot]} .traffic=${this.#traffic.taken}
-            .from=${order.from_post} .to=${order.to_post} ?facts=${!hasEnded(order)}></campus-map>
+            .from=${order.passed_on_at_post ?? order.from_post} .to=${order.to_post} ?facts=${!hasEnded(order)}></campus-map>
         </section>
         ${orderCustody(order)} ${orderDetails(order)} ${orderActions(order, (changed) => this.#show(changed))}
       </div>
@@ -119,7 +121,13 @@ export class FollowPage extends PageElement {
   updated() {
     // After the words: where the letter stands is what people come for.
     if (this.order && this.map) import("../map_later.js").then(({ fetchMap }) => fetchMap());
-    if (this.order && this.map) document.title = `${stateSentence(this.order, this.map)} · ${t("app.name")}`;
+    if (this.order && this.map) document.title = `${stateSentence(this.order, this.map, serverNow())} · ${t("app.name")}`;
+  }
+
+  /** Below the code, which is needed first. @param {Order} order @param {CampusMap} map */
+  #whileItWaits(order, map) {
+    return html`${order.my_code === "load" ? html`<section class="card">${arrivalWindow(order, map)}</section>` : nothing}
+      <wait-longer .order=${order} @changed=${(/** @type {CustomEvent<Order>} */ event) => this.#show(event.detail)}></wait-longer>`;
   }
 
   /** A robot that is on its way waits for nothing, whatever it says that it is doing. @param {Order} order @param {CampusMap} map */
@@ -129,7 +137,7 @@ export class FollowPage extends PageElement {
     if (!why || hasEnded(order) || (robot && !WAITING.includes(robot.activity))) return nothing;
     return html`<section class="card why" aria-labelledby="why-title">
       <h2 id="why-title">${t("follow.why")}</h2>
-      <p>${reasonText(why, why_words, map)}</p>
+      <p>${robot ? robotWhy(robot, map) : reasonText(why, why_words, map)}</p>
     </section>`;
   }
 

@@ -1,6 +1,7 @@
 /** The mailroom on one screen: what is wrong and how it is mended, the queue, the robots, the map. */
 import { html, nothing } from "lit";
 import * as api from "../api.js";
+import { ClosedNow } from "../closed_now.js";
 import { OnLive } from "../live.js";
 import { orderActions } from "../mailroom_actions.js";
 import { MailroomNow } from "../mailroom_now.js";
@@ -11,6 +12,7 @@ import { Ticking } from "../ticking.js";
 import { TrafficNow } from "../traffic.js";
 import "./ask_dialog.js";
 import "./campus_map.js";
+import { closedCorridors } from "./closed_corridors.js";
 import { problemLine } from "./field.js";
 import { mailroomDialogs, mailroomTools } from "./mailroom_tools.js";
 import "./order_queue.js";
@@ -23,11 +25,13 @@ import { wrongList } from "./wrong_list.js";
 /** @import { AskDialog } from "./ask_dialog.js" */
 
 const REDRAW_MS = 5_000;
+const MAKE_IT_WAIT = ["pause", "emergency_stop"];
 
 export class MailroomPage extends PageElement {
   static properties = { said: { state: true }, problem: { state: true } };
   now = new MailroomNow(this);
   traffic = new TrafficNow(this);
+  corridors = new ClosedNow(this);
   /** Robots that were told to wait and have not said yet that they do. @type {Set<string>} */
   #asked = new Set();
   #doing = {
@@ -59,6 +63,7 @@ export class MailroomPage extends PageElement {
         { id: "wrong-title", label: t("mailroom.section.wrong"), count: wrongs.length, wrong: true },
         { id: "queue-title", label: t("mailroom.queue"), count: known.orders.length },
         { id: "robots-title", label: t("mailroom.robots"), count: known.robots.length },
+        { id: "corridors-title", label: t("corridors.title"), count: this.corridors.closed.length, wrong: true },
         { id: "map-title", label: t("mailroom.map") },
       ])}
       <p class="said" role="status">${this.said}</p>
@@ -72,9 +77,15 @@ export class MailroomPage extends PageElement {
             <h2 id="robots-title" tabindex="-1">${t("mailroom.robots")} <span class="count">${known.robots.length}</span></h2>
             ${robotBoard(known.robots, known.alarms, map, this.#doing)}
           </section>
+          <section class="card" aria-labelledby="corridors-title">
+            <h2 id="corridors-title" tabindex="-1">${t("corridors.title")}
+              ${this.corridors.closed.length ? html`<span class="count">${this.corridors.closed.length}</span>` : nothing}</h2>
+            ${closedCorridors(this.corridors.closed, map, this.#doing)}
+          </section>
           <section class="card" aria-labelledby="map-title">
             <h2 id="map-title" tabindex="-1">${map.title}</h2>
-            <campus-map .map=${map} .robots=${known.robots} .traffic=${this.traffic.taken} .alarms=${known.alarms}></campus-map>
+            <campus-map .map=${map} .robots=${known.robots} .traffic=${this.traffic.taken} .alarms=${known.alarms}
+              .closed=${this.corridors.closed}></campus-map>
           </section>
         </div>
       </div>
@@ -93,7 +104,7 @@ export class MailroomPage extends PageElement {
 
   /** @param {Order} order */
   #act(order) {
-    this.#ask(orderActions(order, this.now.known.robots), orderTitle(order));
+    this.#ask(orderActions(order, this.now.known.robots, this.now.map), orderTitle(order));
   }
 
   /** @param {Action[]} actions @param {string} about */
@@ -106,6 +117,7 @@ export class MailroomPage extends PageElement {
   #done({ detail: { action, answer } }) {
     this.said = t(`mailroom.do.${action.name}.done`, action.names);
     if (answer?.version) this.now.take(answer);
+    if (answer?.closed) this.corridors.show(answer.closed);
     if (answer?.command_id) this.#told(answer);
     this.#keepFocus();
     this.now.lookAgain();
@@ -114,7 +126,7 @@ export class MailroomPage extends PageElement {
   /** @param {Command} command */
   #told({ robot, kind, online }) {
     if (kind === "resume") this.#asked.delete(robot);
-    else if (kind !== "recall") this.#asked.add(robot);
+    else if (MAKE_IT_WAIT.includes(kind)) this.#asked.add(robot);
     if (!online) this.said += ` ${t("mailroom.hears_later", { robot })}`;
   }
 

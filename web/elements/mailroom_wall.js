@@ -3,6 +3,7 @@
  * than whoever walks past may read.
  */
 import { html, nothing } from "lit";
+import { ClosedNow } from "../closed_now.js";
 import { PAGES } from "../links.js";
 import { MailroomNow } from "../mailroom_now.js";
 import { shortName, sorted, whatIsWrong, withoutOwnWords } from "../mailroom_words.js";
@@ -26,6 +27,7 @@ const SHOWN = 8;
 export class MailroomWall extends PageElement {
   now = new MailroomNow(this);
   traffic = new TrafficNow(this);
+  corridors = new ClosedNow(this);
 
   constructor() {
     super();
@@ -62,7 +64,8 @@ export class MailroomWall extends PageElement {
         </section>
         <section aria-labelledby="map-title">
           <h2 id="map-title">${t("mailroom.map")}</h2>
-          <campus-map .map=${map} .robots=${known.robots} .traffic=${this.traffic.taken} .alarms=${known.alarms}></campus-map>
+          <campus-map .map=${map} .robots=${known.robots} .traffic=${this.traffic.taken} .alarms=${known.alarms}
+            .closed=${this.corridors.closed}></campus-map>
         </section>
       </div>`;
   }

@@ -3,7 +3,7 @@ import { nothing, svg } from "lit";
 import { middleOf, pathOf, pointsFrom } from "../map_drawing.js";
 import { conditionsOf } from "../map_facts.js";
 import { crowdRadius, inLines, LINE_HEIGHT, notesIn, robotPlaces } from "../map_labels.js";
-/** @import { Alarm, Robot, TakenCorridor } from "../api_types.ts" */
+/** @import { Robot, TakenCorridor } from "../api_types.ts" */
 /** @import { DrawnPost, Drawing } from "../map_drawing.js" */
 /** @import { Place, Wording } from "../map_labels.js" */
 
@@ -28,7 +28,8 @@ export const corridorLines = ({ corridors }) => corridors.map(({ points }) => sv
 export const takenBands = (drawn, taken) =>
   taken.map(({ robot, corridor, from_post, to_post }) => {
     const points = pointsFrom(drawn, from_post, to_post);
-    return points.length ? svg`<path class="taken" data-robot=${robot} data-corridor=${corridor} d=${pathOf(points)} />` : nothing;
+    const d = pathOf(points);
+    return points.length ? svg`<path class="taken-edge" d=${d} /><path class="taken" data-robot=${robot} data-corridor=${corridor} d=${d} />` : nothing;
   });
 
 /** Which way each of them is taken, and by whom where there are several robots. @param {Drawing} drawn
@@ -44,10 +45,10 @@ export const takenSigns = (drawn, taken, named) =>
     </g>`;
   });
 
-/** Where robots turned back. @param {Drawing} drawn @param {readonly Alarm[]} closed */
+/** Where no robot goes in. @param {Drawing} drawn @param {readonly string[]} closed */
 export const closedSigns = (drawn, closed) =>
   drawn.corridors
-    .filter(({ name }) => closed.some(({ corridor }) => corridor === name))
+    .filter(({ name }) => closed.includes(name))
     .map(({ name, points }) => {
       const { x, y } = middleOf(points);
       return svg`<g class="shut" data-corridor=${name} transform="translate(${x} ${y})">${NO_WAY}</g>`;

@@ -9,14 +9,14 @@ import { NO_WAY } from "./map_parts.js";
 
 const SIGNS = {
   expected: svg`<circle class="expected" cx="14" cy="9" r="7" />`,
-  taken: svg`<path class="taken" d="M4 9h20" /><path class="corridor" d="M4 9h20" />`,
+  taken: svg`<path class="taken-edge" d="M8 9h12" /><path class="taken" d="M8 9h12" /><path class="corridor" d="M1 9h26" />`,
   closed: svg`<path class="corridor" d="M1 9h26" /><g class="shut" transform="translate(14 9)">${NO_WAY}</g>`,
   silent: svg`<path class="hatch" d="M2 16 10 2M8 16 16 2M14 16 22 2M20 16 28 2" />`,
 };
 
 /** Of what is drawn now, and no more. @param {MapFacts} facts */
-export function mapLegend({ expected, taken, closed, silent }) {
-  const drawn = { expected: expected.size, taken: taken.length, closed: closed.length, silent: silent.posts.length + silent.corridors.length };
+export function mapLegend({ expected, taken, shut, silent }) {
+  const drawn = { expected: expected.size, taken: taken.length, closed: shut.length, silent: silent.posts.length + silent.corridors.length };
   const signs = /** @type {(keyof typeof SIGNS)[]} */ (Object.keys(SIGNS)).filter((sign) => drawn[sign]);
   if (!signs.length) return nothing;
   return html`<ul class="legend">${signs.map(

@@ -13,6 +13,9 @@ import { PageElement } from "./page_element.js";
 /** @import { Notice } from "../api_types.ts" */
 
 export class NoticesPage extends PageElement {
+  /** How often some were read here. */
+  #reads = 0;
+
   static properties = { notices: { state: true }, problem: { state: true } };
 
   constructor() {
@@ -60,13 +63,20 @@ export class NoticesPage extends PageElement {
     if (!ids.length) return;
     await this.#attempt(async () => {
       await api.markRead(ids);
+      this.#reads += 1;
       this.notices = this.notices?.map((notice) => (ids.includes(notice.id) ? { ...notice, read: true } : notice)) ?? null;
       this.dispatchEvent(new CustomEvent("notices-read", { bubbles: true }));
     });
   }
 
+  /** @returns {Promise<void>} */
   #fetch() {
-    return this.#attempt(async () => (this.notices = (await api.notices()).items));
+    return this.#attempt(async () => {
+      const reads = this.#reads;
+      const { items } = await api.notices();
+      if (reads !== this.#reads) return this.#fetch(); // the answer may be older than what was read meanwhile
+      this.notices = items;
+    });
   }
 
   /** @param {() => Promise<unknown>} attempt */

@@ -5,6 +5,7 @@ import { speak } from "../language.js";
 import { hasEnded, isAtAStop, isMyTurn, stateSentence } from "../order_words.js";
 import { loadMap } from "../posts.js";
 import { inWords } from "../problems.js";
+import { serverNow } from "../server_clock.js";
 import { t } from "../texts.js";
 import { problemLine } from "./field.js";
 import "./handover_code.js";
@@ -119,7 +120,7 @@ export class OneOrder extends PageElement {
   }
 
   updated() {
-    if (this.order && this.map) document.title = `${stateSentence(this.order, this.map)} · ${t("app.name")}`;
+    if (this.order && this.map) document.title = `${stateSentence(this.order, this.map, serverNow())} · ${t("app.name")}`;
   }
 
   #refused() {

@@ -25,4 +25,4 @@ export function orderCard(order, map, action = nothing) {
 
 /** The window while it is under way, the day afterwards. @param {Order} order */
 const when = (order) =>
-  order.window && !hasEnded(order) ? windowText(order.window) : dayAndTime(order.updated_at, serverNow());
+  order.window && !hasEnded(order) ? windowText(order.window, serverNow()) : dayAndTime(order.updated_at, serverNow());

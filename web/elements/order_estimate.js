@@ -46,8 +46,13 @@ export class OrderEstimate extends PageElement {
   #words() {
     const { estimate } = this;
     if (estimate === null || estimate === "looking") return html`<span class="hint">${t(estimate ? "estimate.looking" : "estimate.wait")}</span>`;
-    return html`<span class="of">${t("estimate.title")}</span> <strong>${windowText(later(estimate.window, this.#later_ms()))}</strong>
+    return html`<span class="of">${t("estimate.title")}</span> <strong>${this.#window(estimate)}</strong>
       <span class="hint">${t(estimate.assumed ? "estimate.assumed" : "estimate.based", { length: length(estimate.length_m) })}</span>`;
+  }
+
+  /** @param {Estimate} estimate what comes on many days has no day */
+  #window({ window }) {
+    return windowText(later(window, this.#later_ms()), this.when === "again" ? undefined : serverNow());
   }
 
   /** By how much the robot comes later than it would now. */

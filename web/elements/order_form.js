@@ -131,8 +131,17 @@ export class OrderForm extends PageElement {
   /** @param {When} when */
   async #when(when) {
     this.#chosen = when;
-    if (when !== "now") await import("./order_schedule.js");
-    if (when === this.#chosen) this.when = when;
+    const isThere = when === "now" || (await import("./order_schedule.js").then(() => true, () => false));
+    if (when !== this.#chosen) return;
+    if (!isThere) return this.#stay();
+    this.when = when;
+    this.#say({ form: "" });
+  }
+
+  /** What belongs to the choice could not be fetched: what is marked stays what holds. */
+  #stay() {
+    for (const radio of this.querySelectorAll("input")) if (radio.name === "when") radio.checked = radio.value === this.when;
+    this.#say({ form: t("error.no_answer") });
   }
 
   /** An order for later that was not taken. @param {string} not_before */

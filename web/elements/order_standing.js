@@ -1,7 +1,8 @@
 /** Where an order stands: its two ends, a sentence, what comes next, when, and how far it has come. */
 import { html, nothing } from "lit";
-import { hasEnded, nextSentence, stages, stateSentence } from "../order_words.js";
+import { hasEnded, isMyTurn, nextSentence, stages, stateSentence } from "../order_words.js";
 import { titleOf } from "../posts.js";
+import { serverNow } from "../server_clock.js";
 import { t } from "../texts.js";
 import { arrivalWindow } from "./arrival_window.js";
 import { helpWords } from "./field.js";
@@ -11,9 +12,9 @@ import { icon } from "./icon.js";
 /** @param {Order} order @param {CampusMap} map */
 export const orderStanding = (order, map) => html`<section class="standing ${order.state}">
   <p class="ends">${titleOf(map, order.from_post)}${icon("arrow")}<span class="unseen">→</span>${titleOf(map, order.to_post)}</p>
-  <h1 aria-live="polite">${stateSentence(order, map)}</h1>
-  <p class="next">${nextSentence(order, map)}</p>
-  ${hasEnded(order) ? nothing : arrivalWindow(order, map)} ${way(order)} ${hasEnded(order) ? nothing : helpWords("meeting")}
+  <h1 aria-live="polite">${stateSentence(order, map, serverNow())}</h1>
+  <p class="next">${nextSentence(order, map, serverNow())}</p>
+  ${hasEnded(order) || isMyTurn(order) ? nothing : arrivalWindow(order, map)} ${way(order)} ${hasEnded(order) ? nothing : helpWords("meeting")}
 </section>`;
 
 /** @param {Order} order */

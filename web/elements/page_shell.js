@@ -7,7 +7,7 @@ import { signOut } from "../session.js";
 import { counted, t } from "../texts.js";
 import { icon } from "./icon.js";
 import { PageElement } from "./page_element.js";
-/** @import { About, Person } from "../api_types.ts" */
+/** @import { About, Inbox, Person } from "../api_types.ts" */
 /** @import { PageName } from "../links.js" */
 /** @import { KeptOrder } from "../outbox.js" */
 /** @import { NewVersion } from "../with_worker.js" */
@@ -30,7 +30,7 @@ export class PageShell extends PageElement {
     kept: { attribute: false },
     takeNewVersion: { state: true },
     installOffer: { state: true },
-    unread: { state: true },
+    inbox: { state: true },
     connected: { state: true },
   };
 
@@ -51,7 +51,8 @@ export class PageShell extends PageElement {
     this.takeNewVersion = null;
     /** @type {InstallOffer | null} */
     this.installOffer = null;
-    this.unread = 0;
+    /** @type {Inbox | null} */
+    this.inbox = null;
     this.connected = true;
     new OnLive(this, {
       notice: () => this.#count(),
@@ -69,10 +70,6 @@ export class PageShell extends PageElement {
     this.installOffer = offer;
   }
 
-  firstUpdated() {
-    this.#count();
-  }
-
   render() {
     return html`
       <a class="skip" href="#content">${t("app.skip")}</a>
@@ -87,7 +84,7 @@ export class PageShell extends PageElement {
           ?justNow=${this.keptJustNow}></kept-orders>` : nothing}
         ${this.person ? this.#page(this.person) : html`<sign-in .about=${this.about}></sign-in>`}
       </main>
-      ${this.person && this.page !== "notices" ? html`<notice-toast></notice-toast>` : nothing}
+      ${this.person && this.page !== "notices" ? html`<notice-toast .inbox=${this.inbox} .since=${this.about?.now}></notice-toast>` : nothing}
       ${this.about?.simulated ? html`<footer class="foot">${t("app.demo")}</footer>` : nothing}
     `;
   }
@@ -119,9 +116,10 @@ export class PageShell extends PageElement {
   }
 
   #unreadMark() {
-    if (!this.unread) return nothing;
-    return html`<span class="unread"><span aria-hidden="true">${this.unread}</span
-      ><span class="unseen">${counted("nav.unread", this.unread)}</span></span>`;
+    const unread = this.inbox?.unread;
+    if (!unread) return nothing;
+    return html`<span class="unread"><span aria-hidden="true">${unread}</span
+      ><span class="unseen">${counted("nav.unread", unread)}</span></span>`;
   }
 
   /** @param {Person} person */
@@ -160,15 +158,15 @@ export class PageShell extends PageElement {
   async #count() {
     const inbox = this.person && (await api.notices().catch(() => null));
     if (!inbox) return;
-    this.unread = inbox.unread;
-    await navigator.setAppBadge?.(this.unread).catch(() => undefined);
+    this.inbox = inbox;
+    await navigator.setAppBadge?.(inbox.unread).catch(() => undefined);
   }
 
   /** @param {boolean} connected */
   async #nowConnected(connected) {
     this.connected = connected;
-    if (connected) await this.#count();
-    else if ((await api.me().catch(() => this.person)) === null) location.reload();
+    if (connected || !this.inbox) await this.#count();
+    if (!connected && (await api.me().catch(() => this.person)) === null) location.reload();
   }
 }
 

@@ -29,7 +29,7 @@ export const queueList = (orders, map, whose, act) => html`<ul class="queue">
     <div class="why-now">${hasEnded(order) ? order.why : whyItWaits(order, map)}${priorityMark(order)}</div>
     <div class="when">
       ${robotOf(order, act !== null)}<span>${age(order)}</span>
-      ${order.window && !hasEnded(order) ? html`<span>${t("mailroom.window", { window: windowText(order.window) })}</span>` : nothing}
+      ${order.window && !hasEnded(order) ? html`<span>${t("mailroom.window", { window: windowText(order.window, serverNow()) })}</span>` : nothing}
     </div>
     ${act ? html`<button type="button" class="act" @click=${() => act(order)}>${t("mailroom.act")}<span class="unseen">: ${whose(order)}</span></button>` : nothing}
   </li>`)}

@@ -15,6 +15,9 @@ import { PageElement } from "./page_element.js";
 const HOUR_MS = 3_600_000;
 const SPANS = /** @type {const} */ ({ hours: 6 * HOUR_MS, day: 24 * HOUR_MS, week: 168 * HOUR_MS, month: 720 * HOUR_MS });
 const LOOK_AGAIN_MS = 60_000;
+/** A robot that has just been switched on says its first word on its battery while somebody looks. */
+const LOOK_AGAIN_FOR_THE_FIRST_MS = 5_000;
+const SLACK_MS = 100;
 const ROWS = 13;
 
 export class RobotBattery extends PageElement {
@@ -34,12 +37,13 @@ export class RobotBattery extends PageElement {
     this.history = null;
     this.problem = "";
     this.fetched_ms = -LOOK_AGAIN_MS;
-    new Ticking(this, LOOK_AGAIN_MS);
+    new Ticking(this, LOOK_AGAIN_FOR_THE_FIRST_MS);
   }
 
   /** @param {Map<string, unknown>} changed */
   updated(changed) {
-    if (changed.has("span") || performance.now() > this.fetched_ms + LOOK_AGAIN_MS) this.#fetch();
+    const again_ms = this.history?.samples.length ? LOOK_AGAIN_MS : LOOK_AGAIN_FOR_THE_FIRST_MS;
+    if (changed.has("span") || performance.now() > this.fetched_ms + again_ms - SLACK_MS) this.#fetch();
   }
 
   render() {

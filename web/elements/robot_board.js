@@ -1,10 +1,12 @@
 /** All robots, each with what is known of it and what can be told to it. */
 import { html, nothing } from "lit";
 import { repeat } from "lit-html/directives/repeat.js";
+import { alarmText } from "../alarm_words.js";
+import { mayBeTakenOut, takeOut } from "../corridor_actions.js";
 import { robotPage } from "../links.js";
-import { pause, recall, resume, stop } from "../mailroom_actions.js";
+import { openWays, pause, recall, resume, stop } from "../mailroom_actions.js";
 import { isHeldUp } from "../mailroom_words.js";
-import { reasonText } from "../order_words.js";
+import { robotWhy } from "../order_words.js";
 import { titleOf } from "../posts.js";
 import { serverNow } from "../server_clock.js";
 import { t } from "../texts.js";
@@ -30,7 +32,7 @@ export function robotBoard(robots, alarms, map, doing) {
       </div>
       <p>${why(robot, map)}</p>
       <p class="hint">${whereSeen(robot, map)}</p>
-      ${seenTo(robot, alarms)} ${doing ? buttons(robot, doing) : nothing}
+      ${seenTo(robot, alarms, map)} ${doing ? buttons(robot, alarms, map, doing) : nothing}
     </li>`)}
   </ul>`;
 }
@@ -50,8 +52,9 @@ function charge({ battery }) {
 }
 
 /** @param {Robot} robot @param {CampusMap} map */
-function why({ why, why_words, activity, towards }, map) {
-  if (why) return reasonText(why, why_words, map);
+function why(robot, map) {
+  const { why, activity, towards } = robot;
+  if (why) return robotWhy(robot, map);
   return activity === "driving" && towards ? t("map.towards", { post: titleOf(map, towards) }) : t(`mailroom.activity.${activity}`);
 }
 
@@ -63,18 +66,24 @@ function whereSeen({ last_seen, online, heard_at }, map) {
 }
 
 /** Alarms that somebody sees to already. @param {Robot} robot @param {Alarm[]} alarms */
-function seenTo({ name }, alarms) {
-  const theirs = alarms.filter(({ robot, acknowledged_at }) => robot === name && acknowledged_at);
-  return theirs.length ? html`<p class="hint">${icon("check")}${t("alarm.seen_to", { alarms: theirs.map(({ reason }) => reason).join("; ") })}</p>` : nothing;
+const ofRobot = ({ name }, alarms) => alarms.filter(({ robot, acknowledged_at }) => robot === name && acknowledged_at);
+
+/** @param {Robot} robot @param {Alarm[]} alarms @param {CampusMap} map */
+function seenTo(robot, alarms, map) {
+  const theirs = ofRobot(robot, alarms).map((alarm) => alarmText(alarm, map));
+  return theirs.length ? html`<p class="hint">${icon("check")}${t("alarm.seen_to", { alarms: theirs.join("; ").replaceAll(".;", ";") })}</p>` : nothing;
 }
 
-/** @param {Robot} robot @param {Doing & {isAskedToWait: (robot: string) => boolean}} doing */
-function buttons(robot, doing) {
+/** @param {Robot} robot @param {Alarm[]} alarms @param {CampusMap} map @param {Doing & {isAskedToWait: (robot: string) => boolean}} doing */
+function buttons(robot, alarms, map, doing) {
   const waits = isHeldUp(robot) || doing.isAskedToWait(robot.name);
+  const ways = ofRobot(robot, alarms).flatMap((alarm) => openWays(alarm, map));
   /** @param {Action} action @param {string} look */
-  const button = (action, look) => html`<button type="button" class=${look} @click=${() => doing.ask(action, robot.name)}
-    >${t(`mailroom.do.${action.name}`)}<span class="unseen">: ${robot.name}</span></button>`;
+  const button = (action, look, said = t(`mailroom.do.${action.name}`)) => html`<button type="button" class=${look}
+    @click=${() => doing.ask(action, robot.name)}>${said}<span class="unseen">: ${robot.name}</span></button>`;
   return html`<div class="commands">
     ${button(waits ? resume(robot) : pause(robot), "")} ${button(recall(robot), "")} ${button(stop(robot), "stop")}
+    ${mayBeTakenOut(robot) ? button(takeOut(robot.name), "") : nothing}
+    ${ways.map((way) => button(way, "", t("mailroom.do.open_way.which", way.names)))}
   </div>`;
 }

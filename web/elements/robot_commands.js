@@ -1,7 +1,9 @@
 /** What a dispatcher can tell a robot, and what it answered to what it was told last. */
 import { html, nothing } from "lit";
+import { alarmText } from "../alarm_words.js";
 import * as api from "../api.js";
-import { pause, recall, resume, stop } from "../mailroom_actions.js";
+import { mayBeTakenOut, takeOut } from "../corridor_actions.js";
+import { openWays, pause, recall, resume, stop } from "../mailroom_actions.js";
 import { inWords } from "../problems.js";
 import { serverNow } from "../server_clock.js";
 import { t } from "../texts.js";
@@ -9,7 +11,7 @@ import { ago } from "../times.js";
 import "./ask_dialog.js";
 import { problemLine } from "./field.js";
 import { PageElement } from "./page_element.js";
-/** @import { Command, Robot } from "../api_types.ts" */
+/** @import { Alarm, CampusMap, Command, Robot } from "../api_types.ts" */
 /** @import { AskDialog } from "./ask_dialog.js" */
 /** @import { Action } from "../mailroom_actions.js" */
 
@@ -18,8 +20,10 @@ const SHOWN = 8;
 export class RobotCommands extends PageElement {
   static properties = {
     robot: { attribute: false },
+    map: { attribute: false },
     may: { type: Boolean },
     commands: { state: true },
+    closed: { state: true },
     problem: { state: true },
   };
 
@@ -27,10 +31,14 @@ export class RobotCommands extends PageElement {
     super();
     /** @type {Robot | null} */
     this.robot = null;
+    /** @type {CampusMap | null} */
+    this.map = null;
     /** Whether this person may tell it anything. */
     this.may = false;
     /** @type {Command[]} */
     this.commands = [];
+    /** Corridors that it found closed. @type {Alarm[]} */
+    this.closed = [];
     this.problem = "";
   }
 
@@ -42,7 +50,7 @@ export class RobotCommands extends PageElement {
   render() {
     const { robot } = this;
     if (!robot) return nothing;
-    return html`${this.may ? this.#buttons(robot) : html`<p class="hint">${t("robots.dispatchers_tell")}</p>`}
+    return html`${this.may && this.map ? this.#closedWays(this.map) : nothing} ${this.may ? this.#buttons(robot) : html`<p class="hint">${t("robots.dispatchers_tell")}</p>`}
       ${this.problem ? problemLine(this.problem) : nothing}
       ${this.commands.length
         ? html`<h3>${t("robots.told")}</h3>
@@ -57,7 +65,18 @@ export class RobotCommands extends PageElement {
     const button = (action) => html`<button type="button" class=${action.danger ? "danger" : ""} @click=${() => this.#ask(action)}>
       ${t(`mailroom.do.${action.name}`)}
     </button>`;
-    return html`<div class="choices">${[pause(robot), resume(robot), recall(robot), stop(robot)].map(button)}</div>`;
+    const told = [pause(robot), resume(robot), recall(robot), stop(robot)];
+    return html`<div class="choices">${[...told, ...(mayBeTakenOut(robot) ? [takeOut(robot.name)] : [])].map(button)}</div>`;
+  }
+
+  /** @param {CampusMap} map */
+  #closedWays(map) {
+    const ways = this.closed.flatMap((alarm) => openWays(alarm, map).map((way) => ({ alarm, way })));
+    if (!ways.length) return nothing;
+    return html`<ul class="closed-ways">${ways.map(({ alarm, way }) => html`<li>
+      <span>${alarmText(alarm, map)}</span>
+      <button type="button" @click=${() => this.#ask(way)}>${t(`mailroom.do.${way.name}`)}</button>
+    </li>`)}</ul>`;
   }
 
   /** @param {Action} action */
@@ -69,7 +88,11 @@ export class RobotCommands extends PageElement {
   /** @param {string} name */
   async #fetch(name) {
     try {
-      this.commands = (await api.robotCommands(name, { limit: SHOWN })).items;
+      const [commands, alarms] = await Promise.all([
+        api.robotCommands(name, { limit: SHOWN }),
+        api.robotAlarms(name, { only_open: "true", limit: SHOWN }),
+      ]);
+      [this.commands, this.closed] = [commands.items, alarms.items.filter(({ corridor }) => corridor)];
       this.problem = "";
     } catch (failure) {
       this.problem = inWords(failure);

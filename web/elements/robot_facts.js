@@ -1,8 +1,8 @@
 /** What is known of the robots on a map, as a list: everything that the map shows of them, and why they do it. */
 import { html, nothing } from "lit";
 import { conditionsOf, isSilentAsExpected } from "../map_facts.js";
-import { reasonText } from "../order_words.js";
-import { titleOf } from "../posts.js";
+import { robotWhy } from "../order_words.js";
+import { corridorTitle, titleOf } from "../posts.js";
 import { serverNow } from "../server_clock.js";
 import { t } from "../texts.js";
 import { ago, clockTime, percent, windowText } from "../times.js";
@@ -14,9 +14,11 @@ import { icon } from "./icon.js";
 export function robotFacts(map, facts, from, to) {
   const { robots } = facts;
   const ends = from && to ? [fact("arrow", t("map.from_fact", { post: titleOf(map, from) })), fact("pin", t("map.to_fact", { post: titleOf(map, to) }))] : [];
-  if (robots.length > 1) return html`<ul class="facts several">${robots.map((robot) => ofSeveral(map, facts, robot))}${ends}</ul>`;
+  const closed = facts.byPeople.map(({ corridor, reason }) =>
+    fact("warning", t("map.closed_by_people", { corridor: corridorTitle(map, corridor), reason })));
+  if (robots.length > 1) return html`<ul class="facts several">${robots.map((robot) => ofSeveral(map, facts, robot))}${closed}${ends}</ul>`;
   const none = fact("robot", t(ends.length ? "map.no_robot" : "map.no_robots"));
-  return html`<ul class="facts">${robots.length ? aboutRobot(map, facts, robots[0]) : none}${ends}</ul>`;
+  return html`<ul class="facts">${robots.length ? aboutRobot(map, facts, robots[0]) : none}${closed}${ends}</ul>`;
 }
 
 /** @param {CampusMap} map @param {MapFacts} facts @param {Robot} robot */
@@ -30,7 +32,7 @@ const aboutRobot = (map, facts, robot) => [
   fact("robot", seenText(map, robot)),
   aheadFact(map, robot),
   conditionsOf(robot).includes("stopped") ? fact("warning", t("map.stopped")) : nothing,
-  robot.why ? fact("send", reasonText(robot.why, robot.why_words, map)) : nothing,
+  robot.why ? fact("send", robotWhy(robot, map)) : nothing,
   facts.taken.filter((taken) => taken.robot === robot.name).map((taken) => fact("corridor", takenText(map, taken))),
   facts.closed.filter((alarm) => alarm.robot === robot.name).map((alarm) => fact("warning", closedText(map, alarm))),
   conditionsOf(robot).includes("offline") ? fact("network", silentText(map, facts, robot)) : nothing,

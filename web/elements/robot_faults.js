@@ -1,10 +1,11 @@
 /** What went wrong with a robot, newest first: what it was, where, from when until when. */
 import { html, nothing } from "lit";
+import { alarmText } from "../alarm_words.js";
 import * as api from "../api.js";
 import { titleOf } from "../posts.js";
 import { inWords } from "../problems.js";
 import { serverNow } from "../server_clock.js";
-import { hasText, t } from "../texts.js";
+import { t } from "../texts.js";
 import { dayAndTime } from "../times.js";
 import { problemLine } from "./field.js";
 import { PageElement } from "./page_element.js";
@@ -41,15 +42,15 @@ export class RobotFaults extends PageElement {
   }
 
   /** @param {Alarm} alarm */
-  #line({ name, reason, post, at, cleared_at, acknowledged_at }) {
+  #line(alarm) {
+    const { name, post, at, cleared_at, acknowledged_at } = alarm;
     const now_ms = serverNow();
-    const known = `why.fault.${name}`;
     const until = cleared_at ? t("robots.faults.until", { time: dayAndTime(cleared_at, now_ms) }) : "";
     const standing = cleared_at ? "over" : acknowledged_at ? "seen_to" : "open";
     return html`<li class=${standing}>
       <span class="badge ${standing}">${t(`robots.fault.${standing}`)}</span>
       <div>
-        <p>${hasText(known) ? t(known) : reason}</p>
+        <p>${alarmText(alarm, this.map)}</p>
         <p class="hint">
           <time datetime=${at}>${dayAndTime(at, now_ms)}</time>${until ? ` ${until}` : nothing}${
             post && this.map ? ` · ${titleOf(this.map, post)}` : nothing} · <code>${name}</code>

@@ -3,7 +3,7 @@ import { html, nothing } from "lit";
 import * as api from "../api.js";
 import { PAGES } from "../links.js";
 import { OnLive } from "../live.js";
-import { reasonText } from "../order_words.js";
+import { robotWhy } from "../order_words.js";
 import { loadMap, titleOf } from "../posts.js";
 import { inWords } from "../problems.js";
 import { serverNow } from "../server_clock.js";
@@ -72,7 +72,7 @@ export class RobotPage extends PageElement {
       <section class="card of-now" aria-labelledby="now-title">
         <h2 id="now-title">${t("robots.now")}</h2>
         ${now(details.robot, map)}
-        <robot-commands .robot=${details.robot} .may=${this.isDispatcher}></robot-commands>
+        <robot-commands .robot=${details.robot} .map=${map} .may=${this.isDispatcher}></robot-commands>
       </section>
       <robot-battery class="card" .robot=${this.robot}></robot-battery>
       <section class="card about" aria-labelledby="about-title">
@@ -104,11 +104,11 @@ export class RobotPage extends PageElement {
 
 /** @param {Robot} robot @param {CampusMap} map */
 function now(robot, map) {
-  const { why, why_words, last_seen, heard_at, online } = robot;
+  const { why, last_seen, heard_at, online } = robot;
   const now_ms = serverNow();
   return html`<div class="now">
     <p class="signs">${robotState(robot)} ${robotCharge(robot)}</p>
-    ${why ? html`<p class="doing">${reasonText(why, why_words, map)}</p>` : nothing}
+    ${why ? html`<p class="doing">${robotWhy(robot, map)}</p>` : nothing}
     <p class="hint">${
       last_seen ? t("map.seen", { post: titleOf(map, last_seen.post), ago: ago(last_seen.at, now_ms) }) : t("map.never_seen")
     }</p>

@@ -4,13 +4,14 @@ import { repeat } from "lit-html/directives/repeat.js";
 import * as api from "../api.js";
 import { robotPage } from "../links.js";
 import { OnLive } from "../live.js";
-import { reasonText } from "../order_words.js";
+import { robotWhy } from "../order_words.js";
 import { loadMap, titleOf } from "../posts.js";
 import { inWords } from "../problems.js";
 import { serverNow } from "../server_clock.js";
 import { counted, t } from "../texts.js";
 import { Ticking } from "../ticking.js";
 import { ago, percent } from "../times.js";
+import "./estimate_quality.js";
 import { problemLine } from "./field.js";
 import { icon } from "./icon.js";
 import { PageElement } from "./page_element.js";
@@ -45,8 +46,9 @@ export class RobotsPage extends PageElement {
   #list(robots, map) {
     if (!robots.length) return html`<p class="empty">${t("robots.none")}</p>`;
     return html`<ul class="robots">
-      ${repeat(robots, ({ name }) => name, (robot) => robotCard(robot, this.alarms, map))}
-    </ul>`;
+        ${repeat(robots, ({ name }) => name, (robot) => robotCard(robot, this.alarms, map))}
+      </ul>
+      <estimate-quality .map=${map}></estimate-quality>`;
   }
 
   /** Alarms have no event of their own: they are looked at again every so often. */
@@ -74,13 +76,13 @@ export class RobotsPage extends PageElement {
 
 /** @param {Robot} robot @param {Alarm[]} alarms @param {CampusMap} map */
 function robotCard(robot, alarms, map) {
-  const { name, last_seen, why, why_words } = robot;
+  const { name, last_seen, why } = robot;
   const ringing = alarms.filter((alarm) => alarm.robot === name).length;
   return html`<li>
     <a href=${robotPage(name)}>
       <strong>${t("robot.name", { name })}</strong>
       ${robotState(robot)}
-      <span class="doing">${why ? reasonText(why, why_words, map) : nothing}</span>
+      <span class="doing">${why ? robotWhy(robot, map) : nothing}</span>
       <span class="hint">${
         last_seen ? t("map.seen", { post: titleOf(map, last_seen.post), ago: ago(last_seen.at, serverNow()) }) : t("map.never_seen")
       }</span>

@@ -6,6 +6,7 @@ import { inWords } from "../problems.js";
 import { t } from "../texts.js";
 import { problemLine } from "./field.js";
 import "./my_contacts.js";
+import "./my_delegates.js";
 import "./my_devices.js";
 import "./my_profile.js";
 import "./my_sessions.js";
@@ -15,7 +16,7 @@ import "./notice_table.js";
 import { PageElement } from "./page_element.js";
 /** @import { CampusMap, NoticeWishes, Person } from "../api_types.ts" */
 
-const PARTS = ["profile", "notices", "devices", "contacts", "sessions", "webhook", "tokens"];
+const PARTS = ["profile", "notices", "devices", "contacts", "delegates", "sessions", "webhook", "tokens"];
 
 export class SettingsPage extends PageElement {
   static properties = { person: { attribute: false }, map: { state: true }, wishes: { state: true }, problem: { state: true } };
@@ -50,6 +51,7 @@ export class SettingsPage extends PageElement {
           <notice-table .person=${person} .wishes=${wishes}></notice-table>
           <my-devices .person=${person} .wishes=${wishes}></my-devices>
           <my-contacts .map=${map}></my-contacts>
+          <my-delegates .map=${map}></my-delegates>
           <my-sessions></my-sessions>
           <my-webhook .wishes=${wishes}></my-webhook>
           <my-tokens .person=${person}></my-tokens>

@@ -1,13 +1,15 @@
 /** What somebody should see to, each with the next thing to do as a button. */
 import { html, nothing } from "lit";
 import { repeat } from "lit-html/directives/repeat.js";
+import { alarmText, alarmTextForAll } from "../alarm_words.js";
+import { takeOut } from "../corridor_actions.js";
 import { followPage, robotPage } from "../links.js";
-import { release, resolve, resume } from "../mailroom_actions.js";
+import { openWays, release, resolve, resume } from "../mailroom_actions.js";
 import { orderTitle, orderWay, since, withoutOwnWords } from "../mailroom_words.js";
-import { reasonText } from "../order_words.js";
+import { reasonText, robotWhy } from "../order_words.js";
 import { titleOf } from "../posts.js";
 import { serverNow } from "../server_clock.js";
-import { hasText, t } from "../texts.js";
+import { t } from "../texts.js";
 import { ago } from "../times.js";
 import { icon } from "./icon.js";
 /** @import { Alarm, CampusMap, Order, Robot, Sending } from "../api_types.ts" */
@@ -50,12 +52,18 @@ const line = (what, more, at, action) => html`<div class="what">
 const button = (text, about, press) =>
   html`<button type="button" @click=${press}>${text}<span class="unseen">: ${about}</span></button>`;
 
+/** @param {Action} way */
+const betweenEnds = ({ names = {} }) => `${names.from} – ${names.to}`;
+
 /** @param {Alarm} alarm @param {CampusMap} map @param {Doing | null} doing */
 function ofAlarm(alarm, map, doing) {
   const name = t("robot.name", { name: alarm.robot });
   const what = alarm.post ? t("mailroom.wrong.alarm", { robot: name, post: titleOf(map, alarm.post) }) : name;
-  const why = hasText(`why.fault.${alarm.name}`) ? t(`why.fault.${alarm.name}`) : t("why.in_english", { sentence: alarm.reason });
-  return line(what, why, alarm.at, doing && button(t("alarm.acknowledge"), what, () => doing.acknowledge(alarm)));
+  return line(what, (doing ? alarmText : alarmTextForAll)(alarm, map), alarm.at, doing && html`<div class="ways-out">
+    ${alarm.name === "vanished" ? button(t("mailroom.do.take_out"), what, () => doing.ask(takeOut(alarm.robot), what)) : nothing}
+    ${openWays(alarm, map).map((way) => button(t(`mailroom.do.${way.name}`), betweenEnds(way), () => doing.ask(way, what)))}
+    ${button(t("alarm.acknowledge"), what, () => doing.acknowledge(alarm))}
+  </div>`);
 }
 
 /** @param {Order} order @param {CampusMap} map @param {Doing | null} doing */
@@ -81,7 +89,7 @@ function ofLocked(order, map, doing) {
 function ofRobot(kind, robot, map, doing) {
   const what = t(`mailroom.wrong.${kind}`, { robot: robot.name });
   const where = robot.last_seen ? t("map.seen", { post: titleOf(map, robot.last_seen.post), ago: ago(robot.last_seen.at, serverNow()) }) : "";
-  const more = kind === "stopped" && robot.why ? reasonText(robot.why, robot.why_words, map) : where;
+  const more = kind === "stopped" && robot.why ? robotWhy(robot, map) : where;
   return line(what, more, kind === "silent" ? robot.heard_at : null, doing && [
     html`<a class="button quiet" href=${robotPage(robot.name)}>${t("mailroom.look")}<span class="unseen">: ${robot.name}</span></a>`,
     kind === "stopped" ? button(t("mailroom.do.go_on"), robot.name, () => doing.ask(resume(robot), robot.name)) : nothing,

@@ -1,5 +1,4 @@
 import { html } from "lit";
-import "../elements/follow_page.js";
 import { orderFrom } from "../links.js";
 import { openPage } from "../open_page.js";
 

@@ -1,5 +1,4 @@
 import { html } from "lit";
-import "../elements/one_order.js";
 import { openPageForGuest } from "../open_page.js";
 
 addEventListener("keydown", () => import("../keeps_keyboard.js").then(({ keepKeyboard }) => keepKeyboard()), { once: true });

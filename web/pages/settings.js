@@ -1,5 +1,4 @@
 import { html } from "lit";
-import "../elements/settings_page.js";
 import { openPage } from "../open_page.js";
 
 await openPage("settings", ({ person }) => html`<settings-page .person=${person}></settings-page>`);

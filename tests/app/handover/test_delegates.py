@@ -8,6 +8,7 @@ import pytest
 
 from app.keeping.order_records import one_order
 from app.keeping.personal import everything_of, person_of
+from app.people.service import set_roles
 from app.tables import Handover, Role
 from protocol.parts import Stop
 from protocol.to_robot import Verifiers
@@ -166,3 +167,49 @@ async def test_when_the_mail_is_aboard_nobody_is_named_to_load_it(campus: Campus
     assert (late.status_code, late.json()["code"]) == (409, "too_late_to_delegate")
     back = await sender.post(f"{campus.path}/delegates", json={"name": "The porter", "purpose": "return"})
     assert back.status_code == 201
+
+
+async def test_everybody_whom_i_have_named_is_in_one_list_until_their_hand_over_is_done(campus: Campus) -> None:
+    await campus.waits_for_load()
+    sender, recipient = await campus.browser("sender"), await campus.browser("recipient")
+    assert (await mine(sender), await mine(recipient)) == ([], [])
+    for name, purpose in (("The porter", "load"), ("A clerk", "return")):
+        await sender.post(f"{campus.path}/delegates", json={"name": name, "purpose": purpose})
+    await recipient.post(f"{campus.path}/delegates", json={"name": "A neighbour"})
+    porter, clerk = sorted(await mine(sender), key=lambda one: str(one["name"]), reverse=True)
+    seen = (porter["name"], porter["purpose"], porter["post"], porter["my_role"])
+    assert seen == ("The porter", "load", "post1", "sender")
+    assert (porter["order_id"], porter["recipient"]["email"]) == (campus.order_id, "recipient@campus.example")
+    assert porter["expires_at"] == (await sender.get(f"{campus.path}/code")).json()["expires_at"]
+    (neighbour,) = await mine(recipient)
+    assert (neighbour["name"], neighbour["post"], neighbour["my_role"]) == ("A neighbour", "post4", "recipient")
+    await sender.delete(f"{campus.path}/delegates/{clerk['id']}")
+    assert [one["name"] for one in await mine(sender)] == ["The porter"]
+    await campus.robot.ends(await campus.robot.say(campus.robot.receipt(campus.load)))
+    assert await mine(sender) == [], "the mail is aboard"
+    assert [one["name"] for one in await mine(recipient)] == ["A neighbour"]
+    assert campus.mission
+    await campus.robot.ends(await campus.robot.report(campus.mission, Step.ARRIVED, campus.receive))
+    await campus.robot.ends(await campus.robot.say(campus.robot.receipt(campus.receive)))
+    assert await mine(recipient) == [], "and now it is delivered"
+
+
+async def test_whom_a_dispatcher_has_named_is_no_longer_theirs_to_see_without_the_role(campus: Campus) -> None:
+    await campus.connect()
+    desk = await campus.browser("desk", Role.DISPATCHER)
+    for name in ("A neighbour", "Another"):
+        await desk.post(f"{campus.path}/delegates", json={"name": name, "purpose": "receive"})
+    first = (await desk.get("/me/delegates?limit=1")).json()
+    rest = (await desk.get(f"/me/delegates?limit=1&cursor={first['next']}")).json()
+    assert {one["items"][0]["name"] for one in (first, rest)} == {"A neighbour", "Another"}
+    assert rest["next"] is None
+    async with campus.service.app.state.database.transaction() as session:
+        set_roles(await person_of(session, "desk@campus.example"), set(), {Role.DISPATCHER})
+    assert await mine(desk) == []
+
+
+async def mine(who: httpx.AsyncClient) -> list[dict[str, Any]]:
+    answer = await who.get("/me/delegates")
+    assert answer.status_code == 200, answer.text
+    items: list[dict[str, Any]] = answer.json()["items"]
+    return items

@@ -12,10 +12,13 @@ from hypothesis import strategies as st
 from app.dispatch.choice import IdleRobot, why_nobody_comes
 from app.fleet.answers import RECALLED
 from app.fleet.missions import NOT_REPORTED, UNLOADED
+from app.fleet.receipts import PROBLEMS, counts_for_nothing
 from app.orders.timer import NOBODY_CAME
 from app.settings import ROOT
 from app.texts import catalogue
-from app.texts.reasons import in_language, in_words, words_of
+from app.texts.reasons import PREFIXES, in_language, in_words, words_of
+from protocol.parts import Leg
+from robot.action.corridors import CLOSED_BY, turned_back
 from robot.reflexes import FAULTS
 
 REASONS_OF_ROBOTS = ROOT / "robot" / "reasons.py"
@@ -83,7 +86,9 @@ def test_what_nobody_knows_is_shown_as_it_was_said_and_marked() -> None:
     assert in_words("fr", {"robot": "r1"}) == {"robot": "r1"}
 
 
-@given(st.sampled_from([key for key in catalogue("en") if key.startswith("why.")]), st.text("abcxyz0189_", min_size=1))
+@given(
+    st.sampled_from([key for key in catalogue("en") if key.startswith(PREFIXES)]), st.text("abcxyz0189_", min_size=1)
+)
 def test_every_reason_of_the_catalogue_is_recognised_by_its_own_english(key: str, fact: str) -> None:
     if key == "why.in_english":
         return
@@ -95,3 +100,58 @@ def test_every_reason_of_the_catalogue_is_recognised_by_its_own_english(key: str
 @given(st.text(max_size=500))
 def test_whatever_a_robot_says_can_be_shown(said: str) -> None:
     assert said.strip(". ") in in_language("fr", said) or words_of(said)
+
+
+def test_alarms_are_said_in_french_with_what_they_are_about() -> None:
+    told = turned_back(Leg(from_post="post3", to_post="post4"), "blocked")
+    assert in_language("fr", told) == (
+        "Le robot a fait demi-tour dans le couloir de post3 à post4. Quelque chose s’y trouve."
+    )
+    assert in_language("fr", "The agent met every way blocked or denied.").startswith("Tous les chemins du robot")
+    assert in_language("fr", "The agent met line_lost.") == "Le programme du robot a rencontré\u00a0: line_lost."
+    late = "Order 1f2e3d is cancelled. But its mail changed hands (load) at post1."
+    assert in_language("fr", late).startswith("La commande 1f2e3d est à l’état «\u00a0cancelled\u00a0»")
+    words = words_of("4 messages of this robot are lost")
+    assert words and (words.key, words.facts) == ("alarm.of.messages_lost", {"count": "4"})
+
+
+def test_every_way_of_turning_back_is_known() -> None:
+    for why in CLOSED_BY:
+        words = words_of(turned_back(Leg(from_post="post3", to_post="post4"), why))
+        assert words and words.key == f"alarm.of.turned_back.{why}"
+
+
+@pytest.mark.parametrize("problem", PROBLEMS)
+def test_every_reason_for_which_a_receipt_counts_for_nothing_is_known(problem: str) -> None:
+    words = words_of(counts_for_nothing("load", "1f2e3d", problem))
+    assert words and words.key == f"alarm.of.receipt.{problem}"
+
+
+ALARMS = {
+    "app/fleet/clocks.py": 1,
+    "app/fleet/conversation.py": 1,
+    "app/fleet/greeting.py": 4,
+    "app/fleet/receipts.py": 1,
+    "app/handover/service.py": 1,
+}
+"""Where the service raises alarms of its own, and how many sentences there are told."""
+
+
+@pytest.mark.parametrize("file", ALARMS)
+def test_the_services_own_alarms_are_known(file: str) -> None:
+    """The sentence that stands beside `raise_alarm`, or in a name `sentence` just before."""
+    tree = ast.parse((ROOT / file).read_text())
+    said = [one for one in map(told_in, ast.walk(tree)) if one]
+    assert len(said) == ALARMS[file]
+    assert [one for one in said if words_of(one) is None] == []
+
+
+def told_in(node: ast.AST) -> str | None:
+    told: ast.AST | None = None
+    if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name) and node.targets[0].id == "sentence":
+        told = node.value
+    if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "raise_alarm":
+        told = node.args[3]
+    if isinstance(told, ast.JoinedStr):
+        return "".join(part.value if isinstance(part, ast.Constant) else "x1" for part in told.values)
+    return told.value if isinstance(told, ast.Constant) else None

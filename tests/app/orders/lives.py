@@ -286,13 +286,14 @@ class World:
     def _changes_hands(self, robot: PlayedRobot, stop: Any, luck: str) -> bool:
         """Only what is there can change hands, and only for somebody with the code."""
         purpose, order_id = Purpose(stop.action.value), stop.order_id
-        giver = "sender" if purpose is Purpose.LOAD else robot.name
+        is_passed_on = self.where[order_id] == "mailroom"
+        giver = ("mailroom" if is_passed_on else "sender") if purpose is Purpose.LOAD else robot.name
         codes = robot.duties.codes(order_id, purpose)
         wanted = {"mailroom": Holder.MAILROOM, "recipient": Holder.RECIPIENT}.get(luck, Holder.SENDER)
-        holder = {Purpose.LOAD: Holder.SENDER, Purpose.RECEIVE: Holder.RECIPIENT}.get(purpose, wanted)
-        code = next(
-            one for one in codes_of(self._order(order_id)) if one.holder is holder and _fits(one.purpose, purpose)
-        )
+        loads = Holder.MAILROOM if is_passed_on else Holder.SENDER
+        holder = {Purpose.LOAD: loads, Purpose.RECEIVE: Holder.RECIPIENT}.get(purpose, wanted)
+        known = codes_of(self._order(order_id, stop.post if is_passed_on else None))
+        code = next(one for one in known if one.holder is holder and _fits(one.purpose, purpose))
         sha256 = code.sha256(self.orders.key)
         if self.where[order_id] != giver or sha256 not in codes:
             return False
@@ -300,11 +301,18 @@ class World:
         self.where[order_id] = robot.name if purpose is Purpose.LOAD else str(holder)
         return True
 
-    def _order(self, order_id: str) -> Order:
+    def _order(self, order_id: str, passed_on_at: str | None) -> Order:
         """As far as codes depend on it."""
         now = self.clock.utc()
         return Order(
-            id=order_id, sender_id="", recipient_id="", from_post="", to_post="", created_at=now, codes_expire_at=now
+            id=order_id,
+            sender_id="",
+            recipient_id="",
+            from_post="",
+            to_post="",
+            created_at=now,
+            codes_expire_at=now,
+            passed_on_at_post=passed_on_at,
         )
 
     # What is known.

@@ -33,7 +33,7 @@ from app.tables import (
 from app.tables import OrderState as S
 from protocol.ids import ids_from
 from tests.app.orders.lives import World
-from tests.app.orders.what_holds import ENDED, Record
+from tests.app.orders.what_holds import ENDED, Record, how_it_ended
 
 POSTS = ("post1", "post2", "post3", "post4", "post5")
 ROBOTS = st.sampled_from(("r1", "r2"))
@@ -200,6 +200,16 @@ class LivesOfOrders(RuleBasedStateMachine):
         if done:
             self.world.where[order_id] = "mailroom"
 
+    @rule(number=ORDER, post=st.sampled_from((None, *POSTS)), so_far=SO_FAR)
+    def a_dispatcher_passes_mail_on(self, number: int, post: str | None, so_far: str | None) -> None:
+        """Taken out of one robot, for another."""
+        self.an_order_comes(number, so_far)
+        order_id = self.order(number)
+        if self.world.where[order_id] not in self.world.robots:
+            return
+        if self.tries(self.world.orders.pass_on, "dispatcher", order_id, post, "its robot is flat"):
+            self.world.where[order_id] = "mailroom"
+
     @rule(robot=ROBOTS)
     def a_dispatcher_recalls_a_robot(self, robot: str) -> None:
         self.run(self.world.recall(robot))
@@ -341,18 +351,9 @@ class LivesOfOrders(RuleBasedStateMachine):
             if await self.all_is_done():
                 break
         assert await self.all_is_done(), "\n".join(
-            ["no order and no robot is stuck for ever", *await self.how_it_ended()]
+            ["no order and no robot is stuck for ever", *await how_it_ended(self.world)]
         )
         await self.record.check()
-
-    async def how_it_ended(self) -> list[str]:
-        orders = [(o.id, o.state, o.state_before_attention, o.robot) for o in await self.world.rows(Order)]
-        missions = [one for one in await self.world.rows(MissionRow) if one.state == "active"]
-        stops = [
-            one for one in await self.world.rows(StopRow) if one.mission_id in {mission.id for mission in missions}
-        ]
-        held = [f"{robot.name}: {robot.duties.held}" for robot in self.world.robots.values()]
-        return [str(orders), *map(repr, missions), *map(repr, stops), *held]
 
     async def one_round(self) -> None:
         await self.world.dispatch()

@@ -5,7 +5,7 @@ from pathlib import Path
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, rule
 
-from app.orders.transitions import ENDED, MAIL_ABOARD, TRANSITIONS, By, is_allowed, is_old_news
+from app.orders.transitions import CARRIED, ENDED, MAIL_ABOARD, NOTHING_ABOARD, TRANSITIONS, By, is_allowed, is_old_news
 from app.tables import OrderState as S
 
 WORDS = st.sampled_from(By)
@@ -19,11 +19,14 @@ class LifeOfAnOrder(RuleBasedStateMachine):
         super().__init__()
         self.state = S.QUEUED
         self.before_attention: S | None = None
+        self.legs = 1
         self.past = [S.QUEUED]
 
     @rule(to=STATES, by=WORDS)
     def somebody_says(self, to: S, by: By) -> None:
-        if is_allowed(self.state, to, by, self.before_attention):
+        if is_allowed(self.state, to, by, self.before_attention, is_passed_on=self.legs > 1):
+            if to is S.QUEUED and (self.before_attention or self.state) in MAIL_ABOARD:
+                self.legs += 1
             self.before_attention = self.state if to is S.ATTENTION else None
             self.state = to
             self.past.append(to)
@@ -39,11 +42,11 @@ class LifeOfAnOrder(RuleBasedStateMachine):
         assert not ENDED & set(self.past[:-1])
 
     @invariant()
-    def delivered_mail_was_loaded_and_is_not_loaded_twice(self) -> None:
+    def delivered_mail_was_loaded_and_once_for_each_leg(self) -> None:
         without_faults = [
             s for i, s in enumerate(self.past) if s is not S.ATTENTION and self.past[i - 1] is not S.ATTENTION
         ]
-        assert without_faults.count(S.CARRYING) <= 1
+        assert without_faults.count(S.CARRYING) <= self.legs
         if S.DELIVERED in self.past:
             assert self.past.index(S.CARRYING) < self.past.index(S.DELIVERED)
 
@@ -85,10 +88,22 @@ def test_only_the_robot_writes_custody() -> None:
 def test_out_of_attention_leads_back_or_home_or_into_hands_as_far_as_the_mail_allows() -> None:
     for before in S:
         out = {S.RETURNING, S.HELD} if before in MAIL_ABOARD else {S.QUEUED, S.CANCELLED}
+        if before in CARRIED:
+            out.add(S.QUEUED)  # passed on to another robot
         assert {to for to in S if is_allowed(S.ATTENTION, to, By.DISPATCHER, before)} == {before} | out
         assert {to for to in S if is_allowed(S.ATTENTION, to, By.ROBOT, before)} == {before}, "it went on by itself"
     for by in (By.SENDER, By.RECIPIENT, By.TIMER):
         assert not any(is_allowed(S.ATTENTION, to, by, before) for to in S for before in S)
+
+
+def test_what_was_passed_on_ends_in_the_mailrooms_hands_and_what_was_not_with_its_sender() -> None:
+    for state in NOTHING_ABOARD:
+        for by in By:
+            for to in (S.CANCELLED, S.EXPIRED):
+                assert not is_allowed(state, to, by, is_passed_on=True)
+            assert not is_allowed(state, S.HELD, by)
+        assert is_allowed(state, S.HELD, By.DISPATCHER, is_passed_on=True)
+    assert not is_allowed(S.ATTENTION, S.HELD, By.DISPATCHER, S.TO_SENDER)
 
 
 def test_what_lies_behind_an_order_is_old_news_and_what_lies_ahead_is_not() -> None:

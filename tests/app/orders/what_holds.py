@@ -64,8 +64,11 @@ class Record:
         assert moves[-1].state is order.state
         assert moves[0].state is S.QUEUED
         before: S | None = None
+        passed_on = False
         for last, one in pairwise(moves):
-            assert is_allowed(last.state, one.state, By(one.by), before), (last.state, one.state, one.by)
+            allowed = is_allowed(last.state, one.state, By(one.by), before, is_passed_on=passed_on)
+            assert allowed, (last.state, one.state, one.by)
+            passed_on |= one.state is S.QUEUED and (before or last.state) in MAIL_ABOARD
             if one.state in {S.EXPIRED, S.CANCELLED}:
                 assert (before or last.state) not in MAIL_ABOARD, "mail that is aboard has to go somewhere"
             before = last.state if one.state is S.ATTENTION else None
@@ -94,13 +97,14 @@ class Record:
         assert all(one.since <= two.since for one, two in pairwise(chain))
         holder = chain[-1].name or chain[-1].holder
         state = order.state_before_attention or order.state
-        is_loaded_again = sum(one.purpose == Purpose.LOAD for one in handovers) > 1
+        legs = 1 + sum(one.stop_id.startswith("passed-on-") for one in handovers)
+        is_loaded_again = sum(one.purpose == Purpose.LOAD for one in handovers) > legs
         if state in MAIL_ABOARD:
             assert holder == order.robot
         elif is_loaded_again:
             assert state in ENDED, "only what has come back and ended can be loaded again, by a robot that knew nothing"
         elif state is S.QUEUED or state in ROBOT_COMING or state is S.RETURNED:
-            assert holder == "sender"
+            assert holder == ("sender" if legs == 1 or state is S.RETURNED else "mailroom")
         elif state in {S.DELIVERED, S.HELD}:
             assert holder == {S.DELIVERED: "recipient", S.HELD: "mailroom"}[state]
         if all(robot.outbox.waiting() == 0 for robot in self.world.robots.values()):
@@ -130,3 +134,12 @@ class Record:
             if not waits and not await self.world.unheard(robot):
                 assert robot.still_to_do() == left
                 assert set(robot.duties.held.cargo) == self.world.aboard(robot.name)
+
+
+async def how_it_ended(world: World) -> list[str]:
+    """Orders, what robots still have to do, and what they believe, for whoever has to find out why."""
+    orders = [(o.id, o.state, o.state_before_attention, o.robot) for o in await world.rows(Order)]
+    missions = [one for one in await world.rows(MissionRow) if one.state == "active"]
+    stops = [one for one in await world.rows(StopRow) if one.mission_id in {mission.id for mission in missions}]
+    held = [f"{robot.name}: {robot.duties.held}" for robot in world.robots.values()]
+    return [str(orders), *map(repr, missions), *map(repr, stops), *held]

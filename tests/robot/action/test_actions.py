@@ -10,8 +10,9 @@ import pytest
 
 from bdi import parse_term
 from maps import builtin_map
+from protocol.envelope import Envelope
 from protocol.parts import Leg, Stop, StopAction
-from protocol.to_robot import Mission
+from protocol.to_robot import Detour, Mission
 from robot.action.actions import Actions, table_for
 from robot.action.hands import Hands
 from robot.action.table import ACTIONS, PAPER_ACTIONS
@@ -35,6 +36,7 @@ MISSION = Mission(
 )
 
 
+TO_POST1 = Leg(from_post="post2", to_post="post1")
 TO_POST3, TO_POST4 = Leg(from_post="post2", to_post="post3"), Leg(from_post="post3", to_post="post4")
 
 
@@ -230,6 +232,37 @@ def test_a_detour_gives_back_what_it_does_not_need_and_keeps_what_it_does(bench:
     with_server(bench, TO_POST3, TO_POST4)
     assert bench.result("claim(post5)") is None
     assert bench.duties.held.grants == (TO_POST3,)
+
+
+def test_a_claim_that_is_answered_by_a_way_aside_ends_and_what_was_granted_with_it_is_kept(bench: Bench) -> None:
+    with_server(bench)
+    waiting = bench.ask("claim(post4)")
+    assert bench.actions.finished(0.0) == [], "it waits at its post"
+    sent(bench, TO_POST1)
+    assert bench.actions.finished(0.1) == [(waiting, None)]
+    assert bench.result("claim(post4)") is None, "asked again it is sent there again, and claims nothing meanwhile"
+    assert bench.duties.held.grants == (TO_POST1,)
+    assert [told for told in bench.told() if '"goal"' in told] == [bench.told()[0]]
+    bench.navigator.place("post1", "post2")
+    bench.ask("claim(post4)")
+    assert bench.duties.held.grants == () and '"goal":"post4"' in bench.told()[-1], "from there it goes its own way"
+
+
+def test_it_is_not_sent_into_a_corridor_in_which_it_has_turned_back(bench: Bench) -> None:
+    with_server(bench)
+    bench.navigator.closed.close(TO_POST1, now=0.0)
+    sent(bench, TO_POST1)
+    bench.ask("claim(post4)")
+    assert bench.actions.finished(0.0) == []
+    assert bench.duties.held.grants == (), "it gives back what was granted with it"
+
+
+def sent(bench: Bench, leg: Leg) -> None:
+    """The service has answered with another corridor than the one asked for."""
+    detour = Detour(claim_id="c", legs=(leg,), reason="Robot r2 has to pass.")
+    bench.duties.memory.resume("j", 1)
+    bench.duties.memory.receive(Envelope(type="detour", robot="r1", journal="j", seq=1, at=NOW, body=detour))
+    bench.duties.seen("post2")
 
 
 def test_the_corridor_that_it_is_in_is_never_given_back(bench: Bench) -> None:

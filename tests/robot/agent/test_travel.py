@@ -112,3 +112,20 @@ def test_a_corridor_that_opens_ends_the_waiting_for_a_way_but_no_waiting_for_peo
     there.perceives(without=('closed("post3-post4")',))
     there.settle()
     assert there.cancelled == []
+
+
+def test_sent_aside_by_the_service_it_lets_others_pass_and_then_goes_on_by_its_own_plan() -> None:
+    stage = Stage(*CARRYING, "at(post3)", "direction(post4,forward)")
+    stage.does("report(departed,s2)", "set_destination(post4)")
+    stage.expect("claim(post4)")
+    stage.perceives("detour(post5)")
+    stage.succeeds("claim(post4)")
+    stage.does("set_destination(post5)", "claim(post5)")
+    stage.perceives("direction(post5,left)", without=("direction(post4,forward)",))
+    stage.does("turn(left)")
+    stage.expect("follow_line")
+    stage.perceives(without=("detour(post5)",))
+    stage.reaches("post5")
+    stage.does("report(passed,s2)", "set_destination(post4)", "claim(post4)")
+    stage.expect("follow_line")
+    assert stage.failures == []

@@ -3,8 +3,9 @@
 from pathlib import Path
 
 from protocol.parts import Leg, Purpose
-from protocol.to_robot import EmergencyStop, Recall, Resume
+from protocol.to_robot import EmergencyStop, OpenWay, Recall, Resume, Revoke
 from robot.simulated.obstacles import Person
+from robot.simulated.start import start_pose
 from tests.robot.daemon.played_service import PlayedService
 from tests.robot.daemon.simulated_run import LETTER, SimulatedRun
 
@@ -132,6 +133,22 @@ def test_somebody_who_does_not_make_way_closes_the_corridor(run: SimulatedRun) -
     assert len(told) % 2 == 0 and len(told) >= 2, "each time that it is closed is told to be over, too"
 
 
+def test_a_robot_that_waits_for_a_way_goes_at_once_when_somebody_says_that_it_is_open(run: SimulatedRun) -> None:
+    service = with_service(run)
+    run.robot.world.obstacles.append(Person(1.0, 2.0))
+    run.asks("", "visit(post1)")
+    run.until(lambda: "fault no_way" in run.told())
+    run.robot.world.obstacles.clear()
+    told = run.told().count("fault way_blocked")
+    wish = OpenWay(command_id="c1", ends=("post2", "post3"), looked_at=run.clock.utc())
+    service.says(wish)
+    run.passes(1)
+    assert run.waits_for("turn") or run.waits_for("follow_line"), "it waits no longer"
+    assert (run.told().count("fault way_blocked"), run.told().count("answer ")) == (told + 1, 1)
+    assert not run.parts.navigator.closed.names
+    run.until(lambda: run.is_at("post1"), 100)
+
+
 def test_where_there_is_another_way_it_goes_round_a_closed_corridor(tmp_path: Path) -> None:
     run = SimulatedRun(tmp_path, map=str(SQUARE))
     service = with_service(run)
@@ -164,6 +181,51 @@ def test_a_stop_from_the_service_holds_until_resume_and_the_mission_goes_on(run:
     run.until(lambda: run.waits_for("wait_handover(load"))
     assert run.duties.held.mission == LETTER
     assert run.told().count("answer ") == 2
+
+
+def test_a_robot_whose_corridors_others_have_got_stands_until_a_marker_tells_it_where_it_is(run: SimulatedRun) -> None:
+    service = with_service(run)
+    run.given_a_letter()
+    run.until(lambda: run.is_at("post3"))
+    run.passes(3)
+    service.says(Revoke(command_id="c1", reason="carried into the workshop"))
+    service.held.clear()
+    run.passes(3)
+    assert (run.mind.hands.view.sent.still, run.mind.activity()) == (True, "stopped")
+    service.says(Resume(command_id="c2"))
+    stood_mm = run.robot.driven_mm
+    run.passes(20)
+    assert run.robot.driven_mm == stood_mm, "it may go, and does not know where it is"
+    assert run.mind.why and run.mind.why.sentence == "Waiting to be put down at a post or in a dock"
+    assert service.held == []
+    run.robot.lift(True)
+    run.passes(1)
+    run.robot.place(start_pose(run.parts.navigator.campus, "post4"))
+    run.robot.lift(False)
+    run.passes(1)
+    service.says(Resume(command_id="c3"))
+    run.until(lambda: run.waits_for("wait_handover(load"))
+    assert (run.told().count("fault revoked"), run.duties.held.revoked) == (2, False)
+
+
+def test_switched_on_after_a_long_time_it_hears_first_whose_its_corridors_are(tmp_path: Path) -> None:
+    first = SimulatedRun(tmp_path)
+    with_service(first)
+    first.given_a_letter()
+    first.until(lambda: first.is_at("post3"))
+    first.passes(3)
+    first.kill()
+    second = SimulatedRun(tmp_path)
+    second.clock.advance(2000)
+    service = with_service(second)
+    service.online = False
+    second.passes(10)
+    stood_mm = second.robot.driven_mm
+    assert stood_mm < 5, "it is in a corridor that was its own, and waits there"
+    assert second.mind.why and second.mind.why.waiting_for == "the network"
+    service.online = True
+    second.until(lambda: second.is_at("post2"))
+    second.close()
 
 
 def test_pressing_spot_twice_loads_but_never_hands_out(run: SimulatedRun) -> None:

@@ -22,7 +22,7 @@ STANDS_STILL: Final = 1e-6
 DRIVES: Final = 3.0
 """Simulated seconds in one of ours, while a robot is to be seen driving."""
 SCREENS: Final[dict[str, dict[str, Any]]] = {
-    "phone": {"device_scale_factor": 1.5},
+    "phone": {"viewport": {"width": 412, "height": 840}, "device_scale_factor": 1.5},
     "desk": {"viewport": {"width": 1280, "height": 860}},
 }
 

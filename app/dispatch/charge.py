@@ -1,0 +1,65 @@
+"""Whether a robot has the charge to fetch an order and bring it: the map and the settings, put to `app.charging`.
+
+Nobody sends robots to charge yet: those with a home charge there whenever they have nothing to do, the others when
+their own battery plan says so. So what a robot is refused for must be something that will change by itself.
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Final
+
+from app.charging.acceptance import Answer, Charge, Verdict, accepts
+from app.charging.energy import Rates, Use
+from app.charging.levels import Thresholds
+from app.dispatch.choice import IdleRobot, WaitingOrder
+from app.fleet.spending import usual_rates
+from app.settings import Settings
+from maps.ways import Ways
+
+THRESHOLDS: Final = Thresholds()
+
+
+@dataclass
+class Charges:
+    """`rates`: what was learned of robots (`app.fleet.spending`); all others cost what is assumed."""
+
+    ways: Ways
+    settings: Settings
+    rates: Mapping[str, Rates] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self._assumed = usual_rates(self.settings)
+        self._docks = frozenset(post.name for post in self.ways.campus.docks())
+
+    def may_take(self, robot: IdleRobot, order: WaitingOrder) -> bool:
+        """Also what is more than one charge, once it is as full as it gets: it charges on the way then."""
+        if robot.battery_ratio is None:
+            return False
+        verdict = self.verdict(robot, robot.battery_ratio, order)
+        if verdict.answer is Answer.CHARGE_FIRST and not self._will_charge(robot):
+            return robot.battery_ratio >= min(verdict.needed, THRESHOLDS.begin)
+        return verdict.is_accepted
+
+    def verdict(self, robot: IdleRobot, ratio: float, order: WaitingOrder) -> Verdict:
+        """Ways that nobody knows cost nothing: they are not what keeps a robot from work."""
+        charge = Charge(ratio, self.rates.get(robot.name, self._assumed), docked=bool(robot.docked or robot.charging))
+        way_m = self._length_m(robot.post, order.from_post) + self._length_m(order.from_post, order.to_post)
+        work, to_dock = self._use(way_m, handovers=2), self._use(self._to_dock_m(order.to_post))
+        return accepts(charge, work, to_dock, THRESHOLDS)
+
+    def _will_charge(self, robot: IdleRobot) -> bool:
+        """In a dock without charging its charger has ended: a worn pack is never fuller than that."""
+        is_docked = robot.post == robot.home if robot.docked is None else robot.docked
+        return robot.charging or (robot.home is not None and not is_docked)
+
+    def _use(self, way_m: float, handovers: int = 0) -> Use:
+        settings = self.settings
+        return Use(way_m, way_m / settings.assumed_speed_m_s + handovers * settings.assumed_handover_s)
+
+    def _to_dock_m(self, post: str) -> float:
+        return min((self._length_m(post, dock) for dock in self._docks), default=0.0)
+
+    def _length_m(self, from_post: str | None, to_post: str) -> float:
+        length_m = self.ways.length_m(from_post, to_post)
+        return length_m if math.isfinite(length_m) else 0.0

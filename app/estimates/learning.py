@@ -1,0 +1,195 @@
+"""Learning from what robots say, as it happens; and again from what was kept, when the service starts.
+
+A corridor has been driven between two posts that a robot has told of one after the other, by its own clock, so that a
+time without network teaches nothing wrong. What it waited before it was let in is not counted.
+"""
+
+import asyncio
+from collections.abc import Iterable
+from contextlib import suppress
+from dataclasses import dataclass, field
+from datetime import datetime
+from functools import partial
+from typing import Any, Final, Protocol
+
+from sqlalchemy import func, or_, select
+from sqlmodel import col
+from sqlmodel.ext.asyncio.session import AsyncSession
+
+from app.database import Database, after_commit, write_all
+from app.estimates.arrivals import Ahead, Estimates, Promise
+from app.estimates.durations import Durations, Kind, Thing
+from app.estimates.intervals import Interval
+from app.tables import DurationRow, ForecastRow, Order, OrderState, RobotRow, StopRow
+from protocol.clock import Clock
+from protocol.parts import Leg, Part, Purpose, StopAction
+from protocol.to_server import HandoverReceipt, Progress, Step
+
+REMEMBERED_DURATIONS: Final = 3000
+REMEMBERED_FORECASTS: Final = 500
+LOOK_EVERY_S: Final = 30.0
+"""Real seconds; sooner when an order has changed."""
+REST_S: Final = 2.0
+NOT_FETCHED: Final = (OrderState.QUEUED, OrderState.ASSIGNED, OrderState.TO_SENDER)
+KIND_OF: Final = {Purpose.LOAD: Kind.LOAD, Purpose.RECEIVE: Kind.RECEIVE}
+
+
+class Corrected(Protocol):
+    """A robot's time as the service's clock would have said it."""
+
+    def __call__(self, at: datetime) -> datetime: ...
+
+
+def forecast_row(order_id: str, begins_at: datetime, promise: Promise) -> dict[str, Any]:
+    """What is kept of a promise until its truth has come."""
+    intervals = {"raw": promise.raw, "told": promise.told, "map": promise.by_map}
+    quantiles = {
+        f"{whose}_{share}": seconds for whose, one in intervals.items() for share, seconds in one._asdict().items()
+    }
+    fetch = {"fetch_name": promise.fetch.name, "fetch_assumed_s": promise.fetch.assumed_s}
+    return {"order_id": order_id, "begins_at": begins_at, **quantiles, **fetch, "arrived_at": None}
+
+
+@dataclass
+class Learning:
+    """Hears what robots tell, and looks now and then how many orders wait."""
+
+    database: Database
+    estimates: Estimates
+    clock: Clock
+    _on_way: dict[str, tuple[str, datetime]] = field(default_factory=dict)
+    """The post that each robot passed last, and when, by its clock put right."""
+    _let_in: dict[tuple[str, str, str], datetime] = field(default_factory=dict)
+    _woken: asyncio.Event = field(default_factory=asyncio.Event)
+    _stopping: bool = False
+
+    # At the start, and now and then.
+
+    async def begin(self) -> None:
+        """All that is remembered of earlier days, oldest first."""
+        async with self.database.asking() as connection:
+            durations = (await connection.execute(_LATEST_DURATIONS)).all()
+            forecasts = (await connection.execute(_LATEST_FORECASTS)).all()
+        for kind, name, assumed_s, seconds in reversed(durations):
+            self._learn(Thing(Kind(kind), name, assumed_s), seconds)
+        for row in reversed(forecasts):
+            self._arrived(_intervals(row), (row.arrived_at - row.begins_at).total_seconds())
+        await self.look()
+
+    def wake(self, _changed: str = "") -> None:
+        """An order has changed."""
+        self._woken.set()
+
+    def stop(self) -> None:
+        """End `run`."""
+        self._stopping = True
+        self.wake()
+
+    async def run(self) -> None:
+        """Until stopped or cancelled."""
+        while not self._stopping:
+            with suppress(TimeoutError):
+                async with asyncio.timeout(LOOK_EVERY_S):
+                    await self._woken.wait()
+            if not self._stopping:
+                self._woken.clear()
+                await self.look()
+                await asyncio.sleep(REST_S)
+
+    async def look(self) -> None:
+        """How many orders wait for how many robots."""
+        async with self.database.asking() as connection:
+            now = self.clock.utc()
+            due = or_(col(Order.not_before).is_(None), col(Order.not_before) <= now)
+            waiting = select(func.count()).select_from(Order).where(col(Order.state).in_(NOT_FETCHED), due)
+            there = select(func.count()).select_from(RobotRow).where(col(RobotRow.online))
+            orders, robots = [(await connection.execute(counted)).scalar_one() for counted in (waiting, there)]
+        self.estimates.ahead = Ahead(orders, robots)
+
+    # What robots say, in the transaction that writes it down.
+
+    async def hear(self, session: AsyncSession, robot: str, happened: Part, corrected: Corrected) -> None:
+        """One event, after what follows from it. A second time it is not told: each message is taken once."""
+        if isinstance(happened, HandoverReceipt):
+            await self._handed_over(session, happened, corrected)
+        elif isinstance(happened, Progress):
+            at = corrected(happened.happened_at)
+            await self._drove(session, robot, happened, at)
+            if happened.step is Step.ARRIVED and happened.order_id is not None:
+                await self._came(session, happened, at)
+
+    def let_in(self, robot: str, legs: Iterable[Leg], now: datetime) -> None:
+        """These corridors may be entered from now on: what it waited before was no driving."""
+        self._let_in.update({(robot, leg.from_post, leg.to_post): now for leg in legs})
+
+    async def _drove(self, session: AsyncSession, robot: str, progress: Progress, at: datetime) -> None:
+        before = self._on_way.pop(robot, None)
+        if progress.post is None or progress.step not in ON_ITS_WAY:
+            return
+        if progress.step is not Step.ARRIVED:
+            self._on_way[robot] = (progress.post, at)
+        if before is None or progress.step is Step.DEPARTED or before[0] not in self.estimates.ways.campus.posts:
+            return
+        thing = self.estimates.corridor(before[0], progress.post)
+        entered_at = max(before[1], self._let_in.pop((robot, before[0], progress.post), before[1]))
+        if thing is not None:
+            await self._observe(session, thing, entered_at, at)
+
+    async def _came(self, session: AsyncSession, progress: Progress, at: datetime) -> None:
+        stop, row = await session.get(StopRow, progress.stop_id), await session.get(ForecastRow, progress.order_id)
+        if stop is None or row is None or row.arrived_at is not None:
+            return
+        if stop.action == StopAction.LOAD:
+            if stop.post != (await session.get_one(Order, progress.order_id)).from_post:
+                return  # passed on: it was fetched before
+            await self._observe(session, Thing(Kind.FETCH, row.fetch_name, row.fetch_assumed_s), row.begins_at, at)
+        elif stop.action == StopAction.RECEIVE and at > row.begins_at:
+            row.arrived_at = at
+            took_s = (at - row.begins_at).total_seconds()
+            after_commit(session, partial(self._arrived, _intervals(row), took_s))
+
+    async def _handed_over(self, session: AsyncSession, receipt: HandoverReceipt, corrected: Corrected) -> None:
+        stop, kind = await session.get(StopRow, receipt.stop_id), KIND_OF.get(receipt.purpose)
+        if stop is not None and stop.arrived_at is not None and kind is not None:
+            arrived_at = corrected(stop.arrived_at)
+            await self._observe(
+                session, self.estimates.stop(kind, arrived_at), arrived_at, corrected(receipt.happened_at)
+            )
+
+    async def _observe(self, session: AsyncSession, thing: Thing, since: datetime, until: datetime) -> None:
+        seconds = (until - since).total_seconds()
+        if not Durations.is_plausible(seconds):
+            return
+        row = {**thing._asdict(), "seconds": seconds, "at": until}
+        await write_all(session, DurationRow, [row])
+        after_commit(session, partial(self._learn, thing, seconds))
+
+    def _learn(self, thing: Thing, seconds: float) -> None:
+        self.estimates.durations.observe(thing, seconds)
+
+    def _arrived(self, intervals: tuple[Interval, Interval, Interval], took_s: float) -> None:
+        self.estimates.arrived(*intervals, took_s)
+
+
+ON_ITS_WAY: Final = frozenset({Step.DEPARTED, Step.PASSED, Step.ARRIVED})
+_LATEST_DURATIONS: Final = (
+    select(col(DurationRow.kind), col(DurationRow.name), col(DurationRow.assumed_s), col(DurationRow.seconds))
+    .where(col(DurationRow.kind).in_([str(kind) for kind in Kind]))
+    .order_by(col(DurationRow.id).desc())
+    .limit(REMEMBERED_DURATIONS)
+)
+_LATEST_FORECASTS: Final = (
+    select(*ForecastRow.__table__.columns)  # type: ignore[attr-defined]
+    .where(col(ForecastRow.arrived_at).is_not(None))
+    .order_by(col(ForecastRow.arrived_at).desc())
+    .limit(REMEMBERED_FORECASTS)
+)
+
+
+def _intervals(row: ForecastRow) -> tuple[Interval, Interval, Interval]:
+    """Worked out, told, and by the map."""
+    return (
+        Interval(row.raw_p10_s, row.raw_p50_s, row.raw_p90_s),
+        Interval(row.told_p10_s, row.told_p50_s, row.told_p90_s),
+        Interval(row.map_p10_s, row.map_p50_s, row.map_p90_s),
+    )

@@ -1,0 +1,108 @@
+"""The campus as a timetable sees it: posts with bays, and each corridor as two lanes, all by number.
+
+Numbers instead of names, since a search looks at them some thousand times for one decision.
+"""
+
+import heapq
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from math import inf
+from typing import NamedTuple
+
+from maps import CampusMap, Corridor
+
+
+class Lane(NamedTuple):
+    """One corridor in one direction. `backwards` is 1 from the corridor's b to its a, else 0; `following_s`: see
+    `Network`."""
+
+    corridor: int
+    backwards: int
+    start: int
+    end: int
+    travel_s: float
+    following_s: float | None = None
+
+
+@dataclass(frozen=True)
+class Network:
+    """`bays[p]` robots can stand at post p at the same time, those at home there not counted. `lanes[p]` lead away from
+    post p.
+
+    A corridor is for one robot at a time; where its lanes have a `following_s`, further ones may enter in the same
+    direction so many seconds after each other. `clearance_s` lies between a robot's leaving and another's entering.
+    """
+
+    posts: tuple[str, ...]
+    bays: tuple[int, ...]
+    corridors: tuple[str, ...]
+    lanes: tuple[tuple[Lane, ...], ...]
+    clearance_s: float = 0.1
+    _number: Mapping[str, int] = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "_number", {name: number for number, name in enumerate(self.posts)})
+
+    def number_of(self, post: str) -> int:
+        """Raises KeyError for a post that is not on the map."""
+        return self._number[post]
+
+    def lane(self, start: int, end: int) -> Lane:
+        """The lane between two neighbours. Raises LookupError if they are none."""
+        for lane in self.lanes[start]:
+            if lane.end == end:
+                return lane
+        raise LookupError(f"no corridor leads from {self.posts[start]} to {self.posts[end]}")
+
+    @cached_property
+    def shortest_s(self) -> tuple[tuple[float, ...], ...]:
+        """Seconds from post to post with nobody in the way, row by start; infinite where no way leads. No way leads
+        through a post without a bay."""
+        return tuple(_shortest_from(start, self.lanes, self.bays) for start in range(len(self.posts)))
+
+    def without(self, closed: Collection[str]) -> "Network":
+        """The same with some corridors closed, named as the map names them."""
+        shut = {number for number, name in enumerate(self.corridors) if name in closed}
+        open_lanes = tuple(tuple(lane for lane in out if lane.corridor not in shut) for out in self.lanes)
+        return Network(self.posts, self.bays, self.corridors, open_lanes, self.clearance_s)
+
+
+def network_of(
+    campus: CampusMap,
+    travel_s: Callable[[Corridor, str], float],
+    following_s: Callable[[Corridor], float | None] = lambda _: None,
+    clearance_s: float = 0.1,
+) -> Network:
+    """The network of a campus map; `travel_s` says how long a corridor takes that is entered at a post."""
+    posts = tuple(campus.posts)
+    number = {name: at for at, name in enumerate(posts)}
+    lanes: list[list[Lane]] = [[] for _ in posts]
+    for at, corridor in enumerate(campus.corridors):
+        for backwards, start in enumerate((corridor.a, corridor.b)):
+            end = corridor.other(start)
+            time_s, after_s = travel_s(corridor, start), following_s(corridor)
+            lanes[number[start]].append(Lane(at, backwards, number[start], number[end], time_s, after_s))
+    return Network(
+        posts,
+        tuple(campus.posts[name].bays for name in posts),
+        tuple(corridor.name for corridor in campus.corridors),
+        tuple(tuple(out) for out in lanes),
+        clearance_s,
+    )
+
+
+def _shortest_from(start: int, lanes: Sequence[Sequence[Lane]], bays: Sequence[int]) -> tuple[float, ...]:
+    time_s = [inf] * len(lanes)
+    time_s[start] = 0.0
+    ahead = [(0.0, start)]
+    while ahead:
+        so_far_s, post = heapq.heappop(ahead)
+        if so_far_s > time_s[post] or (bays[post] < 1 and post != start):
+            continue
+        for lane in lanes[post]:
+            there_s = so_far_s + lane.travel_s
+            if there_s < time_s[lane.end]:
+                time_s[lane.end] = there_s
+                heapq.heappush(ahead, (there_s, lane.end))
+    return tuple(time_s)

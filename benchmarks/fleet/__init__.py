@@ -1,0 +1,1 @@
+"""The fleet measured: traffic, dispatch, charging and estimates, in worlds that are simulated."""

@@ -1,0 +1,89 @@
+"""Whether people are told the truth: arrivals that were estimated in a simulated fleet, beside those by lengths alone.
+
+The orders of a first time teach and are not scored (`WARM_UP`). "Not corrected" is the simulated plan alone: it does
+not know of orders to come, for which the timetable is changed; `app.estimates.calibration` has to make up for it.
+"""
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any, Final
+
+from app.estimates.intervals import quantile
+from app.estimates.score import Truth, score_of
+from benchmarks.body.report import Wanted, say
+from benchmarks.fleet.estimated_study import study
+from benchmarks.fleet.samples import Samples
+
+DAYS: Final = 40.0
+WARM_UP: Final = 100
+TOGETHER: Final = 200
+"""Orders of one point of the plot."""
+WANTED = [
+    Wanted("told.inside", at_least=0.78, at_most=0.82),
+    Wanted("told.median_error", at_most=0.15),
+    Wanted("told.pinball_of_map", at_most=0.99),
+]
+Run = tuple[list[Truth], list[Truth]]
+"""Of one seed: as people were told, and as it was worked out."""
+
+
+def measure(samples: Samples) -> dict[str, Any]:
+    """All seeds together, and what each had inside."""
+    runs = list(samples.each(run, [(seed, DAYS) for seed in samples.some_seeds()]))
+    for told, _ in runs:
+        say(f"  {len(told)} orders scored")
+    draw(samples.plots, runs)
+    return figures(runs)
+
+
+def run(job: tuple[int, float]) -> Run:
+    """One seed for so many days, after the warm-up."""
+    its = study(*job)
+    return its.scored[WARM_UP:], its.raw[WARM_UP:]
+
+
+def figures(runs: Sequence[Run]) -> dict[str, Any]:
+    told = [truth for theirs, _ in runs for truth in theirs]
+    raw = [truth for _, theirs in runs for truth in theirs]
+    took_s = sorted(truth.seconds for truth in told)
+    return {
+        "orders": len(told),
+        "median_s": quantile(took_s, 0.5),
+        "p95_s": quantile(took_s, 0.95),
+        "told": _figures(told),
+        "not_corrected": _figures(raw),
+        "inside_by_seed": [score_of(theirs).inside for theirs, _ in runs],
+    }
+
+
+def _figures(truths: Sequence[Truth]) -> dict[str, Any]:
+    score = score_of(truths)
+    return asdict(score) | {"pinball_of_map": score.pinball_s / score.pinball_by_map_s}
+
+
+def draw(folder: Path, runs: Sequence[Run]) -> None:
+    """How many came inside, of so many orders one after the other."""
+    import matplotlib as mpl
+
+    mpl.use("svg")
+    mpl.rcParams |= {"svg.fonttype": "none", "svg.hashsalt": "campus-mail", "font.size": 9}
+    from matplotlib import pyplot
+
+    figure, axis = pyplot.subplots(figsize=(6.4, 3.2))
+    for told, raw in runs:
+        axis.plot(_inside(told), color="#2d6a8e", linewidth=1.2, label="told")
+        axis.plot(_inside(raw), color="#b3541e", linewidth=0.8, label="not corrected")
+    axis.axhspan(0.78, 0.82, color="#e0a458", alpha=0.4, linewidth=0)
+    axis.set(xlabel="orders", ylabel=f"inside, of the last {TOGETHER}", ylim=(0.0, 1.0))
+    handles, labels = axis.get_legend_handles_labels()
+    axis.legend(handles[:2], labels[:2], frameon=False, loc="lower right")
+    axis.spines[["top", "right"]].set_visible(False)
+    folder.mkdir(parents=True, exist_ok=True)
+    figure.savefig(folder / "estimates_inside.svg", bbox_inches="tight", metadata={"Date": None})
+    pyplot.close(figure)
+
+
+def _inside(truths: Sequence[Truth]) -> list[float]:
+    held = [truth.told.holds(truth.seconds) for truth in truths]
+    return [sum(held[max(0, at - TOGETHER) : at]) / min(at, TOGETHER) for at in range(1, len(held) + 1)]

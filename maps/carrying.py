@@ -1,0 +1,89 @@
+"""How many robots a map can carry, and what bounds them: home places, bays, and corridors that everybody needs."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+from maps.campus_map import CampusMap, Corridor, Post
+from maps.problem import Problem, error, warning
+
+ASSUMED_SPEED_M_S: Final = 0.15
+"""What robots drove on straight tape in the simulated world (docs/measured.md), and a little less."""
+
+
+@dataclass(frozen=True)
+class Bottleneck:
+    """A corridor that is the only way between two sides, with as many posts. `deliveries_per_h`: no more orders between
+    random posts can be brought in an hour, however many robots there are, with one robot in it at a time."""
+
+    corridor: str
+    posts: tuple[int, int]
+    deliveries_per_h: float
+
+
+@dataclass(frozen=True)
+class Carrying:
+    """`homes`: home places by post; there can be as many robots as there are of them together."""
+
+    robots: int
+    homes: dict[str, int]
+    bottleneck: Bottleneck | None
+
+    def __str__(self) -> str:
+        if not self.robots:
+            return "It carries no robot: no post has a home place."
+        where = ", ".join(f"{post} {homes}" for post, homes in self.homes.items())
+        said = f"It carries {self.robots} robot{'s' if self.robots > 1 else ''}, one for each home place ({where})."
+        if self.bottleneck is None:
+            return said
+        bound = self.bottleneck
+        return (
+            f"{said} However many there are, they bring at most about {bound.deliveries_per_h:.0f} orders an hour: "
+            f"{bound.corridor} is the only way between {bound.posts[0]} posts and {bound.posts[1]}."
+        )
+
+
+def carrying(campus: CampusMap, speed_m_s: float = ASSUMED_SPEED_M_S) -> Carrying:
+    """For robots that drive so fast and orders between all pairs of posts alike."""
+    homes = {post.name: post.homes for post in campus.posts.values() if post.homes}
+    bounds = [bound for corridor in campus.corridors if (bound := _bound(campus, corridor, speed_m_s)) is not None]
+    narrowest = min(bounds, key=lambda bound: bound.deliveries_per_h, default=None)
+    return Carrying(sum(homes.values()), homes, narrowest)
+
+
+def places_problems(campus: CampusMap) -> Iterator[Problem]:
+    """Where robots could not stop, or not rest."""
+    for post in campus.posts.values():
+        if post.dock is not None and post.homes == 0:
+            said = f"{post.name} has a dock and no home place, so no robot could stay in the dock"
+            yield error("dock_without_home", post.name, said, "Count the dock among its homes.")
+        if post.bays == 0:
+            yield warning("no_bay", post.name, _no_bay(campus, post), "Give it a bay, or leave it out.")
+
+
+def _no_bay(campus: CampusMap, post: Post) -> str:
+    ways = len(campus.neighbours(post.name))
+    return f"{post.name} has no bay: nobody can stop there{', and nobody can pass' if ways > 1 else ''}"
+
+
+def _bound(campus: CampusMap, corridor: Corridor, speed_m_s: float) -> Bottleneck | None:
+    """What a corridor without a way round it lets through; None if there is one, or if robots may follow each other."""
+    here = _side(campus, corridor)
+    there = len(campus.posts) - len(here)
+    if corridor.b in here or corridor.following_s is not None:
+        return None
+    pairs = len(campus.posts) * (len(campus.posts) - 1)
+    share = 2 * len(here) * there / pairs
+    passages_per_h = 3600.0 * speed_m_s / corridor.length_m
+    return Bottleneck(corridor.name, (len(here), there), passages_per_h / share)
+
+
+def _side(campus: CampusMap, without: Corridor) -> set[str]:
+    """The posts that are reached from one end of a corridor without going through it."""
+    reached, ahead = {without.a}, [without.a]
+    for post in ahead:
+        for other, corridor in campus.neighbours(post):
+            if corridor != without and other.name not in reached:
+                reached.add(other.name)
+                ahead.append(other.name)
+    return reached

@@ -1,0 +1,109 @@
+"""Who gets what at first: no order is taken by the robot that is near when another order can spare it less."""
+
+from dataclasses import replace
+from itertools import combinations_with_replacement
+from math import inf
+from random import Random
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from app.dispatch.planning.cost import order_worth_s, route_s
+from app.dispatch.planning.routes import NO_FIT, Fit, leaves_s, line, orders_of, with_order
+from app.dispatch.planning.scene import OpenOrder, Route, Scene, Stop
+from tests.app.dispatch.fleet_life import order
+from tests.app.dispatch.test_fleet_plan import decided, robot, scene_of, street
+from tests.app.traffic.test_timetables import random_network
+
+
+def test_the_order_that_would_lose_most_is_given_first() -> None:
+    """The one nearest to a robot would be that one's, if the other did not have to wait for one from far away."""
+    near, would_lose = order(0, 5, 6), order(1, 2, 1)
+    scene = scene_of(street(10), {"r0": robot(4), "r1": robot(9)}, [near, would_lose])
+    after = decided(scene)
+    assert after.robot_of() == {near.id: "r1", would_lose.id: "r0"}
+    first = next(choice for choice in after.choices if choice.order == would_lose.id)
+    assert (first.robot, first.next_best) == ("r0", "r1")
+    assert first.next_cost_s > first.cost_s + 500.0
+
+
+def test_an_order_that_only_one_robot_may_have_does_not_come_before_everything_else() -> None:
+    near, wanted = order(0, 1, 2), replace(order(1, 12, 13), wanted=frozenset({"r0"}))
+    scene = scene_of(street(30), {"r0": robot(0), "r1": robot(29)}, [near, wanted])
+    assert decided(scene).robot_of()[near.id] == "r0"
+
+
+def test_a_long_way_with_the_mail_makes_no_order_worse_than_a_short_one() -> None:
+    long, short = order(0, 1, 9), order(1, 2, 3)
+    assert decided(scene_of(street(10), {"r0": robot(0)}, [long, short])).robot_of() == {long.id: "r0"}
+
+
+def test_choices_are_told_only_of_orders_that_went_as_chosen() -> None:
+    late, young = order(0, 2, 3, since_s=-7 * 3600.0), order(1, 0, 1)
+    after = decided(scene_of(street(4), {"r0": robot(0)}, [late, young]))
+    assert [choice.order for choice in after.choices] == [late.id]
+
+
+def some_route(rng: Random, posts: range, capacity: int) -> tuple[Route, list[OpenOrder]]:
+    """Orders whose stops lie as they like between each other, some of them aboard already."""
+    route: list[Stop] = []
+    orders = [order(number, *rng.sample(posts, 2)) for number in range(rng.randint(0, 4))]
+    orders = [replace(one, loaded=rng.random() < 0.3, weight=rng.choice((1.0, 3.0))) for one in orders]
+    ahead = [one for one in orders if not one.loaded]
+    held = [one for one in orders if one.loaded][:capacity]
+    orders = [*ahead, *held]
+    while ahead or held:
+        if ahead and len(held) < capacity and (not held or rng.random() < 0.5):
+            held.append(ahead.pop())
+            route.append(held[-1].stops[0])
+        else:
+            route.append(held.pop(rng.randrange(len(held))).stops[1])
+    return tuple(route), orders
+
+
+def holds(scene: Scene, name: str, route: Route) -> bool:
+    """Never more aboard than the robot can carry, and home again with its charge."""
+    its = scene.robots[name]
+    aboard = len(orders_of(route)) - sum(1 for stop in route if stop.change > 0)
+    for stop in route:
+        aboard += stop.change
+        if aboard > its.capacity:
+            return False
+    last = route[-1].goal.post
+    return scene.drive_s(its.start.post, route) + scene.network.shortest_s[last][its.home or 0] <= its.drives_s
+
+
+def every_fit(scene: Scene, name: str, route: Route, new: OpenOrder, first: int) -> list[Fit]:
+    """Each pair of places, and what the whole route costs more for it."""
+    busy_s = leaves_s(scene, name, route)[-1]
+    before_s = busy_s + (route_s(scene, name, route) if route else 0.0)
+    fits = []
+    for load_at, give_at in combinations_with_replacement(range(first, len(route) + 1), 2):
+        after = with_order(route, new, Fit(0.0, load_at, give_at))
+        if holds(scene, name, after):
+            after_s = leaves_s(scene, name, after)[-1] + route_s(scene, name, after)
+            fits.append(Fit(after_s + order_worth_s(scene, new) - before_s, load_at, give_at))
+    return fits
+
+
+@settings(max_examples=150)
+@given(st.randoms(use_true_random=False), st.integers(1, 4))
+def test_one_more_order_is_put_where_the_whole_route_costs_least(rng: Random, capacity: int) -> None:
+    network = random_network(rng)
+    posts = range(len(network.posts))
+    route, orders = some_route(rng, posts, capacity)
+    new = replace(order(9, *rng.sample(posts, 2)), weight=rng.choice((0.5, 2.0)))
+    new = replace(new, load=new.load._replace(not_before_s=rng.choice((-inf, 100.0, 400.0))))
+    begun = rng.randint(0, len(route))
+    its = robot(rng.choice(posts), capacity=capacity, begun=begun, drives_s=rng.choice((inf, rng.uniform(0.0, 1000.0))))
+    known = {one.id: one for one in (*orders, new)}
+    scene = Scene(0.0, network, {"r0": replace(its, route=route)}, known)
+    fits = every_fit(scene, "r0", route, new, begun)
+    found = line(scene, "r0", route).best_fit(new)
+    if not fits:
+        assert found is NO_FIT
+        return
+    least_s = min(fit.cost_s for fit in fits)
+    assert found.cost_s == pytest.approx(least_s)
+    assert found[1:] in [fit[1:] for fit in fits if fit.cost_s == pytest.approx(least_s)]

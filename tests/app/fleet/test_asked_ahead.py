@@ -1,0 +1,34 @@
+"""What a robot asks for on its way, and how much of it it gets at once."""
+
+from dataclasses import replace
+
+from app.fleet.timetable import MayEnter, Timetable
+from app.fleet.whereabouts import Picture, Whereabouts, Wish
+from app.settings import Settings
+from maps import builtin_map
+
+WAY = (("post1", "post2"), ("post2", "post3"), ("post3", "post4"))
+LOADS, GIVES = ("load", "post1"), ("give", "post4")
+ASKS_WHILE_IT_COMES = Whereabouts(
+    robot="r1",
+    post="post1",
+    seen_at=None,
+    home="post5",
+    at_home=False,
+    online=True,
+    holds=(),
+    goals=(LOADS, GIVES),
+    wish=Wish("c1", WAY[:1], "post1", WAY[1:]),
+    stopped=False,
+    heard_at=None,
+)
+
+
+def test_what_is_asked_for_after_a_stop_is_granted_after_it_as_far_as_the_next(settings: Settings) -> None:
+    timetable = Timetable(builtin_map("test_track"), settings)
+    timetable.follow(Picture({"r1": ASKS_WHILE_IT_COMES}, frozenset()), {}, 0.0)
+    assert list(timetable.verdicts({}, 0.0)) == []
+    loaded = replace(ASKS_WHILE_IT_COMES, goals=(GIVES,))
+    timetable.follow(Picture({"r1": loaded}, frozenset()), {}, 60.0)
+    assert list(timetable.verdicts({}, 60.0)) == [MayEnter("r1", WAY)]
+    assert [hold.to_post for hold in timetable.known["r1"].way] == ["post2", "post3", "post4"]

@@ -1,0 +1,93 @@
+"""How many robots a map carries, and why: the check says it."""
+
+import json
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from maps import builtin_map, find_map
+from maps.__main__ import cli
+from maps.carrying import carrying, places_problems
+
+POSTS = """
+name = "campus"
+title = "Campus"
+[[post]]
+name = "a"
+x_m = 0.0
+y_m = 0.0
+{a}
+[[post]]
+name = "b"
+x_m = 10.0
+y_m = 0.0
+bays = {bays}
+[[post]]
+name = "c"
+x_m = 20.0
+y_m = 0.0
+dock = {{ x_m = 20.6, y_m = 0.0, heading_deg = 0.0 }}
+[[corridor]]
+ends = ["a", "b"]
+{way}
+[[corridor]]
+ends = ["b", "c"]
+{way}
+"""
+
+
+def written(folder: Path, *, a: str = "", bays: int = 1, way: str = "") -> Path:
+    path = folder / "campus.toml"
+    path.write_text(POSTS.format(a=a, bays=bays, way=way))
+    return path
+
+
+def test_as_many_robots_as_home_places_docks_among_them(tmp_path: Path) -> None:
+    campus = find_map(written(tmp_path, a="homes = 2"))
+    assert carrying(campus).robots == 3
+    assert carrying(campus).homes == {"a": 2, "c": 1}
+    assert "one for each home place (a 2, c 1)" in str(carrying(campus))
+
+
+def test_the_only_way_between_two_sides_bounds_what_is_delivered(tmp_path: Path) -> None:
+    """10 m at 0.1 m/s: 36 passages an hour; of the six orders between three posts four need either corridor."""
+    bound = carrying(find_map(written(tmp_path)), speed_m_s=0.1).bottleneck
+    assert bound is not None
+    assert bound.posts in {(1, 2), (2, 1)}
+    assert bound.deliveries_per_h == pytest.approx(36 * 6 / 4)
+
+
+def test_where_robots_may_follow_each_other_a_corridor_is_no_such_bound(tmp_path: Path) -> None:
+    assert carrying(find_map(written(tmp_path, way="following_s = 20.0"))).bottleneck is None
+
+
+def test_the_tunnels_are_bound_by_a_bridge() -> None:
+    """With 300 s for it, twelve passages an hour; 112 of 210 orders need it, so 22.5 deliveries at the very most
+    (design/fleet.md, where robots must come back for more, says near 21)."""
+    campus = builtin_map("carleton")
+    canal = campus.corridor("canal", "uc")
+    bound = carrying(campus, speed_m_s=canal.length_m / 300.0).bottleneck
+    assert bound is not None
+    assert (bound.corridor, sorted(bound.posts)) == (canal.name, [7, 8])
+    assert bound.deliveries_per_h == pytest.approx(22.5)
+
+
+def test_a_post_without_a_bay_and_a_dock_without_a_home_are_named(tmp_path: Path) -> None:
+    problems = list(places_problems(find_map(written(tmp_path, bays=0))))
+    assert [(problem.severity, problem.place) for problem in problems] == [("warning", "b")]
+    assert "nobody can pass" in str(problems[0])
+
+
+def test_the_check_says_it_to_people_and_to_programs(tmp_path: Path) -> None:
+    said = CliRunner().invoke(cli, ["check", str(written(tmp_path, a="homes = 1"))])
+    assert "It carries 2 robots, one for each home place (a 1, c 1)." in said.stdout
+    facts = json.loads(CliRunner().invoke(cli, ["check", "carleton", "--json"]).stdout)
+    assert facts["carries"]["robots"] == len(builtin_map("carleton").docks())
+
+
+def test_maps_that_say_nothing_of_it_keep_their_version(tmp_path: Path) -> None:
+    plain = find_map(written(tmp_path)).version
+    assert find_map(written(tmp_path, way="following_s = 20.0")).version != plain
+    assert find_map(written(tmp_path, a="homes = 1")).version != plain
+    assert find_map(written(tmp_path, a="homes = 0")).version == plain

@@ -1,0 +1,130 @@
+"""What is told of closed corridors, how people close and open them, and how they free the way of a dead robot."""
+
+import re
+from collections.abc import AsyncIterator, Iterator
+
+import pytest
+import pytest_asyncio
+from playwright.async_api import expect
+
+from maps import find_map
+from protocol.clock import RealClock
+from protocol.envelope import YOUNGER
+from protocol.parts import Activity, Battery, Leg
+from protocol.to_server import CommandAnswer, Event, Fault, Snapshot, Why
+from robot.action.corridors import WAY_BLOCKED, tried_again, turned_back
+from tests.app.fleet.playing import PlayedRobot, at_post
+from tests.web.keyboard import press
+from tests.web.mailroom_scene import Campus
+from tests.web.service import Service
+
+pytestmark = pytest.mark.browser
+MAILROOM = "/mailroom.html"
+
+
+@pytest.fixture(scope="module")
+def quiet_campus(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Campus]:
+    with Service(tmp_path_factory.mktemp("corridors")) as service:
+        yield Campus(service)
+
+
+@pytest_asyncio.fixture(loop_scope="session")
+async def robot(quiet_campus: Campus, request: pytest.FixtureRequest) -> AsyncIterator[PlayedRobot]:
+    """Each test has one of its own, the only one that is connected."""
+    name = f"r{len(request.node.name)}"
+    robot = PlayedRobot(RealClock(), name, journal=f"journal-of-{name}")
+    async with robot.connected(quiet_campus.service.link, await quiet_campus.service.enrol_robot(name)):
+        await robot.greet("post5", map_version=find_map("test_track").version, understands=YOUNGER)
+        yield robot
+
+
+async def test_a_corridor_that_a_robot_found_closed_is_open_again_when_somebody_who_has_looked_says_so(
+    quiet_campus, robot, visit
+):
+    dana = await quiet_campus.dispatcher(visit)
+    page = dana.page
+    told = {"name": WAY_BLOCKED, "happened_at": robot.clock.utc(), "post": "post3"}
+    reason = turned_back(Leg(from_post="post3", to_post="post4"), "blocked")
+    await robot.ends(await robot.say(Event(happened=Fault(reason=reason, **told))))
+    await page.goto(MAILROOM)
+    way, wrong = (page.get_by_role("region", name=name) for name in ("The paper's test track", "What is wrong"))
+    in_words = "The robot turned back in the corridor from Post 3 to Post 4. Something stands in it."
+    await expect(wrong.get_by_text(in_words)).to_be_visible()
+    await expect(wrong.get_by_role("button", name=re.compile(r"^It is open again\W+Post 3 – Post 4"))).to_be_visible()
+    await expect(way.locator(".shut[data-corridor]")).to_have_count(1)
+    await expect(way.get_by_text("Closed: no robot drives in")).to_be_visible()
+    await way.get_by_text("The same in words").click()
+    since = re.compile("^Found the corridor between Post 3 and Post 4 closed at ")
+    await expect(way.get_by_text(since)).to_be_visible()
+
+    await press(page, r"I see to it\W+Robot")  # and goes there to look
+    await expect(page.get_by_text(f"Seen to: {in_words}")).to_be_visible()
+    await press(page, rf"Post 3 – Post 4 is open\W+{robot.name}")
+    await expect(page.get_by_role("button", name="Yes, it is open")).to_be_focused()
+    await dana.assert_accessible()
+    await page.keyboard.press("Enter")
+    wish = (await robot.hear("open_way")).body
+    assert set(wish.ends) == {"post3", "post4"}
+    await expect(page.get_by_text("was told that the corridor between Post 3 and Post 4 is open.")).to_be_visible()
+    await expect(way.locator(".shut[data-corridor]")).to_have_count(1)  # until it says so itself
+
+    answer = {"command_id": wish.command_id, "happened_at": robot.clock.utc()}
+    await robot.say(Event(happened=CommandAnswer(accepted=True, **answer)))
+    await robot.say(Event(happened=Fault(cleared=True, reason=tried_again("post3-post4"), **told)))
+    await robot.say(Why(sentence="Driving towards post4"))
+    await expect(way.locator(".shut[data-corridor]")).to_have_count(0, timeout=40_000)
+    await expect(page.get_by_role("button", name="Post 3 – Post 4 is open")).to_have_count(0)
+
+
+async def test_a_corridor_is_closed_and_opened_and_the_way_of_a_robot_that_stands_is_freed_by_keyboard_alone(
+    quiet_campus, robot, visit
+):
+    dana = await quiet_campus.dispatcher(visit)
+    page = dana.page
+    await quiet_campus.scene.lets_wait(robot.name, "post5", "post3", for_robot="r2", minutes=30)
+    await page.goto(MAILROOM)
+    waits = re.compile(r"^Waits for the corridor Post 5 – Post 3, taken by r2 until about \d")
+    await expect(page.get_by_role("region", name=re.compile("^Robots")).get_by_text(waits)).to_be_visible()
+    closed = page.get_by_role("region", name="Closed corridors")
+    await expect(closed.get_by_text("Every corridor is open.")).to_be_visible()
+    await press(page, "Close a corridor")
+    await expect(page.get_by_label("Reason")).to_be_focused()
+    await page.keyboard.type("The floor is wet")
+    await page.keyboard.press("Shift+Tab")
+    await page.keyboard.press("ArrowDown")
+    await dana.assert_accessible()
+    await page.keyboard.press("Enter")
+    await expect(closed.get_by_role("listitem")).to_contain_text(["Post 2 – Post 3 The floor is wet"])
+    await expect(page.locator("campus-map .shut[data-corridor=post2-post3]")).to_have_count(1)
+    await press(page, "Open again")
+    await page.keyboard.press("Enter")
+    await expect(closed.get_by_text("Every corridor is open.")).to_be_visible()
+
+    await robot.say(Snapshot(position=at_post("post5"), activity=Activity.STOPPED, battery=Battery(ratio=0.9)))
+    await press(page, rf"Free its way\W+{robot.name}")
+    await page.keyboard.press("Enter")
+    assert (await robot.hear("revoke")).body.reason == "Looked for it; it is in nobody’s way"
+    await expect(page.get_by_text(f"Robot {robot.name} stays out of the traffic until it stands")).to_be_visible()
+    await expect(page.get_by_text("Its corridors were given to others; it takes part again").first).to_be_visible()
+
+
+async def test_from_a_robots_page_too_it_is_told_that_a_corridor_is_open_and_what_cannot_be_is_said(
+    quiet_campus, robot, visit
+):
+    dana = await quiet_campus.dispatcher(visit, locale="fr-CA")
+    dana.refusals_expected.add(f"/api/v1/robots/{robot.name}/open-way")
+    page = dana.page
+    told = {"name": WAY_BLOCKED, "reason": turned_back(Leg(from_post="post2", to_post="post3"), "virtual_wall")}
+    fault = Fault(happened_at=robot.clock.utc(), **told)
+    await robot.ends(await robot.say(Event(happened=fault)))
+    await page.goto(f"/robots.html?robot={robot.name}")
+    in_french = re.compile("Le robot a fait demi-tour dans le couloir de .* Un mur virtuel le garde")
+    await expect(page.locator(".closed-ways").get_by_text(in_french)).to_be_visible()
+    await expect(page.get_by_role("region", name="Pannes et alarmes").get_by_text(in_french)).to_be_visible()
+    await dana.assert_accessible()
+    await press(page, "C’est rouvert")
+    await robot.ends(await robot.say(Event(happened=fault.model_copy(update={"cleared": True}))))
+    await robot.socket.close()
+    await expect(page.get_by_text("Hors réseau").first).to_be_visible()
+    await page.keyboard.press("Enter")
+    await expect(page.get_by_text(f"Le robot {robot.name} n’a pas de réseau en ce moment.")).to_be_visible()
