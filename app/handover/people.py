@@ -47,7 +47,7 @@ def purpose_to_delegate(order: Order, role: MyRole, wished: Purpose | None) -> P
     purpose = wished or THEIRS[role][0]
     if purpose not in THEIRS[role]:
         raise errors.NotYoursToDelegate("The sender names who loads or takes back, the recipient who receives.")
-    loading_is_over = order.state not in NOTHING_ABOARD or order.passed_on_at_post is not None
+    loading_is_over = order.state not in NOTHING_ABOARD or order.is_passed_on
     if order.state in ENDED or (purpose is Purpose.LOAD and loading_is_over):
         raise errors.TooLateToDelegate("This hand-over is over: there is nothing left to be done by somebody else.")
     return purpose

@@ -114,7 +114,7 @@ def codes_of(
     order: Order, delegates: Iterable[Delegate] = (), *, with_revoked: bool = False
 ) -> tuple[HandoverCode, ...]:
     """Every code of an order that is good for something; `with_revoked`: or was once."""
-    pairs = (*OWN_CODES, PASSED_ON) if order.passed_on_at_post is not None else OWN_CODES
+    pairs = (*OWN_CODES, PASSED_ON) if order.is_passed_on else OWN_CODES
     own = (HandoverCode(order.id, purpose, holder, order.codes_expire_at) for purpose, holder in pairs)
     more = (
         HandoverCode(order.id, Purpose(one.purpose), Holder.DELEGATE, order.codes_expire_at, one)
@@ -152,7 +152,7 @@ async def verifiers(session: AsyncSession, key: ServerKey, orders: Sequence[Orde
 def turn_of(order: Order, person_id: str) -> Purpose | None:
     """Which code it is this person's turn to show, if any."""
     purpose = TURNS.get(order.state)
-    if purpose is Purpose.LOAD and order.passed_on_at_post is not None:
+    if purpose is Purpose.LOAD and order.is_passed_on:
         return None  # the mailroom has it
     if purpose is Purpose.RECEIVE:
         return purpose if person_id == order.recipient_id else None
@@ -163,7 +163,7 @@ def turn_of(order: Order, person_id: str) -> Purpose | None:
 
 def mailrooms_turn(order: Order) -> Purpose | None:
     """Whether any dispatcher is to load it: it was passed on, so that the mailroom has it."""
-    is_theirs = order.passed_on_at_post is not None and TURNS.get(order.state) is Purpose.LOAD
+    is_theirs = order.is_passed_on and TURNS.get(order.state) is Purpose.LOAD
     return Purpose.LOAD if is_theirs else None
 
 

@@ -107,12 +107,12 @@ class Ledger:
         gets a notice of it, since more follows at once. Raises UnknownOrder, TransitionRefused.
         """
         order = await self.order(session, order_id)
-        if is_passed_on(order) and to in NEVER_LEFT_ITS_SENDER:
+        if order.is_passed_on and to in NEVER_LEFT_ITS_SENDER:
             to = OrderState.HELD  # by the mailroom, which has it
         if order.state is to or (word.by is By.ROBOT and is_old_news(order.state, to, order.state_before_attention)):
             return False
         before = order.state_before_attention
-        if not is_allowed(order.state, to, word.by, before, is_passed_on=is_passed_on(order)):
+        if not is_allowed(order.state, to, word.by, before, is_passed_on=order.is_passed_on):
             raise errors.TransitionRefused(f"Order {order.id} is {order.state}: {word.by} cannot make it {to}.")
         order.state_before_attention = order.state if to is OrderState.ATTENTION else None
         order.state = to
@@ -217,11 +217,6 @@ class Ledger:
     ) -> None:
         happening = Happening("order", view, person_id, role, except_for)
         after_commit(session, lambda: self.feed.publish(happening))
-
-
-def is_passed_on(order: Order) -> bool:
-    """One robot has carried it, somebody has taken it out, and another carries it further."""
-    return order.passed_on_at_post is not None
 
 
 def _begin_anew(order: Order) -> None:

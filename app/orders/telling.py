@@ -32,7 +32,7 @@ def _both(kind: NoticeKind, concerns: Callable[[Order], bool] = lambda order: Tr
 
 
 def _is_with_its_sender(order: Order) -> bool:
-    return order.passed_on_at_post is None
+    return not order.is_passed_on
 
 
 def _was_called_back(order: Order) -> bool:

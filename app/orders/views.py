@@ -84,7 +84,7 @@ async def load_facts(session: AsyncSession, orders: Sequence[Order]) -> list[Ord
     names_of_robots = {order.robot for order in orders if order.robot}
     robots = {one.name: one for one in (await session.exec(_ROBOTS, params={"ids": list(names_of_robots)})).all()}
     handovers = await _handovers(
-        session, [order.id for order in orders if order.state in LOADED or order.passed_on_at_post]
+        session, [order.id for order in orders if order.state in LOADED or order.is_passed_on]
     )
     names, handovers_of = await _delegates(session, handovers), _by_order(handovers)
     return [

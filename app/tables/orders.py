@@ -84,6 +84,11 @@ class Order(SQLModel, table=True):
     passed_on_at_post: str | None = Field(default=None, max_length=64)
 
     @property
+    def is_passed_on(self) -> bool:
+        """One robot has carried it, somebody has taken it out, and another carries it further."""
+        return self.passed_on_at_post is not None
+
+    @property
     def load_post(self) -> str:
         """Where a robot loads it: at its sender's, or where another robot has left it."""
         return self.passed_on_at_post or self.from_post
