@@ -14,6 +14,7 @@ from app.handover.routes import HandOversDep
 from app.orders.errors import NoCodeForYou, UnknownOrder
 from app.people.current_user import CurrentUser
 from app.settings import SettingsDep
+from app.tables import Order
 from app.tables.columns import STORABLE
 
 router = APIRouter(tags=["demo"])
@@ -55,8 +56,14 @@ async def show_code(
     if settings.demo_door is None:
         raise NotADemonstration("This is no demonstration: hold your code to the robot's camera yourself.")
     code = await hand_overs.my_code(session, user, wish.order_id)
-    await knock(settings.demo_door, {"do": "show_code", "text": code.text(hand_overs.key)})
+    order = await session.get_one(Order, wish.order_id)
+    await knock(_door_of(settings.demo_door, order.robot), {"do": "show_code", "text": code.text(hand_overs.key)})
     return Shown(purpose=code.purpose)
+
+
+def _door_of(door: Path, robot: str | None) -> Path:
+    """The only robot's, or in a folder of several robots' doors the one that is called as the robot is."""
+    return door / (robot or "") if door.is_dir() else door
 
 
 async def knock(door: Path, wish: dict[str, Any]) -> dict[str, Any]:

@@ -189,7 +189,9 @@ class Settings(BaseSettings):
         7, ge=1, description="How long codes, sessions, tokens and links are kept after they have ended."
     )
     clock_file: Path | None = Field(None, description="Shared scaled clock of a demonstration; default: real time.")
-    demo_door: Path | None = Field(None, description="Door of a simulated robot; set by the demonstration alone.")
+    demo_door: Path | None = Field(
+        None, description="Door of a simulated robot, or a folder of several' doors; set by demonstrations alone."
+    )
     log_level: LogLevel = Field("INFO", description="DEBUG, INFO, WARNING or ERROR.")
 
     @model_validator(mode="after")

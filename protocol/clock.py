@@ -6,6 +6,7 @@ and never runs backwards: only its speed changes.
 """
 
 import asyncio
+import fcntl
 import mmap
 import struct
 import time
@@ -74,6 +75,7 @@ class SharedClock:
 
     def __init__(self, path: Path) -> None:
         """Join the clock in `path`; FileNotFoundError if nobody has made it."""
+        self._path = path
         with path.open("r+b") as file:
             self._memory = mmap.mmap(file.fileno(), _LAYOUT.size)
 
@@ -108,7 +110,12 @@ class SharedClock:
         return self._read()[2]
 
     def set_speed(self, speed: float) -> None:
-        """Go on from the present moment at another speed; only one process may do so (the one that cannot keep up)."""
+        """Go on from the present moment at another speed. Several processes may: one after the other."""
+        with self._path.open("rb") as file:
+            fcntl.flock(file, fcntl.LOCK_EX)  # two that write at once would leave it odd, and every reader waiting
+            self._change_speed(speed)
+
+    def _change_speed(self, speed: float) -> None:
         real, scaled, old_speed, epoch = self._read()
         present = time.monotonic()
         writes = struct.unpack_from("<Q", self._memory)[0]

@@ -3,8 +3,10 @@
 import json
 import os
 import sys
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from app.settings import Settings
 
@@ -38,8 +40,9 @@ class DemoFailed(Exception):
 
 
 @dataclass(frozen=True)
-class Demo:
-    """One demonstration. Everything lies in `folder`; the door is apart, since socket paths must be short."""
+class Demonstration:
+    """What one with one robot and one with several have in common. Everything lies in `folder`; the door is apart,
+    since socket paths must be short."""
 
     folder: Path
     door: Path
@@ -47,8 +50,6 @@ class Demo:
     speed: float
     once: bool
     as_json: bool
-    low_battery: bool
-    hands_on: bool
 
     @property
     def url(self) -> str:
@@ -58,13 +59,18 @@ class Demo:
     def clock_file(self) -> Path:
         return self.folder / "clock"
 
-    @property
-    def token_file(self) -> Path:
-        return self.folder / f"{ROBOT}.token"
+    def token_file(self, robot: str) -> Path:
+        return self.folder / f"{robot}.token"
 
     @property
-    def robot_config(self) -> Path:
-        return self.folder / "robot.toml"
+    def map(self) -> str:
+        """A built-in one by name, or a file."""
+        return "test_track"
+
+    @property
+    def more(self) -> dict[str, Any]:
+        """Settings of the service that only this kind of demonstration has."""
+        return {}
 
     @property
     def service(self) -> Settings:
@@ -72,7 +78,7 @@ class Demo:
         return Settings(
             port=self.port,
             data=self.folder / "service",
-            map="test_track",
+            map=self.map,
             allowed_domains=("campus.example",),
             public_url=self.url,
             clock_file=self.clock_file,
@@ -80,6 +86,7 @@ class Demo:
             # People read codes in real time, whatever the clock of the demonstration does.
             sign_in_code_lifetime_s=600 * self.speed,
             sign_in_codes_per_address="1000 per minute",
+            **self.more,
         )
 
     def service_command(self) -> list[str]:
@@ -92,18 +99,35 @@ class Demo:
         inherited = {name: value for name, value in os.environ.items() if not name.startswith("CAMPUS_MAIL_")}
         return {**inherited, **{name: _as_text(value) for name, value in ours.items()}}
 
-    def robot_command(self) -> list[str]:
+    def command_of(self, robot: str, data: Path, door: Path, more: Mapping[str, str]) -> list[str]:
+        """What starts a robot with a simulated body."""
         options = {
-            "--map": "test_track",
-            "--name": ROBOT,
+            "--map": self.map,
+            "--name": robot,
             "--server": f"ws://127.0.0.1:{self.port}/api/v1/robots/link",
-            "--token-file": str(self.token_file),
-            "--data": str(self.folder / "robot"),
+            "--token-file": str(self.token_file(robot)),
+            "--data": str(data),
             "--clock": str(self.clock_file),
-            "--door": str(self.door),
+            "--door": str(door),
+            **more,
         }
-        options |= {"--config": str(self.robot_config)} if self.low_battery else {}
         return [sys.executable, "-m", "robot", "--simulated", *(word for pair in options.items() for word in pair)]
+
+
+@dataclass(frozen=True)
+class Demo(Demonstration):
+    """The one of the first letter, with one robot on the paper's track."""
+
+    low_battery: bool
+    hands_on: bool
+
+    @property
+    def robot_config(self) -> Path:
+        return self.folder / "robot.toml"
+
+    def robot_command(self) -> list[str]:
+        more = {"--config": str(self.robot_config)} if self.low_battery else {}
+        return self.command_of(ROBOT, self.folder / "robot", self.door, more)
 
 
 def _as_text(value: object) -> str:

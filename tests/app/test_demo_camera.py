@@ -39,7 +39,7 @@ class Door:
 @pytest.fixture
 def door() -> Iterator[Door]:
     with tempfile.TemporaryDirectory(prefix="cm-") as folder:  # socket paths are short
-        door = Door(Path(folder) / "door")
+        door = Door(Path(folder) / "r1")  # as the robot that has the order is called
         thread = threading.Thread(target=door.server.serve_forever, args=(0.05,))
         thread.start()
         yield door
@@ -48,9 +48,10 @@ def door() -> Iterator[Door]:
         thread.join()
 
 
-@pytest.fixture
-def settings(settings: Settings, door: Door) -> Settings:
-    return settings.model_copy(update={"demo_door": door.path})
+@pytest.fixture(params=["one door", "a folder of doors"])
+def settings(settings: Settings, door: Door, request: pytest.FixtureRequest) -> Settings:
+    where = door.path if request.param == "one door" else door.path.parent
+    return settings.model_copy(update={"demo_door": where})
 
 
 @pytest.fixture

@@ -51,6 +51,24 @@ def test_a_change_of_speed_makes_no_jump(tmp_path: Path) -> None:
     assert clock.now() - start_s < 1.0
 
 
+def test_processes_that_change_its_speed_at_once_do_so_one_after_the_other(tmp_path: Path) -> None:
+    clock = SharedClock.create(tmp_path / "clock", speed=10.0)
+    program = (
+        "import sys; from pathlib import Path; from protocol.clock import SharedClock; "
+        "clock = SharedClock(Path(sys.argv[1])); [clock.set_speed(10.0 + n % 7) for n in range(3000)]"
+    )
+    command = [sys.executable, "-c", program, str(tmp_path / "clock")]
+    changing = [subprocess.Popen(command, cwd=Path(__file__).parents[2]) for _ in range(2)]
+    last_s = clock.now()
+    while any(process.poll() is None for process in changing):
+        now_s = clock.now()
+        assert now_s >= last_s
+        last_s = now_s
+    assert [process.returncode for process in changing] == [0, 0]
+    writes = int.from_bytes((tmp_path / "clock").read_bytes()[:8], "little")
+    assert writes == 2 * 2 * 3000, "some of the changes were made in the middle of others"
+
+
 def test_it_runs_as_many_times_faster_as_it_says(tmp_path: Path) -> None:
     clock = SharedClock.create(tmp_path / "clock", speed=100.0)
     # Anybody may be held up between two looks: what passed lies between the inner and the outer of them.
