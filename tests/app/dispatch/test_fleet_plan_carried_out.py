@@ -64,6 +64,21 @@ def test_what_a_robot_does_for_reasons_of_its_own_stays_and_so_does_what_no_way_
     assert traffic.goals("r0") == (own, aboard.give)
 
 
+def test_an_order_that_cannot_be_given_at_the_moment_is_kept_whole() -> None:
+    """A dead robot has the only bay where the mail goes: that stop is in no timetable, and is not forgotten."""
+    traffic, one, able = TrafficController(street(4, bays=1)), order(0, 1, 2), {"r0": Able()}
+    traffic.joins("r0", post="p0", home="p0", at_home=True, now_s=0.0)
+    traffic.give("r0", (one.load, one.give), 0.0)
+    traffic.joins("dead", post="p2", home="p3", at_home=False, now_s=1.0)
+    traffic.freeze("dead", 2.0)
+    assert traffic.tasks(3.0)["r0"].goals == (one.load,)
+    decision = decided(scene_of(traffic, able, {one.id: one}, 3.0))
+    assert adopt(traffic, decision, able, 3.0)
+    assert traffic.goals("r0") == (one.load, one.give)
+    traffic.unfreeze("dead", 4.0)
+    assert traffic.tasks(5.0)["r0"].goals == (one.load, one.give)
+
+
 def test_a_decision_that_has_come_too_late_changes_nothing() -> None:
     traffic, one = traffic_on(4), order(0, 1, 2)
     decision = decided(scene_of(traffic, ABLE, {one.id: one}, 0.0))
