@@ -13,15 +13,16 @@ here takes a corridor from a robot because time has passed.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from math import inf, isinf
+from math import inf
 from random import Random
 from typing import Final
 
-from app.traffic.execution import OutOfOrderError, one_behind_the_other, retimed, waits_for
+from app.traffic.execution import caught_up, one_behind_the_other, retimed, waits_for
 from app.traffic.journey import Goal, Journey, Start, Task, without_first
 from app.traffic.network import Lane, Network
+from app.traffic.participant import Participant, is_full, open_network
 from app.traffic.planning import Timetable, first_plan, improve, insert, plan, plan_what_can_be
-from app.traffic.under_way import all_held, expected, further, through
+from app.traffic.under_way import further, through
 from app.traffic.validation import problems
 
 ROUNDS: Final = 10
@@ -62,19 +63,6 @@ class UnsoundTimetable(RuntimeError):
     the controller builds it anew."""
 
 
-@dataclass
-class _Robot:
-    home: int | None
-    start: Start
-    goals: tuple[Goal, ...] = ()
-    claim: Lane | None = None
-    frozen: bool = False
-    goals_wait: bool = False
-    """No timetable was found with its goals."""
-    stays: bool = False
-    """None was found that leads it home."""
-
-
 class TrafficController:
     """One for a campus. Every method takes the time, in seconds of one clock that never goes back."""
 
@@ -82,7 +70,7 @@ class TrafficController:
         self._whole = network
         self._closed: frozenset[str] = frozenset()
         self._rng = rng or Random(0)
-        self._robots: dict[str, _Robot] = {}
+        self._robots: dict[str, Participant] = {}
         self._journeys: dict[str, Journey] = {}
         self._network = network
 
@@ -95,7 +83,7 @@ class TrafficController:
 
     def tasks(self, now_s: float) -> dict[str, Task]:
         """Every robot that can be planned for, as it is now: of its goals those that can be reached."""
-        tasks = {name: self._task(robot, now_s) for name, robot in self._robots.items() if not robot.frozen}
+        tasks = {name: robot.task(self._network, now_s) for name, robot in self._robots.items() if not robot.frozen}
         return one_behind_the_other(tasks)
 
     def journeys(self, now_s: float) -> dict[str, Journey]:
@@ -107,7 +95,9 @@ class TrafficController:
 
     def out_of_reach(self) -> frozenset[str]:
         """Robots of which some goal, or home, cannot be reached as long as the ways are closed that are closed."""
-        return frozenset(name for name, robot in self._robots.items() if not robot.frozen and self._lacks(robot))
+        return frozenset(
+            name for name, robot in self._robots.items() if not robot.frozen and robot.lacks(self._network)
+        )
 
     # What people and dispatch do.
 
@@ -123,7 +113,7 @@ class TrafficController:
         for lane in lanes:
             start = further(start, lane, at_home=self._is_full(lane.end), now_s=now_s)
         home_number = None if home is None else self._whole.number_of(home)
-        self._robots[robot] = _Robot(home_number, start, before.goals if before else ())
+        self._robots[robot] = Participant(home_number, start, before.goals if before else ())
         self._plan_all(now_s)
 
     def leaves(self, robot: str, now_s: float) -> None:
@@ -151,8 +141,8 @@ class TrafficController:
         for name, theirs in goals.items():
             self._robots[name].goals = tuple(theirs)
         tasks = self.tasks(now_s)
-        caught_up = self._caught_up(tasks, timetable.journeys)
-        if caught_up is not None and self._takes(tasks, replace(timetable, journeys=caught_up)):
+        journeys = caught_up(self._network, tasks, timetable.journeys)
+        if journeys is not None and self._takes(tasks, replace(timetable, journeys=journeys)):
             return True
         for name, robot in self._robots.items():
             robot.goals = before[name]
@@ -302,8 +292,7 @@ class TrafficController:
         return not follows and lane.end not in passed and not self._waits_for(robot, now_s)
 
     def _is_full(self, post: int) -> bool:
-        held = [start for robot in self._robots.values() for start in all_held(robot.start)]
-        return sum(1 for start in held if start.post == post and not start.at_home) >= self._whole.bays[post]
+        return is_full(self._whole, post, self._robots.values())
 
     def _docks_next(self, robot: str) -> bool:
         journey = self._journeys.get(robot)
@@ -319,26 +308,9 @@ class TrafficController:
         journey = self._journeys.get(robot)
         return journey is not None and any(leg.lane == lane for leg in journey.legs[1:])
 
-    def _task(self, robot: _Robot, now_s: float) -> Task:
-        start, way_s = robot.start, self._network.shortest_s[robot.start.post]
-        if start.lane is not None:
-            start = expected(start, now_s)
-        elif start.ready_s < now_s:
-            start = replace(start, ready_s=now_s)
-        home = robot.home if robot.home is not None and not isinf(way_s[robot.home]) else None
-        goals = tuple(goal for goal in robot.goals if not isinf(way_s[goal.post]) and self._can_stop(robot, goal.post))
-        return Task(start, () if robot.goals_wait else goals, None if robot.stays else home)
-
-    def _lacks(self, robot: _Robot) -> bool:
-        task = self._task(robot, robot.start.ready_s)
-        return len(task.goals) < len(robot.goals) or task.home != robot.home
-
-    def _can_stop(self, robot: _Robot, post: int) -> bool:
-        return self._network.bays[post] > 0 or post in (robot.home, robot.start.post)
-
     def _plan_all(self, now_s: float) -> None:
         """What is open has changed, or who is there: all is planned anew, as far as it can be."""
-        self._network = self._open_network()
+        self._network = open_network(self._whole, self._closed, self._robots.values())
         for robot in self._robots.values():
             robot.goals_wait = robot.stays = False
         wanted = self.tasks(now_s)
@@ -357,15 +329,6 @@ class TrafficController:
             if robot.goals_wait and not robot.frozen:
                 self.give(name, robot.goals, now_s, rounds=0)
 
-    def _open_network(self) -> Network:
-        frozen = [start for robot in self._robots.values() if robot.frozen for start in all_held(robot.start)]
-        blocked = {self._whole.corridors[start.lane.corridor] for start in frozen if start.lane is not None}
-        bays = list(self._whole.bays)
-        for start in frozen:
-            if not start.at_home:
-                bays[start.post] -= 1
-        return replace(self._whole.without(self._closed | blocked), bays=tuple(bays))
-
     def _better(self, tasks: Mapping[str, Task], found: Timetable, rounds: int) -> Timetable:
         left = iter(range(rounds))
         return improve(self._network, tasks, found, self._rng, lambda: next(left, None) is not None)
@@ -375,24 +338,3 @@ class TrafficController:
             return False
         self._journeys = dict(timetable.journeys)
         return True
-
-    def _caught_up(self, tasks: Mapping[str, Task], journeys: Mapping[str, Journey]) -> dict[str, Journey] | None:
-        """Without the legs that have begun since, and as late as it is now; None if somebody is where his journey does
-        not lead, or in the way of it."""
-        if journeys.keys() != tasks.keys():
-            return None
-        left = {name: self._from_start(tasks[name].start, journey) for name, journey in journeys.items()}
-        known = {name: journey for name, journey in left.items() if journey is not None}
-        try:
-            return retimed(self._network, tasks, known) if len(known) == len(left) else None
-        except OutOfOrderError:
-            return None
-
-    def _from_start(self, start: Start, journey: Journey) -> Journey | None:
-        while True:
-            first = journey.legs[0]
-            if (first.post, first.at_home) == (start.post, start.at_home):
-                return journey
-            if len(journey.legs) == 1:
-                return None
-            journey = without_first(journey)

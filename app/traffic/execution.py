@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from math import inf
 
-from app.traffic.journey import Goal, Journey, Leg, Start, Task, ready_after
+from app.traffic.journey import Goal, Journey, Leg, Start, Task, ready_after, without_first
 from app.traffic.network import Lane, Network
 
 Travel = Callable[[str, Lane], float]
@@ -69,6 +69,31 @@ def retimed(
     for _, robot in sorted(to_come):
         course.enter_next(robot)
     return {robot: course.journey(robot) for robot in journeys}
+
+
+def caught_up(
+    network: Network, tasks: Mapping[str, Task], journeys: Mapping[str, Journey]
+) -> dict[str, Journey] | None:
+    """Without the legs that have begun since, and as late as it is now; None if somebody is where his journey does not
+    lead, or in the way of it."""
+    if journeys.keys() != tasks.keys():
+        return None
+    left = {name: _from_start(tasks[name].start, journey) for name, journey in journeys.items()}
+    known = {name: journey for name, journey in left.items() if journey is not None}
+    try:
+        return retimed(network, tasks, known) if len(known) == len(left) else None
+    except OutOfOrderError:
+        return None
+
+
+def _from_start(start: Start, journey: Journey) -> Journey | None:
+    while True:
+        first = journey.legs[0]
+        if (first.post, first.at_home) == (start.post, start.at_home):
+            return journey
+        if len(journey.legs) == 1:
+            return None
+        journey = without_first(journey)
 
 
 def one_behind_the_other(tasks: Mapping[str, Task]) -> dict[str, Task]:
