@@ -14,6 +14,7 @@ from app import about, asset_links, demo_camera, marker_sheets, metrics, one_ord
 from app.api_document import DocumentedApi, operation_id
 from app.body_limit import BodyLimit
 from app.database import Database
+from app.dispatch.nearest import NearestRobots
 from app.dispatch.service import Dispatcher
 from app.enrolment import routes as enrolment_routes
 from app.enrolment.service import EnrolmentDesk
@@ -168,7 +169,7 @@ def _add_parts(app: FastAPI, settings: Settings, clock: Clock) -> None:
     state.intake = Intake(state.fleet)
     state.outbox_worker = _outbox_worker(state, settings, clock)
     state.orders.on_change.append(lambda order_id: state.outbox_worker.wake())
-    state.dispatcher = Dispatcher(state.fleet)
+    state.dispatcher = Dispatcher(state.fleet, NearestRobots(state.fleet))
     state.traffic_desk = TrafficDesk(state.fleet) if settings.traffic == "timetable" else None
     state.foreseen = Foreseen(state.fleet, state.traffic_desk) if state.traffic_desk is not None else None
     state.housekeeper = Housekeeper(state.database, settings, clock)

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from app.dispatch.service import AT_ONCE
+from app.dispatch.nearest import AT_ONCE
 from app.orders.schemas import NewOrder
 from app.settings import Settings
 from app.tables import MessageToRobot, MissionRow, Order, Person, RobotRow, Role
@@ -18,7 +18,7 @@ from tests.app.placed import placed
 
 @pytest.fixture
 async def service(settings: Settings, clock: SteppedClock) -> AsyncIterator[Service]:
-    async with serving(settings, clock) as service:
+    async with serving(settings.model_copy(update={"traffic": "at_once"}), clock) as service:
         yield service
 
 

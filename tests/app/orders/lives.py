@@ -14,6 +14,7 @@ from typing import Any
 from sqlmodel import SQLModel, col, select
 
 from app.database import Database
+from app.dispatch.nearest import NearestRobots
 from app.dispatch.service import Dispatcher
 from app.fleet import inbox, outbox
 from app.fleet.commands import ask, new_command_id
@@ -164,7 +165,7 @@ class World:
         self.orders = Orders(TRACK, self.settings, self.clock, feed, key, desk)
         self.fleet = Fleet(self.database, TRACK, self.settings, self.clock, feed, self.orders)
         self.intake = Intake(self.fleet)
-        self.dispatcher = Dispatcher(self.fleet)
+        self.dispatcher = Dispatcher(self.fleet, NearestRobots(self.fleet))
         self.timer = Timer(self.database, self.orders, StandingOrders(self.orders))
 
     async def restart(self) -> None:
