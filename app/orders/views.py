@@ -83,9 +83,7 @@ async def load_facts(session: AsyncSession, orders: Sequence[Order]) -> list[Ord
     people = {one.id: one for one in (await session.exec(_PEOPLE, params={"ids": list(wanted)})).all()}
     names_of_robots = {order.robot for order in orders if order.robot}
     robots = {one.name: one for one in (await session.exec(_ROBOTS, params={"ids": list(names_of_robots)})).all()}
-    handovers = await _handovers(
-        session, [order.id for order in orders if order.state in LOADED or order.is_passed_on]
-    )
+    handovers = await _handovers(session, [order.id for order in orders if order.state in LOADED or order.is_passed_on])
     names, handovers_of = await _delegates(session, handovers), _by_order(handovers)
     return [
         OrderFacts(o, events_of[o.id], people, robots.get(o.robot or ""), handovers_of[o.id], names) for o in orders
