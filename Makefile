@@ -6,7 +6,7 @@ BIN := .venv/bin
 ARGS ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help setup setup-robot test check format demo serve robot bench bench-mind bench-body bench-service bench-paper bench-pages bench-service-kills bench-fleet fuzz-mind client pages icons screenshots fuzz-api pin clean
+.PHONY: help setup setup-robot test check format demo fleet-demo serve robot bench bench-mind bench-body bench-service bench-paper bench-pages bench-service-kills bench-fleet fuzz-mind client pages icons screenshots fuzz-api pin clean
 # A recipe that fails must not leave its stamp behind.
 .DELETE_ON_ERROR:
 
@@ -35,6 +35,9 @@ format: setup ## Put the code into its standard form
 
 demo: setup ## See the first letter: service, robot and one order, on this machine
 	$(BIN)/python -m app demo $(ARGS)
+
+fleet-demo: setup ## See a fleet at work: service, four simulated robots in the Carleton tunnels, a stream of orders
+	$(BIN)/python -m app fleet-demo $(ARGS)
 
 serve: setup ## Start the service alone
 	$(BIN)/python -m app serve $(ARGS)

@@ -2,7 +2,7 @@
 
 import typer
 
-from app.commands import backup, demo, map, orders, people, personal, retain, robots, serve
+from app.commands import backup, demo, fleet_demo, map, orders, people, personal, retain, robots, serve
 
 HELP = """Campus Mail: the service.
 
@@ -22,6 +22,7 @@ app.command()(personal.export)
 app.command()(personal.erase)
 app.command()(retain.retain)
 app.command()(demo.demo)
+app.command()(fleet_demo.fleet_demo)
 
 if __name__ == "__main__":
     app()

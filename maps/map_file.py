@@ -9,6 +9,7 @@ import tomllib
 from pathlib import Path
 from typing import Annotated, Literal
 
+import tomlkit
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from maps.errors import MapError
@@ -90,6 +91,11 @@ def load_map_file(path: Path) -> MapFile:
         raise _broken_toml(path, text, str(error)) from error
     except ValidationError as error:
         raise _broken_shape(path, error) from error
+
+
+def toml_of(file: MapFile) -> str:
+    """The text of a file from which the same would be read; comments are not kept."""
+    return tomlkit.dumps(file.model_dump(mode="json", exclude_none=True))
 
 
 def _read(path: Path) -> str:

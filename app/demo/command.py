@@ -1,10 +1,13 @@
 """Makes the folders of a demonstration, and removes them afterwards."""
 
 import tempfile
-from contextlib import ExitStack
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
 
+from app.demo.fleet.run import run as run_fleet
+from app.demo.fleet.settings import FleetDemo
 from app.demo.run import run
 from app.demo.settings import Demo
 from app.logs import set_up_logs
@@ -12,11 +15,23 @@ from app.logs import set_up_logs
 
 def demonstrate(data: Path | None, **wanted: Any) -> int:
     """Run a demonstration in `data`, or in a folder that is gone afterwards; the exit code. Raises StartError."""
+    with _places(data) as (folder, door):
+        return run(Demo(folder=folder, door=door, **wanted))
+
+
+def demonstrate_fleet(data: Path | None, **wanted: Any) -> int:
+    """The same with several robots. Raises StartError."""
+    with _places(data) as (folder, door):
+        return run_fleet(FleetDemo(folder=folder, door=door, **wanted))
+
+
+@contextmanager
+def _places(data: Path | None) -> Iterator[tuple[Path, Path]]:
+    """Where everything lies, and where there will be a door: sockets have short paths."""
     set_up_logs("WARNING")
     with ExitStack() as closing:
         door_folder = Path(closing.enter_context(tempfile.TemporaryDirectory(prefix="cm-")))
-        folder = _folder(data, closing)
-        return run(Demo(folder=folder, door=door_folder / "door", **wanted))
+        yield _folder(data, closing), door_folder / "door"
 
 
 def _folder(wanted: Path | None, closing: ExitStack) -> Path:

@@ -71,14 +71,25 @@ class SimulatedPerson:
                     return code
             await asyncio.sleep(LOOK_EVERY_S)
 
-    async def place_order(self, from_post: str, to_post: str, recipient: str) -> dict[str, Any]:
-        body = {"from_post": from_post, "to_post": to_post, "recipient": recipient, "description": "A letter"}
+    async def place_order(self, from_post: str, to_post: str, recipient: str, **more: str) -> dict[str, Any]:
+        """`more`: what else the order form can say."""
+        body = {"from_post": from_post, "to_post": to_post, "recipient": recipient, "description": "A letter", **more}
         placed: dict[str, Any] = await self._ask("POST", "/orders", body, {"Idempotency-Key": str(uuid.uuid4())})
         return placed
 
     async def order(self, order_id: str) -> dict[str, Any]:
         order: dict[str, Any] = await self._ask("GET", f"/orders/{order_id}")
         return order
+
+    async def open_orders(self) -> list[dict[str, Any]]:
+        """Those that go on, everybody's for a dispatcher; a hundred at most."""
+        orders: list[dict[str, Any]] = (await self._ask("GET", "/orders?state=open&limit=100"))["items"]
+        return orders
+
+    async def alarms(self) -> list[dict[str, Any]]:
+        """For dispatchers: what people should look at, newest first."""
+        alarms: list[dict[str, Any]] = (await self._ask("GET", "/alarms?limit=50"))["items"]
+        return alarms
 
     async def show_code(self, order_id: str) -> None:
         """Hold one's code to the robot's camera."""

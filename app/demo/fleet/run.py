@@ -1,0 +1,170 @@
+"""Runs a demonstration of the fleet: service and robots, people who order, an eye on where robots truly are."""
+
+import asyncio
+import json
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import replace
+from typing import Any
+
+from app.administration import change_roles
+from app.demo.beside import EXIT_INTERRUPTED, LOOK_EVERY_S, beside, is_ready, played, write_tokens
+from app.demo.children import Children
+from app.demo.fleet.campus_life import CampusLife
+from app.demo.fleet.errands import MAILROOM
+from app.demo.fleet.places import TruePlaces
+from app.demo.fleet.screen import FleetScreen
+from app.demo.fleet.settings import ONCE_LIMIT_S, FleetDemo
+from app.demo.people import Spool
+from app.demo.settings import DemoFailed
+from app.serving import listen
+from maps import find_map
+from protocol.clock import SharedClock
+
+A_MOMENT_S = 0.5
+PLACES_EVERY_S = 0.05
+LONG_S = 600.0
+"""Of the demonstration's clock: if nobody has moved for so long while there is work, that is said."""
+
+
+def run(demo: FleetDemo) -> int:
+    """The exit code. Raises StartError, a taken port above all, before anything is started."""
+    with listen("127.0.0.1", demo.port) as free:
+        demo = replace(demo, port=free.getsockname()[1])  # 0 takes a free one
+    return asyncio.run(_run(demo))
+
+
+async def _run(demo: FleetDemo) -> int:
+    demo.lay_out()
+    clock = SharedClock.create(demo.clock_file, demo.speed)
+    screen = FleetScreen(demo, clock, Spool(demo.service.spool_folder))
+    goes_on = not demo.once and demo.minutes is None
+    return await played(_play(demo, clock, screen), screen.failed, demo.as_json, 0 if goes_on else EXIT_INTERRUPTED)
+
+
+async def _play(demo: FleetDemo, clock: SharedClock, screen: FleetScreen) -> int:
+    await write_tokens(demo.service, {robot: demo.token_file(robot) for robot in demo.homes})
+    await change_roles(demo.service, MAILROOM, ["dispatcher", "maintainer"], [])
+    children = Children()
+    try:
+        await _perform(demo, clock, children, screen)
+    finally:
+        await children.stop()
+    return 0
+
+
+async def _perform(demo: FleetDemo, clock: SharedClock, children: Children, screen: FleetScreen) -> None:
+    service = await children.start(
+        "service", demo.service_command(), demo.folder / "service.log", demo.service_environment()
+    )
+    async with beside([service.watch()]):
+        await is_ready(demo.url)
+        screen.welcome()
+        robots = [
+            await children.start(f"robot {name}", demo.robot_command(name), demo.folder / f"{name}.log")
+            for name in demo.homes
+        ]
+        places = TruePlaces(find_map(demo.map), {robot: demo.world_file(robot) for robot in demo.homes})
+        life = CampusLife(demo, clock, Spool(demo.service.spool_folder), screen.say)
+        course = Course(demo, clock, life, places)
+        async with beside([*(robot.watch() for robot in robots), course.look_at_places()]):
+            try:
+                await course.live(screen)
+            except DemoFailed:
+                # If a child has died that is the better reason: its watcher cancels us here.
+                await asyncio.sleep(A_MOMENT_S)
+                raise
+            finally:
+                await life.close()
+
+
+class Course:
+    """How one demonstration goes, and its figures."""
+
+    def __init__(self, demo: FleetDemo, clock: SharedClock, life: CampusLife, places: TruePlaces) -> None:
+        self._demo, self._clock, self._life, self._places = demo, clock, life, places
+        self._began_real_s, self._began_s = time.monotonic(), clock.now()
+        self._longest_still_s = 0.0
+
+    async def live(self, screen: FleetScreen) -> None:
+        await self._life.begin()
+        self._began_real_s, self._began_s = time.monotonic(), self._clock.now()
+        screen.skip_mails()
+        screen.begin()
+        async with beside([self._life.watch_alarms(), self._look_at_movement(screen.say), self._draw(screen)]):
+            await self._orders()
+        figures = self.figures()
+        if self._demo.as_json:
+            print(json.dumps(figures, indent=2))  # noqa: T201  # the one object on stdout
+        screen.end(sentence_of(figures))
+
+    async def _orders(self) -> None:
+        if self._demo.once:
+            try:
+                async with asyncio.timeout(ONCE_LIMIT_S):
+                    await self._life.once()
+            except TimeoutError:
+                raise DemoFailed(f"Orders were not delivered within {ONCE_LIMIT_S:.0f} s: {self._left()}.") from None
+            return
+        with suppress(TimeoutError):
+            async with asyncio.timeout(None if self._demo.minutes is None else self._demo.minutes * 60.0):
+                await self._life.go_on()
+
+    def _left(self) -> str:
+        return "; ".join(f"{order['state']}, {order['why']}" for order in self._life.orders.values())
+
+    async def look_at_places(self) -> None:
+        """All the time, faster than a robot can be through a corridor."""
+        while True:
+            self._places.look()
+            await asyncio.sleep(PLACES_EVERY_S)
+
+    async def _look_at_movement(self, say: Callable[[str], None]) -> None:
+        moves, since_s, is_said = self._places.moves, self._clock.now(), False
+        while True:
+            now_s = self._clock.now()
+            if self._places.moves != moves or not self._life.is_there_work():
+                moves, since_s, is_said = self._places.moves, now_s, False
+            self._longest_still_s = max(self._longest_still_s, now_s - since_s)
+            if now_s - since_s > LONG_S and not is_said:
+                is_said = True
+                say(f"STANDSTILL: no robot has moved for {LONG_S / 60:.0f} min: {self._left()}")
+            await asyncio.sleep(LOOK_EVERY_S)
+
+    async def _draw(self, screen: FleetScreen) -> None:
+        while True:
+            screen.see_mails()
+            screen.show(self._life, self._places)
+            await asyncio.sleep(LOOK_EVERY_S)
+
+    def figures(self) -> dict[str, Any]:
+        """Of the whole run; `simulated_s` by the demonstration's clock."""
+        life, places = self._life, self._places
+        return {
+            "ok": True,
+            "robots": self._demo.robots,
+            "placed": life.placed,
+            "ended": dict(life.ended),
+            "delivered_by": dict(life.delivered_by),
+            "open": len(life.orders),
+            "corridors_entered_or_left": places.moves,
+            "most_corridors_in_use_at_once": places.most_at_once,
+            "looks_at_true_places": places.looks,
+            "two_in_one_corridor": 0,
+            "longest_standstill_s": round(self._longest_still_s),
+            "alarms": life.alarms,
+            "simulated_s": round(self._clock.now() - self._began_s),
+            "wall_s": round(time.monotonic() - self._began_real_s, 1),
+        }
+
+
+def sentence_of(figures: dict[str, Any]) -> str:
+    """What came of it, for a person."""
+    ended = ", ".join(f"{count} {state}" for state, count in sorted(figures["ended"].items())) or "none ended"
+    return (
+        f"Of {figures['placed']} orders in {figures['simulated_s'] / 60:.0f} simulated minutes "
+        f"({figures['wall_s'] / 60:.1f} real ones): {ended}, {figures['open']} open. Up to "
+        f"{figures['most_corridors_in_use_at_once']} corridors in use at once, never two robots in one "
+        f"({figures['looks_at_true_places']} looks at their true places)."
+    )

@@ -1,0 +1,108 @@
+"""What a person at the terminal sees of a demonstration of the fleet: a line for each robot, and what happened last."""
+
+from collections import deque
+from collections.abc import Mapping
+from datetime import datetime
+from typing import Any
+
+from rich.console import Console, Group
+from rich.live import Live
+from rich.markup import escape
+from rich.table import Table
+from rich.text import Text
+
+from app.demo.fleet.campus_life import CampusLife
+from app.demo.fleet.errands import MAILROOM, address
+from app.demo.fleet.places import TruePlaces
+from app.demo.fleet.settings import FleetDemo
+from app.demo.people import Spool, sign_in_code
+from protocol.clock import SharedClock
+
+LAST_EVENTS = 12
+TO_FETCH = {"assigned", "to_sender", "at_sender"}
+
+
+class FleetScreen:
+    """A table that stays and changes on a terminal, lines anywhere else; on stderr where stdout is the summary's."""
+
+    def __init__(self, demo: FleetDemo, clock: SharedClock, spool: Spool) -> None:
+        self._console = Console(stderr=demo.as_json, highlight=False)
+        self._demo, self._clock, self._spool = demo, clock, spool
+        self._events: deque[str] = deque(maxlen=LAST_EVENTS)
+        self._codes: dict[str, str] = {}
+        self._mails_seen: set[str] = set()
+        self._live = Live(console=self._console, auto_refresh=False, transient=False)
+
+    def welcome(self) -> None:
+        url, scale = self._demo.url, self._demo.scale
+        for line in (
+            f"[bold]Campus Mail, the fleet[/]: {self._demo.robots} robots in the Carleton tunnels, which are "
+            f"1 : {1 / scale:.3g} of their assumed length",
+            f"Mailroom [link]{url}/mailroom.html[/]   robots [link]{url}/robots.html[/]   ordering [link]{url}[/]",
+            f"Sign in as {MAILROOM} (mailroom, robots) or as {address('ada')}; the codes mailed to you appear here.",
+            "The bodies are simulated, each in a world of its own. That no two are ever in one corridor is looked at "
+            "by their true places; if two were, this would end with an error.",
+        ):
+            self._console.print(line, soft_wrap=True)
+
+    def begin(self) -> None:
+        if self._console.is_terminal:
+            self._live.start()
+
+    def say(self, line: str) -> None:
+        told = f"{self._clock.utc().astimezone():%H:%M:%S}  {line}"
+        self._events.append(told)
+        if not self._live.is_started:
+            self._console.print(escape(told), soft_wrap=True)
+
+    def see_mails(self) -> None:
+        """Codes for people who sign in at the pages; those of the simulated people are their own affair."""
+        for _, mail in self._spool.new_mails(self._mails_seen):
+            if code := sign_in_code(mail):
+                self._codes[str(mail["To"])] = code
+                if self._live.is_started:
+                    self.say(f"Sign-in code for {mail['To']}: {code}")
+
+    def skip_mails(self) -> None:
+        list(self._spool.new_mails(self._mails_seen))
+
+    def show(self, life: CampusLife, places: TruePlaces) -> None:
+        if self._live.is_started:
+            self._live.update(self._picture(life, places), refresh=True)
+
+    def _picture(self, life: CampusLife, places: TruePlaces) -> Group:
+        table = Table(expand=True, box=None, padding=(0, 1))
+        for heading in ("robot", "where", "mail", "battery", "what"):
+            table.add_column(heading, overflow="fold", ratio=3 if heading == "what" else None)
+        for robot in sorted(life.robots, key=lambda one: str(one["name"])):
+            table.add_row(*row_of(robot, life.orders))
+        ended = ", ".join(f"{count} {state}" for state, count in sorted(life.ended.items())) or "none ended"
+        figures = (
+            f"{self._clock.utc().astimezone():%H:%M:%S}, {self._clock.speed:.1f} times as fast   "
+            f"orders: {len(life.orders)} open, {ended}   in corridors now: {places.inside}, never two in one"
+        )
+        return Group(Text(figures, style="bold"), table, *(Text(line, style="dim") for line in self._events))
+
+    def end(self, sentence: str) -> None:
+        self._live.stop()
+        self._console.print(sentence, soft_wrap=True)
+
+    def failed(self, reason: str) -> None:
+        self._live.stop()
+        self._console.print(f"[red]Failed:[/] {escape(reason)}", soft_wrap=True)
+
+
+def row_of(robot: Mapping[str, Any], orders: Mapping[str, Any]) -> tuple[str, str, str, str, str]:
+    """A robot's line: name, where it was seen, its orders, its charge, what it does and why it waits."""
+    seen, battery = robot["last_seen"], robot["battery"]
+    where = seen["post"] if seen else "not seen yet"
+    where += f" → {robot['towards']}" if robot["towards"] else ""
+    mine = [order for order in orders.values() if order["robot"] and order["robot"]["name"] == robot["name"]]
+    fetching = sum(order["state"] in TO_FETCH for order in mine)
+    mail = f"{len(mine) - fetching} aboard" + (f", {fetching} to fetch" if fetching else "")
+    charge = f"{battery['ratio']:.0%}{' charging' if battery['charging'] else ''}" if battery else "unknown"
+    what = robot["why"] or robot["activity"]
+    waits = robot["waits_for"]
+    if waits and waits["until"]:
+        what += f", until about {datetime.fromisoformat(waits['until']).astimezone():%H:%M:%S}"
+    return robot["name"], where, mail, charge, what if robot["online"] else f"offline; {what}"
