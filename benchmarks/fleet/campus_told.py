@@ -11,7 +11,7 @@ from typing import Final
 from app.dispatch.planning.deciding import decide
 from app.dispatch.planning.scene import Scene
 from app.estimates.arrivals import Estimates
-from app.estimates.calibration import Calibration
+from app.estimates.calibration import Basis, Calibrations
 from app.estimates.durations import Durations, Kind, Thing
 from app.estimates.forecast import Chance, forecast
 from app.estimates.intervals import Interval
@@ -31,6 +31,7 @@ class Promise:
     """`placed_s`: when it was made."""
 
     placed_s: float
+    basis: Basis
     raw: Interval
     told: Interval
     by_map: Interval
@@ -43,7 +44,7 @@ class Told:
     ground: Ground
     rng: Random
     durations: Durations = field(default_factory=Durations)
-    calibration: Calibration = field(default_factory=Calibration)
+    calibrations: Calibrations = field(default_factory=Calibrations)
     promises: dict[str, Promise] = field(default_factory=dict)
     scored: list[Truth] = field(default_factory=list)
     raw: list[Truth] = field(default_factory=list)
@@ -66,7 +67,7 @@ class Told:
         promise = self.promises.pop(key, None)
         if promise is not None:
             truth_s = self._now_s - promise.placed_s
-            self.calibration.learn(promise.raw, promise.told, truth_s)
+            self.calibrations.of[promise.basis].learn(promise.raw, promise.told, truth_s)
             self.scored.append(Truth(promise.told, promise.by_map, truth_s))
             self.raw.append(Truth(promise.raw, promise.by_map, truth_s))
 
@@ -76,16 +77,16 @@ class Told:
         """For an order that was placed now. `scene`: as it is decided already."""
         posts = self.ground.network.posts
         by_map = self._by_map.promise(posts[start], posts[end], self.ground.clock.local).by_map
+        basis = Basis.TIMETABLE if _is_kept(key, scene) else Basis.NO_ROBOT_YET
         raw = self._in_plan(key, scene)
         if raw is None:
             self.not_planned += 1
             raw = by_map
-        told = self.calibration.corrected(raw)
-        self.promises[key] = Promise(self._now_s, raw, told, by_map)
+        told = self.calibrations.of[basis].corrected(raw)
+        self.promises[key] = Promise(self._now_s, basis, raw, told, by_map)
 
     def _in_plan(self, key: str, scene: Scene) -> Interval | None:
-        kept = scene.kept
-        if kept is not None and any(goal.key == key for goals in kept.goals.values() for goal in goals):
+        if (kept := scene.kept) is not None and _is_kept(key, scene):
             tasks = {name: robot.task(robot.route) for name, robot in scene.robots.items()}
             tasks = {name: replace(task, goals=kept.goals[name]) for name, task in tasks.items()}
             return self._forecast(scene.network, tasks, dict(kept.timetable.journeys))[key]
@@ -112,6 +113,10 @@ class Told:
     @property
     def _now_s(self) -> float:
         return self.ground.clock.now_s
+
+
+def _is_kept(key: str, scene: Scene) -> bool:
+    return scene.kept is not None and any(goal.key == key for goals in scene.kept.goals.values() for goal in goals)
 
 
 def corridor(lane: Lane) -> Thing:

@@ -5,7 +5,7 @@ from random import Random
 
 import pytest
 
-from app.estimates.calibration import Calibration
+from app.estimates.calibration import Basis, Calibration, Calibrations
 from app.estimates.intervals import Interval, pinball_s
 from app.estimates.score import ScoreBoard, Truth, score_of
 
@@ -42,6 +42,20 @@ def test_four_of_five_come_inside_all_the_same(truth_s: Callable[[int, Random], 
     score = score_of(told_of(truth_s)[100:])
     assert 0.78 <= score.inside <= 0.82
     assert score.below == pytest.approx(0.1, abs=0.03)
+
+
+def test_four_of_five_come_inside_of_each_kind_of_estimate() -> None:
+    """Three of four estimates are nearly right, the fourth is much too early."""
+    calibrations, rng = Calibrations(), Random(3)
+    truths = dict[Basis, list[Truth]]({basis: [] for basis in Basis})
+    for number in range(2000):
+        basis = Basis.NO_ROBOT_YET if number % 4 == 0 else Basis.TIMETABLE
+        seconds = rng.gauss(300.0, 90.0) if basis is Basis.NO_ROBOT_YET else rng.gauss(105.0, 20.0)
+        told = calibrations.of[basis].corrected(RAW)
+        calibrations.of[basis].learn(RAW, told, seconds)
+        truths[basis].append(Truth(told, BY_MAP, seconds))
+    for theirs in truths.values():
+        assert 0.77 <= score_of(theirs[100:]).inside <= 0.83
 
 
 def test_who_always_comes_later_is_expected_later() -> None:
