@@ -108,16 +108,16 @@ class Timetable:
 
     def _placed(self, before: Whereabouts | None, now: Whereabouts, left_at: Mapping[int, str]) -> Whereabouts:
         """Where it stands: what it says with a `clear` comes before what it is seen to say a moment later."""
-        if before is None:
-            return now
         if now.holds:
             return replace(now, post=now.holds[0].from_post)
-        if before.holds:
+        if before is not None and before.holds:
             last = before.way[-1]
             there = now.wish.first[0][0] if now.wish else last.to_post
             return replace(now, post=left_at.get(last.grant_id, there))
         if now.wish is not None:
             return replace(now, post=now.wish.first[0][0])
+        if before is None:
+            return now
         news = now.seen_at is not None and (before.seen_at is None or now.seen_at > before.seen_at)
         return now if news else replace(now, post=before.post)
 

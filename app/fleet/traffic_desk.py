@@ -15,7 +15,7 @@ from app.fleet.alarms import VANISHED, clear_alarms, raise_alarm
 from app.fleet.service import Fleet, known_robot
 from app.fleet.taken import tell_of_traffic
 from app.fleet.timetable import Elsewhere, HasToWait, MayEnter, Timetable, Verdict
-from app.fleet.whereabouts import Picture, Whereabouts, left_at, look_at_all
+from app.fleet.whereabouts import Picture, Whereabouts, left_at, look_at_all, where_they_left
 from app.tables import ClaimRow, GrantRow, RobotRow
 from maps import corridor_name
 from protocol.parts import Leg
@@ -78,6 +78,8 @@ class TrafficDesk:
         timetable = self._timetable or self._new_timetable()
         async with self._fleet.database.reading() as session:
             picture = await look_at_all(session, self._fleet.campus)
+            if self._timetable is None:
+                picture = await where_they_left(session, picture)
             held = [hold.grant_id for one in timetable.known.values() for hold in one.holds]
             left = await left_at(session, held)
         before, timetable.vanished = timetable.vanished, self._vanished(picture, now)

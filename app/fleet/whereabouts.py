@@ -1,12 +1,12 @@
 """Where every robot is and what it wishes, as the database has it: all that the timetable is made from."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import datetime
 from itertools import takewhile
 from typing import Final
 
-from sqlmodel import col, select
+from sqlmodel import col, func, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.fleet.closed import closed_names
@@ -97,6 +97,21 @@ async def look_at_all(session: AsyncSession, campus: CampusMap) -> Picture:
     return Picture(robots, closed)
 
 
+async def where_they_left(session: AsyncSession, picture: Picture) -> Picture:
+    """Robots that have left a corridor since they were last seen stand where they left it. For a timetable that is made
+    anew: one that was there at the time has heard of it."""
+    left = {row.robot: row for row in (await session.exec(_LAST_LEFT)).all()}
+    robots = {name: _where_it_left(one, left.get(name)) for name, one in picture.robots.items()}
+    return replace(picture, robots=robots)
+
+
+def _where_it_left(one: Whereabouts, last: GrantRow | None) -> Whereabouts:
+    if last is None or last.left_at is None or last.cleared_at is None:
+        return one
+    is_news = one.seen_at is None or one.seen_at < last.cleared_at
+    return replace(one, post=last.left_at) if is_news else one
+
+
 async def left_at(session: AsyncSession, grant_ids: Sequence[int]) -> dict[int, str]:
     """Where robots stood when they were clear of these."""
     rows = (await session.exec(select(GrantRow).where(col(GrantRow.id).in_(grant_ids)))).all() if grant_ids else ()
@@ -162,6 +177,13 @@ def _wish(row: ClaimRow) -> Wish:
     goal = row.goal or legs[-1][1]
     to_goal = next((number for number, leg in enumerate(legs, start=1) if leg[1] == goal), len(legs))
     return Wish(row.claim_id, tuple(first), goal, tuple(legs[1:to_goal]) if len(first) == 1 else ())
+
+
+_LAST_LEFT: Final = select(GrantRow).where(
+    col(GrantRow.id).in_(
+        select(func.max(GrantRow.id)).where(col(GrantRow.cleared_at).is_not(None)).group_by(col(GrantRow.robot))
+    )
+)
 
 
 async def _goals(session: AsyncSession) -> dict[str, list[tuple[str, str]]]:

@@ -32,3 +32,11 @@ def test_what_is_asked_for_after_a_stop_is_granted_after_it_as_far_as_the_next(s
     timetable.follow(Picture({"r1": loaded}, frozenset()), {}, 60.0)
     assert list(timetable.verdicts({}, 60.0)) == [MayEnter("r1", WAY)]
     assert [hold.to_post for hold in timetable.known["r1"].way] == ["post2", "post3", "post4"]
+
+
+def test_a_robot_asks_from_where_it_stands_wherever_it_was_seen_last(settings: Settings) -> None:
+    """A timetable that is made anew has not heard on which way it came here."""
+    timetable = Timetable(builtin_map("test_track"), settings)
+    asks = replace(ASKS_WHILE_IT_COMES, post="post5", goals=(GIVES,), wish=Wish("c1", WAY[:1], "post4", WAY[1:]))
+    timetable.follow(Picture({"r1": asks}, frozenset()), {}, 0.0)
+    assert list(timetable.verdicts({}, 0.0)) == [MayEnter("r1", WAY)]

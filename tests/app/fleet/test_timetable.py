@@ -97,6 +97,13 @@ class Traveller:
         await self.robot.say(Clear(leg=leg, post=leg.to_post))
 
 
+async def until_nothing_is_held(service: Service) -> None:
+    async def is_so() -> bool:
+        return await service.rows(GrantRow, cleared_at=None) == []
+
+    await until(is_so)
+
+
 @pytest.fixture
 def by_timetable(settings: Settings) -> Settings:
     return settings.model_copy(update={"traffic": "timetable"})
@@ -165,11 +172,25 @@ async def test_what_was_granted_is_granted_after_a_restart_of_the_service(
             await second.leave(inside)
             await second.go_to("post4")
             await going
+            await until_nothing_is_held(service)
 
-            async def nothing_is_held() -> bool:
-                return await service.rows(GrantRow, cleared_at=None) == []
 
-            await until(nothing_is_held)
+async def test_after_a_restart_of_the_service_a_robot_stands_where_it_left_its_last_corridor(
+    by_timetable: Settings, clock: SteppedClock
+) -> None:
+    """It was seen at post4 last, and has not said hello to the new service yet."""
+    track = Track(at={"r2": "post4"})
+    second = Traveller(PlayedRobot(clock, "r2"), track)
+    async with serving(by_timetable, clock) as service, second.greeted(service, await service.enrol("r2")):
+        await second.go_to("post3")
+        await until_nothing_is_held(service)
+    async with serving(by_timetable, clock) as service:
+
+        async def stands_at() -> str | None:
+            timetable = service.app.state.traffic_desk.timetable
+            return timetable.known["r2"].post if timetable else None
+
+        assert await until(stands_at) == "post3"
 
 
 async def test_a_robot_that_falls_silent_keeps_its_corridor_rings_once_and_is_one_of_them_again_when_it_is_back(
