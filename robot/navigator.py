@@ -1,6 +1,7 @@
 """The robot's idea of where it is and where it goes: kept up with what the body sees, written down for a power cut."""
 
 import math
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from itertools import pairwise
@@ -14,7 +15,7 @@ from robot.navigation.approach import is_aslant
 from robot.navigation.astray import FROM_MM, TO_MM, Compass, really_towards
 from robot.navigation.by_fixes import near_dock
 from robot.navigation.closed import Closed, open_way
-from robot.navigation.directions import Way, next_post
+from robot.navigation.directions import Way, kept_from, next_post
 from robot.navigation.docks import in_dock, nearest_dock, way_out
 from robot.navigation.moved import cannot_be_next, found_at, nowhere
 from robot.navigation.position import REACHED_MM, Position
@@ -222,12 +223,14 @@ class Navigator:
 
     def way(self) -> Way | None:
         """The way from here to the destination; None between posts, and where no way leads."""
-        if self.destination is None or self.at is None:
-            return None
-        try:
-            return self.position.way_to(self.campus, self.destination, self._odometry, self._avoided())
-        except NoRoute:
-            return None
+        with suppress(NoRoute):
+            if self.destination is not None and self.at is not None:
+                return self.position.way_to(self.campus, self.destination, self._odometry, self._not_next())
+        return None
+
+    def _not_next(self) -> frozenset[str]:
+        """What it avoids where it stands: all that does not lead straight to where the service sends it first."""
+        return kept_from(self.campus, self._duties.held.detour, self.at, self.destination, self._avoided())
 
     def _avoided(self) -> frozenset[str]:
         return self.closed.names | {corridor_name(leg.from_post, leg.to_post) for leg in self._duties.avoid}
@@ -281,12 +284,10 @@ class Navigator:
         return turn_rad if turn_rad is not None and abs(turn_rad) > STRAIGHT_RAD else 0.0
 
     def _next_post(self) -> str | None:
-        if self.destination is None or self.at is None:
-            return None
-        try:
-            return next_post(self.campus, self.at, self.destination, self._avoided())
-        except NoRoute:
-            return None
+        with suppress(NoRoute):
+            if self.destination is not None and self.at is not None:
+                return next_post(self.campus, self.at, self.destination, self._not_next())
+        return None
 
     @property
     def ahead_m(self) -> float:

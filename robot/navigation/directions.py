@@ -3,8 +3,9 @@
 import math
 from enum import StrEnum
 
-from maps import CampusMap, shortest_route
+from maps import CampusMap, corridor_name, shortest_route
 from maps.geometry import wrapped
+from protocol.parts import Leg
 
 
 class Way(StrEnum):
@@ -42,3 +43,16 @@ def next_post(campus: CampusMap, post: str, destination: str, avoid: frozenset[s
     """The neighbour to drive to, None when already there. Raises UnknownPost, NoRoute."""
     route = shortest_route(campus, post, destination, avoid).posts
     return route[1] if len(route) > 1 else None
+
+
+def kept_from(
+    campus: CampusMap, aside: Leg | None, here: str | None, destination: str | None, avoided: frozenset[str]
+) -> frozenset[str]:
+    """What is `avoided`, and for a robot that is sent `aside`, straight to its destination, every other corridor here.
+
+    The shortest way there may begin with another corridor, or one with another be as short: that one is not granted.
+    """
+    if aside is None or (aside.from_post, aside.to_post) != (here, destination):
+        return avoided
+    others = frozenset(one.name for post, one in campus.neighbours(aside.from_post) if post.name != destination)
+    return avoided if corridor_name(aside.from_post, aside.to_post) in avoided else avoided | others

@@ -6,12 +6,15 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 
-from maps import builtin_map
+from maps import CampusMap, builtin_map
+from protocol.envelope import Envelope
 from protocol.parts import Leg
+from protocol.to_robot import Detour
 from robot.drivers.interfaces import Sighting
 from robot.duties import Duties
 from robot.memory import Memory
 from robot.navigation.closed import CLOSED_S
+from robot.navigation.directions import kept_from
 from robot.navigator import KEPT_POSTS, Navigator
 from robot.outbox import Outbox
 from robot.store import Store
@@ -23,11 +26,17 @@ CAMPUS = builtin_map("test_track")
 class Walk:
     """A navigator with a body that is led through the map by hand."""
 
-    def __init__(self, store: Store, home: str | None = "post5", since_midnight_s: float = 0.0) -> None:
+    def __init__(
+        self,
+        store: Store,
+        home: str | None = "post5",
+        since_midnight_s: float = 0.0,
+        campus: CampusMap = CAMPUS,
+    ) -> None:
         utc = datetime(2026, 1, 5, tzinfo=UTC) + timedelta(seconds=since_midnight_s)
         self.duties = Duties(store, Memory(store), Outbox(store), lambda: utc)
         self.now = 0.0
-        self.navigator = Navigator(CAMPUS, home, self.duties, self.now)
+        self.navigator = Navigator(campus, home, self.duties, self.now)
         self.body = FakeBody()
 
     def look(self) -> None:
@@ -91,6 +100,34 @@ def test_what_lies_behind_is_reached_by_half_a_turn_to_the_side_that_was_asked(w
     assert walk.navigator.way() == "behind"
     assert walk.navigator.turn_rad("left") == pytest.approx(math.pi)
     assert walk.navigator.turn_rad("right") == pytest.approx(-math.pi)
+
+
+def test_who_is_sent_aside_to_where_it_goes_anyway_takes_the_corridor_that_it_was_granted(store: Store) -> None:
+    walk = Walk(store, home="uc", campus=builtin_map("carleton"))
+    walk.look()
+    walk.navigator.place("uc", "azrieli")
+    walk.drives_to("azrieli")
+    walk.navigator.destination = "library"
+    assert walk.navigator.way() == "forward", "by the junction it is as far, and no turn"
+    straight = Leg(from_post="azrieli", to_post="library")
+    sent = Detour(claim_id="c", legs=(straight,), reason="Others have to pass.")
+    walk.duties.memory.resume("j", 1)
+    walk.duties.memory.receive(
+        Envelope(type="detour", robot="r1", journal="j", seq=1, at=datetime(2026, 1, 5, tzinfo=UTC), body=sent)
+    )
+    walk.duties.seen("azrieli")
+    assert walk.navigator.way() == "right"
+    walk.turns("right")
+    walk.navigator.leave()
+    assert walk.navigator.corridor == straight
+
+
+def test_who_knows_the_corridor_to_be_closed_into_which_it_is_sent_keeps_to_its_own_way() -> None:
+    campus, aside = builtin_map("carleton"), Leg(from_post="azrieli", to_post="library")
+    assert kept_from(campus, aside, "azrieli", "library", frozenset()) == {"azrieli-junction", "azrieli-uc"}
+    closed = frozenset({"azrieli-library"})
+    assert kept_from(campus, aside, "azrieli", "library", closed) == closed
+    assert kept_from(campus, aside, "azrieli", "loeb", frozenset()) == frozenset(), "and so does who goes elsewhere"
 
 
 def test_between_posts_it_is_nowhere_and_the_post_ahead_is_known(walk: Walk) -> None:
