@@ -46,10 +46,13 @@ def test_a_part_measures_every_figure_that_it_is_judged_by(tmp_path: Path) -> No
 )
 def test_no_robot_is_stuck_and_no_order_forgotten_while_robots_die_and_corridors_are_closed(case: Case) -> None:
     """Twelve hours of each; a hundred thousand robot-hours in `make bench-fleet ARGS="never_stuck"`."""
-    seen = look_at(Run(case, seed=3, hours=12.0, faults=FAULTS))
+    seen = look_at(Run(case, seed=3, hours=12.0, faults=FAULTS, far=True))
     assert (seen.stuck, seen.met, seen.too_old) == (0, 0, 0)
     assert seen.robot_hours == 12.0 * case.robots
     assert seen.delivered > 6 * case.robots
+    assert (seen.let_in_ahead > 0) == (case.following_s is None), (
+        "behind each other the order is only known when they go in"
+    )
 
 
 def test_robots_that_meet_or_find_no_bay_would_be_seen() -> None:

@@ -3,7 +3,7 @@
     controller.joins("r1", post="mailroom", home="mailroom", at_home=True, now_s=0.0)
     controller.give("r1", [Goal(network.number_of("library"), 60.0)], now_s=0.0)   whether there is a timetable with it
     controller.claims("r1", "mailroom", "loeb", now_s=1.0)                         Granted, Waits or Denied
-    controller.grants(now_s=9.0)                                                   who waited and may enter now
+    controller.grants(now_s=9.0)                                                   who waited, and waits no longer
     controller.cleared("r1", "mailroom", "loeb", now_s=301.0)
 
 In memory and pure: what it knows can be built again from the grants, the places and the goals of all robots. Nothing
@@ -123,29 +123,28 @@ class TrafficController:
 
     def give(self, robot: str, goals: Sequence[Goal], now_s: float, rounds: int = ROUNDS) -> bool:
         """These are its goals from now on, all of them, if there is a timetable with them; else nothing changes."""
-        its = self._robots[robot]
-        before = its.goals, its.goals_wait
-        its.goals, its.goals_wait = tuple(goals), False
+        its, before = self._robots[robot], replace(self._robots[robot])
+        its.wants(goals, now_s)
+        its.goals_wait = False
         tasks, kept = self.tasks(now_s), self.journeys_of_others(robot, now_s)
         found = plan(self._network, tasks, [robot], kept) or insert(self._network, tasks, kept, robot)
         found = found or first_plan(self._network, tasks, self._rng)
         if found is None or not self._takes(tasks, self._better(tasks, found, rounds)):
-            its.goals, its.goals_wait = before
+            self._robots[robot] = before
             return False
         return True
 
     def adopt(self, goals: Mapping[str, Sequence[Goal]], timetable: Timetable, now_s: float) -> bool:
         """The same for several robots with a timetable that somebody has worked out, if it can still be carried out:
         since then robots may have entered corridors, but no others than it says."""
-        before = {name: robot.goals for name, robot in self._robots.items()}
+        before = {name: replace(robot) for name, robot in self._robots.items()}
         for name, theirs in goals.items():
-            self._robots[name].goals = tuple(theirs)
+            self._robots[name].wants(self._robots[name].as_told(theirs), now_s)
         tasks = self.tasks(now_s)
         journeys = caught_up(self._network, tasks, timetable.journeys)
         if journeys is not None and self._takes(tasks, replace(timetable, journeys=journeys)):
             return True
-        for name, robot in self._robots.items():
-            robot.goals = before[name]
+        self._robots = before
         return False
 
     def close(self, corridor: str, now_s: float) -> None:
@@ -166,13 +165,14 @@ class TrafficController:
     def unfreeze(self, robot: str, now_s: float) -> None:
         """It goes on from where it was."""
         self._robots[robot].frozen = False
+        self._robots[robot].begins(now_s)
         self._plan_all(now_s)
 
     # What robots say.
 
     def claims(self, robot: str, start: str, end: str, now_s: float) -> Answer:
-        """May this robot enter the corridor between these posts? What waits is answered again by `grants`. Raises
-        LookupError if there is no such corridor."""
+        """May this robot enter the corridor between these posts? What waits is answered again by `grants`; what is
+        denied is asked no more. Raises LookupError if there is no such corridor."""
         lane = self._whole.lane(self._whole.number_of(start), self._whole.number_of(end))
         self._robots[robot].claim = lane
         if not self._leads_through(robot, lane) and all(goal.key == CLAIMED for goal in self._robots[robot].goals):
@@ -194,13 +194,12 @@ class TrafficController:
     def gives_up_claim(self, robot: str) -> None:
         self._robots[robot].claim = None
 
-    def grants(self, now_s: float) -> list[tuple[str, Granted]]:
-        """Those who waited and may enter now. Asked after every change, and when a time that was named has come."""
-        granted = []
-        for name, robot in self._robots.items():
-            if robot.claim is not None and isinstance(answer := self._answer(name, now_s), Granted):
-                granted.append((name, answer))
-        return granted
+    def grants(self, now_s: float) -> list[tuple[str, Granted | Denied]]:
+        """Those who waited and may enter now, or are led another way now. Asked after every change, and when a time
+        that was named has come."""
+        waiting = [name for name, robot in self._robots.items() if robot.claim is not None]
+        answers = [(name, self._answer(name, now_s)) for name in waiting]
+        return [(name, answer) for name, answer in answers if not isinstance(answer, Waits)]
 
     def cleared(self, robot: str, start: str, end: str, now_s: float) -> None:
         """The robot has left this corridor and stands at its end. Nothing happens if it was not in it."""
@@ -227,7 +226,7 @@ class TrafficController:
         its = self._robots[robot]
         left = tuple(goal for goal in its.goals if goal.key != key)
         was_first = its.goals[1:] == left and self._serves_now(robot) > 0
-        its.goals = left
+        its.wants(left, now_s)
         if not was_first:
             self._plan_all(now_s)
 
@@ -261,6 +260,7 @@ class TrafficController:
             journey = self._journeys[robot]
         coming = journey.legs[1] if journey is not None and len(journey.legs) > 1 else None
         if coming is None or coming.lane != lane:
+            its.claim = None
             return Denied(lane, None if coming is None else coming.lane)
         others = self._waits_for(robot, now_s)
         if others or its.start.lane is not None:

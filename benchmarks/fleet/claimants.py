@@ -1,12 +1,12 @@
 """Robots that know nothing of each other and claim corridor by corridor from the product's traffic controller.
 
-They are late, they fall silent in corridors and stay there until somebody has looked, they are switched off and on;
-people close corridors for an hour. What happens is looked at here: whoever meets another or finds no bay ends the run,
-and whoever does not move for hours is counted as stuck.
+They are late, they fall silent in corridors and at posts and stay there until somebody has looked, they are switched
+off and on; people close corridors for an hour. What happens is looked at here: whoever meets another or finds no bay
+ends the run, and whoever does not move for hours is counted as stuck.
 """
 
 import heapq
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import partial
 from itertools import count
@@ -32,23 +32,25 @@ STUCK_S: Final = 6 * 3600.0
 
 @dataclass(frozen=True, slots=True)
 class Faults:
-    """How often: of the ways through corridors, and by the hour."""
+    """How often: of the ways through corridors, of the stops at posts, and by the hour."""
 
     dies: float = 0.0
+    dies_at_a_post: float = 0.0
     closures_an_hour: float = 0.0
     switched_off_an_hour: float = 0.0
 
 
 @dataclass
 class Robot:
-    """`busy`: it drives, `handles` something, or is dead. `claim`: what it waits for. `at_home`: it stands at its home
-    place or is on its way there, and needs no bay."""
+    """`busy`: it drives, `handles` something, or is dead. `ahead`: further corridors that it was let into. `claim`:
+    what it waits for. `at_home`: it stands at its home place or is on its way there, and needs no bay."""
 
     name: str
     home: int
     post: int
     goals: list[Goal] = field(default_factory=list)
     lane: Lane | None = None
+    ahead: list[Lane] = field(default_factory=list)
     claim: Lane | None = None
     busy: bool = False
     handles: bool = False
@@ -64,7 +66,8 @@ class Delivered:
 
 
 class Campus:
-    """`age_limit_s`: an order that has waited so long is the next that is taken. `served`: the keys of all goals that
+    """`age_limit_s`: an order that has waited so long is the next that is taken. `far`: robots are let into as much of
+    their way as nobody enters before them. `served`: the keys of all goals that
     are behind their robots."""
 
     def __init__(
@@ -76,9 +79,10 @@ class Campus:
         *,
         spread: float = 0.2,
         age_limit_s: float,
+        far: bool = False,
         dispatch: Dispatch = nearest,
     ) -> None:
-        self._dispatch = dispatch
+        self._dispatch, self._far = dispatch, far
         self.network, self.faults, self.age_limit_s = ground.network, faults, age_limit_s
         self.rng, self._spread = Random(seed), spread
         self.controller = TrafficController(ground.network, Random(seed))
@@ -88,7 +92,8 @@ class Campus:
         self.served: set[str] = set()
         self._placed_s: dict[int, float] = {}
         self._taken_s: dict[int, float] = {}
-        self.entries = self.deaths = self.closures = self.switched_off = self.refused = self.stuck = 0
+        self.entries = self.ahead = self.deaths = self.deaths_at_posts = 0
+        self.closures = self.switched_off = self.refused = self.stuck = 0
         self._events: list[tuple[float, int, Callable[[], None]]] = []
         self._count = count()
         self.robots = {name: Robot(name, home, home) for name, home in ground.homes(robots).items()}
@@ -128,8 +133,7 @@ class Campus:
         if not robot.goals and not self._dispatch(self, robot):
             self._later(AGAIN_S, partial(self._go_on, robot))
         elif robot.goals[0].post == robot.post:
-            robot.busy = robot.handles = True
-            self._later(HANDLING_S, partial(self._served, robot))
+            self._handle(robot)
         else:
             self._claim(robot)
 
@@ -146,18 +150,42 @@ class Campus:
                 robot.claim = lane
                 return
             lane = answer.instead
-        self.controller.gives_up_claim(robot.name)
         self._look_at(robot)
         self._later(AGAIN_S, partial(self._go_on, robot))
 
+    def _handle(self, robot: Robot) -> None:
+        robot.busy = True
+        if self.faults.dies_at_a_post and self.rng.random() < self.faults.dies_at_a_post:
+            self.deaths_at_posts += 1
+            self._later(VANISHED_S, partial(self._vanished, robot))
+        else:
+            robot.handles = True
+            self._later(HANDLING_S, partial(self._served, robot))
+
     def _shortest(self, robot: Robot) -> Lane:
+        return self._towards(robot.post, robot.goals[0].post)
+
+    def _towards(self, post: int, to: int) -> Lane:
         to_s = self.network.shortest_s
-        to = robot.goals[0].post
-        return min(self.network.lanes[robot.post], key=lambda lane: (lane.travel_s + to_s[lane.end][to], lane.corridor))
+        return min(self.network.lanes[post], key=lambda lane: (lane.travel_s + to_s[lane.end][to], lane.corridor))
 
     def _enter(self, robot: Robot, lane: Lane) -> None:
+        robot.claim = None
+        if self._far:
+            way = [self._ends(one) for one in self._way(lane.end, robot.goals[0].post)]
+            robot.ahead = self.controller.goes_on(robot.name, way, self.now_s)
+            self.ahead += len(robot.ahead)
+        self._drive(robot, lane)
+
+    def _way(self, post: int, to: int) -> Iterator[Lane]:
+        while post != to:
+            lane = self._towards(post, to)
+            yield lane
+            post = lane.end
+
+    def _drive(self, robot: Robot, lane: Lane) -> None:
         self.entries += 1
-        robot.claim, robot.lane, robot.busy, robot.moved_s = None, lane, True, self.now_s
+        robot.lane, robot.busy, robot.moved_s = lane, True, self.now_s
         travel_s = lane.travel_s * self.rng.uniform(1 - self._spread, 1 + self._spread)
         if self.rng.random() < self.faults.dies:
             self._later(travel_s / 2 + VANISHED_S, partial(self._vanished, robot))
@@ -172,7 +200,11 @@ class Campus:
             return
         robot.lane, robot.post, robot.busy = None, lane.end, False
         self.controller.cleared(robot.name, *self._ends(lane), self.now_s)
-        self._go_on(robot)
+        if robot.ahead:
+            self._drive(robot, further := robot.ahead.pop(0))
+            self.look_for_others(robot, further)
+        else:
+            self._go_on(robot)
 
     def _ahead_of(self, robot: Robot, lane: Lane) -> bool:
         return any(other.lane == lane and other.moved_s < robot.moved_s for other in self.robots.values())
@@ -190,17 +222,18 @@ class Campus:
     # What the service answers later.
 
     def _grant(self) -> None:
-        granted = self.controller.grants(self.now_s)
-        for name, answer in granted:
-            self._enter(self.robots[name], answer.lane)
-        for name, answer in granted:
-            self.look_for_others(self.robots[name], answer.lane)
-        for robot in self.robots.values():
-            if robot.claim is not None and self.controller.leads(robot.name) != robot.claim:
-                self.controller.gives_up_claim(robot.name)  # the timetable goes another way now
+        answers = [(self.robots[name], answer) for name, answer in self.controller.grants(self.now_s)]
+        granted = [(robot, answer.lane) for robot, answer in answers if isinstance(answer, Granted)]
+        for robot, lane in granted:
+            self._enter(robot, lane)
+        for robot, lane in granted:
+            self.look_for_others(robot, lane)
+        for robot, answer in answers:
+            if isinstance(answer, Denied):  # the timetable goes another way now
                 robot.claim = None
                 self._go_on(robot)
-            elif robot.claim is not None:
+        for robot in self.robots.values():
+            if robot.claim is not None:
                 self._look_at(robot)
 
     def _look_at(self, robot: Robot) -> None:
@@ -219,7 +252,7 @@ class Campus:
         """It is switched on at its home, with what it carries."""
         home = self.network.posts[robot.home]
         robot.post, robot.lane, robot.claim, robot.busy = robot.home, None, None, False
-        robot.at_home = True
+        robot.at_home, robot.ahead = True, []
         robot.moved_s = self.now_s
         self.controller.joins(robot.name, post=home, home=home, at_home=True, now_s=self.now_s)
         self._later(0.0, partial(self._takes_up, robot))
@@ -262,7 +295,8 @@ class Campus:
         if any(lane.following_s is None or other != lane for other in inside):
             raise CollisionError(f"{robot.name} meets another in {self.network.corridors[lane.corridor]}")
         for name, task in self.controller.tasks(self.now_s).items():
-            self.robots[name].at_home = task.start.at_home  # of those that are dead: as it was
+            other = self.robots[name]
+            other.at_home = task.start.at_home and not other.ahead  # of those that are dead: as it was
         places = [other.lane.end if other.lane else other.post for other in others if not other.at_home]
         if not robot.at_home and places.count(lane.end) >= self.network.bays[lane.end]:
             raise CollisionError(f"{robot.name} finds no bay at {self.network.posts[lane.end]}")

@@ -1,7 +1,8 @@
 """Robots that claim from the product's controller for 100,000 hours: nobody meets or is stuck, no order is forgotten.
 
 Each run is one map with one seed. Ways take 20 % more or less than planned; in half of the runs robots also fall silent
-in corridors until somebody has looked, are switched off and on, and people close corridors for an hour.
+in corridors and at posts until somebody has looked, are switched off and on, and people close corridors for an hour; in
+half of them, and in half of the others, they are let into as much of their way as nobody enters before them.
 """
 
 from collections.abc import Iterator
@@ -20,7 +21,7 @@ from benchmarks.fleet.world import CollisionError
 AGE_LIMIT_S: Final = 6 * 3600.0
 MOST_HOURS: Final = 100.0
 """Of one run; then another begins with another seed."""
-FAULTS: Final = Faults(dies=0.002, closures_an_hour=0.05, switched_off_an_hour=0.05)
+FAULTS: Final = Faults(dies=0.002, dies_at_a_post=0.001, closures_an_hour=0.05, switched_off_an_hour=0.05)
 WANTED = [
     Wanted("all.stuck", at_most=0),
     Wanted("all.met", at_most=0),
@@ -62,6 +63,7 @@ class Run:
     seed: int
     hours: float
     faults: Faults
+    far: bool = False
 
 
 @dataclass
@@ -71,8 +73,10 @@ class Seen:
 
     robot_hours: float = 0.0
     entries: int = 0
+    let_in_ahead: int = 0
     delivered: int = 0
     died: int = 0
+    died_at_posts: int = 0
     closed: int = 0
     switched_off: int = 0
     refused: int = 0
@@ -105,7 +109,7 @@ def look_at(run: Run) -> Seen:
     case = run.case
     ground = GROUNDS[case.ground](case.bays, case.following_s, run.seed)
     dispatch = Planner(Random(run.seed)) if case.planner else nearest
-    campus = Campus(ground, case.robots, run.seed, run.faults, age_limit_s=AGE_LIMIT_S, dispatch=dispatch)
+    campus = Campus(ground, case.robots, run.seed, run.faults, age_limit_s=AGE_LIMIT_S, far=run.far, dispatch=dispatch)
     met = 0
     try:
         campus.run(run.hours * 3600)
@@ -119,8 +123,8 @@ def _runs(samples: Samples) -> Iterator[Run]:
     """Every case as often, each time with another seed, until there are so many robot-hours."""
     hours = min(MOST_HOURS, samples.robot_hours / sum(case.robots for case in CASES))
     for turn in range(ceil(samples.robot_hours / (hours * sum(case.robots for case in CASES)))):
-        faults = FAULTS if turn % 2 == 0 else Faults()
-        yield from (Run(case, samples.first_seed + turn, hours, faults) for case in CASES)
+        faults, far = FAULTS if turn % 2 == 0 else Faults(), turn % 4 < 2
+        yield from (Run(case, samples.first_seed + turn, hours, faults, far) for case in CASES)
 
 
 def _seen(campus: Campus, met: int) -> Seen:
@@ -130,8 +134,10 @@ def _seen(campus: Campus, met: int) -> Seen:
     return Seen(
         campus.now_s / 3600 * len(campus.robots),
         campus.entries,
+        campus.ahead,
         len(campus.delivered),
         campus.deaths,
+        campus.deaths_at_posts,
         campus.closures,
         campus.switched_off,
         campus.refused,

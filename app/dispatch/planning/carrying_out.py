@@ -35,7 +35,8 @@ def scene_of(
     at_work = {}
     for name, task in tasks.items():
         able = robots.get(name) or Able(accepts=False)
-        route = _route(traffic.goals(name), stops)
+        left = {goal.key: goal for goal in task.goals}  # of what it has begun the rest
+        route = _route((left.get(goal.key, goal) for goal in traffic.goals(name)), stops)
         at_work[name] = RobotAtWork(
             task.start, task.home, able.capacity, route, able.begun, able.accepts, able.drives_s
         )

@@ -27,6 +27,16 @@ def line(posts: int, bays: int = 1) -> Network:
     return Network(names, (bays,) * posts, corridors, tuple(tuple(out) for out in lanes))
 
 
+def triangle() -> Network:
+    """From a to b it is a little shorter than to c."""
+    lanes = (
+        (Lane(0, 0, 0, 1, 50.0), Lane(1, 0, 0, 2, 60.0)),
+        (Lane(0, 1, 1, 0, 50.0), Lane(2, 0, 1, 2, 60.0)),
+        (Lane(1, 1, 2, 0, 60.0), Lane(2, 1, 2, 1, 60.0)),
+    )
+    return Network(("a", "b", "c"), (1, 1, 1), ("a-b", "a-c", "b-c"), lanes)
+
+
 def two_at_the_ends() -> TrafficController:
     controller = TrafficController(line(3))
     controller.joins("r1", post="a", home="a", at_home=True, now_s=0.0)
@@ -101,18 +111,51 @@ def test_who_follows_a_late_robot_is_expected_behind_it_and_a_plan_is_found_all_
 
 
 def test_a_closed_corridor_is_gone_round_and_open_again_it_is_used() -> None:
-    lanes = (
-        (Lane(0, 0, 0, 1, 50.0), Lane(1, 0, 0, 2, 60.0)),
-        (Lane(0, 1, 1, 0, 50.0), Lane(2, 0, 1, 2, 60.0)),
-        (Lane(1, 1, 2, 0, 60.0), Lane(2, 1, 2, 1, 60.0)),
-    )
-    controller = TrafficController(Network(("a", "b", "c"), (1, 1, 1), ("a-b", "a-c", "b-c"), lanes))
+    controller, (ab, ac) = TrafficController(triangle()), triangle().lanes[0]
     controller.joins("r1", post="a", home="a", at_home=True, now_s=0.0)
     assert controller.give("r1", [Goal(1, 5.0, key="one")], 0.0)
     controller.close("a-b", 1.0)
-    assert controller.claims("r1", "a", "b", 2.0) == Denied(lanes[0][0], lanes[0][1])
+    assert controller.claims("r1", "a", "b", 2.0) == Denied(ab, ac)
     controller.open("a-b", 3.0)
     assert isinstance(controller.claims("r1", "a", "b", 4.0), Granted)
+
+
+def test_whoever_waits_is_told_when_the_way_is_another() -> None:
+    controller = TrafficController(triangle())
+    controller.joins("r1", post="a", home="a", at_home=True, now_s=0.0)
+    controller.joins("r2", post="b", home="b", at_home=True, now_s=0.0)
+    assert controller.give("r2", [Goal(0, 5.0, key="two")], 0.0)
+    assert isinstance(controller.claims("r2", "b", "a", 0.0), Granted)
+    assert controller.give("r1", [Goal(1, 5.0, key="one")], 1.0)
+    waits = controller.claims("r1", "a", "b", 1.0)
+    assert isinstance(waits, Waits)
+    assert waits.robots == ("r2",)
+    controller.freeze("r2", 20.0)
+    ab, ac = triangle().lanes[0]
+    assert controller.grants(21.0) == [("r1", Denied(ab, ac))]
+    assert controller.grants(22.0) == [], "once"
+    assert isinstance(controller.claims("r1", "a", "c", 23.0), Granted)
+
+
+def test_of_what_a_robot_has_begun_only_the_rest_is_counted() -> None:
+    controller = TrafficController(line(3))
+    controller.joins("r1", post="a", home="c", at_home=False, now_s=0.0)
+    goals = [Goal(0, 60.0, key="one"), Goal(0, 60.0, key="two"), Goal(2, 60.0, key="three")]
+
+    def done_s(now_s: float) -> float:
+        return controller.journeys(now_s)["r1"].done_s
+
+    assert controller.give("r1", goals, 10.0)
+    assert done_s(10.0) == done_s(50.0) == 10.0 + 120.0 + 200.0 + 60.0
+    assert controller.adopt({"r1": controller.tasks(50.0)["r1"].goals}, Timetable(controller.journeys(50.0), 0.0), 50.0)
+    assert controller.goals("r1") == tuple(goals), "as it was told"
+    assert done_s(60.0) == 390.0
+    assert done_s(100.0) == 100.0 + 5.0 + 60.0 + 200.0 + 60.0, "any moment now"
+    controller.served("r1", "one", 110.0)
+    assert done_s(120.0) == 110.0 + 60.0 + 200.0 + 60.0
+    controller.freeze("r1", 130.0)
+    controller.unfreeze("r1", 900.0)
+    assert done_s(920.0) == 900.0 + 60.0 + 200.0 + 60.0, "nobody could do anything while it stood"
 
 
 def test_a_robot_that_goes_for_reasons_of_its_own_is_let_in() -> None:
@@ -163,8 +206,11 @@ class Campus:
             self.now_s, _, robot = heapq.heappop(self._ahead)
             self._arrive(robot)
             served += self._serve(robot)
-            for name, granted in self.controller.grants(self.now_s):
-                self._enter(name, granted.lane)
+            for name, answer in self.controller.grants(self.now_s):
+                if isinstance(answer, Granted):
+                    self._enter(name, answer.lane)
+                else:
+                    self.later(name, 1.0)
         return served
 
     def _arrive(self, robot: str) -> None:
