@@ -11,16 +11,17 @@ from app.traffic.planning import Timetable, first_plan, improve, insert, plan
 from benchmarks.fleet.demand import HANDLING_S, Demand, Order
 from benchmarks.fleet.world import World
 
-Choice = Literal["first come", "nearest robot", "optimiser", "quickest", "least delay"]
+Choice = Literal["first come", "nearest robot", "optimiser", "optimiser of all", "quickest", "least delay"]
 AGE_LIMIT_S: Final = 6 * 3600.0
 
 
 @dataclass(frozen=True)
 class Rule:
     """`choice`: the oldest order and the robot that is free longest, or the robot nearest to it; what a route optimiser
-    says (`vroom_rule`); or the order with which the fleet loses least time, the way to it included or only what robots
-    wait for each other. `orders` are tried jointly with `rounds` other orders of planning each. An order older than
-    `age_limit_s` goes before all others."""
+    says (`vroom_rule`), of the robots that are free or of all, so that an order may wait for one that is not; or the
+    order with which the fleet loses least time, the way to it included or only what robots wait for each other.
+    `orders` are tried jointly with `rounds` other orders of planning each. An order older than `age_limit_s` goes
+    before all others."""
 
     choice: Choice
     orders: int = 1
@@ -93,16 +94,18 @@ class Assigning:
         if self.rule.choice == "nearest robot":
             return [(min(free, key=lambda robot: _to_s(world, robot, oldest)), oldest)]
         if self.rule.choice == "optimiser":
-            return self._of_optimiser(world, free)
+            return self._of_optimiser(world, free, free)
+        if self.rule.choice == "optimiser of all":
+            return self._of_optimiser(world, list(world.tasks), free)
         pairs = [(robot, order) for robot in free for order in ([oldest] if too_old else waiting)]
         if self.rule.choice == "quickest":
             pairs.sort(key=lambda pair: (_to_s(world, *pair), pair[1].number))
         return pairs[: self.rule.orders]
 
-    def _of_optimiser(self, world: World, free: Sequence[str]) -> list[tuple[str, Order]]:
+    def _of_optimiser(self, world: World, robots: Sequence[str], free: Sequence[str]) -> list[tuple[str, Order]]:
         from benchmarks.fleet.vroom_rule import next_orders
 
-        return next_orders(world, free, self.demand.waiting)[:1]
+        return [pair for pair in next_orders(world, robots, self.demand.waiting) if pair[0] in free][:1]
 
     def _idea(
         self, world: World, tasks: dict[str, Task], kept: dict[str, Journey], robot: str, order: Order
