@@ -33,6 +33,12 @@ def interval_of(values: Sequence[float]) -> Interval:
     return Interval(*(quantile(ordered, share) for share in SHARES))
 
 
+def around(middle_s: float) -> Interval:
+    """Of something that no draws can be made for, as what robots will be given next: from half to twice as long. That
+    is assumed, and leaves to the errors that come how long it really is."""
+    return Interval(middle_s / 2, middle_s, 2 * middle_s)
+
+
 def pinball_s(told: Interval, truth_s: float) -> float:
     """The usual loss of quantiles, mean of the three: least, in the long run, for whoever tells the right ones."""
     losses = (max(share * (truth_s - at), (share - 1) * (truth_s - at)) for share, at in zip(SHARES, told, strict=True))

@@ -3,15 +3,17 @@
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from math import inf
+from functools import partial
 from random import Random
 from typing import Final
 
 from app.charging.acceptance import Answer
+from app.dispatch.planning.ahead import Free, carried_ahead
 from app.dispatch.planning.carrying_out import Able, adopt, scene_of
 from app.dispatch.planning.deciding import decide
 from app.dispatch.planning.improving import improved
-from app.dispatch.planning.scene import OpenOrder, RobotAtWork, Rules, Scene
+from app.dispatch.planning.scene import OpenOrder, RobotAtWork, Route, Routes, Rules, Scene
+from app.dispatch.planning.timing import served_s, tasks_of
 from app.traffic.controller import TrafficController
 from app.traffic.journey import Goal
 from benchmarks.fleet.campus_charge import Charges
@@ -79,7 +81,8 @@ class Dispatch:
         self.orders[order.id] = self.open[order.id] = order
         self.charges.ordered(self.ground.clock.local)
         self.decide()
-        self.told.promise(f"{order.id}-receive", start, end, self.scene(waits_for_charge=True))
+        scene = self.scene()
+        self.told.promise(f"{order.id}-receive", start, end, scene, partial(self._ahead, scene))
 
     # What is decided.
 
@@ -96,16 +99,28 @@ class Dispatch:
             return
         self.tell_missions(self.robots)
 
-    def scene(self, *, waits_for_charge: bool = False) -> Scene:
-        """`waits_for_charge`: as if robots had charged already, each when it will have: for estimates."""
+    def scene(self) -> Scene:
         able = {name: self._able(known) for name, known in self.robots.items()}
         kept_for = self._kept_for_long_waiting()
         orders = {one.id: self._with_avoided(one, kept_for) for one in self.open.values()}
-        scene = scene_of(self.controller, able, orders, self.now_s, Rules(age_limit_s=AGE_LIMIT_S))
-        if not waits_for_charge:
-            return scene
-        whole = {one.id: one.open() for one in self.open.values()}
-        return replace(scene, orders=whole, robots={name: self._later(name, scene) for name in scene.robots})
+        return scene_of(self.controller, able, orders, self.now_s, Rules(age_limit_s=AGE_LIMIT_S))
+
+    def _ahead(self, scene: Scene) -> Routes:
+        """What robots have before them, and behind it what waits, as they will have the charge for it."""
+        has = {name: _without_last_charge(robot.route) for name, robot in scene.robots.items()}
+        known = {stop.order for route in has.values() for stop in route}
+        waiting = [one.open() for one in self.open.values() if one.id not in known]
+        served = {} if scene.kept is None else served_s(tasks_of(scene, has), scene.kept.timetable)
+        free = {name: self._free(name, robot, has[name], served) for name, robot in scene.robots.items()}
+        ahead = carried_ahead(scene.network, free, waiting, self.charges.charging())
+        return {name: (*route, *ahead[name]) for name, route in has.items()}
+
+    def _free(self, name: str, robot: RobotAtWork, route: Route, served: Mapping[str, float]) -> Free:
+        known = self.robots[name]
+        goals = [stop.goal for stop in route]
+        at_s = served.get(goals[-1].key, robot.start.ready_s) if goals else robot.start.ready_s
+        post = goals[-1].post if goals else robot.start.post
+        return Free(post, at_s, self.charges.after(known, goals), self.charges.curves[name])
 
     def goals(self, name: str) -> tuple[Goal, ...]:
         """Of its mission: without what it does for reasons of its own."""
@@ -211,10 +226,7 @@ class Dispatch:
         avoided = kept.union(name for name, answer in answers.items() if answer is not best)
         return replace(order.open(), avoided=frozenset(avoided))
 
-    def _later(self, name: str, scene: Scene) -> RobotAtWork:
-        known, robot = self.robots[name], scene.robots[name]
-        wait_s = 0.0
-        if known.charging and not robot.route:
-            wait_s = self.charges.charging_s(known, self.charges.thresholds.sufficient)
-        start = replace(robot.start, ready_s=robot.start.ready_s + wait_s)
-        return replace(robot, start=start, drives_s=inf, accepts=True)
+
+def _without_last_charge(route: Route) -> Route:
+    """A charge with nothing behind it lasts as long as what comes next needs it."""
+    return route[:-1] if route and route[-1].goal.key.endswith("-dock") else route

@@ -1,28 +1,27 @@
 """What people are told of their orders, and how true it was: `app.estimates` on the traffic's own timetable.
 
 Corridors and hand-overs are learned from what robots tell, as `app/estimates/learning.py` does it. An order that has
-no robot yet is estimated by a decision in which robots have everything before them that waits.
+no robot yet is estimated as robots will have charged for it, one after the other (`app/dispatch/planning/ahead.py`).
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from random import Random
 from typing import Final
 
-from app.dispatch.planning.deciding import decide
-from app.dispatch.planning.scene import Scene
+from app.dispatch.planning.scene import Routes, Scene
+from app.dispatch.planning.timing import time_first
 from app.estimates.arrivals import Estimates
 from app.estimates.calibration import Basis, Calibrations
 from app.estimates.durations import Durations, Kind, Thing
 from app.estimates.forecast import Chance, forecast
-from app.estimates.intervals import Interval
+from app.estimates.intervals import Interval, around
 from app.estimates.score import Truth
 from app.traffic.journey import Goal, Journey, Task
 from app.traffic.network import Lane, Network
 from benchmarks.fleet.campus_ground import ASSUMED_HANDOVER_S, ASSUMED_M_S, Ground, is_attended
 from maps.ways import Ways
 
-ALL: Final = 50
-"""So many orders may be before a robot in the decision that nobody carries out."""
 KINDS: Final = {"load": Kind.LOAD, "receive": Kind.RECEIVE}
 
 
@@ -73,28 +72,28 @@ class Told:
 
     # What is told.
 
-    def promise(self, key: str, start: int, end: int, scene: Scene) -> None:
-        """For an order that was placed now. `scene`: as it is decided already."""
+    def promise(self, key: str, start: int, end: int, scene: Scene, ahead: Callable[[], Routes]) -> None:
+        """For an order that was placed now. `scene`: as it is decided already; `ahead`: what is likely to follow."""
         posts = self.ground.network.posts
         by_map = self._by_map.promise(posts[start], posts[end], self.ground.clock.local).by_map
         basis = Basis.TIMETABLE if _is_kept(key, scene) else Basis.NO_ROBOT_YET
-        raw = self._in_plan(key, scene)
+        raw = self._in_plan(key, scene, ahead)
         if raw is None:
             self.not_planned += 1
             raw = by_map
         told = self.calibrations.of[basis].corrected(raw)
         self.promises[key] = Promise(self._now_s, basis, raw, told, by_map)
 
-    def _in_plan(self, key: str, scene: Scene) -> Interval | None:
+    def _in_plan(self, key: str, scene: Scene, ahead: Callable[[], Routes]) -> Interval | None:
         if (kept := scene.kept) is not None and _is_kept(key, scene):
             tasks = {name: robot.task(robot.route) for name, robot in scene.robots.items()}
             tasks = {name: replace(task, goals=kept.goals[name]) for name, task in tasks.items()}
             return self._forecast(scene.network, tasks, dict(kept.timetable.journeys))[key]
-        whole = decide(replace(scene, rules=replace(scene.rules, ahead=ALL)))
-        if whole is None or whole.timed.refused:
+        timed = time_first(scene, ahead())
+        if timed is None or timed.refused:
             return None
-        timed = whole.timed
-        return self._forecast(scene.network, dict(timed.tasks), dict(timed.timetable.journeys)).get(key)
+        found = self._forecast(scene.network, dict(timed.tasks), dict(timed.timetable.journeys)).get(key)
+        return None if found is None else around(found.p50_s)
 
     def _forecast(self, network: Network, tasks: dict[str, Task], journeys: dict[str, Journey]) -> dict[str, Interval]:
         durations, now_s, rng = self.durations, self._now_s, self.rng
