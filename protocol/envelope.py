@@ -49,8 +49,9 @@ TO_ROBOT: Final[Mapping[str, type[Part]]] = {
     "watch": to_robot.Watch,
     **BOTH_WAYS,
 }
-YOUNGER: Final = ("confirm", "watch", "open_way", "detour", "revoke")
-"""Types to robots that came later: sent only to those that name them in `hello`; an older robot would hang up."""
+YOUNGER: Final = ("confirm", "watch", "open_way", "detour", "revoke", "until_ratio")
+"""Types to robots that came later, and one field: sent only to those that name them in `hello`; an older robot would
+hang up."""
 
 DURABLE: Final = frozenset({"event", "claim", "clear"}) | {
     *("mission", "verifiers", "grant", "deny", "detour"),

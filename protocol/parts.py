@@ -2,9 +2,17 @@
 
 from datetime import UTC, datetime
 from enum import StrEnum
-from typing import Annotated, Final
+from typing import Annotated, Any, Final
 
-from pydantic import AwareDatetime, BaseModel, ConfigDict, Field, StringConstraints
+from pydantic import (
+    AwareDatetime,
+    BaseModel,
+    ConfigDict,
+    Field,
+    SerializerFunctionWrapHandler,
+    StringConstraints,
+    model_serializer,
+)
 
 PostName = Annotated[str, StringConstraints(pattern=r"^[a-z][A-Za-z0-9_]*$", max_length=64)]
 """A post as the map spells it: also an AgentSpeak atom, so that it can stand in a belief."""
@@ -56,13 +64,25 @@ class Purpose(StrEnum):
 
 
 class Stop(Part):
-    """A post and what is done there. `order_id` is given for load, receive and return."""
+    """A post and what is done there. `order_id` is given for load, receive and return.
+
+    With `until_ratio` the robot stays in the dock until it has so much charge, or gets no fuller; without, it docks and
+    goes on. Left out where there is none: a robot that is older than it would not be able to read the mission.
+    """
 
     id: Identifier
     post: PostName
     action: StopAction
     order_id: Identifier | None = None
     wait_limit_s: float = Field(default=600.0, gt=0)
+    until_ratio: Ratio | None = None
+
+    @model_serializer(mode="wrap")
+    def _without_nothing(self, whole: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        told: dict[str, Any] = whole(self)
+        if self.until_ratio is None:
+            told.pop("until_ratio", None)
+        return told
 
 
 class Leg(Part):

@@ -29,8 +29,8 @@ class Hello(Part):
     """The first message on every connection: where to resume from, and what the robot knows of itself.
 
     `received` is what it last had from the server, `resume_from` the lowest `seq` of its own journal that can still
-    come. `understands` names the messages younger than the protocol that this robot knows; it is sent no others. `home`
-    is the post of its own dock.
+    come. `understands` names what is younger than the protocol and known to this robot (messages, and the field
+    `until_ratio` of stops); it is sent nothing else of that kind. `home` is the post of its own dock.
     """
 
     received: Received = Received()

@@ -27,8 +27,15 @@
 +!dock <- dock; clear_fault(no_dock).
 -!dock[error_msg(Why)] <- raise_fault(no_dock, Why); .fail.
 
+// A stop of a mission at which it charges. It lasts until there is enough, or the stop is taken away.
++!fill_up(Stop)
+  <- !dock;
+     release;
+     .wait(fill(Stop, reached));
+     report(done, Stop).
+
 // Somebody pulled the robot out of its dock.
--docked : pursuing(charge) | pursuing(idle) <- !decide_anew.
+-docked : pursuing(charge) | pursuing(idle) | .desire(fill_up(_)) <- !decide_anew.
 
 +!fulfil(go_home) : home(Post)
   <- !go_to(Post);

@@ -17,6 +17,7 @@
 
 +!serve(_, _, _, Order, _) : cancelled(Order).
 +!serve(_, _, load, Order, _) : carrying(Order).   // loaded just before a power cut
++!serve(Stop, _, dock, _, _) : fill(Stop, reached) <- report(done, Stop).   // its own battery plan has been faster
 +!serve(_, _, Do, Order, _) : takes_out(Do) & not carrying(Order).   // nobody came to load it
 +!serve(Stop, Post, Do, Order, Limit_s)
   <- report(departed, Stop);
@@ -37,6 +38,7 @@ hopeless(no_one_came).
 hopeless(unknown_post).
 hopeless(no_route).
 
++!attend(dock, Stop, _, _) : fill(Stop, _) <- !fill_up(Stop).
 +!attend(dock, _, _, _) <- !dock.
 +!attend(park, _, _, _).
 // Mail changes hands by a code shown to the camera, never by assumption. Then people get a moment to step back.

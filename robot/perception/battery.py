@@ -28,6 +28,10 @@ class BatterySense:
     weak: bool = False
     """Less charge than work is begun with."""
 
+    def has(self, ratio: float) -> bool:
+        """So much charge, or as much as the charger gives it."""
+        return self.word is BatteryWord.FULL or (self.ratio is not None and self.ratio >= ratio)
+
     def seen(self, base: BaseState, settings: BatterySettings, now: float) -> "BatterySense":
         """After one more frame of the base. A base that does not know its capacity yet changes nothing.
 

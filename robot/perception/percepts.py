@@ -82,6 +82,13 @@ def _stops(seen: Seen) -> Terms:
         yield f"stop({number},{atom_or_text(stop.id)},{stop.post},{stop.action},{order},{stop.wait_limit_s:g})"
 
 
+def _fill(seen: Seen) -> Terms:
+    for stop in seen.held.mission.stops if seen.held.mission else ():
+        if stop.until_ratio is not None:
+            is_reached = seen.battery.has(stop.until_ratio)
+            yield f"fill({atom_or_text(stop.id)},{'reached' if is_reached else 'wanted'})"
+
+
 def _mission(seen: Seen) -> Terms:
     mission = seen.held.mission
     return [f"mission({atom_or_text(mission.id)},{mission.update})"] if mission else []
@@ -149,6 +156,11 @@ PERCEPTS: Final = (
     ),
     Percept("mission", "mission(Id, Update): what is to be done", _mission),
     Percept("stop", "stop(Number, Id, Post, Action, Order, WaitLimit_s): one of its stops", _stops),
+    Percept(
+        "fill",
+        "fill(Stop, wanted|reached): at this stop it charges, until it has what is asked for or gets no fuller",
+        _fill,
+    ),
     Percept(
         "next_stop",
         "next_stop(Number): the first that is not done; remembered through a power cut",

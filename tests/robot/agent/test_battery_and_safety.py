@@ -191,3 +191,55 @@ def test_charging_comes_before_a_pause_and_a_pause_before_the_mission() -> None:
     assert stage.waiting == {}
     becomes_low(stage)
     stage.does("report_charge(low)", "set_destination(post5)")
+
+
+CHARGE_STOP = ("mission(m2,1)", "stop(0,c1,post7,dock,none,600)", "next_stop(0)")
+
+
+def filling_up(*more: str) -> Stage:
+    """In the dock of post7 on the service's word."""
+    stage = Stage(*HOME, *CHARGE_STOP, *more, "fill(c1,wanted)", "at(post7)")
+    stage.does("report(departed,c1)", "report(arrived,c1)")
+    stage.expect("dock")
+    stage.perceives("docked")
+    stage.succeeds("dock")
+    stage.does("release")
+    return stage
+
+
+def test_at_a_stop_to_charge_it_stays_in_the_dock_until_it_has_what_is_asked_for() -> None:
+    stage = filling_up()
+    stage.settle()
+    assert stage.waiting == {}
+    stage.perceives("fill(c1,reached)", without=("fill(c1,wanted)",))
+    stage.does("report(done,c1)", "finish_stop(c1)")
+
+
+def test_a_stop_to_charge_that_is_taken_away_is_left_for_what_is_to_be_done_instead() -> None:
+    stage = filling_up()
+    stage.perceives(
+        "mission(m2,2)", "stop(0,s1,post1,load,o1,600)", without=(*CHARGE_STOP[:2], "fill(c1,wanted)", "at(post5)")
+    )
+    stage.does("report(departed,s1)", "set_destination(post1)", "claim(post1)")
+    stage.expect("undock")
+    assert "report(done,c1)" not in stage.done
+
+
+def test_a_robot_pulled_out_of_the_dock_it_charges_in_docks_again() -> None:
+    stage = filling_up()
+    stage.settle()
+    stage.perceives(without=("docked",))
+    stage.does("report(departed,c1)", "report(arrived,c1)")  # which are told once
+    stage.expect("dock")
+
+
+def test_its_own_battery_plan_comes_before_a_stop_to_charge_which_is_not_driven_to_for_nothing() -> None:
+    stage = Stage(*HOME, *CHARGE_STOP, "fill(c1,wanted)", "at(post3)")
+    stage.does("report(departed,c1)", "set_destination(post7)")
+    becomes_low(stage)
+    stage.does("report_charge(low)", "set_destination(post5)", "claim(post5)")
+    stage.perceives("docked", "at(post5)", without=("at(post3)",))
+    stage.settle()
+    stage.perceives("battery(full)", "fill(c1,reached)", without=("battery(low)", "fill(c1,wanted)"))
+    stage.does("report_charge(charged)", "report(done,c1)", "finish_stop(c1)")
+    assert "undock" not in stage.done

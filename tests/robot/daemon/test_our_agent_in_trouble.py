@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from protocol.parts import Leg, Purpose
-from protocol.to_robot import EmergencyStop, OpenWay, Recall, Resume, Revoke
+from protocol.parts import Leg, Purpose, Stop, StopAction
+from protocol.to_robot import EmergencyStop, Mission, OpenWay, Recall, Resume, Revoke
 from robot.simulated.obstacles import Person
 from robot.simulated.start import start_pose
 from tests.robot.daemon.played_service import PlayedService
@@ -48,6 +48,20 @@ def test_a_recalled_robot_turns_round_on_its_way_and_brings_the_mail_back(run: S
     run.shows(Purpose.LOAD)
     run.until(lambda: run.is_home)
     assert (run.duties.held.cargo, service.held) == ((), [])
+
+
+def test_a_stop_to_charge_keeps_it_in_the_dock_through_a_kill_until_it_has_what_was_asked_for(tmp_path: Path) -> None:
+    stop = Stop(id="c1", post="post5", action=StopAction.DOCK, until_ratio=0.7)
+    first = SimulatedRun(tmp_path, battery_ratio=0.6)
+    first.duties.give(Mission(id="m2", update=1, stops=(stop,)))
+    first.until(lambda: "progress arrived" in first.told() and first.robot.docked)
+    first.kill()
+
+    second = SimulatedRun(tmp_path, battery_ratio=0.65)
+    second.until(lambda: "progress done" in second.told())
+    assert second.robot.docked
+    assert 0.7 <= (second.mind.battery.ratio or 0.0) < 0.75
+    second.close()
 
 
 def test_a_robot_that_is_killed_in_its_dock_goes_on_charging_until_it_is_full(tmp_path: Path) -> None:
