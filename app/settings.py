@@ -168,6 +168,12 @@ class Settings(BaseSettings):
         ge=0,
         description="A robot takes an order along if it lengthens its way by at most this share of the order's.",
     )
+    planning_budget_s: float = Field(
+        0.25, gt=0, le=10, description="So long a better plan for all robots is looked for at a time, beside all else."
+    )
+    age_limit_s: float = Field(
+        6 * 3600, gt=0, description="An order that has waited for so long is fetched next, before all others."
+    )
     priority_head_start_s: float = Field(
         1800, ge=0, description="High priority counts like so much longer waiting, low like so much less."
     )

@@ -4,20 +4,41 @@ Nobody sends robots to charge yet: those with a home charge there whenever they 
 their own battery plan says so. So what a robot is refused for must be something that will change by itself.
 """
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Final
+from math import inf, isfinite
+from typing import Final, Protocol
 
 from app.charging.acceptance import Answer, Charge, Verdict, accepts
 from app.charging.energy import Rates, Use
 from app.charging.levels import Thresholds
-from app.dispatch.choice import IdleRobot, WaitingOrder
+from app.dispatch.choice import ENOUGH_CHARGE, IdleRobot, WaitingOrder
 from app.fleet.spending import usual_rates
 from app.settings import Settings
 from maps.ways import Ways
 
 THRESHOLDS: Final = Thresholds()
+LONGEST_DRIVE_S: Final = 8 * 3600.0
+CLOSE_ENOUGH_S: Final = 10.0
+_LEAVES_DOCK: Final = THRESHOLDS.begin + THRESHOLDS.hysteresis
+
+
+class Charged(Protocol):
+    """What counts of a robot here. `home`: a post where it charges when it has nothing to do; `docked`: None if it does
+    not tell."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def post(self) -> str | None: ...
+    @property
+    def battery_ratio(self) -> float | None: ...
+    @property
+    def charging(self) -> bool: ...
+    @property
+    def docked(self) -> bool | None: ...
+    @property
+    def home(self) -> str | None: ...
 
 
 @dataclass
@@ -48,7 +69,24 @@ class Charges:
         work, to_dock = self._use(way_m, handovers=2), self._use(self._to_dock_m(order.to_post))
         return accepts(charge, work, to_dock, THRESHOLDS)
 
-    def _will_charge(self, robot: IdleRobot) -> bool:
+    def drives_s(self, robot: Charged) -> float:
+        """For how many seconds of driving, as the map has them, its charge lasts, with the way home and hand-overs;
+        endless for one that is as full as it gets."""
+        ratio = robot.battery_ratio
+        if ratio is None or ratio < ENOUGH_CHARGE or (robot.charging and ratio < _LEAVES_DOCK):
+            return 0.0
+        if ratio >= THRESHOLDS.full or (ratio >= THRESHOLDS.begin and not self._will_charge(robot)):
+            return inf
+        rates, spare = self.rates.get(robot.name, self._assumed), ratio - THRESHOLDS.low
+        handovers = 2 * self.settings.robot_capacity
+        low_s, high_s = 0.0, LONGEST_DRIVE_S
+        while high_s - low_s > CLOSE_ENOUGH_S:
+            middle_s = (low_s + high_s) / 2
+            use = self._use(middle_s * self.settings.assumed_speed_m_s, handovers)
+            low_s, high_s = (middle_s, high_s) if rates.at_most(use) <= spare else (low_s, middle_s)
+        return low_s
+
+    def _will_charge(self, robot: Charged) -> bool:
         """In a dock without charging its charger has ended: a worn pack is never fuller than that."""
         is_docked = robot.post == robot.home if robot.docked is None else robot.docked
         return robot.charging or (robot.home is not None and not is_docked)
@@ -62,4 +100,4 @@ class Charges:
 
     def _length_m(self, from_post: str | None, to_post: str) -> float:
         length_m = self.ways.length_m(from_post, to_post)
-        return length_m if math.isfinite(length_m) else 0.0
+        return length_m if isfinite(length_m) else 0.0

@@ -5,6 +5,7 @@ that fails the timetable is made anew from the database, so that it never knows 
 """
 
 import asyncio
+from collections.abc import Callable
 from datetime import datetime, timedelta
 from typing import Final
 
@@ -40,6 +41,8 @@ class TrafficDesk:
         self._woken = asyncio.Event()
         self._stopping = False
         self._timetable: Timetable | None = None
+        self.on_look: list[Callable[[], None]] = []
+        """Called after each look: what has changed is in the timetable."""
         fleet.on_change.append(self.wake)
         fleet.orders.on_change.append(self.wake)
 
@@ -97,6 +100,8 @@ class TrafficDesk:
                 ]
         # What was decided on a claim that is another by now was not said: the timetable must not believe it was.
         self._timetable = timetable if all(said) else None
+        for call in self.on_look:
+            call()
 
     def _new_timetable(self) -> Timetable:
         return Timetable(self._fleet.campus, self._fleet.settings, estimates=self._fleet.orders.estimates)

@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.dispatch.choice import IdleRobot, why_nobody_comes
+from app.dispatch.planning.why import SENTENCES, Why
 from app.fleet.answers import RECALLED
 from app.fleet.missions import NOT_REPORTED, UNLOADED
 from app.fleet.receipts import PROBLEMS, counts_for_nothing
@@ -63,6 +64,12 @@ def test_what_the_service_says_of_orders_is_known() -> None:
     said = [why_nobody_comes(robots, connected) for robots, connected in (((), 0), ((), 1), ((low,), 1), ((idle,), 1))]
     said += [NOBODY_CAME, RECALLED, UNLOADED, NOT_REPORTED, "The recipient cannot take it now."]
     assert len(set(said)) == 9
+    assert [one for one in said if words_of(one) is None] == []
+
+
+def test_what_the_planner_says_of_orders_is_known() -> None:
+    not_said = {"fetched", "fetched_after", "later", "next", "turn"}
+    said = [Why(code, ("r1",)).sentence(str) for code in SENTENCES.keys() - not_said]
     assert [one for one in said if words_of(one) is None] == []
 
 

@@ -1,0 +1,147 @@
+"""Who fetches what where traffic goes by the timetable: decided at once for all robots, then improved.
+
+look → decide → write → tell the timetable
+look → decide → improve, in a process of its own → write, if it still holds → tell the timetable
+"""
+
+import asyncio
+import time
+from contextlib import suppress
+from typing import Final
+
+import structlog
+
+from app.dispatch.charge import Charges
+from app.dispatch.explained import explain
+from app.dispatch.given_out import Changes, changes_of, give_out
+from app.dispatch.open_work import OpenWork, look_at_work
+from app.dispatch.planner_process import PlannerProcess
+from app.dispatch.planning.carrying_out import adopt
+from app.dispatch.planning.deciding import Decision, decide
+from app.dispatch.scene_of_work import SceneOfWork
+from app.dispatch.why_orders_wait import sentences
+from app.fleet.service import Fleet
+from app.fleet.timetable import Timetable
+from app.fleet.traffic_desk import TrafficDesk
+
+IMPROVE_EVERY_S: Final = 30.0
+"""Real seconds. Also when nothing was given: robots have moved since."""
+REST_S: Final = 1.0
+"""Real seconds, after each improvement: there is other work for this machine."""
+
+log = structlog.get_logger(__name__)
+
+
+class FleetPlanner:
+    """`left`: so many orders found no robot at the last look; `own`: orders that are being given here.
+
+    It assigns when dispatch asks it to, and runs in the background of the service to find better plans."""
+
+    def __init__(self, fleet: Fleet, desk: TrafficDesk) -> None:
+        self._fleet, self._desk = fleet, desk
+        self._scenes = SceneOfWork(fleet.settings, Charges(fleet.orders.ways, fleet.settings, fleet.spending.rates))
+        self._process = PlannerProcess()
+        self._planned: frozenset[str] = frozenset()
+        desk.on_look.append(self._notice)
+        self._something_new = asyncio.Event()
+        self._stopped = asyncio.Event()
+        self.left = 0
+        self.own: set[str] = set()
+
+    # At once.
+
+    async def assign(self) -> bool:
+        """Give waiting orders to robots; whether to look again at once, since what was decided on has changed."""
+        work, timetable = await self._look(), self._desk.timetable
+        waiting = [order.id for order in work.waiting]
+        decision = self._decide(work, timetable) if timetable is not None else None
+        changes = changes_of(work, decision) if decision is not None else None
+        if decision is not None and changes and not await self._carry_out(timetable, decision, changes):
+            return True
+        left = [order for order in waiting if changes is None or order not in changes.given]
+        if left:
+            await explain(self._fleet, sentences(work, decision, left))
+        if changes:
+            self._something_new.set()
+        self.left = len(left)
+        return False
+
+    async def _look(self) -> OpenWork:
+        async with self._fleet.database.reading() as session:
+            return await look_at_work(session, self._fleet.clock.utc())
+
+    def _decide(self, work: OpenWork, timetable: Timetable) -> Decision | None:
+        begun_s = time.monotonic()
+        clock = self._fleet.clock
+        decision = decide(self._scenes.of(work, timetable.controller, clock.utc(), clock.now()))
+        log.debug("decided", orders=len(work.orders), took_ms=round((time.monotonic() - begun_s) * 1000, 1))
+        return decision
+
+    async def _carry_out(self, timetable: Timetable | None, decision: Decision, changes: Changes) -> bool:
+        """False if it does not hold any more."""
+        try:
+            async with self._fleet.database.transaction() as session:
+                if not await give_out(session, self._fleet, changes, self.own):
+                    return False
+        finally:
+            self.own.clear()
+        # Else the timetable finds a way of its own to what robots have now before them, as after a restart.
+        if timetable is not None and timetable is self._desk.timetable and not changes.taken:
+            controller = timetable.controller
+            adopt(controller, decision, timetable.known, self._fleet.clock.now())
+        return True
+
+    # And better.
+
+    def _notice(self) -> None:
+        """A robot that cannot be planned for any more: what it has not loaded is for others."""
+        timetable = self._desk.timetable
+        planned = frozenset(timetable.controller.tasks(self._fleet.clock.now())) if timetable else self._planned
+        if planned != self._planned:
+            self._planned = planned
+            self._something_new.set()
+
+    def stop(self) -> None:
+        """End `run` after what it is doing."""
+        self._stopped.set()
+        self._something_new.set()
+        self._process.cut_off()
+
+    async def run(self) -> None:
+        """Until stopped or cancelled."""
+        try:
+            while not self._stopped.is_set():
+                with suppress(TimeoutError):
+                    async with asyncio.timeout(IMPROVE_EVERY_S):
+                        await self._something_new.wait()
+                self._something_new.clear()
+                if not self._stopped.is_set():
+                    await self.improve()
+                    with suppress(TimeoutError):
+                        async with asyncio.timeout(REST_S):
+                            await self._stopped.wait()
+        finally:
+            await self._process.end()
+
+    async def improve(self) -> bool:
+        """Look for a better plan within the budget; whether one was found, and could still be carried out."""
+        timetable = self._desk.timetable
+        if timetable is None:
+            return False
+        work = await self._look()
+        decision = self._decide(work, timetable)
+        if decision is None:
+            return False
+        better = await self._improved(decision)
+        changes = changes_of(work, better)
+        if not changes or self._stopped.is_set():
+            return False
+        is_written = await self._carry_out(timetable, better, changes)
+        log.info("improved", is_written=is_written, taken=len(changes.taken), saves_s=decision.cost_s - better.cost_s)
+        return is_written
+
+    async def _improved(self, decision: Decision) -> Decision:
+        """The same, if there is nothing to choose from."""
+        if len(decision.routes) < 2 or len(decision.robot_of()) < 2:
+            return decision
+        return await self._process.improved(decision, self._fleet.settings.planning_budget_s) or decision

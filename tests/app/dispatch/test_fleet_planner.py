@@ -1,0 +1,205 @@
+"""The planner in the running service: orders of all robots decided together, and moved only before they have begun."""
+
+import asyncio
+from collections.abc import AsyncIterator
+from contextlib import AsyncExitStack
+from dataclasses import replace
+from datetime import timedelta
+
+import pytest
+
+from app.dispatch.given_out import changes_of, give_out
+from app.dispatch.planning.deciding import Decision
+from app.dispatch.planning.scene import Routes
+from app.orders.schemas import NewOrder
+from app.settings import Settings
+from app.tables import MissionRow, Order, Priority
+from protocol.clock import SteppedClock
+from protocol.parts import Activity, Battery
+from protocol.to_robot import Cancel
+from protocol.to_server import CommandAnswer, Event, Snapshot, Step
+from tests.app.fleet.playing import PlayedRobot, Service, at_post, serving, until
+from tests.app.placed import placed
+
+
+@pytest.fixture
+def by_timetable(settings: Settings) -> Settings:
+    return settings.model_copy(update={"traffic": "timetable"})
+
+
+@pytest.fixture
+async def service(by_timetable: Settings, clock: SteppedClock) -> AsyncIterator[Service]:
+    async with serving(by_timetable, clock) as service:
+        yield service
+
+
+@pytest.fixture
+async def robots(service: Service, clock: SteppedClock) -> AsyncIterator[tuple[PlayedRobot, PlayedRobot]]:
+    """r1 at post1 and r2 at post4, both at home at post5."""
+    async with AsyncExitStack() as stack:
+        first, second = (PlayedRobot(clock, name) for name in ("r1", "r2"))
+        for robot, post in ((first, "post1"), (second, "post4")):
+            robot.token = await service.enrol(robot.name)
+            await stack.enter_async_context(robot.connected(service.url, robot.token))
+            await robot.greet(post, home="post5")
+        await until(lambda: _are_known(service, 2))
+        yield first, second
+
+
+async def _are_known(service: Service, number: int) -> bool:
+    timetable = service.app.state.traffic_desk.timetable
+    return timetable is not None and len(timetable.known) == number
+
+
+async def has_robot(service: Service, order_id: str) -> str:
+    async def robot() -> str | None:
+        order: Order = await service.row(Order, id=order_id)
+        return order.robot if order.state != "queued" else None
+
+    return str(await until(robot))
+
+
+async def waits_because(service: Service, order_id: str, sentence: str) -> None:
+    async def says_so() -> bool:
+        return (await service.row(Order, id=order_id)).why == sentence
+
+    await until(says_so)
+
+
+async def change(service: Service, order_id: str, **values: object) -> None:
+    state = service.app.state
+    async with state.database.transaction() as session:
+        order = await state.orders.order(session, order_id)
+        for name, value in values.items():
+            setattr(order, name, value)
+    state.dispatcher.wake()
+
+
+async def goals(service: Service, robot: str) -> list[str]:
+    timetable = service.app.state.traffic_desk.timetable
+    return [] if timetable is None else [goal.key for goal in timetable.controller.goals(robot)]
+
+
+async def test_orders_of_one_moment_are_spread_over_the_robots_near_them(
+    service: Service, robots: tuple[PlayedRobot, PlayedRobot]
+) -> None:
+    near_first, near_second = await asyncio.gather(service.order("post1", "post2"), service.order("post4", "post3"))
+    assert await has_robot(service, near_first) == "r1"
+    assert await has_robot(service, near_second) == "r2"
+    mission = await robots[0].mission()
+    assert [(stop.action, stop.post) for stop in mission.stops] == [("load", "post1"), ("receive", "post2")]
+    assert await until(lambda: goals(service, "r1")) == [stop.id for stop in mission.stops]
+
+
+async def test_an_order_more_goes_with_a_robot_under_way_and_never_before_what_it_has_begun(
+    service: Service, robots: tuple[PlayedRobot, PlayedRobot]
+) -> None:
+    first = await service.order("post1", "post4")
+    mission = await robots[0].mission()
+    await robots[0].ends(await robots[0].report(mission, Step.DEPARTED, mission.stops[0]))
+    second = await service.order("post1", "post3")
+    assert await has_robot(service, second) == "r1"
+    update = await robots[0].mission()
+    assert (update.id, update.update) == (mission.id, 2)
+    assert update.stops[0].order_id == first, "it is on its way there"
+    assert sorted(stop.order_id or "" for stop in update.stops) == sorted([first, second] * 2)
+
+
+async def test_more_than_they_can_carry_waits_and_the_important_goes_first(
+    service: Service, robots: tuple[PlayedRobot, PlayedRobot], clock: SteppedClock
+) -> None:
+    carried = [await service.order("post2", "post3") for _ in range(4)]
+    for order_id in carried:
+        await has_robot(service, order_id)
+    waiting, important = await service.order("post2", "post3"), await service.order("post2", "post3")
+    await waits_because(service, waiting, "Every robot is busy.")
+    await change(service, important, priority=Priority.HIGH)
+    await service.cancel(carried[0])
+    name = (await service.row(Order, id=carried[0])).robot
+    robot = next(one for one in robots if one.name == name)
+    await lets_go(robot)
+    assert await has_robot(service, important) == name
+    assert (await service.row(Order, id=waiting)).state == "queued"
+
+
+async def lets_go(robot: PlayedRobot) -> None:
+    """As it is told to."""
+    told = (await robot.hear("cancel")).body
+    assert isinstance(told, Cancel)
+    answer = CommandAnswer(command_id=told.command_id, accepted=True, happened_at=robot.clock.utc())
+    await robot.ends(await robot.say(Event(happened=answer)))
+
+
+async def test_an_order_left_for_later_is_not_fetched_before(
+    service: Service, robots: tuple[PlayedRobot, PlayedRobot], clock: SteppedClock
+) -> None:
+    state = service.app.state
+    async with state.database.transaction() as session:
+        sender = await state.sign_in_desk.person(session, "sender@campus.example", clock.utc())
+        in_an_hour = clock.utc() + timedelta(hours=1)
+        wish = NewOrder(from_post="post1", to_post="post2", recipient="recipient@campus.example", not_before=in_an_hour)
+        later = await placed(state.orders, session, sender, wish)
+    assert await has_robot(service, await service.order("post1", "post2")) == "r1"
+    assert (await service.row(Order, id=later)).state == "queued"
+    clock.advance(3600)
+    state.dispatcher.wake()
+    await has_robot(service, later)
+
+
+async def test_a_robot_that_stands_still_loses_what_it_has_not_loaded(
+    service: Service, robots: tuple[PlayedRobot, PlayedRobot]
+) -> None:
+    order_id = await service.order("post1", "post2")
+    await robots[0].mission()
+    stopped = Snapshot(position=at_post("post1"), activity=Activity.STOPPED, battery=Battery(ratio=0.9))
+    await robots[0].say(stopped)
+    await lets_go(robots[0])
+    await until(lambda: _goes_with(service, order_id, "r2"))
+    assert (await service.states(order_id))[-2:] == ["queued", "assigned"]
+
+
+async def _goes_with(service: Service, order_id: str, robot: str) -> bool:
+    order: Order = await service.row(Order, id=order_id)
+    return order.robot == robot and order.state == "assigned"
+
+
+async def test_mail_that_is_aboard_stays_where_it_is_whatever_happens_to_its_robot(
+    service: Service, robots: tuple[PlayedRobot, PlayedRobot]
+) -> None:
+    order_id = await service.order("post1", "post2")
+    mission = await robots[0].mission()
+    await robots[0].ends(await robots[0].say(robots[0].receipt(mission.stops[0])))
+    stopped = Snapshot(position=at_post("post1"), activity=Activity.STOPPED, battery=Battery(ratio=0.9))
+    await robots[0].say(stopped)
+    other = await service.order("post1", "post2")
+    assert await has_robot(service, other) == "r2"
+    assert (await service.row(Order, id=order_id)).robot == "r1"
+
+
+async def test_what_was_decided_on_a_world_that_has_changed_is_not_written(
+    service: Service, robots: tuple[PlayedRobot, PlayedRobot], clock: SteppedClock
+) -> None:
+    state = service.app.state
+    order_id = await service.order("post1", "post2")
+    await robots[0].mission()
+    await service.order("post1", "post3")
+    await until(lambda: _all_have_robots(service))
+    planner = state.planner
+    work = await planner._look()
+    decision = planner._decide(work, state.traffic_desk.timetable)
+    assert decision is not None
+    turned = {name: tuple(reversed(route)) for name, route in decision.routes.items()}
+    changes = changes_of(work, _with_routes(decision, turned))
+    assert changes
+    await service.cancel(order_id)
+    async with state.database.transaction() as session:
+        assert not await give_out(session, state.fleet, changes, set())
+    assert [row.update_number for row in await service.rows(MissionRow, robot="r1")] == [2]
+
+
+def _with_routes(decision: Decision, routes: Routes) -> Decision:
+    return replace(decision, timed=replace(decision.timed, routes=routes))
+
+
+async def _all_have_robots(service: Service) -> bool:
+    return not await service.rows(Order, state="queued")

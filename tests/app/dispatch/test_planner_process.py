@@ -1,0 +1,52 @@
+"""The process that looks for better plans: what it finds is as good as found here, and nobody waits for it in vain."""
+
+import os
+import signal
+from collections.abc import AsyncIterator
+
+import pytest
+
+from app.dispatch.planner_process import PlannerProcess
+from app.dispatch.planning.deciding import Decision
+from tests.app.dispatch.fleet_life import order
+from tests.app.dispatch.test_fleet_plan import decided, robot, scene_of, street
+
+BUDGET_S = 0.05
+
+
+@pytest.fixture
+def decision() -> Decision:
+    orders = [order(0, 1, 2), order(1, 3, 2), order(2, 1, 4)]
+    return decided(scene_of(street(5), {"r0": robot(0, capacity=2), "r1": robot(4, capacity=2)}, orders))
+
+
+@pytest.fixture
+async def process() -> AsyncIterator[PlannerProcess]:
+    process = PlannerProcess()
+    yield process
+    await process.end()
+
+
+async def test_it_finds_a_plan_that_serves_the_same_orders_and_is_no_dearer(
+    process: PlannerProcess, decision: Decision
+) -> None:
+    better = await process.improved(decision, BUDGET_S)
+    assert better is not None
+    assert better.robot_of().keys() == decision.robot_of().keys()
+    assert better.cost_s <= decision.cost_s
+
+
+@pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGSTOP], ids=["dies", "hangs"])
+async def test_one_that_fails_is_ended_and_the_next_question_starts_another(
+    process: PlannerProcess, decision: Decision, how: signal.Signals
+) -> None:
+    await process.improved(decision, BUDGET_S)
+    first = process.process_id
+    assert first is not None
+    os.kill(first, how)
+    failed = await process.improved(decision, BUDGET_S)
+    again = failed or await process.improved(decision, BUDGET_S)
+    assert again is not None, "a dead one may have been seen before it was asked"
+    assert process.process_id not in (None, first)
+    with pytest.raises(ProcessLookupError):
+        os.kill(first, 0)
