@@ -82,7 +82,7 @@ def measure(samples: Samples) -> dict[str, Any]:
         name: {f"{case.robots}_robots": _figures([next(runs) for _ in samples.some_seeds()]) for case in cases}
         for name, cases in CASES.items()
     }
-    plots.throughput(samples.plots, figures)
+    plots.throughput(samples.plots, figures, _LEAST)
     return figures
 
 
