@@ -85,6 +85,12 @@ def _why(robot: RobotRow) -> str | None:
     return robot.why
 
 
+def _activity(robot: RobotRow) -> Activity:
+    """Its own word, but that one in its dock that has somewhere to go is not free: it waits to be let out."""
+    held_up = robot.activity == Activity.IDLE and robot.waits_for is not None
+    return Activity.WAITING if held_up else Activity(robot.activity)
+
+
 def robot_view(robot: RobotRow, campus: CampusMap, settings: Settings) -> RobotView:
     """What is said of a robot to whoever may see it."""
     why = _why(robot)
@@ -94,7 +100,7 @@ def robot_view(robot: RobotRow, campus: CampusMap, settings: Settings) -> RobotV
         last_seen=_last_seen(robot),
         towards=robot.towards,
         expected=_expected(robot, campus, settings),
-        activity=Activity(robot.activity),
+        activity=_activity(robot),
         battery=_battery(robot),
         why=why,
         why_words=words_of(why) if why else None,

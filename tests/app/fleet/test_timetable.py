@@ -144,12 +144,14 @@ async def test_who_waits_is_told_for_whom_and_people_see_it(
         row: RobotRow = await service.row(RobotRow, name="r2")
         return row if row.waits_for else None
 
-    waits_for = (await until(waits)).waits_for
+    row = await until(waits)
+    waits_for = row.waits_for
     assert (leg.to_post, waits_for["robots"]) == ("post2", ["r1"])
     async with service.app.state.database.reading() as session:
         views = {view.name: view for view in await service.app.state.fleet.views(session)}
     assert views["r2"].why == "Waiting at post4 for the corridor to post3, after r1"
     assert views["r2"].why_words.key == "why.others_first"
+    assert (row.activity, views["r2"].activity) == ("idle", "waiting"), "who has somewhere to go is not free"
 
 
 async def test_what_was_granted_is_granted_after_a_restart_of_the_service(
