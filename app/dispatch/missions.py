@@ -64,7 +64,7 @@ async def _tell_of_new(
 
 
 def _as_told(stop: Values) -> Stop:
-    return Stop(**{name: stop[name] for name in Stop.model_fields})
+    return Stop(**{name: stop[name] for name in Stop.model_fields if name in stop})
 
 
 def _stops(
