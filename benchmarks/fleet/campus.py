@@ -129,8 +129,8 @@ def _seen(run: CampusRun) -> Seen:
         counts=core.counts,
         messages=run.messages,
         ages_s=ages_s,
-        told=dispatch.told.scored[WARM_UP:],
-        raw=dispatch.told.raw[WARM_UP:],
+        told=dispatch.told.promises.scored[WARM_UP:],
+        raw=dispatch.told.promises.raw[WARM_UP:],
     )
 
 

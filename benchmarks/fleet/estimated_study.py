@@ -10,14 +10,13 @@ from dataclasses import dataclass, field, replace
 from random import Random
 from typing import Any, Final
 
-from app.estimates.calibration import Calibration
-from app.estimates.durations import Durations, Kind, Thing
-from app.estimates.forecast import Chance, forecast
+from app.estimates.calibration import Basis
+from app.estimates.durations import Kind, Thing
+from app.estimates.forecast import forecast
 from app.estimates.intervals import Interval
-from app.estimates.score import Truth as Scored
 from app.traffic.execution import retimed
 from app.traffic.journey import Goal, Start
-from app.traffic.network import Lane, Network, network_of
+from app.traffic.network import Network, network_of
 from app.traffic.planning import Timetable, first_plan, improve, insert, plan
 from benchmarks.fleet.estimated_world import (
     CHARGE_AFTER_S,
@@ -34,6 +33,7 @@ from benchmarks.fleet.estimated_world import (
     hour_of,
     is_attended,
 )
+from benchmarks.fleet.promises import Promises, corridor, handling
 from maps import builtin_map
 
 SPEED_M_S: Final = 0.15
@@ -46,44 +46,19 @@ ROUNDS: Final = 4
 
 
 @dataclass
-class Promise:
-    """What was worked out and told when an order was placed."""
-
-    placed_s: float
-    raw: Interval
-    told: Interval
-    by_map: Interval
-
-
-@dataclass
 class Study:
     """One seed: a world, and the estimates that watch it."""
 
     rng: Random
     network: Network
     world: World = field(init=False)
-    durations: Durations = field(default_factory=Durations)
-    calibration: Calibration = field(default_factory=Calibration)
-    promises: dict[str, Promise] = field(default_factory=dict)
-    scored: list[Scored] = field(default_factory=list)
-    raw: list[Scored] = field(default_factory=list)
+    promises: Promises = field(default_factory=Promises)
 
     # What the world tells.
 
-    def drove(self, lane: Lane, seconds: float) -> None:
-        self.durations.observe(corridor(lane), seconds)
-
     def handled(self, stop: Stop, at_s: float) -> None:
         if stop.kind is not None:
-            self.durations.observe(handling(stop.kind, at_s), stop.takes_s)
-
-    def reached(self, key: str, at_s: float) -> None:
-        promise = self.promises.pop(key, None)
-        if promise is not None:
-            truth_s = at_s - promise.placed_s
-            self.scored.append(Scored(promise.told, promise.by_map, truth_s))
-            self.raw.append(Scored(promise.raw, promise.by_map, truth_s))
-            self.calibration.learn(promise.raw, promise.told, truth_s)
+            self.promises.durations.observe(_handling(stop.kind, at_s), stop.takes_s)
 
     # What is planned and forecast.
 
@@ -95,8 +70,7 @@ class Study:
         charge = [Stop(f"{name} charge", None, its.home)] if self._must_charge(its) else []
         self._give(robot, [*charge, load, receive])
         raw = self._forecast()[receive.key]
-        told = self.calibration.corrected(raw)
-        self.promises[receive.key] = Promise(self.world.now_s, raw, told, self._by_map(start, end))
+        self.promises.make(receive.key, self.world.now_s, Basis.TIMETABLE, raw, self._by_map(start, end))
 
     def _soonest(self, start: int) -> str:
         tasks = self._tasks()
@@ -128,7 +102,7 @@ class Study:
         self.world.journeys = dict(better.journeys)
 
     def _tasks(self) -> dict[str, Any]:
-        durations = self.durations
+        durations = self.promises.durations
         return self.world.believed(
             lambda stop: sum(CHARGE_S) / 2 if stop.kind is None else durations.quantile_s(self._of(stop), 0.5),
             lambda lane: durations.quantile_s(corridor(lane), 0.5),
@@ -136,7 +110,7 @@ class Study:
 
     def _of(self, stop: Stop) -> Thing:
         assert stop.kind is not None
-        return handling(stop.kind, self.world.now_s)
+        return _handling(stop.kind, self.world.now_s)
 
     def _forecast(self) -> dict[str, Interval]:
         tasks, now_s = self._tasks(), self.world.now_s
@@ -148,14 +122,9 @@ class Study:
             lasted_s = max(0.0, now_s - stop.begun_s)
             if stop.kind is None:
                 return max(60.0, self.rng.uniform(*CHARGE_S) - lasted_s)
-            return self.durations.draw_s(self._of(stop), self.rng, lasted_s) - lasted_s
+            return self.promises.durations.draw_s(self._of(stop), self.rng, lasted_s) - lasted_s
 
-        chance = Chance(
-            lambda _, lane: self.durations.draw_s(corridor(lane), self.rng),
-            handling_s,
-            lambda _, lane, entered_s: entered_s + self.durations.draw_s(corridor(lane), self.rng, now_s - entered_s),
-        )
-        return forecast(self.network, tasks, journeys, now_s, chance)
+        return forecast(self.network, tasks, journeys, now_s, self.promises.chance(self.rng, now_s, handling_s))
 
     def _by_map(self, start: int, end: int) -> Interval:
         """As `app/orders/window.py` has it, with the middle in the middle."""
@@ -165,12 +134,8 @@ class Study:
         return Interval(first_s, (first_s + last_s) / 2, last_s)
 
 
-def corridor(lane: Lane) -> Thing:
-    return Thing(Kind.CORRIDOR, f"{lane.start} {lane.end}", lane.travel_s)
-
-
-def handling(kind: Kind, now_s: float) -> Thing:
-    return Thing(kind, "attended" if is_attended(now_s) else "not attended", HANDOVER_S)
+def _handling(kind: Kind, now_s: float) -> Thing:
+    return handling(kind, is_attended=is_attended(now_s), assumed_s=HANDOVER_S)
 
 
 def arrivals(rng: Random, days: float) -> Iterator[float]:
@@ -194,7 +159,7 @@ def study(seed: int, days: float, robots: int = 4, bays: int = 2) -> Study:
     homes = [network.number_of(post.name) for post in campus.docks()]
     fleet = {f"r{number}": homes[number % len(homes)] for number in range(robots)}
     there = {name: Robot(home, Start(home, True, 0.0, 0.0)) for name, home in fleet.items()}
-    its.world = World(network, there, Truth(rng, pace), its.drove, its.handled, its.reached)
+    its.world = World(network, there, Truth(rng, pace), its.promises.drove, its.handled, its.promises.came)
     first = first_plan(network, its.world.believed(lambda _: 0.0, lambda lane: lane.travel_s), rng)
     assert first is not None, "everybody is at home"
     its.world.journeys = dict(first.journeys)

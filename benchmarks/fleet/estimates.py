@@ -40,7 +40,7 @@ def measure(samples: Samples) -> dict[str, Any]:
 def run(job: tuple[int, float]) -> Run:
     """One seed for so many days, after the warm-up."""
     its = study(*job)
-    return its.scored[WARM_UP:], its.raw[WARM_UP:]
+    return its.promises.scored[WARM_UP:], its.promises.raw[WARM_UP:]
 
 
 def figures(runs: Sequence[Run]) -> dict[str, Any]:
