@@ -4,7 +4,7 @@ Playwright's asynchronous interface, on one event loop for all of them: its sync
 the thread, in which the asynchronous tests of other folders could not run.
 """
 
-from collections.abc import AsyncIterator, Callable, Iterator
+from collections.abc import AsyncIterator, Iterator
 from contextlib import AsyncExitStack
 from itertools import count
 from pathlib import Path
@@ -14,12 +14,13 @@ import pytest
 import pytest_asyncio
 from playwright.async_api import Browser, Playwright, async_playwright, expect
 
+from tests.app.fleet.playing import PlayedRobot
+from tests.web.mailroom_scene import Campus
 from tests.web.service import Service
-from tests.web.visitor import Visitor
+from tests.web.visitor import Visit, Visitor
 
 QUIET = ["--disable-gpu", "--disable-background-networking", "--disable-component-update", "--disable-sync"]
 QUIET += ["--no-first-run"]
-Visit = Callable[..., Any]
 # Nothing is as slow as this; a machine that has other things to do may be.
 expect.set_options(timeout=15_000)
 
@@ -77,3 +78,17 @@ async def visit(chromium: Browser, playwright_here: Playwright, service: Service
             return await visitor.sign_in() if signed_in else visitor
 
         yield come
+
+
+@pytest.fixture(scope="module")
+def quiet_campus(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Campus]:
+    """A module's own, in which nothing has happened yet."""
+    with Service(tmp_path_factory.mktemp("quiet")) as service:
+        yield Campus(service)
+
+
+@pytest_asyncio.fixture(loop_scope="session")
+async def robot(quiet_campus: Campus, request: pytest.FixtureRequest) -> AsyncIterator[PlayedRobot]:
+    """Each test on the quiet campus has one of its own, the only one that is connected."""
+    async with quiet_campus.service.connected(f"r{len(request.node.name)}") as robot:
+        yield robot

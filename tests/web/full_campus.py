@@ -7,10 +7,9 @@ from typing import Any
 
 from app.people.service import find_person, set_roles
 from app.tables import Role
-from tests.web.conftest import Visit
 from tests.web.mailroom_scene import Scene
 from tests.web.service import Service
-from tests.web.visitor import Visitor
+from tests.web.visitor import Visit, Visitor
 
 
 class Campus:

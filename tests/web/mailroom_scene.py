@@ -14,9 +14,8 @@ from app.people.service import set_roles
 from app.settings import Settings
 from app.tables import Alarm, DigitLock, Notice, Order, OrderState, OutgoingNotice, Priority, RobotRow, Role
 from protocol.clock import Clock, RealClock
-from tests.web.conftest import Visit
 from tests.web.service import Service
-from tests.web.visitor import Visitor
+from tests.web.visitor import Visit, Visitor
 
 WAY: Final = ("assigned", "to_sender", "at_sender", "carrying", "at_recipient", "returning", "at_return")
 ROBOTS: Final = (

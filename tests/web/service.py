@@ -8,17 +8,21 @@ import socket
 import subprocess
 import sys
 import time
-from collections.abc import Mapping
+from collections.abc import AsyncIterator, Mapping
 from email import message_from_bytes, policy
 from email.message import EmailMessage
 from pathlib import Path
+from typing import Any
 
 import httpx
 
 from app.database import Database
 from app.fleet.service import enrol
 from app.settings import Settings
+from maps import find_map
 from protocol.clock import RealClock
+from protocol.envelope import YOUNGER
+from tests.app.fleet.playing import PlayedRobot
 
 ROOT = Path(__file__).parents[2]
 START_LIMIT_S = 40.0
@@ -31,7 +35,7 @@ class Service:
     def __init__(
         self, folder: Path, campus: str = "test_track", door: Path | None = None, more: Mapping[str, str] | None = None
     ) -> None:
-        self._folder = folder
+        self._folder, self._campus = folder, campus
         self._port = _free_port()
         self.url = f"http://127.0.0.1:{self._port}"
         self._environment = {
@@ -78,6 +82,15 @@ class Service:
             token = await enrol(session, RealClock(), name)
         await database.close()
         return token
+
+    @contextlib.asynccontextmanager
+    async def connected(self, name: str, **says: Any) -> AsyncIterator[PlayedRobot]:
+        """A new robot of today, at its dock; `says`: what else its greeting tells."""
+        robot = PlayedRobot(RealClock(), name, journal=f"journal-of-{name}")
+        facts = {"map_version": find_map(self._campus).version, "understands": YOUNGER, **says}
+        async with robot.connected(self.link, await self.enrol_robot(name)):
+            await robot.greet("post5", **facts)
+            yield robot
 
     @property
     def link(self) -> str:

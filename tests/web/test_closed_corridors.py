@@ -1,41 +1,18 @@
 """What is told of closed corridors, how people close and open them, and how they free the way of a dead robot."""
 
 import re
-from collections.abc import AsyncIterator, Iterator
 
 import pytest
-import pytest_asyncio
 from playwright.async_api import expect
 
-from maps import find_map
-from protocol.clock import RealClock
-from protocol.envelope import YOUNGER
 from protocol.parts import Activity, Battery, Leg
 from protocol.to_server import CommandAnswer, Event, Fault, Snapshot, Why
 from robot.action.corridors import WAY_BLOCKED, tried_again, turned_back
-from tests.app.fleet.playing import PlayedRobot, at_post
+from tests.app.fleet.playing import at_post
 from tests.web.keyboard import press
-from tests.web.mailroom_scene import Campus
-from tests.web.service import Service
 
 pytestmark = pytest.mark.browser
 MAILROOM = "/mailroom.html"
-
-
-@pytest.fixture(scope="module")
-def quiet_campus(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Campus]:
-    with Service(tmp_path_factory.mktemp("corridors")) as service:
-        yield Campus(service)
-
-
-@pytest_asyncio.fixture(loop_scope="session")
-async def robot(quiet_campus: Campus, request: pytest.FixtureRequest) -> AsyncIterator[PlayedRobot]:
-    """Each test has one of its own, the only one that is connected."""
-    name = f"r{len(request.node.name)}"
-    robot = PlayedRobot(RealClock(), name, journal=f"journal-of-{name}")
-    async with robot.connected(quiet_campus.service.link, await quiet_campus.service.enrol_robot(name)):
-        await robot.greet("post5", map_version=find_map("test_track").version, understands=YOUNGER)
-        yield robot
 
 
 async def test_a_corridor_that_a_robot_found_closed_is_open_again_when_somebody_who_has_looked_says_so(

@@ -8,7 +8,6 @@ import pytest
 import pytest_asyncio
 from playwright.async_api import Page, Route, expect
 
-from protocol.clock import RealClock
 from protocol.parts import Activity, Battery, Position, StopAction
 from protocol.to_robot import Cancel, Confirm, Mission, Verifiers
 from protocol.to_server import CommandAnswer, Event, Snapshot, Step, Why
@@ -88,9 +87,7 @@ async def demonstration(
 ) -> AsyncIterator[Demonstration]:
     """Each test has a robot of its own, the only one that is connected."""
     name = f"r{len(request.node.name)}"
-    robot, token = PlayedRobot(RealClock(), name, journal=f"journal-of-{name}"), await demo_service.enrol_robot(name)
-    async with robot.connected(demo_service.link, token):
-        await robot.greet("post5", understands=("confirm",))
+    async with demo_service.connected(name, understands=("confirm",)) as robot:
         yield Demonstration(demo_service, robot, camera)
 
 

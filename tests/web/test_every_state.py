@@ -12,7 +12,6 @@ import pytest
 import pytest_asyncio
 from playwright.async_api import expect
 
-from protocol.clock import RealClock
 from protocol.example_files import EXAMPLES
 from protocol.insight import Insight
 from protocol.parts import Activity, Battery, Position
@@ -41,9 +40,7 @@ async def campus(tmp_path_factory: pytest.TempPathFactory) -> AsyncIterator[Camp
 @asynccontextmanager
 async def a_robot_that_tells(service: Service) -> AsyncIterator[None]:
     """Whoever watches it is told at once what it thinks."""
-    robot = PlayedRobot(RealClock(), CONNECTED, journal=f"journal-of-{CONNECTED}")
-    async with robot.connected(service.link, await service.enrol_robot(CONNECTED)):
-        await robot.greet("post5", understands=("confirm", "watch"))
+    async with service.connected(CONNECTED, understands=("confirm", "watch")) as robot:
         for activity in (Activity.CHARGING, Activity.WAITING):
             battery = Battery(ratio=0.5, charging=activity is Activity.CHARGING)
             await robot.say(Snapshot(position=Position(post="post5"), activity=activity, battery=battery))

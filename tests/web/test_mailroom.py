@@ -3,20 +3,16 @@
 import csv
 import io
 import re
-from collections.abc import AsyncIterator, Iterator
+from collections.abc import AsyncIterator
 from pathlib import Path
 
 import pytest
 import pytest_asyncio
 from playwright.async_api import expect
 
-from maps import find_map
-from protocol.clock import RealClock
-from protocol.envelope import YOUNGER
 from protocol.parts import StopAction
 from protocol.to_robot import EmergencyStop, Pause
 from protocol.to_server import Event, Fault, Step, Why
-from tests.app.fleet.playing import PlayedRobot
 from tests.web.drawn import expect_drawn
 from tests.web.keyboard import press
 from tests.web.mailroom_scene import Campus
@@ -31,12 +27,6 @@ SHEET_MM = """() => [...document.querySelectorAll(".marker-sheet")].map((sheet) 
 })"""
 
 
-@pytest.fixture(scope="module")
-def quiet_campus(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Campus]:
-    with Service(tmp_path_factory.mktemp("mailroom")) as service:
-        yield Campus(service)
-
-
 @pytest_asyncio.fixture(scope="module", loop_scope="session")
 async def busy_campus(tmp_path_factory: pytest.TempPathFactory) -> AsyncIterator[Campus]:
     """Twelve orders, four robots, and something wrong of each kind."""
@@ -45,16 +35,6 @@ async def busy_campus(tmp_path_factory: pytest.TempPathFactory) -> AsyncIterator
         campus.orders = await campus.scene.is_busy()
         await campus.scene.everything_goes_wrong(campus.orders)
         yield campus
-
-
-@pytest_asyncio.fixture(loop_scope="session")
-async def robot(quiet_campus: Campus, request: pytest.FixtureRequest) -> AsyncIterator[PlayedRobot]:
-    """Each test has one of its own, the only one that is connected."""
-    name = f"r{len(request.node.name)}"
-    robot = PlayedRobot(RealClock(), name, journal=f"journal-of-{name}")
-    async with robot.connected(quiet_campus.service.link, await quiet_campus.service.enrol_robot(name)):
-        await robot.greet("post5", map_version=find_map("test_track").version, understands=YOUNGER)
-        yield robot
 
 
 async def test_what_goes_wrong_appears_by_itself_and_is_mended_by_keyboard_alone(quiet_campus, robot, visit):
@@ -184,9 +164,7 @@ async def test_an_order_for_somebody_at_the_desk_is_placed_by_keyboard_and_print
     await expect(page.get_by_role("button", name="Print")).to_be_hidden()
     await expect(slip).to_be_visible()
 
-    robot = PlayedRobot(RealClock(), "walk-up", journal="journal-of-walk-up")
-    async with robot.connected(quiet_campus.service.link, await quiet_campus.service.enrol_robot("walk-up")):
-        await robot.greet("post5", map_version=find_map("test_track").version)
+    async with quiet_campus.service.connected("walk-up"):
         await expect(slip.get_by_role("img", name="QR code for the robot’s camera")).to_be_visible()
         await expect(for_phones).to_be_hidden()
 

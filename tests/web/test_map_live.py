@@ -8,7 +8,6 @@ import pytest
 import pytest_asyncio
 from playwright.async_api import CDPSession, Page, expect
 
-from protocol.clock import RealClock
 from protocol.parts import Activity, Battery, Leg, Position
 from protocol.to_server import Claim, Clear, Snapshot, Step, Why
 from tests.app.fleet.playing import PlayedRobot
@@ -31,9 +30,7 @@ def roads(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
 
 @pytest_asyncio.fixture(loop_scope="session")
 async def robot(roads: Service) -> AsyncIterator[PlayedRobot]:
-    robot = PlayedRobot(RealClock())
-    async with robot.connected(roads.link, await roads.enrol_robot("r1")):
-        await robot.greet("post5")
+    async with roads.connected("r1") as robot:
         yield robot
 
 

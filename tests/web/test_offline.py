@@ -14,10 +14,9 @@ import pytest
 from playwright.async_api import CDPSession, Page, Route, expect
 
 from app.page_files import PageFiles
-from protocol.clock import RealClock
 from protocol.parts import StopAction
 from protocol.to_server import Step
-from tests.app.fleet.playing import PlayedRobot, until
+from tests.app.fleet.playing import until
 from tests.web.drawn import expect_drawn
 from tests.web.service import ROOT, Service
 from tests.web.test_order import fill, send
@@ -260,9 +259,7 @@ async def test_a_code_is_at_hand_in_the_tunnel_though_its_page_was_never_opened_
 ):
     ada = await come_with_worker(visit, "ada.king", at=own_service)
     page = ada.page
-    robot = PlayedRobot(RealClock(), "r1", journal="journal-of-r1")
-    async with robot.connected(own_service.link, await own_service.enrol_robot("r1")):
-        await robot.greet("post5")
+    async with own_service.connected("r1") as robot:
         order_id = await ada.order("bob.martin@campus.example")
         mission = await robot.mission()
         (load,) = [stop for stop in mission.stops if stop.action is StopAction.LOAD]

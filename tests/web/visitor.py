@@ -2,7 +2,7 @@
 
 import re
 import uuid
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
 from types import TracebackType
@@ -25,6 +25,8 @@ AXE_RUN = """async () => {
   const found = await axe.run(document, {runOnly: tags});
   return found.violations.map(({id, nodes}) => `${id}: ${nodes.map(({html}) => html.slice(0, 120)).join(" ")}`);
 }"""
+Visit = Callable[..., Any]
+"""How somebody comes: the fixture `visit`."""
 
 
 @dataclass
