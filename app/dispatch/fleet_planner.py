@@ -37,10 +37,10 @@ class FleetPlanner:
 
     It assigns when dispatch asks it to, and runs in the background of the service to find better plans."""
 
-    def __init__(self, fleet: Fleet, desk: TrafficDesk) -> None:
+    def __init__(self, fleet: Fleet, desk: TrafficDesk, process: PlannerProcess | None = None) -> None:
         self._fleet, self._desk = fleet, desk
         self._scenes = SceneOfWork(fleet.settings, Charges(fleet.orders.ways, fleet.settings, fleet.spending.rates))
-        self._process = PlannerProcess()
+        self._process = process or PlannerProcess()
         self._planned: frozenset[str] = frozenset()
         desk.on_look.append(self._notice)
         self._something_new = asyncio.Event()

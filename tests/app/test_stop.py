@@ -15,6 +15,7 @@ from websockets.sync.client import connect
 from app.database import Database
 from app.dispatch.service import LONGEST_REST_S
 from app.fleet.service import new_token
+from app.main import create_app
 from app.serving import GRACEFUL_S
 from app.settings import Settings
 from app.tables import Order, OrderState, RobotRow
@@ -35,8 +36,11 @@ HELLO = Envelope(
 ).to_text()
 
 
-def test_what_dispatch_has_begun_is_finished_before_the_end(app: FastAPI, mails: Mails, settings: Settings) -> None:
+def test_what_dispatch_has_begun_is_finished_before_the_end(
+    clock: SteppedClock, mails: Mails, settings: Settings
+) -> None:
     """Cut off in its transaction it would keep SQLite's write lock for a while, and others would wait for that."""
+    app = create_app(settings.model_copy(update={"traffic": "at_once"}), clock)
     with TestClient(app, base_url=HERE) as client:
         browser = Browser(app)
         browser.portal = client.portal

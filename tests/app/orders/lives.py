@@ -9,17 +9,23 @@ import shutil
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
+from random import Random
 from typing import Any
 
 from sqlmodel import SQLModel, col, select
 
 from app.database import Database
+from app.dispatch.fleet_planner import FleetPlanner
 from app.dispatch.nearest import NearestRobots
+from app.dispatch.planner_process import PlannerProcess
+from app.dispatch.planning.deciding import Decision
+from app.dispatch.planning.improving import improved
 from app.dispatch.service import Dispatcher
 from app.fleet import inbox, outbox
 from app.fleet.commands import ask, new_command_id
 from app.fleet.intake import Intake
 from app.fleet.service import Fleet, enrol
+from app.fleet.traffic_desk import TrafficDesk
 from app.live.feed import LocalFeed
 from app.mail import open_mailer
 from app.orders.codes import Holder, codes_of
@@ -120,6 +126,14 @@ class PlayedRobot:
             await self._done.wait()
 
 
+class PlansHere(PlannerProcess):
+    """What the process would do, in so many rounds that the same comes out each time."""
+
+    async def improved(self, decision: Decision, budget_s: float) -> Decision | None:
+        left = iter(range(40))
+        return improved(decision, Random(0), lambda: next(left, None) is not None)
+
+
 class World:
     """A campus in which nothing happens by itself."""
 
@@ -165,7 +179,9 @@ class World:
         self.orders = Orders(TRACK, self.settings, self.clock, feed, key, desk)
         self.fleet = Fleet(self.database, TRACK, self.settings, self.clock, feed, self.orders)
         self.intake = Intake(self.fleet)
-        self.dispatcher = Dispatcher(self.fleet, NearestRobots(self.fleet))
+        self.desk = TrafficDesk(self.fleet) if self.settings.traffic == "timetable" else None
+        self.planner = FleetPlanner(self.fleet, self.desk, PlansHere()) if self.desk is not None else None
+        self.dispatcher = Dispatcher(self.fleet, self.planner or NearestRobots(self.fleet))
         self.timer = Timer(self.database, self.orders, StandingOrders(self.orders))
 
     async def restart(self) -> None:
@@ -195,7 +211,11 @@ class World:
             await ask(session, self.fleet, row, Recall(command_id=new_command_id("recall"), reason="come home"))
 
     async def dispatch(self) -> None:
+        if self.desk is not None:
+            await self.desk.look_round()
         await self.dispatcher.look_round()
+        if self.planner is not None and await self.planner.improve():
+            await self.dispatcher.look_round()
 
     async def set_online(self, name: str, online: bool) -> None:
         self.robots[name].online = online

@@ -77,10 +77,12 @@ class LivesOfOrders(RuleBasedStateMachine):
     """A few orders, two robots, one of each kind of person. What they are called is drawn too: what is found first
     depends on it, and a life that failed must fail again."""
 
+    traffic = "at_once"
+
     def __init__(self) -> None:
         super().__init__()
         self.runner, self.lasting = asyncio.Runner(), ExitStack()
-        self.world = World(template(), Path(tempfile.mkdtemp(dir=folder.name)) / "data")
+        self.world = World(template(), Path(tempfile.mkdtemp(dir=folder.name)) / "data", traffic=self.traffic)
         self.ids: list[str] = []
         self.record = Record(self.world)
 
