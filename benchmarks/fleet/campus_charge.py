@@ -11,7 +11,7 @@ from datetime import datetime
 from math import inf
 from typing import Final, Protocol
 
-from app.charging.acceptance import Answer, Charge, Verdict, accepts, goes_on
+from app.charging.acceptance import Answer, Charge, Verdict, accepts, goes_on, passes_dock
 from app.charging.curve import ChargeCurve
 from app.charging.demand import Demand
 from app.charging.docks import DockPlan, Need, plan_docks
@@ -140,6 +140,21 @@ class Charges:
             return True
         return any(goes_on(charge, leg, way, self.thresholds) for way in ways)
 
+    def passes_dock(self, robot: Charged, lane: Lane, goals: Sequence[Goal]) -> bool:
+        """Whether it may leave a post where it could charge now, with work before it that is more than one charge."""
+        post = self.ground.network.posts[lane.start]
+        if not self.is_free(post, robot) or not goals or robot.recharging or robot.ratio >= FULL_ENOUGH:
+            return True
+        to_next = self._work(post, goals[:1]) + self._to_dock(self.ground.network.posts[goals[0].post])
+        return to_next.time_s == inf or passes_dock(self._charge(robot), to_next, self.thresholds)
+
+    def is_free(self, post: str, robot: Charged) -> bool:
+        """Whether there is a dock that no other robot charges in or was sent to."""
+        others = (one for one in self.robots.values() if one is not robot)
+        return post in self.ground.chargers and not any(
+            post in (one.bound_for, one.post if one.charging else None) for one in others
+        )
+
     def waits_for_way(self, robot: Charged, lane: Lane, dock: str) -> bool:
         """To a dock: whether a closed corridor makes the way longer than its charge lasts, so that standing before it
         costs less."""
@@ -156,13 +171,20 @@ class Charges:
         return ratio < self.thresholds.low and self.robots[other].ratio >= ratio + NEEDS_IT_MORE
 
     def has_enough(self, robot: Charged, goals: Sequence[Goal]) -> bool:
-        """Of a robot that charges on the way: whether it goes on."""
+        """Of a robot that was sent to a dock: whether it goes on. With nothing to do it stays until charging gets slow,
+        unless somebody needs a dock more: on its way home it would only spend what the next order waits for."""
+        if not goals and not self._is_needed_more(robot):
+            return robot.ratio >= self.thresholds.sufficient
         work = self._work(robot.post, goals)
         if work.time_s == inf:
             return robot.ratio >= FULL_ENOUGH
         last = self.ground.network.posts[goals[-1].post] if goals else robot.post
         needed = accepts(self._charge(robot), work, self._to_dock(last), self.thresholds).needed
         return robot.ratio >= max(OWN_BEGIN, min(FULL_ENOUGH, needed + ENOUGH_MORE))
+
+    def _is_needed_more(self, robot: Charged) -> bool:
+        others = [one for one in self.robots.values() if not one.charging]
+        return any(robot.ratio >= one.ratio + NEEDS_IT_MORE for one in others)
 
     def charging_s(self, robot: Charged, wanted: float) -> float:
         return self.curves[robot.name].time_s(robot.ratio, wanted)

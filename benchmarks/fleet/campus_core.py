@@ -110,7 +110,7 @@ class Core:
             case Event():
                 self._note_event(known, message)
             case Claim():
-                known.asked_s = self.now_s if known.claim is None and known.moved_s > known.asked_s else known.asked_s
+                known.asked_s = self.now_s if known.claim is None and known.moved_s >= known.asked_s else known.asked_s
                 known.claim, known.lane = message, None
                 goals = self.dispatch.goals(known.name)
                 self.dispatch.forget_claim(known, self.ground.network.posts[goals[0].post] if goals else known.home)
@@ -284,12 +284,22 @@ class Core:
 
     def _goes_on(self, known: Known, lane: Lane) -> bool:
         """Before each leg: whether it has the charge for it. Else it is sent to a dock first."""
+        here = self.ground.network.posts[lane.start]
+        if known.bound_for not in (None, here) and not known.recharging and self.charges.is_free(here, known):
+            self._send_to_dock(known, here)  # others may have led it here, away from the one that it was sent to
+            return False
         if known.bound_for is not None:
             return not self.charges.waits_for_way(known, lane, known.bound_for)
-        if self.charges.goes_on(known, lane):
+        if not self.charges.goes_on(known, lane):
+            self._breaks_off(known)
+            self._send_to_dock(known, self.charges.dock_for(known))
+            return False
+        if known.planned.isdisjoint(self.dispatch.open) or self.charges.passes_dock(
+            known, lane, self.dispatch.goals(known.name)
+        ):
             return True
         self._breaks_off(known)
-        self._send_to_dock(known, self.charges.dock_for(known))
+        self._send_to_dock(known, here)
         return False
 
     def _breaks_off(self, known: Known) -> None:
@@ -303,7 +313,8 @@ class Core:
         self._charge_goals += 1
         charge_s = self.charges.charging_s(known, self.charges.thresholds.sufficient)
         goal = Goal(self.ground.network.number_of(dock), charge_s, key=f"c{self._charge_goals}-dock")
-        if not self.controller.give(known.name, (goal, *self.controller.goals(known.name)), self.now_s):
+        others = [one for one in self.controller.goals(known.name) if not one.key.endswith("-dock")]
+        if not self.controller.give(known.name, (goal, *others), self.now_s):
             return False
         known.bound_for = dock
         self.dispatch.tell_missions((known.name,))

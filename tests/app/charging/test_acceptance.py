@@ -5,7 +5,7 @@ from dataclasses import replace
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.charging.acceptance import Answer, Charge, accepts, goes_on
+from app.charging.acceptance import Answer, Charge, accepts, goes_on, passes_dock
 from app.charging.energy import Use, assumed_rates
 from app.charging.levels import Thresholds
 
@@ -51,6 +51,16 @@ def test_before_each_leg_the_way_to_a_dock_is_looked_at_again() -> None:
     assert goes_on(Charge(needed + 0.001, RATES), leg, there, THRESHOLDS)
     assert not goes_on(Charge(needed - 0.001, RATES), leg, there, THRESHOLDS)
     assert not goes_on(Charge(0.26, RATES), leg, Use(), THRESHOLDS), "its own plan would take over on the way"
+
+
+def test_with_more_than_one_charge_before_it_a_robot_charges_at_the_dock_that_it_passes() -> None:
+    """Before each leg it would still be let on, and break off far from any dock."""
+    leg, to_next = Use(80.0, 400.0), Use(400.0, 2400.0)
+    needed = THRESHOLDS.low + RATES.at_most(to_next)
+    assert goes_on(Charge(needed - 0.1, RATES), leg, BACK, THRESHOLDS)
+    assert not passes_dock(Charge(needed - 0.001, RATES), to_next, THRESHOLDS)
+    assert passes_dock(Charge(needed, RATES), to_next, THRESHOLDS)
+    assert passes_dock(Charge(0.93, RATES), LONG + LONG, THRESHOLDS), "fuller than full it never is"
 
 
 @given(st.floats(0, 1), uses, uses, uses)
