@@ -4,6 +4,7 @@ import gc
 import os
 import shutil
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -16,6 +17,8 @@ settings.load_profile("campus_mail")
 
 NAMES_OF_CHROMIUM = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 NOT_RUN = pytest.StashKey[int]()
+ALONE_IN = ("robot", "system")
+"""CI looks for tests that run alone in these folders only: to collect all the others takes ten seconds."""
 
 
 @pytest.fixture(autouse=True)
@@ -47,6 +50,9 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
     What joins real processes takes longest and comes first: else one of the workers would end long after the others.
     """
+    elsewhere = [item.nodeid for item in items if item.get_closest_marker("alone") and not _is_in(item, ALONE_IN)]
+    if elsewhere:
+        raise pytest.UsageError(f".ci/run would never run these alone: {', '.join(elsewhere)}")
     items.sort(key=lambda item: item.get_closest_marker("system") is None)
     browser_tests = [item for item in items if item.get_closest_marker("browser")]
     if not browser_tests or find_chromium():
@@ -56,6 +62,10 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     items[:] = [item for item in items if item not in browser_tests]
     config.hook.pytest_deselected(items=browser_tests)
     config.stash[NOT_RUN] = len(browser_tests)
+
+
+def _is_in(item: pytest.Item, folders: tuple[str, ...]) -> bool:
+    return any(Path(__file__).parent / folder in item.path.parents for folder in folders)
 
 
 @pytest.hookimpl(optionalhook=True)
