@@ -1,6 +1,6 @@
 """Knowing the way and being allowed to take it: what the actions about routes, grants and closed corridors do."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Final
 
 from maps import NoRoute, corridor_name, shortest_route
@@ -46,16 +46,16 @@ def claim(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
     when the service sends the robot elsewhere first, which is then perceived."""
     goal, duties, navigator = str(arguments[0]), hands.duties, hands.navigator
     closed = _why_no_way(hands, goal)
-    wanted = _kept(hands) if closed else _wanted(hands, goal)
-    _give_back(hands, wanted)
+    way = _kept(hands) if closed else _way(hands, goal)
+    first = _from_here(hands, way) if closed else navigator.first_legs(goal)
+    _give_back(hands, first, way)
     if closed:
         duties.avoid = frozenset()  # what was denied may be open by the next time it asks
         return AtOnce(Ended(closed))
-    first = navigator.first_legs(goal)
-    claim_id = None if detour(hands) else duties.claim(wanted, goal)
+    claim_id = None if detour(hands) else duties.claim((*first, *way), goal)
 
     def ask() -> Ended | None:
-        _give_back(hands, wanted)  # it may have been granted what it asked for before it changed its mind
+        _give_back(hands, first, way)  # it may have been granted what it asked for before it changed its mind
         if duties.may_enter(first) or detour(hands):
             return DONE
         return Ended("denied") if claim_id and duties.denial(claim_id) else None
@@ -63,10 +63,26 @@ def claim(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
     return Wait(ask)
 
 
-def _give_back(hands: Hands, wanted: Sequence[Leg]) -> None:
-    """What it does not need, as long as it stands where it is in none of it."""
+def _give_back(hands: Hands, first: Sequence[Leg], way: Sequence[Leg]) -> None:
+    """What it does not need now, as long as it stands where it is in none of it."""
     if hands.navigator.at:
-        hands.duties.clear(leg for leg in hands.duties.held.grants if leg not in (*wanted, detour(hands)))
+        kept = (*first, *_granted_ahead(hands, way), detour(hands))
+        hands.duties.clear(leg for leg in hands.duties.held.grants if leg not in kept)
+
+
+def _from_here(hands: Hands, legs: Sequence[Leg]) -> tuple[Leg, ...]:
+    return tuple(leg for leg in legs if leg.from_post == hands.navigator.at)
+
+
+def _granted_ahead(hands: Hands, way: Sequence[Leg]) -> Iterator[Leg]:
+    """What it may drive through from here without a stop. A corridor to which it comes only after others, not granted
+    yet, is not kept: the service thinks the robot in what it holds, and grants it nothing meanwhile."""
+    end, granted = hands.navigator.at, hands.duties.held.grants
+    for leg in way:
+        if leg not in granted or leg.from_post != end:
+            return
+        end = leg.to_post
+        yield leg
 
 
 def detour(hands: Hands) -> Leg | None:
@@ -77,17 +93,16 @@ def detour(hands: Hands) -> Leg | None:
     return None if corridor_name(leg.from_post, leg.to_post) in navigator.closed.names else leg
 
 
-def _wanted(hands: Hands, goal: str) -> tuple[Leg, ...]:
+def _way(hands: Hands, goal: str) -> tuple[Leg, ...]:
     """The way to the goal, the rest of the mission and home: a robot without network finishes what it is permitted, and
     comes back to where it can tell of it."""
     held, navigator = hands.duties.held, hands.navigator
     later = [stop.post for stop in (held.mission.stops if held.mission else ())[held.next_stop :]]
     home = [navigator.home] if navigator.home else []
     try:
-        way = navigator.legs_to(goal, *(later if later[:1] == [goal] else []), *home)
+        return navigator.legs_to(goal, *(later if later[:1] == [goal] else []), *home)
     except NoRoute:
-        way = navigator.legs_to(goal)
-    return (*navigator.first_legs(goal), *way)
+        return navigator.legs_to(goal)
 
 
 def _kept(hands: Hands) -> tuple[Leg, ...]:

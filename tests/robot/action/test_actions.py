@@ -234,6 +234,20 @@ def test_a_detour_gives_back_what_it_does_not_need_and_keeps_what_it_does(bench:
     assert bench.duties.held.grants == (TO_POST3,)
 
 
+def test_a_corridor_to_which_it_comes_only_later_is_given_back_though_it_is_on_the_way_home(bench: Bench) -> None:
+    with_server(bench, TO_POST3)
+    bench.ask("claim(post1)")
+    claimed = next(told for told in bench.told() if '"goal":"post1"' in told)
+    assert '{"from_post":"post2","to_post":"post3"}' in claimed, "it asks for the way back to its dock as well"
+    assert bench.duties.held.grants == ()
+
+
+def test_a_corridor_that_it_has_been_through_is_given_back_though_it_comes_there_again(bench: Bench) -> None:
+    with_server(bench, Leg(from_post="post1", to_post="post2"))
+    bench.ask("claim(post1)")
+    assert bench.duties.held.grants == ()
+
+
 def test_a_claim_that_is_answered_by_a_way_aside_ends_and_what_was_granted_with_it_is_kept(bench: Bench) -> None:
     with_server(bench)
     waiting = bench.ask("claim(post4)")
