@@ -41,6 +41,8 @@ class TruePlaces:
     most_at_once: int = 0
     """How many corridors had a robot in them at one moment, at most."""
     looks: int = 0
+    met: int = 0
+    """How often two were in one corridor."""
 
     @property
     def inside(self) -> int:
@@ -59,6 +61,7 @@ class TruePlaces:
         self.looks += 1
         self.most_at_once = max(self.most_at_once, self.inside)
         for one, other, corridor in collisions(self.seen):
+            self.met += 1
             raise DemoFailed(f"{one} and {other} are both in the corridor {corridor}: they would have collided.")
 
 

@@ -151,7 +151,7 @@ class Course:
             "corridors_entered_or_left": places.moves,
             "most_corridors_in_use_at_once": places.most_at_once,
             "looks_at_true_places": places.looks,
-            "two_in_one_corridor": 0,
+            "two_in_one_corridor": places.met,
             "longest_standstill_s": round(self._longest_still_s),
             "alarms": life.alarms,
             "simulated_s": round(self._clock.now() - self._began_s),

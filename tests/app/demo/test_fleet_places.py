@@ -45,13 +45,14 @@ def test_two_robots_in_one_corridor_are_an_error_that_names_all_three(campus: Ca
     worlds.put("r1", 125.0, 0.0)
     with pytest.raises(DemoFailed, match=r"r1 and r2 are both in the corridor canal-uc"):
         worlds.put("r2", 125.0, 40.0)
+    assert worlds.places.met == 1
 
 
 def test_robots_in_two_corridors_or_at_a_post_beside_one_are_none(worlds: Worlds) -> None:
     worlds.put("r1", 125.0, 0.0)
     worlds.put("r2", 125.0, 50.5)
     worlds.put("r2", 125.0, 55.0)
-    assert (worlds.places.moves, worlds.places.most_at_once) == (1, 2)
+    assert (worlds.places.moves, worlds.places.most_at_once, worlds.places.met) == (1, 2, 0)
 
 
 def test_a_world_that_has_not_begun_is_no_place(worlds: Worlds) -> None:
