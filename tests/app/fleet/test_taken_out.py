@@ -16,7 +16,7 @@ from protocol.parts import Activity, Battery
 from protocol.to_robot import Revoke
 from protocol.to_server import CommandAnswer, Event, Snapshot
 from tests.app.fleet.playing import PlayedRobot, Service, at_post, serving, until
-from tests.app.fleet.test_timetable import Track, Traveller
+from tests.app.fleet.travelling import on_one_track
 
 UNDERSTANDS = ("detour", "revoke")
 
@@ -48,11 +48,9 @@ def says(activity: Activity, post: str | None = None, **battery: Any) -> Snapsho
 async def test_others_go_on_at_once_and_it_is_one_of_them_again_when_it_has_heard_and_stands_at_a_post(
     service: Service, clock: SteppedClock
 ) -> None:
-    track = Track(at={"r1": "post1", "r2": "post4"})
-    first, second = (Traveller(PlayedRobot(clock, name), track) for name in track.at)
-    tokens = {name: await service.enrol(name) for name in track.at}
-    async with second.greeted(service, tokens["r2"]):
-        async with first.greeted(service, tokens["r1"]):
+    first, second = on_one_track(clock, r1="post1", r2="post4")
+    async with second.greeted(service):
+        async with first.greeted(service):
             await first.claim("post2")
             await first.answer()
         clock.advance(1000)
@@ -67,10 +65,10 @@ async def test_others_go_on_at_once_and_it_is_one_of_them_again_when_it_has_hear
         assert (grant.freed_by, told.command_id) == (command_id, command_id)
         assert (told.kind, told.asked_because, bool(told.asked_by_id)) == ("revoke", "Carried into the workshop.", True)
         assert await service.rows(Alarm, robot="r1", name="vanished", cleared_at=None) == []
-        del track.at["r1"]  # it is in the workshop
+        del first.track.at["r1"]  # it is in the workshop
         await second.go_to("post1")
 
-        async with first.robot.connected(service.url, tokens["r1"]):
+        async with first.robot.connected(service.url, first.robot.token):
             await first.robot.greet("post1", home="post5", understands=UNDERSTANDS)
             revoke = (await first.robot.hear("revoke")).body
             assert isinstance(revoke, Revoke)
@@ -79,17 +77,15 @@ async def test_others_go_on_at_once_and_it_is_one_of_them_again_when_it_has_hear
             await is_heard(service, first.robot, revoke)
             row = await service.row(RobotRow, name="r1")
             assert (row.taken_out_at, row.post) == (None, None)
-            track.at["r1"] = "post3"
+            first.track.at["r1"] = "post3"
             await first.robot.say(says(Activity.IDLE, "post3"))
             await asyncio.gather(first.go_to("post4"), second.go_to("post2"))
-    assert track.at == {"r1": "post4", "r2": "post2"}
+    assert first.track.at == {"r1": "post4", "r2": "post2"}
 
 
 async def test_who_stands_where_another_wants_to_go_is_named(service: Service, clock: SteppedClock) -> None:
-    track = Track(at={"r1": "post1", "r2": "post2"})
-    first, second = (Traveller(PlayedRobot(clock, name), track) for name in track.at)
-    tokens = {name: await service.enrol(name) for name in track.at}
-    async with first.greeted(service, tokens["r1"]), second.greeted(service, tokens["r2"]):
+    first, second = on_one_track(clock, r1="post1", r2="post2")
+    async with first.greeted(service), second.greeted(service):
         await first.robot.say(says(Activity.STOPPED, "post1"))
 
         async def stands() -> bool:
