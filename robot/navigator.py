@@ -15,8 +15,9 @@ from robot.navigation.approach import is_aslant
 from robot.navigation.astray import FROM_MM, TO_MM, Compass, really_towards
 from robot.navigation.by_fixes import near_dock
 from robot.navigation.closed import Closed, open_way
-from robot.navigation.directions import Way, kept_from, next_post
+from robot.navigation.directions import PLAIN_TURNS, Way, kept_from, next_post
 from robot.navigation.docks import in_dock, nearest_dock, way_out
+from robot.navigation.granted import behind
 from robot.navigation.moved import cannot_be_next, found_at, nowhere
 from robot.navigation.position import REACHED_MM, Position
 from robot.navigation.remembering import remembered
@@ -38,7 +39,6 @@ MARKER_UNREAD = "marker_unread"
 KEPT_POSTS = 500
 """More than a run with a summary visits; a robot runs for months."""
 SURELY_PAST_M = 0.3
-PLAIN_TURNS = {"left": math.pi / 2, "right": -math.pi / 2, "behind": math.pi}
 
 
 class Navigator:
@@ -161,7 +161,7 @@ class Navigator:
         self._compass.set(self.position.facing_now_rad(self._odometry), self._odometry)
         self._duties.seen(post)
         if before and before != post:
-            self._duties.clear([Leg(from_post=before, to_post=post)])
+            self._duties.clear(behind(self._duties.held.grants, post, Leg(from_post=before, to_post=post)))
         # Where it turned back is not given back here: it may wish to go in again (decision 0022).
         self._far_end = None
         if self.visited[-1:] != [post]:

@@ -7,6 +7,8 @@ from maps import CampusMap, corridor_name, shortest_route
 from maps.geometry import wrapped
 from protocol.parts import Leg
 
+PLAIN_TURNS = {"left": math.pi / 2, "right": -math.pi / 2, "behind": math.pi}
+
 
 class Way(StrEnum):
     """The paper's words for a direction, as somebody on the robot would say them."""

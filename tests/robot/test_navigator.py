@@ -156,6 +156,15 @@ def test_a_corridor_is_given_back_when_its_far_end_is_reached(walk: Walk) -> Non
     assert walk.duties.held.grants == ()
 
 
+def test_the_other_ways_out_of_the_post_before_are_given_back_with_it_and_what_lies_ahead_is_kept(walk: Walk) -> None:
+    legs = [Leg(from_post=a, to_post=b) for a, b in (("post2", "post3"), ("post2", "post1"), ("post3", "post4"))]
+    walk.duties.memory.grant(legs)
+    walk.duties.seen("post2")
+    walk.navigator.place("post2", "post3")
+    walk.drives_to("post3")
+    assert walk.duties.held.grants == (legs[2],)
+
+
 def test_the_nearest_dock_is_by_the_map_and_its_own_while_it_is_lost(store: Store) -> None:
     walk = Walk(store, home="post5")
     assert walk.navigator.nearest_dock() == "post5"
