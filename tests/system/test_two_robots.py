@@ -13,12 +13,13 @@ from typing import Any
 
 import pytest
 
-from tests.system.rig import ROOT, Rig
+from tests.system.rig import ROOT, Rig, wait_for
 
 pytestmark = [pytest.mark.system, pytest.mark.alone, pytest.mark.timeout(280)]
 
 ERRANDS = {"r1": ("post2:post3", "post4"), "r2": ("post4:post3", "post2")}
 """Where each begins, looking along which corridor, and where it is sent."""
+BETWEEN = ("post2-post3", "post3-post4")
 
 
 class SharedTrack(Rig):
@@ -33,6 +34,8 @@ class SharedTrack(Rig):
         return {**super()._service_env(), "CAMPUS_MAIL_TRAFFIC": "timetable"}
 
     def __exit__(self, *_: object) -> None:
+        for person in self.people:
+            person.leave()
         for name in list(self.processes):
             self.kill(name)
         self.wire.__exit__()
@@ -58,6 +61,12 @@ class SharedTrack(Rig):
         told: dict[str, Any] = json.loads((self.folder / f"{name}.json").read_text().splitlines()[-1])
         return list(told["posts"])
 
+    def know_where_all_are(self) -> bool:
+        """Whether each of them has told the service where it stands."""
+        with closing(sqlite3.connect(self.folder / "service" / "campus-mail.sqlite")) as database:
+            told = database.execute("SELECT name FROM robots WHERE post IS NOT NULL AND online").fetchall()
+        return {name for (name,) in told} == set(ERRANDS)
+
     def grants(self) -> list[tuple[str, str, datetime, datetime]]:
         """Which robot had which corridor, from when until when."""
         with closing(sqlite3.connect(self.folder / "service" / "campus-mail.sqlite")) as database:
@@ -74,8 +83,14 @@ def track(tmp_path: Path) -> Iterator[SharedTrack]:
 def test_two_robots_that_swap_places_pass_each_other_and_come_home(track: SharedTrack) -> None:
     for name in ERRANDS:
         track.enrol_one(name)
+    dispatcher = track.sign_in_as("dan@campus.example", "dispatcher")
+    for corridor in BETWEEN:  # until both are known of: whoever is alone on the line is in nobody's way
+        dispatcher.post(f"/corridors/{corridor}/close", {"reason": "Two robots are put down."}).raise_for_status()
     for name in ERRANDS:
         track.send(name)
+    wait_for("both have said where they are", track.know_where_all_are)
+    for corridor in BETWEEN:
+        dispatcher.post(f"/corridors/{corridor}/open").raise_for_status()
     posts = {name: track.run_of(name) for name in ERRANDS}
     for name, (_, goal) in ERRANDS.items():
         assert goal in posts[name], f"{name} was never there: {posts[name]}"
