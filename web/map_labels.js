@@ -18,8 +18,10 @@ const ROBOT_ROOM = 25;
 const APART = 6;
 /** Around a post that is not its own: nearer to it a name would be taken for that post's. */
 const NEAR = 9;
-/** What it costs to cover another label or post, or to lie outside of the frame; a point of a corridor costs 1. */
+/** What it costs to cover a post or other words, or to lie outside of the frame; a point of a corridor costs 1: words on
+ *  a line can be read, words on words cannot. */
 const COVERS = 20;
+const COVERS_WORDS = 60;
 const OUTSIDE = 45;
 /** What it costs to need more lines. */
 const FOLDED = 2;
@@ -87,8 +89,10 @@ export function placeLabels(drawn, wordings, frame, kept = []) {
 
   /** @param {Box} box @param {string} own @param {Box | null} room */
   function cost(box, own, room) {
-    const covered = [...taken, ...kept, ...around.filter(({ name }) => name !== own)].filter((other) => overlap(box, other)).length;
-    return obstacles.filter((point) => inside(point, box)).length + COVERS * covered + (room && !within(box, room) ? OUTSIDE : 0);
+    const words = [...taken, ...kept].filter((other) => overlap(box, other)).length;
+    const others = around.filter((other) => other.name !== own && overlap(box, other)).length;
+    const outside = room && !within(box, room) ? OUTSIDE : 0;
+    return obstacles.filter((point) => inside(point, box)).length + COVERS_WORDS * words + COVERS * others + outside;
   }
 }
 
