@@ -14,6 +14,7 @@ from app import about, asset_links, demo_camera, marker_sheets, metrics, one_ord
 from app.api_document import DocumentedApi, operation_id
 from app.body_limit import BodyLimit
 from app.database import Database
+from app.dispatch.charge_desk import ChargeDesk
 from app.dispatch.fleet_planner import FleetPlanner
 from app.dispatch.nearest import NearestRobots
 from app.dispatch.service import Dispatcher
@@ -172,6 +173,7 @@ def _add_parts(app: FastAPI, settings: Settings, clock: Clock) -> None:
     state.orders.on_change.append(lambda order_id: state.outbox_worker.wake())
     state.traffic_desk = TrafficDesk(state.fleet) if settings.traffic == "timetable" else None
     state.planner = FleetPlanner(state.fleet, state.traffic_desk) if state.traffic_desk is not None else None
+    state.charge_desk = ChargeDesk(state.fleet) if state.traffic_desk is not None else None
     state.dispatcher = Dispatcher(state.fleet, state.planner or NearestRobots(state.fleet))
     if state.traffic_desk is not None:
         state.traffic_desk.on_look.append(state.dispatcher.wake_for_robot)
@@ -229,7 +231,12 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         "spending": state.fleet.spending,
     }
     if state.traffic_desk is not None:
-        workers |= {"traffic": state.traffic_desk, "planning": state.planner, "foreseen": state.foreseen}
+        workers |= {
+            "charging": state.charge_desk,
+            "traffic": state.traffic_desk,
+            "planning": state.planner,
+            "foreseen": state.foreseen,
+        }
     background = [asyncio.create_task(_keep_running(name, worker.run)) for name, worker in workers.items()]
     outbox = asyncio.create_task(_keep_running("outbox", state.outbox_worker.run))
     try:

@@ -44,6 +44,7 @@ def stop_of(row: StopRow) -> Stop:
         action=StopAction(row.action),
         order_id=row.order_id,
         wait_limit_s=row.wait_limit_s,
+        until_ratio=row.until_ratio,
     )
 
 

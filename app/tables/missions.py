@@ -39,8 +39,9 @@ class MissionRow(SQLModel, table=True):
 class StopRow(SQLModel, table=True):
     """`position` orders the stops; `action` is one of `protocol.parts.StopAction`.
 
-    `since_update` is the mission's update that brought it. A stop is over when it is done, given up, or dropped: taken
-    out of the mission by a later update.
+    `until_ratio`: the charge until which the robot stays in a dock. `since_update` is the mission's
+    update that brought it. A stop is over when it is done, given up, or dropped: taken out of the mission by a later
+    update.
     """
 
     __tablename__ = "stops"
@@ -52,6 +53,7 @@ class StopRow(SQLModel, table=True):
     action: str = Field(max_length=16)
     order_id: str | None = Field(default=None, foreign_key="orders.id", index=True)
     wait_limit_s: float = 600.0
+    until_ratio: float | None = None
     since_update: int = 1
     departed_at: datetime | None = Field(default=None, sa_type=UtcTime)
     arrived_at: datetime | None = Field(default=None, sa_type=UtcTime)

@@ -1,0 +1,184 @@
+"""Sends robots that have nothing to do and no dock of their own to a dock, and calls them away again for work.
+
+Who goes where is decided in `app.charging`. Here is one look at the database, and one transaction for each robot that
+is sent. Nobody is sent to a dock that is taken: somebody stands in it or is on his way to it, or it is a robot's own.
+"""
+
+import asyncio
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from datetime import datetime, timedelta
+from typing import Final
+
+import structlog
+from sqlmodel import col, select
+from sqlmodel.ext.asyncio.session import AsyncSession
+
+from app.charging.acceptance import Charge
+from app.charging.curve import ChargeCurve
+from app.charging.demand import Demand
+from app.charging.docks import Need, plan_docks
+from app.charging.energy import Use
+from app.charging.top_ups import Move, Wish, top_ups
+from app.dispatch.charge import THRESHOLDS
+from app.dispatch.open_work import OpenWork, RobotNow, StopNow, look_at_work
+from app.fleet.mission_updates import tell_mission
+from app.fleet.service import Fleet, known_robot
+from app.fleet.spending import usual_rates
+from app.tables import MissionRow, Order, StopRow
+from protocol.ids import new_id
+from protocol.parts import StopAction
+
+UNTIL_RATIO: Final = "until_ratio"
+"""Robots that do not know this field of a stop are left to their own battery plan."""
+LOOK_EVERY_S: Final = 5.0
+"""Real seconds: charges change slowly."""
+CURVE: Final = ChargeCurve(10_800.0)
+"""Assumed: three hours to fill a pack."""
+LEARNED_FROM: Final = timedelta(days=28)
+_HOUR: Final = timedelta(hours=1)
+
+log = structlog.get_logger(__name__)
+
+
+@dataclass
+class ChargeDesk:
+    """Runs in the background of the service, if traffic goes by the timetable."""
+
+    fleet: Fleet
+    _demand: Demand = field(default_factory=Demand)
+    _learned_at: datetime | None = None
+    _woken: asyncio.Event = field(default_factory=asyncio.Event)
+    _stopping: bool = False
+
+    def __post_init__(self) -> None:
+        self.fleet.orders.on_change.append(self.wake)
+
+    def wake(self, _changed: str = "") -> None:
+        """An order has changed: somebody may be wanted elsewhere."""
+        self._woken.set()
+
+    def stop(self) -> None:
+        """End `run` after what it is doing."""
+        self._stopping = True
+        self.wake()
+
+    async def run(self) -> None:
+        """Until stopped or cancelled."""
+        while not self._stopping:
+            self._woken.clear()
+            await self.look_round()
+            try:
+                async with asyncio.timeout(LOOK_EVERY_S):
+                    await self._woken.wait()
+            except TimeoutError:
+                pass
+
+    async def look_round(self) -> None:
+        """Call away who is wanted, and send who has nothing to do."""
+        now = self.fleet.clock.utc()
+        async with self.fleet.database.reading() as session:
+            await self._learn(session, now)
+            work = await look_at_work(session, now)
+        for stop in _in_the_way(work):
+            await self._call_away(stop)
+        for move in self._moves(work, now):
+            await self._send(move, now)
+
+    async def _learn(self, session: AsyncSession, now: datetime) -> None:
+        """Once an hour, when orders come. Hours of the week are UTC's."""
+        hour = now.replace(minute=0, second=0, microsecond=0)
+        if self._learned_at == hour:
+            return
+        self._demand, self._learned_at = Demand(), hour
+        recent = select(Order.created_at).where(col(Order.created_at) >= hour - LEARNED_FROM)
+        came = Counter(
+            at.replace(minute=0, second=0, microsecond=0) for at in (await session.exec(recent)).all() if at < hour
+        )
+        at = min(came, default=hour)
+        while at < hour:
+            self._demand.learn(at, came[at])
+            at += _HOUR
+
+    # What is decided.
+
+    def _moves(self, work: OpenWork, now: datetime) -> list[Move]:
+        own = {robot.home for robot in work.robots.values()}
+        docks = [post.name for post in self.fleet.campus.docks() if post.name not in own]
+        needs = {robot.name: self._need(robot, work, docks) for robot in work.robots.values() if _needs_one(robot)}
+        resting = [need for name, need in needs.items() if self._may_be_sent(work.robots[name], work)]
+        plan = plan_docks(list(needs.values()), docks, CURVE, THRESHOLDS, self.fleet.clock.now())
+        wish = Wish(self._demand.is_quiet(now), round(self._demand.expected(now)))
+        taken: dict[str, str | None] = dict.fromkeys(_taken(work))
+        found = top_ups(resting, plan, taken, THRESHOLDS, wish, self.fleet.clock.now())
+        return [move for move in found if move.dock not in taken]
+
+    def _need(self, robot: RobotNow, work: OpenWork, docks: list[str]) -> Need:
+        settings, length_m = self.fleet.settings, self.fleet.orders.ways.length_m
+        rates = self.fleet.spending.rates.get(robot.name, usual_rates(settings))
+        way_m = {dock: length_m(robot.post, dock) for dock in docks if length_m(robot.post, dock) < float("inf")}
+        ways = {dock: Use(way, way / settings.assumed_speed_m_s) for dock, way in way_m.items()}
+        dock = next((one for one in _docks_of(robot, work) if one in docks), None)
+        charge = Charge(robot.battery_ratio or 0.0, rates, docked=bool(robot.docked))
+        return Need(robot.name, charge, self.fleet.clock.now(), ways, dock, THRESHOLDS.begin + THRESHOLDS.hysteresis)
+
+    def _may_be_sent(self, robot: RobotNow, work: OpenWork) -> bool:
+        is_free = robot.takes_work and robot.name not in work.missions
+        return is_free and self.fleet.connections.understands(robot.name, UNTIL_RATIO)
+
+    # How it is written.
+
+    async def _send(self, move: Move, now: datetime) -> None:
+        until = THRESHOLDS.full if self._demand.is_quiet(now) else THRESHOLDS.sufficient
+        async with self.fleet.database.transaction() as session:
+            robot = await known_robot(session, move.robot, to_change=True)
+            work = await look_at_work(session, now)
+            if not self._may_be_sent(work.robots[move.robot], work) or move.dock in _taken(work):
+                return
+            mission = MissionRow(id=new_id(), robot=robot.name, created_at=now)
+            session.add(mission)
+            await session.flush()
+            stop = StopRow(id=new_id(), mission_id=mission.id, position=0, post=move.dock, action=StopAction.DOCK)
+            stop.until_ratio = until
+            session.add(stop)
+            await session.flush()
+            await tell_mission(session, self.fleet, robot, mission)
+            log.info("sent_to_charge", robot=move.robot, dock=move.dock, until_ratio=until)
+
+    async def _call_away(self, stop: StopNow) -> None:
+        """Work was given only where there is the charge for it: it does not wait for more."""
+        async with self.fleet.database.transaction() as session:
+            robot = await known_robot(session, stop.robot, to_change=True)
+            row = await session.get_one(StopRow, stop.id, with_for_update=True)
+            mission = await session.get_one(MissionRow, stop.mission_id, with_for_update=True)
+            still = list(_in_the_way(await look_at_work(session, self.fleet.clock.utc())))
+            if all(one.id != stop.id for one in still):
+                return
+            row.dropped_at = self.fleet.clock.utc()
+            mission.update_number += 1
+            await session.flush()
+            await tell_mission(session, self.fleet, robot, mission)
+            log.info("called_away_from_dock", robot=stop.robot, dock=stop.post)
+
+
+def _needs_one(robot: RobotNow) -> bool:
+    return robot.is_there and robot.home is None and robot.post is not None and robot.battery_ratio is not None
+
+
+def _docks_of(robot: RobotNow, work: OpenWork) -> list[str]:
+    """Where it stands in a dock, and those that it is bound for."""
+    bound = [stop.post for stop in work.stops.get(robot.name, ()) if stop.action == StopAction.DOCK]
+    return [robot.post, *bound] if robot.docked and robot.post else bound
+
+
+def _taken(work: OpenWork) -> set[str]:
+    """Of robots that are not there, too: they may come back."""
+    return {dock for robot in work.robots.values() for dock in _docks_of(robot, work)}
+
+
+def _in_the_way(work: OpenWork) -> Iterator[StopNow]:
+    """Stops to charge at, of robots that have got work meanwhile."""
+    for stops in work.stops.values():
+        has_work = any(stop.order_id for stop in stops)
+        yield from (stop for stop in stops if has_work and stop.action == StopAction.DOCK)
