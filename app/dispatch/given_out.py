@@ -18,7 +18,7 @@ from app.orders.intervening import REASSIGNED
 from app.orders.service import Word
 from app.orders.stops import stops_left
 from app.orders.transitions import By
-from app.tables import MissionRow, OrderState, StopRow
+from app.tables import MissionRow, OrderState, RobotRow, StopRow
 from protocol.ids import new_id
 from protocol.parts import StopAction
 
@@ -97,20 +97,22 @@ def changes_of(work: OpenWork, decision: Decision) -> Changes:
 
 async def give_out(session: AsyncSession, fleet: Fleet, changes: Changes, own: set[str]) -> bool:
     """Write it down, and tell robots; False if it does not hold any more. `own`: orders that are given here."""
+    # Locked before the look: nobody else gives them a mission between the two.
+    robots = [await known_robot(session, name, to_change=True) for name in sorted(changes.routes)]
     if not changes.still_hold(await look_at_work(session, fleet.clock.utc())):
         return False
     by_robot = _by_robot(changes.given)
-    for name in sorted(changes.routes):
-        await _change_mission(session, fleet, changes, name, by_robot.get(name, ()), own)
+    for robot in robots:
+        await _change_mission(session, fleet, changes, robot, by_robot.get(robot.name, ()), own)
     for order_id in changes.taken:
         await _take(session, fleet, order_id)
     return True
 
 
 async def _change_mission(
-    session: AsyncSession, fleet: Fleet, changes: Changes, name: str, given: Iterable[str], own: set[str]
+    session: AsyncSession, fleet: Fleet, changes: Changes, robot: RobotRow, given: Iterable[str], own: set[str]
 ) -> None:
-    robot = await known_robot(session, name, to_change=True)
+    name = robot.name
     mission = await _mission(session, fleet, name, changes.work.missions.get(name))
     left = {stop.id: stop for stop in await stops_left(session, mission.id)}
     for position, key in enumerate(changes.routes[name]):
