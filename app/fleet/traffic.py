@@ -20,6 +20,7 @@ from protocol.to_robot import Deny, Grant
 from protocol.to_server import Claim, Clear
 
 ASKED_ANEW: Final = "the robot has asked for another way since"
+GONE_ON: Final = "the robot is not where this way begins any more"
 
 
 async def answer(
@@ -60,6 +61,17 @@ async def clear(session: AsyncSession, campus: CampusMap, robot: str, message: C
         col(GrantRow.cleared_at).is_(None),
     )
     await session.exec(held.values(cleared_at=now, left_at=message.post))
+    if message.post is not None:
+        await _forget_what_begins_elsewhere(session, robot, message.post)
+
+
+async def _forget_what_begins_elsewhere(session: AsyncSession, robot: str, post: str) -> None:
+    """What it asked for before it got here some other way is nothing that it could enter. While it is inside a corridor
+    it may be asking for what comes after that."""
+    waiting = select(ClaimRow).where(ClaimRow.robot == robot, col(ClaimRow.granted).is_(None))
+    for claim in (await session.exec(waiting)).all():
+        if claim.legs[0]["from_post"] != post and not await held_by(session, robot):
+            claim.granted, claim.reason = False, GONE_ON
 
 
 async def forget_what_waits(session: AsyncSession, robot: str, reason: str) -> None:

@@ -6,7 +6,7 @@ from collections.abc import AsyncIterator
 import pytest
 
 from app.settings import Settings
-from app.tables import Alarm, GrantRow, RobotRow
+from app.tables import Alarm, ClaimRow, GrantRow, RobotRow
 from protocol.clock import SteppedClock
 from tests.app.fleet.playing import Service, serving, until
 from tests.app.fleet.travelling import Traveller, on_one_track
@@ -65,6 +65,21 @@ async def test_who_waits_is_told_for_whom_and_people_see_it(
     assert views["r2"].why == "Waiting at post4 for the corridor to post3, after r1"
     assert views["r2"].why_words.key == "why.others_first"
     assert (row.activity, views["r2"].activity) == ("idle", "waiting"), "who has somewhere to go is not free"
+
+
+async def test_what_a_robot_has_asked_for_twice_is_not_granted_again_once_it_has_been_through(
+    service: Service, travellers: tuple[Traveller, Traveller]
+) -> None:
+    """It had asked again before it heard the answer, and is where the way that it asked for ends."""
+    first, second = travellers
+    await first.claim("post2")
+    leg = await first.answer()
+    await first.claim("post2")
+    await first.drive(leg)
+    await second.go_to("post3")
+    claims = await service.rows(ClaimRow, robot="r1")
+    assert [(claim.claim_id, claim.granted) for claim in claims] == [("c1", True), ("c2", False)]
+    await until_nothing_is_held(service)
 
 
 async def test_what_was_granted_is_granted_after_a_restart_of_the_service(
