@@ -6,6 +6,7 @@ at any moment: a mission that was decided on is in the robot's outbox and is sen
 """
 
 import asyncio
+from contextlib import suppress
 from typing import Final, Protocol
 
 from app.dispatch.situation import Todo, look_for_work
@@ -42,7 +43,7 @@ class Dispatcher:
         self._fleet = fleet
         self._assigning = assigning
         self._woken = asyncio.Event()
-        self._stopping = False
+        self._stopped = asyncio.Event()
         self._needs_robots = True
         fleet.on_change.append(self.wake_for_robot)
         fleet.orders.on_change.append(self.wake)
@@ -61,19 +62,21 @@ class Dispatcher:
 
     def stop(self) -> None:
         """End `run` after what it is doing."""
-        self._stopping = True
+        self._stopped.set()
         self.wake()
 
     async def run(self) -> None:
         """Until stopped or cancelled."""
-        while not self._stopping:
+        while not self._stopped.is_set():
             self._woken.clear()
             self._needs_robots = True  # what changes from here on may come too late for this look
             begun_s = asyncio.get_running_loop().time()
             self._needs_robots = await self.look_round()
-            if self._needs_robots and not self._stopping:
+            if self._needs_robots and not self._stopped.is_set():
                 took_s = asyncio.get_running_loop().time() - begun_s
-                await asyncio.sleep(min(max(NOBODY_FREE_S, REST * took_s), LONGEST_REST_S))
+                with suppress(TimeoutError):
+                    async with asyncio.timeout(min(max(NOBODY_FREE_S, REST * took_s), LONGEST_REST_S)):
+                        await self._stopped.wait()
             try:
                 async with asyncio.timeout(LOOK_AGAIN_S):
                     await self._woken.wait()

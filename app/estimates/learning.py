@@ -61,7 +61,7 @@ class Learning:
     """The post that each robot passed last, and when, by its clock put right."""
     _let_in: dict[tuple[str, str, str], datetime] = field(default_factory=dict)
     _woken: asyncio.Event = field(default_factory=asyncio.Event)
-    _stopping: bool = False
+    _stopped: asyncio.Event = field(default_factory=asyncio.Event)
 
     # At the start, and now and then.
 
@@ -82,19 +82,21 @@ class Learning:
 
     def stop(self) -> None:
         """End `run`."""
-        self._stopping = True
+        self._stopped.set()
         self.wake()
 
     async def run(self) -> None:
         """Until stopped or cancelled."""
-        while not self._stopping:
+        while not self._stopped.is_set():
             with suppress(TimeoutError):
                 async with asyncio.timeout(LOOK_EVERY_S):
                     await self._woken.wait()
-            if not self._stopping:
+            if not self._stopped.is_set():
                 self._woken.clear()
                 await self.look()
-                await asyncio.sleep(REST_S)
+                with suppress(TimeoutError):
+                    async with asyncio.timeout(REST_S):
+                        await self._stopped.wait()
 
     async def look(self) -> None:
         """How many orders wait for how many robots."""

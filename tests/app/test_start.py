@@ -214,7 +214,7 @@ def _subcommands() -> Iterator[str]:
             yield f"{group.name} {one.name or one.callback.__name__}"
     for one in commands.registered_commands:
         assert one.callback is not None
-        yield one.name or one.callback.__name__
+        yield one.name or one.callback.__name__.replace("_", "-")
 
 
 async def test_a_time_without_a_zone_is_never_stored(settings: Settings) -> None:

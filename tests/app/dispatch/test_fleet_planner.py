@@ -13,7 +13,7 @@ from app.dispatch.planning.deciding import Decision
 from app.dispatch.planning.scene import Routes
 from app.orders.schemas import NewOrder
 from app.settings import Settings
-from app.tables import MissionRow, Order, Priority
+from app.tables import MissionRow, Order, Priority, RobotRow
 from protocol.clock import SteppedClock
 from protocol.parts import Activity, Battery
 from protocol.to_robot import Cancel
@@ -158,6 +158,11 @@ async def test_a_robot_that_stands_still_loses_what_it_has_not_loaded(
     assert (await service.states(order_id))[-2:] == ["queued", "assigned"]
 
 
+async def _is_known_to_stand(service: Service, robot: str) -> bool:
+    row: RobotRow = await service.row(RobotRow, name=robot)
+    return row.activity == Activity.STOPPED
+
+
 async def _goes_with(service: Service, order_id: str, robot: str) -> bool:
     order: Order = await service.row(Order, id=order_id)
     return order.robot == robot and order.state == "assigned"
@@ -171,6 +176,7 @@ async def test_mail_that_is_aboard_stays_where_it_is_whatever_happens_to_its_rob
     await robots[0].ends(await robots[0].say(robots[0].receipt(mission.stops[0])))
     stopped = Snapshot(position=at_post("post1"), activity=Activity.STOPPED, battery=Battery(ratio=0.9))
     await robots[0].say(stopped)
+    await until(lambda: _is_known_to_stand(service, "r1"))
     other = await service.order("post1", "post2")
     assert await has_robot(service, other) == "r2"
     assert (await service.row(Order, id=order_id)).robot == "r1"
