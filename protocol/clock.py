@@ -88,18 +88,20 @@ class SharedClock:
         return cls(path)
 
     def _read(self) -> tuple[float, float, float, float]:
+        """The machine's time, ours, our speed, and what ours is since the epoch: all of one moment. Whoever is held up
+        between two of them looks again, else it would go on at a speed that is not ours any more."""
         while True:
             before, real, scaled, speed, epoch = _LAYOUT.unpack(self._memory[: _LAYOUT.size])
+            present = time.monotonic()
             if before % 2 == 0 and struct.unpack_from("<Q", self._memory)[0] == before:
-                return real, scaled, speed, epoch
+                return present, scaled + (present - real) * speed, speed, epoch
 
     def now(self) -> float:
-        real, scaled, speed, _ = self._read()
-        return scaled + (time.monotonic() - real) * speed
+        return self._read()[1]
 
     def utc(self) -> datetime:
-        real, scaled, speed, epoch = self._read()
-        return datetime.fromtimestamp(epoch + scaled + (time.monotonic() - real) * speed, UTC)
+        _, now_s, _, epoch = self._read()
+        return datetime.fromtimestamp(epoch + now_s, UTC)
 
     def real_s(self, duration_s: float) -> float:
         return duration_s / self.speed
@@ -116,10 +118,9 @@ class SharedClock:
             self._change_speed(speed)
 
     def _change_speed(self, speed: float) -> None:
-        real, scaled, old_speed, epoch = self._read()
-        present = time.monotonic()
-        writes = struct.unpack_from("<Q", self._memory)[0]
+        writes, real, scaled, old_speed, epoch = _LAYOUT.unpack(self._memory[: _LAYOUT.size])
         struct.pack_into("<Q", self._memory, 0, writes + 1)
+        present = time.monotonic()  # after that: nobody reads a later moment at the old speed
         scaled += (present - real) * old_speed
         self._memory[: _LAYOUT.size] = _LAYOUT.pack(writes + 1, present, scaled, speed, epoch)
         struct.pack_into("<Q", self._memory, 0, writes + 2)
