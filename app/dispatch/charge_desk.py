@@ -4,7 +4,6 @@ Who goes where is decided in `app.charging`. Here is one look at the database, a
 is sent. Nobody is sent to a dock that is taken: somebody stands in it or is on his way to it, or it is a robot's own.
 """
 
-import asyncio
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -26,6 +25,7 @@ from app.dispatch.open_work import OpenWork, RobotNow, StopNow, look_at_work
 from app.fleet.mission_updates import tell_mission
 from app.fleet.service import Fleet, known_robot
 from app.fleet.spending import usual_rates
+from app.looks import Looks
 from app.tables import MissionRow, Order, StopRow
 from protocol.ids import new_id
 from protocol.parts import StopAction
@@ -34,6 +34,8 @@ UNTIL_RATIO: Final = "until_ratio"
 """Robots that do not know this field of a stop are left to their own battery plan."""
 LOOK_EVERY_S: Final = 5.0
 """Real seconds: charges change slowly."""
+REST_S: Final = 0.5
+"""Real seconds, between two looks: whoever is called away has a way to drive."""
 CURVE: Final = ChargeCurve(10_800.0)
 """Assumed: three hours to fill a pack."""
 LEARNED_FROM: Final = timedelta(days=28)
@@ -49,31 +51,20 @@ class ChargeDesk:
     fleet: Fleet
     _demand: Demand = field(default_factory=Demand)
     _learned_at: datetime | None = None
-    _woken: asyncio.Event = field(default_factory=asyncio.Event)
-    _stopping: bool = False
+    _looks: Looks = field(default_factory=lambda: Looks(LOOK_EVERY_S, REST_S))
 
     def __post_init__(self) -> None:
-        self.fleet.orders.on_change.append(self.wake)
-
-    def wake(self, _changed: str = "") -> None:
-        """An order has changed: somebody may be wanted elsewhere."""
-        self._woken.set()
+        # When an order has changed somebody may be wanted elsewhere.
+        self.fleet.orders.on_change.append(self._looks.wake)
 
     def stop(self) -> None:
         """End `run` after what it is doing."""
-        self._stopping = True
-        self.wake()
+        self._looks.stop()
 
     async def run(self) -> None:
         """Until stopped or cancelled."""
-        while not self._stopping:
-            self._woken.clear()
+        async for _ in self._looks.until_stopped():
             await self.look_round()
-            try:
-                async with asyncio.timeout(LOOK_EVERY_S):
-                    await self._woken.wait()
-            except TimeoutError:
-                pass
 
     async def look_round(self) -> None:
         """Call away who is wanted, and send who has nothing to do."""

@@ -4,7 +4,6 @@ What robots say is written down by the intake; here it is looked at, and what fo
 that fails the timetable is made anew from the database, so that it never knows of a grant that was not given.
 """
 
-import asyncio
 from collections.abc import Callable
 from datetime import datetime, timedelta
 from typing import Final
@@ -17,6 +16,7 @@ from app.fleet.service import Fleet, known_robot
 from app.fleet.taken import tell_of_traffic
 from app.fleet.timetable import Elsewhere, HasToWait, MayEnter, Timetable, Verdict
 from app.fleet.whereabouts import Picture, Whereabouts, left_at, look_at_all, where_they_left
+from app.looks import Looks
 from app.tables import ClaimRow, GrantRow, RobotRow
 from maps import corridor_name
 from protocol.parts import Leg
@@ -25,7 +25,7 @@ from protocol.to_robot import Deny, Detour, Grant
 DETOUR: Final = "detour"
 LOOK_AGAIN_S: Final = 5.0
 """Real seconds. Where robots follow each other, time alone lets the next one in."""
-GATHER_S: Final = 0.03
+REST_S: Final = 0.03
 """Real seconds: what is said in one moment is looked at once."""
 NEWS_S: Final = 15.0
 """People are told again when a robot is expected to wait so much longer or shorter."""
@@ -38,8 +38,7 @@ class TrafficDesk:
 
     def __init__(self, fleet: Fleet) -> None:
         self._fleet = fleet
-        self._woken = asyncio.Event()
-        self._stopping = False
+        self._looks = Looks(LOOK_AGAIN_S, REST_S)
         self._timetable: Timetable | None = None
         self.on_look: list[Callable[[], None]] = []
         """Called after each look: what has changed is in the timetable."""
@@ -52,28 +51,20 @@ class TrafficDesk:
         return self._timetable
 
     def wake(self, _changed: str = "") -> None:
-        self._woken.set()
+        self._looks.wake()
 
     def stop(self) -> None:
         """End `run` after what it is doing."""
-        self._stopping = True
-        self.wake()
+        self._looks.stop()
 
     async def run(self) -> None:
         """Until stopped or cancelled."""
-        while not self._stopping:
-            self._woken.clear()
+        async for _ in self._looks.until_stopped():
             try:
                 await self.look_round()
             except BaseException:
                 self._timetable = None
                 raise
-            try:
-                async with asyncio.timeout(LOOK_AGAIN_S):
-                    await self._woken.wait()
-                await asyncio.sleep(GATHER_S)
-            except TimeoutError:
-                pass
 
     async def look_round(self) -> None:
         """Take over what has changed, and answer who can be answered."""

@@ -1,0 +1,48 @@
+"""When what runs in the background looks round: soon after it is woken, again after a while, and never all the time."""
+
+import asyncio
+from collections.abc import AsyncIterator
+from contextlib import suppress
+from typing import Final
+
+REST: Final = 4
+"""A busy service has other things to do than to look again: a rest of so many times as long as a look has taken."""
+LONGEST_REST_S: Final = 1.0
+"""Real seconds. A look that had to wait for others took long without having done much."""
+
+
+class Looks:
+    """`async for _ in looks.until_stopped()`: each turn is one look. All times are real seconds, on the event loop.
+
+    `again_s`: nothing should be missed between two wakes; if it is after all, it does not wait for ever.
+    `rest_s`: after each look, so that what changes in one moment is looked at once.
+    """
+
+    def __init__(self, again_s: float, rest_s: float) -> None:
+        self._again_s, self._rest_s = again_s, rest_s
+        self._woken, self._stopped = asyncio.Event(), asyncio.Event()
+
+    def wake(self, _changed: str = "") -> None:
+        """Something has changed: look once more."""
+        self._woken.set()
+
+    def stop(self) -> None:
+        """No look begins any more, and no rest holds up the end."""
+        self._stopped.set()
+        self._woken.set()
+
+    async def until_stopped(self) -> AsyncIterator[None]:
+        """The first at once. What wakes during a look is seen by the next one."""
+        now_s = asyncio.get_running_loop().time
+        while not self._stopped.is_set():
+            self._woken.clear()
+            begun_s = now_s()
+            yield
+            await _for(self._stopped, min(max(self._rest_s, REST * (now_s() - begun_s)), LONGEST_REST_S))
+            await _for(self._woken, self._again_s)
+
+
+async def _for(event: asyncio.Event, at_most_s: float) -> None:
+    with suppress(TimeoutError):
+        async with asyncio.timeout(at_most_s):
+            await event.wait()
