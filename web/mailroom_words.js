@@ -49,7 +49,7 @@ export function isSilent({ online, heard_at }) {
 export function whatIsWrong({ orders, robots, alarms, givenUp }) {
   const open = orders.filter((order) => !hasEnded(order));
   const locked = open.filter(digitsAreLocked);
-  // Locked digits ring an alarm too: one line is enough.
+  // Locked digits and robots that have vanished ring an alarm too: one line is enough.
   const ringing = alarms.filter((one) => !one.acknowledged_at && !one.cleared_at && !(locked.length && one.name === "digits_locked"));
   return [
     ...ringing
@@ -58,7 +58,7 @@ export function whatIsWrong({ orders, robots, alarms, givenUp }) {
       .map((order) => /** @type {Wrong} */ ({ kind: "attention", key: `attention-${order.id}`, order })),
     ...locked.map((order) => /** @type {Wrong} */ ({ kind: "locked", key: `locked-${order.id}`, order })),
     ...robots.filter(isHeldUp).map((robot) => /** @type {Wrong} */ ({ kind: "stopped", key: `stopped-${robot.name}`, robot })),
-    ...robots.filter(isSilent)
+    ...robots.filter((robot) => isSilent(robot) && !ringing.some((one) => one.name === "vanished" && one.robot === robot.name))
       .map((robot) => /** @type {Wrong} */ ({ kind: "silent", key: `silent-${robot.name}`, robot })),
     ...givenUp.map((sending) => /** @type {Wrong} */ ({ kind: "given_up", key: `sending-${sending.id}`, sending })),
   ];

@@ -5,7 +5,6 @@ look → decide → improve, in a process of its own → write, if it still hold
 """
 
 import asyncio
-import time
 from contextlib import suppress
 from typing import Final
 
@@ -71,11 +70,8 @@ class FleetPlanner:
             return await look_at_work(session, self._fleet.clock.utc())
 
     def _decide(self, work: OpenWork, timetable: Timetable) -> Decision | None:
-        begun_s = time.monotonic()
         clock = self._fleet.clock
-        decision = decide(self._scenes.of(work, timetable.controller, clock.utc(), clock.now()))
-        log.debug("decided", orders=len(work.orders), took_ms=round((time.monotonic() - begun_s) * 1000, 1))
-        return decision
+        return decide(self._scenes.of(work, timetable.controller, clock.utc(), clock.now()))
 
     async def _carry_out(self, timetable: Timetable | None, decision: Decision, changes: Changes) -> bool:
         """False if it does not hold any more."""

@@ -137,7 +137,7 @@ class Scene:
             stopped = await session.get_one(RobotRow, "r2")
             stopped.activity, stopped.why = "stopped", "Something stands in the robot's way."
             silent = await session.get_one(RobotRow, "r4")
-            silent.heard_at = now - timedelta(minutes=25)
+            silent.heard_at = now - timedelta(minutes=12)  # not so long that others go round it
             notice = (await session.exec(select(Notice).order_by(col(Notice.id)).limit(1))).one()
             given_up = {"tries": 9, "gave_up_at": now - timedelta(hours=1), "problem": "The mail server said no (550)."}
             session.add(OutgoingNotice(key="given-up", channel="mail", notice_id=notice.id, created_at=now, **given_up))

@@ -17,8 +17,8 @@ async def template(tmp_path: Path) -> Path:
 
 @pytest.fixture
 async def world(template: Path, tmp_path: Path) -> AsyncIterator[World]:
-    """With one robot that can be reached."""
-    world = World(template, tmp_path / "data")
+    """With one robot that can be reached. At once: what is asked here is not who fetches what, nor who goes first."""
+    world = World(template, tmp_path / "data", traffic="at_once")
     await world.begin()
     await world.set_online("r2", False)
     yield world
