@@ -11,7 +11,7 @@ from benchmarks.service.figures import times
 from benchmarks.service.filling import Account, Filling, KnownRobot, campus, fill
 from benchmarks.service.played_robots import PlayedRobot, connect_all
 from benchmarks.service.samples import Punctuality, Samples, until
-from benchmarks.service.servers import Server, service
+from benchmarks.service.servers import MORE_THAN_A_MAP_CARRIES, Server, service
 from benchmarks.service.web_client import Visitor
 from protocol.to_server import Event, Progress, Step
 
@@ -52,7 +52,7 @@ def measure(samples: Samples) -> dict[str, Any]:
 
     with samples.folder() as folder:
         accounts, robots = fill(folder, fleet)
-        with service(folder) as server:
+        with service(folder, **MORE_THAN_A_MAP_CARRIES) as server:
             return asyncio.run(_measure(samples, server, accounts, robots, orders))
 
 

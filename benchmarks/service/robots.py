@@ -13,7 +13,7 @@ from benchmarks.service.figures import times
 from benchmarks.service.filling import Filling, KnownRobot, campus, fill
 from benchmarks.service.played_robots import PlayedRobot, connect_all
 from benchmarks.service.samples import Punctuality, Samples, until
-from benchmarks.service.servers import Server, service
+from benchmarks.service.servers import MORE_THAN_A_MAP_CARRIES, Server, service
 from protocol.parts import Activity, Battery, Position
 from protocol.to_server import Event, Progress, Snapshot, Step
 
@@ -39,7 +39,7 @@ def measure(samples: Samples) -> dict[str, Any]:
 
     with samples.folder() as folder:
         known = fill(folder, fleet)
-        with service(folder) as server:
+        with service(folder, **MORE_THAN_A_MAP_CARRIES) as server:
             return asyncio.run(_measure(samples, server, known, folder / "campus-mail.sqlite"))
 
 

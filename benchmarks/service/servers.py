@@ -18,6 +18,8 @@ SERVER_CORE: Final = 0
 LOAD_CORE: Final = 1
 STARTS_WITHIN_S: Final = 60.0
 MAP: Final = "carleton"
+MORE_THAN_A_MAP_CARRIES: Final = {"TRAFFIC": "at_once"}
+"""For hundreds of robots: no map has homes for them, and no timetable is made for so many."""
 
 
 class DidNotStart(Exception):
@@ -49,10 +51,10 @@ class Server:
 
 
 @contextmanager
-def service(data: Path) -> Iterator[Server]:
-    """The service as people run it, with its data in this folder."""
+def service(data: Path, **more: str) -> Iterator[Server]:
+    """The service as people run it, with its data in this folder, and with these settings besides."""
     port = free_port()
-    names = {"DATA": str(data), "MAP": MAP, "LOG_LEVEL": "WARNING", "ORDERS_PER_PERSON": "1000000 per hour"}
+    names = {"DATA": str(data), "MAP": MAP, "LOG_LEVEL": "WARNING", "ORDERS_PER_PERSON": "1000000 per hour", **more}
     environment = {f"CAMPUS_MAIL_{name}": value for name, value in names.items()}
     with _running(["app", "serve", "--port", str(port)], port, data / "service.log", environment) as server:
         yield server
