@@ -5,12 +5,19 @@ from typing import Any
 import pytest
 from fastapi import FastAPI
 
+from app.settings import Settings
 from app.tables import RobotRow
 from protocol.clock import SteppedClock
 from tests.app.conftest import SENDER, STRANGER, Browser, Mailroom, SignedIn
 from tests.app.orders.test_life_of_an_order import kinds, make_dispatcher, seen
 
 HOUR_S = 3600.0
+
+
+@pytest.fixture
+def settings(settings: Settings) -> Settings:
+    """At once: what is asked here is what waits and what goes first, not who lets whom pass."""
+    return settings.model_copy(update={"traffic": "at_once"})
 
 
 @pytest.fixture
