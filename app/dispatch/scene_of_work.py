@@ -3,7 +3,7 @@
 What is left out of the scene stays as it is: its stops are then places that a robot goes to anyhow.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from math import inf
@@ -38,20 +38,29 @@ class SceneOfWork:
     def of(self, work: OpenWork, traffic: TrafficController, now: datetime, now_s: float) -> Scene:
         keys = {name: [goal.key for goal in traffic.goals(name)] for name in traffic.tasks(now_s)}
         placed = _Placed(work, traffic, {key for theirs in keys.values() for key in theirs}, self.settings, now, now_s)
-        robots = {name: self._able(work, work.robots[name], keys[name]) for name in keys if name in work.robots}
+        orders = {one.id: one for one in placed.orders()}
+        robots = {name: self._able(work, orders, name, keys[name]) for name in keys if name in work.robots}
         # What waits for its time is not in `work` yet, so that nobody comes too early.
         rules = Rules(age_limit_s=self.settings.age_limit_s, worth_s=WORTH_S, early_s=0.0)
-        return scene_of(traffic, robots, {one.id: one for one in placed.orders()}, now_s, rules)
+        return scene_of(traffic, robots, orders, now_s, rules)
 
-    def _able(self, work: OpenWork, robot: RobotNow, keys: Sequence[str]) -> Able:
+    def _able(self, work: OpenWork, orders: Mapping[str, OpenOrder], name: str, keys: Sequence[str]) -> Able:
         """One that may be given nothing keeps what it has, unless others are to fetch what it has not loaded."""
+        robot = work.robots[name]
+        capacity = self.settings.robot_capacity - _left_out(work, orders, name, keys)
         if not robot.takes_work:
-            return Able(self.settings.robot_capacity, 0 if robot.gives_away else len(keys), accepts=False)
+            return Able(capacity, 0 if robot.gives_away else len(keys), accepts=False)
         theirs = {stop.id: stop for stop in work.stops.get(robot.name, ())}
         begun = [at for at, key in enumerate(keys, start=1) if _has_begun(theirs.get(key))]
         is_to_charge = any(stop.action == StopAction.DOCK for stop in theirs.values())
         drives_s = inf if is_to_charge else self.charges.drives_s(robot)
-        return Able(self.settings.robot_capacity, max(begun, default=0), True, drives_s)
+        return Able(capacity, max(begun, default=0), True, drives_s)
+
+
+def _left_out(work: OpenWork, orders: Mapping[str, OpenOrder], name: str, keys: Sequence[str]) -> int:
+    """How many orders it has that are not in its route (just given, and not in the timetable yet): each takes a place."""
+    in_route = {one.id for one in orders.values() if one.give.key in keys}
+    return sum(1 for order in work.orders.values() if order.robot == name and order.id not in in_route)
 
 
 def _has_begun(stop: StopNow | None) -> bool:

@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 from collections.abc import AsyncIterator, Mapping
+from datetime import datetime
 from email import message_from_bytes, policy
 from email.message import EmailMessage
 from pathlib import Path
@@ -126,13 +127,13 @@ class Service:
             time.sleep(0.05)
         raise AssertionError(f"no link was mailed to {email}")
 
-    def subjects_mailed_to(self, email: str, at_least: int) -> list[str]:
-        """Of all that they were told by mail, the first first; not of what let them in."""
-        until_s, subjects = time.monotonic() + MAIL_LIMIT_S, list[str]()
+    def subjects_mailed_to(self, email: str, at_least: int) -> list[tuple[datetime, str]]:
+        """Of all that they were told by mail, with the second that it says it is of; not of what let them in."""
+        until_s, subjects = time.monotonic() + MAIL_LIMIT_S, list[tuple[datetime, str]]()
         while len(subjects) < at_least and time.monotonic() < until_s:
             time.sleep(0.05)
-            subjects = [str(mail["Subject"]) for mail in reversed(self._newest_mails_to(email))]
-            subjects = [subject for subject in subjects if "sign-in code" not in subject]
+            subjects = [(mail["Date"].datetime, str(mail["Subject"])) for mail in self._newest_mails_to(email)]
+            subjects = [(at, subject) for at, subject in subjects if "sign-in code" not in subject]
         return subjects
 
     def _mails_to(self, email: str) -> list[str]:

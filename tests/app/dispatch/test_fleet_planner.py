@@ -10,6 +10,7 @@ import pytest
 
 from app.dispatch.given_out import changes_of, give_out
 from app.dispatch.planning.deciding import Decision
+from app.dispatch.planning.routes import room
 from app.dispatch.planning.scene import Routes
 from app.orders.schemas import NewOrder
 from app.settings import Settings
@@ -120,6 +121,20 @@ async def test_more_than_they_can_carry_waits_and_the_important_goes_first(
     await lets_go(robot)
     assert await has_robot(service, important) == name
     assert (await service.row(Order, id=waiting)).state == "queued"
+
+
+async def test_what_is_given_and_not_in_the_timetable_yet_takes_a_place(
+    service: Service, robots: tuple[PlayedRobot, PlayedRobot]
+) -> None:
+    state = service.app.state
+    given = await service.order("post1", "post2")
+    await robots[0].mission()
+    assert len(await until(lambda: goals(service, "r1"))) == 2
+    work, controller = await state.planner._look(), state.traffic_desk.timetable.controller
+    controller.give("r1", (), state.clock.now())
+    scene = state.planner._scenes.of(work, controller, state.clock.utc(), state.clock.now())
+    assert given not in scene.orders
+    assert {name: room(scene, name, one.route) for name, one in scene.robots.items()} == {"r1": 1, "r2": 2}
 
 
 async def lets_go(robot: PlayedRobot) -> None:
