@@ -20,7 +20,7 @@ from app.page_files import NPM_MODULES, WORKER, PageFiles, add_page_files
 
 log = structlog.get_logger(__name__)
 
-NPM_PACKAGES: Final = ("lit", "lit-html", "lit-element", "@lit/reactive-element")
+NPM_PACKAGES: Final = ("joined", "lit-html")
 """What browsers may fetch of node_modules."""
 NOT_PAGES: Final = frozenset(
     {

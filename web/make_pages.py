@@ -27,13 +27,10 @@ MADE_BY_THE_SERVICE: Final = {"/page_files.js"}
 IMPORT: Final = re.compile(
     r"""(?:^|[;\s}])(?:import|export)\s*(?:[\w$*{][^"';]*?from)?\s*["']([^"']+)["']""", re.MULTILINE
 )
-IMPORTS: Final = {
-    "lit": "/npm/lit-element/lit-element.js",
-    "lit-html": "/npm/lit-html/lit-html.js",
-    "lit-html/": "/npm/lit-html/",
-    "lit-element/": "/npm/lit-element/",
-    "@lit/reactive-element": "/npm/@lit/reactive-element/reactive-element.js",
-}
+LIT: Final = "/npm/joined/lit.js"
+"""Its packages in one file, which `make setup` makes (docs/decisions/0066-lit-is-one-file.md)."""
+IMPORTS: Final = {"lit": LIT, "/npm/lit-html/lit-html.js": LIT, "lit-html/": "/npm/lit-html/"}
+"""What asks for a part of it by its address, as directives do, is led to the same file: there must not be two."""
 MODULE: Final = '<link rel="modulepreload" href="{}" />'
 LATER_MODULE: Final = '<link rel="modulepreload" href="{}" fetchpriority="low" />'
 """The page needs all of them; but what scripts ask for meanwhile, as the texts, shall not wait behind them."""
@@ -138,7 +135,8 @@ def npm_modules() -> str:
 def resolve(module: str, name: str) -> str:
     """The address of what `module` imports as `name`."""
     if name.startswith("."):
-        return posixpath.normpath(posixpath.join(posixpath.dirname(module), name))
+        address = posixpath.normpath(posixpath.join(posixpath.dirname(module), name))
+        return IMPORTS.get(address, address)
     if name in IMPORTS:
         return IMPORTS[name]
     prefix = max((key for key in IMPORTS if key.endswith("/") and name.startswith(key)), key=len)

@@ -180,6 +180,7 @@ async def test_everything_that_is_wrong_has_its_next_action(busy_campus, visit, 
         await expect(
             row.get_by_role("link" if action == "Look" else "button", name=re.compile(f"^{action}"))
         ).to_be_visible()
+    assert await page.evaluate("litHtmlVersions.length") == 1, "directives have the same Lit as all else"
     await press(page, "Release the digits")
     await page.keyboard.press("Enter")
     await expect(wrong).to_have_count(5)
