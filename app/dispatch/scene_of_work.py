@@ -11,7 +11,7 @@ from typing import Final
 
 from app.dispatch.charge import Charges
 from app.dispatch.choice import counts_since
-from app.dispatch.open_work import OpenWork, OrderNow, RobotNow, StopNow
+from app.dispatch.open_work import OpenWork, OrderNow, StopNow
 from app.dispatch.planning.carrying_out import Able, scene_of
 from app.dispatch.planning.scene import OpenOrder, Rules, Scene
 from app.orders.transitions import MAIL_ABOARD
@@ -58,7 +58,7 @@ class SceneOfWork:
 
 
 def _left_out(work: OpenWork, orders: Mapping[str, OpenOrder], name: str, keys: Sequence[str]) -> int:
-    """How many orders it has that are not in its route (just given, and not in the timetable yet): each takes a place."""
+    """How many orders it has that are not in its route, such as one just given: each takes a place."""
     in_route = {one.id for one in orders.values() if one.give.key in keys}
     return sum(1 for order in work.orders.values() if order.robot == name and order.id not in in_route)
 

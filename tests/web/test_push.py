@@ -18,8 +18,8 @@ from tests.web.test_offline import WORKER_IS_THERE, worker_of
 from tests.web.visitor import Visitor
 
 pytestmark = pytest.mark.browser
-# Who asks for the notices while one is on its way to the screen makes Chromium forget that one: it is in the list and not
-# shown yet. Therefore nobody asks before the worker has been told that it is shown.
+# Who asks for the notices while one is on its way to the screen makes Chromium forget that one: it is in the list and
+# not shown yet. Therefore nobody asks before the worker has been told that it is shown.
 NOTE_WHAT_IS_SHOWN = """() => {
   const show = ServiceWorkerRegistration.prototype.showNotification;
   self.shown = 0;
