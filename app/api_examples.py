@@ -14,7 +14,7 @@ ROBOT: Final = {
     "towards": "post3",
     "expected": {"post": "post3", "from": "2026-01-05T09:03:25Z", "to": "2026-01-05T09:03:52Z"},
     "activity": "driving",
-    "battery": {"ratio": 0.81, "charging": False},
+    "battery": {"ratio": 0.81, "charging": False, "charges_to": None},
     "why": "I am carrying mail to post4.",
     "why_words": None,
     "waits_for": None,

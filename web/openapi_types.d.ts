@@ -165,13 +165,27 @@ export interface components {
         };
         /**
          * BatteryView
-         * @description Charge as a ratio of capacity.
+         * @description Charge as a ratio of capacity. `charges_to`: with that it leaves its dock to others; null if it has it.
          */
         BatteryView: {
             /** Ratio */
             ratio: number;
             /** Charging */
             charging: boolean;
+            charges_to: components["schemas"]["ChargedView"] | null;
+        };
+        /**
+         * ChargedView
+         * @description How much charge a robot that charges is expected to have at about this time. How fast chargers are is assumed.
+         */
+        ChargedView: {
+            /** Ratio */
+            ratio: number;
+            /**
+             * At
+             * Format: date-time
+             */
+            at: string;
         };
         /**
          * ClosedCorridorView
@@ -1380,7 +1394,8 @@ export interface components {
          *       "activity": "driving",
          *       "battery": {
          *         "ratio": 0.81,
-         *         "charging": false
+         *         "charging": false,
+         *         "charges_to": null
          *       },
          *       "why": "I am carrying mail to post4.",
          *       "why_words": null,

@@ -6,7 +6,7 @@
 import { titleOf } from "./posts.js";
 import { serverNow } from "./server_clock.js";
 import { hasText, t } from "./texts.js";
-import { clockTime } from "./times.js";
+import { clockTime, percent } from "./times.js";
 
 /**
  * Why something waits, in this page's language; a sentence that the catalogue does not have is shown as it was said.
@@ -23,6 +23,15 @@ export function robotWhy(robot, map) {
   if (robot.waits_for && !robot.taken_out_at) return waitText(robot.waits_for, map) ?? reasonText(robot.why ?? "", robot.why_words, map);
   if (robot.why_words?.key === "why.paused" && robot.last_seen) return t("why.paused_at", { post: titleOf(map, robot.last_seen.post) });
   return reasonText(robot.why ?? "", robot.why_words, map);
+}
+
+/**
+ * The charge, and until about when it charges. @param {NonNullable<Robot["battery"]>} battery
+ */
+export function batteryText({ ratio, charging, charges_to }) {
+  const charge = percent(ratio);
+  if (!charging || !charges_to || Date.parse(charges_to.at) <= serverNow()) return t(charging ? "robot.charging" : "robot.battery", { charge });
+  return t("robot.charging_until", { charge, enough: percent(charges_to.ratio), time: clockTime(charges_to.at) });
 }
 
 /** "Waits for the corridor UC – Canal, taken by r2 until about 12:41" @param {WaitsFor} waits @param {CampusMap} map */

@@ -51,3 +51,7 @@ class ChargeCurve:
     @property
     def _slow_s(self) -> float:
         return (1 - KNEE) / self.per_s
+
+
+ASSUMED: Final = ChargeCurve(10_800.0)
+"""Three hours to fill a pack."""

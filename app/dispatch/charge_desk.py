@@ -15,7 +15,7 @@ from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.charging.acceptance import Charge
-from app.charging.curve import ChargeCurve
+from app.charging.curve import ASSUMED
 from app.charging.demand import Demand
 from app.charging.docks import Need, plan_docks
 from app.charging.energy import Use
@@ -36,8 +36,6 @@ LOOK_EVERY_S: Final = 5.0
 """Real seconds: charges change slowly."""
 REST_S: Final = 0.5
 """Real seconds, between two looks: whoever is called away has a way to drive."""
-CURVE: Final = ChargeCurve(10_800.0)
-"""Assumed: three hours to fill a pack."""
 LEARNED_FROM: Final = timedelta(days=28)
 _HOUR: Final = timedelta(hours=1)
 
@@ -99,7 +97,7 @@ class ChargeDesk:
         docks = [post.name for post in self.fleet.campus.docks() if post.name not in own]
         needs = {robot.name: self._need(robot, work, docks) for robot in work.robots.values() if _needs_one(robot)}
         resting = [need for name, need in needs.items() if self._may_be_sent(work.robots[name], work)]
-        plan = plan_docks(list(needs.values()), docks, CURVE, THRESHOLDS, self.fleet.clock.now())
+        plan = plan_docks(list(needs.values()), docks, ASSUMED, THRESHOLDS, self.fleet.clock.now())
         wish = Wish(self._demand.is_quiet(now), round(self._demand.expected(now)))
         taken: dict[str, str | None] = dict.fromkeys(_taken(work))
         found = top_ups(resting, plan, taken, THRESHOLDS, wish, self.fleet.clock.now())

@@ -4,6 +4,8 @@ from datetime import datetime, timedelta
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from app.charging.curve import ASSUMED
+from app.charging.levels import Thresholds
 from app.settings import Settings
 from app.tables import RobotRow
 from app.texts.reasons import Words, words_of
@@ -31,11 +33,19 @@ class Expected(BaseModel):
     model_config = ConfigDict(validate_by_name=True, validate_by_alias=True, serialize_by_alias=True)
 
 
+class ChargedView(BaseModel):
+    """How much charge a robot that charges is expected to have at about this time. How fast chargers are is assumed."""
+
+    ratio: float
+    at: datetime
+
+
 class BatteryView(BaseModel):
-    """Charge as a ratio of capacity."""
+    """Charge as a ratio of capacity. `charges_to`: with that it leaves its dock to others; null if it has it."""
 
     ratio: float
     charging: bool
+    charges_to: ChargedView | None
 
 
 class WaitsFor(BaseModel):
@@ -117,7 +127,16 @@ def _last_seen(robot: RobotRow) -> LastSeen | None:
 
 
 def _battery(robot: RobotRow) -> BatteryView | None:
-    return None if robot.battery_ratio is None else BatteryView(ratio=robot.battery_ratio, charging=robot.charging)
+    if robot.battery_ratio is None:
+        return None
+    return BatteryView(ratio=robot.battery_ratio, charging=robot.charging, charges_to=_charges_to(robot))
+
+
+def _charges_to(robot: RobotRow) -> ChargedView | None:
+    ratio, enough = robot.battery_ratio, Thresholds().sufficient
+    if not robot.charging or ratio is None or ratio >= enough or robot.heard_at is None:
+        return None
+    return ChargedView(ratio=enough, at=robot.heard_at + timedelta(seconds=ASSUMED.time_s(ratio, enough)))
 
 
 def _expected(robot: RobotRow, campus: CampusMap, settings: Settings) -> Expected | None:

@@ -100,10 +100,20 @@ class BatterySampleView(Model):
 
 
 class BatteryView(Model):
-    """Charge as a ratio of capacity."""
+    """Charge as a ratio of capacity. `charges_to`: with that it leaves its dock to others; null if it has it."""
 
     ratio: float
     charging: bool
+    charges_to: ChargedView | None
+
+
+class ChargedView(Model):
+    """How much charge a robot that charges is expected to have at about this time. How fast chargers are is
+    assumed.
+    """
+
+    ratio: float
+    at: datetime
 
 
 class ClosedCorridorView(Model):

@@ -256,7 +256,7 @@ FOUR = [
         "name": "r3",
         "seen": "post5",
         "activity": "charging",
-        "battery": {"ratio": 0.3, "charging": True},
+        "battery": {"ratio": 0.3, "charging": True, "charges_to": {"ratio": 0.8, "at": "2126-01-05T09:03:25Z"}},
         "why": "Charging",
     },
     {"name": "r4", "seen": "post5", "to": "post3", "why": "Driving towards post3"},
@@ -314,7 +314,7 @@ async def test_several_robots_do_not_hide_each_other_and_drawing_and_list_say_th
         word = {
             "offline": "Silent, as expected: there is no network",
             "stopped": "Stands still",
-            "charging": ", charging",
+            "charging": ", charging; 80% at about",
         }
         assert [kind for kind, said in word.items() if said in lists[robot]] == [condition or None][: bool(condition)]
     assert sorted(told["expected"]) == [["r1", "post4"], ["r4", "post3"]]

@@ -6,11 +6,11 @@ import { mayBeTakenOut, takeOut } from "../corridor_actions.js";
 import { robotPage } from "../links.js";
 import { openWays, pause, recall, resume, stop } from "../mailroom_actions.js";
 import { isHeldUp } from "../mailroom_words.js";
-import { robotWhy } from "../order_words.js";
+import { batteryText, robotWhy } from "../order_words.js";
 import { titleOf } from "../posts.js";
 import { serverNow } from "../server_clock.js";
 import { t } from "../texts.js";
-import { ago, percent } from "../times.js";
+import { ago } from "../times.js";
 import { icon } from "./icon.js";
 /** @import { Alarm, CampusMap, Robot } from "../api_types.ts" */
 /** @import { Action } from "../mailroom_actions.js" */
@@ -46,7 +46,7 @@ function state({ activity, online }) {
 /** @param {Robot} robot */
 function charge({ battery }) {
   if (!battery) return nothing;
-  const words = t(battery.charging ? "robot.charging" : "robot.battery", { charge: percent(battery.ratio) });
+  const words = batteryText(battery);
   const low = battery.ratio < LOW_RATIO && !battery.charging;
   return html`<span class=${low ? "charge low" : "charge"}>${icon("battery")}<span>${words}</span></span>`;
 }

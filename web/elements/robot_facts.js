@@ -1,11 +1,11 @@
 /** What is known of the robots on a map, as a list: everything that the map shows of them, and why they do it. */
 import { html, nothing } from "lit";
 import { conditionsOf, isSilentAsExpected } from "../map_facts.js";
-import { robotWhy } from "../order_words.js";
+import { batteryText, robotWhy } from "../order_words.js";
 import { corridorTitle, titleOf } from "../posts.js";
 import { serverNow } from "../server_clock.js";
 import { t } from "../texts.js";
-import { ago, clockTime, percent, windowText } from "../times.js";
+import { ago, clockTime, windowText } from "../times.js";
 import { icon } from "./icon.js";
 /** @import { Alarm, CampusMap, Robot } from "../api_types.ts" */
 /** @import { MapFacts } from "../map_facts.js" */
@@ -68,7 +68,7 @@ function silentText(map, { taken }, robot) {
 
 /** @param {Robot} robot */
 const batteryFact = ({ battery }) =>
-  battery ? fact("battery", t(battery.charging ? "robot.charging" : "robot.battery", { charge: percent(battery.ratio) })) : nothing;
+  battery ? fact("battery", batteryText(battery)) : nothing;
 
 /** @param {Parameters<typeof icon>[0]} drawing @param {string} text */
 const fact = (drawing, text) => html`<li>${icon(drawing)}<span>${text}</span></li>`;

@@ -4,13 +4,13 @@ import { repeat } from "lit-html/directives/repeat.js";
 import * as api from "../api.js";
 import { robotPage } from "../links.js";
 import { OnLive } from "../live.js";
-import { robotWhy } from "../order_words.js";
+import { batteryText, robotWhy } from "../order_words.js";
 import { loadMap, titleOf } from "../posts.js";
 import { inWords } from "../problems.js";
 import { serverNow } from "../server_clock.js";
 import { counted, t } from "../texts.js";
 import { Ticking } from "../ticking.js";
-import { ago, percent } from "../times.js";
+import { ago } from "../times.js";
 import "./estimate_quality.js";
 import { problemLine } from "./field.js";
 import { icon } from "./icon.js";
@@ -104,7 +104,7 @@ export function robotState({ activity, online, heard_at }) {
 /** @param {Robot} robot */
 export function robotCharge({ battery }) {
   if (!battery) return nothing;
-  const words = t(battery.charging ? "robot.charging" : "robot.battery", { charge: percent(battery.ratio) });
+  const words = batteryText(battery);
   return html`<span>${icon("battery")}<span>${words}</span></span>`;
 }
 

@@ -17,7 +17,7 @@ from app.fleet.tokens import token_of
 from app.settings import Settings
 from app.tables import RobotRow
 from protocol.clock import SteppedClock
-from protocol.parts import Position
+from protocol.parts import Battery, Position
 from tests.app.fleet.playing import PlayedRobot, Service
 
 ROOT = Path(__file__).parents[3]
@@ -58,7 +58,21 @@ async def test_a_robot_is_seen_at_posts_and_expected_in_an_interval(
     first, last = (datetime.fromisoformat(view["expected"][end]) for end in ("from", "to"))
     drive_s = 2.0 / service.app.state.settings.assumed_speed_m_s
     assert clock.utc() + timedelta(seconds=drive_s) == first < last
-    assert view["battery"] == {"ratio": 0.9, "charging": False}
+    assert view["battery"] == {"ratio": 0.9, "charging": False, "charges_to": None}
+
+
+async def test_of_a_robot_that_charges_it_is_said_when_it_will_have_enough(
+    service: Service, robot: PlayedRobot, clock: SteppedClock
+) -> None:
+    token = await service.enrol("r1")
+    async with robot.connected(service.url, token):
+        await robot.greet("post5", battery=Battery(ratio=0.5, charging=True))
+        async with service.app.state.database.reading() as session:
+            (view,) = await service.app.state.fleet.views(session)
+    assert view.battery is not None and view.battery.charges_to is not None
+    assert view.battery.charges_to.ratio == 0.8
+    # Of three hours: 0.85 at full current and the rest ever slower, which takes as long as 0.41 would, are 1.26.
+    assert timedelta(minutes=42) < view.battery.charges_to.at - clock.utc() < timedelta(minutes=44)
 
 
 async def test_enrolling_twice_or_under_an_impossible_name_is_refused_by_name(service: Service) -> None:
