@@ -6,7 +6,7 @@ their own battery plan says so. So what a robot is refused for must be something
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from math import inf, isfinite
+from math import isfinite
 from typing import Final, Protocol
 
 from app.charging.acceptance import Answer, Charge, Verdict, accepts
@@ -70,13 +70,10 @@ class Charges:
         return accepts(charge, work, to_dock, THRESHOLDS)
 
     def drives_s(self, robot: Charged) -> float:
-        """For how many seconds of driving, as the map has them, its charge lasts, with the way home and hand-overs;
-        endless for one that is as full as it gets."""
+        """For how many seconds of driving, as the map has them, its charge lasts, with the way home and hand-overs."""
         ratio = robot.battery_ratio
         if ratio is None or ratio < ENOUGH_CHARGE or (robot.charging and ratio < _LEAVES_DOCK):
             return 0.0
-        if ratio >= THRESHOLDS.full or (ratio >= THRESHOLDS.begin and not self._will_charge(robot)):
-            return inf
         rates, spare = self.rates.get(robot.name, self._assumed), ratio - THRESHOLDS.low
         handovers = 2 * self.settings.robot_capacity
         low_s, high_s = 0.0, LONGEST_DRIVE_S
@@ -85,6 +82,11 @@ class Charges:
             use = self._use(middle_s * self.settings.assumed_speed_m_s, handovers)
             low_s, high_s = (middle_s, high_s) if rates.at_most(use) <= spare else (low_s, middle_s)
         return low_s
+
+    def goes_beyond(self, robot: Charged) -> bool:
+        """Whether it is as full as it gets, so that it may be given what is more than one charge."""
+        ratio = robot.battery_ratio or 0.0
+        return ratio >= THRESHOLDS.full or (ratio >= THRESHOLDS.begin and not self._will_charge(robot))
 
     def _will_charge(self, robot: Charged) -> bool:
         """In a dock without charging its charger has ended: a worn pack is never fuller than that."""

@@ -6,7 +6,6 @@ What is left out of the scene stays as it is: its stops are then places that a r
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
-from math import inf
 from typing import Final
 
 from app.dispatch.charge import Charges
@@ -52,9 +51,8 @@ class SceneOfWork:
             return Able(capacity, 0 if robot.gives_away else len(keys), accepts=False)
         theirs = {stop.id: stop for stop in work.stops.get(robot.name, ())}
         begun = [at for at, key in enumerate(keys, start=1) if _has_begun(theirs.get(key))]
-        is_to_charge = any(stop.action == StopAction.DOCK for stop in theirs.values())
-        drives_s = inf if is_to_charge else self.charges.drives_s(robot)
-        return Able(capacity, max(begun, default=0), True, drives_s)
+        drives_s, goes_beyond = self.charges.drives_s(robot), self.charges.goes_beyond(robot)
+        return Able(capacity, max(begun, default=0), True, drives_s, goes_beyond)
 
 
 def _left_out(work: OpenWork, orders: Mapping[str, OpenOrder], name: str, keys: Sequence[str]) -> int:

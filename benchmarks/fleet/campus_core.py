@@ -191,6 +191,8 @@ class Core:
     def _look_now_and_then(self) -> None:
         self.ground.clock.at(self.now_s + LOOKS_EVERY_S, self._look_now_and_then)
         self._time_charges()
+        for known in self.robots.values():
+            self._look_for_charger(known)
         self._top_up()
         self._look_for_stuck()
         self._wake(decide=any(order.robot is None for order in self.dispatch.open.values()))
@@ -281,6 +283,18 @@ class Core:
         return posts[lane.start], posts[lane.end]
 
     # Charge.
+
+    def _look_for_charger(self, known: Known) -> None:
+        """One that made room for another in the dock that it was sent to waits there, or goes to another dock."""
+        others = (one for one in self.robots.values() if one is not known)
+        is_taken = any(one.charging and one.post == known.post for one in others)
+        if known.bound_for != known.post or known.held or known.charging or not is_taken:
+            return
+        known.bound_for = None
+        dock = self.charges.dock_for(known)
+        known.bound_for = known.post
+        if dock != known.post:
+            self._send_to_dock(known, dock)
 
     def _goes_on(self, known: Known, lane: Lane) -> bool:
         """Before each leg: whether it has the charge for it. Else it is sent to a dock first."""

@@ -176,11 +176,10 @@ class Dispatch:
 
     def _able(self, known: Known) -> Able:
         accepts = known.is_heard and not known.frozen and not known.recharging
-        drives_s = self.charges.drives_s(known)
-        full = self.charges.thresholds.full
-        if known.ratio >= full or self.charge_goal(known) is not None:
+        if self.charge_goal(known) is not None:
             return Able(self.capacity, self._begun(known), accepts)  # what is more than one charge goes, too
-        return Able(self.capacity, self._begun(known), accepts, drives_s)
+        is_full = known.ratio >= self.charges.thresholds.full
+        return Able(self.capacity, self._begun(known), accepts, self.charges.drives_s(known), is_full)
 
     def _begun(self, known: Known) -> int:
         """Goals at the post that it is at, or is in the last corridor to; and a charge comes first."""

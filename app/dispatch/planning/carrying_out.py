@@ -19,6 +19,7 @@ class Able:
     begun: int = 0
     accepts: bool = True
     drives_s: float = inf
+    goes_beyond: bool = False
 
 
 def scene_of(
@@ -38,7 +39,7 @@ def scene_of(
         left = {goal.key: goal for goal in task.goals}  # of what it has begun the rest
         route = _route((left.get(goal.key, goal) for goal in traffic.goals(name)), stops)
         at_work[name] = RobotAtWork(
-            task.start, task.home, able.capacity, route, able.begun, able.accepts, able.drives_s
+            task.start, task.home, able.capacity, route, able.begun, able.accepts, able.drives_s, able.goes_beyond
         )
     cost_s = sum(journeys[name].done_s for name, task in tasks.items() if task.goals)
     first_done = tuple(sorted(tasks, key=lambda name: journeys[name].done_s))

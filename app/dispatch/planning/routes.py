@@ -127,6 +127,7 @@ def line(scene: Scene, name: str, route: Route) -> Line:
     items = sum(1 for order in orders_of(route) if not any(stop.order == order and stop.change > 0 for stop in route))
     overdue = [at + 1 for at, stop in enumerate(route) if stop.order and scene.is_overdue(stop.order)]
     home_s = 0.0 if robot.home is None else scene.network.shortest_s[posts[-1]][robot.home]
+    drives_s = inf if robot.goes_beyond and not orders_of(route) else robot.drives_s
     return Line(
         scene.network.shortest_s,
         scene.rules,
@@ -138,7 +139,7 @@ def line(scene: Scene, name: str, route: Route) -> Line:
         max(robot.begun, *overdue, 0),
         robot.capacity,
         robot.home,
-        robot.drives_s - scene.drive_s(posts[0], route) - home_s if robot.drives_s < inf else inf,
+        drives_s - scene.drive_s(posts[0], route) - home_s if drives_s < inf else inf,
     )
 
 

@@ -55,7 +55,9 @@ class RobotAtWork:
     """A robot and the stops before it, of which the first `begun` stay what they are.
 
     `accepts`: whether it may be given work (one that is paused or recalled may not, and loses what it has not loaded).
-    `drives_s`: for how many seconds of driving its charge lasts, the way home included.
+    `drives_s`: for how many seconds of driving its charge lasts, the way home included. `goes_beyond`: with nothing
+    else to do it may be given one order that is more than that, and charges on the way; no second one, which would be
+    late for a charge that nobody has foreseen.
     """
 
     start: Start
@@ -65,6 +67,7 @@ class RobotAtWork:
     begun: int = 0
     accepts: bool = True
     drives_s: float = inf
+    goes_beyond: bool = False
 
     def task(self, route: Route) -> Task:
         return Task(self.start, tuple(stop.goal for stop in route), self.home)

@@ -188,6 +188,15 @@ def test_a_robot_gets_only_what_its_charge_lasts_for() -> None:
     assert decided(scene_of(street(6), both, [far])).robot_of() == {far.id: "r1"}
 
 
+def test_what_is_more_than_one_charge_goes_alone_with_a_robot_that_is_as_full_as_it_gets() -> None:
+    far, near = order(0, 3, 5), order(1, 3, 4)
+    full = robot(0, capacity=2, drives_s=999.0, goes_beyond=True)
+    assert decided(scene_of(street(6), {"r0": full}, [far])).robot_of() == {far.id: "r0"}
+    assert len(decided(scene_of(street(6), {"r0": full}, [far, near])).robot_of()) == 1
+    lasts = replace(full, drives_s=1000.0)
+    assert len(decided(scene_of(street(6), {"r0": lasts}, [far, near])).robot_of()) == 2
+
+
 def test_an_important_order_comes_before_others_that_have_waited_as_long() -> None:
     plain, important = order(0, 1, 2, since_s=-3000.0), replace(order(1, 1, 2, since_s=-3000.0), weight=2.0)
     assert decided(scene_of(street(3), {"r0": robot(0)}, [plain, important])).robot_of() == {important.id: "r0"}

@@ -21,7 +21,7 @@ async def world(sqlite_at_head: Path, tmp_path: Path) -> AsyncIterator[World]:
 
 async def given(world: World) -> tuple[str, str]:
     """Two orders for r1: it is told of both, and sets out for the first."""
-    first, second = await world.place("post5", "post4"), await world.place("post2", "post1")
+    first, second = await world.place("post5", "post4"), await world.place("post2", "post3")
     await world.goes_on("r1", "sets out")
     assert await robots_of(world, first, second) == ["r1", "r1"]
     return first, second
