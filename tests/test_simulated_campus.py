@@ -6,7 +6,7 @@ from random import Random
 
 import pytest
 
-from benchmarks.fleet.campus import draw, figures, look_at
+from benchmarks.fleet.campus import FLEETS, draw, figures, look_at
 from benchmarks.fleet.campus_core import CustodyError
 from benchmarks.fleet.campus_ground import FAULTS, Faults, Ground
 from benchmarks.fleet.campus_link import Link, LostMessageError
@@ -39,6 +39,14 @@ def test_the_same_seed_is_the_same_campus() -> None:
         return run.messages, [order.delivered_s for order in run.core.dispatch.orders.values()]
 
     assert lived() == lived()
+
+
+@pytest.mark.parametrize(("seed", "days"), [(5, 0.8), (301, 12.2)])
+def test_who_has_made_room_in_a_dock_does_not_wait_there_until_the_pack_is_empty(seed: int, days: float) -> None:
+    """It did, in these: in a bay that others had to pass, or with nobody who sent it elsewhere."""
+    run = CampusRun(seed, FLEETS["two_items_each"], FAULTS)
+    run.run(days)
+    assert [robot.stranded for robot in run.robots.values()] == [0, 0, 0, 0]
 
 
 def test_robots_that_meet_and_mail_that_is_nobodys_would_be_seen() -> None:

@@ -126,6 +126,8 @@ class Core:
             self._forget_own_goal(known)
         if known.frozen != self._is_frozen(known):
             self._wake(decide=True)
+        if known.charging:
+            known.asked_s = known.moved_s  # it waits for no corridor, whatever it asked for before
         self._see_if_charged(known)
 
     def _note_event(self, known: Known, message: Event) -> None:
@@ -285,16 +287,16 @@ class Core:
     # Charge.
 
     def _look_for_charger(self, known: Known) -> None:
-        """One that made room for another in the dock that it was sent to waits there, or goes to another dock."""
+        """One that made room for another in the dock that it was sent to goes to another dock, or about its work as far
+        as its charge lasts: others have to pass where it would wait."""
         others = (one for one in self.robots.values() if one is not known)
         is_taken = any(one.charging and one.post == known.post for one in others)
         if known.bound_for != known.post or known.held or known.charging or not is_taken:
             return
         known.bound_for = None
         dock = self.charges.dock_for(known)
-        known.bound_for = known.post
-        if dock != known.post:
-            self._send_to_dock(known, dock)
+        if dock == known.post or not self._send_to_dock(known, dock):
+            self._ends_charge(known)
 
     def _goes_on(self, known: Known, lane: Lane) -> bool:
         """Before each leg: whether it has the charge for it. Else it is sent to a dock first."""
@@ -341,10 +343,15 @@ class Core:
             return
         others = [goal for goal in self.dispatch.goals(known.name) if goal is not charge]
         if self.charges.has_enough(known, others):
-            known.bound_for = None
+            self._ends_charge(known)
+
+    def _ends_charge(self, known: Known) -> None:
+        known.bound_for = None
+        charge = self.dispatch.charge_goal(known)
+        if charge is not None:
             self.controller.served(known.name, charge.key, self.now_s)
-            self.dispatch.tell_missions((known.name,))
-            self._wake(decide=True)
+        self.dispatch.tell_missions((known.name,))
+        self._wake(decide=True)
 
     def _time_charges(self) -> None:
         """A charge that has begun takes only what is left of it."""
