@@ -66,6 +66,7 @@ class Seen:
     lost: int = 0
     too_old: int = 0
     stranded: int = 0
+    critical: int = 0
     unplanned_charge: int = 0
     died: int = 0
     before_post: int = 0
@@ -122,6 +123,7 @@ def _seen(run: CampusRun) -> Seen:
         stuck=core.counts["stuck"],
         too_old=sum(age_s > AGE_LIMIT_S + CHARGE_S + max(trips_s, default=0.0) for age_s in ages_s),
         stranded=sum(robot.stranded for robot in robots),
+        critical=sum(robot.critical for robot in robots),
         unplanned_charge=sum(one.unplanned_charge for one in orders),
         died=sum(robot.deaths for robot in robots),
         before_post=sum(robot.before_post for robot in robots),
@@ -136,7 +138,19 @@ def _seen(run: CampusRun) -> Seen:
 
 def figures(seen: Seen) -> dict[str, Any]:
     ages_s = sorted(seen.ages_s) or [0.0]
-    plain = ("orders", "delivered", "stuck", "met", "lost", "too_old", "stranded", "died", "before_post", "events")
+    plain = (
+        "orders",
+        "delivered",
+        "stuck",
+        "met",
+        "lost",
+        "too_old",
+        "stranded",
+        "critical",
+        "died",
+        "before_post",
+        "events",
+    )
     return {
         "robot_hours": round(seen.robot_hours),
         **{name: getattr(seen, name) for name in plain},

@@ -183,7 +183,7 @@ class Charges:
         return robot.ratio >= max(OWN_BEGIN, min(FULL_ENOUGH, needed + ENOUGH_MORE))
 
     def _is_needed_more(self, robot: Charged) -> bool:
-        others = [one for one in self.robots.values() if not one.charging]
+        others = [one for one in self.robots.values() if not one.charging and one.bound_for in (None, robot.post)]
         return any(robot.ratio >= one.ratio + NEEDS_IT_MORE for one in others)
 
     def charging_s(self, robot: Charged, wanted: float) -> float:
@@ -196,6 +196,18 @@ class Charges:
         near = {dock: way for dock, way in need.ways.items() if rates.at_most(way) <= spare}
         stay = self.plan(replace(need, ways=near or need.ways)).stays.get(robot.name)
         return self.ground.nearest_dock(robot.post) if stay is None else stay.dock
+
+    def instead_of(self, robot: Charged, dock: str) -> str | None:
+        """The nearest dock, if the way to this one has become too long for the charge: it stood on the way."""
+        spare, rates = robot.ratio - self.thresholds.critical, self.rates[robot.name]
+        costs = {name: rates.at_most(way) for name, way in self._ways(robot.post).items()}
+        nearest = min(costs, key=costs.__getitem__, default=dock)
+        return nearest if nearest != dock and costs.get(dock, inf) > spare else None
+
+    def comes_to_another_dock(self, robot: Charged) -> bool:
+        """Before its own battery plan takes over."""
+        spare, rates = robot.ratio - self.thresholds.low, self.rates[robot.name]
+        return any(rates.at_most(way) <= spare for dock, way in self._ways(robot.post).items() if dock != robot.post)
 
     def after(self, robot: Charged, goals: Sequence[Goal]) -> Charge:
         """Its charge once it has done these, as it is likely; a charge among them is for what comes behind it."""

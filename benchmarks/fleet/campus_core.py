@@ -287,15 +287,18 @@ class Core:
     # Charge.
 
     def _look_for_charger(self, known: Known) -> None:
-        """One that made room for another in the dock that it was sent to goes to another dock, or about its work as far
-        as its charge lasts: others have to pass where it would wait."""
+        """One that made room for another in the dock that it was sent to goes to another dock, or about its work while
+        it still comes to one: others have to pass where it would wait. With less it waits."""
         others = (one for one in self.robots.values() if one is not known)
         is_taken = any(one.charging and one.post == known.post for one in others)
         if known.bound_for != known.post or known.held or known.charging or not is_taken:
             return
         known.bound_for = None
         dock = self.charges.dock_for(known)
-        if dock == known.post or not self._send_to_dock(known, dock):
+        if dock != known.post and self.charges.instead_of(known, dock) is None and self._send_to_dock(known, dock):
+            return
+        known.bound_for = known.post
+        if self.charges.comes_to_another_dock(known):
             self._ends_charge(known)
 
     def _goes_on(self, known: Known, lane: Lane) -> bool:
@@ -303,6 +306,11 @@ class Core:
         here = self.ground.network.posts[lane.start]
         if known.bound_for not in (None, here) and not known.recharging and self.charges.is_free(here, known):
             self._send_to_dock(known, here)  # others may have led it here, away from the one that it was sent to
+            return False
+        nearer = (
+            None if known.bound_for is None or known.recharging else self.charges.instead_of(known, known.bound_for)
+        )
+        if nearer is not None and self._send_to_dock(known, nearer):
             return False
         if known.bound_for is not None:
             return not self.charges.waits_for_way(known, lane, known.bound_for)

@@ -20,6 +20,7 @@ from protocol.to_robot import Deny, Detour, Grant, Mission
 from protocol.to_server import Charge, Claim, Clear, Event, Fault, HandoverReceipt, Hello, Progress, Snapshot, Step
 
 TICK_S: Final = 180.0
+CRITICAL: Final = 0.10
 AGAIN_S: Final = 60.0
 PATIENCE_S: Final = 10.0
 DRIVES_M_S: Final = 0.2
@@ -39,7 +40,8 @@ class Target:
 @dataclass
 class Robot:
     """`granted`: corridors that it may enter, the one that it is in first. `recharging`: its own battery plan has it.
-    `stranded`: so often its pack was empty away from a dock;
+    `stranded`: so often its pack was empty away from a dock; `critical`: so often it came below what a real robot
+    stops at to be carried (its reflex `battery_critical`), where this one still drives;
     `before_post`: so often it found somebody in its bay who was let go already."""
 
     name: str
@@ -59,6 +61,7 @@ class Robot:
     busy: bool = False
     is_dead: bool = False
     stranded: int = 0
+    critical: int = 0
     deaths: int = 0
     stood: int = 0
     before_post: int = 0
@@ -268,8 +271,10 @@ class Robot:
         if self.charges:
             self.pack.charge(past_s)
             return
+        before = self.pack.told
         self.pack.stand(max(0.0, past_s - drove_s))
         self.pack.drive(drove_s)
+        self.critical += before >= CRITICAL > self.pack.told
         if self.pack.ratio <= EMPTY and not self.is_dead:
             self.stranded += 1
             self.pack.ratio = 0.5  # somebody puts another pack in
