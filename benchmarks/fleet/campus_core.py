@@ -13,6 +13,7 @@ from typing import Final
 
 from app.charging.curve import FULL
 from app.estimates.durations import Kind
+from app.fleet.whereabouts import OF_ITS_OWN
 from app.traffic.controller import CLAIMED, Denied, Granted, TrafficController, Waits
 from app.traffic.journey import Goal
 from app.traffic.network import Lane
@@ -180,6 +181,9 @@ class Core:
         known.post = leg.to_post
         self.charges.left_corridor(known.name, self.ground.clock.local, self.ground.length_m(leg))
         self.controller.cleared(known.name, leg.from_post, leg.to_post, self.now_s)
+        own = Goal(self.ground.network.number_of(known.post), 0.0, key=OF_ITS_OWN)
+        if own in self.controller.goals(known.name):
+            self._forget_own_goal(known)
         self._wake()
 
     # What follows.
@@ -233,7 +237,7 @@ class Core:
     # Corridors.
 
     def _answer(self, known: Known, claim: Claim) -> None:
-        self._forget_own_goal(known)
+        self._follow_own_goal(known, claim)
         wanted: Lane | None = known.lane or self._lane(claim.legs[0])
         while wanted is not None:
             leads = self.controller.leads(known.name)
@@ -252,10 +256,19 @@ class Core:
                 self.controller.gives_up_claim(known.name)
                 known.link.to_robot(Deny(claim_id=claim.claim_id, avoid=claim.legs[:1], reason="No way is open."))
 
+    def _follow_own_goal(self, known: Known, claim: Claim) -> None:
+        """Where it goes for reasons of its own, as the service has it from claims: it may know of no closed corridor,
+        and is led another way there. What it has claimed so before, and has not gone to, nobody is to wait for."""
+        if self.dispatch.goals(known.name) or claim.goal is None:
+            self._forget_own_goal(known)
+            return
+        goal = Goal(self.ground.network.number_of(claim.goal), 0.0, key=OF_ITS_OWN)
+        if self.controller.goals(known.name) != (goal,):
+            self.controller.give(known.name, (goal,), self.now_s, rounds=0)
+
     def _forget_own_goal(self, known: Known) -> None:
-        """What it once claimed for reasons of its own, and has not gone to: nobody is to wait for that."""
-        if any(goal.key == CLAIMED for goal in self.controller.goals(known.name)):
-            self.controller.served(known.name, CLAIMED, self.now_s)
+        for key in {goal.key for goal in self.controller.goals(known.name)} & {CLAIMED, OF_ITS_OWN}:
+            self.controller.served(known.name, key, self.now_s)
 
     def _grant(self, known: Known, claim: Claim, lane: Lane) -> None:
         start, end = self._ends(lane)
