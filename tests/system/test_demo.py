@@ -66,6 +66,7 @@ def serving_demo(tmp_path: Path) -> Iterator[ServingDemo]:
         demo.process.wait()
 
 
+@pytest.mark.alone
 def test_ctrl_c_stops_everything_within_three_seconds_an_open_event_stream_included(serving_demo: ServingDemo) -> None:
     base_url = wait_for("the page's address", lambda: serving_demo.said(r"(http://127\.0\.0\.1:\d+)"))
     code = wait_for("a code to sign in with", lambda: serving_demo.said(r"sender@campus\.example: (\d{8})"))
