@@ -18,8 +18,8 @@ from protocol.both_ways import Ack, Error
 from protocol.envelope import DURABLE, TO_ROBOT, Envelope, parse, type_of
 from protocol.parts import Activity, Battery, MissionHeld, Part, Position, Purpose, Received, Stop, StopAction
 from protocol.sequence import Reception, reception, resume
-from protocol.to_robot import Mission, Verifiers, Welcome
-from protocol.to_server import Event, HandoverReceipt, Hello, Progress, Snapshot, Step
+from protocol.to_robot import Cancel, Mission, Verifiers, Welcome
+from protocol.to_server import CommandAnswer, Event, HandoverReceipt, Hello, Progress, Snapshot, Step
 
 AGAIN_AFTER_S: Final = 0.05
 PURPOSES: Final = {
@@ -50,6 +50,7 @@ class StandIn:
     _codes: dict[tuple[str, Purpose], str] = field(default_factory=dict)
     _mission: Mission | None = None
     _over: set[str] = field(default_factory=set)
+    _cancelled: set[str] = field(default_factory=set)
     _cargo: list[str] = field(default_factory=list)
     _socket: ClientConnection | None = None
     _work: asyncio.Event = field(default_factory=asyncio.Event)
@@ -144,10 +145,23 @@ class StandIn:
                 self._codes |= {(one.order_id, one.purpose): one.sha256 for one in verifiers}
             case Mission():
                 self._mission = message
+                self._cancelled -= {stop.order_id for stop in message.stops if stop.order_id}  # given anew
                 await self._report(Step.ACCEPTED)
                 self._work.set()
+            case Cancel():
+                await self._let_go(message)
             case _:
                 self.errors.append(f"was told {type_of(message)}, which nobody wished")
+
+    async def _let_go(self, wish: Cancel) -> None:
+        """The planner gives the order to another robot, unless its mail is aboard by now."""
+        refusal = "the mail is aboard" if wish.order_id in self._cargo else None
+        if refusal is None:
+            self._cancelled.add(wish.order_id)
+        answer = CommandAnswer(
+            command_id=wish.command_id, accepted=refusal is None, happened_at=datetime.now(UTC), reason=refusal
+        )
+        await self.say(Event(happened=answer))
 
     def _text(self, message: Part, seq: int | None = None, replay: bool = False) -> str:
         return Envelope(
@@ -174,8 +188,11 @@ class StandIn:
     # The missions.
 
     def _next_stop(self) -> Stop | None:
+        return next(iter(self._left()), None)
+
+    def _left(self) -> list[Stop]:
         stops = self._mission.stops if self._mission else ()
-        return next((stop for stop in stops if stop.id not in self._over), None)
+        return [stop for stop in stops if stop.id not in self._over and stop.order_id not in self._cancelled]
 
     async def _do_missions(self) -> None:
         while True:
@@ -187,10 +204,14 @@ class StandIn:
     async def _do(self, stop: Stop) -> None:
         await self._report(Step.DEPARTED, stop)
         await self._a_moment()
+        if stop not in self._left():
+            return
         self.post = stop.post
         await self._report(Step.ARRIVED, stop)
         await self.say(self._snapshot())
         await self._a_moment()
+        if stop not in self._left():
+            return
         if stop.order_id is not None and stop.action in PURPOSES:
             await self._hand_over(stop, stop.order_id, PURPOSES[stop.action])
         self._over.add(stop.id)

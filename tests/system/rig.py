@@ -216,11 +216,18 @@ class Rig:
 
     def stands_at(self, x_m: float, y_m: float, within_m: float = 0.4) -> bool:
         """Whether the simulated robot stands still near a place."""
-        first = self.at_the_door({"do": "state"})["pose"]
+        before = self._pose()
         time.sleep(0.2)
+        return self.is_near(x_m, y_m, within_m) and self.is_near(*before, within_m=0.005)
+
+    def is_near(self, x_m: float, y_m: float, within_m: float = 0.4) -> bool:
+        """Whether the simulated robot is at a place or passes it."""
+        here_x_m, here_y_m = self._pose()
+        return math.hypot(here_x_m - x_m, here_y_m - y_m) < within_m
+
+    def _pose(self) -> tuple[float, float]:
         pose = self.at_the_door({"do": "state"})["pose"]
-        near = math.hypot(pose["x_m"] - x_m, pose["y_m"] - y_m) < within_m
-        return near and math.hypot(pose["x_m"] - first["x_m"], pose["y_m"] - first["y_m"]) < 0.005
+        return pose["x_m"], pose["y_m"]
 
     def wait_for_state(self, person: Person, order_id: str, state: str, limit_s: float = 90.0) -> dict[str, Any]:
         """Follow the order until it has been in `state`; an order that ended otherwise is told at once."""
