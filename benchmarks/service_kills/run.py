@@ -98,6 +98,7 @@ class _Scene:
                     group.create_task(self._send(sender))
                 await self._have_ordered()
                 await self._kill(say)
+                await self._have_ordered()
                 self._over = True
             self._drained = await self._all_is_done()
 
@@ -120,8 +121,10 @@ class _Scene:
             await sender.order_until(http, lambda: self._over)
 
     async def _have_ordered(self) -> None:
-        """Everybody is signed in and at work before the first kill: it is orders that are to be hit."""
-        while not all(sender.acknowledged for sender in self._senders):  # noqa: ASYNC110
+        """Everybody has an answer to one order more: before the first kill since it is orders that are to be hit, and
+        after the last since people go on."""
+        before = [len(sender.acknowledged) for sender in self._senders]
+        while any(len(sender.acknowledged) <= n for sender, n in zip(self._senders, before, strict=True)):  # noqa: ASYNC110
             await asyncio.sleep(0.05)
 
     async def _kill(self, say: Callable[[int], None]) -> None:

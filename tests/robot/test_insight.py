@@ -161,13 +161,16 @@ async def test_the_link_hears_of_a_watch_and_sends_one_insight_after_the_other(
             await server.send(Watch(for_s=30.0, whole=True))
             await until(lambda: heard == [Watch(for_s=30.0, whole=True)])
             made_in: list[str] = []
+            looked = threading.Event()
 
             def make() -> Insight:
+                assert looked.wait(5)
                 made_in.append(threading.current_thread().name)
                 return insight
 
             link.tell_insight(make)
             assert not link.has_room_for_insight()
+            looked.set()
             await until(lambda: server.types()[-1] == "insight" and link.has_room_for_insight())
             assert server.heard[-1].body == insight
             assert made_in == ["link"], "the mind does not wait until it is written down"

@@ -17,5 +17,5 @@ async def test_ten_kills_lose_and_double_nothing(tmp_path: Path) -> None:
     report = await killed(plan, tmp_path)
     assert report["wrong"] == []
     assert report["kills"] == 10
-    assert report["orders"] > 10
+    assert report["orders"] >= 2 * plan.senders, "before, and after"
     assert report["robot_connections"] > plan.robots
