@@ -26,6 +26,7 @@ TO_SERVER: Final[Mapping[str, type[Part]]] = {
     "snapshot": to_server.Snapshot,
     "event": to_server.Event,
     "claim": to_server.Claim,
+    "withdraw": to_server.Withdraw,
     "clear": to_server.Clear,
     "why": to_server.Why,
     "insight": insight.Insight,
@@ -53,7 +54,7 @@ YOUNGER: Final = ("confirm", "watch", "open_way", "detour", "revoke", "until_rat
 """Types to robots that came later, and one field: sent only to those that name them in `hello`; an older robot would
 hang up."""
 
-DURABLE: Final = frozenset({"event", "claim", "clear"}) | {
+DURABLE: Final = frozenset({"event", "claim", "withdraw", "clear"}) | {
     *("mission", "verifiers", "grant", "deny", "detour"),
     *("cancel", "confirm", "pause", "resume", "recall", "emergency_stop", "open_way", "revoke"),
 }

@@ -165,6 +165,12 @@ class Claim(Part):
     goal: PostName | None = None
 
 
+class Withdraw(Part):
+    """I no longer want what I asked for. A grant that I am told of all the same is given back by `clear`."""
+
+    claim_id: Identifier
+
+
 class Clear(Part):
     """I am clear of this corridor: the only thing that ever frees it.
 

@@ -5,12 +5,11 @@ happened or not at all. A report is made once for each step of a stop, however o
 may be interrupted and begun again at its present stop at any time.
 """
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from datetime import datetime, timedelta
 from typing import Final, Literal
 
-from protocol.ids import new_uuid
-from protocol.parts import Leg, Part, Purpose, Stop
+from protocol.parts import Part, Purpose, Stop
 from protocol.to_robot import (
     Cancel,
     Confirm,
@@ -26,7 +25,8 @@ from protocol.to_robot import (
     Revoke,
     Verifiers,
 )
-from protocol.to_server import Charge, Claim, Clear, CommandAnswer, Event, Fault, HandoverReceipt, Progress, Step
+from protocol.to_server import Charge, CommandAnswer, Event, Fault, HandoverReceipt, Progress, Step
+from robot.claims import Claims
 from robot.custody import Custody, Proof, Sign, opening
 from robot.errors import RobotError
 from robot.held import REVOKED, Held
@@ -61,8 +61,6 @@ class Duties:
         self._store, self.memory, self.outbox, self.utc = store, memory, outbox, utc
         self._server, self._mailroom = server, mailroom
         self.custody = Custody(memory, outbox, utc, sign)
-        self._denied: dict[str, Deny] = {}
-        self._claimed: dict[tuple[Leg, ...], str] = {}
         self.rearm_asked = False
         """Somebody at the service has looked, and lets a stopped robot go again; the mind passes it on."""
         self.stop_asked = False
@@ -72,15 +70,15 @@ class Duties:
         navigator knows the corridors."""
         self.forget_place_asked = False
         """Somebody has taken it away, or will: wherever it believed to be does not count; for the navigator."""
-        self.avoid: frozenset[Leg] = frozenset()
         self.revision = 0
         """Goes up with every change of what is held."""
         self.held = Held()
+        self.claims = Claims(store, memory, outbox, lambda: self.held, self._told, alone=server is None)
         self._changed()
 
     def join(self, server: Server) -> None:
         """The link is made after this, since it asks for what is held: from now on there is a server."""
-        self._server = server
+        self._server, self.claims.alone = server, False
 
     @property
     def online(self) -> bool:
@@ -143,11 +141,8 @@ class Duties:
                 # Held since it came; but a recall that came before it, and is carried out only now, has dropped it.
                 self.memory.hold(message)
                 self._accepted(message)
-            case Deny():
-                self._denied[message.claim_id] = message
-                self.avoid = frozenset(message.avoid)
-            case Grant() | Detour():
-                self.avoid -= frozenset(message.legs)
+            case Grant() | Detour() | Deny():
+                self.claims.hear(message)
             case Cancel():
                 self._answer(message.command_id, self._cancel(message))
             case Confirm():
@@ -175,7 +170,7 @@ class Duties:
 
     def _revoke(self, wish: Revoke) -> None:
         self.memory.revoke()
-        self._claimed, self.avoid = {}, frozenset()
+        self.claims.void()
         self.rearm_asked, self.stop_asked, self.forget_place_asked = False, True, True
         self._begin_fault(
             REVOKED, "Its corridors were given to others. It stands until it is put down at a post.", None
@@ -338,43 +333,6 @@ class Duties:
         with self._store.transaction():
             self.memory.keep_faults(self.held.faults | {name} if lasts else self.held.faults - {name})
             self._tell(Fault(name=name, cleared=cleared, happened_at=self.utc(), post=post, reason=reason))
-        self._told()
-
-    # Corridors.
-
-    def may_enter(self, legs: Sequence[Leg]) -> bool:
-        return self._server is None or all(leg in self.held.grants for leg in legs)
-
-    def claim(self, legs: Sequence[Leg], goal: str | None = None) -> str | None:
-        """Ask for those of `legs` that are not granted yet, once; returns the claim's id, or None if none is needed."""
-        wanted = tuple(leg for leg in dict.fromkeys(legs) if leg not in self.held.grants)
-        if self._server is None or not wanted:
-            return None
-        if wanted not in self._claimed:
-            claim_id = new_uuid()
-            self.outbox.put(Claim(claim_id=claim_id, legs=wanted, goal=goal))
-            self._claimed = {wanted: claim_id}
-            self._denied.clear()  # of older claims, for which nobody waits any more
-            self._told()
-        return self._claimed[wanted]
-
-    def denial(self, claim_id: str) -> Deny | None:
-        """The server's refusal of a claim, taken once: the next claim is a new one."""
-        denied = self._denied.pop(claim_id, None)
-        if denied:
-            self._claimed = {}
-        return denied
-
-    def clear(self, legs: Iterable[Leg]) -> None:
-        """The robot is out of these corridors, or will not enter them after all."""
-        granted = [leg for leg in legs if leg in self.held.grants]
-        if not granted:
-            return
-        with self._store.transaction():
-            for leg in granted:
-                self.memory.clear(leg)
-                self.outbox.put(Clear(leg=leg, post=self.held.position.post))
-        self._claimed = {}
         self._told()
 
     # Where it was seen.

@@ -152,7 +152,7 @@ class Navigator:
         self._leaving, self.towards, self._far_end = True, post.text, None
         if elsewhere or post.text not in self._lifted_from:
             self.moved = post.text
-            self._duties.clear(self._duties.held.grants)
+            self._duties.claims.clear(self._duties.held.grants)
 
     def _note_arrival(self, post: str, before: str | None) -> None:
         self._learn_scale(post, before)
@@ -161,7 +161,7 @@ class Navigator:
         self._compass.set(self.position.facing_now_rad(self._odometry), self._odometry)
         self._duties.seen(post)
         if before and before != post:
-            self._duties.clear(behind(self._duties.held.grants, post, Leg(from_post=before, to_post=post)))
+            self._duties.claims.clear(behind(self._duties.held.grants, post, Leg(from_post=before, to_post=post)))
         # Where it turned back is not given back here: it may wish to go in again (decision 0022).
         self._far_end = None
         if self.visited[-1:] != [post]:
@@ -233,7 +233,7 @@ class Navigator:
         return kept_from(self.campus, self._duties.held.detour, self.at, self.destination, self._avoided())
 
     def _avoided(self) -> frozenset[str]:
-        return self.closed.names | {corridor_name(leg.from_post, leg.to_post) for leg in self._duties.avoid}
+        return self.closed.names | {corridor_name(leg.from_post, leg.to_post) for leg in self._duties.claims.avoid}
 
     @property
     def corridor(self) -> Leg | None:
@@ -308,7 +308,7 @@ class Navigator:
 
     def nearest_dock(self) -> str | None:
         """The dock with the shortest way from here that is open; the robot's own while the place is unknown."""
-        asked = (self.here, self._duties.avoid, self.closed.names)
+        asked = (self.here, self._duties.claims.avoid, self.closed.names)
         if asked != self._nearest[0]:
             near = nearest_dock(self.campus, self.here, self._avoided()) if self.here else self.home
             self._nearest = (asked, near)

@@ -29,7 +29,7 @@ from app.fleet.tokens import Known, still_good
 from app.tables import RobotRow
 from protocol.both_ways import Ack, Error
 from protocol.envelope import Envelope
-from protocol.to_server import Claim, Snapshot, Why
+from protocol.to_server import Claim, Snapshot, Why, Withdraw
 
 GATHER_S: Final = 0.01
 """Real seconds for which the first message waits for others: a transaction costs more than what is in it."""
@@ -38,7 +38,7 @@ AT_ONCE: Final = 200
 ACKNOWLEDGED_S: Final = 0.25
 """Real seconds that acknowledgements may wait for something to be taken in with them: a crash until then has messages
 sent again that the robot knows already."""
-OF_THE_ROBOT: Final = (Snapshot, Why, Claim)
+OF_THE_ROBOT: Final = (Snapshot, Why, Claim, Withdraw)
 """What changes the row of the robot itself."""
 UNSEEN: Final = frozenset({"heard_at", "last_seq"})
 """What may change of a robot without anything to tell pages."""

@@ -33,7 +33,7 @@ from protocol.clock import Clock
 from protocol.ids import new_uuid
 from protocol.parts import Activity, Battery, Part, Position
 from protocol.to_robot import Grant
-from protocol.to_server import Claim, Clear, Event, Fault, Snapshot, Why
+from protocol.to_server import Claim, Clear, Event, Fault, Snapshot, Why, Withdraw
 
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,63}")
 
@@ -143,6 +143,9 @@ class Fleet:
                 if reply is not None:
                     await self.tell(session, robot, reply)
                     await tell_of_traffic(session, self.feed, robot.name)
+            case Withdraw() if isinstance(robot, RobotRow):
+                if await traffic.withdraw(session, robot, message):
+                    self.announce(session, robot)
             case Clear():
                 await traffic.clear(session, self.campus, robot.name, message, now)
                 await tell_of_traffic(session, self.feed, robot.name)

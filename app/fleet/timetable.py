@@ -243,12 +243,19 @@ def _places(goals: Iterable[Goal]) -> list[tuple[str, int]]:
 
 
 def _on_its_way(before: Whereabouts | None, now: Whereabouts) -> Whereabouts:
-    """A place to which it goes for reasons of its own is where it goes until it is there, or asks for another way."""
+    """A place to which it goes for reasons of its own is where it goes until it is there, asks for another way, or
+    takes back what it waited for or was granted."""
     own = before.goals[0] if before and before.goals and before.goals[0][0] == OF_ITS_OWN else None
     is_there = not now.holds and own is not None and now.post == own[1]
-    if own is None or is_there or now.wish is not None:
+    if before is None or own is None or is_there or now.wish is not None or _gave_up(before, now):
         return now
     return replace(now, goals=(own, *now.goals))
+
+
+def _gave_up(before: Whereabouts, now: Whereabouts) -> bool:
+    """Nothing is asked for or held any more, and it has not moved."""
+    waited, held = before.wish is not None, bool(before.holds)
+    return not now.holds and ((waited and not held) or (held and now.post == before.way[0].from_post))
 
 
 def network_for(campus: CampusMap, settings: Settings, estimates: Estimates | None = None) -> Network:

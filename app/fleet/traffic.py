@@ -13,13 +13,14 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.fleet.closed import closed_names
 from app.fleet.errors import UnknownCorridor
-from app.tables import ClaimRow, GrantRow
+from app.tables import ClaimRow, GrantRow, RobotRow
 from maps import CampusMap, CampusMapError, corridor_name
 from protocol.parts import Leg
 from protocol.to_robot import Deny, Grant
-from protocol.to_server import Claim, Clear
+from protocol.to_server import Claim, Clear, Withdraw
 
 ASKED_ANEW: Final = "the robot has asked for another way since"
+WITHDRAWN: Final = "the robot wants it no longer"
 GONE_ON: Final = "the robot is not where this way begins any more"
 
 
@@ -48,6 +49,19 @@ async def answer(
         return None
     session.add_all(_grant(robot, claim.claim_id, leg, now) for leg in claim.legs)
     return Grant(claim_id=claim.claim_id, legs=claim.legs)
+
+
+async def withdraw(session: AsyncSession, robot: RobotRow, message: Withdraw) -> bool:
+    """Whether the robot waited for it; what has been answered meanwhile it gives back itself."""
+    waiting = update(ClaimRow).where(
+        col(ClaimRow.robot) == robot.name,
+        col(ClaimRow.claim_id) == message.claim_id,
+        col(ClaimRow.granted).is_(None),
+    )
+    if (await session.exec(waiting.values(granted=False, reason=WITHDRAWN))).rowcount == 0:
+        return False
+    robot.waits_for = None
+    return True
 
 
 async def clear(session: AsyncSession, campus: CampusMap, robot: str, message: Clear, now: datetime) -> None:

@@ -50,24 +50,24 @@ def claim(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
     first = _from_here(hands, way) if closed else navigator.first_legs(goal)
     _give_back(hands, first, way)
     if closed:
-        duties.avoid = frozenset()  # what was denied may be open by the next time it asks
+        duties.claims.avoid = frozenset()  # what was denied may be open by the next time it asks
         return AtOnce(Ended(closed))
-    claim_id = None if detour(hands) else duties.claim((*first, *way), goal)
+    claim_id = None if detour(hands) else duties.claims.ask((*first, *way), goal)
 
     def ask() -> Ended | None:
         _give_back(hands, first, way)  # it may have been granted what it asked for before it changed its mind
-        if duties.may_enter(first) or detour(hands):
+        if duties.claims.may_enter(first) or detour(hands):
             return DONE
-        return Ended("denied") if claim_id and duties.denial(claim_id) else None
+        return Ended("denied") if claim_id and duties.claims.denial(claim_id) else None
 
-    return Wait(ask)
+    return Wait(ask, dropped=duties.claims.withdraw)
 
 
 def _give_back(hands: Hands, first: Sequence[Leg], way: Sequence[Leg]) -> None:
     """What it does not need now, as long as it stands where it is in none of it."""
     if hands.navigator.at:
         kept = (*first, *_granted_ahead(hands, way), detour(hands))
-        hands.duties.clear(leg for leg in hands.duties.held.grants if leg not in kept)
+        hands.duties.claims.clear(leg for leg in hands.duties.held.grants if leg not in kept)
 
 
 def _from_here(hands: Hands, legs: Sequence[Leg]) -> tuple[Leg, ...]:
@@ -109,11 +109,12 @@ def _kept(hands: Hands) -> tuple[Leg, ...]:
     """What it goes on holding while no way is open. Where another robot is in the way it lets go of everything, so that
     this one can go on. Where something stands in a corridor it keeps what it has been granted: without network there
     it would never be granted anything again."""
-    return () if hands.duties.avoid else hands.duties.held.grants
+    return () if hands.duties.claims.avoid else hands.duties.held.grants
 
 
 def release(hands: Hands, _: Sequence[Value], __: float) -> Run:
-    hands.duties.clear(leg for leg in hands.duties.held.grants if leg != hands.navigator.corridor)
+    hands.duties.claims.withdraw()
+    hands.duties.claims.clear(leg for leg in hands.duties.held.grants if leg != hands.navigator.corridor)
     return AtOnce()
 
 

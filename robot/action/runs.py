@@ -58,16 +58,17 @@ class Rest:
 
 
 class Wait:
-    """Until a question has an answer."""
+    """Until a question has an answer; `dropped` is called if nobody wants one any more."""
 
-    def __init__(self, ask: Callable[[], Ended | None]) -> None:
-        self._ask = ask
+    def __init__(self, ask: Callable[[], Ended | None], dropped: Callable[[], None] = lambda: None) -> None:
+        self._ask, self._dropped = ask, dropped
 
     def poll(self, ends: Ends, now: float) -> Ended | None:
         return self._ask()
 
     def cancel(self) -> None:
         self._ask = lambda: DONE
+        self._dropped()
 
 
 SkillMaker = Callable[[], Skill | None]

@@ -213,7 +213,9 @@ ACTIONS: Final = (
         "`detour` holds; fails with denied, way_closed, no_route",
         claim,
     ),
-    Action("release", (), "give back every corridor that was granted, but for the one it is in", release),
+    Action(
+        "release", (), "give back every corridor that was granted, but for the one it is in, and wait for none", release
+    ),
     Action(
         "mark_blocked",
         (word("Why", *CLOSED_BY),),

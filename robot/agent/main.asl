@@ -52,10 +52,10 @@ priority(+astray(_), map).
      !!pursue(Purpose).
 
 // Some purposes last until a percept ends them.
-+!pursue(idle).
++!pursue(idle) <- release.   // it goes nowhere: others may
 +!pursue(stand_still).
 +!pursue(charge) <- !charge.
-+!pursue(hold) <- !reach_a_post.
++!pursue(hold) <- !reach_a_post; release.
 // The others end by being fulfilled.
 +!pursue(Purpose)
   <- !fulfil(Purpose);

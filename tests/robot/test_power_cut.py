@@ -43,7 +43,7 @@ def steps(duties: Duties, server: FakeServer) -> Iterator[Callable[[], object]]:
             server.waiting = [incoming]
             yield duties.take_messages
         yield partial(duties.handed_over, (letter, LOAD), Purpose.LOAD, "post1", "a" * 64)
-        yield partial(duties.clear, [TO_POST3, TO_POST4])
+        yield partial(duties.claims.clear, [TO_POST3, TO_POST4])
         yield lambda: outbox.acknowledged(outbox.last_seq())
         yield partial(duties.handed_over, (letter, RECEIVE), Purpose.RECEIVE, "post4", "b" * 64)
         yield partial(duties.finish_mission, letter.id, "post4")

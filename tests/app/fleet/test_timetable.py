@@ -5,9 +5,11 @@ from collections.abc import AsyncIterator
 
 import pytest
 
+from app.fleet.traffic import WITHDRAWN
 from app.settings import Settings
 from app.tables import Alarm, ClaimRow, GrantRow, RobotRow
 from protocol.clock import SteppedClock
+from protocol.to_server import Withdraw
 from tests.app.fleet.playing import Service, serving, until
 from tests.app.fleet.travelling import Traveller, on_one_track
 
@@ -80,6 +82,33 @@ async def test_what_a_robot_has_asked_for_twice_is_not_granted_again_once_it_has
     claims = await service.rows(ClaimRow, robot="r1")
     assert [(claim.claim_id, claim.granted) for claim in claims] == [("c1", True), ("c2", False)]
     await until_nothing_is_held(service)
+
+
+async def test_who_takes_back_what_it_waits_for_is_in_nobodys_way(
+    service: Service, travellers: tuple[Traveller, Traveller]
+) -> None:
+    first, second = travellers
+    await first.claim("post3")
+    await first.answer()
+    await second.claim("post1")
+
+    async def waits() -> bool:
+        row: RobotRow = await service.row(RobotRow, name="r2")
+        return row.waits_for is not None
+
+    async def has_somewhere_to_go() -> bool:
+        timetable = service.app.state.traffic_desk.timetable
+        return bool(timetable.controller.goals("r2"))
+
+    async def has_nowhere_to_go() -> bool:
+        return not await waits() and not await has_somewhere_to_go()
+
+    await until(waits)
+    assert await has_somewhere_to_go()
+    await second.robot.say(Withdraw(claim_id="c1"))
+    await until(has_nowhere_to_go)
+    (claim,) = await service.rows(ClaimRow, robot="r2")
+    assert (claim.granted, claim.reason) == (False, WITHDRAWN)
 
 
 async def test_what_was_granted_is_granted_after_a_restart_of_the_service(

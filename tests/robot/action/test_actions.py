@@ -175,7 +175,7 @@ def test_a_dropped_intention_cancels_its_skill_before_the_next_one_starts(bench:
 
 def test_a_way_that_is_closed_for_now_is_told_from_one_that_is_not_there(bench: Bench) -> None:
     bench.navigator.place("post1", "post2")
-    bench.duties.avoid = frozenset({TO_POST3})
+    bench.duties.claims.avoid = frozenset({TO_POST3})
     assert bench.result("set_destination(post4)") is None, "it will be open again"
     assert bench.result("claim(post4)") == "way_closed"
     assert bench.result("claim(post4)") is None, "what was denied is asked for again"
@@ -195,7 +195,7 @@ def test_while_something_stands_in_its_way_it_keeps_what_it_was_granted(bench: B
 
 def test_while_another_robot_is_in_its_way_it_lets_go_of_everything(bench: Bench) -> None:
     with_server(bench, TO_POST3, TO_POST4)
-    bench.duties.avoid = frozenset({TO_POST3})
+    bench.duties.claims.avoid = frozenset({TO_POST3})
     assert bench.result("claim(post4)") == "way_closed"
     assert bench.duties.held.grants == ()
 

@@ -1,21 +1,23 @@
-"""A service in memory that a test plays for a simulated robot: it grants what is claimed, unless it is told not to."""
+"""A service in memory that a test plays for a simulated robot: it grants what is claimed, unless it lets it wait."""
 
 from dataclasses import dataclass, field
 
 from protocol.parts import Leg, Part
 from protocol.to_robot import Grant, Mission
-from protocol.to_server import Claim, Clear
+from protocol.to_server import Claim, Clear, Withdraw
 from robot.duties import Duties
 from robot.memory import Incoming
 
 
 @dataclass
 class PlayedService:
-    """`held` are the corridors that it believes to be the robot's."""
+    """`held` are the corridors that it believes to be the robot's, `unanswered` the claims that it lets wait."""
 
     duties: Duties
     online: bool = True
+    lets_wait: bool = False
     held: list[Leg] = field(default_factory=list)
+    unanswered: list[Claim] = field(default_factory=list)
     _waiting: list[Incoming] = field(default_factory=list)
     _heard: int = 0
     _said: int = 0
@@ -39,11 +41,19 @@ class PlayedService:
         return taken
 
     def _hear(self, message: Part) -> None:
-        if isinstance(message, Claim):
-            self.held += [leg for leg in message.legs if leg not in self.held]
-            self.says(Grant(claim_id=message.claim_id, legs=message.legs))
-        if isinstance(message, Clear):
-            self.held.remove(message.leg)
+        match message:
+            case Claim() if self.lets_wait:
+                self.unanswered = [message]
+            case Claim():
+                self.grant(message)
+            case Withdraw():
+                self.unanswered = [claim for claim in self.unanswered if claim.claim_id != message.claim_id]
+            case Clear():
+                self.held.remove(message.leg)
+
+    def grant(self, claim: Claim) -> None:
+        self.held += [leg for leg in claim.legs if leg not in self.held]
+        self.says(Grant(claim_id=claim.claim_id, legs=claim.legs))
 
     def wake(self) -> None:
         pass

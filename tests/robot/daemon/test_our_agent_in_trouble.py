@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from protocol.parts import Leg, Purpose, Stop, StopAction
-from protocol.to_robot import EmergencyStop, Mission, OpenWay, Recall, Resume, Revoke
+from protocol.to_robot import Cancel, EmergencyStop, Mission, OpenWay, Pause, Recall, Resume, Revoke
 from robot.simulated.obstacles import Person
 from robot.simulated.start import start_pose
 from tests.robot.daemon.played_service import PlayedService
@@ -109,11 +109,36 @@ def test_a_detour_to_the_dock_gives_back_the_corridors_of_the_mission(run: Simul
     assert service.held == []
 
 
+def test_whose_order_is_cancelled_while_it_waits_for_a_corridor_asks_for_none_and_keeps_none(run: SimulatedRun) -> None:
+    service = with_service(run)
+    service.lets_wait = True
+    run.given_a_letter()
+    run.until(lambda: run.waits_for("claim") and service.unanswered)
+    (claim,) = service.unanswered
+    service.says(Cancel(command_id="c1", order_id="o1"))
+    run.until(lambda: not service.unanswered, 10)
+    service.grant(claim)  # it was let in before the service heard that
+    run.passes(2)
+    assert (run.duties.held.grants, service.held) == ((), [])
+    assert run.robot.docked
+
+
+def test_a_paused_robot_gives_back_the_way_ahead(run: SimulatedRun) -> None:
+    service = with_service(run)
+    loaded_and_at_post2(run)
+    assert len(service.held) > 1
+    service.says(Pause(command_id="c1", reason="fire drill"))
+    run.until(lambda: not service.held, 60)
+    assert run.is_at("post2")
+    service.says(Resume(command_id="c2"))
+    run.until(lambda: run.waits_for("wait_handover(receive"))
+
+
 def test_out_of_network_it_goes_as_far_as_it_may_waits_there_and_says_so(run: SimulatedRun) -> None:
     service = with_service(run)
     run.given_a_letter()
     run.until(lambda: run.waits_for("wait_handover(load"))
-    run.duties.clear([leg for leg in service.held if leg.to_post == "post4"])
+    run.duties.claims.clear([leg for leg in service.held if leg.to_post == "post4"])
     run.passes(1)
     service.online = False
     run.shows(Purpose.LOAD)
