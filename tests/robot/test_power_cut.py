@@ -9,6 +9,7 @@ from random import Random
 from protocol.envelope import Envelope, type_of
 from protocol.parts import Part, Purpose
 from protocol.to_robot import Grant
+from protocol.to_server import Claim
 from robot.duties import Duties
 from robot.memory import Memory
 from robot.outbox import Outbox
@@ -38,7 +39,10 @@ def steps(duties: Duties, server: FakeServer) -> Iterator[Callable[[], object]]:
     for number in range(3):
         letter = LETTER.model_copy(update={"id": f"m{number}"})
         yield hears(2 * number + 1, letter)
-        yield hears(2 * number + 2, Grant(claim_id=f"c{number}", legs=(TO_POST3, TO_POST4)))
+        yield partial(duties.claims.ask, (TO_POST3, TO_POST4))
+        claim = outbox.pending()[-1].message
+        assert isinstance(claim, Claim)
+        yield hears(2 * number + 2, Grant(claim_id=claim.claim_id, legs=(TO_POST3, TO_POST4)))
         for incoming in memory.unhandled():
             server.waiting = [incoming]
             yield duties.take_messages

@@ -147,7 +147,7 @@ def test_work_is_begun_with_enough_charge_only() -> None:
     stage = Stage(*HOME, "docked", "at(post5)", "weak")
     stage.perceives(*MISSION, "next_stop(0)")
     stage.settle()
-    assert (stage.waiting, stage.done) == ({}, [])
+    assert (stage.waiting, stage.done) == ({}, ["release"])
     stage.perceives(without=("weak",))
     stage.expect("report(departed,s1)")
 

@@ -42,7 +42,7 @@ def test_without_anything_to_do_it_stays_in_its_dock() -> None:
     stage = idle_in_dock()
     stage.perceives("watch(1)", without=("watch(0)",))
     stage.settle()
-    assert (stage.done, stage.waiting, stage.failures) == ([], {}, [])
+    assert (stage.done, stage.waiting, stage.failures) == (["release"], {}, [])
 
 
 def test_a_mission_takes_it_out_of_the_dock_and_to_the_first_stop() -> None:

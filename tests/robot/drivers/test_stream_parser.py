@@ -1,9 +1,9 @@
 """Frames out of noise: no byte sequence makes a wrong state, and one lost byte costs one frame."""
 
 import random
-from struct import pack
+from struct import calcsize, pack
 
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from robot.drivers import open_interface as oi
@@ -94,9 +94,27 @@ pieces = st.one_of(
 noises = st.lists(pieces, max_size=4).map(b"".join)
 
 
+def sound_frames(stream: bytes) -> int:
+    """At how many places one begins. A cut one that what follows makes sound, as happens once in 256 times, is one:
+    nobody could tell by a checksum of one byte."""
+    layouts = (oi.FULL_STREAM, oi.WITHOUT_MODE)
+    windows = ((layout, stream[at : at + layout.frame_length]) for at in range(len(stream)) for layout in layouts)
+    return sum(
+        window[:1] == b"\x13" and len(window) == layout.frame_length and sum(window) % 256 == 0
+        and window[1] == len(window) - 3 and ids_in(layout, window) == layout.ids
+        for layout, window in windows
+    )  # fmt: skip
+
+
+def ids_in(layout: oi.StreamLayout, frame: bytes) -> tuple[int, ...]:
+    sizes = [1 + calcsize(oi.STREAMED[packet][0]) for packet in layout.ids]
+    return tuple(frame[2 + sum(sizes[:n])] for n in range(len(sizes)))
+
+
 @given(st.lists(noises, max_size=12), st.randoms(use_true_random=False))
 def test_noise_between_frames_costs_no_frame_and_makes_none(between: list[bytes], cut: random.Random) -> None:
     stream = b"".join(noise + frame(number) for number, noise in enumerate(between)) + PADDING
+    assume(sound_frames(stream) == len(between))
     parser, found, at = StreamParser(), [], 0
     while at < len(stream):
         size = cut.randint(1, 100)
