@@ -15,6 +15,7 @@ from app.api_document import DocumentedApi, operation_id
 from app.body_limit import BodyLimit
 from app.database import Database
 from app.dispatch.charge_desk import ChargeDesk
+from app.dispatch.charge_first import ChargeFirst
 from app.dispatch.fleet_planner import FleetPlanner
 from app.dispatch.nearest import NearestRobots
 from app.dispatch.service import Dispatcher
@@ -177,6 +178,7 @@ def _add_parts(app: FastAPI, settings: Settings, clock: Clock) -> None:
     state.dispatcher = Dispatcher(state.fleet, state.planner or NearestRobots(state.fleet))
     if state.traffic_desk is not None:
         state.traffic_desk.on_look.append(state.dispatcher.wake_for_robot)
+        state.traffic_desk.charges_first = ChargeFirst(state.fleet).sends
     state.foreseen = Foreseen(state.fleet, state.traffic_desk) if state.traffic_desk is not None else None
     state.housekeeper = Housekeeper(state.database, settings, clock)
 

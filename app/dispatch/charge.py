@@ -1,17 +1,20 @@
-"""Whether a robot has the charge to fetch an order and bring it: the map and the settings, put to `app.charging`.
+"""Whether a robot has the charge for what it is to do: the map and the settings, put to `app.charging`.
 
-Nobody sends robots to charge yet: those with a home charge there whenever they have nothing to do, the others when
-their own battery plan says so. So what a robot is refused for must be something that will change by itself.
+What a robot is refused for must be something that will change by itself: those with a home charge there whenever they
+have nothing to do, others are sent to a dock (`charge_desk`).
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 from math import isfinite
 from typing import Final, Protocol
 
-from app.charging.acceptance import Answer, Charge, Verdict, accepts
+from app.charging.acceptance import Answer, Charge, Verdict, accepts, goes_on
+from app.charging.docks import Need
 from app.charging.energy import Rates, Use
 from app.charging.levels import Thresholds
+from app.charging.top_ups import nearest
 from app.dispatch.choice import ENOUGH_CHARGE, IdleRobot, WaitingOrder
 from app.fleet.spending import usual_rates
 from app.settings import Settings
@@ -20,7 +23,8 @@ from maps.ways import Ways
 THRESHOLDS: Final = Thresholds()
 LONGEST_DRIVE_S: Final = 8 * 3600.0
 CLOSE_ENOUGH_S: Final = 10.0
-_LEAVES_DOCK: Final = THRESHOLDS.begin + THRESHOLDS.hysteresis
+LEAVES_DOCK: Final = THRESHOLDS.begin + THRESHOLDS.hysteresis
+"""With less a robot in a dock begins nothing."""
 
 
 class Charged(Protocol):
@@ -72,7 +76,7 @@ class Charges:
     def drives_s(self, robot: Charged) -> float:
         """For how many seconds of driving, as the map has them, its charge lasts, with the way home and hand-overs."""
         ratio = robot.battery_ratio
-        if ratio is None or ratio < ENOUGH_CHARGE or (robot.charging and ratio < _LEAVES_DOCK):
+        if ratio is None or ratio < ENOUGH_CHARGE or (robot.charging and ratio < LEAVES_DOCK):
             return 0.0
         rates, spare = self.rates.get(robot.name, self._assumed), ratio - THRESHOLDS.low
         handovers = 2 * self.settings.robot_capacity
@@ -83,6 +87,29 @@ class Charges:
             low_s, high_s = (middle_s, high_s) if rates.at_most(use) <= spare else (low_s, middle_s)
         return low_s
 
+    def goes_on(self, robot: Charged, way: Sequence[str]) -> bool:
+        """Whether it has the charge for these corridors, from post to post, and to a dock after them."""
+        ratio, rates = robot.battery_ratio, self.rates.get(robot.name, self._assumed)
+        if ratio is None or robot.docked or ratio >= THRESHOLDS.full - THRESHOLDS.hysteresis:
+            return True  # there is no more to be had, or nothing known
+        leg, to_dock = self._way(way), self._use(self._to_dock_m(way[-1]))
+        return goes_on(Charge(ratio, rates), leg, to_dock, THRESHOLDS)
+
+    def needed(self, robot: Charged, posts: Sequence[str]) -> float:
+        """For stops at these posts one after the other, and to a dock after them: no more than there is in a pack. Out
+        of a dock it begins nothing with less than `Thresholds.begin`."""
+        rates = self.rates.get(robot.name, self._assumed)
+        work = self._way((robot.post, *posts)) + self._use(0.0, len(posts)) + self._use(self._to_dock_m(posts[-1]))
+        least = LEAVES_DOCK if robot.docked else 0.0
+        return min(THRESHOLDS.full, max(least, THRESHOLDS.low + rates.at_most(work)))
+
+    def nearest_dock(self, robot: Charged, free: Iterable[str]) -> str | None:
+        """Of these the one that it gets to with a reserve, and with least."""
+        rates, ratio = self.rates.get(robot.name, self._assumed), robot.battery_ratio or 0.0
+        ways = {dock: self.ways.length_m(robot.post, dock) for dock in free}
+        uses = {dock: self._use(way_m) for dock, way_m in ways.items() if isfinite(way_m)}
+        return nearest(Need(robot.name, Charge(ratio, rates), 0.0, uses), list(uses), THRESHOLDS)
+
     def goes_beyond(self, robot: Charged) -> bool:
         """Whether it is as full as it gets, so that it may be given what is more than one charge."""
         ratio = robot.battery_ratio or 0.0
@@ -92,6 +119,9 @@ class Charges:
         """In a dock without charging its charger has ended: a worn pack is never fuller than that."""
         is_docked = robot.post == robot.home if robot.docked is None else robot.docked
         return robot.charging or (robot.home is not None and not is_docked)
+
+    def _way(self, posts: Sequence[str | None]) -> Use:
+        return self._use(sum(self._length_m(a, b) for a, b in pairwise(posts) if b is not None))
 
     def _use(self, way_m: float, handovers: int = 0) -> Use:
         settings = self.settings

@@ -20,7 +20,8 @@ from app.charging.demand import Demand
 from app.charging.docks import Need, plan_docks
 from app.charging.energy import Use
 from app.charging.top_ups import Move, Wish, top_ups
-from app.dispatch.charge import THRESHOLDS
+from app.dispatch.charge import THRESHOLDS, Charges
+from app.dispatch.docks import UNTIL_RATIO, docks_of, taken_docks
 from app.dispatch.open_work import OpenWork, RobotNow, StopNow, look_at_work
 from app.fleet.mission_updates import tell_mission
 from app.fleet.service import Fleet, known_robot
@@ -30,8 +31,6 @@ from app.tables import MissionRow, Order, StopRow
 from protocol.ids import new_id
 from protocol.parts import StopAction
 
-UNTIL_RATIO: Final = "until_ratio"
-"""Robots that do not know this field of a stop are left to their own battery plan."""
 LOOK_EVERY_S: Final = 5.0
 """Real seconds: charges change slowly."""
 REST_S: Final = 0.5
@@ -70,7 +69,7 @@ class ChargeDesk:
         async with self.fleet.database.reading() as session:
             await self._learn(session, now)
             work = await look_at_work(session, now)
-        for stop in _in_the_way(work):
+        for stop in self._in_the_way(work):
             await self._call_away(stop)
         for move in self._moves(work, now):
             await self._send(move, now)
@@ -99,7 +98,7 @@ class ChargeDesk:
         resting = [need for name, need in needs.items() if self._may_be_sent(work.robots[name], work)]
         plan = plan_docks(list(needs.values()), docks, ASSUMED, THRESHOLDS, self.fleet.clock.now())
         wish = Wish(self._demand.is_quiet(now), round(self._demand.expected(now)))
-        taken: dict[str, str | None] = dict.fromkeys(_taken(work))
+        taken: dict[str, str | None] = dict.fromkeys(taken_docks(work))
         found = top_ups(resting, plan, taken, THRESHOLDS, wish, self.fleet.clock.now())
         return [move for move in found if move.dock not in taken]
 
@@ -108,13 +107,21 @@ class ChargeDesk:
         rates = self.fleet.spending.rates.get(robot.name, usual_rates(settings))
         way_m = {dock: length_m(robot.post, dock) for dock in docks if length_m(robot.post, dock) < float("inf")}
         ways = {dock: Use(way, way / settings.assumed_speed_m_s) for dock, way in way_m.items()}
-        dock = next((one for one in _docks_of(robot, work) if one in docks), None)
+        dock = next((one for one in docks_of(robot, work) if one in docks), None)
         charge = Charge(robot.battery_ratio or 0.0, rates, docked=bool(robot.docked))
         return Need(robot.name, charge, self.fleet.clock.now(), ways, dock, THRESHOLDS.begin + THRESHOLDS.hysteresis)
 
     def _may_be_sent(self, robot: RobotNow, work: OpenWork) -> bool:
         is_free = robot.takes_work and robot.name not in work.missions
         return is_free and self.fleet.connections.understands(robot.name, UNTIL_RATIO)
+
+    def _in_the_way(self, work: OpenWork) -> Iterator[StopNow]:
+        """Stops to charge at, of robots that have got work meanwhile, or have enough for theirs."""
+        charges = Charges(self.fleet.orders.ways, self.fleet.settings, self.fleet.spending.rates)
+        for name, stops in work.stops.items():
+            posts, robot = [stop.post for stop in stops if stop.order_id], work.robots[name]
+            if posts and (robot.battery_ratio or 0.0) >= charges.needed(robot, posts):
+                yield from (stop for stop in stops if stop.action == StopAction.DOCK)
 
     # How it is written.
 
@@ -123,7 +130,7 @@ class ChargeDesk:
         async with self.fleet.database.transaction() as session:
             robot = await known_robot(session, move.robot, to_change=True)
             work = await look_at_work(session, now)
-            if not self._may_be_sent(work.robots[move.robot], work) or move.dock in _taken(work):
+            if not self._may_be_sent(work.robots[move.robot], work) or move.dock in taken_docks(work):
                 return
             mission = MissionRow(id=new_id(), robot=robot.name, created_at=now)
             session.add(mission)
@@ -141,7 +148,7 @@ class ChargeDesk:
             robot = await known_robot(session, stop.robot, to_change=True)
             row = await session.get_one(StopRow, stop.id, with_for_update=True)
             mission = await session.get_one(MissionRow, stop.mission_id, with_for_update=True)
-            still = list(_in_the_way(await look_at_work(session, self.fleet.clock.utc())))
+            still = list(self._in_the_way(await look_at_work(session, self.fleet.clock.utc())))
             if all(one.id != stop.id for one in still):
                 return
             row.dropped_at = self.fleet.clock.utc()
@@ -153,21 +160,3 @@ class ChargeDesk:
 
 def _needs_one(robot: RobotNow) -> bool:
     return robot.is_there and robot.home is None and robot.post is not None and robot.battery_ratio is not None
-
-
-def _docks_of(robot: RobotNow, work: OpenWork) -> list[str]:
-    """Where it stands in a dock, and those that it is bound for."""
-    bound = [stop.post for stop in work.stops.get(robot.name, ()) if stop.action == StopAction.DOCK]
-    return [robot.post, *bound] if robot.docked and robot.post else bound
-
-
-def _taken(work: OpenWork) -> set[str]:
-    """Of robots that are not there, too: they may come back."""
-    return {dock for robot in work.robots.values() for dock in _docks_of(robot, work)}
-
-
-def _in_the_way(work: OpenWork) -> Iterator[StopNow]:
-    """Stops to charge at, of robots that have got work meanwhile."""
-    for stops in work.stops.values():
-        has_work = any(stop.order_id for stop in stops)
-        yield from (stop for stop in stops if has_work and stop.action == StopAction.DOCK)

@@ -4,7 +4,7 @@ What robots say is written down by the intake; here it is looked at, and what fo
 that fails the timetable is made anew from the database, so that it never knows of a grant that was not given.
 """
 
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable, Sequence
 from datetime import datetime, timedelta
 from typing import Final
 
@@ -32,6 +32,13 @@ NEWS_S: Final = 15.0
 
 log = structlog.get_logger(__name__)
 
+ChargesFirst = Callable[[AsyncSession, RobotRow, ClaimRow, Sequence[Leg]], Awaitable[bool]]
+"""Whether a robot goes to a dock instead of into these corridors: its claim is answered by that."""
+
+
+async def _never(_session: AsyncSession, _robot: RobotRow, _claim: ClaimRow, _legs: Sequence[Leg]) -> bool:
+    return False
+
 
 class TrafficDesk:
     """Runs in the background of the service, if traffic goes by the timetable."""
@@ -42,6 +49,8 @@ class TrafficDesk:
         self._timetable: Timetable | None = None
         self.on_look: list[Callable[[], None]] = []
         """Called after each look: what has changed is in the timetable."""
+        self.charges_first: ChargesFirst = _never
+        """Asked before a robot is let in; dispatch sets it."""
         fleet.on_change.append(self.wake)
         fleet.orders.on_change.append(self.wake)
 
@@ -124,7 +133,7 @@ class TrafficDesk:
     async def _say(
         self, session: AsyncSession, robot: RobotRow, one: Whereabouts, verdict: Verdict, now: datetime
     ) -> bool:
-        """False if the robot has asked anew meanwhile: the next look has that."""
+        """False if the robot has asked anew meanwhile, or is sent elsewhere: the next look has that."""
         assert one.wish is not None  # noqa: S101  # there are verdicts on wishes alone
         claim = await session.get(ClaimRow, (one.robot, one.wish.claim_id), with_for_update=True)
         if claim is None or claim.granted is not None:
@@ -133,6 +142,9 @@ class TrafficDesk:
             case HasToWait():
                 self._let_wait(session, robot, verdict, now)
             case MayEnter():
+                legs = tuple(Leg(from_post=a, to_post=b) for a, b in verdict.legs)
+                if await self.charges_first(session, robot, claim, legs):
+                    return False
                 await self._grant(session, robot, claim, verdict, now)
             case Elsewhere():
                 await self._deny(session, robot, claim, verdict)

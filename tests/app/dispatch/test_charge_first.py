@@ -1,0 +1,127 @@
+"""Before each leg: who has not the charge for it goes to a dock first, once, and then about its work."""
+
+from collections.abc import AsyncIterator
+from itertools import pairwise
+
+import pytest
+
+from app.dispatch.charge_first import REASON
+from app.settings import Settings
+from app.tables import ClaimRow, StopRow
+from maps import builtin_map, shortest_route
+from protocol.clock import SteppedClock
+from protocol.envelope import YOUNGER
+from protocol.parts import Activity, Battery, Leg, Position, Stop, StopAction
+from protocol.to_robot import Grant, Mission
+from protocol.to_server import Claim, Clear, Snapshot, Step
+from tests.app.fleet.playing import PlayedRobot, Service, serving
+
+TRACK = builtin_map("test_track")
+
+
+@pytest.fixture
+async def service(settings: Settings, clock: SteppedClock) -> AsyncIterator[Service]:
+    async with serving(settings.model_copy(update={"traffic": "timetable"}), clock) as service:
+        yield service
+
+
+@pytest.fixture
+async def robot(service: Service, clock: SteppedClock) -> AsyncIterator[PlayedRobot]:
+    """At post2, with a charge that was enough for anything; the one dock is at post5."""
+    robot = PlayedRobot(clock)
+    async with robot.connected(service.url, await service.enrol("r1")):
+        await robot.greet("post2", battery=Battery(ratio=0.9, docked=False), understands=YOUNGER)
+        yield robot
+
+
+async def claims(robot: PlayedRobot, claim_id: str, from_post: str, goal: str) -> tuple[Leg, ...]:
+    posts = shortest_route(TRACK, from_post, goal).posts
+    legs = tuple(Leg(from_post=a, to_post=b) for a, b in pairwise(posts))
+    await robot.say(Claim(claim_id=claim_id, legs=legs, goal=goal))
+    return legs
+
+
+async def has(robot: PlayedRobot, ratio: float, post: str, *, docked: bool = False) -> None:
+    """So much charge, where it stands."""
+    battery = Battery(ratio=ratio, docked=docked, charging=docked)
+    await robot.say(Snapshot(position=Position(post=post), activity=Activity.IDLE, battery=battery))
+
+
+async def sent_to_charge(robot: PlayedRobot) -> tuple[Mission, Stop]:
+    mission = await robot.mission()
+    first = mission.stops[0]
+    assert first.action is StopAction.DOCK
+    return mission, first
+
+
+async def test_who_has_less_than_was_foreseen_goes_to_a_dock_before_its_next_leg(
+    service: Service, robot: PlayedRobot
+) -> None:
+    await service.order()
+    given = await robot.mission()
+    await has(robot, 0.25, "post2")
+    await claims(robot, "c1", "post2", "post1")
+    mission, dock = await sent_to_charge(robot)
+    assert (mission.id, mission.stops[1:]) == (given.id, given.stops)
+    assert (dock.post, dock.until_ratio) == ("post5", 0.53)
+    (claim,) = await service.rows(ClaimRow)
+    assert (claim.granted, claim.reason) == (False, REASON)
+    await service.app.state.charge_desk.look_round()
+    (row,) = await service.rows(StopRow, action=StopAction.DOCK)
+    assert row.dropped_at is None, "work does not call it away: it has not the charge for it"
+
+
+async def test_it_is_let_in_on_its_way_to_the_dock_and_after_it_has_charged(
+    service: Service, robot: PlayedRobot
+) -> None:
+    await service.order()
+    await robot.mission()
+    await has(robot, 0.25, "post2")
+    await claims(robot, "c1", "post2", "post1")
+    mission, dock = await sent_to_charge(robot)
+    legs = await claims(robot, "c2", "post2", "post5")
+    assert (await robot.hear("grant")).body == Grant(claim_id="c2", legs=legs)
+    for leg in legs:
+        await robot.say(Clear(leg=leg, post=leg.to_post))
+    await has(robot, 0.25, "post5", docked=True)
+    await robot.report(mission, Step.DONE, dock)
+    await has(robot, 0.25, "post5")  # a pack that takes no charge: it is not sent there for ever
+    legs = await claims(robot, "c3", "post5", "post1")
+    assert (await robot.hear("grant")).body == Grant(claim_id="c3", legs=legs)
+
+
+async def test_who_has_charged_enough_is_called_away_before_it_is_full(service: Service, robot: PlayedRobot) -> None:
+    await service.order()
+    await robot.mission()
+    await has(robot, 0.25, "post2")
+    await claims(robot, "c1", "post2", "post1")
+    await sent_to_charge(robot)
+    await has(robot, 0.6, "post5", docked=True)
+    told = await robot.mission()
+    assert [stop.action for stop in told.stops] == [StopAction.LOAD, StopAction.RECEIVE]
+
+
+async def test_where_no_dock_is_free_its_own_battery_plan_has_the_last_word(
+    service: Service, robot: PlayedRobot, clock: SteppedClock
+) -> None:
+    other = PlayedRobot(clock, "r2")
+    async with other.connected(service.url, await service.enrol("r2")):
+        await service.order()
+        await robot.mission()
+        await other.greet("post5", battery=Battery(ratio=0.3, docked=True, charging=True), home="post5")
+        await has(robot, 0.25, "post2")
+        legs = await claims(robot, "c1", "post2", "post1")
+        assert (await robot.hear("grant")).body == Grant(claim_id="c1", legs=legs)
+
+
+async def test_a_robot_that_does_not_know_of_charging_at_a_stop_is_let_in(
+    service: Service, clock: SteppedClock
+) -> None:
+    older = PlayedRobot(clock)
+    async with older.connected(service.url, await service.enrol("r1")):
+        await older.greet("post2", battery=Battery(ratio=0.9, docked=False))
+        await service.order()
+        await older.mission()
+        await has(older, 0.25, "post2")
+        legs = await claims(older, "c1", "post2", "post1")
+        assert (await older.hear("grant")).body == Grant(claim_id="c1", legs=legs)
