@@ -39,11 +39,20 @@ priority(+astray(_), map).
 +!decide <- ?purpose(Purpose); !adopt(Purpose).
 
 +!adopt(Purpose) : pursuing(Purpose).
++!adopt(Purpose) : half_way(Purpose) <- +put_off.
 +!adopt(Purpose) <- !begin(Purpose).
 
 // The same purpose, but from the beginning: what it was about to do is no longer right.
 @decide_anew[atomic]
-+!decide_anew <- ?purpose(Purpose); !begin(Purpose).
++!decide_anew <- ?purpose(Purpose); !adopt_anew(Purpose).
++!adopt_anew(Purpose) : half_way(Purpose) <- +put_off(anew).
++!adopt_anew(Purpose) <- !begin(Purpose).
+
+// In the middle of a turn, or beside its dock, it would be left beside the line: first that ends, within seconds. To stand
+// still it does not wait.
+half_way(Purpose) :- manoeuvring & Purpose \== stand_still.
+-manoeuvring : put_off(anew) <- .abolish(put_off(_)); .abolish(put_off); !decide_anew.
+-manoeuvring : put_off <- .abolish(put_off); !decide.
 
 +!begin(Purpose)
   <- .drop_desire(pursue(_));

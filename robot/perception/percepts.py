@@ -10,9 +10,12 @@ from dataclasses import dataclass
 from typing import Final
 
 from ..config import PerceptMode
+from ..skills import FindLine, Turn, Undock
 from .seen import Seen
 
 Terms = Iterable[str]
+MANOEUVRES: Final = frozenset({FindLine.name, Turn.name, Undock.name})
+"""They end by themselves within seconds."""
 
 
 @dataclass(frozen=True)
@@ -139,6 +142,11 @@ PERCEPTS: Final = (
         lambda s: [f"detour({s.where.detour})"] if s.where.detour else [],
     ),
     Percept("fault", "fault(Name): a fault of the reflex table", lambda s: (f"fault({f})" for f in s.view.faults)),
+    Percept(
+        "manoeuvring",
+        "it turns, looks for the line or comes out of a dock: half way it would stand beside the line",
+        lambda s: ["manoeuvring"] if s.view.motion in MANOEUVRES else [],
+    ),
     Percept(
         "halted",
         "a fault keeps the wheels still until a person has seen to it",
