@@ -195,3 +195,39 @@ def test_a_mission_that_comes_in_the_last_moment_of_docking_is_served_before_the
     stage.succeeds("undock")
     stage.expect("wait_handover(load,o1,s1,600)")
     assert "find_line" not in stage.waiting
+
+
+def turning() -> Stage:
+    stage = Stage(*HOME, *MISSION, "next_stop(0)", "at(post3)", "direction(post1,behind)")
+    stage.does("report(departed,s1)", "set_destination(post1)", "claim(post1)")
+    stage.expect("turn(behind)")
+    stage.perceives("manoeuvring")
+    return stage
+
+
+def test_a_turn_ends_before_the_robot_changes_its_mind() -> None:
+    stage = turning()
+    stage.perceives("paused")
+    stage.settle()
+    assert "turn(behind)" in stage.waiting, "half way round it would stand beside the line"
+    stage.perceives(without=("manoeuvring",))
+    stage.succeeds("turn(behind)")
+    stage.does("release")
+    assert stage.waiting == {}
+
+
+def test_so_does_one_that_is_to_begin_anew() -> None:
+    stage = turning()
+    stage.perceives("cancelled(o1)")
+    stage.settle()
+    assert "turn(behind)" in stage.waiting
+    stage.perceives(without=("manoeuvring",))
+    stage.succeeds("turn(behind)")
+    stage.does("finish_stop(s1)")
+
+
+def test_to_stand_still_no_turn_is_waited_for() -> None:
+    stage = turning()
+    stage.perceives("halted")
+    stage.does("say(refused)")
+    stage.expect_cancelled("turn(behind)")
