@@ -86,6 +86,7 @@ def _follow_line(hands: Hands, _: Sequence[Value], now: float) -> Run:
             left_mm,
             ahead,
             ahead in navigator.unread,
+            navigator.position.sighted,
         )
 
     return Skills(hands.body, [straighten, follow], now, lambda done: navigator.reached(done.result, done.unread))

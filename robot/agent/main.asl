@@ -19,7 +19,8 @@ purpose(stand_still)            :- halted | revoked | unsure.
 purpose(charge)                 :- battery(low) | recharging.
 purpose(idle)                   :- docked & weak & not carrying(_).   // work is begun with enough charge to end it
 purpose(hold)                   :- paused.
-purpose(mission(Id, Update))    :- mission(Id, Update).
+purpose(mission(Id, Stop))      :- mission(Id, _) & next_stop(N) & stop(N, Stop, _, _, _, _).
+purpose(mission(Id, none))      :- mission(Id, _).   // all stops are done
 purpose(visit(Post))            :- errand(Post).
 purpose(go_home)                :- home(_) & not docked.
 purpose(idle).

@@ -1,19 +1,20 @@
 // A mission is an ordered list of stops with one id. `next_stop(N)` is perceived: the body remembers how far it has come.
+// Each stop is a purpose: an update that changes what comes after it disturbs nobody at it or on the way there.
 // Every report is made once however often a plan makes it, so a stop may be begun again after charging or a restart.
 // Mail that nobody takes, or that is recalled, is a mission too: its stops say `return`.
 
 +mission(_, _) <- !decide.
 -mission(_, _) <- !decide.
++next_stop(_) <- !decide.
 +paused <- !decide.
 -paused <- !decide.
-+cancelled(_) <- !decide_anew.
++cancelled(Order) : next_stop(N) & stop(N, _, _, _, Order, _) <- !decide_anew.
 
-+!fulfil(mission(Id, Update)) : next_stop(N) & stop(N, Stop, Post, Do, Order, Limit_s)
++!fulfil(mission(Id, none)) <- finish_mission(Id).
++!fulfil(mission(_, Stop)) : stop(_, Stop, Post, Do, Order, Limit_s)
   <- !serve(Stop, Post, Do, Order, Limit_s);
-     finish_stop(Stop);
-     !fulfil(mission(Id, Update)).
-
-+!fulfil(mission(Id, _)) <- finish_mission(Id).
+     finish_stop(Stop).
++!fulfil(mission(_, _)).   // it was taken back at this very moment
 
 +!serve(_, _, _, Order, _) : cancelled(Order).
 +!serve(_, _, load, Order, _) : carrying(Order).   // loaded just before a power cut

@@ -138,6 +138,11 @@ class Position:
         """The post where the robot stands; None on the way."""
         return None if self.has_left else self.current
 
+    @property
+    def sighted(self) -> tuple[str, float] | None:
+        """The post ahead whose marker has been seen, and odometry's reading there."""
+        return None if self.approaching is None or self.post_at_mm is None else (self.approaching, self.post_at_mm)
+
     # Which way
 
     def turn_rad(self, campus: CampusMap, neighbour: str, odometry: Odometry) -> float | None:

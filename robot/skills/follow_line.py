@@ -60,14 +60,17 @@ class FollowLine:
         way_left_mm: float | None = None,
         ahead: str | None = None,
         unread: bool = False,
+        sighted: tuple[str, float] | None = None,
     ) -> None:
         """`leaving`: the post it sets out from, if known: it tells which marker the next post will show.
         `way_left_mm`: how far the next post is by the map, if known; `ahead`: which one that is. With both, a post
-        whose marker cannot be read is reached by map and wheels; `unread`: it could not be read the last time."""
+        whose marker cannot be read is reached by map and wheels; `unread`: it could not be read the last time.
+        `sighted`: the post whose marker has been seen already, and where it is by odometry's `ahead_mm`."""
         self._campus, self._leaving, self._cruise_mm_s = campus, leaving, cruise_mm_s
         self._shape = shape or BodyShape()
         self._look_ahead_mm = gains(self._shape.sensor_lead_mm).look_ahead_mm
         self._way_left_mm, self._ahead, self._is_unread = way_left_mm, ahead, unread
+        self._sighted = sighted
         self.limit_s = limit_s
 
     def start(self, view: View, now: float) -> None:
@@ -81,7 +84,7 @@ class FollowLine:
         self._branch_since_mm: float | None = None
         self._search: FindLine | None = None
         self._searches, self._searched_mm = 0, -FRUITLESS_MM
-        self._post = PostAhead(self._campus, self._leaving, view.odometry, now)
+        self._post = PostAhead(self._campus, self._leaving, view.odometry, now, self._sighted)
         self._unread = UnreadPost(
             self._campus, self._leaving, self._ahead, view.odometry, self._way_left_mm, self._shape
         )

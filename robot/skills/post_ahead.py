@@ -22,7 +22,16 @@ ANOTHER_RAD = math.radians(35)
 class PostAhead:
     """`name` is the post whose marker has been seen; its place is kept in odometry's frame, through searches too."""
 
-    def __init__(self, campus: CampusMap, leaving: str | None, begin: Odometry, now: float) -> None:
+    def __init__(
+        self,
+        campus: CampusMap,
+        leaving: str | None,
+        begin: Odometry,
+        now: float,
+        sighted: tuple[str, float] | None = None,
+    ) -> None:
+        """`sighted`: the post whose marker was seen before, and where it is by odometry's `ahead_mm`: from so near that
+        its marker may not come into sight again."""
         self._campus, self._leaving, self._begin = campus, leaving, begin
         self._sighted_s = now
         self.name: str | None = None
@@ -30,6 +39,9 @@ class PostAhead:
         """No marker tells of it: it is where the map says."""
         self._at_mm = self._weight = 0.0
         self._point = (0.0, 0.0)
+        if sighted is not None:
+            to_go_mm = sighted[1] - begin.ahead_mm
+            self._take(sighted[0], begin, to_go_mm, 1 / (SHARP_MM + abs(to_go_mm)) ** 2, 0.0)
 
     def look(self, view: View, line_heading: float) -> None:
         """Take in a new sighting. `line_heading`: where the line leads, in radians left of where the robot looks."""

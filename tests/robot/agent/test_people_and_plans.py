@@ -164,11 +164,28 @@ def test_a_recall_with_mail_aboard_takes_it_back_first() -> None:
     stage.does("report(departed,s9)", "set_destination(post1)")
 
 
-def test_a_stop_that_is_added_while_it_drives_is_served_without_beginning_anew() -> None:
-    stage = on_the_way()
+@pytest.mark.parametrize("moment", [in_its_dock, on_the_way, waiting_for_the_sender])
+def test_a_stop_that_is_added_behind_the_next_one_disturbs_nobody(moment: object) -> None:
+    assert callable(moment)
+    stage: Stage = moment()
+    under_way = set(stage.waiting)
     stage.perceives("mission(m1,2)", "stop(4,s5,post2,park,none,600)", without=("mission(m1,1)",))
+    stage.settle()
+    assert (set(stage.waiting), stage.cancelled) == (under_way, [])
+
+
+def test_a_stop_that_is_put_before_the_next_one_is_served_first() -> None:
+    stage = on_the_way()
+    stage.perceives(
+        *("mission(m1,2)", "stop(0,s0,post2,dock,none,600)", "stop(1,s1,post1,load,o1,600)"), without=TWO_ORDERS
+    )
     stage.expect_cancelled("follow_line")
-    stage.does("report(departed,s1)")  # told once only, however often it is made
+    stage.does("report(departed,s0)")
     stage.expect("follow_line")
-    stage.reaches("post1")
-    stage.does("report(arrived,s1)")
+
+
+def test_an_order_that_is_cancelled_later_on_the_way_disturbs_nobody_now() -> None:
+    stage = waiting_for_the_sender()
+    stage.perceives("cancelled(o2)")
+    stage.settle()
+    assert (set(stage.waiting), stage.cancelled) == ({"wait_handover(load,o1,s1,600)"}, [])

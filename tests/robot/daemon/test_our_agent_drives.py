@@ -55,6 +55,18 @@ def test_a_battery_low_with_mail_aboard_is_charged_and_each_thing_told_once(run:
     assert told.count("handover load") == 1
 
 
+def test_a_change_of_mind_just_before_a_post_does_not_drive_it_past_the_post(run: SimulatedRun) -> None:
+    """So near it does not see the marker again, and the line bends there."""
+    run.given_a_letter()
+    run.until(lambda: run.waits_for("wait_handover(load"))
+    run.shows(Purpose.LOAD)
+    run.until(lambda: run.duties.held.cargo and run.parts.navigator.position.approaching == "post2")
+    run.until(lambda: run.robot.pose.y_m < 2.12)
+    run.robot.sag(0.2)
+    run.until(lambda: run.robot.docked, 90)
+    assert "find_line" not in run.did
+
+
 def test_a_recipient_who_never_comes_does_not_keep_the_robot(run: SimulatedRun) -> None:
     run.given_a_letter()
     run.until(lambda: run.waits_for("wait_handover(load"))
