@@ -42,7 +42,7 @@ class Claims:
         wanted = tuple(leg for leg in dict.fromkeys(legs) if leg not in self._held().grants)
         if self.alone or not wanted:
             return None
-        if self._claim_id is None or wanted != self._wanted:
+        if not self._waits or wanted != self._wanted:
             self._wanted, self._claim_id, self._waits = wanted, new_uuid(), True
             self._outbox.put(Claim(claim_id=self._claim_id, legs=wanted, goal=goal))
             self._denied.clear()  # of older claims, for which nobody waits any more
@@ -80,9 +80,8 @@ class Claims:
             self._give_back(answer.legs, self._memory.grants())
 
     def clear(self, legs: Iterable[Leg]) -> None:
-        """The robot is out of these corridors, or will not enter them after all."""
+        """The robot is out of these corridors, or will not enter them after all. What it waits for it still wants."""
         if self._give_back(legs, self._held().grants):
-            self._forget()
             self._told()
 
     def void(self) -> None:

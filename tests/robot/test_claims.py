@@ -56,6 +56,23 @@ def test_what_is_granted_too_late_is_given_back_at_once(desk: Desk) -> None:
     assert desk.duties.held.grants == ()
 
 
+def test_who_gives_something_back_still_waits_for_what_it_asked_for(desk: Desk) -> None:
+    first = desk.duties.claims.ask([TO_POST3]) or ""
+    desk.hears(Grant(claim_id=first, legs=(TO_POST3,)))
+    second = desk.duties.claims.ask([TO_POST4]) or ""
+    desk.duties.claims.clear([TO_POST3])
+    assert desk.duties.claims.ask([TO_POST4]) == second
+    assert desk.hears(Grant(claim_id=second, legs=(TO_POST4,))) == []
+    assert desk.duties.held.grants == (TO_POST4,)
+
+
+def test_a_corridor_that_it_has_been_through_is_asked_for_anew(desk: Desk) -> None:
+    first = desk.duties.claims.ask([TO_POST3]) or ""
+    desk.hears(Grant(claim_id=first, legs=(TO_POST3,)))
+    desk.duties.claims.clear([TO_POST3])
+    assert desk.duties.claims.ask([TO_POST3]) not in (first, None)
+
+
 def test_what_comes_too_late_is_kept_on_the_way_and_while_it_waits_for_another(desk: Desk) -> None:
     """On the way it may be in it; while it waits one of the corridors may be of use."""
     desk.duties.heading_for("post3")
