@@ -84,7 +84,7 @@ def test_who_watches_sees_what_it_intends_by_which_plan_and_why(watched: Watched
     assert 15 <= len(told) <= 19, "twice a second"
     (driving,) = told[-1].intentions
     goals = [means.goal for means in driving.stack]
-    assert goals[:3] == ["+!pursue(mission(m1,1))", "+!fulfil(mission(m1,1))", "+!serve(s1,post4,load,o1,600)"]
+    assert goals[:3] == ["+!pursue(mission(m1,s1))", "+!fulfil(mission(m1,s1))", "+!serve(s1,post4,load,o1,600)"]
     assert (driving.state, driving.because.kind, driving.because.what) == ("action", "action", "follow_line")
     assert driving.because.sentence.startswith("follow(1) waits for action follow_line of plan ")
     travelling = next(means for means in driving.stack if means.goal == "+!go_to(post4)")
