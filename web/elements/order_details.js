@@ -1,7 +1,9 @@
-/** Who, what, and the number to name when asking about it. */
+/** Who, what, the number to name when asking about it, and in whose hands the letter has been. */
 import { html, nothing } from "lit";
+import { serverNow } from "../server_clock.js";
 import { t } from "../texts.js";
-/** @import { Order, Party } from "../api_types.ts" */
+import { dayAndTime } from "../times.js";
+/** @import { Custody, Order, Party } from "../api_types.ts" */
 
 /** @param {Order} order */
 export const orderDetails = (order) => html`<section class="card" aria-labelledby="details-title">
@@ -20,3 +22,41 @@ const row = (label, value) => html`<div><dt>${t(label)}</dt><dd>${value}</dd></d
 /** @param {Party} person @param {boolean} isMe */
 const party = ({ name, email }, isMe) =>
   html`${isMe ? t("follow.you", { name }) : name}<span class="address">${email}</span>`;
+
+/** From when to when, and how each hand-over was confirmed; nothing as long as it has never changed hands. @param {Order} order */
+export function orderCustody(order) {
+  if (order.custody.length < 2) return nothing;
+  return html`<section class="card" aria-labelledby="custody-title">
+    <h2 id="custody-title">${t("follow.custody.title")}</h2>
+    <ol class="custody">
+      ${order.custody.map(
+        (link) => html`<li class=${link.to ? "" : "now"}>
+          <span class="what">${nameOf(order, link.holder, link.name)}</span>
+          <span class="remark">${span(link)}</span>
+          ${link.how ? html`<span class="remark">${howText(order, link)}</span>` : nothing}
+        </li>`,
+      )}
+    </ol>
+  </section>`;
+}
+
+/** @param {Order} order @param {string} holder @param {string | null} name */
+function nameOf({ sender, recipient }, holder, name) {
+  if (holder === "sender") return sender.name;
+  if (holder === "recipient") return recipient.name;
+  if (holder === "robot") return t("robot.name", { name: name ?? "" });
+  return name ?? t(`follow.custody.holder.${holder}`);
+}
+
+/** @param {Custody} link */
+function span({ from, to }) {
+  const since = dayAndTime(from, serverNow());
+  return to ? t("follow.custody.span", { from: since, to: dayAndTime(to, serverNow()) }) : t("follow.custody.since", { from: since });
+}
+
+/** @param {Order} order @param {Custody} link */
+function howText(order, { how, confirmed_by, confirmed_by_name, signed }) {
+  const name = confirmed_by ? nameOf(order, confirmed_by, confirmed_by_name) : "";
+  const confirmed = t(`follow.custody.how.${how}`, { name });
+  return signed ? t("follow.custody.signed", { confirmed }) : confirmed;
+}

@@ -4,7 +4,7 @@ import { hasEnded, isMyTurn, nextSentence, stages, stateSentence } from "../orde
 import { titleOf } from "../posts.js";
 import { serverNow } from "../server_clock.js";
 import { t } from "../texts.js";
-import { arrivalWindow } from "./arrival_window.js";
+import { windowText } from "../times.js";
 import { helpWords } from "./field.js";
 import { icon } from "./icon.js";
 /** @import { CampusMap, Order } from "../api_types.ts" */
@@ -26,4 +26,16 @@ function way(order) {
   return html`<ol class="stages" aria-label=${label}>
     ${all.map(({ name, done, now }) => html`<li class=${done ? "done" : now ? "now" : ""}><span>${t(`stage.${name}`)}</span></li>`)}
   </ol>`;
+}
+
+/** When the letter arrives: an interval, never a countdown. @param {Order} order @param {CampusMap} map */
+export function arrivalWindow({ window, to_post }, map) {
+  if (!window) return html`<p class="window">${t("window.none")}</p>`;
+  const late = Date.parse(window.to) < serverNow();
+  return html`<p class="window">
+    <span class="of">${t("window.label", { post: titleOf(map, to_post) })}</span>
+    <strong>${windowText(window, serverNow())}</strong>
+    ${late ? html`<span class="remark">${t("window.past")}</span>` : nothing}
+    ${window.assumed ? html`<span class="remark">${t("window.assumed")}</span>` : nothing}
+  </p>`;
 }
