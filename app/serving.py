@@ -71,11 +71,11 @@ def serve(settings: Settings) -> None:
     with listen(settings.host, settings.port) as listening, the_only_one(settings, ANOTHER_FOLDER):
         asyncio.run(migrate(settings))
         app = create_app(settings, open_clock(settings))
-        _settle_memory()
+        settle_memory()
         Server(app, config_of(app)).run(sockets=[listening])
 
 
-def _settle_memory() -> None:
+def settle_memory() -> None:
     """What was made so far stays for good: looking through it for garbage would stop everything for 0.1 s each time."""
     gc.collect()
     gc.freeze()

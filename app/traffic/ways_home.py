@@ -17,7 +17,7 @@ from app.traffic.search import find_home
 from app.traffic.taken import Taken
 
 Journeys = Mapping[str, Journey]
-TRIES: Final = 4
+TRIES: Final = 2
 
 
 @dataclass

@@ -29,7 +29,6 @@ class FleetScreen:
         self._console = Console(stderr=demo.as_json, highlight=False)
         self._demo, self._clock, self._spool = demo, clock, spool
         self._events: deque[str] = deque(maxlen=LAST_EVENTS)
-        self._codes: dict[str, str] = {}
         self._mails_seen: set[str] = set()
         self._live = Live(console=self._console, auto_refresh=False, transient=False)
 
@@ -59,9 +58,7 @@ class FleetScreen:
         """Codes for people who sign in at the pages; those of the simulated people are their own affair."""
         for _, mail in self._spool.new_mails(self._mails_seen):
             if code := sign_in_code(mail):
-                self._codes[str(mail["To"])] = code
-                if self._live.is_started:
-                    self.say(f"Sign-in code for {mail['To']}: {code}")
+                self.say(f"Sign-in code for {mail['To']}: {code}")
 
     def skip_mails(self) -> None:
         list(self._spool.new_mails(self._mails_seen))
