@@ -8,9 +8,15 @@ whoever stands there, and keep it there until it is full.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Final
 
 from app.charging.energy import Rates, Use
 from app.charging.levels import Thresholds
+
+
+HELD_UP_S: Final = 1800.0
+"""So long a robot may have to stand on its way to a dock, by something on the line or before a closed corridor, and must
+still come there. Assumed: who works in the tunnels is there within half an hour."""
 
 
 class Answer(StrEnum):
@@ -67,7 +73,8 @@ def goes_on(charge: Charge, leg: Use, to_dock: Use, thresholds: Thresholds) -> b
     """Whether a robot may enter one more corridor: at its end its own battery plan must not have taken over, and it
     must still come to a dock with a reserve. Else it goes to a dock now, from where it is sure to come to one."""
     rates = charge.rates
-    needed = max(thresholds.low + rates.at_most(leg), thresholds.critical + rates.at_most(leg + to_dock))
+    there = leg + to_dock + Use(0.0, HELD_UP_S)
+    needed = max(thresholds.low + rates.at_most(leg), thresholds.critical + rates.at_most(there))
     return charge.ratio >= needed
 
 

@@ -6,6 +6,7 @@ Goals have the key of their order: "17 load", "17 give".
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from random import Random
+from statistics import mean
 from typing import TYPE_CHECKING
 
 from app.dispatch.planning.carrying_out import Able, adopt, scene_of
@@ -28,11 +29,12 @@ def number_of(goal: Goal) -> int:
 
 
 def nearest(campus: "Campus", robot: "Robot") -> bool:
-    """The nearest that waits, or the oldest if that has waited too long."""
+    """The nearest that waits; or the oldest, if that has waited too long, or will have before this robot has done."""
     way_s = campus.network.shortest_s
     waiting = sorted(campus.demand.waiting, key=lambda order: (way_s[robot.post][order.start], order.number))
     oldest = min(waiting, key=lambda order: order.placed_s)
-    order = oldest if campus.now_s - oldest.placed_s > campus.age_limit_s else waiting[0]
+    trips_s = mean([one.trip_s for one in campus.delivered] or [0.0])
+    order = oldest if campus.now_s + trips_s - oldest.placed_s > campus.age_limit_s else waiting[0]
     if not campus.controller.give(robot.name, goals := list(_goals(order)), campus.now_s, rounds=0):
         campus.refused += 1
         return False

@@ -5,7 +5,7 @@ from dataclasses import replace
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.charging.acceptance import Answer, Charge, accepts, goes_on, passes_dock
+from app.charging.acceptance import HELD_UP_S, Answer, Charge, accepts, goes_on, passes_dock
 from app.charging.energy import Use, assumed_rates
 from app.charging.levels import Thresholds
 
@@ -45,12 +45,18 @@ def test_what_is_more_than_one_charge_is_begun_full_and_only_if_its_parts_can_be
 
 
 def test_before_each_leg_the_way_to_a_dock_is_looked_at_again() -> None:
-    leg, there = Use(80.0, 400.0), Use(270.0, 1400.0)
-    needed = THRESHOLDS.critical + RATES.at_most(leg + there)
+    leg, there = Use(80.0, 400.0), Use(100.0, 500.0)
+    needed = THRESHOLDS.critical + RATES.at_most(leg + there + Use(0.0, HELD_UP_S))
     assert needed > THRESHOLDS.low
     assert goes_on(Charge(needed + 0.001, RATES), leg, there, THRESHOLDS)
     assert not goes_on(Charge(needed - 0.001, RATES), leg, there, THRESHOLDS)
     assert not goes_on(Charge(0.26, RATES), leg, Use(), THRESHOLDS), "its own plan would take over on the way"
+
+
+def test_half_an_hour_before_a_closed_corridor_leaves_enough_to_come_to_the_dock() -> None:
+    leg, there, held_up = Use(80.0, 400.0), Use(270.0, 1400.0), Use(0.0, 1800.0)
+    least = next(ratio / 1000 for ratio in range(1000) if goes_on(Charge(ratio / 1000, RATES), leg, there, THRESHOLDS))
+    assert least - RATES.at_most(leg + held_up + there) >= THRESHOLDS.critical
 
 
 def test_with_more_than_one_charge_before_it_a_robot_charges_at_the_dock_that_it_passes() -> None:
