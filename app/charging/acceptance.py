@@ -13,10 +13,9 @@ from typing import Final
 from app.charging.energy import Rates, Use
 from app.charging.levels import Thresholds
 
-
 HELD_UP_S: Final = 1800.0
-"""So long a robot may have to stand on its way to a dock, by something on the line or before a closed corridor, and must
-still come there. Assumed: who works in the tunnels is there within half an hour."""
+"""So long a robot may have to stand on its way to a dock, by something on the line or before a closed corridor, and
+must still come there. Assumed: whoever works in the tunnels is there within half an hour."""
 
 
 class Answer(StrEnum):

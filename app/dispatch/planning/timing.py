@@ -57,7 +57,7 @@ def _round_what_is_kept(scene: Scene, tasks: Tasks, kept: Kept) -> Timetable | N
     new = changed(tasks, kept)
     if not new:
         return sound(scene, tasks, of_robots(kept.timetable, tasks))
-    # Where there is no room beside what is kept there is hardly any if all is planned anew: in two of 700 such decisions.
+    # Where there is no room beside what is kept, planning all of it anew hardly ever finds any: in 2 of 674 decisions.
     found = plan(scene.network, tasks, new, kept.timetable.journeys)
     if found is None or not keeps_promises(_promised_s(scene, tasks, kept), overdue_s(scene, tasks, found)):
         return None
