@@ -69,9 +69,7 @@ def _dock_for(
 ) -> str | None:
     free = [dock for dock in need.ways if dock not in taken]
     full = [
-        dock
-        for dock, other in docked.items()
-        if taken.get(dock) == other.robot and _makes_room(other, need, thresholds)
+        dock for dock, other in docked.items() if taken.get(dock) == other.robot and makes_room(other, need, thresholds)
     ]
     found = nearest(need, free, thresholds) or nearest(need, full, thresholds)
     if found is None and need.robot in plan.stays and _is_due(need, plan, now_s):
@@ -115,7 +113,7 @@ def _is_due(need: Need, plan: DockPlan, now_s: float) -> bool:
     return is_its_turn or stay.due_s - way_s - EARLY_S <= now_s
 
 
-def _makes_room(other: Need, need: Need, thresholds: Thresholds) -> bool:
+def makes_room(other: Need, need: Need, thresholds: Thresholds) -> bool:
     """The one in the dock can come again later: it has enough for a while, and clearly more than the other."""
     more = other.charge.ratio - need.charge.ratio
     is_sufficient = thresholds.level(other.charge.ratio) >= Level.SUFFICIENT

@@ -2,6 +2,7 @@
 
 Who goes where is decided in `app.charging`. Here is one look at the database, and one transaction for each robot that
 is sent. Nobody is sent to a dock that is taken: somebody stands in it or is on his way to it, or it is a robot's own.
+Whoever could leave one is sent to park (`dock_room`).
 """
 
 from collections import Counter
@@ -21,13 +22,14 @@ from app.charging.docks import Need, plan_docks
 from app.charging.energy import Use
 from app.charging.top_ups import Move, Wish, top_ups
 from app.dispatch.charge import THRESHOLDS, Charges
+from app.dispatch.dock_room import driving_there, leaving, parking
 from app.dispatch.docks import UNTIL_RATIO, docks_of, taken_docks
 from app.dispatch.open_work import OpenWork, RobotNow, StopNow, look_at_work
 from app.fleet.mission_updates import tell_mission
 from app.fleet.service import Fleet, known_robot
 from app.fleet.spending import usual_rates
 from app.looks import Looks
-from app.tables import MissionRow, Order, StopRow
+from app.tables import MissionRow, Order, RobotRow, StopRow
 from protocol.ids import new_id
 from protocol.parts import StopAction
 
@@ -71,11 +73,14 @@ class ChargeDesk:
             work = await look_at_work(session, now)
         for stop in self._in_the_way(work):
             await self._call_away(stop)
-        for move in self._moves(work, now):
+        moves, leave = self._moves(work, now)
+        for move in moves:
             await self._send(move, now)
+        for robot in leave:
+            await self._park(robot, now)
 
     async def _learn(self, session: AsyncSession, now: datetime) -> None:
-        """Once an hour, when orders come. Hours of the week are UTC's."""
+        """Once an hour, when orders come."""
         hour = now.replace(minute=0, second=0, microsecond=0)
         if self._learned_at == hour:
             return
@@ -86,21 +91,30 @@ class ChargeDesk:
         )
         at = min(came, default=hour)
         while at < hour:
-            self._demand.learn(at, came[at])
+            self._demand.learn(self._local(at), came[at])
             at += _HOUR
 
     # What is decided.
 
-    def _moves(self, work: OpenWork, now: datetime) -> list[Move]:
+    def _moves(self, work: OpenWork, now: datetime) -> tuple[list[Move], set[str]]:
+        """To docks that are free; and who leaves one."""
         own = {robot.home for robot in work.robots.values()}
         docks = [post.name for post in self.fleet.campus.docks() if post.name not in own]
         needs = {robot.name: self._need(robot, work, docks) for robot in work.robots.values() if _needs_one(robot)}
         resting = [need for name, need in needs.items() if self._may_be_sent(work.robots[name], work)]
         plan = plan_docks(list(needs.values()), docks, ASSUMED, THRESHOLDS, self.fleet.clock.now())
-        wish = Wish(self._demand.is_quiet(now), round(self._demand.expected(now)))
-        taken: dict[str, str | None] = dict.fromkeys(taken_docks(work))
+        here = self._local(now)
+        wish = Wish(self._demand.is_quiet(here), round(self._demand.expected(here)))
+        in_docks = {need.dock: need.robot for need in resting if need.dock is not None}
+        awaited = {dock for name, dock in driving_there(needs.values()).items() if needs[name] not in resting}
+        taken = {dock: in_docks.get(dock) for dock in (*taken_docks(work), *awaited)}
         found = top_ups(resting, plan, taken, THRESHOLDS, wish, self.fleet.clock.now())
-        return [move for move in found if move.dock not in taken]
+        leave = leaving([move for move in found if move.dock in taken], needs, in_docks)
+        return [move for move in found if move.dock not in taken], set(leave)
+
+    def _local(self, moment: datetime) -> datetime:
+        """Hours of the week are those of the people who send mail."""
+        return moment.astimezone(self.fleet.settings.zone)
 
     def _need(self, robot: RobotNow, work: OpenWork, docks: list[str]) -> Need:
         settings, length_m = self.fleet.settings, self.fleet.orders.ways.length_m
@@ -116,31 +130,44 @@ class ChargeDesk:
         return is_free and self.fleet.connections.understands(robot.name, UNTIL_RATIO)
 
     def _in_the_way(self, work: OpenWork) -> Iterator[StopNow]:
-        """Stops to charge at, of robots that have got work meanwhile, or have enough for theirs."""
+        """Stops to charge or to park at, of robots that have got work meanwhile and have enough for it."""
         charges = Charges(self.fleet.orders.ways, self.fleet.settings, self.fleet.spending.rates)
         for name, stops in work.stops.items():
             posts, robot = [stop.post for stop in stops if stop.order_id], work.robots[name]
             if posts and (robot.battery_ratio or 0.0) >= charges.needed(robot, posts):
-                yield from (stop for stop in stops if stop.action == StopAction.DOCK)
+                yield from (stop for stop in stops if stop.order_id is None)
 
     # How it is written.
 
     async def _send(self, move: Move, now: datetime) -> None:
-        until = THRESHOLDS.full if self._demand.is_quiet(now) else THRESHOLDS.sufficient
+        until = THRESHOLDS.full if self._demand.is_quiet(self._local(now)) else THRESHOLDS.sufficient
         async with self.fleet.database.transaction() as session:
             robot = await known_robot(session, move.robot, to_change=True)
             work = await look_at_work(session, now)
-            if not self._may_be_sent(work.robots[move.robot], work) or move.dock in taken_docks(work):
-                return
-            mission = MissionRow(id=new_id(), robot=robot.name, created_at=now)
-            session.add(mission)
-            await session.flush()
-            stop = StopRow(id=new_id(), mission_id=mission.id, position=0, post=move.dock, action=StopAction.DOCK)
-            stop.until_ratio = until
-            session.add(stop)
-            await session.flush()
-            await tell_mission(session, self.fleet, robot, mission)
-            log.info("sent_to_charge", robot=move.robot, dock=move.dock, until_ratio=until)
+            if self._may_be_sent(work.robots[move.robot], work) and move.dock not in taken_docks(work):
+                stop = StopRow(id=new_id(), mission_id=new_id(), position=0, post=move.dock, action=StopAction.DOCK)
+                stop.until_ratio = until
+                await self._tell(session, robot, stop)
+                log.info("sent_to_charge", robot=move.robot, dock=move.dock, until_ratio=until)
+
+    async def _park(self, name: str, now: datetime) -> None:
+        async with self.fleet.database.transaction() as session:
+            robot = await known_robot(session, name, to_change=True)
+            work = await look_at_work(session, now)
+            post = parking(self.fleet.campus, work, work.robots[name], self.fleet.orders.ways)
+            if post is not None and self._may_be_sent(work.robots[name], work) and robot.docked:
+                stop = StopRow(id=new_id(), mission_id=new_id(), position=0, post=post, action=StopAction.PARK)
+                await self._tell(session, robot, stop)
+                log.info("makes_room_in_dock", robot=name, dock=robot.post, post=post)
+
+    async def _tell(self, session: AsyncSession, robot: RobotRow, stop: StopRow) -> None:
+        """A mission of this one stop."""
+        mission = MissionRow(id=stop.mission_id, robot=robot.name, created_at=self.fleet.clock.utc())
+        session.add(mission)
+        await session.flush()
+        session.add(stop)
+        await session.flush()
+        await tell_mission(session, self.fleet, robot, mission)
 
     async def _call_away(self, stop: StopNow) -> None:
         """Work was given only where there is the charge for it: it does not wait for more."""
@@ -155,7 +182,7 @@ class ChargeDesk:
             mission.update_number += 1
             await session.flush()
             await tell_mission(session, self.fleet, robot, mission)
-            log.info("called_away_from_dock", robot=stop.robot, dock=stop.post)
+            log.info("called_away", robot=stop.robot, post=stop.post)
 
 
 def _needs_one(robot: RobotNow) -> bool:

@@ -62,8 +62,9 @@ def _left_out(work: OpenWork, orders: Mapping[str, OpenOrder], name: str, keys: 
 
 
 def _has_begun(stop: StopNow | None) -> bool:
-    """What a robot does for reasons of its own is nothing that dispatch puts anything before; nor is a charge."""
-    return stop is None or stop.departed or stop.action == StopAction.DOCK
+    """What a robot does for reasons of its own is nothing that dispatch puts anything before; nor is a stop
+    of no order, to charge or to make room."""
+    return stop is None or stop.departed or stop.order_id is None
 
 
 @dataclass(frozen=True)
