@@ -2,6 +2,7 @@
 
 from collections.abc import AsyncIterator
 from contextlib import AsyncExitStack
+from datetime import UTC, datetime, timedelta
 
 import pytest
 
@@ -71,3 +72,19 @@ async def test_who_does_not_know_of_charging_at_a_stop_is_left_to_its_own_batter
         await older.greet("post1", battery=Battery(ratio=0.6, docked=False))
         await service.app.state.charge_desk.look_round()
         assert await service.rows(MissionRow) == []
+
+
+async def test_hours_that_are_quiet_stay_so_when_clocks_are_put_back(settings: Settings) -> None:
+    """Mail is sent at nine; half past seven in November is quiet, though by UTC it is when they sent in October."""
+    october = SteppedClock(started_at=datetime(2026, 10, 19, 13, 10, tzinfo=UTC))
+    at_campus = settings.model_copy(update={"traffic": "timetable", "time_zone": "America/Toronto"})
+    async with serving(at_campus, october) as service:
+        for _ in range(4):
+            await service.cancel(await service.order())
+        october.advance(timedelta(days=13, hours=23, minutes=20).total_seconds())
+        robot = PlayedRobot(october)
+        async with robot.connected(service.url, await service.enrol("r1")):
+            await robot.greet("post1", battery=Battery(ratio=0.6, docked=False), understands=YOUNGER)
+            await service.app.state.charge_desk.look_round()
+            (stop,) = (await robot.mission()).stops
+            assert stop.until_ratio == 0.95, "there is time to fill up"
