@@ -33,12 +33,13 @@ def leaving(moves: Iterable[Move], needs: Mapping[str, Need], resting: Mapping[s
 
 
 def parking(campus: CampusMap, work: OpenWork, robot: RobotNow, ways: Ways) -> str | None:
-    """The nearest post without a dock where there is a bay that nobody has or is bound for; None if there is none."""
+    """The nearest post without a dock where it stands in nobody's way: a bay stays free beside it, or no way leads on.
+    None if there is none. Nobody leads a robot aside that asks for no way."""
     taken = [post for one in work.robots.values() if one.name != robot.name for post in _posts_of(one, work)]
     way_m = {
         post.name: ways.length_m(robot.post, post.name)
         for post in campus.posts.values()
-        if post.dock is None and taken.count(post.name) < post.bays
+        if post.dock is None and post.bays - taken.count(post.name) > (len(campus.neighbours(post.name)) > 1)
     }
     nearest = min(way_m, key=lambda name: (way_m[name], name), default=None)
     return nearest if nearest is not None and way_m[nearest] < inf else None

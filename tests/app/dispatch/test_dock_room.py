@@ -45,7 +45,7 @@ async def test_it_is_sent_to_park_and_the_other_to_the_dock_once_it_is_free(
         leaves = await rests.mission()
         (park,) = leaves.stops
         assert (park.action, park.order_id) == (StopAction.PARK, None)
-        assert park.post not in (DOCK, "post1"), "there is a dock, and there stands the other"
+        assert park.post == "post4", "at post1 stands the other, and at post2 and post3 nobody could pass"
         await look(service)
         assert len(await service.rows(MissionRow)) == 1, "the dock is not free yet"
 
