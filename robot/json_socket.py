@@ -66,6 +66,8 @@ class JsonSocket:
 
 
 class _Server(socketserver.ThreadingUnixStreamServer):
+    # Who knocks while others are being let in waits for a moment. In a queue of the usual five the seventh was refused.
+    request_queue_size = 4 * MAX_VISITORS
     daemon_threads = True
     block_on_close = False
     answer: Answer

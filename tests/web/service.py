@@ -64,9 +64,10 @@ class Service:
 
     def _wait(self) -> None:
         until_s = time.monotonic() + START_LIMIT_S
-        while not self._is_ready():
-            assert self._process.poll() is None and time.monotonic() < until_s, self.log()
-            time.sleep(0.05)
+        with httpx.Client(verify=False) as visitor:  # noqa: S501  # no https
+            while not self._is_ready(visitor):
+                assert self._process.poll() is None and time.monotonic() < until_s, self.log()
+                time.sleep(0.05)
 
     def __exit__(self, *_: object) -> None:
         self._process.send_signal(signal.SIGTERM)
@@ -77,9 +78,9 @@ class Service:
         """Its data."""
         return self._folder
 
-    def _is_ready(self) -> bool:
+    def _is_ready(self, visitor: httpx.Client) -> bool:
         with contextlib.suppress(httpx.HTTPError):
-            return httpx.get(f"{self.url}/readyz", verify=False).is_success  # noqa: S501  # no https
+            return visitor.get(f"{self.url}/readyz").is_success
         return False
 
     def log(self) -> str:

@@ -174,6 +174,7 @@ def test_a_crowd_that_says_nothing_keeps_nobody_out_for_long(tmp_path: Path) -> 
     quiet = JsonSocket(tmp_path / "control", lambda _: {"ok": True}, silent_limit_s=0.2)
     crowd = [socket.socket(socket.AF_UNIX) for _ in range(MAX_VISITORS + 3)]
     for one in crowd:
+        one.settimeout(3)  # one that may not wait is refused at once where no more can queue
         one.connect(str(tmp_path / "control"))
     time.sleep(0.6)
     assert ask(tmp_path / "control", {"do": "status"}) == {"ok": True}

@@ -1,4 +1,4 @@
-"""Ten of the benchmark's missions, five in each world: no letter lost, none claimed falsely, no corridor ungranted."""
+"""Six of the benchmark's missions, three in each world: no letter lost, none claimed falsely, no corridor ungranted."""
 
 import pytest
 
@@ -9,7 +9,7 @@ FIRST_SEED = 9001
 
 
 @pytest.mark.parametrize("world", ["track", "tunnels"])
-@pytest.mark.parametrize("seed", range(FIRST_SEED, FIRST_SEED + 5))
+@pytest.mark.parametrize("seed", range(FIRST_SEED, FIRST_SEED + 3))
 def test_every_letter_is_delivered_or_honestly_handed_to_a_person(world, seed):
     mission = fly(world, seed)
     assert isinstance(mission, Figures), mission
