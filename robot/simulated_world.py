@@ -9,6 +9,7 @@ from .errors import RobotError
 from .simulated import Pose, SimulatedRobot
 
 SAVE_EVERY_S = 0.5
+"""How often the charge of one that stands still is written down."""
 SAVED_BYTES = 512
 
 
@@ -27,7 +28,7 @@ class SavedWorld:
     def __init__(self, robot: SimulatedRobot, path: Path) -> None:
         """Raises WorldNotKept, as `step_until` does."""
         self._robot, self._path = robot, path
-        self._saved_s = robot.now
+        self._saved_s, self._kept = robot.now, robot.pose
         self.restored = False
         try:
             self._file = os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
@@ -43,15 +44,20 @@ class SavedWorld:
         self.restored = True
 
     def step_until(self, now: float) -> None:
-        """See daemon.World."""
+        """See daemon.World.
+
+        A robot that has moved is written down before anybody hears of it: one that had ended a turn and was killed
+        came back in the middle of it, sure that it had turned.
+        """
         self._robot.step_until(now)
-        if now - self._saved_s >= SAVE_EVERY_S:
+        if self._robot.pose != self._kept or now - self._saved_s >= SAVE_EVERY_S:
             self._saved_s = now
             self.save()
 
     def save(self) -> None:
         """One small write into the open file: a kill comes before or after it, never in the middle."""
         pose, state = self._robot.pose, self._robot.state()
+        self._kept = pose
         saved = {
             "x_m": pose.x_m,
             "y_m": pose.y_m,

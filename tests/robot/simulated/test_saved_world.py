@@ -1,0 +1,64 @@
+"""What a simulated world remembers of a robot whose computer was killed."""
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from maps import builtin_map
+from robot.simulated import SimulatedRobot
+from robot.simulated_world import SAVE_EVERY_S, SavedWorld
+
+STEP_S = 0.02
+AS_WRITTEN_M = 1e-9
+
+
+@pytest.fixture
+def robots() -> Iterator[list[SimulatedRobot]]:
+    """One that lives, and the one that is there after its computer was killed."""
+    campus = builtin_map("test_track")
+    both = [SimulatedRobot(campus, 0.0, "post1:post2", in_memory=True) for _ in range(2)]
+    yield both
+    for robot in both:
+        robot.close()
+
+
+@pytest.fixture
+def writes(monkeypatch: pytest.MonkeyPatch) -> list[bytes]:
+    written: list[bytes] = []
+    real = os.pwrite
+
+    def pwrite(file: int, text: bytes, at: int) -> int:
+        written.append(text)
+        return real(file, text, at)
+
+    monkeypatch.setattr(os, "pwrite", pwrite)
+    return written
+
+
+def test_a_robot_killed_right_after_a_step_is_where_that_step_ended(
+    robots: list[SimulatedRobot], tmp_path: Path
+) -> None:
+    alive, again = robots
+    world = SavedWorld(alive, tmp_path / "world.json")
+    alive.push(35)
+    world.step_until(STEP_S)
+    found = SavedWorld(again, tmp_path / "world.json")  # nobody has closed the other
+    assert found.restored
+    assert again.pose.x_m == pytest.approx(alive.pose.x_m, abs=AS_WRITTEN_M)
+    assert again.pose.y_m == pytest.approx(alive.pose.y_m, abs=AS_WRITTEN_M)
+    assert again.pose.heading_rad == pytest.approx(alive.pose.heading_rad)
+    world.close()
+    found.close()
+
+
+def test_of_one_that_stands_still_only_the_charge_is_written_now_and_then(
+    robots: list[SimulatedRobot], tmp_path: Path, writes: list[bytes]
+) -> None:
+    world = SavedWorld(robots[0], tmp_path / "world.json")
+    steps = round(2 * SAVE_EVERY_S / STEP_S)
+    for step in range(1, steps + 1):
+        world.step_until(step * STEP_S)
+    assert 1 <= len(writes) <= 3
+    world.close()
