@@ -15,7 +15,7 @@ from app.orders.errors import NoCodeForYou, UnknownOrder
 from app.people.current_user import CurrentUser
 from app.settings import SettingsDep
 from app.tables import Order
-from app.tables.columns import STORABLE
+from protocol.one_line import ONE_LINE
 
 router = APIRouter(tags=["demo"])
 
@@ -37,7 +37,7 @@ class DoorClosed(Conflict):
 class ShowCode(BaseModel):
     """Which order's code to show; it must be this person's turn."""
 
-    order_id: Annotated[str, StringConstraints(max_length=64, pattern=STORABLE)]
+    order_id: Annotated[str, StringConstraints(max_length=64, pattern=ONE_LINE)]
 
 
 class Shown(BaseModel):

@@ -7,10 +7,12 @@ from typing import Any
 
 import structlog
 
+from protocol.one_line import escaped
+
 SECRET_KEYS = frozenset({"authorization", "code", "cookie", "password", "secret", "session", "set-cookie", "token"})
 SECRET_TEXTS = re.compile(
-    r"CM1:[0-9a-f]{32}|\bcm[a-z]_[A-Za-z0-9]+_[A-Za-z0-9_-]+|(?<=[Bb]earer )[^\s'\"]+|\b(?:session|oidc)=[^\s;]+"
-    r"|\b\d{8}\b|\b\d{6}\b"
+    r"CM1:[0-9a-f]{32}|\bcm[a-z]_[A-Za-z0-9]+_[A-Za-z0-9_-]+|(?<=[Bb]earer )[^\s'\"]+"
+    r"|\b(?:session|oidc|browser)=[^\s;]+|\b\d{8}\b|\b\d{6}\b"
 )
 REDACTED = "[redacted]"
 
@@ -28,6 +30,11 @@ def _redacted(value: Any) -> Any:
     if isinstance(value, list | tuple):
         return [_redacted(one) for one in value]
     return value
+
+
+def escape(logger: Any, method: str, event: structlog.typing.EventDict) -> structlog.typing.EventDict:
+    """Keep each event on its one line at a terminal, and its letters in their order. JSON does so itself."""
+    return {key: escaped(value) if isinstance(value, str) else value for key, value in event.items()}
 
 
 def set_up_logs(level: str, as_json: bool | None = None) -> None:
@@ -52,7 +59,11 @@ def set_up_logs(level: str, as_json: bool | None = None) -> None:
     last: list[structlog.typing.Processor] = [
         structlog.stdlib.ProcessorFormatter.remove_processors_meta,
         redact,
-        structlog.processors.JSONRenderer(default=str) if as_json else structlog.processors.LogfmtRenderer(),
+        *(
+            [structlog.processors.JSONRenderer(default=str)]
+            if as_json
+            else [escape, structlog.processors.LogfmtRenderer()]
+        ),
     ]
     handler = logging.StreamHandler(sys.stderr)
     handler.setFormatter(structlog.stdlib.ProcessorFormatter(processors=last, foreign_pre_chain=shared))

@@ -5,6 +5,7 @@ from enum import StrEnum
 from typing import Annotated, Any, Final
 
 from pydantic import (
+    AfterValidator,
     AwareDatetime,
     BaseModel,
     ConfigDict,
@@ -14,13 +15,17 @@ from pydantic import (
     model_serializer,
 )
 
+from protocol.one_line import one_line
+
 PostName = Annotated[str, StringConstraints(pattern=r"^[a-z][A-Za-z0-9_]*$", max_length=64)]
 """A post as the map spells it: also an AgentSpeak atom, so that it can stand in a belief."""
 
 Identifier = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]*$", max_length=64)]
 LONGEST_SENTENCE: Final = 500
-Sentence = Annotated[str, StringConstraints(max_length=LONGEST_SENTENCE, pattern=r"^[^\x00]*$")]
-"""What people read. PostgreSQL stores no zero byte: a message with one would fail again and again."""
+Sentence = Annotated[
+    str, StringConstraints(max_length=LONGEST_SENTENCE, pattern=r"^[^\x00]*$"), AfterValidator(one_line)
+]
+"""What people read, on one line. PostgreSQL stores no zero byte: a message with one would fail again and again."""
 
 Ratio = Annotated[float, Field(ge=0.0, le=1.0)]
 Seq = Annotated[int, Field(ge=1, le=2**53)]
@@ -35,8 +40,8 @@ Signature = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9+/]{86}==$")]
 
 
 def sentence(text: object) -> str:
-    """Any text as what a message may carry: cut, and without zero bytes."""
-    return str(text).replace("\x00", "")[:LONGEST_SENTENCE]
+    """Any text as what a message may carry: cut, and on one line."""
+    return one_line(str(text))[:LONGEST_SENTENCE]
 
 
 class Part(BaseModel):

@@ -13,12 +13,12 @@ from app.fleet.routes import FleetDep
 from app.fleet.schemas import CommandReason
 from app.people.current_user import CurrentUser, Dispatcher
 from app.people.errors import RoleNeeded
-from app.tables.columns import STORABLE
+from protocol.one_line import ONE_LINE
 
 router = APIRouter(tags=["dispatch"])
 reading_router = APIRouter(tags=["robots"])
 
-CorridorName = Annotated[str, Path(min_length=1, max_length=129, pattern=STORABLE)]
+CorridorName = Annotated[str, Path(min_length=1, max_length=129, pattern=ONE_LINE)]
 CHANGED = problems(NoSuchCorridor, RoleNeeded)
 
 

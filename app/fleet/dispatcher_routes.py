@@ -22,7 +22,7 @@ from app.people.current_user import Dispatcher, DispatcherOrMaintainer
 from app.people.errors import RoleNeeded
 from app.settings import ClockDep
 from app.tables import Alarm, Person, RobotCommand
-from app.tables.columns import STORABLE
+from protocol.one_line import ONE_LINE
 from protocol.to_robot import EmergencyStop, Pause, Recall, Resume
 
 router = APIRouter(tags=["dispatch"])
@@ -134,7 +134,7 @@ async def list_alarms(
     page: PageDep,
     only_open: Annotated[bool, Query(description="Only those that are not over.")] = False,
     robot: Annotated[
-        str | None, Query(max_length=64, pattern=STORABLE, description="Only those of this robot.")
+        str | None, Query(max_length=64, pattern=ONE_LINE, description="Only those of this robot.")
     ] = None,
 ) -> AlarmPage:
     """List what people should look at, newest first."""

@@ -3,10 +3,11 @@
 from datetime import datetime
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+from pydantic import BaseModel, ConfigDict, Field
 
 from app.handover.mine import Named
 from app.handover.telling import post_of
+from app.lines import Name
 from app.orders.codes import HandoverCode
 from app.orders.schemas import Somebody
 from app.orders.views import MyRole, somebody
@@ -14,7 +15,6 @@ from app.paging import PageOf
 from app.people.schemas import Email
 from app.server_key import ServerKey
 from app.tables import Delegate, OrderState
-from app.tables.columns import STORABLE
 from protocol.parts import Purpose
 
 PurposeName = Literal["load", "receive", "return"]
@@ -67,7 +67,7 @@ class NewDelegate(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    name: Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=200, pattern=STORABLE)]
+    name: Name
     email: Email | None = None
     purpose: PurposeName | None = None
 

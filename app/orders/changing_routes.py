@@ -9,18 +9,19 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.database import SessionDep
 from app.errors import Conflict, answering, problems
+from app.lines import Line
 from app.orders import errors
 from app.orders.routes import OrderId, OrdersDep
 from app.orders.schemas import OrderView, etag_of
 from app.people.current_user import CurrentUser, Dispatcher
 from app.tables import Person, Priority
-from app.tables.columns import STORABLE
+from protocol.one_line import ONE_LINE
 
 router = APIRouter(tags=["orders"])
 dispatch_router = APIRouter(tags=["dispatch"])
 
 IfMatch = Annotated[str, Header(max_length=200)]
-Reason = Annotated[str, StringConstraints(max_length=400, strip_whitespace=True, pattern=STORABLE)]
+Reason = Annotated[Line, StringConstraints(max_length=400)]
 KNOWN: Final = (errors.UnknownOrder, errors.OrderChanged)
 LONGEST_WAIT_S: Final = 7200
 
@@ -96,14 +97,14 @@ class IntoHands(Body):
 class PassingOn(Body):
     """At which post somebody has taken the mail out of its robot for another one; null: where that was seen last."""
 
-    post: Annotated[str, StringConstraints(max_length=64, pattern=STORABLE)] | None = None
+    post: Annotated[str, StringConstraints(max_length=64, pattern=ONE_LINE)] | None = None
     reason: Reason | None = None
 
 
 class Reassignment(Body):
     """Which robot shall fetch it; null: any other."""
 
-    robot: Annotated[str, StringConstraints(max_length=64, pattern=STORABLE)] | None = None
+    robot: Annotated[str, StringConstraints(max_length=64, pattern=ONE_LINE)] | None = None
 
 
 class PriorityChange(Body):

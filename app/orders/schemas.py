@@ -6,13 +6,13 @@ from zoneinfo import available_timezones
 
 from pydantic import AwareDatetime, BaseModel, ConfigDict, Field, StringConstraints, field_validator
 
+from app.lines import Line
 from app.orders.custody import Held
 from app.orders.robot_view import RobotView
 from app.orders.window import Window
 from app.paging import PageOf
 from app.people.schemas import Email
 from app.tables import OrderState, Priority
-from app.tables.columns import STORABLE
 from app.texts.reasons import Words
 
 PostName = Annotated[str, StringConstraints(pattern=r"^[A-Za-z][A-Za-z0-9_]*$", max_length=64)]
@@ -32,9 +32,7 @@ class Wish(BaseModel):
     from_post: PostName
     to_post: PostName
     recipient: Email
-    description: Annotated[str, StringConstraints(max_length=500, strip_whitespace=True, pattern=STORABLE)] | None = (
-        None
-    )
+    description: Annotated[Line, StringConstraints(max_length=500)] | None = None
     priority: Annotated[Priority, Field(description="`high` is for dispatchers.")] = Priority.NORMAL
     on_behalf_of: EmailOfSomebody = None
 

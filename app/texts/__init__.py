@@ -7,6 +7,7 @@ from typing import Final, get_args
 
 from app.setting_kinds import Language
 from app.settings import ROOT
+from protocol.one_line import one_line
 
 LANGUAGES: Final[tuple[str, ...]] = get_args(Language)
 FOLDER: Final = ROOT / "web" / "texts"
@@ -21,5 +22,8 @@ def catalogue(language: str) -> Mapping[str, str]:
 
 
 def text(language: str, key: str, facts: Mapping[str, str] | None = None) -> str:
-    """One text with its gaps filled. KeyError for a text or a fact that is not there: never a text with holes."""
-    return catalogue(language)[key].format_map(facts or {})
+    """One text with its gaps filled, each by one printable line: no fact writes paragraphs of its own into a mail.
+
+    KeyError for a text or a fact that is not there: never a text with holes.
+    """
+    return catalogue(language)[key].format_map({name: one_line(fact) for name, fact in (facts or {}).items()})

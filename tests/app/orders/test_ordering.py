@@ -146,7 +146,7 @@ def test_the_estimate_says_window_and_length_before_anything_is_ordered(sender: 
 
 def test_a_zero_byte_is_refused_as_any_other_mistake_before_a_database_refuses_it(sender: Browser) -> None:
     assert refused(sender.order(description="Keys\0.")) == (422, "invalid_request")
-    assert sender.order(description="Keys,\nand a letter: é 漢.").status_code == 201
+    assert sender.order(description="Keys, and a letter: é 漢.").status_code == 201
 
 
 def test_orders_are_listed_page_by_page_newest_first(sender: Browser, recipient: Browser, clock: SteppedClock) -> None:
