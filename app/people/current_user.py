@@ -16,10 +16,11 @@ from app.database import Database, DatabaseDep
 from app.errors import NotSignedIn
 from app.people.cookies import read_cookie
 from app.people.errors import NotForScripts, RoleNeeded, ScopeNeeded
+from app.people.last_seen import LastSeen
 from app.people.same_origin import require_https_or_loopback, require_same_origin
 from app.people.scopes import opened_by
-from app.people.sessions import find_session, is_stale, note_seen
-from app.people.tokens import find_script, note_used
+from app.people.sessions import find_session, is_stale
+from app.people.tokens import find_script
 from app.settings import ClockDep
 from app.tables import Person, Role
 from protocol.clock import Clock
@@ -62,16 +63,17 @@ async def _caller(
 
 async def _find_caller(request: Request, database: Database, clock: Clock) -> Caller:
     """Raises NotSignedIn."""
+    last_seen: LastSeen = request.app.state.last_seen
     authorization = request.headers.get("Authorization", "")
     if is_bearer(authorization):
-        return await _script(authorization, database, clock)
+        return await _script(authorization, database, last_seen, clock)
     token = read_cookie(request, SESSION_COOKIE)
     if not token:
         raise NotSignedIn("Sign in first.")
-    return await _browser(token, database, clock)
+    return await _browser(token, database, last_seen, clock)
 
 
-async def _browser(token: str, database: Database, clock: Clock) -> Caller:
+async def _browser(token: str, database: Database, last_seen: LastSeen, clock: Clock) -> Caller:
     now = clock.utc()
     # A short look of its own, so that an event stream holds no session and a writer no lock while it waits.
     async with database.asking() as connection:
@@ -79,12 +81,11 @@ async def _browser(token: str, database: Database, clock: Clock) -> Caller:
     if found is None:
         raise NotSignedIn("This session has ended. Sign in again.")
     if is_stale(found.seen_at, now):
-        async with database.transaction() as session:
-            await note_seen(session, found.id, now)
+        last_seen.note_session(found.id, now)
     return Caller(found.person, session_id=found.id)
 
 
-async def _script(authorization: str, database: Database, clock: Clock) -> Caller:
+async def _script(authorization: str, database: Database, last_seen: LastSeen, clock: Clock) -> Caller:
     now = clock.utc()
     async with database.reading() as session:
         found = await find_script(session, authorization, now)
@@ -92,8 +93,7 @@ async def _script(authorization: str, database: Database, clock: Clock) -> Calle
         invalid = {"WWW-Authenticate": 'Bearer error="invalid_token"'}
         raise NotSignedIn("This token is unknown, revoked or too old. Make a new one.", invalid)
     if is_stale(found.token.used_at, now):
-        async with database.transaction() as session:
-            await note_used(session, found.token.prefix, now)
+        last_seen.note_token(found.token.prefix, now)
     return Caller(found.person, scopes=frozenset(found.token.scopes))
 
 

@@ -21,6 +21,7 @@ from joserfc.errors import JoseError
 from joserfc.jwk import KeySet
 from sqlmodel.ext.asyncio.session import AsyncSession
 
+from app.lines import LONGEST_NAME
 from app.outside import trusted_here
 from app.people.errors import (
     AddressNotAllowed,
@@ -35,6 +36,7 @@ from app.people.service import SignInDesk, is_allowed, name_from
 from app.server_key import ServerKey
 from app.settings import Settings
 from app.tables import Identity, Person
+from protocol.one_line import one_line
 
 log = structlog.get_logger(__name__)
 
@@ -230,7 +232,7 @@ def _claims(said: dict[str, Any]) -> Claims:
     email = str(said.get("email", "")).lower()
     if said.get("email_verified") is not True or not EMAIL.fullmatch(email):
         raise EmailNotVerified("The campus has not verified your mail address. Sign in by a mailed code.")
-    return Claims(str(said["sub"])[:255], email, str(said.get("name", ""))[:200])
+    return Claims(str(said["sub"])[:255], email, one_line(str(said.get("name", ""))).strip()[:LONGEST_NAME])
 
 
 async def person_of(session: AsyncSession, desk: SignInDesk, claims: Claims, language: str, now: datetime) -> Person:

@@ -32,6 +32,8 @@ class Door(StrEnum):
     """What is counted by itself; the setting of this name says how much is too much."""
 
     CODES = "sign_in_codes_per_address"
+    CODES_OF_HOST = "sign_in_codes_per_host"
+    CODES_OF_NEW_BROWSERS = "new_browser_codes_per_address"
     SIGN_IN = "sign_in_tries_per_host"
     ORDERS = "orders_per_person"
     CHANGES = "changes_per_person"

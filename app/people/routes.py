@@ -4,12 +4,13 @@ from typing import Annotated
 
 from fastapi import APIRouter, Depends, Header, Request, Response
 
-from app.database import DatabaseDep, SessionDep
+from app.database import Database, DatabaseDep, SessionDep
 from app.errors import problems
+from app.people.browsers import AskingBrowser, has_signed_in, remember
 from app.people.cookies import set_cookie
 from app.people.current_user import SESSION_COOKIE, AtBrowser, ThisSession
 from app.people.errors import AddressNotAllowed, CodeExpired, WrongCode
-from app.people.rate_limits import Door, LimitsDep, per_host
+from app.people.rate_limits import Door, LimitsDep, RateLimits, host_of, per_host
 from app.people.same_origin import refuse_other_sites, require_https_or_loopback
 from app.people.schemas import CodeMailed, CodeRequest, PersonView, SignIn
 from app.people.service import SignInDesk, language_from
@@ -40,6 +41,9 @@ DOOR = [Depends(_door), per_host(Door.SIGN_IN)]
 async def mail_code(
     *,
     wish: CodeRequest,
+    request: Request,
+    response: Response,
+    browser: AskingBrowser,
     desk: DeskDep,
     limits: LimitsDep,
     database: DatabaseDep,
@@ -47,13 +51,24 @@ async def mail_code(
     settings: SettingsDep,
     accept_language: Language = "",
 ) -> CodeMailed:
-    """Mail an 8-digit code to an address of the campus."""
-    await limits.count(Door.CODES, wish.email)
+    """Mail an 8-digit code to an address of the campus; it is good in the browser that asks, known by a cookie."""
+    await _count(request, wish.email, browser, limits, database)
     language = language_from(accept_language, settings.default_language)
     async with database.transaction() as session:
-        row, code = await desk.make_code(session, wish.email, clock.utc())
+        row, code = await desk.make_code(session, wish.email, clock.utc(), browser)
     await desk.mail_code(row, code, language)
+    remember(request, response, browser)
     return CodeMailed(expires_at=row.expires_at)
+
+
+async def _count(request: Request, email: str, browser: str, limits: RateLimits, database: Database) -> None:
+    """Strangers are counted together as well; whoever has signed in here before is not kept out by them."""
+    await limits.count(Door.CODES, f"{email} {browser}")
+    async with database.asking() as connection:
+        is_known = await has_signed_in(connection, email, browser)
+    if not is_known:
+        await limits.count(Door.CODES_OF_HOST, f"{email} {host_of(request)}")
+        await limits.count(Door.CODES_OF_NEW_BROWSERS, email)
 
 
 @router.post("/sign-in", dependencies=DOOR, responses=problems(WrongCode, CodeExpired, 429))
@@ -62,6 +77,7 @@ async def sign_in(
     wish: SignIn,
     request: Request,
     response: Response,
+    browser: AskingBrowser,
     desk: DeskDep,
     database: DatabaseDep,
     clock: ClockDep,
@@ -69,15 +85,15 @@ async def sign_in(
     accept_language: Language = "",
     user_agent: UserAgent = "",
 ) -> PersonView:
-    """Exchange the mailed code for a session cookie."""
+    """Exchange the mailed code for a session cookie, in the browser that asked for it."""
     async with database.transaction() as session:
-        refusal = await desk.check_code(session, wish.email, wish.code, clock.utc())
+        refusal = await desk.check_code(session, wish.email, wish.code, clock.utc(), browser)
     if refusal:
         raise refusal
     async with database.transaction() as session:
         language = language_from(accept_language, settings.default_language)
         person = await desk.newcomer(session, wish.email, language, clock.utc())
-        token = desk.open_session(session, person, user_agent, clock.utc())
+        token = desk.open_session(session, person, user_agent, clock.utc(), browser)
     # Browsers count real seconds; a session that ends sooner is refused here.
     set_cookie(request, response, SESSION_COOKIE, token, round(settings.session_lifetime_s))
     return PersonView.of(person)

@@ -6,11 +6,12 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 
+from app.lines import Label, Name
 from app.paging import PageOf
 from app.people.contacts import Known
 from app.people.scopes import Scope
 from app.tables import Person, PersonSession, PersonToken, Role
-from app.tables.columns import STORABLE
+from protocol.one_line import ONE_LINE
 
 # The pattern of HTML's <input type=email>, with a dot in the domain.
 EMAIL = re.compile(
@@ -69,9 +70,9 @@ class AboutMe(BaseModel):
 
     model_config = ConfigDict(extra="forbid", json_schema_extra=_without_defaults)
 
-    name: Annotated[str, StringConstraints(min_length=1, max_length=200, strip_whitespace=True, pattern=STORABLE)] = ""
+    name: Name = ""
     language: Literal["en", "fr"] = "en"
-    usual_post: Annotated[str, StringConstraints(max_length=64, pattern=STORABLE)] | None = None
+    usual_post: Annotated[str, StringConstraints(max_length=64, pattern=ONE_LINE)] | None = None
 
 
 class SessionView(BaseModel):
@@ -98,7 +99,7 @@ class TokenWish(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    name: Annotated[str, StringConstraints(min_length=1, max_length=100, strip_whitespace=True, pattern=STORABLE)]
+    name: Name
     scopes: list[Scope] = Field(min_length=1, max_length=len(Scope))
     days: int = Field(90, ge=1, le=366, description="For how many days it is to be good.")
 
@@ -133,8 +134,8 @@ class ContactWish(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    label: Annotated[str, StringConstraints(max_length=100, strip_whitespace=True, pattern=STORABLE)] = ""
-    post: Annotated[str, StringConstraints(max_length=64, pattern=STORABLE)] | None = None
+    label: Label = ""
+    post: Annotated[str, StringConstraints(max_length=64, pattern=ONE_LINE)] | None = None
 
 
 class ContactView(BaseModel):

@@ -3,7 +3,7 @@
 import hmac
 import re
 import secrets
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from typing import Final
@@ -14,14 +14,17 @@ from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.database import columns_of, connection_of, row_of
+from app.lines import LONGEST_NAME
 from app.mail import Mail, Mailer
 from app.people.errors import AddressNotAllowed, CodeExpired, WrongCode
-from app.people.sessions import new_session
+from app.people.sessions import hash_of, new_session
 from app.server_key import ServerKey
 from app.settings import Settings
 from app.tables import Person, PersonSession, Role, SignInCode
 from app.texts import LANGUAGES, text
 from protocol.ids import new_id
+
+CODES_THAT_COUNT: Final = 3
 
 
 def is_allowed(email: str, settings: Settings) -> bool:
@@ -37,7 +40,7 @@ def may_be_sent_mail(email: str, settings: Settings) -> bool:
 def name_from(email: str) -> str:
     """`ada.king@…` is presumably Ada King."""
     words = re.split(r"[._+-]+", email.partition("@")[0])
-    return " ".join(word.capitalize() for word in words if word) or email
+    return (" ".join(word.capitalize() for word in words if word) or email)[:LONGEST_NAME].rstrip()
 
 
 @dataclass(frozen=True)
@@ -48,14 +51,22 @@ class SignInDesk:
     key: ServerKey
     mailer: Mailer
 
-    async def make_code(self, session: AsyncSession, email: str, now: datetime) -> tuple[SignInCode, str]:
-        """A new code, of which only the hash is kept, and its eight digits. Raises AddressNotAllowed."""
+    async def make_code(
+        self, session: AsyncSession, email: str, now: datetime, browser: str = ""
+    ) -> tuple[SignInCode, str]:
+        """A new code for this browser, and its eight digits, which are kept as a hash. Raises AddressNotAllowed."""
         if not is_allowed(email, self.settings):
             domains = ", ".join(self.settings.allowed_domains)
             raise AddressNotAllowed(f"Sign in with an address of {domains}.")
         code = f"{secrets.randbelow(10**8):08d}"
         lifetime = timedelta(seconds=self.settings.sign_in_code_lifetime_s)
-        row = SignInCode(email=email, code_hash=self._hash(email, code), created_at=now, expires_at=now + lifetime)
+        row = SignInCode(
+            email=email,
+            browser_hash=hash_of(browser),
+            code_hash=self._hash(email, code),
+            created_at=now,
+            expires_at=now + lifetime,
+        )
         session.add(row)
         await session.flush()
         return row, code
@@ -68,18 +79,26 @@ class SignInDesk:
         await self.mailer.send_soon(mail)
 
     async def check_code(
-        self, session: AsyncSession, email: str, code: str, now: datetime
+        self, session: AsyncSession, email: str, code: str, now: datetime, browser: str
     ) -> WrongCode | CodeExpired | None:
-        """Use up the code, or one of its tries. Errors are returned, not raised: the try must be committed."""
-        newest = select(SignInCode).where(SignInCode.email == email).order_by(col(SignInCode.id).desc()).limit(1)
-        row = (await session.exec(newest.with_for_update())).first()
-        if row is None or row.used_at or row.expires_at <= now or row.tries_left <= 0:
-            return CodeExpired("There is no code for this address that is still good. Ask for a new one.")
-        if not hmac.compare_digest(row.code_hash, self._hash(email, code)):
-            row.tries_left -= 1
-            return WrongCode(f"That is not the code. {row.tries_left} tries are left.")
-        row.used_at = now
+        """Use up the codes of this browser, or a try of each. Errors are returned, not raised: tries are committed."""
+        good = [row for row in await self._newest(session, email, browser) if row.is_good(now)]
+        if not good:
+            return CodeExpired("This browser has asked for no code that is still good. Ask for a new one.")
+        shown = self._hash(email, code)
+        if not any(hmac.compare_digest(row.code_hash, shown) for row in good):
+            for row in good:
+                row.tries_left -= 1
+            return WrongCode(f"That is not the code. {max(row.tries_left for row in good)} tries are left.")
+        for row in good:
+            row.used_at = now
         return None
+
+    async def _newest(self, session: AsyncSession, email: str, browser: str) -> Sequence[SignInCode]:
+        """Those that count: mails overtake each other, and an older one may be open when a newer code is asked for."""
+        asked = select(SignInCode).where(SignInCode.email == email, SignInCode.browser_hash == hash_of(browser))
+        newest = asked.order_by(col(SignInCode.id).desc()).limit(CODES_THAT_COUNT)
+        return (await session.exec(newest.with_for_update())).all()
 
     async def newcomer(self, session: AsyncSession, email: str, language: str, now: datetime) -> Person:
         """Whoever signs in with this address, made at their first sign-in.
@@ -91,9 +110,11 @@ class SignInDesk:
             person.language = language
         return person
 
-    def open_session(self, session: AsyncSession, person: Person, user_agent: str, now: datetime) -> str:
+    def open_session(
+        self, session: AsyncSession, person: Person, user_agent: str, now: datetime, browser: str = ""
+    ) -> str:
         """The secret of a new session, for the cookie alone."""
-        row, token = new_session(person, user_agent, self.settings.session_lifetime_s, now)
+        row, token = new_session(person, user_agent, self.settings.session_lifetime_s, now, browser)
         session.add(row)
         return token
 

@@ -37,17 +37,20 @@ def hash_of(token: str) -> str:
 
 
 def is_stale(seen_at: datetime | None, now: datetime) -> bool:
-    """Whether it is time to write down that somebody is here."""
-    return seen_at is None or now - seen_at >= SEEN_EVERY
+    """Return whether the time of the last use is to be written anew; also if a clock that ran ahead has written it."""
+    return seen_at is None or abs(now - seen_at) >= SEEN_EVERY
 
 
-def new_session(person: Person, user_agent: str, lifetime_s: float, now: datetime) -> tuple[PersonSession, str]:
-    """A session and the secret of its cookie."""
+def new_session(
+    person: Person, user_agent: str, lifetime_s: float, now: datetime, browser: str = ""
+) -> tuple[PersonSession, str]:
+    """A session and the secret of its cookie; `browser` is the secret of the one that asked for a code."""
     token = secrets.token_urlsafe(32)
     row = PersonSession(
         token_hash=hash_of(token),
         person_id=person.id,
         device=device_of(user_agent),
+        browser_hash=hash_of(browser) if browser else "",
         created_at=now,
         seen_at=now,
         expires_at=now + timedelta(seconds=lifetime_s),
@@ -74,11 +77,6 @@ _OPENED_BY_COOKIE: Final = (  # put together once: that takes longer than asking
         col(PersonSession.expires_at) > bindparam("now"),
     )
 )
-
-
-async def note_seen(session: AsyncSession, session_id: int, now: datetime) -> None:
-    """Somebody was here."""
-    await session.exec(update(PersonSession).where(col(PersonSession.id) == session_id).values(seen_at=now))
 
 
 def open_sessions(person_id: str, now: datetime) -> SelectOfScalar[PersonSession]:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from datetime import datetime, timedelta
 from typing import Final
 
-from sqlmodel import col, select, update
+from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 from sqlmodel.sql.expression import SelectOfScalar
 
@@ -68,8 +68,3 @@ async def revoke_token(session: AsyncSession, person_id: str, prefix: str, now: 
     if row is None or row.person_id != person_id or row.revoked_at:
         raise UnknownToken(f"There is no token {prefix} among yours.")
     row.revoked_at = now
-
-
-async def note_used(session: AsyncSession, prefix: str, now: datetime) -> None:
-    """A script was here."""
-    await session.exec(update(PersonToken).where(col(PersonToken.prefix) == prefix).values(used_at=now))

@@ -99,6 +99,15 @@ def test_whoever_signed_in_by_mail_before_is_the_same_person(
     assert nobody.get("/api/v1/me").json() == {**by_mail, "name": "Ada Lovelace"}, "a better name than our guess"
 
 
+def test_a_name_from_the_campus_is_one_printable_line(nobody: TestClient, campus: Campus) -> None:
+    paragraph = "Eve\r\n\r\nYour account ends today.\u2028\u202e" + "https://evil.example/ " * 10
+    campus.knows("eve", **{**ADA, "email": "eve@campus.example", "name": paragraph})
+    assert come_back(nobody, campus.sign_in(start(nobody), "eve")) == "/"
+    name = nobody.get("/api/v1/me").json()["name"]
+    assert name == "Eve Your account ends today. https://evil.example/ https://evil.example/ https:/"
+    assert (len(name), name.isprintable()) == (80, True)
+
+
 def test_a_wrong_state_is_refused(app: FastAPI, nobody: TestClient, campus: Campus) -> None:
     back = campus.sign_in(start(nobody), "ada")
     other = TestClient(app, base_url=HERE)

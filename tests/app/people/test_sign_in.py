@@ -8,7 +8,7 @@ from app.people.service import find_person
 from app.settings import Settings
 from app.tables import Person
 from protocol.clock import SteppedClock
-from tests.app.conftest import SENDER, Browser, Mailroom, Mails, SignedIn, sqlite_alone
+from tests.app.conftest import HERE, SENDER, Browser, Mailroom, Mails, SignedIn, sqlite_alone
 
 CODES, SIGN_IN = "/api/v1/sign-in/codes", "/api/v1/sign-in"
 
@@ -89,12 +89,64 @@ def test_a_code_is_good_for_ten_minutes(nobody: TestClient, mails: Mails, clock:
     assert (answer.status_code, code_of(answer)) == (401, "code_expired")
 
 
-def test_only_the_newest_code_counts(nobody: TestClient, mails: Mails) -> None:
-    nobody.post(CODES, json={"email": SENDER})
-    first = mails.newest_code(SENDER)
-    nobody.post(CODES, json={"email": SENDER})
-    if first != mails.newest_code(SENDER):
-        assert code_of(nobody.post(SIGN_IN, json={"email": SENDER, "code": first})) == "wrong_code"
+def another_browser(app: FastAPI, nobody: TestClient) -> TestClient:
+    browser = TestClient(app, base_url=HERE)
+    browser.portal = nobody.portal
+    return browser
+
+
+def asked(browser: TestClient, mails: Mails) -> dict[str, str]:
+    """What signs the sender in, as far as this browser may."""
+    assert browser.post(CODES, json={"email": SENDER}).status_code == 202
+    return {"email": SENDER, "code": mails.newest_code(SENDER)}
+
+
+def test_the_last_three_codes_count_until_one_is_used(nobody: TestClient, mails: Mails) -> None:
+    wishes = [asked(nobody, mails) for _ in range(4)]
+    assert code_of(nobody.post(SIGN_IN, json=wishes[0])) == "wrong_code"
+    assert nobody.post(SIGN_IN, json=wishes[1]).status_code == 200
+    assert [code_of(nobody.post(SIGN_IN, json=wish)) for wish in wishes] == ["code_expired"] * 4
+    assert nobody.post(SIGN_IN, json=asked(nobody, mails)).status_code == 200
+
+
+def test_wrong_tries_use_up_all_codes_of_a_browser(nobody: TestClient, mails: Mails) -> None:
+    wishes = [asked(nobody, mails) for _ in range(2)]
+    wrong = {"email": SENDER, "code": f"{(int(wishes[0]['code']) + int(wishes[1]['code']) + 1) % 10**8:08d}"}
+    assert wrong["code"] not in {wish["code"] for wish in wishes}
+    assert [code_of(nobody.post(SIGN_IN, json=wrong)) for _ in range(6)] == ["wrong_code"] * 5 + ["code_expired"]
+    assert [code_of(nobody.post(SIGN_IN, json=wish)) for wish in wishes] == ["code_expired"] * 2
+
+
+def test_a_code_is_good_in_the_browser_that_asked_for_it_and_no_other_one_uses_it_up(
+    app: FastAPI, nobody: TestClient, mails: Mails
+) -> None:
+    wish = asked(nobody, mails)
+    stranger = another_browser(app, nobody)
+    assert [code_of(stranger.post(SIGN_IN, json=wish)) for _ in range(6)] == ["code_expired"] * 6
+    theirs = asked(stranger, mails)
+    wrong = {"email": SENDER, "code": f"{(int(theirs['code']) + 1) % 10**8:08d}"}
+    assert [code_of(stranger.post(SIGN_IN, json=wrong)) for _ in range(6)][-1] == "code_expired"
+    assert [stranger.post(CODES, json={"email": SENDER}).status_code for _ in range(10)] == [202] * 9 + [429]
+    assert nobody.post(SIGN_IN, json=wish).status_code == 200, "asked before all that"
+    late = another_browser(app, nobody)
+    assert late.post(SIGN_IN, json=asked(late, mails)).status_code == 200, "and after it"
+
+
+class TestManyNewBrowsers:
+    @pytest.fixture
+    def settings(self, settings: Settings, request: pytest.FixtureRequest) -> Settings:
+        return settings.model_copy(update={request.param: "3 per 15 minutes"})
+
+    @pytest.mark.parametrize("settings", ["sign_in_codes_per_host", "new_browser_codes_per_address"], indirect=True)
+    def test_are_slowed_down_together_but_not_who_has_signed_in_before(
+        self, app: FastAPI, nobody: TestClient, mails: Mails
+    ) -> None:
+        assert nobody.post(SIGN_IN, json=asked(nobody, mails)).status_code == 200
+        assert nobody.delete("/api/v1/session", headers={"Sec-Fetch-Site": "same-origin"}).status_code == 204
+        strangers = [another_browser(app, nobody).post(CODES, json={"email": SENDER}) for _ in range(3)]
+        assert [answer.status_code for answer in strangers] == [202, 202, 429]
+        assert nobody.post(SIGN_IN, json=asked(nobody, mails)).status_code == 200
+        assert nobody.post(CODES, json={"email": "other@campus.example"}).status_code == 202, "another address"
 
 
 def test_asking_too_often_for_codes_is_slowed_down(nobody: TestClient) -> None:

@@ -44,6 +44,20 @@ def test_the_cookie_is_as_strict_as_it_can_be(
     assert len(cookie.value) >= 43, "256 bits"
 
 
+@pytest.mark.parametrize(("base_url", "name", "secure"), [(SECURE, "__Host-browser", True), (HERE, "browser", "")])
+def test_the_cookie_of_the_browser_that_asks_for_a_code_is_as_strict_and_is_not_of_its_choice(
+    app: FastAPI, nobody: TestClient, base_url: str, name: str, secure: bool | str
+) -> None:
+    browser = browser_at(base_url, app, nobody)
+    chosen = browser.post("/api/v1/sign-in/codes", json={"email": SENDER}, headers={"Cookie": f"{name}=chosen"})
+    (cookie,) = SimpleCookie(chosen.headers["Set-Cookie"]).values()
+    assert (cookie.key, len(cookie.value), cookie["max-age"]) == (name, 43, str(180 * 86400))
+    assert (cookie["httponly"], cookie["samesite"], cookie["secure"]) == (True, "lax", secure)
+    assert (cookie["path"], cookie["domain"]) == ("/", "")
+    again = browser.post("/api/v1/sign-in/codes", json={"email": "other@campus.example"})
+    assert SimpleCookie(again.headers["Set-Cookie"])[name].value == cookie.value
+
+
 def test_over_https_a_cookie_without_the_prefix_is_nobodys(app: FastAPI, nobody: TestClient, mails: Mails) -> None:
     """Another host of the campus can set `session` for the whole domain, but never `__Host-session`."""
     cookie = cookie_of_sign_in(browser_at(SECURE, app, nobody), mails)
