@@ -7,10 +7,10 @@ from functools import cache
 from fastapi import APIRouter
 from fastapi.responses import JSONResponse
 from pydantic import BaseModel
-from sqlalchemy.exc import SQLAlchemyError
-from sqlmodel import select
+from sqlalchemy.exc import DBAPIError, SQLAlchemyError
 
 from app.database import Database, DatabaseDep
+from app.deadline import waiting_at_most
 from app.errors import problem_answer
 from app.notify.lag import outbox_lag
 from app.schema_version import is_at_head
@@ -23,6 +23,8 @@ api_router = APIRouter(tags=["about"])
 root_router = APIRouter(tags=["health"])
 
 OUTBOX_LAG_LIMIT_S = 600.0
+WRITE_WITHIN_S = 2.0
+"""Real seconds: whoever asks whether the service is ready does not wait much longer for the answer."""
 
 
 @cache
@@ -142,7 +144,7 @@ async def what_version() -> dict[str, str]:
 
 @root_router.get("/readyz", response_model=None)
 async def readyz(database: DatabaseDep, clock: ClockDep) -> dict[str, str] | JSONResponse:
-    """Database reachable, schema at head, mail not piling up."""
+    """Database reachable and writable, schema at head, mail not piling up."""
     problem = await _what_is_not_ready(database, clock)
     return {"status": "ready"} if problem is None else problem_answer(503, "not_ready", problem)
 
@@ -150,11 +152,15 @@ async def readyz(database: DatabaseDep, clock: ClockDep) -> dict[str, str] | JSO
 async def _what_is_not_ready(database: Database, clock: Clock) -> str | None:
     try:
         async with database.reading() as session:
-            await session.exec(select(1))
             lag = await outbox_lag(session, clock.utc())
         if not await is_at_head(database):
             return "The schema is not the one of this version: run `python -m app migrate`."
     except SQLAlchemyError as error:
         return f"The database does not answer: {type(error).__name__}."
+    try:
+        with waiting_at_most(WRITE_WITHIN_S):
+            await database.try_to_write()
+    except SQLAlchemyError as error:
+        return f"The database cannot be written: {error.orig if isinstance(error, DBAPIError) else error}."
     late = lag.oldest_s > OUTBOX_LAG_LIMIT_S
     return f"The oldest notice that a channel still owes is {lag.oldest_s:.0f} s old." if late else None

@@ -20,21 +20,23 @@ from sqlmodel import SQLModel
 from sqlmodel.ext.asyncio.session import AsyncSession
 from starlette.requests import HTTPConnection
 
-from app import sqlite_driver
+from app import postgresql_driver, sqlite_driver
+from app.deadline import WAIT_S
 from app.errors import StartError
 from app.group_commit import AFTER_COMMIT, CONNECTION, Writers
 from app.uncancelled import uncancelled
 
 Row = TypeVar("Row", bound=SQLModel)
 
-PRAGMAS = ("journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON", f"busy_timeout={sqlite_driver.BUSY_TIMEOUT_MS}")
+PRAGMAS = ("journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON", f"busy_timeout={WAIT_S * 1e3:.0f}")
 INSERTS: Mapping[str, Any] = {"sqlite": sqlite.insert, "postgresql": postgresql.insert}
 BEGIN_DURABLE = ("PRAGMA synchronous=FULL", "BEGIN IMMEDIATE")
 BEGIN_FLEETING = ("PRAGMA synchronous=NORMAL", "BEGIN IMMEDIATE")
-ONE_WRITER = f"SELECT pg_advisory_xact_lock({0x434D_0001})"
-"""PostgreSQL's writers take turns as SQLite's do, with a lock that is held to the end of the transaction: whoever
-decides by what it has read decides by what is true, so that no transaction has to be repeated because of another one,
-and nobody has to think of which rows to lock."""
+WRITE_AND_TAKE_BACK = (
+    "INSERT INTO alembic_version (version_num) VALUES ('trial')",
+    "DELETE FROM alembic_version WHERE version_num = 'trial'",
+)
+"""Nobody else ever sees that row, and its pages are written. (SQLite leaves a page alone that would stay the same.)"""
 
 
 class Database:
@@ -56,8 +58,9 @@ class Database:
             fleeting = self.engine.execution_options(begin=BEGIN_FLEETING)
         else:
             event.listen(self.engine.sync_engine, "begin", _begin_postgresql)
-            self.writing = self.engine.execution_options(begin=(ONE_WRITER,))
-            fleeting = self.engine.execution_options(begin=(ONE_WRITER, "SET LOCAL synchronous_commit TO OFF"))
+            event.listen(self.engine.sync_engine, "handle_error", postgresql_driver.tell_who_is_away)
+            self.writing = self.engine.execution_options(begin=())
+            fleeting = self.engine.execution_options(begin=("SET LOCAL synchronous_commit TO OFF",))
             self.engine = self.engine.execution_options(isolation_level="REPEATABLE READ", postgresql_readonly=True)
 
         self._writers = Writers(self.writing, fleeting)
@@ -116,6 +119,13 @@ class Database:
                     yield connection
             finally:
                 await connection.run_sync(_heed_foreign_keys, "ON")
+
+    async def try_to_write(self) -> None:
+        """Commit a row that comes and goes. Raises what keeps everybody from writing: a lock, a full disk."""
+        async with self.transaction(durable=False) as session:  # anybody may ask for it: it waits for no disk
+            connection = await connection_of(session)
+            for statement in WRITE_AND_TAKE_BACK:
+                await connection.exec_driver_sql(statement)
 
     async def close(self) -> None:
         await self.engine.dispose()
@@ -212,11 +222,12 @@ def _options(url: str) -> dict[str, Any]:
     """How many connections are kept, and by whom they are opened."""
     made = make_url(url)
     if made.get_backend_name() != "sqlite":
-        return {"pool_size": 10, "max_overflow": 10}
+        of_ours = {"connect_args": {"async_creator_fn": postgresql_driver.connect}}
+        return {"pool_size": 10, "max_overflow": 10, "pool_timeout": WAIT_S, **of_ours}
     if made.database in {None, "", ":memory:"}:  # one connection is all there can be
         return {"connect_args": {"async_creator_fn": sqlite_driver.connect}}
     # The one that was used last comes first: its thread, its statements and its pages are at hand.
-    kept = {"pool_size": 20, "max_overflow": 0, "pool_use_lifo": True}
+    kept = {"pool_size": 20, "max_overflow": 0, "pool_use_lifo": True, "pool_timeout": WAIT_S}
     return {**kept, "connect_args": {"async_creator_fn": sqlite_driver.connect}}
 
 
@@ -253,7 +264,11 @@ def _begin_sqlite(connection: Connection) -> None:
 
 
 def _begin_postgresql(connection: Connection) -> None:
-    for statement in connection.get_execution_options().get("begin", ()):
+    statements = connection.get_execution_options().get("begin")
+    if statements is None:  # reads only
+        return
+    postgresql_driver.take_turn(connection)
+    for statement in statements:
         connection.exec_driver_sql(statement)
 
 

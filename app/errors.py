@@ -25,11 +25,16 @@ from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
 from pydantic import BaseModel
 from sqlalchemy.exc import DBAPIError, InterfaceError, OperationalError
+from sqlalchemy.exc import TimeoutError as WaitedTooLong
 from starlette.exceptions import HTTPException
 from starlette.routing import Match
 
+from protocol.one_line import ONE_LINE
+
 PROBLEM_JSON = "application/problem+json"
 TRY_AGAIN_S: Final = 5
+DATABASE_AWAY: Final = (OperationalError, InterfaceError, WaitedTooLong)
+"""Gone, locked, or full: over by itself or by the operator's hand."""
 METHODS = ("GET", "POST", "PUT", "PATCH", "DELETE")
 log = structlog.get_logger(__name__)
 
@@ -104,6 +109,10 @@ class TooManyRequests(ServiceError):
 
 class StartError(Exception):
     """The service cannot start. Says what is wrong and the way out; the command ends with exit code 2."""
+
+
+class Refused(StartError):
+    """A command will not do this; the sentence says why and what to do instead."""
 
 
 class FieldProblem(BaseModel):
@@ -203,8 +212,7 @@ def add_error_answers(app: FastAPI) -> None:
     app.add_exception_handler(ServiceError, _answer_service_error)
     app.add_exception_handler(RequestValidationError, _answer_invalid)
     app.add_exception_handler(HTTPException, _answer_http)
-    # A server that is not there refuses before any driver is asked.
-    for away in (OperationalError, InterfaceError, ConnectionRefusedError):
+    for away in DATABASE_AWAY:
         app.add_exception_handler(away, _answer_database)
     app.add_exception_handler(Exception, _answer_unforeseen)
 
@@ -228,7 +236,7 @@ async def _answer_invalid(request: Request, error: Exception) -> JSONResponse:
     assert isinstance(error, RequestValidationError)  # noqa: S101  # registered for this class alone
     if unreadable := _what_is_unreadable(error):
         return unreadable
-    fields = [FieldProblem(field=_place(one["loc"]), message=str(one["msg"])) for one in error.errors()]
+    fields = [FieldProblem(field=_place(one["loc"]), message=_message(one)) for one in error.errors()]
     detail = "; ".join(f"{one.field}: {one.message}" for one in fields)
     return problem_answer(422, "invalid_request", detail, errors=fields)
 
@@ -240,6 +248,12 @@ def _what_is_unreadable(error: RequestValidationError) -> JSONResponse | None:
     if isinstance(error.body, bytes):  # left as it came, because its type is not JSON
         return problem_answer(415, "unsupported_media_type", "Send the body as application/json.")
     return None
+
+
+def _message(error: Any) -> str:
+    """Our own words where a person could not read pydantic's: a pattern of what nobody sees."""
+    is_a_line = error["type"] == "string_pattern_mismatch" and error["ctx"]["pattern"] == ONE_LINE
+    return "Must be one line without invisible characters" if is_a_line else str(error["msg"])
 
 
 def _place(loc: tuple[Any, ...]) -> str:

@@ -17,9 +17,12 @@ from dataclasses import dataclass, field
 from typing import Final, Literal
 
 import structlog
+from sqlalchemy.exc import OperationalError
+from sqlalchemy.exc import TimeoutError as NoTurn
 from sqlalchemy.ext.asyncio import AsyncConnection, AsyncEngine
 from sqlmodel.ext.asyncio.session import AsyncSession
 
+from app.deadline import left_s
 from app.uncancelled import uncancelled
 
 log = structlog.get_logger(__name__)
@@ -127,10 +130,13 @@ class Writers:
     async def _wait_for_turn(self) -> None:
         self._waiting += 1
         try:
-            await self._turn.acquire()
-        except BaseException:
+            async with asyncio.timeout(left_s()):
+                await self._turn.acquire()
+        except BaseException as error:
             # What was passed on to whoever gives up here has to be committed by somebody.
             self._committing = asyncio.create_task(self._commit_if_nobody_comes())
+            if isinstance(error, TimeoutError):
+                raise NoTurn("others were writing all the time that there was to wait") from None
             raise
         finally:
             self._waiting -= 1
@@ -176,6 +182,7 @@ class Writers:
 async def _commit(group: _Group) -> None:
     try:
         if group.works:
+            _refuse_if_broken(group)
             await group.connection.commit()
     except BaseException:
         # SQLAlchemy takes the transaction for ended, SQLite does not: the next writer must not get this connection.
@@ -183,3 +190,9 @@ async def _commit(group: _Group) -> None:
         raise
     finally:
         await group.connection.close()
+
+
+def _refuse_if_broken(group: _Group) -> None:
+    """The connection broke for a later work, and what the earlier ones had written is gone with it."""
+    if group.connection.invalidated:
+        raise OperationalError(None, None, ConnectionResetError("the connection broke before the commit"))

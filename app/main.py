@@ -10,10 +10,11 @@ import structlog
 from fastapi import APIRouter, FastAPI
 from starlette.datastructures import State
 
-from app import about, asset_links, demo_camera, marker_sheets, metrics, one_order, order_export
+from app import about, asset_links, demo_camera, demo_links, marker_sheets, metrics, one_order, order_export
 from app.api_document import DocumentedApi, operation_id
 from app.body_limit import BodyLimit
 from app.database import Database
+from app.deadline import RequestDeadline
 from app.dispatch.charge_desk import ChargeDesk
 from app.dispatch.charge_first import ChargeFirst
 from app.dispatch.fleet_planner import FleetPlanner
@@ -21,7 +22,7 @@ from app.dispatch.nearest import NearestRobots
 from app.dispatch.service import Dispatcher
 from app.enrolment import routes as enrolment_routes
 from app.enrolment.service import EnrolmentDesk
-from app.errors import add_error_answers
+from app.errors import DATABASE_AWAY, add_error_answers
 from app.estimates import routes as estimates_routes
 from app.etags import ETags
 from app.fleet import corridor_routes, dispatcher_routes, watching_routes
@@ -37,6 +38,7 @@ from app.handshakes import RefusedHandshakes
 from app.keeping.housekeeper import Housekeeper
 from app.live import routes as live_routes
 from app.live.feed import LocalFeed
+from app.live.position import FeedPosition
 from app.mail import open_mailer
 from app.notify import outbox_routes, wish_routes
 from app.notify import routes as notify_routes
@@ -57,6 +59,7 @@ from app.outside import TIMEOUT_S, Outside, trusted_here
 from app.pages import CompressedPages, SafeHeaders, add_pages, content_security_policy
 from app.people import everybody_routes, my_routes, oidc_routes
 from app.people import routes as people_routes
+from app.people.last_seen import LastSeen
 from app.people.links import Links
 from app.people.oidc import Provider
 from app.people.rate_limits import RateLimits
@@ -125,13 +128,17 @@ def create_app(settings: Settings, clock: Clock, outside: Outside | None = None)
     _add_parts(app, settings, clock)
     add_error_answers(app)
     app.router.routes.extend(_all_routes().routes)
+    if settings.demo_door is not None:
+        app.include_router(demo_links.router)
     add_pages(app, settings.pages)
     app.add_middleware(RequestFigures, registry=app.state.metrics.registry)
     app.add_middleware(RefusedHandshakes)
+    app.add_middleware(FeedPosition, feed=app.state.feed)
     app.add_middleware(ETags)
     app.add_middleware(BodyLimit)
     app.add_middleware(CompressedPages)
     app.add_middleware(SafeHeaders, policy=content_security_policy(settings.pages))
+    app.add_middleware(RequestDeadline, wait_s=settings.database_wait_s)
     app.add_middleware(RequestLog)
     return app
 
@@ -154,6 +161,7 @@ def _add_parts(app: FastAPI, settings: Settings, clock: Clock) -> None:
     state.settings, state.clock, state.campus = settings, clock, open_map(settings)
     state.server_key = open_server_key(settings.server_key_path)
     state.database = Database(settings.url_of_database)
+    state.last_seen = LastSeen(state.database)
     state.feed = LocalFeed()
     state.metrics = metrics.Metrics(clock.utc())
     state.rate_limits = RateLimits(settings)
@@ -229,6 +237,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         "dispatch": state.dispatcher,
         "timer": state.timer,
         "housekeeping": state.housekeeper,
+        "last seen": state.last_seen,
         "estimates": state.fleet.learning,
         "spending": state.fleet.spending,
     }
@@ -285,6 +294,9 @@ async def _keep_running(name: str, run: Callable[[], Awaitable[None]]) -> None:
     while True:
         try:
             return await run()
+        except DATABASE_AWAY as error:
+            log.warning("background_work_waits_for_the_database", name=name, why=str(error))
+            await asyncio.sleep(RESTART_PAUSE_S)
         except Exception:
             log.exception("background work failed and starts again", name=name)
             await asyncio.sleep(RESTART_PAUSE_S)

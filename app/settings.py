@@ -57,6 +57,9 @@ class Settings(BaseSettings):
     tls_key: Path | None = Field(None, description="Private key of the certificate (PEM).")
     data: Path = Field(Path("var/service"), description="Folder for database, keys and spool; made with mode 0700.")
     database_url: str = Field("", description="SQLAlchemy URL; empty means SQLite in the data folder.")
+    database_wait_s: float = Field(
+        10, gt=0, description="How long a request may wait for the database in all; after that it is answered 503."
+    )
     spool: Path | None = Field(None, description="Folder for .eml files; default: `spool` in the data folder.")
     server_key_file: Path | None = Field(
         None,
@@ -116,7 +119,14 @@ class Settings(BaseSettings):
         14 * 86400, gt=0, description="How long the link to one order, in mails to people without account, is good for."
     )
     sign_in_codes_per_address: Limit = Field(
-        "10 per 15 minutes", description="Sign-in codes mailed to one mail address."
+        "10 per 15 minutes", description="Sign-in codes that one browser has mailed to one mail address."
+    )
+    sign_in_codes_per_host: Limit = Field(
+        "60 per 15 minutes",
+        description="The same of all browsers at one network address that have not signed in with it before.",
+    )
+    new_browser_codes_per_address: Limit = Field(
+        "600 per hour", description="The same of all such browsers, wherever they are: guessing is bounded by it."
     )
     sign_in_tries_per_host: Limit = Field(
         "200 per 15 minutes", description="Sign-in requests from one network address."
@@ -212,6 +222,15 @@ class Settings(BaseSettings):
     def _driving_costs_more_than_standing(self) -> Self:
         if self.assumed_drive_s >= self.assumed_stand_s:
             raise ValueError("assumed_drive_s must be below assumed_stand_s: driving costs more than standing")
+        return self
+
+    @model_validator(mode="after")
+    def _a_demonstration_stays_on_this_machine(self) -> Self:
+        if self.demo_door is not None and self.host not in THIS_MACHINE:
+            raise ValueError(
+                f"demo_door is for demonstrations, whose links sign in whoever opens them: host must be 127.0.0.1, "
+                f"not {self.host}"
+            )
         return self
 
     @model_validator(mode="after")

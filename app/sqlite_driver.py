@@ -17,6 +17,7 @@ from typing import Any, Final, Self, TypeVar
 
 import aiosqlite
 
+from app.deadline import left_s
 from app.uncancelled import uncancelled
 
 T = TypeVar("T")
@@ -25,8 +26,6 @@ SHORT_STEPS: Final = 50_000
 """Steps of SQLite's machine that a question may take on the event loop: about a millisecond."""
 SHORT_ROWS: Final = 100
 """Rows that are written on the event loop by one statement."""
-BUSY_TIMEOUT_MS: Final = 10_000
-"""So long a writer waits for another process."""
 BREATH_S: Final = 0.002
 """Real seconds after which others get their turn, however much there is to ask."""
 
@@ -106,7 +105,7 @@ class Connection(aiosqlite.Connection):
         except sqlite3.OperationalError:  # if it is not for the lock, the thread finds out
             return False
         finally:
-            self._conn.execute(f"PRAGMA busy_timeout={BUSY_TIMEOUT_MS}")
+            self._conn.execute(f"PRAGMA busy_timeout={left_s() * 1e3:.0f}")
         del self._brackets[: len(before) + 1]
         return True
 

@@ -87,6 +87,14 @@ class PostgreSQL:
         """Whoever is still connected is cut off."""
         self.say(f"DROP DATABASE {database} WITH (FORCE)")
 
+    def restart(self, away_s: float = 0.0) -> None:
+        """Cut everybody off, as an upgrade of the server does, and be back after a while."""
+        self._server.send_signal(FAST_SHUTDOWN)
+        self._server.wait(20)
+        time.sleep(away_s)
+        self._server = self._start()
+        self._wait()
+
     def stop(self) -> None:
         self._server.send_signal(FAST_SHUTDOWN)
         self._server.wait(20)
