@@ -19,6 +19,9 @@ def demo(
     data: Annotated[Path | None, typer.Option(help="Folder to keep everything in; default: a temporary one.")] = None,
 ) -> None:
     """See the first letter: service, simulated robot and one order, on this machine."""
+    typer.echo(
+        "Campus Mail: starting a service, a robot and one order on this machine. Ctrl-C ends all of it.", err=as_json
+    )
     from app.demo.command import demonstrate
     from app.demo.settings import default_speed
 

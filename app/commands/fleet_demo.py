@@ -20,7 +20,8 @@ def fleet_demo(
     port: Annotated[int, typer.Option(help="TCP port of the pages; 0 takes a free one.")] = 8000,
     data: Annotated[Path | None, typer.Option(help="Folder to keep everything in; default: a temporary one.")] = None,
 ) -> None:
-    """See a fleet at work: the service, four simulated robots in the Carleton tunnels, and people who send mail."""
+    """See a fleet at work: the service, simulated robots in the Carleton tunnels, and people who send mail."""
+    typer.echo("Campus Mail: starting a service and its fleet on this machine. Ctrl-C ends all of it.", err=as_json)
     from app.demo.command import demonstrate_fleet
     from app.demo.fleet.settings import ONCE_SPEED, WATCHED_SPEED
 

@@ -9,7 +9,9 @@ from app.settings import load_settings, open_map
 from maps.campus_map import map_path
 from maps.check import check_file
 
-cli = typer.Typer(no_args_is_help=True, help="The campus map that the service is set to (CAMPUS_MAIL_MAP).")
+cli = typer.Typer(
+    no_args_is_help=True, add_completion=False, help="The campus map that the service is set to (CAMPUS_MAIL_MAP)."
+)
 
 
 @cli.command()

@@ -13,7 +13,9 @@ from app.keeping.order_records import CSV_COLUMNS, one_order, orders_of, write_c
 from app.settings import Settings, load_settings
 from app.tables import OrderState
 
-cli = typer.Typer(no_args_is_help=True, help="Orders: list, show with timeline and custody, export.")
+cli = typer.Typer(
+    no_args_is_help=True, add_completion=False, help="Orders: list, show with timeline and custody, export."
+)
 State = Annotated[list[OrderState] | None, typer.Option(help="Only orders in this state; may be repeated.")]
 Id = Annotated[str, typer.Argument(metavar="ID", help="The order's id.")]
 

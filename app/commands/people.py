@@ -12,7 +12,7 @@ from app.keeping.personal import person_of
 from app.settings import Settings, load_settings
 from app.tables import Order, Person, PersonSession, Role
 
-cli = typer.Typer(no_args_is_help=True, help="People and their roles.")
+cli = typer.Typer(no_args_is_help=True, add_completion=False, help="People and their roles.")
 
 
 @cli.command("list")

@@ -7,7 +7,8 @@ from typing import Annotated
 import typer
 
 from app.administration import database_at_head
-from app.commands.speaking import AsJson, Email, Refused, errors_in_words, say_json
+from app.commands.speaking import AsJson, Email, errors_in_words, say_json
+from app.errors import Refused
 from app.keeping.erasure import erase as erase_rows
 from app.keeping.erasure import erase_mails
 from app.keeping.personal import everything_of, person_of, write_documents

@@ -14,7 +14,7 @@ from app.fleet.service import known_robot
 from app.settings import Settings, load_settings
 from app.tables import RobotRow, RobotToken
 
-cli = typer.Typer(no_args_is_help=True, help="Robots that may sign in.")
+cli = typer.Typer(no_args_is_help=True, add_completion=False, help="Robots that may sign in.")
 Name = Annotated[str, typer.Argument(help="Name of the robot, such as r1.")]
 
 

@@ -8,9 +8,11 @@ from typing import Annotated
 import typer
 
 from app.administration import migrate as bring_up_to_date
-from app.commands.speaking import Refused, errors_in_words, settings_with
+from app.commands.speaking import errors_in_words
+from app.errors import Refused, StartError
 from app.logs import set_up_logs
-from app.settings import load_settings
+from app.settings import Settings, load_settings
+from app.settings_errors import in_sentences
 
 
 def serve(
@@ -36,6 +38,16 @@ def serve(
         settings = settings_with(host=host, port=port, tls_cert=tls_cert, tls_key=tls_key)
         set_up_logs(settings.log_level)
         serve_until_stopped(settings)
+
+
+def settings_with(**given: object) -> Settings:
+    """The settings of the environment, and what was given as an option. Raises StartError."""
+    settings = load_settings()
+    wanted = {name: value for name, value in given.items() if value is not None}
+    try:
+        return Settings.model_validate({**settings.model_dump(), **wanted})
+    except ValueError as error:
+        raise StartError(f"The options cannot be used. {in_sentences(error, Settings.model_fields)}") from None
 
 
 def migrate() -> None:

@@ -7,16 +7,13 @@ import contextlib
 import json
 import sys
 from collections.abc import Iterable, Iterator, Sequence
-from typing import Annotated, Any, NoReturn
+from typing import Annotated, Any
 
 import typer
 from rich.console import Console
 from rich.table import Table
-from sqlalchemy.exc import DBAPIError
 
-from app.errors import ServiceError, StartError
-from app.settings import Settings, load_settings
-from app.settings_errors import in_sentences
+from protocol.one_line import one_line
 
 FOUND_WRONG, CANNOT = 1, 2
 # Whatever is piped somewhere is not cut to the width of a terminal that is not there.
@@ -24,10 +21,6 @@ WIDTH_WITHOUT_TERMINAL = 160
 
 AsJson = Annotated[bool, typer.Option("--json", help="One JSON document on stdout, for programs.")]
 Email = Annotated[str, typer.Argument(help="Mail address of the person.")]
-
-
-class Refused(StartError):
-    """A command will not do this; the sentence says why and what to do instead."""
 
 
 @contextlib.contextmanager
@@ -38,27 +31,28 @@ def errors_in_words() -> Iterator[None]:
     """
     try:
         yield
-    except (StartError, ServiceError) as error:
-        _say_why(str(error))
-    except DBAPIError as error:
-        _say_why(f"The database could not be used, and nothing was changed: {error.orig}.")
-    except OSError as error:
-        _say_why(f"{error.filename or 'Something'} could not be used: {error.strerror or error}.")
+    except Exception as error:
+        sentence = _sentence_of(error)
+        if sentence is None:
+            raise
+        typer.echo(f"campus-mail: {sentence}", err=True)
+        raise typer.Exit(CANNOT) from None
 
 
-def _say_why(sentence: str) -> NoReturn:
-    typer.echo(f"campus-mail: {sentence}", err=True)
-    raise typer.Exit(CANNOT) from None
+def _sentence_of(error: Exception) -> str | None:
+    """None for what nobody foresaw. Imports late: a demonstration speaks before it has loaded any of this."""
+    from sqlalchemy.exc import DBAPIError
 
+    from app.errors import ServiceError, StartError
 
-def settings_with(**given: object) -> Settings:
-    """The settings of the environment, and what was given as an option. Raises StartError."""
-    settings = load_settings()
-    wanted = {name: value for name, value in given.items() if value is not None}
-    try:
-        return Settings.model_validate({**settings.model_dump(), **wanted})
-    except ValueError as error:
-        raise StartError(f"The options cannot be used. {in_sentences(error, Settings.model_fields)}") from None
+    match error:
+        case StartError() | ServiceError():
+            return str(error)
+        case DBAPIError():
+            return f"The database could not be used, and nothing was changed: {error.orig}."
+        case OSError():
+            return f"{error.filename or 'Something'} could not be used: {error.strerror or error}."
+    return None
 
 
 def console() -> Console:
@@ -85,4 +79,4 @@ def say_table(columns: Sequence[str], rows: Iterable[Sequence[Any]], nothing: st
 def _in_words(value: object) -> str:
     if value is None or value == []:
         return "–"
-    return ", ".join(str(one) for one in value) if isinstance(value, list) else str(value)
+    return one_line(", ".join(str(one) for one in value) if isinstance(value, list) else str(value))

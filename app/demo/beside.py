@@ -11,9 +11,11 @@ from typing import Any
 
 import httpx
 
-from app.administration import enrol
-from app.demo.settings import DemoFailed
+from app.administration import change_roles, enrol
+from app.demo.settings import MAILROOM, TECHNICIAN, DemoFailed
+from app.demo.terminal import Terminal
 from app.settings import Settings
+from app.tables import Role
 
 READY_LIMIT_S = 60.0
 LOOK_EVERY_S = 0.1
@@ -21,21 +23,27 @@ EXIT_FAILED = 1
 EXIT_INTERRUPTED = 130
 
 
-async def played(play: Coroutine[Any, Any, int], failed: Callable[[str], None], as_json: bool, interrupted: int) -> int:
+async def played(play: Coroutine[Any, Any, int], screen: Terminal, as_json: bool, interrupted: int) -> int:
     """The exit code of what plays until it ends, fails or is stopped; `interrupted` is that of the last."""
     try:
-        return await _until(_stop_signal(), play, interrupted)
+        return await _until(_stop_signal(screen.stopping), play, interrupted)
     except DemoFailed as failure:
         if as_json:
             print(json.dumps({"ok": False, "reason": str(failure)}))  # noqa: T201  # the one object on stdout
-        failed(str(failure))
+        screen.failed(str(failure))
         return EXIT_FAILED
 
 
-def _stop_signal() -> asyncio.Event:
+def _stop_signal(stopping: Callable[[], None]) -> asyncio.Event:
     stop = asyncio.Event()
+
+    def told() -> None:
+        if not stop.is_set():
+            stopping()
+        stop.set()
+
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        asyncio.get_running_loop().add_signal_handler(number, stop.set)
+        asyncio.get_running_loop().add_signal_handler(number, told)
     return stop
 
 
@@ -80,6 +88,12 @@ async def write_tokens(settings: Settings, files: Mapping[str, Path]) -> None:
         descriptor = os.open(file, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
         with os.fdopen(descriptor, "w") as opened:
             opened.write(token)
+
+
+async def give_roles(settings: Settings) -> None:
+    """Make the people who look after orders and robots, for whoever opens the pages as one of them."""
+    await change_roles(settings, MAILROOM, [Role.DISPATCHER], [])
+    await change_roles(settings, TECHNICIAN, [Role.MAINTAINER], [])
 
 
 async def is_ready(url: str) -> None:

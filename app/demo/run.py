@@ -4,7 +4,7 @@ import asyncio
 import json
 from dataclasses import replace
 
-from app.demo.beside import EXIT_INTERRUPTED, LOOK_EVERY_S, beside, is_ready, played, write_tokens
+from app.demo.beside import EXIT_INTERRUPTED, LOOK_EVERY_S, beside, give_roles, is_ready, played, write_tokens
 from app.demo.children import Children
 from app.demo.people import Spool
 from app.demo.screen import Screen
@@ -27,13 +27,15 @@ async def _run(demo: Demo) -> int:
     spool = Spool(demo.service.spool_folder)
     screen = Screen(demo, spool)
     interrupted = EXIT_INTERRUPTED if demo.once else 0
-    return await played(_play(demo, spool, screen), screen.failed, demo.as_json, interrupted)
+    return await played(_play(demo, spool, screen), screen, demo.as_json, interrupted)
 
 
 async def _play(demo: Demo, spool: Spool, screen: Screen) -> int:
     clock = SharedClock.create(demo.clock_file, demo.speed)
+    screen.step("Making the database …")
     demo.robot_config.write_text(ROBOT_CONFIG)
     await write_tokens(demo.service, {ROBOT: demo.token_file(ROBOT)})
+    await give_roles(demo.service)
     children = Children()
     try:
         await _perform(demo, children, Story(demo, clock, spool, screen.see_order), screen)
@@ -43,12 +45,14 @@ async def _play(demo: Demo, spool: Spool, screen: Screen) -> int:
 
 
 async def _perform(demo: Demo, children: Children, story: Story, screen: Screen) -> None:
+    screen.step("Starting the service …")
     service = await children.start(
         "service", demo.service_command(), demo.folder / "service.log", demo.service_environment()
     )
     async with beside([service.watch(), _print_codes(screen)]):
         await is_ready(demo.url)
         screen.welcome()
+        screen.step("Starting the robot …")
         robot = await children.start("robot", demo.robot_command(), demo.folder / "robot.log")
         async with beside([robot.watch()]):
             try:

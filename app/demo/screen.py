@@ -3,10 +3,9 @@
 from datetime import datetime
 from typing import Any
 
-from rich.console import Console
-
-from app.demo.people import Spool, sign_in_code
+from app.demo.people import Spool
 from app.demo.settings import RECIPIENT, SENDER, Demo
+from app.demo.terminal import Terminal
 
 WORDS = {
     "queued": "ordered, waiting for a robot",
@@ -19,23 +18,19 @@ WORDS = {
 }
 
 
-class Screen:
-    """Prints what is new, once; on stderr where stdout belongs to the summary."""
+class Screen(Terminal):
+    """Prints what is new, once."""
 
     def __init__(self, demo: Demo, spool: Spool) -> None:
-        self._console = Console(stderr=demo.as_json, highlight=False)
+        super().__init__(demo, spool)
         self._demo = demo
-        self._spool = spool
         self._events_seen = 0
         self._where = ""
-        self._mails_seen: set[str] = set()
 
     def welcome(self) -> None:
         speed = f"time runs {self._demo.speed:g} times as fast, or as fast as this machine keeps up"
         self._console.print(f"[bold]Campus Mail[/] at [link]{self._demo.url}[/]   (simulated: {speed})", soft_wrap=True)
-        self._console.print(
-            f"Sign in there as {SENDER} or {RECIPIENT}; the codes mailed to them appear here.", soft_wrap=True
-        )
+        self.show_links(self._demo, SENDER, RECIPIENT)
         if self._demo.hands_on:
             self._console.print("Hands on: open the order on the page and show its codes to the camera yourself.")
 
@@ -63,9 +58,8 @@ class Screen:
 
     def see_mails(self) -> None:
         """Print sign-in codes as they are mailed."""
-        for _, mail in self._spool.new_mails(self._mails_seen):
-            if code := sign_in_code(mail):
-                self._console.print(f"          [cyan]Sign-in code for {mail['To']}: [bold]{code}[/][/]")
+        for sentence in self.new_codes():
+            self._console.print(f"          [cyan]{sentence}[/]", soft_wrap=True)
 
     def delivered(self, summary: dict[str, Any]) -> None:
         told = sum(sum(kinds.values()) for kinds in summary["notifications"].values())
@@ -79,9 +73,6 @@ class Screen:
 
     def go_on(self) -> None:
         self._console.print(f"The page goes on at {self._demo.url}. Ctrl-C ends everything.")
-
-    def failed(self, reason: str) -> None:
-        self._console.print(f"[red]Failed:[/] {reason}", soft_wrap=True, markup=True)
 
 
 def _clock_time(at: str) -> str:

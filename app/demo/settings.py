@@ -8,9 +8,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from app.demo_links import Page, link_path
+from app.server_key import open_server_key
 from app.settings import Settings
 
 SENDER, RECIPIENT = "sender@campus.example", "recipient@campus.example"
+MAILROOM, TECHNICIAN = "mailroom@campus.example", "technician@campus.example"
 FROM_POST, TO_POST = "post1", "post4"
 ROBOT = "r1"
 ONCE_SPEED = 30.0
@@ -59,6 +62,10 @@ class Demonstration:
     def clock_file(self) -> Path:
         return self.folder / "clock"
 
+    def link(self, email: str, page: Page) -> str:
+        """What opens a page as somebody, in this demonstration alone."""
+        return self.url + link_path(open_server_key(self.service.server_key_path), email, page)
+
     def token_file(self, robot: str) -> Path:
         return self.folder / f"{robot}.token"
 
@@ -86,6 +93,7 @@ class Demonstration:
             # People read codes in real time, whatever the clock of the demonstration does.
             sign_in_code_lifetime_s=600 * self.speed,
             sign_in_codes_per_address="1000 per minute",
+            sign_in_codes_per_host="1000 per minute",
             **self.more,
         )
 

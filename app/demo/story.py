@@ -35,8 +35,8 @@ class Story:
     _charges_before: int = 0
 
     def __post_init__(self) -> None:
-        self.sender = SimulatedPerson(SENDER, self.demo.url, self.spool)
-        self.recipient = SimulatedPerson(RECIPIENT, self.demo.url, self.spool)
+        self.sender = SimulatedPerson(SENDER, self.demo)
+        self.recipient = SimulatedPerson(RECIPIENT, self.demo)
 
     async def deliver(self) -> dict[str, Any]:
         """From signing in to the delivery; the summary. Raises DemoFailed."""

@@ -28,6 +28,7 @@ Found = dict[str, Any]
 
 cli = typer.Typer(
     no_args_is_help=True,
+    add_completion=False,
     rich_markup_mode=None,
     help="Measure this robot, show old and new, and write the settings. End the daemon first; stay beside the robot. "
     "In this order: line, distance, turn, camera. Exit status 1: the measurement failed, nothing was written.",

@@ -25,15 +25,6 @@ ASSUMED_PACK = {"battery.simulated_capacity_mah": 1500.0, "battery.simulated_cha
 SIMULATED_LINE_HZ = 50.0
 """The simulated diodes do not flicker unless asked to: one look per tick is enough, and four times as quick."""
 
-EPILOG = """
-A robot at home in a simulated tunnel, in real time:  python -m robot --simulated
-
-Ours, sent somewhere by hand:  python -m robot --simulated --achieve 'visit(post4)'
-
-The run of the paper's section 6.3:  python -m robot --simulated --agent mail.asl --tell 'dockStation(post5)'
---achieve 'collectAndDeliverMail(post1,post4)'; with --battery 0.26 it becomes low on the way.
-"""
-
 
 def run(  # typer reads the options from here
     config: Annotated[Path | None, typer.Option(help="Settings (TOML); docs/robot.md lists every key.")] = None,

@@ -9,9 +9,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import httpx
 import psutil
 import pytest
+from playwright.sync_api import Page, expect
 
 from tests.system.rig import ROOT, free_port, wait_for
 
@@ -52,9 +52,12 @@ class ServingDemo:
             self.process = subprocess.Popen(command, cwd=ROOT, stdout=said, stderr=said)
 
     def said(self, pattern: str) -> str | None:
-        assert self.process.poll() is None, self._said.read_text()
-        found = re.search(pattern, self._said.read_text())
+        assert self.process.poll() is None, self.words()
+        found = re.search(pattern, self.words())
         return found.group(1) if found else None
+
+    def words(self) -> str:
+        return self._said.read_text()
 
 
 @pytest.fixture
@@ -66,23 +69,29 @@ def serving_demo(tmp_path: Path) -> Iterator[ServingDemo]:
         demo.process.wait()
 
 
+WHAT_THEY_SEE = {
+    "sender": "Send a letter",
+    "recipient": "My mail",
+    "mailroom": "Mailroom",
+    "technician": "Robots",
+}
+
+
 @pytest.mark.alone
-def test_ctrl_c_stops_everything_within_three_seconds_an_open_event_stream_included(serving_demo: ServingDemo) -> None:
-    base_url = wait_for("the page's address", lambda: serving_demo.said(r"(http://127\.0\.0\.1:\d+)"))
-    code = wait_for("a code to sign in with", lambda: serving_demo.said(r"sender@campus\.example: (\d{8})"))
-    with httpx.Client(base_url=base_url, headers={"Sec-Fetch-Site": "same-origin"}) as browser:
-        body = {"email": "sender@campus.example", "code": code}
-        again = browser.post("/api/v1/sign-in/codes", json={"email": body["email"]})
-        assert again.status_code == httpx.codes.ACCEPTED, again.text
-        body["code"] = wait_for(
-            "the second code", lambda: serving_demo.said(rf"sender@campus\.example: (?!{code})(\d{{8}})")
-        )
-        browser.post("/api/v1/sign-in", json=body).raise_for_status()
-        with browser.stream("GET", "/api/v1/live") as events:
-            assert events.status_code == httpx.codes.OK
-            children = psutil.Process(serving_demo.process.pid).children(recursive=True)
-            serving_demo.process.send_signal(signal.SIGINT)
-            assert serving_demo.process.wait(3) == 0
+@pytest.mark.browser
+def test_a_link_opens_each_page_as_its_person_and_ctrl_c_ends_it_all_in_three_seconds_though_pages_are_open(
+    serving_demo: ServingDemo, page: Page
+) -> None:
+    wait_for("the links", lambda: serving_demo.said(r"technician +(\S+)"))
+    for part, heading in WHAT_THEY_SEE.items():
+        page.goto(serving_demo.said(rf"{part} +(http://127\.0\.0\.1:\d+/\S+)") or "")
+        expect(page.get_by_role("heading", name=heading, exact=True).first).to_be_visible()
+        expect(page.locator(".account .address")).to_have_text(f"{part}@campus.example")
+    assert serving_demo.said(r"(Sign-in code for)") is None, "nobody has asked for one"
+    children = psutil.Process(serving_demo.process.pid).children(recursive=True)
+    serving_demo.process.send_signal(signal.SIGINT)
+    assert serving_demo.process.wait(3) == 0
+    assert "Stopping" in serving_demo.words()
     assert [child for child in children if child.is_running()] == []
 
 

@@ -9,10 +9,10 @@ from datetime import datetime, timedelta
 from random import Random
 from typing import Any
 
-from app.demo.fleet.errands import MAILROOM, OFFICES, Errand, address, errands, first_errands
+from app.demo.fleet.errands import OFFICES, Errand, address, errands, first_errands
 from app.demo.fleet.settings import FleetDemo
-from app.demo.people import SimulatedPerson, Spool
-from app.demo.settings import DemoFailed
+from app.demo.people import SimulatedPerson
+from app.demo.settings import MAILROOM, DemoFailed
 from protocol.clock import Clock
 
 Order = dict[str, Any]
@@ -33,7 +33,6 @@ class CampusLife:
 
     demo: FleetDemo
     clock: Clock
-    spool: Spool
     say: Callable[[str], None]
     orders: dict[str, Order] = field(default_factory=dict)
     """Those that go on, as they were seen last."""
@@ -46,8 +45,8 @@ class CampusLife:
     _alarms: set[int] = field(default_factory=set)
 
     def __post_init__(self) -> None:
-        self._people = {name: SimulatedPerson(address(name), self.demo.url, self.spool) for name in OFFICES}
-        self._mailroom = SimulatedPerson(MAILROOM, self.demo.url, self.spool)
+        self._people = {name: SimulatedPerson(address(name), self.demo) for name in OFFICES}
+        self._mailroom = SimulatedPerson(MAILROOM, self.demo)
         self._draw = Random(f"{self.demo.seed}/people")
         self._stream = errands(self.demo.seed)
 

@@ -6,7 +6,6 @@ from random import Random
 from typing import Final
 
 DOMAIN = "campus.example"
-MAILROOM = f"mailroom@{DOMAIN}"
 OFFICES: Final = {
     "hana": "uc",
     "ben": "azrieli",

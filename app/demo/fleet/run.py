@@ -8,11 +8,9 @@ from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
-from app.administration import change_roles
-from app.demo.beside import EXIT_INTERRUPTED, LOOK_EVERY_S, beside, is_ready, played, write_tokens
+from app.demo.beside import EXIT_INTERRUPTED, LOOK_EVERY_S, beside, give_roles, is_ready, played, write_tokens
 from app.demo.children import Children
 from app.demo.fleet.campus_life import CampusLife
-from app.demo.fleet.errands import MAILROOM
 from app.demo.fleet.places import TruePlaces
 from app.demo.fleet.screen import FleetScreen
 from app.demo.fleet.settings import ONCE_LIMIT_S, FleetDemo
@@ -40,12 +38,13 @@ async def _run(demo: FleetDemo) -> int:
     clock = SharedClock.create(demo.clock_file, demo.speed)
     screen = FleetScreen(demo, clock, Spool(demo.service.spool_folder))
     goes_on = not demo.once and demo.minutes is None
-    return await played(_play(demo, clock, screen), screen.failed, demo.as_json, 0 if goes_on else EXIT_INTERRUPTED)
+    return await played(_play(demo, clock, screen), screen, demo.as_json, 0 if goes_on else EXIT_INTERRUPTED)
 
 
 async def _play(demo: FleetDemo, clock: SharedClock, screen: FleetScreen) -> int:
+    screen.step("Making the database …")
     await write_tokens(demo.service, {robot: demo.token_file(robot) for robot in demo.homes})
-    await change_roles(demo.service, MAILROOM, ["dispatcher", "maintainer"], [])
+    await give_roles(demo.service)
     children = Children()
     try:
         await _perform(demo, clock, children, screen)
@@ -55,18 +54,20 @@ async def _play(demo: FleetDemo, clock: SharedClock, screen: FleetScreen) -> int
 
 
 async def _perform(demo: FleetDemo, clock: SharedClock, children: Children, screen: FleetScreen) -> None:
+    screen.step("Starting the service …")
     service = await children.start(
         "service", demo.service_command(), demo.folder / "service.log", demo.service_environment()
     )
     async with beside([service.watch()]):
         await is_ready(demo.url)
         screen.welcome()
+        screen.step(f"Starting the robots {', '.join(demo.homes)} …")
         robots = [
             await children.start(f"robot {name}", demo.robot_command(name), demo.folder / f"{name}.log")
             for name in demo.homes
         ]
         places = TruePlaces(find_map(demo.map), {robot: demo.world_file(robot) for robot in demo.homes})
-        life = CampusLife(demo, clock, Spool(demo.service.spool_folder), screen.say)
+        life = CampusLife(demo, clock, screen.say)
         course = Course(demo, clock, life, places)
         async with beside([*(robot.watch() for robot in robots), course.look_at_places()]):
             try:
@@ -90,7 +91,6 @@ class Course:
     async def live(self, screen: FleetScreen) -> None:
         await self._life.begin()
         self._began_real_s, self._began_s = time.monotonic(), self._clock.now()
-        screen.skip_mails()
         screen.begin()
         async with beside([self._life.watch_alarms(), self._look_at_movement(screen.say), self._draw(screen)]):
             await self._orders()

@@ -5,44 +5,43 @@ from collections.abc import Mapping
 from datetime import datetime
 from typing import Any
 
-from rich.console import Console, Group
+from rich.console import Group
 from rich.live import Live
 from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
 from app.demo.fleet.campus_life import CampusLife
-from app.demo.fleet.errands import MAILROOM, address
+from app.demo.fleet.errands import address
 from app.demo.fleet.places import TruePlaces
 from app.demo.fleet.settings import FleetDemo
-from app.demo.people import Spool, sign_in_code
+from app.demo.people import Spool
+from app.demo.terminal import Terminal
 from protocol.clock import SharedClock
 
 LAST_EVENTS = 12
 TO_FETCH = {"assigned", "to_sender", "at_sender"}
 
 
-class FleetScreen:
-    """A table that stays and changes on a terminal, lines anywhere else; on stderr where stdout is the summary's."""
+class FleetScreen(Terminal):
+    """A table that stays and changes on a terminal, lines anywhere else."""
 
     def __init__(self, demo: FleetDemo, clock: SharedClock, spool: Spool) -> None:
-        self._console = Console(stderr=demo.as_json, highlight=False)
-        self._demo, self._clock, self._spool = demo, clock, spool
+        super().__init__(demo, spool)
+        self._demo, self._clock = demo, clock
         self._events: deque[str] = deque(maxlen=LAST_EVENTS)
-        self._mails_seen: set[str] = set()
         self._live = Live(console=self._console, auto_refresh=False, transient=False)
 
     def welcome(self) -> None:
-        url, scale = self._demo.url, self._demo.scale
+        demo = self._demo
         for line in (
-            f"[bold]Campus Mail, the fleet[/]: {self._demo.robots} robots in the Carleton tunnels, which are "
-            f"1 : {1 / scale:.3g} of their assumed length",
-            f"Mailroom [link]{url}/mailroom.html[/]   robots [link]{url}/robots.html[/]   ordering [link]{url}[/]",
-            f"Sign in as {MAILROOM} (mailroom, robots) or as {address('ada')}; the codes mailed to you appear here.",
+            f"[bold]Campus Mail, the fleet[/], at [link]{demo.url}[/]: {demo.robots} robots in the Carleton tunnels, "
+            f"which are 1 : {1 / demo.scale:.3g} of their assumed length",
             "The bodies are simulated, each in a world of its own. That no two are ever in one corridor is looked at "
             "by their true places; if two were, this would end with an error.",
         ):
             self._console.print(line, soft_wrap=True)
+        self.show_links(self._demo, address("ada"), address("ben"))
 
     def begin(self) -> None:
         if self._console.is_terminal:
@@ -55,13 +54,9 @@ class FleetScreen:
             self._console.print(escape(told), soft_wrap=True)
 
     def see_mails(self) -> None:
-        """Codes for people who sign in at the pages; those of the simulated people are their own affair."""
-        for _, mail in self._spool.new_mails(self._mails_seen):
-            if code := sign_in_code(mail):
-                self.say(f"Sign-in code for {mail['To']}: {code}")
-
-    def skip_mails(self) -> None:
-        list(self._spool.new_mails(self._mails_seen))
+        """Say sign-in codes as they are mailed."""
+        for sentence in self.new_codes():
+            self.say(sentence)
 
     def show(self, life: CampusLife, places: TruePlaces) -> None:
         if self._live.is_started:
@@ -81,12 +76,11 @@ class FleetScreen:
         return Group(Text(figures, style="bold"), table, *(Text(line, style="dim") for line in self._events))
 
     def end(self, sentence: str) -> None:
-        self._live.stop()
+        self._clear()
         self._console.print(sentence, soft_wrap=True)
 
-    def failed(self, reason: str) -> None:
+    def _clear(self) -> None:
         self._live.stop()
-        self._console.print(f"[red]Failed:[/] {escape(reason)}", soft_wrap=True)
 
 
 def row_of(robot: Mapping[str, Any], orders: Mapping[str, Any]) -> tuple[str, str, str, str, str]:

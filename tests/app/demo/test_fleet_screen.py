@@ -24,11 +24,8 @@ def test_the_code_of_somebody_who_signs_in_is_said_on_a_pipe_too(
     screen = FleetScreen(
         replace(DEMO, as_json=as_json), SharedClock.create(tmp_path / "clock", speed=8.0), Spool(tmp_path)
     )
-    writer.send(Mail("sign-in.1.x", "dora@campus.example", "Code", "Your code: 11112222", NOW))
-    screen.skip_mails()
     writer.send(Mail("sign-in.2.x", "mailroom@campus.example", "Code", "Your code: 12345678", NOW))
     screen.see_mails()
     screen.see_mails()
     told = capsys.readouterr()
     assert (told.err if as_json else told.out).count("Sign-in code for mailroom@campus.example: 12345678") == 1
-    assert "11112222" not in told.out + told.err

@@ -1,0 +1,60 @@
+"""Commands answer at once: what takes long to import is imported when it is needed, and said before."""
+
+import importlib
+import re
+import signal
+import subprocess
+import sys
+from collections.abc import Iterable
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+HEAVY = {"fastapi", "sqlalchemy", "httpx", "structlog", "numpy", "cv2", "reportlab", "asyncio", "bdi"}
+IMPORTED = re.compile(r"^import time: .*\| +(\S+)$")
+
+
+def command(*words: str) -> list[str]:
+    return [sys.executable, "-X", "importtime", "-m", *words]
+
+
+def heavy(said: Iterable[str]) -> set[str]:
+    """The packages among HEAVY that Python says it has imported."""
+    names = (found[1].partition(".")[0] for line in said if (found := IMPORTED.match(line)))
+    return HEAVY.intersection(names)
+
+
+@pytest.mark.parametrize("program", ["app", "robot"])
+def test_help_lists_every_command_without_importing_what_they_need(program: str) -> None:
+    ran = subprocess.run(command(program, "--help"), cwd=ROOT, capture_output=True, text=True, check=True, timeout=60)
+    assert "demo" in ran.stdout if program == "app" else "doctor" in ran.stdout
+    assert heavy(ran.stderr.splitlines()) == set()
+    assert heavy(["import time:         1 |          2 |     fastapi.routing"]) == {"fastapi"}, "is still said so"
+
+
+@pytest.mark.parametrize("program", ["app", "robot"])
+def test_every_command_is_listed_as_its_own_help_begins(program: str) -> None:
+    commands = importlib.import_module(f"{program}.__main__")
+    for name, (_, summary) in commands.COMMANDS.items():
+        own = " ".join(commands.loaded(name).help.split())
+        assert own.startswith(summary), name
+
+
+@pytest.mark.parametrize("demo", ["demo", "fleet-demo"])
+def test_a_demonstration_says_what_it_starts_before_it_loads_anything_and_ctrl_c_that_it_stops(demo: str) -> None:
+    with subprocess.Popen(
+        command("app", demo, "--json", "--port", "0"), cwd=ROOT, stderr=subprocess.PIPE, text=True
+    ) as run:
+        assert run.stderr is not None
+        before = []
+        for line in run.stderr:
+            if not line.startswith("import time:"):
+                break
+            before.append(line)
+        assert line.startswith("Campus Mail: starting a service")
+        assert heavy(before) == set()
+        assert any(line.startswith("Starting the service") for line in run.stderr)
+        run.send_signal(signal.SIGINT)
+        assert any(line.startswith("Stopping") for line in run.stderr)
+        assert run.wait(20) == 0
