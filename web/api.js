@@ -27,24 +27,67 @@ export class NoAnswer extends Error {}
  * @param {{method?: string, body?: unknown, headers?: Record<string, string>, cache?: RequestCache}} [request]
  * @returns {Promise<any>} the JSON of the answer, or null where it has none
  */
-async function ask(path, { method = "GET", body, headers = {}, cache } = {}) {
-  const answer = await send(path, {
-    method,
-    cache,
-    headers: { Accept: "application/json", ...(body ? { "Content-Type": "application/json" } : {}), ...headers },
-    body: body ? JSON.stringify(body) : undefined,
-  });
+function ask(path, request = {}) {
+  const answer = send(path, request);
+  const read = answer.then(jsonOf);
+  if (!request.method) notePosition(answer, read);
+  return read;
+}
+
+/** @param {string} path @param {{method?: string, body?: unknown, headers?: Record<string, string>, cache?: RequestCache}} request */
+async function send(path, { method = "GET", body, headers = {}, cache }) {
+  /** @type {Record<string, string>} */
+  const content = body ? { "Content-Type": "application/json" } : {};
+  try {
+    return await fetch(BASE + path, {
+      method,
+      cache,
+      headers: { Accept: "application/json", ...content, ...headers },
+      body: body ? JSON.stringify(body) : undefined,
+    });
+  } catch (error) {
+    throw new NoAnswer(String(error));
+  }
+}
+
+/** @param {Response} answer */
+async function jsonOf(answer) {
   if (!answer.ok) throw new ApiProblem(answer.status, await answer.json().catch(() => ({})));
   return answer.status === 204 ? null : answer.json();
 }
 
-/** @param {string} path @param {RequestInit} request */
-async function send(path, request) {
-  try {
-    return await fetch(BASE + path, request);
-  } catch (error) {
-    throw new NoAnswer(String(error));
+/** @typedef {string | null | undefined} Position a place in the event stream; null: not known; undefined: of nothing */
+
+/** The oldest place at which something was read. @type {Promise<Position>} */
+let oldestRead = Promise.resolve(undefined);
+
+/** @param {Promise<Response>} answer @param {Promise<unknown>} read settled once the body is here, too */
+function notePosition(answer, read) {
+  const position = read.then(positionIn, positionIn);
+  oldestRead = Promise.all([oldestRead, position]).then(([one, other]) => (one === undefined ? other : earlier(one, other)));
+
+  /** A refusal is an answer as good as any. */
+  function positionIn() {
+    return answer.then(({ status, headers }) => (status < 500 ? headers.get("Feed-Position") : null), () => null);
   }
+}
+
+/** @param {Position} one @param {Position} other @returns {Position} null if they cannot be compared */
+const earlier = (one, other) => (!isAfter(one, other) ? one : !isAfter(other, one) ? other : null) ?? null;
+
+/** From where on the event stream tells everything that has changed since what was asked for after the last call was read.
+ * @returns {Promise<Position>} null where an answer is missing: only asking anew helps */
+export function positionOfAnswers() {
+  const position = oldestRead;
+  oldestRead = Promise.resolve(undefined);
+  return position;
+}
+
+/** Whether `one` comes later in the stream. What is not known, or of another run of the service, may.
+ *  @param {Position} one @param {Position} other */
+export function isAfter(one, other) {
+  const [[run, number], [otherRun, otherNumber]] = [one, other].map((position) => position?.split("-") ?? []);
+  return !run || run !== otherRun || Number(number) > Number(otherNumber);
 }
 
 /** @param {Record<string, string | number | undefined>} fields */
@@ -368,8 +411,8 @@ export const revokeToken = (prefix) => ask(`/tokens/${prefix}`, { method: "DELET
 /** Demonstration only: somebody holds my code of this order to the simulated camera. @param {string} order_id */
 export const showCodeToCamera = (order_id) => ask("/demo/camera", { method: "POST", body: { order_id } });
 
-/** What changes for me from now on, as named events. */
-export const openLive = () => new EventSource(BASE + "/live");
+/** What changes for me, as named events. @param {string | null} since a place in the stream; null: from now on */
+export const openLive = (since) => new EventSource(BASE + "/live" + query({ since: since ?? undefined }));
 
 // What the service worker asks about an address.
 

@@ -1,1 +1,1 @@
-"""What happens, told as it happens: one feed inside the service, one event stream per page."""
+"""What happens, told as it happens: one feed inside the service, one event stream per browser."""

@@ -116,6 +116,10 @@ class LocalFeed:
     def is_heard(self) -> bool:
         return bool(self._listeners) or time.monotonic() < self._left_at_s + COMES_BACK_S
 
+    def expect_listener(self) -> None:
+        """Keep what is published from now on: a page that is being opened listens in a moment."""
+        self._left_at_s = time.monotonic()
+
     def pass_over(self) -> None:
         """Nobody can be given it later, and whoever has begun to listen meanwhile has to fetch anew."""
         self._recent.clear()

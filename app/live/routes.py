@@ -1,10 +1,10 @@
-"""The event stream of a page (SSE): ids, a time to come back, and what was missed in between."""
+"""The event stream of a browser (SSE): ids, a time to come back, and what was missed in between."""
 
 import asyncio
 from collections.abc import AsyncIterator, Awaitable, Callable
 from typing import Annotated
 
-from fastapi import APIRouter, Depends, Header
+from fastapi import APIRouter, Depends, Header, Query
 from fastapi.sse import KEEPALIVE_COMMENT, format_sse_event
 from starlette.requests import HTTPConnection
 from starlette.responses import StreamingResponse
@@ -40,6 +40,14 @@ EVENT = {
 }
 """One event, for the document. FastAPI's own streams would encode each anew for each listener."""
 
+Since = Annotated[
+    str,
+    Query(
+        max_length=64,
+        pattern=r"^[0-9a-f-]*$",
+        description="The `Feed-Position` of an answer, or the `id` of an event: what came after it is told first.",
+    ),
+]
 MayListen = Callable[[], Awaitable[bool]]
 
 
@@ -69,12 +77,15 @@ async def live(
     still_signed_in: StillSignedInDep,
     settings: SettingsDep,
     last_event_id: Annotated[str, Header(max_length=64)] = "",
+    since: Since = "",
 ) -> EventStream:
     """Events `order`, `robot`, `traffic`, `notice` as they happen, as one may see them; `resync`: fetch anew.
 
+    `Last-Event-ID` outranks `since`.
+
     `insight` comes to maintainers who watch a robot (`watch_robot`), has no id and is not given again.
     """
-    pieces = _pieces(user, feed, last_event_id, settings.session_check_s, lambda: still_signed_in(user))
+    pieces = _pieces(user, feed, last_event_id or since, settings.session_check_s, lambda: still_signed_in(user))
     return EventStream(pieces, headers=UNBUFFERED)
 
 

@@ -44,10 +44,11 @@ class Stream:
 
 
 @contextmanager
-def following(url: str, browser: Browser, last_event_id: str = "") -> Iterator[Stream]:
+def following(url: str, browser: Browser, last_event_id: str = "", since: str = "") -> Iterator[Stream]:
     headers = {"Cookie": f"session={browser.cookies['session']}"}
     headers |= {"Last-Event-ID": last_event_id} if last_event_id else {}
-    with httpx.stream("GET", f"{url}/api/v1/live", headers=headers, timeout=10) as answer:
+    address = f"{url}/api/v1/live" + (f"?since={since}" if since else "")
+    with httpx.stream("GET", address, headers=headers, timeout=10) as answer:
         assert answer.status_code == 200
         assert answer.headers["content-type"].startswith("text/event-stream")
         lines = answer.iter_lines()
@@ -212,3 +213,21 @@ def test_after_the_commit_and_not_before_a_change_is_told(
     assert feed.last_id == before, "what is rolled back is never told"
     sender.order()
     assert feed.last_id != before
+
+
+def test_what_changes_after_an_answer_was_read_is_told_to_whoever_listens_since(
+    served: Served, sender: Browser
+) -> None:
+    """A page that is being opened has what it shows before it listens, and has nothing to fetch a second time."""
+    headers = {"Cookie": f"session={sender.cookies['session']}", "Sec-Fetch-Mode": "cors"}
+    answer = httpx.get(f"{served.url}/api/v1/orders", headers=headers)
+    order_id = order_by(sender, served.url)
+    with following(served.url, sender, since=answer.headers["Feed-Position"]) as stream:
+        heard = [stream.next() for _ in range(2)]
+    assert order_id in {data.get("id") for name, data, _ in heard if name == "order"}
+    unchanged = httpx.get(f"{served.url}/api/v1/me", headers=headers)
+    again = httpx.get(f"{served.url}/api/v1/me", headers={**headers, "If-None-Match": unchanged.headers["ETag"]})
+    assert again.status_code == 304
+    assert again.headers["Feed-Position"] != answer.headers["Feed-Position"]
+    with following(served.url, sender, since=answer.headers["Feed-Position"], last_event_id=heard[0][2]) as stream:
+        assert stream.next()[2] == heard[1][2], "a browser that comes back says what it heard last"
