@@ -66,7 +66,7 @@ class Custody:
         if waiting is None or not _is_meant(wish, waiting):
             return "The robot does not wait for this hand-over."
         if wish.expires_at <= self._utc():
-            return "It came too late: whoever wanted it may have gone."
+            return "It came too late: the person who asked may have gone."
         if wish.by is not None and wish.by not in self._opening(wish.order_id, waiting.purpose):
             return "That person's code opens nothing here any more."
         waiting.confirmed = True

@@ -199,7 +199,7 @@ class Duties:
     def _cancel(self, wish: Cancel) -> str | None:
         """Why not, or None."""
         if wish.order_id in self.memory.cargo() and not wish.by_hand:
-            return "the mail is aboard"
+            return "The mail is aboard."
         self.memory.unload(wish.order_id)
         mission = self.memory.mission()
         ahead = mission.stops[self.memory.next_stop() :] if mission else ()

@@ -18,6 +18,8 @@ _STAND: Final = {fault.name: fault.told for fault in FAULTS if fault.response is
 """The faults that a robot stands for; others are told, but are no reason for what it does."""
 TAKEN_AWAY: Final = "Waiting to be put down at a post or in a dock"
 LONG_AWAY: Final = Why(sentence="Waiting for the service, after a long time without it", waiting_for="the network")
+OWN_ACTION: Final = "Carrying out its program"
+"""Of an action that is over at once, or that is another program's own: its name would tell people nothing."""
 _PURPOSES: Final = {
     StopAction.LOAD: "to collect mail at {post}",
     StopAction.RECEIVE: "to deliver mail at {post}",
@@ -45,6 +47,9 @@ _WAITS: Final[dict[str, Callable[[Navigator], tuple[str, str | None]]]] = {
     "rest(step_back": lambda n: (f"Giving people at {n.here} a moment to step back", None),
     "rest": lambda _: ("Waiting a moment before trying again", None),
     "drive": lambda n: (_driving(n), None),
+    "station(dock": lambda n: (f"Docking at {n.here}", None),
+    "station(undock": lambda n: (f"Leaving the dock at {n.here}", None),
+    "say": lambda _: ("Playing a tune", None),
 }
 
 
@@ -73,4 +78,4 @@ def _of_action(action: str, navigator: Navigator) -> tuple[str, str | None]:
     for beginning, words in _WAITS.items():
         if action.startswith(beginning):
             return words(navigator)
-    return f"Doing {action}", None
+    return OWN_ACTION, None

@@ -91,29 +91,30 @@ async def _move(report: Report, receipt: HandoverReceipt) -> None:
     if receipt.purpose == Purpose.LOAD and order.state in ENDED:
         await _loaded_too_late(report, order, receipt, word)
         return
-    states = await _states(report, order, receipt)
+    states, state = await _states(report, order, receipt), order.state
     try:
         async with savepoint(report.session):
             await report.along(order.id, states, word)
-    except TransitionRefused as refused:
-        await _contradiction(report, receipt, str(refused))
+    except TransitionRefused:
+        await _contradiction(report, receipt, state)
 
 
 async def _loaded_too_late(report: Report, order: Order, receipt: HandoverReceipt, word: Word) -> None:
     """It is carried for nothing: a person has to know, and the robot brings it back."""
-    await _contradiction(report, receipt, f"Order {order.id} is {order.state}.")
+    await _contradiction(report, receipt, order.state)
     order.robot = report.robot
     if order.let_go_by == report.robot:
         order.let_go_by = None  # it cannot drop what it has
     await report.orders.ask_back(report.session, order, word)
 
 
-async def _contradiction(report: Report, receipt: HandoverReceipt, why: str) -> None:
+async def _contradiction(report: Report, receipt: HandoverReceipt, state: OrderState) -> None:
     """When such mail is out again, nobody has to look any more."""
     if receipt.purpose != Purpose.LOAD:
         await clear_alarms(report.session, report.robot, CONTRADICTION, report.now, about=receipt.order_id)
         return
-    sentence = f"{why} But its mail changed hands ({receipt.purpose}) at {receipt.post}."
+    order_id, purpose, post = receipt.order_id, receipt.purpose, receipt.post
+    sentence = f"Order {order_id} is {state}. But its mail changed hands ({purpose}) at {post}."
     await raise_alarm(report.session, report.robot, CONTRADICTION, sentence, now=report.now, post=receipt.post)
 
 

@@ -194,9 +194,10 @@ class Intake:
         match envelope.body:
             case Snapshot() | Why() as news if isinstance(robot, RobotRow):
                 self.fleet.note(robot, news)
-            case Error(code=code, message=message):
+            case Error(message=message):
+                sentence = f"The robot could not take a message of the service: {message.rstrip('.')}."
                 now = self.fleet.clock.utc()
-                await raise_alarm(session, robot.name, "robot_reports_error", f"{code}: {message}", now=now)
+                await raise_alarm(session, robot.name, "robot_reports_error", sentence, now=now)
             case body if envelope.seq is not None and not careful:
                 await self.fleet.follow(session, robot, body)
             case body if envelope.seq is not None:
@@ -210,9 +211,9 @@ class Intake:
             async with savepoint(session):
                 await self.fleet.follow(session, robot, envelope.body)
         except (FleetError, ServiceError) as problem:
-            sentence = str(problem)[:500]
+            sentence = f"The service could not follow a report of this robot: {str(problem).rstrip('.')}."
             await raise_alarm(session, robot.name, problem.code, sentence, now=self.fleet.clock.utc())
-            return Error(code=problem.code, message=sentence, seq=envelope.seq)
+            return Error(code=problem.code, message=str(problem)[:500], seq=envelope.seq)
         return None
 
 

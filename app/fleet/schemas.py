@@ -6,10 +6,11 @@ from typing import Annotated
 from pydantic import BaseModel, ConfigDict, StringConstraints
 
 from app.fleet.closed_ways import closed_corridor
+from app.lines import Line
 from app.orders.robot_view import RobotView
 from app.tables import Alarm, RobotCommand, RobotRow
-from app.tables.columns import STORABLE
 from app.texts.reasons import Words, words_of
+from protocol.one_line import ONE_LINE
 
 
 class CommandReason(BaseModel):
@@ -17,7 +18,7 @@ class CommandReason(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    reason: Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=500, pattern=STORABLE)]
+    reason: Annotated[Line, StringConstraints(min_length=1, max_length=500)]
 
 
 class WayIsOpen(BaseModel):
@@ -25,11 +26,12 @@ class WayIsOpen(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    corridor: Annotated[str, StringConstraints(min_length=1, max_length=129, pattern=STORABLE)]
+    corridor: Annotated[str, StringConstraints(min_length=1, max_length=129, pattern=ONE_LINE)]
 
 
 class CommandView(BaseModel):
-    """What a robot was told, and what became of it: `accepted` null until it answers.
+    """What a robot was told, and what became of it: `accepted` null until it answers; `reason` is its own sentence, in
+    English, `reason_words` the same as a text of the catalogue, if it is one.
 
     `online` false: it has not heard of it yet, and will when it is back.
     """
@@ -42,11 +44,13 @@ class CommandView(BaseModel):
     answered_at: datetime | None
     accepted: bool | None
     reason: str | None
+    reason_words: Words | None
     online: bool
 
     @classmethod
     def of(cls, row: RobotCommand, online: bool) -> "CommandView":
-        return cls.model_validate({**row.model_dump(), "online": online})
+        words = words_of(row.reason) if row.reason else None
+        return cls.model_validate({**row.model_dump(), "reason_words": words, "online": online})
 
 
 class AlarmView(BaseModel):

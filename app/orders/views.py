@@ -15,10 +15,10 @@ from app.orders.codes import mailrooms_turn, turn_of
 from app.orders.custody import custody_of
 from app.orders.robot_view import robot_view
 from app.orders.schemas import CustodyView, EventView, HandoverRequested, OrderView, Somebody, WindowView
-from app.orders.transitions import CARRIED, ENDED, LOADED, ROBOT_COMING
+from app.orders.transitions import CARRIED, ENDED, LOADED, ROBOT_COMING, By
 from app.settings import Settings
 from app.tables import Delegate, Handover, Order, OrderEvent, OrderState, Person, RobotRow, Role
-from app.tables.order_events import DELEGATE_NAMED, DELEGATE_REVOKED
+from app.tables.order_events import DELEGATE_NAMED, DELEGATE_REVOKED, MOVED
 from app.texts.reasons import words_of
 from maps import CampusMap
 from protocol.parts import Purpose
@@ -162,7 +162,7 @@ def order_view(facts: OrderFacts, role: MyRole, person_id: str, campus: CampusMa
         window=_window(order),
         robot=robot,
         why=why,
-        why_words=words_of(why) if why else None,
+        why_words=words_of(why) if why and not _is_why_typed(facts) else None,
         my_role=role,
         my_code=None if turn is None else turn.value,
         handover_requested=_handover_requested(facts.events, settings),
@@ -257,6 +257,17 @@ def somebody(person: Person) -> Somebody:
     return Somebody(email=person.email, name=person.name)
 
 
+def _is_typed(event: OrderEvent) -> bool:
+    """What a person of the mailroom has typed is no code, whatever it looks like."""
+    return event.by == By.DISPATCHER and event.person_id is not None
+
+
+def _is_why_typed(facts: OrderFacts) -> bool:
+    """An order in attention waits for the reason with which it was stopped."""
+    stopped = next((event for event in reversed(facts.events) if event.kind == MOVED), None)
+    return stopped is not None and stopped.state == OrderState.ATTENTION and _is_typed(stopped)
+
+
 def _event(event: OrderEvent, with_reason: bool) -> EventView:
     reason = event.reason if with_reason else None
     return EventView(
@@ -269,5 +280,5 @@ def _event(event: OrderEvent, with_reason: bool) -> EventView:
         robot=event.robot,
         post=event.post,
         reason=reason,
-        reason_words=words_of(reason) if reason else None,
+        reason_words=words_of(reason) if reason and not _is_typed(event) else None,
     )

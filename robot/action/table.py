@@ -172,7 +172,7 @@ def _report_charge(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
 
 
 def _raise_fault(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
-    hands.duties.report_fault(str(arguments[0]), f"The agent met {arguments[1]}.", hands.place)
+    hands.duties.report_fault(str(arguments[0]), f"The robot met a problem: {arguments[1]}.", hands.place)
     return AtOnce()
 
 

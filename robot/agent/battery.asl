@@ -18,7 +18,7 @@
 // No way leads to a dock: it stands where it is in nobody's way, and +nearest_dock begins again.
 +!charge
   <- !reach_a_post;
-     raise_fault(no_dock_open, "no way to any dock that is open").
+     raise_fault(no_dock_open, "no way leads to any dock that is open").
 
 // The nearest dock that can be reached is another one now: a corridor was blocked, or is free again.
 +nearest_dock(_) : pursuing(charge) & not docked <- !decide_anew.

@@ -27,7 +27,7 @@
 +!permission(Post, _) <- claim(Post); clear_fault(no_way); !let_pass(Post).
 -!permission(Post, Patience_s)[reason(denied)] <- rest(15); !permission(Post, Patience_s).
 -!permission(Post, Patience_s)[reason(way_closed)]
-  <- raise_fault(no_way, "every way blocked or denied");
+  <- raise_fault(no_way, "every way is blocked or denied");
      !wait_for_a_way(Patience_s);
      reopen;
      .abolish(patience(_));

@@ -134,7 +134,7 @@ def test_an_order_whose_mail_is_aboard_is_not_cancelled_and_says_why(desk: Desk)
     desk.hears(LETTER)
     desk.duties.handed_over((LETTER, LOAD), Purpose.LOAD, "post1", "ab" * 32)
     (answer,) = desk.hears(Cancel(command_id="c1", order_id="o1"))
-    assert (answer["accepted"], answer["reason"]) == (False, "the mail is aboard")
+    assert (answer["accepted"], answer["reason"]) == (False, "The mail is aboard.")
     assert desk.duties.held.stop == RECEIVE
 
 
@@ -187,9 +187,9 @@ def test_an_order_that_was_dropped_and_is_given_again_is_served(desk: Desk) -> N
 
 
 def test_a_fault_that_was_told_is_known_after_a_restart_and_told_to_be_over_once(desk: Desk, store: Store) -> None:
-    desk.duties.report_fault("way_blocked", "The agent met line_lost.", "post3")
+    desk.duties.report_fault("way_blocked", "The robot met a problem: line_lost.", "post3")
     again = again_of(store)
-    again.report_fault("way_blocked", "The agent met line_lost.", "post3")
+    again.report_fault("way_blocked", "The robot met a problem: line_lost.", "post3")
     again.report_fault("way_blocked", "It is over.", "post3", cleared=True)
     assert [one["cleared"] for one in desk.told()] == [False, True]
 

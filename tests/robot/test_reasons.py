@@ -91,5 +91,6 @@ def test_a_robot_that_charges_with_a_mission_says_what_for(robot: Robot) -> None
     assert reason((), docked, robot.navigator, robot.duties, True).goal == "to collect mail at post1"
 
 
-def test_an_action_nobody_has_words_for_is_shown_as_it_is(robot: Robot) -> None:
-    assert robot.why("dance(tango)")[0] == "Doing dance(tango)"
+def test_an_action_nobody_has_words_for_is_not_named(robot: Robot) -> None:
+    assert robot.why("dance(tango)") == ("Carrying out its program", None)
+    assert robot.why("report(departed,s1)") == ("Carrying out its program", None)

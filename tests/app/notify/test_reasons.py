@@ -16,11 +16,13 @@ from app.fleet.missions import NOT_REPORTED, UNLOADED
 from app.fleet.receipts import PROBLEMS, counts_for_nothing
 from app.orders.timer import NOBODY_CAME
 from app.settings import ROOT
-from app.texts import catalogue
+from app.texts import LANGUAGES, catalogue
 from app.texts.reasons import PREFIXES, in_language, in_words, words_of
+from protocol.one_line import one_line
 from protocol.parts import Leg
 from robot.action.corridors import CLOSED_BY, turned_back
 from robot.reflexes import FAULTS
+from tests.app.notify.every_reason import RAW, every_reason, told_beside_alarms
 
 REASONS_OF_ROBOTS = ROOT / "robot" / "reasons.py"
 
@@ -46,8 +48,8 @@ def sentences_in(file: Path) -> Iterator[str]:
 
 
 def test_every_sentence_of_a_robot_is_known() -> None:
-    # A part of one; what is an action of an agent's own; what stands below a table.
-    no_sentences = ("In its dock", "Doing ", "The faults that")
+    # A part of one; what stands below a table or a name.
+    no_sentences = ("In its dock", "Of an action", "The faults that")
     said = [one for one in sentences_in(REASONS_OF_ROBOTS) if not one.startswith(no_sentences)]
     assert len(said) > 12
     assert [one for one in said if words_of(one) is None] == []
@@ -82,15 +84,37 @@ def test_it_is_said_in_french_with_what_stood_in_its_gaps() -> None:
 def test_a_sentence_within_a_sentence_is_said_in_french_too() -> None:
     told = "The robot cannot get to the sender: Something blocks a wheel."
     assert in_language("fr", told).endswith(" : Quelque chose bloque une roue.")
-    assert in_language("fr", "The robot cannot get to the sender: no_way.").endswith(" : no_way.")
+    assert in_language("fr", "The robot cannot get to the sender: no_route.").endswith(
+        "sa carte n’a pas de chemin jusque-là."
+    )
 
 
 def test_what_nobody_knows_is_shown_as_it_was_said_and_marked() -> None:
-    assert words_of("Doing juggle(3)") is None
-    assert in_language("fr", "Doing juggle(3)") == "« Doing juggle(3) » (en anglais)"
-    assert in_language("en", "Doing juggle(3)") == "Doing juggle(3)"
+    assert words_of("Juggling at post3") is None
+    assert in_language("fr", "Juggling at post3") == "« Juggling at post3 » (en anglais)"
+    assert in_language("en", "Juggling at post3") == "Juggling at post3"
     assert in_words("fr", {"robot": "r1", "reason": "Paused"}) == {"robot": "r1", "reason": "En pause"}
     assert in_words("fr", {"robot": "r1"}) == {"robot": "r1"}
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_no_reason_that_the_code_can_give_is_read_raw(language: str) -> None:
+    reasons = every_reason()
+    assert {"no_one_came", "no_route", "way_closed", "wrong_arguments", "stall"} <= set(reasons)
+    assert len(reasons) > 120
+    said = {reason: in_language(language, reason) for reason in reasons}
+    assert {reason: text for reason, text in said.items() if RAW.search(text)} == {}
+    anybodys = {reason for reason in reasons if reason.endswith(": x1.")}
+    assert [one for one, text in said.items() if "(en anglais)" in text and one not in anybodys] == []
+    assert language == "en" or [reason for reason, text in said.items() if text == reason] == []
+
+
+def test_a_code_alone_is_a_sentence_of_its_own_and_one_of_a_foreign_program_is_named_as_one() -> None:
+    assert in_language("en", "no_one_came") == "Nobody came in time"
+    assert in_language("fr", "no_one_came") == "Personne n’est venu à temps"
+    assert in_language("en", "too_hot") == "Its program calls it “too_hot”"
+    assert in_language("fr", "juggle(3)").startswith("Son programme l’appelle")
+    assert words_of("hot") is None, "a single word may be anybody's"
 
 
 @given(
@@ -106,7 +130,7 @@ def test_every_reason_of_the_catalogue_is_recognised_by_its_own_english(key: str
 
 @given(st.text(max_size=500))
 def test_whatever_a_robot_says_can_be_shown(said: str) -> None:
-    assert said.strip(". ") in in_language("fr", said) or words_of(said)
+    assert one_line(said).strip(". ") in in_language("fr", said) or words_of(said)
 
 
 def test_alarms_are_said_in_french_with_what_they_are_about() -> None:
@@ -114,10 +138,14 @@ def test_alarms_are_said_in_french_with_what_they_are_about() -> None:
     assert in_language("fr", told) == (
         "Le robot a fait demi-tour dans le couloir de post3 à post4. Quelque chose s’y trouve."
     )
-    assert in_language("fr", "The agent met every way blocked or denied.").startswith("Tous les chemins du robot")
-    assert in_language("fr", "The agent met line_lost.") == "Le programme du robot a rencontré\u00a0: line_lost."
+    no_way = "The robot met a problem: every way is blocked or denied."
+    assert in_language("fr", no_way).startswith("Tous les chemins du robot")
+    lost = "Le robot a rencontré un problème\u00a0: il a perdu la ligne."
+    assert in_language("fr", "The robot met a problem: line_lost.") == lost
     late = "Order 1f2e3d is cancelled. But its mail changed hands (load) at post1."
-    assert in_language("fr", late).startswith("La commande 1f2e3d est à l’état «\u00a0cancelled\u00a0»")
+    assert in_language("fr", late).startswith(
+        "La commande 1f2e3d est annulée, mais son envoi a changé de mains (chargement)"
+    )
     words = words_of("4 messages of this robot are lost")
     assert words and (words.key, words.facts) == ("alarm.of.messages_lost", {"count": "4"})
 
@@ -138,6 +166,8 @@ ALARMS = {
     "app/fleet/clocks.py": 1,
     "app/fleet/conversation.py": 1,
     "app/fleet/greeting.py": 5,
+    "app/fleet/handed_over.py": 1,
+    "app/fleet/intake.py": 2,
     "app/fleet/receipts.py": 1,
     "app/handover/service.py": 1,
 }
@@ -146,19 +176,6 @@ ALARMS = {
 
 @pytest.mark.parametrize("file", ALARMS)
 def test_the_services_own_alarms_are_known(file: str) -> None:
-    """The sentence that stands beside `raise_alarm`, or in a name `sentence` just before."""
-    tree = ast.parse((ROOT / file).read_text())
-    said = [one for one in map(told_in, ast.walk(tree)) if one]
+    said = list(told_beside_alarms(ROOT / file))
     assert len(said) == ALARMS[file]
     assert [one for one in said if words_of(one) is None] == []
-
-
-def told_in(node: ast.AST) -> str | None:
-    told: ast.AST | None = None
-    if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name) and node.targets[0].id == "sentence":
-        told = node.value
-    if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "raise_alarm":
-        told = node.args[3]
-    if isinstance(told, ast.JoinedStr):
-        return "".join(part.value if isinstance(part, ast.Constant) else "x1" for part in told.values)
-    return told.value if isinstance(told, ast.Constant) else None

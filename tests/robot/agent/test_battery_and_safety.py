@@ -164,7 +164,7 @@ def test_where_no_way_leads_to_a_dock_it_stops_at_a_post_and_says_so_until_one_d
     stage.does("report_charge(low)")
     stage.expect("follow_line")
     stage.reaches("post3")
-    stage.does('raise_fault(no_dock_open,"no way to any dock that is open")')
+    stage.does('raise_fault(no_dock_open,"no way leads to any dock that is open")')
     stage.settle()
     assert stage.waiting == {}
     stage.perceives("nearest_dock(post5)")

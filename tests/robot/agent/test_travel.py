@@ -21,7 +21,7 @@ def test_where_no_way_is_open_it_waits_at_its_post_tells_and_asks_ever_more_rare
     for patience_s in (30, 60, 120, 240, 480, 960, 1800, 1800):
         stage.expect("claim(post4)")
         stage.fails("claim(post4)", "way_closed")
-        stage.does('raise_fault(no_way,"every way blocked or denied")', *(("release",) if patience_s > 60 else ()))
+        stage.does('raise_fault(no_way,"every way is blocked or denied")', *(("release",) if patience_s > 60 else ()))
         stage.does(f"rest({patience_s})", "reopen")
     stage.does("claim(post4)")
     stage.expect("follow_line")
@@ -69,7 +69,7 @@ def test_without_network_it_keeps_what_it_was_granted_however_long_it_waits_for_
     for patience_s in (30, 60, 120, 240):
         stage.expect("claim(post4)")
         stage.fails("claim(post4)", "way_closed")
-        stage.does('raise_fault(no_way,"every way blocked or denied")', f"rest({patience_s})", "reopen")
+        stage.does('raise_fault(no_way,"every way is blocked or denied")', f"rest({patience_s})", "reopen")
     assert "release" not in stage.done
 
 
@@ -102,7 +102,7 @@ def test_a_corridor_that_opens_ends_the_waiting_for_a_way_but_no_waiting_for_peo
     stage.does("report(departed,s2)", "set_destination(post4)")
     stage.expect("claim(post4)")
     stage.fails("claim(post4)", "way_closed")
-    stage.does('raise_fault(no_way,"every way blocked or denied")')
+    stage.does('raise_fault(no_way,"every way is blocked or denied")')
     stage.expect("rest(30)")
     stage.perceives(without=('closed("post3-post4")',))
     stage.does("report(departed,s2)", "set_destination(post4)", "claim(post4)")
