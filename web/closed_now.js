@@ -19,7 +19,7 @@ export class ClosedNow {
     host.addController(this);
     new OnLive(host, {
       closed: ({ closed }) => ((this.#heard += 1), this.show(closed)),
-      connected: (connected) => connected && this.fetch(),
+      resync: () => this.fetch(),
     });
   }
 

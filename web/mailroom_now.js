@@ -44,7 +44,7 @@ export class MailroomNow {
       order: (order) => this.#hear(() => (this.#heard.orders.push(order), this.take(order))),
       robot: (robot) => this.#hear(() => (this.#heard.robots.push(robot), this.robots.set(robot.name, robot))),
       notice: ({ kind }) => kind === "alarm" && this.lookAgain(),
-      connected: (connected) => connected && this.fetch(),
+      resync: () => this.fetch(),
     });
   }
 

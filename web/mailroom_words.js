@@ -6,7 +6,7 @@
  *   | {kind: "locked", key: string, order: Order} | {kind: "stopped", key: string, robot: Robot}
  *   | {kind: "silent", key: string, robot: Robot} | {kind: "given_up", key: string, sending: Sending}} Wrong
  */
-import { hasEnded, isBetweenLegs, reasonText, robotWhy } from "./order_words.js";
+import { hasEnded, isBetweenLegs, orderReason, robotWhy } from "./order_words.js";
 import { titleOf } from "./posts.js";
 import { serverNow } from "./server_clock.js";
 import { t } from "./texts.js";
@@ -85,8 +85,8 @@ export function whyItWaits(order, map) {
 }
 
 /** Of its robot the service knows more than it says of itself. @param {Order} order @param {CampusMap} map */
-const orderWhy = ({ why, why_words, robot }, map) =>
-  robot && robot.why === why ? robotWhy(robot, map) : reasonText(why ?? "", why_words, map);
+const orderWhy = (order, map) =>
+  order.robot && order.robot.why === order.why ? robotWhy(order.robot, map) : orderReason(order, map);
 
 /** For a wall: a reason that somebody has typed may name people. @param {Order} order */
 export const withoutOwnWords = (order) => (order.why_words ? order : { ...order, why: null });

@@ -36,7 +36,7 @@ export async function openPage(page, content) {
     const shell = /** @type {PageShell} */ (root.querySelector("page-shell"));
     requestAnimationFrame(() => setTimeout(prepareTimes));
     await contentStands(shell);
-    if (person) startLive();
+    if (person) startLive(person.id);
     afterwards(() => import("./after_opening.js").then(({ afterOpening }) => afterOpening(shell, person)));
   });
 }

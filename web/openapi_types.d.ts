@@ -289,7 +289,8 @@ export interface components {
         };
         /**
          * CommandView
-         * @description What a robot was told, and what became of it: `accepted` null until it answers.
+         * @description What a robot was told, and what became of it: `accepted` null until it answers; `reason` is its own sentence, in
+         *     English, `reason_words` the same as a text of the catalogue, if it is one.
          *
          *     `online` false: it has not heard of it yet, and will when it is back.
          */
@@ -313,6 +314,7 @@ export interface components {
             accepted: boolean | null;
             /** Reason */
             reason: string | null;
+            reason_words: components["schemas"]["Words"] | null;
             /** Online */
             online: boolean;
         };

@@ -1,28 +1,31 @@
 /**
  * An order in words: where it stands, what comes next, what has happened.
- * @import { CampusMap, Order, OrderEvent, OrderState, Robot, WaitsFor, Words } from "./api_types.ts"
+ * @import { CampusMap, Order, OrderEvent, OrderState, Robot, WaitsFor } from "./api_types.ts"
  * @typedef {{state: OrderState, text: string, event: OrderEvent | null}} Entry an event, or a step still to come (null)
  */
 import { titleOf } from "./posts.js";
+import { reasonText } from "./reason_words.js";
 import { serverNow } from "./server_clock.js";
 import { hasText, t } from "./texts.js";
 import { clockTime, percent } from "./times.js";
-
-/**
- * Why something waits, in this page's language; a sentence that the catalogue does not have is shown as it was said.
- * @param {string} said @param {Words | null} words @param {CampusMap} map
- */
-export function reasonText(said, words, map) {
-  if (!words || !hasText(words.key)) return t("why.in_english", { sentence: said });
-  const { post } = words.facts;
-  return t(words.key, post ? { ...words.facts, post: titleOf(map, post) } : words.facts);
-}
 
 /** Why a robot does what it does; of what it waits for, the service knows more than it says itself. @param {Robot} robot @param {CampusMap} map */
 export function robotWhy(robot, map) {
   if (robot.waits_for && !robot.taken_out_at) return waitText(robot.waits_for, map) ?? reasonText(robot.why ?? "", robot.why_words, map);
   if (robot.why_words?.key === "why.paused" && robot.last_seen) return t("why.paused_at", { post: titleOf(map, robot.last_seen.post) });
   return reasonText(robot.why ?? "", robot.why_words, map);
+}
+
+/** Why an order stands where it stands; what a person of the mailroom has typed, as it was typed. @param {Order} order @param {CampusMap} map */
+export function orderReason({ why, why_words, events }, map) {
+  const moved = events.findLast(({ kind }) => kind === "moved");
+  return moved?.state === "attention" ? eventReason({ ...moved, reason: why, reason_words: why_words }, map) : reasonText(why ?? "", why_words, map);
+}
+
+/** The reason of something that happened. @param {Pick<OrderEvent, "by" | "reason" | "reason_words">} event @param {CampusMap} map */
+export function eventReason({ by, reason, reason_words }, map) {
+  if (!reason) return "";
+  return by !== "robot" && by !== "timer" && !reason_words ? reason : reasonText(reason, reason_words, map);
 }
 
 /**

@@ -1,9 +1,9 @@
 /**
  * Orders that the service has not answered yet. Each has its key and its person, and survives the page, the tab and the
  * browser; it is sent until there is an answer, under the session of the person who placed it and under no other.
- * Page and worker use the same box.
+ * One that was refused is sent again only when its person says so. Page and worker use the same box.
  * @import { WantedOrder } from "./api_types.ts"
- * @typedef {{code: string, detail: string, fields: string[]}} Refusal
+ * @typedef {{status: number, code: string, detail: string, fields: string[]}} Refusal
  * @typedef {{key: string, person_id: string, wanted: WantedOrder, at: string, order_id: string | null, refusal: Refusal | null}} KeptOrder
  *   waiting, or sent as `order_id`, or refused
  */
@@ -67,17 +67,34 @@ export async function discard(key) {
 /** Nobody signs in or out while an order is being sent. @template T @param {() => Promise<T>} act @returns {Promise<T>} */
 export const inSession = async (act) => await (navigator.locks ? navigator.locks.request(LOCK, act) : act());
 
-/** The service has refused; anything else may still become an order, or has already. @param {unknown} problem */
-export const isRefusal = (problem) =>
-  problem instanceof api.ApiProblem && problem.status < 500 && ![401, 409, 429].includes(problem.status);
+/** No network, a gateway without its service, or a first request that still runs: sending it again by itself is safe.
+ *  @param {unknown} problem */
+export const isPassing = (problem) =>
+  problem instanceof api.NoAnswer ||
+  (problem instanceof api.ApiProblem && ([502, 503, 504].includes(problem.status) || problem.code === "still_running"));
 
-/** Sends what waits of whoever is signed in. Throws NoAnswer where there is still no network. */
+/** Whether the same order may be taken later, unchanged; any other has to be corrected first.
+ *  @param {Pick<Refusal, "status" | "code">} refusal */
+export const isForLater = ({ status, code }) =>
+  ([401, 409, 429].includes(status) || status >= 500) && code !== "idempotency_key_reused";
+
+/** Send what waits of the person who is signed in. Throws NoAnswer where there is still no network. */
 export const sendKept = () =>
   inSession(async () => {
     const person = await api.me({ fresh: true });
     if (!person) return;
     for (const kept of (await keptOrders(person.id)).filter(isWaiting)) await sendOne(kept);
     announce();
+  });
+
+/** Send a refused order, since its person says so. @param {KeptOrder} kept */
+export const sendAgain = (kept) =>
+  inSession(async () => {
+    const person = await api.me({ fresh: true });
+    if (person?.id !== kept.person_id) return refuse(kept, new api.ApiProblem(401, { code: "not_signed_in" }));
+    const waiting = { ...kept, refusal: null };
+    await keep(waiting);
+    await sendOne(waiting);
   });
 
 /** @param {KeptOrder} kept */
@@ -87,14 +104,15 @@ async function sendOne(kept) {
     if (isOld) throw new api.ApiProblem(422, { code: "kept_too_long" });
     await keep({ ...kept, order_id: (await api.placeOrder(kept.wanted, kept.key)).id });
   } catch (problem) {
-    if (!isRefusal(problem)) throw problem;
-    await refuse(kept, /** @type {api.ApiProblem} */ (problem));
+    await refuse(kept, problem);
   }
 }
 
-/** @param {KeptOrder} kept @param {api.ApiProblem} problem */
-async function refuse(kept, { code, message, fields }) {
-  await keep({ ...kept, refusal: { code, detail: message, fields } });
+/** Keep it with the reason; what passes, and what is no answer, is thrown. @param {KeptOrder} kept @param {unknown} problem */
+export async function refuse(kept, problem) {
+  if (isPassing(problem) || !(problem instanceof api.ApiProblem)) throw problem;
+  const { status, code, message, fields } = problem;
+  await keep({ ...kept, refusal: { status, code, detail: message, fields } });
 }
 
 /** Has the worker send it as soon as there is a network, where browsers do that. */

@@ -5,38 +5,53 @@
  * @import { KeptOrder } from "./outbox.js"
  */
 import * as api from "./api.js";
-import { announce, discard, inSession, isRefusal, isWaiting, keep, keptOrders, sendLater } from "./outbox.js";
+import {
+  announce, anyKept, discard, inSession, isForLater, isPassing, keep, keptOrders, refuse, sendLater,
+} from "./outbox.js";
 import { sayKept } from "./session.js";
 
 const TRY_AGAIN_AFTER_MS = [700, 2_500];
 
-/** There was no answer: the order is kept, and is sent by itself when there is a network. */
-export class KeptForLater extends Error {}
+/** The order lies in the outbox, where its person sees it: it waits for a network, or was refused as it is. */
+export class Kept extends Error {}
 
-/** @param {WantedOrder} wanted @param {string} person_id @returns {Promise<Order>} throws KeptForLater, ApiProblem */
+/** @param {WantedOrder} wanted @param {string} person_id @returns {Promise<Order>} throws Kept, ApiProblem */
 export async function placeOrder(wanted, person_id) {
   const kept = await keptAs(wanted, person_id);
+  // Said before it is sent: a page that is closed meanwhile leaves an order that the next one has to show.
+  sayKept(true);
   try {
-    const order = await inSession(() => persist(() => api.placeOrder(wanted, kept.key)));
-    await discard(kept.key);
-    return order;
-  } catch (problem) {
-    if (!(problem instanceof api.NoAnswer) && !(problem instanceof api.ApiProblem)) throw problem;
-    if (isRefusal(problem)) await discard(kept.key);
-    if (problem instanceof api.ApiProblem && problem.status < 500) throw problem;
-    sayKept(true);
+    return await inSession(() => sent(kept));
+  } finally {
+    sayKept(await anyKept());
     announce();
-    await sendLater();
-    throw new KeptForLater();
   }
 }
 
-/** The same order that waits for its answer already is that order. @param {WantedOrder} wanted @param {string} person_id @returns {Promise<KeptOrder>} */
+/** @param {KeptOrder} kept @returns {Promise<Order>} */
+async function sent(kept) {
+  try {
+    const order = await persist(() => api.placeOrder(kept.wanted, kept.key));
+    await discard(kept.key);
+    return order;
+  } catch (problem) {
+    if (isPassing(problem)) await sendLater();
+    else if (problem instanceof api.ApiProblem && isForLater(problem)) await refuse(kept, problem);
+    else {
+      if (problem instanceof api.ApiProblem) await discard(kept.key);
+      throw problem;
+    }
+    throw new Kept();
+  }
+}
+
+/** The same order that lies here already is that order. @param {WantedOrder} wanted @param {string} person_id @returns {Promise<KeptOrder>} */
 async function keptAs(wanted, person_id) {
-  const waiting = (await keptOrders(person_id)).filter(isWaiting);
-  const before = waiting.find((kept) => JSON.stringify(kept.wanted) === JSON.stringify(wanted));
-  if (before) return before;
-  const kept = { key: crypto.randomUUID(), person_id, wanted, at: new Date().toISOString(), order_id: null, refusal: null };
+  const unsent = (await keptOrders(person_id)).filter(({ order_id }) => !order_id);
+  const before = unsent.find((kept) => JSON.stringify(kept.wanted) === JSON.stringify(wanted));
+  const kept = before
+    ? { ...before, refusal: null }
+    : { key: crypto.randomUUID(), person_id, wanted, at: new Date().toISOString(), order_id: null, refusal: null };
   await keep(kept);
   return kept;
 }
@@ -47,7 +62,7 @@ async function persist(attempt) {
     try {
       return await attempt();
     } catch (problem) {
-      if (isRefusal(problem)) throw problem;
+      if (!isPassing(problem)) throw problem;
       await new Promise((resolve) => setTimeout(resolve, pause_ms));
     }
   }

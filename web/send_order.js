@@ -2,14 +2,14 @@
 import * as api from "./api.js";
 import { looksLikeEmail } from "./email.js";
 import { followPage, PAGES } from "./links.js";
-import { KeptForLater, placeOrder } from "./place_order.js";
+import { Kept, placeOrder } from "./place_order.js";
 import { atFields, FIELD_OF_CODE } from "./problems.js";
 import { personHere } from "./session.js";
 import { t } from "./texts.js";
 /** @import { WantedOrder } from "./api_types.ts" */
 /** @import { Schedule, When } from "./elements/order_schedule.js" */
 /** @typedef {{wanted: WantedOrder, when: When, schedule: Schedule}} FilledIn */
-/** The page that shows it, or that it is kept for later, or why it was not taken. @typedef {{page?: string, kept?: boolean, problems?: Record<string, string>}} Sent */
+/** The page that shows it, or that it is kept on this device, or why it was not taken. @typedef {{page?: string, kept?: boolean, problems?: Record<string, string>}} Sent */
 
 /** @param {FilledIn} filled @returns {Promise<Sent>} */
 export async function sendOrder(filled) {
@@ -18,7 +18,7 @@ export async function sendOrder(filled) {
   try {
     return { page: await place(filled) };
   } catch (failure) {
-    return failure instanceof KeptForLater ? { kept: true } : { problems: atFields(failure, FIELD_OF_CODE) };
+    return failure instanceof Kept ? { kept: true } : { problems: atFields(failure, FIELD_OF_CODE) };
   }
 }
 

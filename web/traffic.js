@@ -19,7 +19,7 @@ export class TrafficNow {
     host.addController(this);
     new OnLive(host, {
       traffic: (news) => this.#hear(news),
-      connected: (connected) => connected && this.fetch(),
+      resync: () => this.fetch(),
     });
   }
 

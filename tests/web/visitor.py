@@ -121,6 +121,11 @@ class Visitor:
         """Something set without the pages."""
         return await self._do("PUT", path, body)
 
+    async def delete(self, path: str) -> None:
+        """Something ended without the pages."""
+        answer = await self.context.request.delete(f"/api/v1{path}", headers={"Sec-Fetch-Site": "same-origin"})
+        assert answer.ok, await answer.text()
+
     async def _do(self, method: str, path: str, body: Any) -> Any:
         own = {"Sec-Fetch-Site": "same-origin"}
         answer = await self.context.request.fetch(f"/api/v1{path}", method=method, data=body, headers=own)

@@ -4,7 +4,7 @@ import * as api from "../api.js";
 import { followedOrder } from "../early.js";
 import { PAGES } from "../links.js";
 import { OnLive } from "../live.js";
-import { hasEnded, isAtAStop, isMyTurn, reasonText, robotWhy, stateSentence } from "../order_words.js";
+import { hasEnded, isAtAStop, isMyTurn, orderReason, robotWhy, stateSentence } from "../order_words.js";
 import { loadMap } from "../posts.js";
 import { inWords } from "../problems.js";
 import { serverNow } from "../server_clock.js";
@@ -55,7 +55,7 @@ export class FollowPage extends PageElement {
     new OnLive(this, {
       order: (order) => order.id === this.order_id && this.#hear(() => this.#show(order)),
       robot: (robot) => this.#concerns(robot) && this.#hear(() => (this.robot = robot)),
-      connected: (connected) => connected && this.#fetch(),
+      resync: () => this.#fetch(),
     });
   }
 
@@ -131,11 +131,10 @@ export class FollowPage extends PageElement {
   /** A robot that is on its way waits for nothing, whatever it says that it is doing. @param {Order} order @param {CampusMap} map */
   #why(order, map) {
     const { robot } = this;
-    const { why, why_words } = robot ?? order;
-    if (!why || hasEnded(order) || (robot && !WAITING.includes(robot.activity))) return nothing;
+    if (!(robot ?? order).why || hasEnded(order) || (robot && !WAITING.includes(robot.activity))) return nothing;
     return html`<section class="card why" aria-labelledby="why-title">
       <h2 id="why-title">${t("follow.why")}</h2>
-      <p>${robot ? robotWhy(robot, map) : reasonText(why, why_words, map)}</p>
+      <p>${robot ? robotWhy(robot, map) : orderReason(order, map)}</p>
     </section>`;
   }
 

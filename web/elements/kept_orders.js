@@ -1,8 +1,8 @@
-/** Orders that are kept on this device: those that wait for a network, what became of them, and a way to mend them. */
+/** Orders that are kept on this device: those that wait for a network, what became of them, and a way to correct them. */
 import { html, nothing } from "lit";
 import { followPage, orderPage } from "../links.js";
 import { OnLive } from "../live.js";
-import { anyKept, discard, isWaiting, keptOrders, sendKept } from "../outbox.js";
+import { announce, anyKept, discard, isForLater, isWaiting, keptOrders, sendAgain, sendKept } from "../outbox.js";
 import { loadMap, titleOf } from "../posts.js";
 import { onKept, sayKept } from "../session.js";
 import { hasText, t } from "../texts.js";
@@ -10,7 +10,7 @@ import { problemLine } from "./field.js";
 import { icon } from "./icon.js";
 import { PageElement } from "./page_element.js";
 /** @import { CampusMap } from "../api_types.ts" */
-/** @import { KeptOrder } from "../outbox.js" */
+/** @import { KeptOrder, Refusal } from "../outbox.js" */
 
 /** An answer may get lost while the stream stays open and the browser says nothing of its network. */
 const TRY_AGAIN_MS = 5_000;
@@ -58,6 +58,8 @@ export class KeptOrders extends PageElement {
   async #look() {
     const before = this.kept.length;
     this.kept = await keptOrders(this.person_id);
+    // The shell binds them: what it does not know it would take away when it is drawn again.
+    this.dispatchEvent(new CustomEvent("kept", { detail: this.kept }));
     sayKept(await anyKept());
     if (this.kept.length > before) this.focusOn(".kept");
   }
@@ -77,14 +79,28 @@ export class KeptOrders extends PageElement {
       <div>
         <strong>${this.#title(wanted.from_post)}${icon("arrow")}<span class="unseen">→</span>${this.#title(wanted.to_post)}</strong>
         <span>${t("offline.for", { recipient: wanted.recipient })}</span>
-        ${refusal ? problemLine(inWords(refusal)) : html`<span>${t(order_id ? "offline.sent" : "offline.waiting")}</span>`}
+        ${refusal ? problemLine(t("offline.not_sent", { reason: inWords(refusal) })) : html`<span>${t(order_id ? "offline.sent" : "offline.waiting")}</span>`}
       </div>
       <div class="choices">
         ${order_id ? html`<a class="button" href=${followPage(order_id)} @click=${() => discard(order.key)}>${t("offline.follow")}</a>` : nothing}
-        ${refusal ? html`<button @click=${() => mend(order)}>${t("offline.mend")}</button>` : nothing}
+        ${refusal ? this.#remedy(order, refusal) : nothing}
         <button class="quiet" @click=${() => discard(order.key)}>${t(order_id ? "offline.put_away" : "offline.discard")}</button>
       </div>
     </li>`;
+  }
+
+  /** @param {KeptOrder} order @param {Refusal} refusal */
+  #remedy(order, refusal) {
+    return isForLater(refusal)
+      ? html`<button @click=${() => this.#again(order)}>${t("offline.again")}</button>`
+      : html`<button @click=${() => mend(order)}>${t("offline.mend")}</button>`;
+  }
+
+  /** @param {KeptOrder} order */
+  async #again(order) {
+    await sendAgain(order).catch(() => undefined);
+    announce();
+    await this.#look();
   }
 
   /** @param {string} post */
@@ -93,7 +109,7 @@ export class KeptOrders extends PageElement {
   }
 }
 
-/** @param {NonNullable<KeptOrder["refusal"]>} refusal */
+/** @param {Refusal} refusal */
 function inWords({ code, detail, fields }) {
   const field = fields.find((name) => hasText(`error.malformed.${name}`));
   if (field) return t(`error.malformed.${field}`);

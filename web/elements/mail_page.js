@@ -43,7 +43,7 @@ export class MailPage extends PageElement {
     this.state = "all";
     this.looking = false;
     this.problem = "";
-    new OnLive(this, { order: (order) => this.#update(order), connected: (connected) => connected && this.#fetch() });
+    new OnLive(this, { order: (order) => this.#update(order), resync: () => this.#fetch() });
   }
 
   firstUpdated() {

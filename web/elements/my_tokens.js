@@ -53,7 +53,7 @@ export class MyTokens extends SettingsPart {
   #form() {
     return html`<form novalidate @submit=${this.#make}>
       <h3>${t("settings.new_token")}</h3>
-      ${field({ name: "token_name", label: t("settings.token_name") }, ({ id }) => html`<input id=${id} name="token_name" maxlength="100" required autocomplete="off" />`)}
+      ${field({ name: "token_name", label: t("settings.token_name") }, ({ id }) => html`<input id=${id} name="token_name" maxlength="80" required autocomplete="off" />`)}
       <fieldset class="ticks">
         <legend>${t("settings.scopes")}</legend>
         ${this.#scopes().map(

@@ -24,7 +24,7 @@ export class NoticesPage extends PageElement {
     this.notices = null;
     this.problem = "";
     new Ticking(this, 5_000);
-    new OnLive(this, { notice: () => this.#fetch(), connected: (connected) => connected && this.#fetch() });
+    new OnLive(this, { notice: () => this.#fetch(), resync: () => this.#fetch() });
   }
 
   firstUpdated() {

@@ -77,7 +77,7 @@ export class OrderDelegates extends PageElement {
 
   #form() {
     return html`<form novalidate @submit=${this.#name}>
-      ${field({ name: "delegate_name", label: t("delegate.name") }, ({ id }) => html`<input id=${id} name="delegate_name" maxlength="200" autocomplete="off" required />`)}
+      ${field({ name: "delegate_name", label: t("delegate.name") }, ({ id }) => html`<input id=${id} name="delegate_name" maxlength="80" autocomplete="off" required />`)}
       ${field(
         { name: "delegate_email", label: t("delegate.email"), hint: t("delegate.email_hint"), optional: true },
         ({ id, describedBy }) => html`<input id=${id} name="delegate_email" type="email" autocomplete="off" aria-describedby=${describedBy} />`,

@@ -37,7 +37,7 @@ export class OrderPage extends PageElement {
     this.help = false;
     new OnLive(this, {
       order: (order) => (this.orders = [order, ...this.orders.filter(({ id }) => id !== order.id)]),
-      connected: (connected) => connected && this.#fetch(),
+      resync: () => this.#fetch(),
     });
   }
 

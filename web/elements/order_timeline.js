@@ -1,6 +1,6 @@
 /** What happened, when it happened, and what is still to come. */
 import { html, nothing } from "lit";
-import { timeline } from "../order_words.js";
+import { eventReason, timeline } from "../order_words.js";
 import { serverNow } from "../server_clock.js";
 import { t } from "../texts.js";
 import { clockTime, dayAndTime } from "../times.js";
@@ -18,7 +18,7 @@ export function orderTimeline(order, map) {
       return html`<li class=${i === latest ? "now" : event ? "past" : "ahead"} aria-current=${i === latest ? "step" : nothing}>
         <div>
           <span class="what">${text}${event ? nothing : html`<span class="unseen">, ${t("timeline.later")}</span>`}</span>
-          ${event ? remarks(event) : nothing}
+          ${event ? remarks(event, map) : nothing}
         </div>
         ${time ? html`<time datetime=${time}>${dayAndTime(time, serverNow())}</time>` : nothing}
       </li>`;
@@ -26,9 +26,10 @@ export function orderTimeline(order, map) {
   </ol>`;
 }
 
-/** @param {OrderEvent} event */
-function remarks({ at, robot_at, reason }) {
+/** @param {OrderEvent} event @param {CampusMap} map */
+function remarks(event, map) {
+  const { at, robot_at } = event;
   const late = robot_at !== null && Date.parse(at) - Date.parse(robot_at) > TOLD_LATER_MS;
-  const told = [reason, late && t("timeline.told_later", { time: clockTime(at) })].filter(Boolean);
+  const told = [eventReason(event, map), late && t("timeline.told_later", { time: clockTime(at) })].filter(Boolean);
   return told.length ? html`<span class="remark">${told.join(" · ")}</span>` : nothing;
 }

@@ -44,7 +44,7 @@ export class PageShell extends PageElement {
     this.person = null;
     /** @type {() => unknown} */
     this.content = () => nothing;
-    /** @type {KeptOrder[]} orders that wait on this device, when the page was opened */
+    /** @type {KeptOrder[]} orders that wait on this device */
     this.kept = [];
     this.keptJustNow = false;
     /** @type {(() => void) | null} */
@@ -56,6 +56,7 @@ export class PageShell extends PageElement {
     this.connected = true;
     new OnLive(this, {
       notice: () => this.#count(),
+      resync: () => this.#count(),
       connected: (connected) => this.#nowConnected(connected),
     });
     this.addEventListener("notices-read", () => this.#count());
@@ -81,7 +82,7 @@ export class PageShell extends PageElement {
       ${this.takeNewVersion ? this.#newVersion(this.takeNewVersion) : nothing}
       <main id="content" tabindex="-1">
         ${this.person && this.kept.length ? html`<kept-orders .person_id=${this.person.id} .kept=${this.kept}
-          ?justNow=${this.keptJustNow}></kept-orders>` : nothing}
+          ?justNow=${this.keptJustNow} @kept=${(/** @type {CustomEvent<KeptOrder[]>} */ { detail }) => (this.kept = detail)}></kept-orders>` : nothing}
         ${this.person ? this.#page(this.person) : html`<sign-in .about=${this.about}></sign-in>`}
       </main>
       ${this.person && this.page !== "notices" ? html`<notice-toast .inbox=${this.inbox} .since=${this.about?.now}></notice-toast>` : nothing}
@@ -165,7 +166,7 @@ export class PageShell extends PageElement {
   /** @param {boolean} connected */
   async #nowConnected(connected) {
     this.connected = connected;
-    if (connected || !this.inbox) await this.#count();
+    if (!this.inbox) await this.#count();
     if (!connected && (await api.me().catch(() => this.person)) === null) location.reload();
   }
 }

@@ -41,7 +41,7 @@ export class PrintPage extends PageElement {
     this.problem = "";
     new OnLive(this, {
       order: (order) => order.id === this.order_id && this.#lookAgain(),
-      connected: (connected) => connected && this.#lookAgain(),
+      resync: () => this.#lookAgain(),
     });
   }
 

@@ -5,6 +5,7 @@ import * as api from "../api.js";
 import { mayBeTakenOut, takeOut } from "../corridor_actions.js";
 import { openWays, pause, recall, resume, stop } from "../mailroom_actions.js";
 import { inWords } from "../problems.js";
+import { reasonText } from "../reason_words.js";
 import { serverNow } from "../server_clock.js";
 import { t } from "../texts.js";
 import { ago } from "../times.js";
@@ -54,7 +55,7 @@ export class RobotCommands extends PageElement {
       ${this.problem ? problemLine(this.problem) : nothing}
       ${this.commands.length
         ? html`<h3>${t("robots.told")}</h3>
-            <ul class="told">${this.commands.map(toldLine)}</ul>`
+            <ul class="told">${this.commands.map((command) => toldLine(command, this.map))}</ul>`
         : nothing}
       <ask-dialog @done=${() => this.#fetch(robot.name)}></ask-dialog>`;
   }
@@ -100,12 +101,12 @@ export class RobotCommands extends PageElement {
   }
 }
 
-/** @param {Command} command */
-function toldLine({ kind, asked_at, accepted, reason, online }) {
+/** @param {Command} command @param {CampusMap | null} map */
+function toldLine({ kind, asked_at, accepted, reason, reason_words, online }, map) {
   const answer = accepted === null ? (online ? "waits" : "has_not_heard") : accepted ? "did" : "refused";
   return html`<li class=${answer}>
     <strong>${t(`robots.command.${kind}`)}</strong>
-    <span>${t(`robots.answer.${answer}`)}${reason ? html`: ${reason}` : nothing}</span>
+    <span>${t(`robots.answer.${answer}`)}${reason ? html`: ${reasonText(reason, reason_words, map)}` : nothing}</span>
     <time datetime=${asked_at}>${ago(asked_at, serverNow())}</time>
   </li>`;
 }

@@ -41,7 +41,7 @@ export class RobotPage extends PageElement {
     this.map = null;
     this.problem = "";
     new Ticking(this, 5_000);
-    new OnLive(this, { robot: (robot) => this.#update(robot), connected: (connected) => connected && this.#fetch() });
+    new OnLive(this, { robot: (robot) => this.#update(robot), resync: () => this.#fetch() });
   }
 
   firstUpdated() {

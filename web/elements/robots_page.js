@@ -33,7 +33,7 @@ export class RobotsPage extends PageElement {
     this.problem = "";
     this.fetched_ms = -LOOK_AGAIN_MS;
     new Ticking(this, 5_000);
-    new OnLive(this, { robot: (robot) => this.#update(robot), connected: (connected) => connected && this.#fetch() });
+    new OnLive(this, { robot: (robot) => this.#update(robot), resync: () => this.#fetch() });
   }
 
   render() {

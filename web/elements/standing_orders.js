@@ -3,6 +3,7 @@ import { html, nothing } from "lit";
 import * as api from "../api.js";
 import { titleOf } from "../posts.js";
 import { inWords } from "../problems.js";
+import { inEnglish } from "../reason_words.js";
 import { serverNow } from "../server_clock.js";
 import { t } from "../texts.js";
 import { dayAndTime, weekdayNames, wallClock } from "../times.js";
@@ -55,7 +56,7 @@ export class StandingOrders extends PageElement {
         <span class="ends">${titleOf(map, one.from_post)}${icon("arrow")}<span class="unseen">→</span>${titleOf(map, one.to_post)}</span>
         <span class="when">${one.description ? html`${t("mail.to", { name: one.recipient.name })} · ` : nothing}${rhythm}</span>
         ${one.next_at ? html`<span class="when">${t("mail.next", { time: dayAndTime(one.next_at, serverNow()) })}</span>` : nothing}
-        ${one.why ? html`<span class="when">${one.why}</span>` : nothing}
+        ${one.why ? html`<span class="when">${inEnglish(one.why)}</span>` : nothing}
       </div>
       ${one.ended ? nothing : this.#actions(one, rhythm)}
     </li>`;

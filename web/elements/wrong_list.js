@@ -6,7 +6,7 @@ import { takeOut } from "../corridor_actions.js";
 import { followPage, robotPage } from "../links.js";
 import { openWays, release, resolve, resume } from "../mailroom_actions.js";
 import { orderTitle, orderWay, since, withoutOwnWords } from "../mailroom_words.js";
-import { reasonText, robotWhy } from "../order_words.js";
+import { orderReason, robotWhy } from "../order_words.js";
 import { titleOf } from "../posts.js";
 import { serverNow } from "../server_clock.js";
 import { t } from "../texts.js";
@@ -69,8 +69,8 @@ function ofAlarm(alarm, map, doing) {
 /** @param {Order} order @param {CampusMap} map @param {Doing | null} doing */
 function ofOrder(order, map, doing) {
   const what = t("mailroom.wrong.attention", { way: orderWay(order, map) });
-  const { why: said, why_words } = doing ? order : withoutOwnWords(order);
-  const why = said ? reasonText(said, why_words, map) : "";
+  const shown = doing ? order : withoutOwnWords(order);
+  const why = shown.why ? orderReason(shown, map) : "";
   const more = doing ? t("mailroom.wrong.who_why", { order: orderTitle(order), why }) : why;
   return line(what, more, since(order), doing && [
     html`<a class="button quiet" href=${followPage(order.id)}>${t("mailroom.look")}<span class="unseen">: ${orderTitle(order)}</span></a>`,
