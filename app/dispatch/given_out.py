@@ -10,7 +10,7 @@ from typing import Final
 import structlog
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.dispatch.open_work import OpenWork, OrderNow, look_at_work
+from app.dispatch.open_work import OpenWork, OrderNow, StopNow, look_at_work
 from app.dispatch.planning.deciding import Decision
 from app.fleet.mission_updates import tell_mission
 from app.fleet.service import Fleet, known_robot
@@ -87,12 +87,23 @@ def changes_of(work: OpenWork, decision: Decision) -> Changes:
     }
     routes = {}
     for name, route in decision.routes.items():
-        had = [stop.id for stop in work.stops.get(name, ())]
-        wanted = [stop.goal.key for stop in route if stop.goal.key in new or stop.goal.key in had]
-        wanted += [stop for stop in had if stop not in wanted]
-        if wanted != had:
+        had = work.stops.get(name, ())
+        wanted = _reordered(had, [stop.goal.key for stop in route], new)
+        if wanted != [stop.id for stop in had]:
             routes[name] = wanted
     return Changes(work, routes, new, given, taken)
+
+
+def _reordered(had: Sequence[StopNow], planned: Sequence[str], new: Mapping[str, NewStop]) -> list[str]:
+    """Return the ids of a robot's stops: what was planned, then the others in the order that they had.
+
+    An order of which only one stop was planned (no way leads to the other) counts as not planned: else its mail would
+    be given before it is loaded.
+    """
+    split = {stop.order_id for stop in had if stop.id not in planned} - {None}
+    movable = {stop.id for stop in had if stop.order_id not in split}
+    wanted = [key for key in planned if key in new or key in movable]
+    return wanted + [stop.id for stop in had if stop.id not in wanted]
 
 
 async def give_out(session: AsyncSession, fleet: Fleet, changes: Changes, own: set[str]) -> bool:

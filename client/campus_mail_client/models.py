@@ -172,7 +172,8 @@ class CommandReason(Model):
 
 
 class CommandView(Model):
-    """What a robot was told, and what became of it: `accepted` null until it answers.
+    """What a robot was told, and what became of it: `accepted` null until it answers; `reason` is its own
+    sentence, in English, `reason_words` the same as a text of the catalogue, if it is one.
 
     `online` false: it has not heard of it yet, and will when it is back.
     """
@@ -185,6 +186,7 @@ class CommandView(Model):
     answered_at: datetime | None
     accepted: bool | None
     reason: str | None
+    reason_words: Words | None
     online: bool
 
 

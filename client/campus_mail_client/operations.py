@@ -159,12 +159,14 @@ class Operations:
         return answer
 
     def mail_code(self, wish: CodeRequest) -> CodeMailed:
-        """Mail an 8-digit code to an address of the campus."""
+        """Mail an 8-digit code to an address of the campus; it is good in the browser that asks, known by a
+        cookie.
+        """
         answer: CodeMailed = self._call("POST", "/api/v1/sign-in/codes", CodeMailed, body=wish)
         return answer
 
     def sign_in(self, wish: SignIn) -> PersonView:
-        """Exchange the mailed code for a session cookie."""
+        """Exchange the mailed code for a session cookie, in the browser that asked for it."""
         answer: PersonView = self._call("POST", "/api/v1/sign-in", PersonView, body=wish)
         return answer
 

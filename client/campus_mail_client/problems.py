@@ -180,6 +180,12 @@ class NoSuchCorridor(Problem):
     code = "no_such_corridor"
 
 
+class NoSuchLink(Problem):
+    """The link was not made for this demonstration, or is used from another machine. (404)"""
+
+    code = "no_such_link"
+
+
 class NoSuchPost(Problem):
     """The campus map has no post of this name. (404)"""
 
@@ -600,6 +606,7 @@ BY_CODE: Final[Mapping[str, type[Problem]]] = {
     "no_code": NoCode,
     "no_enrolment_code": NoEnrolmentCode,
     "no_such_corridor": NoSuchCorridor,
+    "no_such_link": NoSuchLink,
     "no_such_post": NoSuchPost,
     "no_way": NoWay,
     "no_webhook": NoWebhook,

@@ -218,6 +218,27 @@ async def test_what_was_decided_on_a_world_that_has_changed_is_not_written(
     assert [row.update_number for row in await service.rows(MissionRow, robot="r1")] == [2]
 
 
+async def test_no_mail_is_given_before_it_is_loaded_when_no_way_leads_to_where_it_is_loaded(
+    service: Service, robots: tuple[PlayedRobot, PlayedRobot], clock: SteppedClock
+) -> None:
+    state = service.app.state
+    order_id = await service.order("post1", "post2")
+    await robots[0].mission()
+    other_id = await service.order("post3", "post4")
+    await until(lambda: _all_have_robots(service))
+    planner = state.planner
+    work = await planner._look()
+    decision = planner._decide(work, state.traffic_desk.timetable)
+    assert decision is not None
+    (name,) = {stop.robot for stop in work.of_orders[order_id]}
+    load, give = work.of_orders[order_id]
+    without_load = tuple(stop for stop in decision.routes[name] if stop.goal.key != load.id)
+    changes = changes_of(work, _with_routes(decision, {**decision.routes, name: without_load}))
+    route = changes.routes.get(name, [stop.id for stop in work.stops[name]])
+    assert route.index(load.id) < route.index(give.id)
+    assert {stop.id for stop in work.of_orders[other_id] if stop.robot == name} <= set(route)
+
+
 def _with_routes(decision: Decision, routes: Routes) -> Decision:
     return replace(decision, timed=replace(decision.timed, routes=routes))
 

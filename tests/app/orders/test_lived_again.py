@@ -1,6 +1,6 @@
 """What makes lives at random worth their time: one that failed can be lived again, and looked into."""
 
-from app.tables import MessageToRobot, RobotMessage
+from app.tables import MessageToRobot, Order, OrderState, RobotMessage
 from tests.app.orders.test_lives_at_random import LivesOfOrders
 
 
@@ -21,3 +21,24 @@ def lived() -> dict[str, list[str]]:
         return life.run(life.everything()) | life.run(life.world.everything(MessageToRobot, RobotMessage))
     finally:
         life.teardown()
+
+
+def test_mail_that_was_passed_on_may_be_delivered_after_its_order_has_ended() -> None:
+    """Custody follows the receipts; the order stays as it ended (decision 0044)."""
+    life = LivesOfOrders()
+    life.begin(names=421, from_post="post4", step=3, so_far="it sets out with it", alone=False)
+    life.a_dispatcher_passes_mail_on(number=0, post="post4", so_far=None)
+    life.dispatch_looks()
+    (order,) = life.run(life.world.rows(Order))
+    life.a_robot_hears(robot=order.robot, count=4)
+    life.the_network_comes_and_goes(robot=order.robot, online=False)
+    life.a_dispatcher_stops_an_order(number=0, so_far=None)
+    assert life.tries(life.world.orders.resolve, "dispatcher", order.id, "held", "It is in the mailroom.")
+    for luck in ("arrives", "mailroom", "arrives", "recipient"):
+        life.a_robot_acts(robot=order.robot, luck=luck)
+    life.the_network_comes_and_goes(robot=order.robot, online=True)
+    life.a_robot_speaks(robot=order.robot, count=40, is_heard=True)
+    (order,) = life.run(life.world.rows(Order))
+    assert (order.state, life.world.where[order.id]) == (OrderState.HELD, "recipient")
+    life.everything_holds()
+    life.teardown()

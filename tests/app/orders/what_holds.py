@@ -6,7 +6,7 @@ from typing import Any
 
 from app.orders.custody import custody_of
 from app.orders.telling import ONCE, TOLD
-from app.orders.transitions import MAIL_ABOARD, ROBOT_COMING, By, is_allowed
+from app.orders.transitions import MAIL_ABOARD, NOTHING_ABOARD, ROBOT_COMING, By, is_allowed
 from app.tables import Handover, MissionRow, Notice, Order, OrderEvent, StopRow
 from app.tables import OrderState as S
 from protocol.parts import Purpose
@@ -53,7 +53,7 @@ class Record:
             self.every_change_is_explained(order, theirs)
             self.nothing_changes_in_silence(order)
             self.terminal_is_terminal(order, theirs)
-            self.exactly_one_holds_the_mail(order, passed_on)
+            self.exactly_one_holds_the_mail(order, passed_on, theirs)
             told = [(self.who_is(one.person_id), str(one.kind)) for one in notices if one.order_id == order.id]
             self.everybody_is_told_once(theirs, Counter(told))
         await self.robots_do_what_the_record_says(orders)
@@ -90,7 +90,7 @@ class Record:
             self.ended[order.id] = order.state
         assert not ENDED & {one.state for one in events if one.kind == "moved"} - {order.state}
 
-    def exactly_one_holds_the_mail(self, order: Order, handovers: list[Handover]) -> None:
+    def exactly_one_holds_the_mail(self, order: Order, handovers: list[Handover], events: list[OrderEvent]) -> None:
         chain = custody_of(order, handovers)
         assert [held.until for held in chain[:-1]] == [held.since for held in chain[1:]], "a chain without gaps"
         assert chain[-1].until is None, "and one who holds it now"
@@ -98,11 +98,12 @@ class Record:
         holder = chain[-1].name or chain[-1].holder
         state = order.state_before_attention or order.state
         legs = 1 + sum(one.stop_id.startswith("passed-on-") for one in handovers)
-        is_loaded_again = sum(one.purpose == Purpose.LOAD for one in handovers) > legs
+        before_the_end = legs - ended_with_nothing_aboard(events)
+        is_loaded_again = sum(one.purpose == Purpose.LOAD for one in handovers) > before_the_end
         if state in MAIL_ABOARD:
             assert holder == order.robot
         elif is_loaded_again:
-            assert state in ENDED, "only what has come back and ended can be loaded again, by a robot that knew nothing"
+            assert state in ENDED, "only mail of an ended order can be loaded again, by a robot that knew nothing"
         elif state is S.QUEUED or state in ROBOT_COMING or state is S.RETURNED:
             assert holder == ("sender" if legs == 1 or state is S.RETURNED else "mailroom")
         elif state in {S.DELIVERED, S.HELD}:
@@ -134,6 +135,13 @@ class Record:
             if not waits and not await self.world.unheard(robot):
                 assert robot.still_to_do() == left
                 assert set(robot.duties.held.cargo) == self.world.aboard(robot.name)
+
+
+def ended_with_nothing_aboard(events: list[OrderEvent]) -> bool:
+    """Whether the order ended while no robot had its mail: a load on its last leg came after the end."""
+    states = [one.state for one in events if one.kind == "moved"]
+    left = next(one for one in reversed(states) if one not in ENDED | {S.ATTENTION})
+    return states[-1] in ENDED and left in NOTHING_ABOARD
 
 
 async def how_it_ended(world: World) -> list[str]:
