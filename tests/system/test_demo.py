@@ -11,7 +11,7 @@ from typing import Any
 
 import psutil
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Page, expect, sync_playwright
 
 from tests.system.rig import ROOT, free_port, wait_for
 
@@ -67,6 +67,13 @@ def serving_demo(tmp_path: Path) -> Iterator[ServingDemo]:
     if demo.process.poll() is None:
         demo.process.kill()
         demo.process.wait()
+
+
+@pytest.fixture
+def page(browser_type_launch_args: dict[str, Any]) -> Iterator[Page]:
+    """A page whose event loop ends with the test: the plugin's own would keep one running for all that follow."""
+    with sync_playwright() as playwright, playwright.chromium.launch(**browser_type_launch_args) as browser:
+        yield browser.new_page()
 
 
 WHAT_THEY_SEE = {

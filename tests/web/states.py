@@ -146,7 +146,7 @@ async def following(ada: Visitor, order_id: str) -> States:
         for state in states:
             code = CODES[role].get(state)
             order |= {"my_role": role, "state": state, "version": order["version"] + 1, "my_code": code}
-            await page.evaluate(LEAVE_AND_COME_BACK)
+            await ada.asks_anew()
             await expect(page.locator(f".standing.{state}")).to_be_visible()
             yield f"follow, {role}, {state}"
     await page.unroute_all()

@@ -12,10 +12,6 @@ pytestmark = pytest.mark.browser
 STATES = ("queued", "assigned", "to_sender", "at_sender", "carrying", "at_recipient", "delivered", "returning")
 STATES += ("at_return", "returned", "held", "expired", "cancelled", "attention")
 CODES = {"sender": {"at_sender": "load", "at_return": "return"}, "recipient": {"at_recipient": "receive"}}
-COME_BACK = """() => {
-  dispatchEvent(new Event("pagehide"));
-  dispatchEvent(new PageTransitionEvent("pageshow", {persisted: true}));
-}"""
 GAPS = re.compile(r"\{\w+\}|\b(state|next|badge|timeline|follow|code|stage)\.[a-z_]+")
 
 
@@ -37,7 +33,7 @@ async def test_every_state_is_said_in_words_with_what_comes_next(visit, role, th
     heading = page.get_by_role("heading", level=1)
     for state in STATES:
         order |= {"state": state, "version": order["version"] + 1, "my_code": CODES[role].get(state)}
-        await page.evaluate(COME_BACK)
+        await ada.asks_anew()
         await expect(page.locator(f".standing.{state}")).to_be_visible()
         await expect(heading).not_to_have_text("")
         said[state] = f"{await heading.inner_text()} {await page.locator('.standing .next').inner_text()}"

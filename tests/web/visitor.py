@@ -19,6 +19,11 @@ NOBODY = re.compile(r"Failed to load resource: the server responded with a statu
 WHO_AM_I = "/api/v1/me"
 ORDERS = re.compile(r"/api/v1/orders(/[\w-]+)?")
 NO_WORKER = "Service Worker registration blocked by Playwright"
+RESYNC = """(name) => {
+  const channel = new BroadcastChannel(name);
+  channel.postMessage({ after: null, event: { kind: "resync", data: "null", id: "" } });
+  channel.close();
+}"""
 AXE = ROOT / "web/node_modules/axe-core/axe.min.js"
 AXE_RUN = """async () => {
   const tags = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"];
@@ -86,6 +91,11 @@ class Visitor:
             answer = await api.post(f"/api/v1{path}", data=body, headers=own)
             assert answer.ok, await answer.text()
         return self
+
+    async def asks_anew(self) -> None:
+        """Their page fetches everything once more, as when the tab that reads the stream has missed something."""
+        person = await self.api("/me")
+        await self.page.evaluate(RESYNC, f"live {person['id']}")
 
     async def assert_accessible(self, page: Page | None = None) -> None:
         """axe-core finds no violation of WCAG 2.2 A and AA on what the page shows now."""
