@@ -158,7 +158,7 @@ def types_of(openapi: Mapping[str, Any]) -> str:
         path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ.get('PATH', '')}"
         done = subprocess.run(command, check=False, capture_output=True, text=True, env={**os.environ, "PATH": path})
         if done.returncode:
-            sys.exit(f"openapi-typescript failed (is web/node_modules there? `make setup`):\n{done.stderr}")
+            sys.exit(f"openapi-typescript failed (is web/node_modules there? `make setup-develop`):\n{done.stderr}")
         return made.read_text(encoding="utf-8")
 
 
