@@ -30,10 +30,11 @@ ANOTHER_FOLDER = "Stop that one, or give this one a data folder of its own: CAMP
 class PortTaken(StartError):
     """Another program listens on this port."""
 
-    def __init__(self, host: str, port: int) -> None:
+    def __init__(self, host: str, port: int, verb: str) -> None:
+        other = f"--port {port + 1}"
         super().__init__(
             f"Port {port} on {host} is taken by another program, perhaps another Campus Mail. "
-            f"Stop that one, or choose another port: --port {port + 1}."
+            f'Stop that one, or choose another port: {other}, or make {verb} ARGS="{other}".'
         )
 
 
@@ -49,8 +50,11 @@ class Server(uvicorn.Server):
         await super().shutdown(sockets)
 
 
-def listen(host: str, port: int) -> socket.socket:
-    """A bound socket. Raises PortTaken, or StartError for an address that is not this machine's."""
+def listen(host: str, port: int, verb: str = "serve") -> socket.socket:
+    """A bound socket. Raises PortTaken, or StartError for an address that is not this machine's.
+
+    `verb`: what `make` calls it.
+    """
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     listening = socket.socket(family, socket.SOCK_STREAM)
     listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -60,7 +64,7 @@ def listen(host: str, port: int) -> socket.socket:
     except OSError as error:
         listening.close()
         if error.errno == errno.EADDRINUSE:
-            raise PortTaken(host, port) from None
+            raise PortTaken(host, port, verb) from None
         raise StartError(f"Cannot listen on {host} port {port}: {error.strerror}.") from error
     return listening
 

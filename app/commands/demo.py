@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from app.commands.speaking import errors_in_words
+from app.commands.speaking import demonstrating
 
 
 def demo(
@@ -19,14 +19,11 @@ def demo(
     data: Annotated[Path | None, typer.Option(help="Folder to keep everything in; default: a temporary one.")] = None,
 ) -> None:
     """See the first letter: service, simulated robot and one order, on this machine."""
-    typer.echo(
-        "Campus Mail: starting a service, a robot and one order on this machine. Ctrl-C ends all of it.", err=as_json
-    )
-    from app.demo.command import demonstrate
-    from app.demo.settings import default_speed
+    with demonstrating("a service, a robot and one order", as_json=as_json, goes_on=not once):
+        from app.demo.command import demonstrate
+        from app.demo.settings import default_speed
 
-    speed = speed or default_speed(once=once, hands_on=hands_on)
-    with errors_in_words():
+        speed = speed or default_speed(once=once, hands_on=hands_on)
         code = demonstrate(
             data, port=port, speed=speed, once=once, as_json=as_json, low_battery=low_battery, hands_on=hands_on
         )

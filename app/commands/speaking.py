@@ -15,12 +15,27 @@ from rich.table import Table
 
 from protocol.one_line import one_line
 
-FOUND_WRONG, CANNOT = 1, 2
+FOUND_WRONG, CANNOT, INTERRUPTED = 1, 2, 130
 # Whatever is piped somewhere is not cut to the width of a terminal that is not there.
 WIDTH_WITHOUT_TERMINAL = 160
 
 AsJson = Annotated[bool, typer.Option("--json", help="One JSON document on stdout, for programs.")]
 Email = Annotated[str, typer.Argument(help="Mail address of the person.")]
+
+
+@contextlib.contextmanager
+def demonstrating(what: str, *, as_json: bool, goes_on: bool) -> Iterator[None]:
+    """Say what a demonstration starts before it is loaded, and, if Ctrl-C comes as early as that, that it stops.
+
+    Where it `goes_on` until somebody stops it, that is how it should end.
+    """
+    typer.echo(f"Campus Mail: starting {what} on this machine. Ctrl-C ends all of it.", err=as_json)
+    try:
+        with errors_in_words():
+            yield
+    except KeyboardInterrupt:
+        typer.echo("Stopping: nothing has been started yet.", err=as_json)
+        raise typer.Exit(0 if goes_on else INTERRUPTED) from None
 
 
 @contextlib.contextmanager

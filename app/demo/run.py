@@ -18,7 +18,7 @@ A_MOMENT_S = 0.5
 
 def run(demo: Demo) -> int:
     """The exit code. Raises StartError, a taken port above all, before anything is started."""
-    with listen("127.0.0.1", demo.port) as free:
+    with listen("127.0.0.1", demo.port, "demo") as free:
         demo = replace(demo, port=free.getsockname()[1])  # 0 takes a free one
     return asyncio.run(_run(demo))
 

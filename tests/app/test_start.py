@@ -154,9 +154,11 @@ def test_a_taken_port_is_named_with_a_way_out_and_nothing_is_made(
         monkeypatch.setenv("CAMPUS_MAIL_DATA", str(tmp_path / "data"))
         served = CliRunner().invoke(commands, ["serve", "--port", str(port)])
         shown = CliRunner().invoke(commands, ["demo", "--once", "--json", "--port", str(port)])
-    for ran in (served, shown):
+        driven = CliRunner().invoke(commands, ["fleet-demo", "--json", "--port", str(port)])
+    for verb, ran in {"serve": served, "demo": shown, "fleet-demo": driven}.items():
         assert (ran.exit_code, ran.stdout) == (2, "")
         assert f"Port {port} on 127.0.0.1 is taken" in ran.stderr
+        assert f'make {verb} ARGS="--port {port + 1}"' in ran.stderr
     assert not (tmp_path / "data").exists()
 
 

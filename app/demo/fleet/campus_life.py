@@ -9,7 +9,7 @@ from datetime import datetime, timedelta
 from random import Random
 from typing import Any
 
-from app.demo.fleet.errands import OFFICES, Errand, address, errands, first_errands
+from app.demo.fleet.errands import Errand, address, errands, first_errands
 from app.demo.fleet.settings import FleetDemo
 from app.demo.people import SimulatedPerson
 from app.demo.settings import MAILROOM, DemoFailed
@@ -19,7 +19,7 @@ Order = dict[str, Any]
 
 LOOK_EVERY_S = 0.3
 ALARMS_EVERY_S = 2.0
-ROBOTS_LIMIT_S = 60.0
+ROBOTS_LIMIT_S, FOR_EACH_ROBOT_S = 60.0, 5.0
 COMES_WITHIN_S = (3.0, 20.0)
 SHOW_AGAIN_S = 15.0
 """Of the demonstration's clock: the code stays before the camera a little longer than that."""
@@ -45,19 +45,20 @@ class CampusLife:
     _alarms: set[int] = field(default_factory=set)
 
     def __post_init__(self) -> None:
-        self._people = {name: SimulatedPerson(address(name), self.demo) for name in OFFICES}
+        self._people = {name: SimulatedPerson(address(name), self.demo) for name in self.demo.campus.offices}
         self._mailroom = SimulatedPerson(MAILROOM, self.demo)
         self._draw = Random(f"{self.demo.seed}/people")
-        self._stream = errands(self.demo.seed)
+        self._stream = errands(self.demo.seed, self._people)
 
     async def begin(self) -> None:
         """Everybody signs in, the robots are there. Raises DemoFailed."""
         everybody = [self._mailroom, *self._people.values()]
         await asyncio.gather(*(person.sign_in() for person in everybody))
-        until_s = time.monotonic() + ROBOTS_LIMIT_S
+        limit_s = ROBOTS_LIMIT_S + FOR_EACH_ROBOT_S * len(self.demo.homes)
+        until_s = time.monotonic() + limit_s
         while missing := await self._missing():
             if time.monotonic() > until_s:
-                raise DemoFailed(f"{', '.join(missing)} did not sign in within {ROBOTS_LIMIT_S:.0f} s.")
+                raise DemoFailed(f"{', '.join(missing)} did not sign in within {limit_s:.0f} s.")
             await asyncio.sleep(LOOK_EVERY_S)
 
     async def _missing(self) -> list[str]:
@@ -67,18 +68,18 @@ class CampusLife:
 
     async def once(self) -> None:
         """One order for every robot; until all of them have ended."""
-        for errand in first_errands(list(self.demo.homes)):
+        for errand in first_errands(self.demo.campus):
             await self._order(errand)
         while self.orders:
             await self._look()
 
     async def go_on(self) -> None:
         """Ever more orders, as many at a time as the robots get done."""
-        for errand in first_errands(list(self.demo.homes)):
+        for errand in first_errands(self.demo.campus):
             await self._order(errand)
         next_s = self.clock.now() + self.demo.interval_s
         while True:
-            if self.clock.now() > next_s and len(self.orders) < MOST_OPEN_PER_ROBOT * self.demo.robots + 2:
+            if self.clock.now() > next_s and len(self.orders) < MOST_OPEN_PER_ROBOT * len(self.demo.homes) + 2:
                 await self._order(next(self._stream))
                 next_s = self.clock.now() + self._draw.expovariate(1 / self.demo.interval_s)
             await self._look()
@@ -98,7 +99,7 @@ class CampusLife:
             await asyncio.sleep(ALARMS_EVERY_S)
 
     async def _order(self, errand: Errand) -> None:
-        from_post, to_post = errand.posts
+        from_post, to_post = (self.demo.campus.offices[name] for name in (errand.sender, errand.recipient))
         sender, more = self._people[errand.sender], {"priority": errand.priority}
         if errand.priority == "high":
             sender, more = self._mailroom, {**more, "on_behalf_of": address(errand.sender)}
@@ -118,7 +119,7 @@ class CampusLife:
         for order_id in self.orders.keys() - now.keys():
             self._has_ended(await self._mailroom.order(order_id))
         for order in now.values():
-            if order["state"] != self.orders[order["id"]]["state"]:
+            if _what_is_said(order) != _what_is_said(self.orders[order["id"]]):
                 self.say(self._sentence(order))
         self.orders = now
         for person, order in list(self._who_comes()):
@@ -167,6 +168,11 @@ class CampusLife:
     async def close(self) -> None:
         for person in (self._mailroom, *self._people.values()):
             await person.close()
+
+
+def _what_is_said(order: Order) -> tuple[str, str]:
+    """An order that goes from one robot to another may be in the same state as before."""
+    return order["state"], _robot_of(order)
 
 
 def _robot_of(order: Order) -> str:

@@ -12,8 +12,9 @@ from app.demo.beside import EXIT_INTERRUPTED, LOOK_EVERY_S, beside, give_roles, 
 from app.demo.children import Children
 from app.demo.fleet.campus_life import CampusLife
 from app.demo.fleet.places import TruePlaces
+from app.demo.fleet.robots import RobotProcesses
 from app.demo.fleet.screen import FleetScreen
-from app.demo.fleet.settings import ONCE_LIMIT_S, FleetDemo
+from app.demo.fleet.settings import FleetDemo
 from app.demo.people import Spool
 from app.demo.settings import DemoFailed
 from app.serving import listen
@@ -28,7 +29,7 @@ LONG_S = 600.0
 
 def run(demo: FleetDemo) -> int:
     """The exit code. Raises StartError, a taken port above all, before anything is started."""
-    with listen("127.0.0.1", demo.port) as free:
+    with listen("127.0.0.1", demo.port, "fleet-demo") as free:
         demo = replace(demo, port=free.getsockname()[1])  # 0 takes a free one
     return asyncio.run(_run(demo))
 
@@ -62,18 +63,20 @@ async def _perform(demo: FleetDemo, clock: SharedClock, children: Children, scre
         await is_ready(demo.url)
         screen.welcome()
         screen.step(f"Starting the robots {', '.join(demo.homes)} …")
-        robots = [
-            await children.start(f"robot {name}", demo.robot_command(name), demo.folder / f"{name}.log")
-            for name in demo.homes
-        ]
+        robots = RobotProcesses(demo, clock, children, screen.say)
+        await robots.start()
+        screen.name_processes(robots.ids)
         places = TruePlaces(find_map(demo.map), {robot: demo.world_file(robot) for robot in demo.homes})
         life = CampusLife(demo, clock, screen.say)
-        course = Course(demo, clock, life, places)
-        async with beside([*(robot.watch() for robot in robots), course.look_at_places()]):
+        course = Course(demo, clock, life, places, robots)
+        async with beside([course.look_at_places()]):
             try:
-                await course.live(screen)
+                async with beside([robots.must_live()]):
+                    await life.begin()
+                async with beside([robots.look_after()]):
+                    await course.live(screen)
             except DemoFailed:
-                # If a child has died that is the better reason: its watcher cancels us here.
+                # If the service has died that is the better reason: its watcher cancels us here.
                 await asyncio.sleep(A_MOMENT_S)
                 raise
             finally:
@@ -83,13 +86,14 @@ async def _perform(demo: FleetDemo, clock: SharedClock, children: Children, scre
 class Course:
     """How one demonstration goes, and its figures."""
 
-    def __init__(self, demo: FleetDemo, clock: SharedClock, life: CampusLife, places: TruePlaces) -> None:
-        self._demo, self._clock, self._life, self._places = demo, clock, life, places
+    def __init__(
+        self, demo: FleetDemo, clock: SharedClock, life: CampusLife, places: TruePlaces, robots: RobotProcesses
+    ) -> None:
+        self._demo, self._clock, self._life, self._places, self._robots = demo, clock, life, places, robots
         self._began_real_s, self._began_s = time.monotonic(), clock.now()
         self._longest_still_s = 0.0
 
     async def live(self, screen: FleetScreen) -> None:
-        await self._life.begin()
         self._began_real_s, self._began_s = time.monotonic(), self._clock.now()
         screen.begin()
         async with beside([self._life.watch_alarms(), self._look_at_movement(screen.say), self._draw(screen)]):
@@ -102,10 +106,11 @@ class Course:
     async def _orders(self) -> None:
         if self._demo.once:
             try:
-                async with asyncio.timeout(ONCE_LIMIT_S):
+                async with asyncio.timeout(self._demo.once_limit_s):
                     await self._life.once()
             except TimeoutError:
-                raise DemoFailed(f"Orders were not delivered within {ONCE_LIMIT_S:.0f} s: {self._left()}.") from None
+                limit_s = self._demo.once_limit_s
+                raise DemoFailed(f"Orders were not delivered within {limit_s:.0f} s: {self._left()}.") from None
             return
         with suppress(TimeoutError):
             async with asyncio.timeout(None if self._demo.minutes is None else self._demo.minutes * 60.0):
@@ -135,7 +140,7 @@ class Course:
     async def _draw(self, screen: FleetScreen) -> None:
         while True:
             screen.see_mails()
-            screen.show(self._life, self._places)
+            screen.show(self._life, self._places, self._robots.down)
             await asyncio.sleep(LOOK_EVERY_S)
 
     def figures(self) -> dict[str, Any]:
@@ -143,7 +148,8 @@ class Course:
         life, places = self._life, self._places
         return {
             "ok": True,
-            "robots": self._demo.robots,
+            "robots": len(self._demo.homes),
+            "died": dict(self._robots.died),
             "placed": life.placed,
             "ended": dict(life.ended),
             "delivered_by": dict(life.delivered_by),

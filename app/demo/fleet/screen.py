@@ -1,7 +1,7 @@
 """What a person at the terminal sees of a demonstration of the fleet: a line for each robot, and what happened last."""
 
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from datetime import datetime
 from typing import Any
 
@@ -35,13 +35,18 @@ class FleetScreen(Terminal):
     def welcome(self) -> None:
         demo = self._demo
         for line in (
-            f"[bold]Campus Mail, the fleet[/], at [link]{demo.url}[/]: {demo.robots} robots in the Carleton tunnels, "
-            f"which are 1 : {1 / demo.scale:.3g} of their assumed length",
+            f"[bold]Campus Mail, the fleet[/], at [link]{demo.url}[/]: {len(demo.homes)} robots on the map "
+            f"{escape(demo.campus.map.title)}, its corridors 1 : {1 / demo.scale:.3g} of their length",
             "The bodies are simulated, each in a world of its own. That no two are ever in one corridor is looked at "
             "by their true places; if two were, this would end with an error.",
         ):
             self._console.print(line, soft_wrap=True)
-        self.show_links(self._demo, address("ada"), address("ben"))
+        sender, recipient, *_ = map(address, demo.campus.offices)
+        self.show_links(demo, sender, recipient)
+
+    def name_processes(self, ids: Mapping[str, int]) -> None:
+        named = ", ".join(f"{robot} {number}" for robot, number in ids.items())
+        self.step(f"Their processes: {named}. Kill one (kill -9 NUMBER), and see what the service does.")
 
     def begin(self) -> None:
         if self._console.is_terminal:
@@ -58,16 +63,17 @@ class FleetScreen(Terminal):
         for sentence in self.new_codes():
             self.say(sentence)
 
-    def show(self, life: CampusLife, places: TruePlaces) -> None:
+    def show(self, life: CampusLife, places: TruePlaces, down: Set[str]) -> None:
+        """`down`: robots whose process has died."""
         if self._live.is_started:
-            self._live.update(self._picture(life, places), refresh=True)
+            self._live.update(self._picture(life, places, down), refresh=True)
 
-    def _picture(self, life: CampusLife, places: TruePlaces) -> Group:
+    def _picture(self, life: CampusLife, places: TruePlaces, down: Set[str]) -> Group:
         table = Table(expand=True, box=None, padding=(0, 1))
         for heading in ("robot", "where", "mail", "battery", "what"):
             table.add_column(heading, overflow="fold", ratio=3 if heading == "what" else None)
         for robot in sorted(life.robots, key=lambda one: str(one["name"])):
-            table.add_row(*row_of(robot, life.orders))
+            table.add_row(*row_of(robot, life.orders), style="red" if robot["name"] in down else None)
         ended = ", ".join(f"{count} {state}" for state, count in sorted(life.ended.items())) or "none ended"
         figures = (
             f"{self._clock.utc().astimezone():%H:%M:%S}, {self._clock.speed:.1f} times as fast   "

@@ -5,8 +5,9 @@ from pathlib import Path
 
 import pytest
 
+from app.demo.fleet.campus import campus_of
 from app.demo.fleet.places import AT_POST_M, TruePlaces, somewhere
-from app.demo.fleet.settings import HOMES, FleetDemo
+from app.demo.fleet.settings import FleetDemo
 from app.demo.settings import DemoFailed
 from maps import CampusMap, Point, builtin_map, find_map
 
@@ -63,10 +64,10 @@ def test_a_world_that_has_not_begun_is_no_place(worlds: Worlds) -> None:
 def test_the_tunnels_of_a_demonstration_are_a_tenth_as_long_and_its_robots_are_at_home_in_their_docks(
     tmp_path: Path, campus: CampusMap
 ) -> None:
-    demo = FleetDemo(tmp_path, tmp_path / "door", port=0, speed=8.0, once=True, as_json=True)
+    wanted = campus_of("carleton")
+    demo = FleetDemo(tmp_path, tmp_path / "door", port=0, speed=8.0, once=True, as_json=True, campus=wanted)
     demo.lay_out()
     small = find_map(demo.map)
     assert small.corridor("uc", "canal").length_m == pytest.approx(campus.corridor("uc", "canal").length_m / 10)
     assert sorted(demo.homes.values()) == sorted(post.name for post in small.docks())
-    assert demo.homes == dict(HOMES)
     assert demo.service.traffic == "timetable"

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from app.demo.fleet.campus import campus_of
 from app.demo.fleet.screen import FleetScreen
 from app.demo.fleet.settings import FleetDemo
 from app.demo.people import Spool
@@ -13,7 +14,15 @@ from app.mail import Spool as Writer
 from protocol.clock import SharedClock, SteppedClock
 
 NOW = SteppedClock().utc()
-DEMO = FleetDemo(folder=Path("demo"), door=Path("door"), port=8000, speed=8.0, once=False, as_json=False)
+DEMO = FleetDemo(
+    folder=Path("demo"),
+    door=Path("door"),
+    port=8000,
+    speed=8.0,
+    once=False,
+    as_json=False,
+    campus=campus_of("carleton"),
+)
 
 
 @pytest.mark.parametrize("as_json", [False, True])
