@@ -1,10 +1,7 @@
 """The project's own order: documents that lead somewhere, verbs that explain themselves, files one can read."""
 
-import os
 import re
-import shutil
 import subprocess
-import sys
 import tomllib
 from pathlib import Path
 
@@ -21,7 +18,6 @@ LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)|(?:src|srcset|href)=\"([^\"]+)\"")
 # Spelled with brackets so that this file does not find itself.
 MACHINE_PATH = re.compile(r"(^|[^\w.-])/([w]ork|[r]oot|[f]arm)/")
 REGISTRY = re.compile(r'"[r]esolved": *"https?://|[i]ndex-url *=|[r]egistry *= *.?https?://')
-LEAST_TOOLS = ("sh", "env", "awk", "cut", "git", "make")
 
 
 def tracked(*patterns: str) -> list[Path]:
@@ -98,101 +94,3 @@ def test_every_package_has_its_layers_written_down():
     config = tomllib.loads((CHECKOUT / "pyproject.toml").read_text())["tool"]["importlinter"]
     layered = {c["containers"][0] for c in config["contracts"] if c.get("exhaustive") and len(c["containers"]) == 1}
     assert set(config["root_packages"]) <= layered
-
-
-# Set-up and tests on machines that lack something
-
-
-@pytest.fixture
-def bare_machine(tmp_path: Path) -> Path:
-    """A folder to be the whole PATH: a shell, make, git, and neither Python, node nor browser."""
-    tools = tmp_path / "bin"
-    tools.mkdir()
-    for name in LEAST_TOOLS:
-        found = shutil.which(name)
-        assert found, name
-        (tools / name).symlink_to(found)
-    return tools
-
-
-def setup_on(tools: Path, python: str) -> subprocess.CompletedProcess[str]:
-    """`make setup` in a checkout of its own, with a python3 that is this shell script."""
-    checkout = tools.parent / "checkout"
-    checkout.mkdir()
-    for name in ("Makefile", "pyproject.toml", "constraints.txt"):
-        shutil.copy(CHECKOUT / name, checkout)
-    if python:
-        (tools / "python3").write_text(f"#!{tools}/sh\n{python}\n")
-        (tools / "python3").chmod(0o755)
-    environment = {"PATH": str(tools), "HOME": str(tools.parent)}
-    return subprocess.run(
-        ["make", "setup"], cwd=checkout, env=environment, capture_output=True, text=True, check=False, timeout=60
-    )
-
-
-def test_setup_names_a_missing_python(bare_machine):
-    finished = setup_on(bare_machine, "")
-    assert finished.returncode != 0
-    assert "There is no python3. Install Python 3.11 or newer" in finished.stderr
-
-
-def test_setup_names_a_python_that_is_too_old(bare_machine):
-    finished = setup_on(bare_machine, 'test "$1" = --version && echo "Python 3.9.2"; exit 1')
-    assert finished.returncode != 0
-    assert "Python 3.11 or newer is needed; this is Python 3.9.2" in finished.stderr
-
-
-def test_setup_names_a_missing_python3_venv(bare_machine):
-    """Debian ships Python without ensurepip; its own message comes late and speaks of a broken folder."""
-    finished = setup_on(bare_machine, 'case "$2" in *ensurepip*) exit 1;; esac; exit 0')
-    assert finished.returncode != 0
-    assert "apt install python3-venv" in finished.stderr
-
-
-BROWSER_TESTS = """
-import pytest
-
-@pytest.mark.browser
-@pytest.mark.parametrize("page", range(3))
-def test_in_a_browser(page): ...
-
-def test_without_one(): ...
-"""
-
-
-def run_browser_tests(tmp_path: Path, **environment: str) -> subprocess.CompletedProcess[str]:
-    shutil.copy(CHECKOUT / "tests/conftest.py", tmp_path)
-    shutil.copy(CHECKOUT / "pyproject.toml", tmp_path)
-    (tmp_path / "test_pages.py").write_text(BROWSER_TESTS)
-    command = [sys.executable, "-m", "pytest", "-q", "-o", "testpaths=.", "-p", "no:cacheprovider"]
-    environment = {"PATH": os.defpath, "HOME": str(tmp_path), **environment}
-    return subprocess.run(
-        command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False, timeout=60
-    )
-
-
-def test_without_a_browser_the_last_line_counts_what_did_not_run(tmp_path, bare_machine):
-    finished = run_browser_tests(tmp_path, PATH=str(bare_machine))
-    assert finished.returncode == 0
-    assert "1 passed, 3 deselected" in finished.stdout
-    last = finished.stdout.splitlines()[-1]
-    assert last == "NOT RUN: 3 browser tests (no Chromium found: apt install chromium, or set CHROMIUM=/path)"
-
-
-def test_where_a_browser_is_required_its_absence_is_a_failure(tmp_path, bare_machine):
-    finished = run_browser_tests(tmp_path, PATH=str(bare_machine), CAMPUS_MAIL_REQUIRE_BROWSER="1")
-    assert finished.returncode != 0
-    assert "no Chromium found, and 3 browser tests must run" in finished.stderr
-
-
-def test_a_named_browser_that_is_not_there_is_an_error(tmp_path, bare_machine):
-    finished = run_browser_tests(tmp_path, PATH=str(bare_machine), CHROMIUM="/nowhere/chromium")
-    assert finished.returncode != 0
-    assert "CHROMIUM=/nowhere/chromium is no program" in finished.stderr
-
-
-def test_with_a_browser_all_tests_run_and_nothing_is_counted(tmp_path, bare_machine):
-    (bare_machine / "chromium").symlink_to(bare_machine / "sh")
-    finished = run_browser_tests(tmp_path, PATH=str(bare_machine))
-    assert "4 passed" in finished.stdout
-    assert "NOT RUN" not in finished.stdout
