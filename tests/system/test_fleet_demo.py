@@ -10,13 +10,14 @@ import sys
 import threading
 import time
 from collections.abc import Iterator
+from contextlib import suppress
 
 import psutil
 import pytest
 
 from tests.system.rig import ROOT
 
-pytestmark = [pytest.mark.system, pytest.mark.timeout(400)]
+pytestmark = [pytest.mark.system, pytest.mark.timeout(500)]
 
 COMMAND = [sys.executable, "-m", "app", "fleet-demo", "--port", "0", "--robots", "2", "--scale", "0.05"]
 
@@ -43,31 +44,38 @@ class Watched:
             [*COMMAND, *options], cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
         )
         self._said: list[str] = []
-        self._lines: queue.Queue[str | None] = queue.Queue()
-        threading.Thread(target=self._read, daemon=True).start()
+        self._lines: queue.Queue[str] = queue.Queue()
+        self._reading = threading.Thread(target=self._read, daemon=True)
+        self._reading.start()
+
+    def close(self) -> None:
+        self._reading.join()
+        if self.process.stdout:
+            self.process.stdout.close()
 
     def _read(self) -> None:
         for line in self.process.stdout or ():
             self._lines.put(line)
-        self._lines.put(None)
 
-    def says(self, pattern: str, limit_s: float = 120.0) -> re.Match[str]:
+    def says(self, pattern: str, limit_s: float = 200.0) -> re.Match[str]:
         """The next line that has `pattern`."""
         until_s = time.monotonic() + limit_s
-        while (line := self._lines.get(timeout=max(0.0, until_s - time.monotonic()))) is not None:
-            self._said.append(line)
-            if found := re.search(pattern, line):
-                return found
-        raise AssertionError(f"it ended without {pattern}:\n{''.join(self._said)}")
+        with suppress(queue.Empty):
+            while True:
+                self._said.append(self._lines.get(timeout=max(0.0, until_s - time.monotonic())))
+                if found := re.search(pattern, self._said[-1]):
+                    return found
+        raise AssertionError(f"{pattern} was not said within {limit_s:.0f} s:\n{''.join(self._said)}")
 
 
 @pytest.fixture
 def watched() -> Iterator[Watched]:
-    demo = Watched("--speed", "30", "--restart-after", "7")
+    demo = Watched("--speed", "30", "--restart-after", "4")
     yield demo
     if demo.process.poll() is None:
         demo.process.kill()
         demo.process.wait()
+    demo.close()
 
 
 @pytest.mark.alone
@@ -77,7 +85,7 @@ def test_when_a_robot_dies_it_goes_on_until_the_robot_is_back_and_it_ends_when_t
     number = int(watched.says(r"Their processes: .*\br2 (\d+)")[1])
     watched.says(r"at sender \(r2\)")
     os.kill(number, signal.SIGKILL)
-    watched.says(r"r2: its process was killed by signal 9; it is started again in 7 min")
+    watched.says(r"r2: its process was killed by signal 9; it is started again in 4 min")
     watched.says(r"ALARM r2: vanished, nothing has been heard of the robot")
     again = int(watched.says(r"r2: started again, process (\d+)")[1])
     assert again != number

@@ -11,7 +11,7 @@ from typing import Any
 
 from app.demo.fleet.errands import Errand, address, errands, first_errands
 from app.demo.fleet.settings import FleetDemo
-from app.demo.people import SimulatedPerson
+from app.demo.people import NobodyLooks, SimulatedPerson
 from app.demo.settings import MAILROOM, DemoFailed
 from protocol.clock import Clock
 
@@ -155,6 +155,8 @@ class CampusLife:
     async def _show(self, person: SimulatedPerson, order: Order) -> None:
         try:
             await person.show_code(order["id"])
+        except NobodyLooks:
+            return  # they come again
         except DemoFailed:
             # The robot may have taken the mail since we looked: then there is no code to show any more.
             if (await self._mailroom.order(order["id"]))["state"] == order["state"]:
