@@ -58,3 +58,14 @@ def test_a_demonstration_says_what_it_starts_before_it_loads_anything_and_ctrl_c
         run.send_signal(signal.SIGINT)
         assert any(line.startswith("Stopping") for line in run.stderr)
         assert run.wait(20) == 0
+
+
+@pytest.mark.parametrize(("options", "code"), [((), 0), (("--once",), 130)], ids=["that goes on", "that would end"])
+def test_a_demonstration_that_is_stopped_while_it_loads_says_so(options: tuple[str, ...], code: int) -> None:
+    words = [sys.executable, "-m", "app", "demo", "--port", "0", *options]
+    with subprocess.Popen(words, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as run:
+        assert run.stdout is not None
+        run.stdout.readline()
+        run.send_signal(signal.SIGINT)
+        assert run.stdout.read().splitlines() == ["Stopping: nothing has been started yet."]
+        assert run.wait(20) == code

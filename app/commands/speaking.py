@@ -29,8 +29,8 @@ def demonstrating(what: str, *, as_json: bool, goes_on: bool) -> Iterator[None]:
 
     Where it `goes_on` until somebody stops it, that is how it should end.
     """
-    typer.echo(f"Campus Mail: starting {what} on this machine. Ctrl-C ends all of it.", err=as_json)
     try:
+        typer.echo(f"Campus Mail: starting {what} on this machine. Ctrl-C ends all of it.", err=as_json)
         with errors_in_words():
             yield
     except KeyboardInterrupt:
