@@ -119,9 +119,9 @@ def complete(document: Document) -> None:
     for method, path, operation in operations(document):
         operation["summary"] = _first_sentence(operation["description"])
         _name_parameters(operation)
-        _add_general_problems(operation)
         if "security" in operation:
             operation["security"] = _ways_in(operation, method)
+        _add_general_problems(operation)
         if method == "get" and path.startswith("/api/") and operation["operationId"] not in NEVER_KEPT:
             _add_etag(operation)
         for status, answer in operation["responses"].items():
@@ -148,8 +148,8 @@ def _name_parameters(operation: Document) -> None:
 
 
 def _ways_in(operation: Document, method: str) -> list[Document]:
-    """A browser's session; a script's token too, if it has one of the scopes that are named."""
-    scopes = opened_by(operation.get("tags", ()), method.upper())
+    """A browser's session; a script's token too, if the route takes one, with one of the scopes that are named."""
+    scopes = opened_by(operation.get("tags", ()), method.upper()) if _takes_tokens(operation) else ()
     return [{"session": []}, *({"token": [scope]} for scope in sorted(scopes))]
 
 
@@ -183,6 +183,14 @@ def _is_closed(operation: Document) -> bool:
     return bool(operation.get("security"))
 
 
+def _takes_tokens(operation: Document) -> bool:
+    return any("token" in way for way in operation.get("security", ()))
+
+
+def _is_for_browsers_alone(operation: Document) -> bool:
+    return _is_closed(operation) and not _takes_tokens(operation)
+
+
 def _is_open_and_changes(operation: Document) -> bool:
     return _has_body(operation) and not _is_closed(operation)
 
@@ -196,7 +204,9 @@ def _is_limited(operation: Document) -> bool:
 
 
 GENERAL_PROBLEMS: Final[tuple[tuple[Callable[[Document], bool], tuple[str | type[ServiceError], ...]], ...]] = (
-    (_is_closed, (NotSignedIn, CrossSite, HttpsRequired, NotForScripts, RoleNeeded, ScopeNeeded)),
+    (_is_closed, (NotSignedIn, CrossSite, HttpsRequired, RoleNeeded)),
+    (_takes_tokens, (ScopeNeeded,)),
+    (_is_for_browsers_alone, (NotForScripts,)),
     (_is_open_and_changes, (CrossSite, HttpsRequired)),
     (_has_body, ("malformed_body", "too_large", "unsupported_media_type")),
     (_has_parameters, ("invalid_request",)),

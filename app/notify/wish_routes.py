@@ -25,7 +25,7 @@ from app.notify.wish_schemas import (
 from app.notify.wishes import CHANNELS, MUST_REACH, is_muted_everywhere, muted_of
 from app.outside import Outside, TargetRefused
 from app.people.current_user import AtBrowser, CurrentUser
-from app.people.rate_limits import Door, per_person
+from app.people.rate_limits import Door, per_person_at_browser
 from app.server_key import ServerKey
 from app.settings import ClockDep
 from app.tables import NoticeKind, NoticeWishes, Person
@@ -126,7 +126,11 @@ async def set_webhook(
     return NewWebhookView(url=row.url, created_at=row.created_at, secret=secret_of(key, row.id))
 
 
-@router.post("/me/webhook/trial", dependencies=[per_person(Door.CHANGES)], responses=problems(401, 403, 429, NoWebhook))
+@router.post(
+    "/me/webhook/trial",
+    dependencies=[per_person_at_browser(Door.CHANGES)],
+    responses=problems(401, 403, 429, NoWebhook),
+)
 async def try_my_webhook(
     user: AtBrowser, database: DatabaseDep, outside: OutsideDep, key: ServerKeyDep, clock: ClockDep
 ) -> TrialView:

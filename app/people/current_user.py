@@ -48,11 +48,7 @@ class Caller:
     scopes: frozenset[str] = frozenset()
 
 
-async def _caller(
-    request: Request,
-    cookie: Annotated[object, Security(_cookie_documented)],
-    token: Annotated[object, Security(_token_documented)],
-) -> Caller:
+async def _caller(request: Request, cookie: Annotated[object, Security(_cookie_documented)]) -> Caller:
     require_https_or_loopback(request)
     # Not as dependencies of their own: this one is solved for every request.
     caller = await _find_caller(request, request.app.state.database, request.app.state.clock)
@@ -100,7 +96,10 @@ async def _script(authorization: str, database: Database, last_seen: LastSeen, c
 CallerDep = Annotated[Caller, Depends(_caller)]
 
 
-async def _current_user(request: Request, caller: CallerDep) -> Person:
+async def _current_user(
+    request: Request, caller: CallerDep, token: Annotated[object, Security(_token_documented)]
+) -> Person:
+    """The only one that documents the token: what asks for `AtBrowser` is not offered to scripts."""
     if caller.session_id is None:
         _require_scope(request, caller.scopes)
     return caller.person

@@ -112,7 +112,7 @@ class ScopeNeeded(Forbidden):
 
 
 class NotForScripts(Forbidden):
-    """A person at a browser does this, no token: making tokens, giving roles, ending sessions."""
+    """A person at a browser does this, no token: making tokens, giving roles, ending sessions, setting webhooks."""
 
     code = "not_for_scripts"
 

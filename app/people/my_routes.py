@@ -12,7 +12,7 @@ from app.paging import PAGED, BadCursor, PageDep, Sorting
 from app.people.contacts import address_book, forget_contact, save_contact
 from app.people.current_user import AtBrowser, CurrentUser, ThisSession
 from app.people.errors import NoSuchPost, UnknownContact, UnknownSession, UnknownToken
-from app.people.rate_limits import Door, per_person
+from app.people.rate_limits import Door, per_person_at_browser
 from app.people.schemas import (
     AboutMe,
     AddressBook,
@@ -40,7 +40,7 @@ address_router = APIRouter(tags=["address book"])
 
 NEWEST_SESSIONS = Sorting("sessions", col(PersonSession.id), descending=True)
 NEWEST_TOKENS = Sorting("tokens", col(PersonToken.created_at), col(PersonToken.prefix), descending=True)
-CHANGES = [per_person(Door.CHANGES)]
+CHANGES = [per_person_at_browser(Door.CHANGES)]
 
 ContactEmail = Annotated[Email, Path()]
 SessionId = Annotated[int, Path(ge=1, le=2**53)]

@@ -19,7 +19,7 @@ from limits.aio.storage import MemoryStorage
 from limits.aio.strategies import SlidingWindowCounterRateLimiter
 
 from app.errors import TooManyRequests
-from app.people.current_user import CurrentUser
+from app.people.current_user import AtBrowser, CurrentUser
 from app.settings import Settings
 from app.tables import Person
 
@@ -100,6 +100,16 @@ def per_person(door: Door) -> Any:
     """
 
     async def counted(request: Request, user: CurrentUser) -> Person:
+        await (await _limits_of(request)).count(door, user.id)
+        return user
+
+    return Depends(counted)
+
+
+def per_person_at_browser(door: Door) -> Any:
+    """The same for what no script may do: a script is refused as such, and not counted."""
+
+    async def counted(request: Request, user: AtBrowser) -> Person:
         await (await _limits_of(request)).count(door, user.id)
         return user
 

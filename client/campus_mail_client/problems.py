@@ -217,7 +217,9 @@ class NotCancellable(Problem):
 
 
 class NotForScripts(Problem):
-    """A person at a browser does this, no token: making tokens, giving roles, ending sessions. (403)"""
+    """A person at a browser does this, no token: making tokens, giving roles, ending sessions, setting webhooks.
+    (403)
+    """
 
     code = "not_for_scripts"
 

@@ -15,6 +15,8 @@ from fastapi import FastAPI
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
+from app.api_document import operations
+from app.errors import PROBLEM_JSON
 from app.fleet.conversation import TOKEN_REFUSED
 from app.people.same_origin import SAFE_METHODS
 from app.people.scopes import Scope
@@ -38,6 +40,8 @@ ASKED: Final = ("stranger", *PEOPLE)
 OPEN: Final = Line(200, 200, 200, 200, 200, 200, "")
 NOT_SET_UP: Final = Line(404, 404, 404, 404, 404, 404, "")
 SCRIPTS: Final = tuple(str(scope) for scope in Scope)
+REFUSALS: Final = frozenset({"scope_needed", "not_for_scripts"})
+"""Answers to scripts whose person would be let in."""
 
 
 def members(scopes: str, status: int = 200) -> Line:
@@ -269,17 +273,39 @@ def test_everybody_may_do_what_is_theirs_and_nothing_else(browser: httpx.Client,
 
 def test_a_script_may_do_what_its_scopes_say_and_nothing_else(browser: httpx.Client, everybody: Everybody) -> None:
     """Each scope that opens a route does so alone; all the others together do not."""
-    refused, holes = {"scope_needed", "not_for_scripts"}, {}
+    holes = {}
     for route, line in LINES.items():
         if line.scopes:
             opening = set(line.scopes.split()) - {"none"}
             others = " ".join(scope for scope in SCRIPTS if scope not in opening)
-            opened = {
-                who for who in {*opening, others} - {""} if knock(browser, everybody, who, route)[1] not in refused
-            }
-            if opened != opening:
-                holes[route] = opened
+            answered = {who: knock(browser, everybody, who, route)[1] for who in {*opening, others} - {""}}
+            refused = {who: code for who, code in answered.items() if code in REFUSALS}
+            if refused != ({others: "scope_needed" if opening else "not_for_scripts"} if others else {}):
+                holes[route] = answered
     assert holes == {}
+
+
+def test_the_document_offers_scripts_what_the_service_opens_to_them(app: FastAPI) -> None:
+    """The lines here are what the service was seen to answer; who is told otherwise builds on sand."""
+    opened = {(method.upper(), path): (offered(one), refusals(one)) for method, path, one in operations(app.openapi())}
+    assert opened == {
+        (method, path): (
+            set(line.scopes.split()) - {"none"},
+            {"": set(), "none": {"not_for_scripts"}}.get(line.scopes, {"scope_needed"}),
+        )
+        for (method, path), line in LINES.items()
+        if (method, path) in opened
+    }
+
+
+def offered(operation: dict[str, Any]) -> set[str]:
+    return {scope for way in operation.get("security", ()) for scope in way.get("token", ())}
+
+
+def refusals(operation: dict[str, Any]) -> set[str]:
+    """By which codes of these the operation may refuse a script, as the document has it."""
+    forbidden = operation["responses"].get("403", {}).get("content", {}).get(PROBLEM_JSON, {})
+    return REFUSALS & set(forbidden["schema"]["allOf"][1]["properties"]["code"]["enum"] if forbidden else ())
 
 
 def test_a_script_with_every_scope_may_do_what_its_person_may(browser: httpx.Client, everybody: Everybody) -> None:
