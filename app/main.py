@@ -124,7 +124,7 @@ def create_app(settings: Settings, clock: Clock, outside: Outside | None = None)
         redoc_url=None,
     )
     app.openapi_version = "3.2.0"  # the first that can describe an event stream
-    app.state.outside = outside or Outside()
+    app.state.outside = outside or Outside(settings.outside_ports, settings.outside_refused_networks)
     _add_parts(app, settings, clock)
     add_error_answers(app)
     app.router.routes.extend(_all_routes().routes)

@@ -7,23 +7,22 @@ answer of the name server cannot lead elsewhere. A redirect is a new request, an
 import asyncio
 import socket
 import ssl
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cache
-from ipaddress import IPv4Address, IPv6Address, IPv6Network, ip_address
 from typing import Final
 
 import httpx
 
 from app.errors import Unprocessable
+from app.special_networks import Network, is_public
 
 Resolve = Callable[[str, int], Awaitable[list[str]]]
-NAT64: Final = IPv6Network("64:ff9b::/96")
 TIMEOUT_S: Final = 10.0
 
 
 class TargetRefused(Unprocessable):
-    """Not https, not resolved, or not an address of the public network."""
+    """Not https, not at a port that is allowed, not resolved, or not an address of the public network."""
 
     code = "target_refused"
 
@@ -44,25 +43,13 @@ async def resolve(host: str, port: int) -> list[str]:
     return [str(address[0]) for *_, address in found]
 
 
-def is_public(address: str) -> bool:
-    """Whether an address belongs to the public network, and not through a tunnel to another either."""
-    ip = ip_address(address.partition("%")[0])
-    if isinstance(ip, IPv6Address) and (inner := _carried(ip)):
-        return inner.is_global and not inner.is_multicast
-    return ip.is_global and not ip.is_multicast
-
-
-def _carried(ip: IPv6Address) -> IPv4Address | None:
-    """The IPv4 address that packets to this one end up at, if they do."""
-    if ip in NAT64:
-        return IPv4Address(int(ip) & 0xFFFFFFFF)
-    return ip.ipv4_mapped or ip.sixtofour or (ip.teredo[1] if ip.teredo else None)
-
-
 @dataclass(frozen=True)
 class Outside:
-    """`allow_private` (and with it plain http) is for tests that have a server of their own on this machine."""
+    """`ports` and `refused` are the operator's: where else than at 443, and public networks that are refused all the
+    same. `allow_private` (any network and port, plain http) is for tests that have a server of their own."""
 
+    ports: Sequence[int] = (443,)
+    refused: Sequence[Network] = ()
     allow_private: bool = False
     resolve: Resolve = field(default=resolve)
 
@@ -71,19 +58,25 @@ class Outside:
         asked = _parsed(url)
         if asked.scheme != "https" and not (self.allow_private and asked.scheme == "http"):
             raise TargetRefused("The address must begin with https://.")
-        if not asked.host or asked.userinfo:
+        # As it travels: in letters of another script a name may be read as two different ones.
+        host = asked.raw_host.decode("ascii")
+        if not host or asked.userinfo:
             raise TargetRefused("The address must name a host, and nobody who signs in there.")
-        port = asked.port or {"https": 443, "http": 80}[asked.scheme]
-        addresses = await self._addresses(asked.host, port)
+        port = {"https": 443, "http": 80}[asked.scheme] if asked.port is None else asked.port
+        if not self.allow_private and port not in self.ports:
+            raise TargetRefused(f"Port {port} is not among those that may be asked: {_listed(self.ports)}.")
+        addresses = await self._addresses(host, port)
         # All of them: a name that has one address inside has no business here, whichever would be taken.
-        if not self.allow_private and not all(is_public(one) for one in addresses):
-            raise TargetRefused(f"{asked.host} is not on the public network.")
-        return Target(url, asked.host, port, addresses[0])
+        if not self.allow_private and not all(is_public(one, self.refused) for one in addresses):
+            raise TargetRefused(f"{host} is not on the public network.")
+        # A certificate is for the name, without the dot that ends it in the name server's own files.
+        return Target(url, host.removesuffix("."), port, addresses[0])
 
     async def _addresses(self, host: str, port: int) -> list[str]:
         try:
-            found = await self.resolve(host, port)
-        except (OSError, UnicodeError):
+            async with asyncio.timeout(TIMEOUT_S):
+                found = await self.resolve(host, port)
+        except (OSError, UnicodeError):  # TimeoutError is an OSError
             found = []
         if not found:
             raise TargetRefused(f"The name {host} leads nowhere.")
@@ -109,6 +102,10 @@ def trusted_here() -> ssl.SSLContext:
     return context
 
 
+def _listed(ports: Sequence[int]) -> str:
+    return ", ".join(map(str, ports))
+
+
 def _parsed(url: str) -> httpx.URL:
     try:
         return httpx.URL(url)
@@ -129,7 +126,7 @@ class _Guarded(httpx.AsyncBaseTransport):
         target = await self._outside.checked_target(str(request.url))
         pinned = httpx.Request(
             request.method,
-            request.url.copy_with(host=target.address.partition("%")[0]),
+            request.url.copy_with(host=target.address),
             headers=request.headers,
             stream=request.stream,
             extensions={**request.extensions, "sni_hostname": target.host},

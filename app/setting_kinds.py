@@ -8,7 +8,7 @@ from urllib.parse import urlsplit
 from zoneinfo import available_timezones
 
 from limits import parse
-from pydantic import AfterValidator, BeforeValidator
+from pydantic import AfterValidator, BeforeValidator, Field, IPvAnyNetwork
 
 THIS_MACHINE: Final = frozenset({"localhost", "127.0.0.1", "::1"})
 
@@ -90,6 +90,8 @@ def _whole_fingerprints(fingerprints: tuple[str, ...]) -> tuple[str, ...]:
     return fingerprints
 
 
+Ports = Annotated[tuple[Annotated[int, Field(ge=1, le=65535)], ...], Field(min_length=1)]
+Networks = tuple[IPvAnyNetwork, ...]
 SmtpTls = Literal["starttls", "tls", "none"]
 Language = Literal["en", "fr"]
 LogLevel = Annotated[Literal["DEBUG", "INFO", "WARNING", "ERROR"], BeforeValidator(_capitals)]

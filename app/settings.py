@@ -27,7 +27,9 @@ from app.setting_kinds import (
     Limit,
     LogLevel,
     MailAddress,
+    Networks,
     OfficeHours,
+    Ports,
     SmtpTls,
     WholeAddress,
     Zone,
@@ -95,6 +97,12 @@ class Settings(BaseSettings):
     webhook_url: WholeAddress = Field("", description="Address that is told of every notice, whoever it is for.")
     webhook_secret: SecretStr = Field(
         SecretStr(""), description="What signs them: at least 24 characters; give it as a file."
+    )
+    outside_ports: Ports = Field(
+        (443,), description="Ports of the addresses that people give for pushes and webhooks (JSON list)."
+    )
+    outside_refused_networks: Networks = Field(
+        (), description="Public networks that such addresses may not be in, such as the campus's own (JSON list)."
     )
     default_language: Language = Field("en", description="Language of people who have not chosen one: en or fr.")
     time_zone: Zone = Field(

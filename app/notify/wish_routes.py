@@ -1,6 +1,6 @@
 """What a person wants to be told, and where: muted kinds, browsers, a webhook."""
 
-from typing import Annotated
+from typing import Annotated, Final
 
 from fastapi import APIRouter, Depends, Path, Request
 from sqlmodel.ext.asyncio.session import AsyncSession
@@ -31,6 +31,9 @@ from app.settings import ClockDep
 from app.tables import NoticeKind, NoticeWishes, Person
 
 router = APIRouter(tags=["notices"])
+
+CHANGES: Final = [per_person_at_browser(Door.CHANGES)]
+"""Each looks a name up, or asks the address behind it."""
 
 DeviceId = Annotated[str, Path(pattern=r"^[0-9a-f]+$", max_length=64)]
 
@@ -93,7 +96,12 @@ async def _view(session: AsyncSession, user: Person, key: PushKey) -> WishesView
     )
 
 
-@router.post("/me/devices", status_code=201, responses=problems(401, 403, BadSubscription, TargetRefused))
+@router.post(
+    "/me/devices",
+    status_code=201,
+    dependencies=CHANGES,
+    responses=problems(401, 403, 429, BadSubscription, TargetRefused),
+)
 async def add_device(
     wish: NewDevice, user: AtBrowser, database: DatabaseDep, outside: OutsideDep, clock: ClockDep
 ) -> DeviceView:
@@ -110,7 +118,7 @@ async def remove_device(device_id: DeviceId, user: AtBrowser, session: SessionDe
     await devices.remove_device(session, user, device_id)
 
 
-@router.put("/me/webhook", responses=problems(401, 403, TargetRefused))
+@router.put("/me/webhook", dependencies=CHANGES, responses=problems(401, 403, 429, TargetRefused))
 async def set_webhook(
     wish: NewWebhook,
     user: AtBrowser,
@@ -128,7 +136,7 @@ async def set_webhook(
 
 @router.post(
     "/me/webhook/trial",
-    dependencies=[per_person_at_browser(Door.CHANGES)],
+    dependencies=CHANGES,
     responses=problems(401, 403, 429, NoWebhook),
 )
 async def try_my_webhook(

@@ -405,7 +405,7 @@ class StillRunning(Problem):
 
 
 class TargetRefused(Problem):
-    """Not https, not resolved, or not an address of the public network. (422)"""
+    """Not https, not at a port that is allowed, not resolved, or not an address of the public network. (422)"""
 
     code = "target_refused"
 

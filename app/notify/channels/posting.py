@@ -1,5 +1,6 @@
 """One POST to an address from outside, and what its answer means for a second try."""
 
+import asyncio
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
@@ -7,7 +8,7 @@ from typing import Final
 import httpx
 
 from app.notify.channels.interface import NotSent
-from app.outside import TargetRefused
+from app.outside import TIMEOUT_S, TargetRefused
 
 LONGEST_WAIT_S: Final = 3600.0
 LATER: Final = frozenset({408, 425, 429})
@@ -30,12 +31,17 @@ class Answer:
         return self.status in LATER or self.status >= 500
 
 
-async def post(client: httpx.AsyncClient, url: str, content: bytes, headers: Mapping[str, str]) -> Answer:
-    """Raises NotSent if there was no answer."""
+async def post(
+    client: httpx.AsyncClient, url: str, content: bytes, headers: Mapping[str, str], within_s: float = TIMEOUT_S
+) -> Answer:
+    """Raises NotSent if there was no answer in time: all of it, since the client's own limit is between two bytes."""
     try:
-        async with client.stream("POST", url, content=content, headers=dict(headers)) as answer:
+        async with (
+            asyncio.timeout(within_s),
+            client.stream("POST", url, content=content, headers=dict(headers)) as answer,
+        ):
             return Answer(answer.status_code, _wait_s(answer.headers.get("Retry-After", "")))
-    except (httpx.HTTPError, httpx.InvalidURL) as error:
+    except (TimeoutError, httpx.HTTPError, httpx.InvalidURL) as error:
         raise NotSent(f"no answer: {type(error).__name__}") from error
     except TargetRefused as error:
         # Not for good: a name server that is away says the same.

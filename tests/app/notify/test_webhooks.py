@@ -2,6 +2,7 @@
 
 import asyncio
 import base64
+import contextlib
 import hmac
 import json
 import threading
@@ -12,6 +13,8 @@ import pytest
 from pydantic import SecretStr
 
 from app.errors import StartError
+from app.notify.channels.interface import NotSent
+from app.notify.channels.posting import post
 from app.notify.channels.webhook import secret_of
 from app.notify.noting import pause_s
 from app.outside import Outside
@@ -152,3 +155,26 @@ def test_a_webhook_of_the_operators_needs_a_secret(monkeypatch: pytest.MonkeyPat
     monkeypatch.setenv("CAMPUS_MAIL_WEBHOOK_URL", "https://hooks.campus.example")
     with pytest.raises(StartError, match="webhook_secret"):
         load_settings()
+
+
+async def test_a_receiver_that_answers_a_byte_at_a_time_holds_nobody_up() -> None:
+    """Each byte comes in time, the answer never."""
+
+    gone = asyncio.Event()
+
+    async def drip(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        with contextlib.suppress(ConnectionError):
+            writer.write(b"HTTP/1.1 200 OK\r\nX-Slow: ")
+            while not reader.at_eof():
+                writer.write(b"a")
+                await writer.drain()
+                await asyncio.sleep(0.05)
+        writer.close()
+        gone.set()
+
+    async with await asyncio.start_server(drip, "127.0.0.1", 0) as server, INSIDE.client() as client:
+        url = f"http://127.0.0.1:{server.sockets[0].getsockname()[1]}/"
+        async with asyncio.timeout(10):
+            with pytest.raises(NotSent, match="no answer: TimeoutError"):
+                await post(client, url, b"{}", {}, within_s=0.5)
+            await gone.wait()

@@ -1,17 +1,30 @@
 """Addresses that people give us for push and webhooks lead to the public network or nowhere."""
 
+import ipaddress
 import ssl
 import subprocess
 import threading
 from collections.abc import Iterator
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from ipaddress import ip_network
 from pathlib import Path
 from typing import ClassVar
 
 import httpx
 import pytest
 
-from app.outside import Outside, TargetRefused, is_public
+from app.errors import StartError
+from app.main import create_app
+from app.outside import Outside, Resolve, TargetRefused
+from app.settings import load_settings
+from app.special_networks import SPECIAL_IPV4, SPECIAL_IPV6, Network, is_public
+from protocol.clock import SteppedClock
+
+NETWORKS_OF_PYTHON = [
+    *ipaddress._IPv4Constants._private_networks,  # type: ignore[attr-defined]
+    *ipaddress._IPv6Constants._private_networks,  # type: ignore[attr-defined]
+]
+"""A second witness, which nobody here has typed."""
 
 INSIDE = [
     "127.0.0.1",
@@ -21,15 +34,50 @@ INSIDE = [
     "192.168.1.1",
     "100.64.0.1",
     "169.254.169.254",  # where clouds keep the machine's credentials
+    "192.0.0.8",  # dummy
+    "192.0.0.170",  # discovery of NAT64
+    "192.0.2.1",
+    "192.88.99.1",  # 6to4 relays
+    "198.18.0.1",
+    "198.19.255.255",
+    "198.51.100.1",
+    "203.0.113.1",
     "224.0.0.1",
+    "239.255.255.250",
+    "240.0.0.1",
+    "255.255.255.255",
     "::1",
     "::",
+    "::10.1.2.3",  # IPv4-compatible
+    "::93.184.216.34",
+    "fe80::1",
     "fe80::1%eth0",
+    "2606:2800:220:1::1%eth0",
+    "fec0::1",  # site local
     "fd00:ec2::254",
     "ff02::1",
-    "::ffff:127.0.0.1",
+    "ff0e::1",  # multicast everywhere
+    "100::1",  # discarded
+    "5f00::1",  # segment routing
+    "64:ff9b:1::a01:203",  # NAT64 of one's own
     "64:ff9b::7f00:1",
-    "2002:7f00:1::",
+    "64:ff9b::a01:203",
+    "64:ff9b::c000:8",
+    "::ffff:127.0.0.1",
+    "::ffff:169.254.169.254",
+    "::ffff:0:10.1.2.3",  # IPv4-translated
+    "2001::f5ff:fffe",  # Teredo, to 10.0.0.1
+    "2001:0:4136:e378:8000:63bf:3fff:fdd2",
+    "2001:2::1",  # benchmarks
+    "2001:10::1",  # ORCHID
+    "2001:20::1",
+    "2001:db8::1",
+    "2002:7f00:1::",  # 6to4, to 127.0.0.1
+    "2002:a01:203::1",
+    "2002:5db8:d822::1",
+    "3fff::1",
+    "3ffe::1",
+    "4000::1",  # given out to nobody
 ]
 
 
@@ -38,9 +86,79 @@ def test_an_address_inside_is_not_public(address: str) -> None:
     assert not is_public(address)
 
 
-@pytest.mark.parametrize("address", ["93.184.216.34", "2606:2800:220:1::1", "::ffff:93.184.216.34"])
+OUTSIDE = ["93.184.216.34", "2606:2800:220:1::1", "2a00:1450::1", "::ffff:93.184.216.34", "64:ff9b::5db8:d822"]
+
+
+@pytest.mark.parametrize("address", OUTSIDE)
 def test_an_address_of_the_network_is_public(address: str) -> None:
     assert is_public(address)
+
+
+@pytest.mark.parametrize("networks", [*NETWORKS_OF_PYTHON, *SPECIAL_IPV4, *SPECIAL_IPV6], ids=str)
+def test_what_python_knows_of_the_registries_is_refused_from_the_first_address_to_the_last(networks: Network) -> None:
+    assert not is_public(str(networks[0]))
+    assert not is_public(str(networks[-1]))
+
+
+@pytest.mark.parametrize("address", OUTSIDE)
+def test_the_operator_refuses_networks_of_the_campus_however_they_are_written(address: str) -> None:
+    campus = [ip_network(one) for one in ("93.184.0.0/16", "2606:2800::/32", "2a00:1450::1/128", "64:ff9b::/96")]
+    assert not is_public(address, campus)
+    assert is_public("9.9.9.9", campus)
+
+
+def always(*addresses: str) -> Resolve:
+    async def resolve(host: str, port: int) -> list[str]:
+        return list(addresses)
+
+    return resolve
+
+
+@pytest.mark.parametrize(
+    "url", ["https://hooks.example:22/", "https://hooks.example:8443/", "https://hooks.example:0/"]
+)
+async def test_443_is_asked_alone_unless_the_operator_allows_another_port(url: str) -> None:
+    outside = Outside(resolve=always("93.184.216.34"))
+    assert (await outside.checked_target("https://hooks.example/")).port == 443
+    assert (await outside.checked_target("https://hooks.example:443/")).port == 443
+    with pytest.raises(TargetRefused, match="among those that may be asked: 443"):
+        await outside.checked_target(url)
+    more = Outside((443, 8443), resolve=always("93.184.216.34"))
+    assert (await more.checked_target("https://hooks.example:8443/")).port == 8443
+
+
+async def test_the_settings_open_ports_and_refuse_networks(
+    tmp_path: Path, clock: SteppedClock, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("CAMPUS_MAIL_DATA", str(tmp_path))
+    monkeypatch.setenv("CAMPUS_MAIL_OUTSIDE_PORTS", "[443, 8443]")
+    monkeypatch.setenv("CAMPUS_MAIL_OUTSIDE_REFUSED_NETWORKS", '["93.184.0.0/16"]')
+    outside: Outside = create_app(load_settings(), clock).state.outside
+    assert (await outside.checked_target("https://9.9.9.9:8443/")).address == "9.9.9.9"
+    with pytest.raises(TargetRefused, match="not on the public network"):
+        await outside.checked_target("https://93.184.216.34/")
+
+
+@pytest.mark.parametrize(("name", "value"), [("PORTS", "[0]"), ("PORTS", "[]"), ("REFUSED_NETWORKS", '["10.0.0.1/8"]')])
+def test_ports_and_networks_that_are_none_keep_the_service_from_starting(
+    name: str, value: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(f"CAMPUS_MAIL_OUTSIDE_{name}", value)
+    with pytest.raises(StartError, match=f"CAMPUS_MAIL_OUTSIDE_{name}"):
+        load_settings()
+
+
+async def test_a_name_is_looked_up_as_it_travels() -> None:
+    """Two standards read ß differently: what is looked up is what the certificate is asked for."""
+    asked = []
+
+    async def resolve(host: str, port: int) -> list[str]:
+        asked.append(host)
+        return ["93.184.216.34"]
+
+    target = await Outside(resolve=resolve).checked_target("https://straße.example./")
+    assert asked == ["xn--strae-oqa.example."]
+    assert target.host == "xn--strae-oqa.example"
 
 
 @pytest.mark.parametrize(
@@ -57,6 +175,11 @@ def test_an_address_of_the_network_is_public(address: str) -> None:
         "https://0x7f.1/",
         "https://[::1]/",
         "https://localhost/",
+        "https://①②⑦.⓪.⓪.①/",
+        "https://hooks.example\\@127.0.0.1/",
+        "https://127.0.0.1./",
+        "https://[fe80::1%25eth0]/",
+        "https://[::ffff:10.1.2.3]/",
         "https://nowhere.invalid/",
         "nonsense",
     ],
