@@ -36,6 +36,7 @@ from app.handover.delegates import Delegating
 from app.handover.service import HandOvers
 from app.handshakes import RefusedHandshakes
 from app.keeping.housekeeper import Housekeeper
+from app.keeping.last_record import last_record
 from app.live import routes as live_routes
 from app.live.feed import LocalFeed
 from app.live.position import FeedPosition
@@ -70,6 +71,7 @@ from app.schema_version import bring_to_head
 from app.server_key import ServerKey, open_server_key
 from app.settings import Settings, make_data_folder, open_map
 from app.tables import Notice, Person
+from app.trusted_clock import TrustedClock
 from protocol.clock import Clock
 
 log = structlog.get_logger(__name__)
@@ -228,6 +230,7 @@ def _code_picture(key: ServerKey) -> CodePicture:
 @asynccontextmanager
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     await bring_to_head(app.state.database)
+    await _compare_clock_with_records(app.state)
     await app.state.fleet.begin()
     await app.state.fleet.learning.begin()
     await app.state.fleet.spending.learn()
@@ -265,6 +268,12 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         await app.state.http.aclose()
         await app.state.service_http.aclose()
         await app.state.database.close()
+
+
+async def _compare_clock_with_records(state: State) -> None:
+    if isinstance(state.clock, TrustedClock):
+        async with state.database.reading() as session:
+            state.clock.compare_with_records(await last_record(session))
 
 
 async def _say_what_is_left(state: State) -> None:

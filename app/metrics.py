@@ -23,6 +23,8 @@ from app.estimates.score import Score
 from app.notify.lag import outbox_lag
 from app.settings import ClockDep, Settings, SettingsDep
 from app.tables import Alarm, Order, OrderState, RobotRow
+from app.trusted_clock import TrustedClock, holds_on
+from protocol.clock import Clock
 
 router = APIRouter(tags=["health"])
 
@@ -67,6 +69,8 @@ class Metrics:
         off = "How far it was delivered from the middle of the window that was told last."
         late = "Delivered after the end of the window that was told last."
         name, registry = "campus_mail_estimate_error_seconds", self.registry
+        self._leapt = self._gauge("clock_leapt_seconds", "How far the machine's clock has leapt, until it is believed.")
+        self._holds = self._gauge("clock_holds_on", "1 while nothing is done by time that cannot be undone.")
         self._error = Histogram(name, off, buckets=MINUTES, registry=registry)
         self._late = Counter("campus_mail_deliveries_late", late, registry=registry)
         self._looked_at = self.started_at
@@ -94,6 +98,11 @@ class Metrics:
             self._inside.set(score.inside)
             _set_all(self._off, {"told": score.median_error, "map": score.median_error_by_map})
             _set_all(self._loss, {"told": score.pinball_s, "map": score.pinball_by_map_s})
+
+    def look_at(self, clock: Clock) -> None:
+        """Whether the machine's clock goes on as it went."""
+        self._leapt.set(clock.leapt_s if isinstance(clock, TrustedClock) else 0.0)
+        self._holds.set(holds_on(clock))
 
     async def _gather_orders(self, session: AsyncSession, now: datetime) -> None:
         since = func.min(func.coalesce(col(Order.not_before), col(Order.updated_at)))
@@ -157,6 +166,7 @@ async def _door(
 async def metrics(connection: HTTPConnection, session: ReadingDep, clock: ClockDep) -> Response:
     """Figures for Prometheus, in its text format; for this machine alone, or by the operator's token."""
     gathered: Metrics = connection.app.state.metrics
+    gathered.look_at(clock)
     gathered.judge(connection.app.state.orders.estimates.score())
     content = await gathered.gather(session, clock.utc())
     return Response(content, headers={"Content-Type": CONTENT_TYPE_PLAIN_0_0_4})

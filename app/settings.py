@@ -36,8 +36,9 @@ from app.setting_kinds import (
     hours_between,
 )
 from app.settings_errors import in_sentences, slips
+from app.trusted_clock import TrustedClock
 from maps import CampusMap, CampusMapError, find_map
-from protocol.clock import Clock, RealClock, SharedClock
+from protocol.clock import Clock, SharedClock
 
 ROOT = Path(__file__).parents[1]
 SMTP_PORTS: Final = {"starttls": 587, "tls": 465, "none": 25}
@@ -212,6 +213,9 @@ class Settings(BaseSettings):
     keep_traces_days: float = Field(
         7, ge=1, description="How long codes, sessions, tokens and links are kept after they have ended."
     )
+    clock_settles_s: float = Field(
+        600, gt=0, description="How long a leap of the machine's clock has to last until it is believed; real time."
+    )
     clock_file: Path | None = Field(None, description="Shared scaled clock of a demonstration; default: real time.")
     demo_door: Path | None = Field(
         None, description="Door of a simulated robot, or a folder of several' doors; set by demonstrations alone."
@@ -305,9 +309,9 @@ def _refuse_slips(given: Iterable[str]) -> None:
 
 
 def open_clock(settings: Settings) -> Clock:
-    """The machine's clock, or the shared one of a demonstration. Raises StartError."""
+    """The machine's clock without its leaps, or the shared one of a demonstration. Raises StartError."""
     if settings.clock_file is None:
-        return RealClock()
+        return TrustedClock(settings.clock_settles_s)
     try:
         return SharedClock(settings.clock_file)
     except OSError as error:

@@ -1,32 +1,63 @@
 """`retain`: let go of what may not be kept any longer, now instead of tonight."""
 
 import asyncio
+import time
 from collections.abc import Mapping
+from typing import Annotated
+
+import typer
 
 from app.administration import migrate
 from app.commands.speaking import AsJson, errors_in_words, say_json, say_table
 from app.database import Database
+from app.errors import Refused
+from app.keeping.last_record import last_record
 from app.keeping.retention import retain as let_go
 from app.settings import Settings, load_settings, open_clock
+from app.trusted_clock import TrustedClock, holds_on
+from protocol.clock import Clock
 
 
-def retain(as_json: AsJson = False) -> None:
+def retain(
+    clock_is_right: Annotated[
+        bool, typer.Option("--clock-is-right", help="Go by the clock, though nothing was written down for long.")
+    ] = False,
+    as_json: AsJson = False,
+) -> None:
     """Take names out of old orders, delete old telemetry, codes and sessions. The service does so once a day itself.
 
+    Refused if the newest record and the clock are more than an hour apart: a clock that is wrong would take too much.
     How long what is kept: CAMPUS_MAIL_KEEP_ORDERS_DAYS, CAMPUS_MAIL_KEEP_TELEMETRY_DAYS, CAMPUS_MAIL_KEEP_TRACES_DAYS.
     """
     with errors_in_words():
-        done = asyncio.run(_retain(load_settings()))
+        done = asyncio.run(_retain(load_settings(), clock_is_right))
     if as_json:
         say_json(done)
     else:
         say_table(("what", "rows"), done.items(), "Nothing was due.")
 
 
-async def _retain(settings: Settings) -> Mapping[str, int]:
+async def _retain(settings: Settings, clock_is_right: bool) -> Mapping[str, int]:
     await migrate(settings)
     database = Database(settings.url_of_database)
     try:
-        return await let_go(database, settings, open_clock(settings).utc())
+        clock = open_clock(settings)
+        if not clock_is_right:
+            await _compare_with_records(database, clock)
+        return await let_go(database, settings, clock.utc(), time.time())
     finally:
         await database.close()
+
+
+async def _compare_with_records(database: Database, clock: Clock) -> None:
+    """Raises Refused."""
+    if not isinstance(clock, TrustedClock):
+        return
+    async with database.reading() as session:
+        last = await last_record(session)
+    clock.compare_with_records(last)
+    if holds_on(clock):
+        raise Refused(
+            f"The newest record is of {last:%Y-%m-%d %H:%M} UTC, the clock says {clock.utc():%Y-%m-%d %H:%M}. "
+            "If the clock is right, say --clock-is-right; what is let go of does not come back."
+        )

@@ -1,6 +1,7 @@
 """Keeps the house while the service runs: once a day it lets go of what may not be kept any longer."""
 
 import asyncio
+import time
 from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Final
@@ -10,11 +11,13 @@ import structlog
 from app.database import Database
 from app.keeping.retention import retain
 from app.settings import Settings
+from app.trusted_clock import holds_on
 from protocol.clock import Clock
 
 AFTER_START_S: Final = 300.0
 """Real seconds; a service that starts has better things to do first."""
 EVERY_S: Final = 86400.0
+AGAIN_S: Final = 60.0
 
 log = structlog.get_logger(__name__)
 
@@ -40,6 +43,12 @@ class Housekeeper:
                 async with asyncio.timeout(pause_s):
                     await self._stopped.wait()
                 return
-            done = await retain(self.database, self.settings, self.clock.utc())
-            log.info("retained", **{name.replace(" ", "_"): count for name, count in done.items()})
-            pause_s = EVERY_S
+            pause_s = EVERY_S if await self.keep_house() else AGAIN_S
+
+    async def keep_house(self) -> bool:
+        """Let go of what is due; False, and nothing is done, while the clock cannot be trusted."""
+        if holds_on(self.clock):
+            return False
+        done = await retain(self.database, self.settings, self.clock.utc(), time.time())
+        log.info("retained", **{name.replace(" ", "_"): count for name, count in done.items()})
+        return True

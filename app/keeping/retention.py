@@ -4,7 +4,6 @@ Orders stay for ever as records without a name; everything that is about people 
 """
 
 import asyncio
-import time
 from collections.abc import Awaitable, Callable, Mapping
 from dataclasses import dataclass
 from datetime import datetime, timedelta
@@ -101,13 +100,13 @@ RULES: Final = (
 )
 
 
-async def retain(database: Database, settings: Settings, now: datetime) -> Mapping[str, int]:
-    """Do everything that is due; how many rows of each kind were dealt with."""
+async def retain(database: Database, settings: Settings, now: datetime, machine_s: float) -> Mapping[str, int]:
+    """Do everything that is due; how many rows of each kind were dealt with. `machine_s`: what files' ages go by."""
     done = {}
     for rule in RULES:
         before = now - timedelta(days=getattr(settings, rule.days))
         done[rule.name] = await _in_portions(database, rule.work, before)
-    done["mails in the spool"] = await asyncio.to_thread(_old_mails, settings)
+    done["mails in the spool"] = await asyncio.to_thread(_old_mails, settings, machine_s)
     return {name: count for name, count in done.items() if count}
 
 
@@ -122,9 +121,8 @@ async def _in_portions(database: Database, work: Work, before: datetime) -> int:
         await asyncio.sleep(PAUSE_S)
 
 
-def _old_mails(settings: Settings) -> int:
-    """By the machine's time, which is the one that files have."""
-    before_s = time.time() - settings.keep_telemetry_days * 86400
+def _old_mails(settings: Settings, machine_s: float) -> int:
+    before_s = machine_s - settings.keep_telemetry_days * 86400
     old = [file for file in Path(settings.spool_folder).glob("*.eml") if file.stat().st_mtime < before_s]
     for file in old:
         file.unlink()

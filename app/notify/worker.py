@@ -8,6 +8,7 @@ import asyncio
 from collections.abc import Collection, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
+from datetime import timedelta
 from typing import Final
 
 from sqlmodel.ext.asyncio.session import AsyncSession
@@ -18,6 +19,7 @@ from app.notify import due, routing
 from app.notify.channels.interface import Channel, NotSent
 from app.notify.due import NOT_ROUTED, Due
 from app.notify.noting import note_not_sent, note_sent
+from app.trusted_clock import holds_on
 from protocol.clock import Clock
 
 LOOK_EVERY_S: Final = 1.0
@@ -141,7 +143,9 @@ class OutboxWorker:
         now, outcomes = self.clock.utc(), [(what, task.result()) for task, what in ended.items()]
         await note_sent(session, [what for what, problem in outcomes if problem is None], now)
         failed = [(what, problem) for what, problem in outcomes if problem is not None]
-        await note_not_sent(session, failed, now, {one.name: one.gives_up_after for one in self.channels})
+        holds = holds_on(self.clock)
+        give_up = {one.name: timedelta.max if holds else one.gives_up_after for one in self.channels}
+        await note_not_sent(session, failed, now, give_up)
 
     async def _due(
         self, session: AsyncSession, waiting: Collection[str], running: Collection[Due]

@@ -55,7 +55,7 @@ class Kept:
     def retain_after(self, days: float) -> Mapping[str, int]:
         self._clock.advance(days * DAY_S)
         done: Mapping[str, int] = self._mailroom.call(
-            retain, self._state.database, self._state.settings, self._clock.utc()
+            retain, self._state.database, self._state.settings, self._clock.utc(), time.time()
         )
         return done
 
@@ -210,7 +210,7 @@ def test_much_goes_in_portions_and_somebody_who_writes_comes_in_between(
     kept.add(*(RobotMessage(seq=seq, **message) for seq in range(1, 2 * retention.PORTION + 51)))
 
     async def retain_and_write() -> tuple[Mapping[str, int], int]:
-        retaining = asyncio.create_task(retain(state.database, state.settings, now + timedelta(days=31)))
+        retaining = asyncio.create_task(retain(state.database, state.settings, now + timedelta(days=31), time.time()))
         left = 2 * retention.PORTION + 50
         while left == 2 * retention.PORTION + 50:
             async with state.database.transaction() as session:
