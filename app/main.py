@@ -18,6 +18,7 @@ from app.deadline import RequestDeadline
 from app.dispatch.charge_desk import ChargeDesk
 from app.dispatch.charge_first import ChargeFirst
 from app.dispatch.fleet_planner import FleetPlanner
+from app.dispatch.held_up import NoRobotComes
 from app.dispatch.nearest import NearestRobots
 from app.dispatch.service import Dispatcher
 from app.enrolment import routes as enrolment_routes
@@ -177,7 +178,9 @@ def _add_parts(app: FastAPI, settings: Settings, clock: Clock) -> None:
     state.links = Links(state.database, state.server_key, settings, clock)
     state.enrolment_desk = EnrolmentDesk(settings, state.server_key, clock)
     state.fleet = Fleet(state.database, state.campus, settings, clock, state.feed, state.orders)
+    state.fleet.learning.why_none = NoRobotComes(state.fleet).why
     state.orders.on_change.append(state.fleet.learning.wake)
+    state.fleet.on_change.append(state.fleet.learning.wake)
     state.hand_overs, state.delegating = HandOvers(state.fleet), Delegating(state.fleet)
     state.intake = Intake(state.fleet)
     state.outbox_worker = _outbox_worker(state, settings, clock)
@@ -189,7 +192,11 @@ def _add_parts(app: FastAPI, settings: Settings, clock: Clock) -> None:
     if state.traffic_desk is not None:
         state.traffic_desk.on_look.append(state.dispatcher.wake_for_robot)
         state.traffic_desk.charges_first = ChargeFirst(state.fleet).sends
-    state.foreseen = Foreseen(state.fleet, state.traffic_desk) if state.traffic_desk is not None else None
+    state.foreseen = Foreseen(state.fleet, state.traffic_desk)
+    for changes in (state.fleet.on_change, state.orders.on_change):
+        changes.append(state.foreseen.wake)
+    if state.traffic_desk is not None:
+        state.traffic_desk.on_look.append(state.foreseen.wake)
     state.housekeeper = Housekeeper(state.database, settings, clock)
 
 
@@ -242,6 +249,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         "housekeeping": state.housekeeper,
         "last seen": state.last_seen,
         "estimates": state.fleet.learning,
+        "foreseen": state.foreseen,
         "spending": state.fleet.spending,
     }
     if state.traffic_desk is not None:
@@ -249,7 +257,6 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
             "charging": state.charge_desk,
             "traffic": state.traffic_desk,
             "planning": state.planner,
-            "foreseen": state.foreseen,
         }
     background = [asyncio.create_task(_keep_running(name, worker.run)) for name, worker in workers.items()]
     outbox = asyncio.create_task(_keep_running("outbox", state.outbox_worker.run))

@@ -25,6 +25,7 @@ export type ClosedCorridor = Schemas["ClosedCorridorView"];
 export type ArrivalWindow = Schemas["WindowView"];
 export type Estimate = Schemas["Estimate"];
 export type Robot = Schemas["RobotView"];
+export type Expected = Schemas["Expected"];
 export type WaitsFor = NonNullable<Robot["waits_for"]>;
 /** A sentence as a text of the catalogue and what fills its gaps. */
 export type Words = Schemas["Words"];

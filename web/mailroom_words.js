@@ -6,7 +6,8 @@
  *   | {kind: "locked", key: string, order: Order} | {kind: "stopped", key: string, robot: Robot}
  *   | {kind: "silent", key: string, robot: Robot} | {kind: "given_up", key: string, sending: Sending}} Wrong
  */
-import { hasEnded, isBetweenLegs, orderReason, robotWhy } from "./order_words.js";
+import { arrivalOf } from "./arrival.js";
+import { hasEnded, isBetweenLegs, orderWhy } from "./order_words.js";
 import { titleOf } from "./posts.js";
 import { serverNow } from "./server_clock.js";
 import { t } from "./texts.js";
@@ -84,10 +85,6 @@ export function whyItWaits(order, map) {
   return wait_until && robotStands(order) ? t("mailroom.why.until", { why, time: clockTime(wait_until) }) : why;
 }
 
-/** Of its robot the service knows more than it says of itself. @param {Order} order @param {CampusMap} map */
-const orderWhy = (order, map) =>
-  order.robot && order.robot.why === order.why ? robotWhy(order.robot, map) : orderReason(order, map);
-
 /** For a wall: a reason that somebody has typed may name people. @param {Order} order */
 export const withoutOwnWords = (order) => (order.why_words ? order : { ...order, why: null });
 
@@ -106,7 +103,7 @@ const SORTINGS = {
   priority: (order) => PRIORITIES.indexOf(order.priority),
   state: (order) => STATES.indexOf(order.state),
   way: (order, map) => orderWay(order, map),
-  window: (order) => (order.window ? Date.parse(order.window.to) : Infinity),
+  window: (order) => Date.parse(arrivalOf(order, serverNow())?.window?.to ?? "") || Infinity,
   robot: (order) => order.robot?.name ?? "\uffff",
 };
 

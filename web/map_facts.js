@@ -2,8 +2,10 @@
  * What a map shows and its list says: both are made of these facts, so that the drawing says nothing that the list does not. Pure.
  * @import { Alarm, CampusMap, ClosedCorridor, MapCorridor, MapPost, Robot, TakenCorridor } from "./api_types.ts"
  * @typedef {"stopped" | "charging" | "offline"} Condition
+ * @typedef {{post: string, window: {from: string, to: string} | null}} MapArrival where and when, null while no time is known
  * @typedef {object} MapFacts
  * @property {readonly Robot[]} robots by name
+ * @property {MapArrival | null} arrival of the order that the map is about: the only time that it tells then
  * @property {Map<string, Robot[]>} seen who was last seen at which post
  * @property {Map<string, Robot[]>} expected who is expected at which post
  * @property {readonly TakenCorridor[]} taken by these robots, on this map
@@ -13,9 +15,11 @@
  * @property {{posts: MapPost[], corridors: MapCorridor[]}} silent where there is no network
  */
 
+import { expectedNext } from "./arrival.js";
+
 /** @param {CampusMap} map @param {readonly Robot[]} robots @param {readonly TakenCorridor[]} traffic @param {readonly Alarm[]} alarms
- *  @param {readonly ClosedCorridor[]} closed @returns {MapFacts} */
-export function factsOf(map, robots, traffic, alarms, closed = []) {
+ *  @param {readonly ClosedCorridor[]} closed @param {number} now_ms @param {MapArrival | null} [arrival] @returns {MapFacts} */
+export function factsOf(map, robots, traffic, alarms, closed, now_ms, arrival = null) {
   const posts = new Set(map.posts.map(({ name }) => name));
   const found = alarms.filter(({ corridor, cleared_at }) => corridor && !cleared_at && corridorNamed(map, corridor));
   const shown = [...robots].sort((a, b) => a.name.localeCompare(b.name, undefined, { numeric: true }));
@@ -23,8 +27,9 @@ export function factsOf(map, robots, traffic, alarms, closed = []) {
   const grouped = (post) => by(shown.filter((robot) => posts.has(post(robot) ?? "")), post);
   return {
     robots: shown,
+    arrival,
     seen: grouped(({ last_seen }) => last_seen?.post),
-    expected: grouped(({ expected }) => expected?.post),
+    expected: arrival ? by(arrival.window ? shown : [], () => arrival.post) : grouped((robot) => expectedNext(robot, now_ms)?.post),
     taken: traffic.filter(({ robot, corridor }) => shown.some(({ name }) => name === robot) && corridorNamed(map, corridor)),
     closed: found,
     byPeople: closed.filter(({ corridor, by_person }) => by_person && corridorNamed(map, corridor)),

@@ -1,6 +1,6 @@
 /**
  * What stands beside each post of a map, and where else there is something to be kept clear.
- * @import { CampusMap, Robot, TakenCorridor } from "./api_types.ts"
+ * @import { CampusMap, Expected, Robot, TakenCorridor } from "./api_types.ts"
  * @import { Box, Drawing } from "./map_drawing.js"
  * @import { MapFacts } from "./map_facts.js"
  * @import { Wording } from "./map_labels.js"
@@ -14,19 +14,19 @@ import { ago, windowText } from "./times.js";
 
 /** Posts that matter most choose their side first. @param {CampusMap} map @param {MapFacts} facts
  *  @param {readonly string[]} ends of the way that is shown @returns {Wording[]} */
-export function wordingsOf(map, { seen, expected, robots }, ends) {
+export function wordingsOf(map, { seen, expected, robots, arrival }, ends) {
   return map.posts
     .map(({ name, title, dock, mailroom }) => {
       const [here, coming] = [seen.get(name) ?? [], expected.get(name) ?? []];
       const important = ends.includes(name) || here.length + coming.length > 0;
       const rank = (important ? 4 : 0) + (mailroom ? 2 : 0) + (dock ? 1 : 0);
-      return { name, title, notes: notesOf(here, coming, robots.length === 1), important, robots: here.length, rank };
+      return { name, title, notes: notesOf(here, coming, robots.length === 1, arrival), important, robots: here.length, rank };
     })
     .sort((a, b) => b.rank - a.rank);
 }
 
-/** What is said at a post of the robots there; of several in a line each, the rest is in the list. @param {readonly Robot[]} seen @param {readonly Robot[]} expected @param {boolean} alone */
-function notesOf(seen, expected, alone) {
+/** What is said at a post of the robots there; of several in a line each, the rest is in the list. @param {readonly Robot[]} seen @param {readonly Robot[]} expected @param {boolean} alone @param {MapFacts["arrival"]} arrival */
+function notesOf(seen, expected, alone, arrival) {
   const now_ms = serverNow();
   return [
     ...seen.flatMap((robot) => {
@@ -35,7 +35,7 @@ function notesOf(seen, expected, alone) {
       return alone ? [t("map.seen_here"), age, ...conditions] : [[robot.name, ...conditions, age].join(" · ")];
     }),
     ...expected.flatMap((robot) =>
-      alone && robot.expected ? [t("map.expected_here"), windowText(robot.expected)] : [t("map.robot.expected", { robot: robot.name })],
+      alone ? [t("map.expected_here"), windowText(arrival?.window ?? /** @type {Expected} */ (robot.expected), now_ms)] : [t("map.robot.expected", { robot: robot.name })],
     ),
   ];
 }

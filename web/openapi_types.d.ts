@@ -526,6 +526,9 @@ export interface components {
         /**
          * Estimate
          * @description Before ordering: when mail would arrive, and how far it has to go.
+         *
+         *     `reason` (and `reason_words`, as a text of the catalogue): why no robot can come as things are. The window then only
+         *     says how long it would take with one.
          */
         Estimate: {
             window: components["schemas"]["WindowView"];
@@ -536,6 +539,9 @@ export interface components {
              * @default true
              */
             assumed: boolean;
+            /** Reason */
+            reason?: string | null;
+            reason_words?: components["schemas"]["Words"] | null;
         };
         /**
          * EstimateError
@@ -576,6 +582,32 @@ export interface components {
             durations: components["schemas"]["DurationView"][];
         };
         /**
+         * EstimateView
+         * @description The arrival at the recipient's that is expected now.
+         *
+         *     `from` and `to` are null while no time is known: an interval that is over is never given. `made_at`: when it was
+         *     worked out. `assumed`: by the map alone, nothing was measured yet. `reason` (and `reason_words`, as a text of the
+         *     catalogue) is what the order waits for; there is always one where no time is known. `promised_to` is the end of the
+         *     window that its people were told; `late`: that is over, or a delay was told of.
+         */
+        EstimateView: {
+            /** From */
+            from: string | null;
+            /** To */
+            to: string | null;
+            /** Made At */
+            made_at: string | null;
+            /** Assumed */
+            assumed: boolean;
+            /** Reason */
+            reason: string | null;
+            reason_words: components["schemas"]["Words"] | null;
+            /** Promised To */
+            promised_to: string | null;
+            /** Late */
+            late: boolean;
+        };
+        /**
          * EventView
          * @description One step of the timeline: when by the server, when by the robot, on whose word, where, why.
          *
@@ -606,7 +638,7 @@ export interface components {
         };
         /**
          * Expected
-         * @description Where it should be seen next, and between which times.
+         * @description Where it should be seen next, and between which times; never times that are over.
          */
         Expected: {
             /** Post */
@@ -1126,7 +1158,10 @@ export interface components {
          * OrderView
          * @description An order as one person may see it. A delegate sees where it is, and of sender and recipient the names alone.
          *
-         *     `passed_on_at_post`: where somebody of the mailroom has taken the mail out of one robot for another to carry it on.
+         *     `estimate`: when the robot should be at the recipient's, or why that is not known; null once it is there, or the
+         *     mail goes elsewhere. `window` has the same times, or null. `why`: what the order waits for, never another order's
+         *     stop. `passed_on_at_post`: where somebody of the mailroom has taken the mail out of one robot for another to carry
+         *     it on.
          */
         OrderView: {
             /** Id */
@@ -1153,6 +1188,7 @@ export interface components {
              */
             updated_at: string;
             window: components["schemas"]["WindowView"] | null;
+            estimate?: components["schemas"]["EstimateView"] | null;
             robot: components["schemas"]["RobotView"] | null;
             /** Why */
             why: string | null;

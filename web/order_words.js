@@ -22,6 +22,10 @@ export function orderReason({ why, why_words, events }, map) {
   return moved?.state === "attention" ? eventReason({ ...moved, reason: why, reason_words: why_words }, map) : reasonText(why ?? "", why_words, map);
 }
 
+/** The same; of what its robot waits for, the service knows more than the sentence says. @param {Order} order @param {CampusMap} map */
+export const orderWhy = (order, map) =>
+  order.robot && order.robot.why === order.why ? robotWhy(order.robot, map) : orderReason(order, map);
+
 /** The reason of something that happened. @param {Pick<OrderEvent, "by" | "reason" | "reason_words">} event @param {CampusMap} map */
 export function eventReason({ by, reason, reason_words }, map) {
   if (!reason) return "";

@@ -92,14 +92,18 @@ def has_enough_charge(robot: IdleRobot) -> bool:
 def why_nobody_comes(robots: Sequence[IdleRobot], connected: int) -> str:
     """Why an order waits, in words."""
     if connected == 0:
-        return "No robot is connected at the moment."
+        return NONE_CONNECTED
     if not robots:
-        return "Every robot is busy."
+        return BUSY
     if not any(has_enough_charge(robot) for robot in robots):
-        return "The free robots are charging first."
-    return "The robot that is to fetch it is busy."
+        return CHARGING
+    return FETCHER_BUSY
 
 
+NONE_CONNECTED: Final = "No robot is connected at the moment."
+BUSY: Final = "Every robot is busy."
+FETCHER_BUSY: Final = "The robot that is to fetch it is busy."
+CHARGING: Final = "The free robots are charging first."
 NOT_ENOUGH_FOR_IT: Final = "No free robot has enough charge for this way yet."
 
 

@@ -18,7 +18,7 @@ from app.dispatch.planner_process import PlannerProcess
 from app.dispatch.planning.carrying_out import adopt
 from app.dispatch.planning.deciding import Decision, decide
 from app.dispatch.scene_of_work import SceneOfWork
-from app.dispatch.why_orders_wait import sentences
+from app.dispatch.why_orders_wait import answers
 from app.fleet.service import Fleet
 from app.fleet.timetable import Timetable
 from app.fleet.traffic_desk import TrafficDesk
@@ -59,7 +59,7 @@ class FleetPlanner:
             return True
         left = [order for order in waiting if changes is None or order not in changes.given]
         if left:
-            await explain(self._fleet, sentences(work, decision, left))
+            await explain(self._fleet, answers(work, decision, left))
         if changes:
             self._something_new.set()
         self.left = len(left)

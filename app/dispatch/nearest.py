@@ -11,6 +11,8 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.dispatch.charge import Charges
 from app.dispatch.choice import (
+    BUSY,
+    FETCHER_BUSY,
     NOT_ENOUGH_FOR_IT,
     Assignment,
     WaitingOrder,
@@ -20,8 +22,10 @@ from app.dispatch.choice import (
     why_nobody_comes,
 )
 from app.dispatch.explained import explain
+from app.dispatch.held_up import NoRobotComes
 from app.dispatch.missions import begin_missions, take_along
 from app.dispatch.situation import connected_robots, idle_robots, look, tours
+from app.dispatch.why_orders_wait import Answer
 from app.fleet.mission_updates import tell_mission
 from app.fleet.service import Fleet
 from app.orders.service import Word
@@ -119,9 +123,19 @@ class NearestRobots:
     async def _explain(self, waiting: Sequence[WaitingOrder]) -> None:
         async with self._fleet.database.reading() as session:
             idle, connected = await idle_robots(session), await connected_robots(session)
+            held_up = None if idle else await NoRobotComes(self._fleet).why(session)
         lacking = {order.id for order in waiting if lacks_charge(order, idle, self._charges.may_take)}
-        others = [order.id for order in waiting if order.id not in lacking]
-        await explain(self._fleet, {NOT_ENOUGH_FOR_IT: list(lacking), why_nobody_comes(idle, connected): others})
+        why = held_up or why_nobody_comes(idle, connected)
+        takes_its_turn = why in (BUSY, FETCHER_BUSY)
+        await explain(
+            self._fleet,
+            [
+                Answer(order.id, NOT_ENOUGH_FOR_IT, has_time=False)
+                if order.id in lacking
+                else Answer(order.id, why, takes_its_turn)
+                for order in waiting
+            ],
+        )
 
 
 _ORDERS: Final = select(Order).where(col(Order.id).in_(bindparam("order_ids", expanding=True)))

@@ -1,9 +1,10 @@
 """What the planner decides about, as the database has it: orders that are not delivered, robots, and the stops before
 them. One look, in which everything is of one moment."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
+from enum import StrEnum
 from typing import Any, Final, NamedTuple
 
 from sqlalchemy import func, or_, select
@@ -48,9 +49,18 @@ class StopNow(NamedTuple):
     departed: bool
 
 
+class HeldUp(StrEnum):
+    """Why a robot waits for a person, whatever there is to do."""
+
+    STUCK_MAIL = "stuck_mail"
+    STOPPED = "stopped"
+    PAUSED = "paused"
+
+
 class RobotNow(NamedTuple):
     """`takes_work`: it may be given orders. `gives_away`: others may fetch what it has not loaded (it is paused, or
-    something keeps it where it is). One that does neither is left alone with what it has. `has_stopped`: it says so."""
+    something keeps it where it is). One that does neither is left alone with what it has. `has_stopped`: it says so.
+    `held_up`: until a person has done something about it."""
 
     name: str
     post: str | None
@@ -62,6 +72,7 @@ class RobotNow(NamedTuple):
     takes_work: bool
     gives_away: bool
     has_stopped: bool
+    held_up: HeldUp | None
 
 
 @dataclass(frozen=True)
@@ -108,6 +119,7 @@ def _put_together(
     for mission_id, robot in missions:
         its_missions.setdefault(robot, []).append(mission_id)
     busy = _not_to_be_disturbed(orders.values(), by_robot, its_missions, commands)
+    stuck = {order.robot for order in orders.values() if order.state is OrderState.ATTENTION}
     paused = _paused(commands)
     dropping: dict[str, frozenset[str]] = {}
     for one in commands:
@@ -115,7 +127,7 @@ def _put_together(
             dropping[one.order_id] = dropping.get(one.order_id, frozenset()) | {one.robot}
     return OpenWork(
         orders,
-        {row.name: _robot(row, is_busy=row.name in busy, is_paused=row.name in paused) for row in robots},
+        {row.name: _robot(row, is_busy=row.name in busy, held_up=_held_up(row, stuck, paused)) for row in robots},
         by_robot,
         {robot: ids[0] for robot, ids in its_missions.items()},
         dropping,
@@ -133,12 +145,21 @@ def _grouped(stops: Iterable[StopNow]) -> tuple[dict[str, list[StopNow]], dict[s
     return by_robot, by_order
 
 
-def _robot(row: Any, *, is_busy: bool, is_paused: bool) -> RobotNow:
+def _held_up(row: Any, stuck: Container[str | None], paused: Container[str]) -> HeldUp | None:
+    if row.name in stuck:
+        return HeldUp.STUCK_MAIL
+    if row.activity == Activity.STOPPED or row.taken_out_at is not None:
+        return HeldUp.STOPPED
+    return HeldUp.PAUSED if row.name in paused else None
+
+
+def _robot(row: Any, *, is_busy: bool, held_up: HeldUp | None) -> RobotNow:
+    is_paused = held_up is HeldUp.PAUSED
     is_there = row.online and row.taken_out_at is None and not is_busy
     has_stopped = row.activity == Activity.STOPPED
     takes_work, gives_away = is_there and not is_paused and not has_stopped, is_there and (is_paused or has_stopped)
     says = row.name, row.post, row.battery_ratio, row.charging, row.docked, row.home
-    return RobotNow(*says, row.online, takes_work, gives_away, has_stopped)
+    return RobotNow(*says, row.online, takes_work, gives_away, has_stopped, held_up)
 
 
 def _not_to_be_disturbed(

@@ -1,31 +1,74 @@
-"""Why orders wait that no robot has yet, in the sentences that pages know in each language."""
+"""Why orders wait that no robot has yet, in the sentences that pages know in each language; and when they are likely to
+arrive, from the same decision."""
 
-from typing import Final
+from collections.abc import Iterator, Sequence
+from typing import Final, NamedTuple
 
-from app.dispatch.choice import why_nobody_comes
+from app.dispatch.choice import BUSY, NONE_CONNECTED
+from app.dispatch.held_up import why_held_up
 from app.dispatch.open_work import OpenWork
+from app.dispatch.planning.comes_next import given_at_s
 from app.dispatch.planning.deciding import Decision
 from app.dispatch.planning.why import Why, why_orders_wait
 
-BUSY: Final = "Every robot is busy."
-SAID: Final = {"next": BUSY, "turn": BUSY, "fetched": BUSY, "fetched_after": BUSY}
-"""How many others come first changes with every order that is placed: it is not said."""
+ONE_AHEAD: Final = "Every robot is busy, and one order is ahead of this one."
+SOME_AHEAD: Final = "Every robot is busy, and {orders} orders are ahead of this one."
+MANY_AHEAD: Final = "Every robot is busy, and many orders are ahead of this one."
+MOST_COUNTED: Final = 5
+"""A longer queue is not counted: it changes with every order that is fetched."""
+NOT_PLANNED_FOR: Final = "No robot can be planned for at the moment."
+TAKES_ITS_TURN: Final = frozenset({"next", "turn", "overdue"})
+"""Codes of orders that wait for nothing but their turn: a time can be told of these."""
 
 
-def sentences(work: OpenWork, decision: Decision | None, orders: list[str]) -> dict[str, list[str]]:
-    """Each sentence with the orders that it is about."""
+class Answer(NamedTuple):
+    """What is said of one order. `has_time`: it only waits for its turn; `comes_in_s`: until it is given, if known."""
+
+    order_id: str
+    why: str
+    has_time: bool
+    comes_in_s: float | None = None
+
+
+def answers(work: OpenWork, decision: Decision | None, orders: Sequence[str]) -> Iterator[Answer]:
+    """One for each of these orders, from one decision."""
     whys = why_orders_wait(decision) if decision is not None else {}
-    told: dict[str, list[str]] = {}
+    able = [name for name, robot in work.robots.items() if robot.is_there and robot.held_up is None]
+    given = given_at_s(decision, able) if decision is not None else {}
     for order in orders:
-        told.setdefault(_sentence(work, whys.get(order)), []).append(order)
-    return told
+        why, has_time = _said(work, whys.get(order))
+        at_s = given.get(order) if has_time else None
+        yield Answer(order, why, has_time, None if at_s is None or decision is None else at_s - decision.scene.now_s)
 
 
-def _sentence(work: OpenWork, why: Why | None) -> str:
-    if why is None or why.code == "no_robot" or not work.connected:
-        return why_nobody_comes((), work.connected)
-    if why.code == "robot_absent" and any(work.robots[name].is_there for name in why.robots if name in work.robots):
-        return BUSY
-    if why.code == "robot_paused" and not any(work.robots[name].gives_away for name in why.robots):
-        return BUSY  # each has just something to do in which it must not be disturbed
-    return SAID.get(why.code) or why.sentence(lambda at_s: f"{at_s:.0f} s")
+def _said(work: OpenWork, why: Why | None) -> tuple[str, bool]:
+    """The sentence, and whether the order only waits for its turn."""
+    if not work.connected:
+        return NONE_CONNECTED, False
+    known = [work.robots[name] for name in why.robots if name in work.robots] if why is not None else []
+    if held_up := why_held_up(known or work.robots.values()):
+        return held_up, False
+    if why is None or why.code == "no_robot":
+        return (BUSY, True) if _is_any_busy(work) else (NOT_PLANNED_FOR, False)
+    if why.code == "robot_absent" and any(robot.is_there for robot in known):
+        return BUSY, True
+    if why.code == "robot_paused" and not any(robot.gives_away for robot in known):
+        return BUSY, True  # each has just something to do in which it must not be disturbed
+    if why.code == "turn":
+        return _ahead(why.before), True
+    said = BUSY if why.code in ("next", "fetched", "fetched_after") else why.sentence(lambda at_s: f"{at_s:.0f} s")
+    return said, why.code in TAKES_ITS_TURN
+
+
+def _ahead(orders: int) -> str:
+    if orders > MOST_COUNTED:
+        return MANY_AHEAD
+    return ONE_AHEAD if orders == 1 else SOME_AHEAD.format(orders=orders)
+
+
+def _is_any_busy(work: OpenWork) -> bool:
+    """A connected robot has something to do, or a person stands at it."""
+    return any(
+        robot.is_there and robot.held_up is None and (work.missions.get(name) or not robot.takes_work)
+        for name, robot in work.robots.items()
+    )

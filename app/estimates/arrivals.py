@@ -36,10 +36,11 @@ SPREAD: Final = 2.0
 
 @dataclass(frozen=True)
 class Ahead:
-    """Orders that are not fetched yet, and robots that can be reached."""
+    """Orders that are not fetched yet, and robots that can be reached. `reason`: why none of them can come now."""
 
     orders: int = 0
     robots: int = 1
+    reason: str | None = None
 
     @property
     def per_robot(self) -> float:

@@ -5,7 +5,7 @@ time without network teaches nothing wrong. What it waited before it was let in 
 """
 
 import asyncio
-from collections.abc import Iterable
+from collections.abc import Awaitable, Callable, Iterable
 from contextlib import suppress
 from dataclasses import dataclass, field
 from datetime import datetime
@@ -16,7 +16,7 @@ from sqlalchemy import func, or_, select
 from sqlmodel import col
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.database import Database, after_commit, write_all
+from app.database import Database, after_commit, connection_of, write_all
 from app.estimates.arrivals import Ahead, Estimates, Promise
 from app.estimates.durations import Durations, Kind, Thing
 from app.estimates.intervals import Interval
@@ -32,6 +32,14 @@ LOOK_EVERY_S: Final = 30.0
 REST_S: Final = 2.0
 NOT_FETCHED: Final = (OrderState.QUEUED, OrderState.ASSIGNED, OrderState.TO_SENDER)
 KIND_OF: Final = {Purpose.LOAD: Kind.LOAD, Purpose.RECEIVE: Kind.RECEIVE}
+
+
+WhyNone = Callable[[AsyncSession], Awaitable[str | None]]
+"""The reason for which no robot would come for an order of this moment; None if one would."""
+
+
+async def _not_asked(_session: AsyncSession) -> str | None:
+    return None
 
 
 class Corrected(Protocol):
@@ -57,6 +65,8 @@ class Learning:
     database: Database
     estimates: Estimates
     clock: Clock
+    why_none: WhyNone = _not_asked
+    """Dispatch sets it."""
     _on_way: dict[str, tuple[str, datetime]] = field(default_factory=dict)
     """The post that each robot passed last, and when, by its clock put right."""
     _let_in: dict[tuple[str, str, str], datetime] = field(default_factory=dict)
@@ -77,7 +87,7 @@ class Learning:
         await self.look()
 
     def wake(self, _changed: str = "") -> None:
-        """An order has changed."""
+        """An order or a robot has changed."""
         self._woken.set()
 
     def stop(self) -> None:
@@ -99,14 +109,16 @@ class Learning:
                         await self._stopped.wait()
 
     async def look(self) -> None:
-        """How many orders wait for how many robots."""
-        async with self.database.asking() as connection:
+        """How many orders wait for how many robots, and whether one of these could come."""
+        async with self.database.reading() as session:
+            connection = await connection_of(session)
             now = self.clock.utc()
             due = or_(col(Order.not_before).is_(None), col(Order.not_before) <= now)
             waiting = select(func.count()).select_from(Order).where(col(Order.state).in_(NOT_FETCHED), due)
             there = select(func.count()).select_from(RobotRow).where(col(RobotRow.online))
             orders, robots = [(await connection.execute(counted)).scalar_one() for counted in (waiting, there)]
-        self.estimates.ahead = Ahead(orders, robots)
+            reason = await self.why_none(session)
+        self.estimates.ahead = Ahead(orders, robots, reason)
 
     # What robots say, in the transaction that writes it down.
 

@@ -16,7 +16,6 @@ from app.fleet.routes import FleetDep, RobotName
 from app.fleet.schemas import AlarmView, CommandReason, CommandView, RobotDetails, WayIsOpen
 from app.fleet.service import Fleet, known_robot
 from app.fleet.taken_out import take_out
-from app.orders.robot_view import robot_view
 from app.paging import PAGED, PageDep, PageOf, Sorting
 from app.people.current_user import Dispatcher, DispatcherOrMaintainer
 from app.people.errors import RoleNeeded
@@ -49,7 +48,7 @@ async def one_robot(
     row = await known_robot(session, name)
     open_ones = select(Alarm).where(Alarm.robot == name, col(Alarm.cleared_at).is_(None)).order_by(col(Alarm.id).desc())
     alarms = (await session.exec(open_ones.limit(100))).all()
-    return RobotDetails.of(row, robot_view(row, fleet.campus, fleet.settings), list(alarms))
+    return RobotDetails.of(row, fleet.view_of(row), list(alarms))
 
 
 @router.get("/robots/{name}/commands", responses={**PAGED, **problems(UnknownRobot, RoleNeeded)})

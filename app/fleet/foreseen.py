@@ -1,187 +1,171 @@
-"""Windows of orders that a robot has, from the timetable: carried out many times with durations as they were learned.
+"""Estimates of orders that a robot has, renewed whenever something is learned on the way, and the reasons for which
+they wait: both go to pages together.
 
-What people were promised is not made later here: whoever comes after that is late, and the timer tells of it.
+What people were promised is kept beside it and is not made later here: whoever comes after that is late, and the timer
+tells of it.
 """
 
 import asyncio
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from datetime import datetime, timedelta
 from random import Random
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
-from sqlalchemy import bindparam, or_, select
+from sqlalchemy import select
 from sqlmodel import col
+from sqlmodel import select as select_rows
 
-from app.estimates.arrivals import Estimates
-from app.estimates.durations import Kind
-from app.estimates.forecast import Chance, forecast
+from app.database import connection_of
 from app.estimates.intervals import Interval
+from app.fleet.forecasts import Stop, by_their_ways, by_timetable
 from app.fleet.service import Fleet
 from app.fleet.traffic_desk import TrafficDesk
-from app.orders.transitions import ROBOT_COMING
-from app.tables import ForecastRow, Order, OrderState, StopRow
-from app.traffic.controller import TrafficController
-from app.traffic.journey import Goal
-from app.traffic.network import Lane, Network
+from app.orders.ledger import Expected
+from app.orders.reasons import is_held_up, why_it_waits
+from app.orders.transitions import MAIL_ABOARD, ROBOT_COMING
+from app.tables import MissionRow, MissionState, Order, OrderState, RobotRow, StopRow
 from protocol.parts import StopAction
 
-LOOK_EVERY_S: Final = 20.0
-"""Real seconds."""
+LOOK_AGAIN_S: Final = 5.0
+"""Real seconds. Time alone makes a robot late."""
+REST: Final = 20
+"""After each look so many times as long as it has taken: forecasting is the least of what the service has to do."""
+LEAST_REST_S: Final = 0.3
+LONGEST_REST_S: Final = 20.0
 NEWS: Final = timedelta(seconds=30)
-"""A window that begins and ends by less than this otherwise is left as it is."""
+"""An interval that begins and ends by less than this otherwise, or by less than a share of what is left, stays."""
+SHARE: Final = 0.25
+SHORTEST: Final = timedelta(seconds=1)
 ON_ITS_WAY: Final = ROBOT_COMING | {OrderState.CARRYING}
-KIND_OF: Final[Mapping[str, Kind]] = {
-    StopAction.LOAD: Kind.LOAD,
-    StopAction.RECEIVE: Kind.RECEIVE,
-    StopAction.RETURN: Kind.RECEIVE,
-}
 
 
-class Planned(NamedTuple):
-    """A stop that is a goal of the timetable. `promised_to`: the end of the window that people were told at first."""
+class UnderWay(NamedTuple):
+    """An order that a robot has. `why`: the reason for which it waits; `expected`: None if no time is known."""
 
-    action: str
-    arrived_at: datetime | None
-    order_id: str | None
-    promised_to: datetime | None
-
-
-@dataclass(frozen=True)
-class Foresight:
-    """What is drawn of each goal and corridor, as it stands at one moment."""
-
-    estimates: Estimates
-    network: Network
-    stops: Mapping[str, Planned]
-    now: datetime
-    now_s: float
-    rng: Random
-
-    def chance(self) -> Chance:
-        return Chance(self._travel_s, self._handling_s, self._arrives_s)
-
-    def _travel_s(self, _robot: str, lane: Lane) -> float:
-        return self._draw_s(lane, 0.0)
-
-    def _arrives_s(self, _robot: str, lane: Lane, entered_s: float) -> float:
-        return entered_s + self._draw_s(lane, max(0.0, self.now_s - entered_s))
-
-    def _draw_s(self, lane: Lane, over_s: float) -> float:
-        posts = self.network.posts
-        thing = self.estimates.corridor(posts[lane.start], posts[lane.end])
-        return lane.travel_s if thing is None else self.estimates.durations.draw_s(thing, self.rng, over_s)
-
-    def _handling_s(self, goal: Goal) -> float:
-        stop = self.stops.get(goal.key)
-        kind = KIND_OF.get(stop.action) if stop is not None else None
-        if stop is None or kind is None:
-            return goal.handling_s
-        thing = self.estimates.stop(kind, stop.arrived_at or self.now)
-        over_s = max(0.0, (self.now - stop.arrived_at).total_seconds()) if stop.arrived_at else 0.0
-        return self.estimates.durations.draw_s(thing, self.rng, over_s) - over_s
+    order: Order
+    why: str | None
+    expected: Expected | None
+    is_news: bool
 
 
 @dataclass
 class Foreseen:
-    """Runs in the background of the service, beside the desk whose timetable it looks at."""
+    """Runs in the background of the service. `desk`: None where every corridor is granted at once."""
 
     fleet: Fleet
-    desk: TrafficDesk
+    desk: TrafficDesk | None
     _rng: Random = field(default_factory=lambda: Random(0))
+    _said: dict[str, str | None] = field(default_factory=dict)
+    """The reason of each order, as pages have it."""
+    _woken: asyncio.Event = field(default_factory=asyncio.Event)
     _stopped: asyncio.Event = field(default_factory=asyncio.Event)
+
+    def wake(self, _changed: str = "") -> None:
+        """A robot, an order or the timetable has changed."""
+        self._woken.set()
 
     def stop(self) -> None:
         """End `run`."""
         self._stopped.set()
+        self.wake()
 
     async def run(self) -> None:
         """Until stopped or cancelled."""
+        now_s = asyncio.get_running_loop().time
         while not self._stopped.is_set():
-            with suppress(TimeoutError):
-                async with asyncio.timeout(LOOK_EVERY_S):
-                    await self._stopped.wait()
-            if not self._stopped.is_set():
-                await self.look()
+            self._woken.clear()
+            begun_s = now_s()
+            await self.look()
+            rest_s = min(max(LEAST_REST_S, REST * (now_s() - begun_s)), LONGEST_REST_S)
+            await _for(self._stopped, rest_s)
+            await _for(self._woken, LOOK_AGAIN_S)
 
     async def look(self) -> None:
-        """Foresee all goals, and write down what has changed. Nothing is told before enough was learned."""
-        timetable = self.desk.timetable
-        if timetable is None or self.fleet.orders.estimates.is_assumed:
+        """Foresee all stops, and write down and tell what has changed."""
+        async with self.fleet.database.reading() as session:
+            pairs = (await session.exec(_UNDER_WAY)).all()
+            connection = await connection_of(session)
+            stops = [Stop(*row) for row in (await connection.execute(_STOPS)).all()] if pairs else []
+        if not pairs:
+            self._said.clear()
             return
+        robots = {robot.name: robot for _, robot in pairs}
         now = self.fleet.clock.utc()
-        stops = await self._stops([goal.key for name in timetable.known for goal in timetable.controller.goals(name)])
-        expected = await self._expected(timetable.controller, stops, now) if stops else {}
-        news = [
-            (stop.order_id, window)
-            for key, stop in stops.items()
-            if stop.order_id and key in expected and (window := window_of(expected[key], stop.promised_to, now))
-        ]
+        forecast = await self._forecast(robots, stops, now)
+        receive = {stop.order_id: stop.id for stop in stops if stop.action == StopAction.RECEIVE}
+        under_way = [_under_way(order, robot, forecast.get(receive.get(order.id, "")), now) for order, robot in pairs]
+        news = [one for one in under_way if one.is_news or self._said.get(one.order.id) != one.why]
         if news:
             await self._tell(news)
+        self._said = {one.order.id: one.why for one in under_way}
 
-    async def _expected(
-        self, controller: TrafficController, stops: Mapping[str, Planned], now: datetime
-    ) -> dict[str, Interval]:
-        now_s = self.fleet.clock.now()
-        network, tasks, journeys = controller.network, controller.tasks(now_s), controller.journeys(now_s)
-        sees = Foresight(self.fleet.orders.estimates, network, stops, now, now_s, self._rng)
-        return await asyncio.to_thread(forecast, network, tasks, journeys, now_s, sees.chance())
-
-    async def _stops(self, keys: list[str]) -> dict[str, Planned]:
-        if not keys:
+    async def _forecast(
+        self, robots: Mapping[str, RobotRow], stops: Sequence[Stop], now: datetime
+    ) -> Mapping[str, Interval]:
+        estimates = self.fleet.orders.estimates
+        if self.desk is None:
+            return by_their_ways(estimates, robots, stops, now, self._rng)
+        timetable = self.desk.timetable
+        if timetable is None:
             return {}
-        async with self.fleet.database.asking() as connection:
-            rows = (await connection.execute(_STOPS, {"keys": keys})).all()
-        return {row.id: Planned(row.action, row.arrived_at, _to_tell(row), _promised_to(row)) for row in rows}
+        return await by_timetable(estimates, timetable.controller, stops, now, self.fleet.clock.now(), self._rng)
 
-    async def _tell(self, news: list[tuple[str, tuple[datetime, datetime]]]) -> None:
+    async def _tell(self, news: Sequence[UnderWay]) -> None:
         async with self.fleet.database.transaction(durable=False) as session:
-            for order_id, (begins_at, ends_at) in sorted(news):
-                order = await self.fleet.orders.order(session, order_id)
-                if order.state in ON_ITS_WAY and _is_news(order, begins_at, ends_at):
-                    await self.fleet.orders.expect(session, order, begins_at, ends_at)
+            for one in sorted(news, key=lambda one: one.order.id):
+                order = await self.fleet.orders.order(session, one.order.id)
+                if order.version != one.order.version:
+                    continue  # it has moved on, and with that was shown as it is
+                if one.is_news:
+                    await self.fleet.orders.expect(session, order, one.expected)
+                else:
+                    await self.fleet.orders.show(session, order)
 
 
-def window_of(expected: Interval, promised_to: datetime | None, now: datetime) -> tuple[datetime, datetime] | None:
-    """None, if it will be late: of that people are told aloud."""
-    begins_at, ends_at = (now + timedelta(seconds=seconds) for seconds in (expected.p10_s, expected.p90_s))
-    if promised_to is None:
-        return begins_at, ends_at
-    return (begins_at, min(ends_at, promised_to)) if begins_at < promised_to else None
+def _under_way(order: Order, robot: RobotRow, forecast: Interval | None, now: datetime) -> UnderWay:
+    before = None
+    if order.expected_from is not None and order.expected_to is not None:
+        before = order.expected_from, order.expected_to
+    expected = None if is_held_up(robot) else interval_from(forecast, now) if forecast else before
+    is_news = order.state in ON_ITS_WAY and is_otherwise(before, expected, now)
+    return UnderWay(order, why_it_waits(order, robot), expected, is_news)
 
 
-def _to_tell(row: Any) -> str | None:
-    """The order whose recipient waits at this stop."""
-    return row.order_id if row.action == StopAction.RECEIVE else None
+def interval_from(forecast: Interval, now: datetime) -> Expected:
+    """From p10 to p90; never over."""
+    begins_at, ends_at = (now + timedelta(seconds=seconds) for seconds in (forecast.p10_s, forecast.p90_s))
+    return begins_at, max(ends_at, now + SHORTEST)
 
 
-def _promised_to(row: Any) -> datetime | None:
-    """None if its delay was told, or it was passed on: then the first promise is past."""
-    if row.is_told_otherwise or row.begins_at is None:
-        return None
-    promised_to: datetime = row.begins_at + timedelta(seconds=row.told_p90_s)
-    return promised_to
+def is_otherwise(before: Expected | None, expected: Expected | None, now: datetime) -> bool:
+    """Whether people should hear of it: known at last, no longer known, soon over, or by enough otherwise."""
+    if before is None or expected is None:
+        return before is not expected
+    enough = min(NEWS, max(SHORTEST, SHARE * (expected[1] - now)))
+    off = max(abs(was - becomes) for was, becomes in zip(before, expected, strict=True))
+    return off >= enough or (before[1] <= now + enough and before != expected)
 
 
-def _is_news(order: Order, begins_at: datetime, ends_at: datetime) -> bool:
-    if order.window_from is None or order.window_to is None:
-        return True
-    return max(abs(order.window_from - begins_at), abs(order.window_to - ends_at)) >= NEWS
+async def _for(event: asyncio.Event, at_most_s: float) -> None:
+    with suppress(TimeoutError):
+        async with asyncio.timeout(at_most_s):
+            await event.wait()
 
 
+_UNDER_WAY: Final = (
+    select_rows(Order, RobotRow)
+    .join(RobotRow, col(RobotRow.name) == col(Order.robot))
+    .where(col(Order.state).in_((*ROBOT_COMING, *MAIL_ABOARD)))
+)
 _STOPS: Final = (
     select(
-        col(StopRow.id),
-        col(StopRow.action),
+        *(col(StopRow.id), col(StopRow.action), col(StopRow.post), col(StopRow.order_id), col(MissionRow.robot)),
         col(StopRow.arrived_at),
-        col(StopRow.order_id),
-        or_(col(Order.delayed_at).is_not(None), col(Order.passed_on_at_post).is_not(None)).label("is_told_otherwise"),
-        col(ForecastRow.begins_at),
-        col(ForecastRow.told_p90_s),
     )
-    .join(Order, col(Order.id) == col(StopRow.order_id))
-    .outerjoin(ForecastRow, col(ForecastRow.order_id) == col(StopRow.order_id))
-    .where(col(StopRow.id).in_(bindparam("keys", expanding=True)))
+    .join(MissionRow, col(MissionRow.id) == col(StopRow.mission_id))
+    .where(col(MissionRow.state) == MissionState.ACTIVE)
+    .where(col(StopRow.done_at).is_(None), col(StopRow.gave_up_at).is_(None), col(StopRow.dropped_at).is_(None))
+    .order_by(col(MissionRow.created_at), col(StopRow.position))
 )

@@ -12,7 +12,7 @@ from app.fleet.intake import Intake
 from app.fleet.service import Fleet
 from app.fleet.taken import Traffic, traffic_for
 from app.fleet.tokens import token_of
-from app.orders.robot_view import RobotView, robot_view
+from app.orders.robot_view import RobotView
 from app.paging import PAGED, PageDep, PageOf, Sorting
 from app.people.current_user import CurrentUser
 from app.people.same_origin import travels_safely
@@ -46,7 +46,7 @@ class RobotPage(PageOf[RobotView]):
 async def all_robots(user: CurrentUser, session: ReadingDep, fleet: FleetDep, page: PageDep) -> RobotPage:
     """Where the robots were last seen and what they are doing."""
     robots, following = await page.of(session, select(RobotRow), BY_NAME)
-    return RobotPage(items=[robot_view(robot, fleet.campus, fleet.settings) for robot in robots], next=following)
+    return RobotPage(items=[fleet.view_of(robot) for robot in robots], next=following)
 
 
 @router.get("/map/traffic")

@@ -175,7 +175,7 @@ class Fleet:
         alone, since a fleet reports more often than anybody looks."""
         if not self.feed.is_heard:
             return self.feed.pass_over
-        return partial(self.feed.publish, Happening("robot", robot_view(robot, self.campus, self.settings)))
+        return partial(self.feed.publish, Happening("robot", self.view_of(robot)))
 
     def have_spoken(self, session: AsyncSession, robots: Iterable[str]) -> None:
         """After the commit: these robots are as pages know them, but whoever waits for robots looks again."""
@@ -190,7 +190,11 @@ class Fleet:
     async def views(self, session: AsyncSession) -> Sequence[RobotView]:
         """All robots, by name."""
         robots = (await session.exec(select(RobotRow).order_by(col(RobotRow.name)))).all()
-        return [robot_view(robot, self.campus, self.settings) for robot in robots]
+        return [self.view_of(robot) for robot in robots]
+
+    def view_of(self, robot: RobotRow) -> RobotView:
+        """A robot as it is now."""
+        return robot_view(robot, self.campus, self.settings, self.clock.utc())
 
 
 def note_state(robot: RobotRow, position: Position, battery: Battery) -> None:

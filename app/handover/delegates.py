@@ -82,7 +82,7 @@ class Delegating:
         order, orders = await find_order(session, order_id), self.fleet.orders
         code = code_for(order, delegate, await delegates_of(session, [order]))
         facts = (await load_facts(session, [order]))[0]
-        return delegates_view(facts, code.purpose if code else None, orders.campus, orders.settings)
+        return delegates_view(facts, code.purpose if code else None, orders.campus, orders.settings, orders.clock.utc())
 
     async def _delegate(self, session: AsyncSession, order: Order, role: MyRole, delegate_id: str) -> Delegate:
         row = await session.get(Delegate, delegate_id)

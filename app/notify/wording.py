@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from typing import Final
 
 from app.tables import Notice
-from app.texts import text
+from app.texts import catalogue, text
 from app.texts.reasons import in_words
 from app.texts.times import day_and_time, of_fact
 
@@ -17,8 +17,11 @@ def title_of(notice: Notice, language: str) -> str:
 
 
 def body_of(notice: Notice, language: str) -> str:
-    facts = {**in_words(language, notice.facts), **dict(_times(notice, language))}
-    return text(language, f"notice.{notice.kind}.body", facts)
+    times = dict(_times(notice, language))
+    key = f"notice.{notice.kind}.body"
+    without = f"{key}_no_time"
+    is_known = all(name in notice.facts for name in TIMES) or without not in catalogue(language)
+    return text(language, key if is_known else without, {**in_words(language, notice.facts), **times})
 
 
 def _times(notice: Notice, language: str) -> Iterator[tuple[str, str]]:

@@ -9,7 +9,7 @@ from app.orders.ledger import Word
 from app.orders.returning import Returning
 from app.orders.schemas import OrderView
 from app.orders.transitions import ENDED, ROBOT_COMING, By
-from app.orders.views import MyRole, is_cancel_under_way, is_cancellable, load_facts, order_view
+from app.orders.views import MyRole, is_cancel_under_way, is_cancellable, load_facts
 from app.tables import Order, OrderState, Person
 
 CANCEL_REQUESTED: Final = "cancel_requested"
@@ -29,7 +29,7 @@ class Cancelling(Returning):
                 raise errors.NotCancellable(_why_not_cancellable(order, role))
             await self._cancel(session, order, Word(By(role), person_id=person.id))
         facts = (await load_facts(session, [order]))[0]
-        return order_view(facts, role, person.id, self.campus, self.settings)
+        return self.view_of(facts, role, person.id)
 
     async def _cancel(self, session: AsyncSession, order: Order, word: Word) -> None:
         if order.state is OrderState.QUEUED:

@@ -9,7 +9,7 @@ from app.orders.ledger import Word
 from app.orders.returning import Returning, last_handover
 from app.orders.schemas import OrderView
 from app.orders.transitions import ENDED, MAIL_ABOARD, ROBOT_COMING, By
-from app.orders.views import load_facts, order_view
+from app.orders.views import load_facts
 from app.tables import Handover, Order, OrderState, Person, Priority, RobotRow
 from protocol.parts import Purpose, StopAction
 
@@ -158,7 +158,7 @@ class Intervening(Returning):
 
     async def _shown(self, session: AsyncSession, order: Order, person: Person) -> OrderView:
         facts = (await load_facts(session, [order]))[0]
-        return order_view(facts, "dispatcher", person.id, self.campus, self.settings)
+        return self.view_of(facts, "dispatcher", person.id)
 
 
 _WAYS_OUT: Final = {

@@ -33,6 +33,9 @@ from maps import CampusMap
 from maps.ways import Ways
 from protocol.clock import Clock
 
+Expected = tuple[datetime, datetime]
+"""From the earliest to the latest arrival."""
+
 
 @dataclass(frozen=True)
 class Word:
@@ -131,19 +134,22 @@ class Ledger:
         """
         await self._write(session, await self.order(session, order_id), kind, word)
 
-    async def explain(self, session: AsyncSession, order_id: str, why: str | None) -> None:
-        """Say in words why an order waits (or, with None, that it does not). Changes nothing else."""
-        order = await self.order(session, order_id)
-        if order.why != why:
-            order.why = why
-            await self._show(session, order)
+    async def explain(self, session: AsyncSession, order: Order, why: str, expected: Expected | None) -> None:
+        """Say in words why an order waits, and with it when it is expected. Changes nothing else."""
+        order.why = why
+        await self.expect(session, order, expected)
 
-    async def expect(self, session: AsyncSession, order: Order, begins_at: datetime, ends_at: datetime) -> None:
-        """Say when the robot should be at the recipient's, as it is foreseen now. Changes nothing else."""
-        order.window_from, order.window_to, order.window_assumed = begins_at, ends_at, False
-        await self._show(session, order)
+    async def expect(self, session: AsyncSession, order: Order, expected: Expected | None) -> None:
+        """Say when the robot should be at the recipient's, as it is foreseen now, or that no time is known."""
+        order.estimated_at = self.clock.utc()
+        order.expected_from, order.expected_to = expected or (None, None)
+        if expected is not None:
+            order.window_assumed = self.estimates.is_assumed
+            if order.window_to is None:  # nothing could be promised when it was placed
+                order.window_from, order.window_to = expected
+        await self.show(session, order)
 
-    async def _show(self, session: AsyncSession, order: Order) -> None:
+    async def show(self, session: AsyncSession, order: Order) -> None:
         """To pages alone: who waits for changes of orders has nothing to do because of it."""
         if self.feed.is_heard:
             self._publish_views(session, (await load_facts(session, [order]))[0])
@@ -181,7 +187,7 @@ class Ledger:
         order = facts.order
         robot_at = robot_at or (facts.robot.post if facts.robot else None)
         nearby = self._is_near(order, robot_at)
-        gaps = facts_of(order, facts.people, self.campus, self.settings)
+        gaps = facts_of(order, facts.people, self.campus, self.settings, self.clock.utc())
         return notices_about(order, gaps, facts.events, nearby, self.clock.utc())
 
     def _is_near(self, order: Order, robot_at: str | None) -> bool:
@@ -195,12 +201,13 @@ class Ledger:
     def _publish_views(self, session: AsyncSession, facts: OrderFacts) -> None:
         mine: dict[str, MyRole] = {facts.recipient.id: "recipient", facts.sender.id: "sender"}
         for person_id, role in mine.items():
-            self._publish_view(session, partial(self._view, facts, role, person_id), person_id)
-        for_all = partial(self._view, facts, "dispatcher", "")
+            self._publish_view(session, partial(self.view_of, facts, role, person_id), person_id)
+        for_all = partial(self.view_of, facts, "dispatcher", "")
         self._publish_view(session, for_all, role=Role.DISPATCHER, except_for=frozenset(mine))
 
-    def _view(self, facts: OrderFacts, role: MyRole, person_id: str) -> OrderView:
-        return order_view(facts, role, person_id, self.campus, self.settings)
+    def view_of(self, facts: OrderFacts, role: MyRole, person_id: str) -> OrderView:
+        """The order as it is now, for one person in one role."""
+        return order_view(facts, role, person_id, self.campus, self.settings, self.clock.utc())
 
     def changed(self, order_id: str) -> None:
         """Wake whoever waits for changes of orders. After the commit."""

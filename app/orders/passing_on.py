@@ -11,7 +11,7 @@ from app.orders.intervening import BY_HAND, Intervening
 from app.orders.ledger import Word
 from app.orders.schemas import OrderView
 from app.orders.transitions import CARRIED, By
-from app.orders.window import arrival_window
+from app.orders.window import arrival_window, promise
 from app.tables import Handover, Order, OrderState, Person, RobotRow
 from protocol.parts import Purpose
 
@@ -39,8 +39,7 @@ class PassingOn(Intervening):
         word = Word(By.DISPATCHER, person_id=person.id, post=post, reason=reason)
         session.add(self._taken_out(order, post, word))
         order.passed_on_at_post = post
-        window = arrival_window(self.estimates, post, order.to_post, self.clock.utc())
-        order.window_from, order.window_to, order.window_assumed = window.begins_at, window.ends_at, window.assumed
+        promise(order, arrival_window(self.estimates, post, order.to_post, self.clock.utc()), self.clock.utc())
         order.let_go_by = order.avoided_robot = order.robot
         order.wanted_robot = None
         await self.move(session, order.id, OrderState.QUEUED, word)

@@ -15,7 +15,7 @@ from app.orders import errors
 from app.orders.ledger import Ledger, Word, event_row
 from app.orders.schemas import NewOrder, OrderView, Wish
 from app.orders.transitions import By
-from app.orders.views import MyRole, OrderFacts, order_view
+from app.orders.views import MyRole, OrderFacts
 from app.orders.window import Window, arrival_window
 from app.people.service import look_up_people, may_be_sent_mail
 from app.tables import ForecastRow, Order, OrderEvent, OrderState, Person, Priority, Role, StandingOrder
@@ -41,7 +41,7 @@ class Draft:
     order: Mapping[str, Any]
     event: Mapping[str, Any]
     notices: Sequence[Mapping[str, Any]]
-    forecast: Mapping[str, Any]
+    forecast: Mapping[str, Any] | None
 
 
 class Placing(Ledger):
@@ -72,7 +72,7 @@ class Placing(Ledger):
     def first_view(self, draft: Draft, person: Person) -> OrderView:
         """A new order as it is answered to whoever has placed it."""
         role: MyRole = "sender" if draft.facts.order.placed_by_id is None else "dispatcher"
-        return order_view(draft.facts, role, person.id, self.campus, self.settings)
+        return self.view_of(draft.facts, role, person.id)
 
     async def parties(self, session: AsyncSession, person: Person, wish: Wish) -> Parties:
         """Who sends what `person` orders. Raises UnknownRecipient, UnknownSender, ForDispatchers."""
@@ -127,14 +127,25 @@ class Placing(Ledger):
             "created_at": now,
             "updated_at": now,
             "codes_expire_at": max(now, not_before or now) + lifetime,
-            "window_from": window.begins_at,
-            "window_to": window.ends_at,
-            "window_assumed": window.assumed,
+            **self._expectation(window, now),
         }
-        forecast = forecast_row(order_id, window.since, window.promise)
+        is_promised = row["window_to"] is not None
+        forecast = forecast_row(order_id, window.since, window.promise) if is_promised else None
         return self._with_its_people(row, parties, forecast)
 
-    def _with_its_people(self, row: Mapping[str, Any], parties: Parties, forecast: Mapping[str, Any]) -> Draft:
+    def _expectation(self, window: Window, now: datetime) -> dict[str, Any]:
+        """The window, promised and expected; while no robot can come nothing is promised, and the reason is said."""
+        reason = self.estimates.ahead.reason if window.since <= now else None
+        times = (None, None) if reason else (window.begins_at, window.ends_at)
+        return {
+            **dict(zip(("window_from", "window_to"), times, strict=True)),
+            **dict(zip(("expected_from", "expected_to"), times, strict=True)),
+            "window_assumed": window.assumed,
+            "estimated_at": now,
+            "why": reason,
+        }
+
+    def _with_its_people(self, row: Mapping[str, Any], parties: Parties, forecast: Mapping[str, Any] | None) -> Draft:
         order, (by, person) = new_row(Order, row), _on_whose_word(row, parties)
         event = event_row(order, MOVED, Word(by, person_id=person.id, post=order.from_post))
         # Everything that there is to know of it is at hand: nothing is read again.
@@ -146,7 +157,7 @@ class Placing(Ledger):
         """Write new orders down, tell their people, and publish them after the commit."""
         await write_all(session, Order, [one.order for one in drafts])
         await write_all(session, OrderEvent, [one.event for one in drafts])
-        await write_all(session, ForecastRow, [one.forecast for one in drafts])
+        await write_all(session, ForecastRow, [one.forecast for one in drafts if one.forecast is not None])
         await tell_all(session, [notice for one in drafts for notice in one.notices])
         for one in drafts:
             self.publish(session, one.facts)

@@ -13,7 +13,7 @@ from app.orders import errors, stops
 from app.orders.ledger import Ledger, Word
 from app.orders.schemas import OrderView
 from app.orders.transitions import CARRIED, ENDED, TURNED_BACK, By
-from app.orders.views import load_facts, order_view
+from app.orders.views import load_facts
 from app.tables import Handover, Order, Person
 from maps import shortest_route
 from protocol.parts import Purpose, StopAction
@@ -39,7 +39,7 @@ class Returning(Ledger):
         if role == "recipient":
             raise errors.NotRecallable("Only the sender can call the mail back. You can say that it does not suit now.")
         await self.call_back(session, order, Word(By(role), person_id=person.id))
-        return order_view((await load_facts(session, [order]))[0], role, person.id, self.campus, self.settings)
+        return self.view_of((await load_facts(session, [order]))[0], role, person.id)
 
     async def call_back(self, session: AsyncSession, order: Order, word: Word) -> None:
         """Raises NotRecallable; asked for once."""
@@ -68,7 +68,7 @@ class Returning(Ledger):
         if order.state in CARRIED and order.return_requested_at is None:
             word = Word(By(role), person_id=person.id, reason="The recipient cannot take it now.")
             await self.ask_back(session, order, word)
-        return order_view((await load_facts(session, [order]))[0], role, person.id, self.campus, self.settings)
+        return self.view_of((await load_facts(session, [order]))[0], role, person.id)
 
     async def ask_back(self, session: AsyncSession, order: Order, word: Word) -> None:
         """Give the robot the way back instead of the way to the recipient."""

@@ -24,7 +24,7 @@ class LastSeen(BaseModel):
 
 
 class Expected(BaseModel):
-    """Where it should be seen next, and between which times."""
+    """Where it should be seen next, and between which times; never times that are over."""
 
     post: str
     from_: datetime = Field(alias="from")
@@ -83,7 +83,7 @@ class RobotView(BaseModel):
     heard_at: datetime | None
 
 
-def _why(robot: RobotRow) -> str | None:
+def why_of_robot(robot: RobotRow) -> str | None:
     """Its own sentence, unless the service knows better for what it waits."""
     if robot.taken_out_at:
         return "Its corridors were given to others; it takes part again when it stands at a post"
@@ -101,15 +101,15 @@ def _activity(robot: RobotRow) -> Activity:
     return Activity.WAITING if held_up else Activity(robot.activity)
 
 
-def robot_view(robot: RobotRow, campus: CampusMap, settings: Settings) -> RobotView:
+def robot_view(robot: RobotRow, campus: CampusMap, settings: Settings, now: datetime) -> RobotView:
     """What is said of a robot to whoever may see it."""
-    why = _why(robot)
+    why = why_of_robot(robot)
     return RobotView(
         name=robot.name,
         online=robot.online,
         last_seen=_last_seen(robot),
         towards=robot.towards,
-        expected=_expected(robot, campus, settings),
+        expected=_expected(robot, campus, settings, now),
         activity=_activity(robot),
         battery=_battery(robot),
         why=why,
@@ -139,8 +139,8 @@ def _charges_to(robot: RobotRow) -> ChargedView | None:
     return ChargedView(ratio=enough, at=robot.heard_at + timedelta(seconds=ASSUMED.time_s(ratio, enough)))
 
 
-def _expected(robot: RobotRow, campus: CampusMap, settings: Settings) -> Expected | None:
-    """From the length of the corridor it is in; the speed is assumed."""
+def _expected(robot: RobotRow, campus: CampusMap, settings: Settings, now: datetime) -> Expected | None:
+    """From the length of the corridor it is in; the speed is assumed. None once that time is over."""
     if robot.post is None or robot.towards is None or robot.seen_at is None:
         return None
     try:
@@ -149,4 +149,4 @@ def _expected(robot: RobotRow, campus: CampusMap, settings: Settings) -> Expecte
         return None
     drive_s = length_m / settings.assumed_speed_m_s
     first, last = (robot.seen_at + timedelta(seconds=drive_s * factor) for factor in (1.0, SPREAD))
-    return Expected(post=robot.towards, from_=first, to=last)
+    return Expected(post=robot.towards, from_=first, to=last) if last > now else None

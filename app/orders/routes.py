@@ -20,6 +20,7 @@ from app.people.rate_limits import Door, per_person
 from app.people.search import SearchText
 from app.settings import CampusDep, SettingsDep
 from app.tables import Order, Person
+from app.texts.reasons import words_of
 from maps import shortest_route
 
 router = APIRouter(tags=["orders"])
@@ -67,7 +68,14 @@ async def estimate(
     """When mail would arrive if it were ordered now."""
     window = orders.window(from_post, to_post)
     length_m = shortest_route(campus, from_post, to_post).length_m
-    return Estimate(window=WindowView.of(window), length_m=round(length_m, 2), assumed=window.assumed)
+    reason = orders.estimates.ahead.reason
+    return Estimate(
+        window=WindowView.of(window),
+        length_m=round(length_m, 2),
+        assumed=window.assumed,
+        reason=reason,
+        reason_words=words_of(reason) if reason else None,
+    )
 
 
 @router.post("/orders", status_code=201, responses=PLACED)
@@ -100,7 +108,7 @@ async def list_orders(
     walks = Looked(role, state, search.strip()).walks(user, orders.campus)
     rows, following = await page.of_any(session, walks, NEWEST_FIRST)
     facts = await load_facts(session, rows)
-    views = [view_for(user, one, orders.campus, orders.settings) for one in facts]
+    views = [view_for(user, one, orders.campus, orders.settings, orders.clock.utc()) for one in facts]
     return OrderPage(items=[view for view in views if view], next=following)
 
 

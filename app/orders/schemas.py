@@ -8,6 +8,7 @@ from pydantic import AwareDatetime, BaseModel, ConfigDict, Field, StringConstrai
 
 from app.lines import Line
 from app.orders.custody import Held
+from app.orders.estimate import EstimateView
 from app.orders.robot_view import RobotView
 from app.orders.window import Window
 from app.paging import PageOf
@@ -100,11 +101,17 @@ class WindowView(BaseModel):
 
 
 class Estimate(BaseModel):
-    """Before ordering: when mail would arrive, and how far it has to go."""
+    """Before ordering: when mail would arrive, and how far it has to go.
+
+    `reason` (and `reason_words`, as a text of the catalogue): why no robot can come as things are. The window then only
+    says how long it would take with one.
+    """
 
     window: WindowView
     length_m: float
     assumed: bool = True
+    reason: str | None = None
+    reason_words: Words | None = None
 
 
 class Somebody(BaseModel):
@@ -178,7 +185,10 @@ class HandoverRequested(BaseModel):
 class OrderView(BaseModel):
     """An order as one person may see it. A delegate sees where it is, and of sender and recipient the names alone.
 
-    `passed_on_at_post`: where somebody of the mailroom has taken the mail out of one robot for another to carry it on.
+    `estimate`: when the robot should be at the recipient's, or why that is not known; null once it is there, or the
+    mail goes elsewhere. `window` has the same times, or null. `why`: what the order waits for, never another order's
+    stop. `passed_on_at_post`: where somebody of the mailroom has taken the mail out of one robot for another to carry
+    it on.
     """
 
     id: str
@@ -192,6 +202,7 @@ class OrderView(BaseModel):
     created_at: datetime
     updated_at: datetime
     window: WindowView | None
+    estimate: EstimateView | None = None
     robot: RobotView | None
     why: str | None
     why_words: Words | None

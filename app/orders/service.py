@@ -26,7 +26,7 @@ class Orders(Placing, Cancelling, PassingOn, Waiting):
         """One order as this person sees it. Raises UnknownOrder, for what is not theirs too."""
         order = await session.get(Order, order_id)  # to look at: readers lock nothing
         facts = await load_facts(session, [order]) if order is not None else []
-        view = view_for(person, facts[0], self.campus, self.settings) if facts else None
+        view = view_for(person, facts[0], self.campus, self.settings, self.clock.utc()) if facts else None
         if view is None:
             raise unknown(order_id)
         return view

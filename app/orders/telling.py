@@ -6,6 +6,8 @@ from datetime import datetime
 from typing import Any, Final
 
 from app.notify.service import notice_row
+from app.notify.wording import TIMES
+from app.orders.estimate import expected_of
 from app.orders.transitions import MAIL_ABOARD, By
 from app.settings import Settings
 from app.tables import NoticeKind, Order, OrderEvent, OrderState, Person
@@ -126,16 +128,19 @@ def _notices(
     return notices
 
 
-def facts_of(order: Order, people: Mapping[str, Person], campus: CampusMap, settings: Settings) -> dict[str, str]:
-    """What fills the gaps of a notice's text; never a code."""
-    times = {"window_from": order.window_from, "window_to": order.window_to}
+def facts_of(
+    order: Order, people: Mapping[str, Person], campus: CampusMap, settings: Settings, now: datetime
+) -> dict[str, str]:
+    """What fills the gaps of a notice's text; never a code, and no times while none are known."""
+    expected = expected_of(order, now)
+    times = dict(zip(TIMES, expected, strict=True)) if expected else {}
     return {
         "sender": people[order.sender_id].name,
         "recipient": people[order.recipient_id].name,
         "from_post": title_of(order.from_post, campus),
         "to_post": title_of(order.to_post, campus),
         "return_post": title_of(return_post_of(order), campus),
-        **{name: as_fact(at, settings.zone) if at else "?" for name, at in times.items()},
+        **{name: as_fact(at, settings.zone) for name, at in times.items()},
     }
 
 

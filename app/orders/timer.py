@@ -15,12 +15,14 @@ from sqlmodel import col, select
 from app.database import Database
 from app.errors import ServiceError
 from app.notify.service import tell_all
+from app.orders.estimate import expected_of
 from app.orders.ledger import Word
 from app.orders.service import Orders
 from app.orders.standing import StandingOrders
 from app.orders.telling import facts_of, notices_of_delay
 from app.orders.transitions import ENDED, By
 from app.orders.views import load_facts
+from app.orders.window import promise
 from app.tables import Order, OrderState
 from app.trusted_clock import holds_on
 
@@ -101,20 +103,25 @@ class Timer:
                 await self.orders.move(session, order_id, OrderState.EXPIRED, Word(By.TIMER, reason=NOBODY_CAME))
 
     async def _tell_of_delay(self, order_id: str) -> None:
-        """With the window that it has now, as if it were fetched from here on: rather too late than wrong again."""
+        """With what is expected now. Where nothing newer was worked out, as if it were fetched from here on: rather too
+        late than wrong again. Where no time is known, without one: the next that is known is a new promise."""
         async with self.database.transaction() as session:
             order = await self.orders.order(session, order_id)
             now = self.orders.clock.utc()
             if order.state in NOT_ON_ITS_WAY or order.window_to is None or order.window_to >= self._late_since(now):
                 return  # it has moved on, or another process has told of it
-            with suppress(ServiceError):  # a post that the map has lost since: nothing better is known
-                window = self.orders.window(order.load_post, order.to_post)
-                order.window_from, order.window_to = window.begins_at, window.ends_at
-                order.window_assumed = window.assumed
+            self._promise_anew(order, now)
             order.delayed_at = now
-            if order.window_to is not None and order.window_to < now:
-                order.window_to = now  # so that it is told of now and then, not with every tick
             await self.orders.note(session, order_id, DELAYED, Word(By.TIMER))
             facts = (await load_facts(session, [order]))[0]
-            gaps = facts_of(order, facts.people, self.orders.campus, self.orders.settings)
+            gaps = facts_of(order, facts.people, self.orders.campus, self.orders.settings, now)
             await tell_all(session, notices_of_delay(order, gaps, facts.events))
+
+    def _promise_anew(self, order: Order, now: datetime) -> None:
+        expected = expected_of(order, now)
+        if expected is not None or order.expected_to is None:
+            order.window_from, order.window_to = expected or (None, None)
+            return
+        promise(order, None, now)
+        with suppress(ServiceError):  # a post that the map has lost since: nothing is known any more
+            promise(order, self.orders.window(order.load_post, order.to_post), now)

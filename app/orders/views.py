@@ -3,7 +3,7 @@
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from datetime import timedelta
+from datetime import datetime, timedelta
 from types import MappingProxyType
 from typing import Final, Literal, TypeVar
 
@@ -13,7 +13,9 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.orders.codes import mailrooms_turn, turn_of
 from app.orders.custody import custody_of
-from app.orders.robot_view import robot_view
+from app.orders.estimate import EstimateView, estimate_view
+from app.orders.reasons import OTHER_STOP_FIRST, why_it_waits
+from app.orders.robot_view import RobotView, robot_view
 from app.orders.schemas import CustodyView, EventView, HandoverRequested, OrderView, Somebody, WindowView
 from app.orders.transitions import CARRIED, ENDED, LOADED, ROBOT_COMING, By
 from app.settings import Settings
@@ -47,7 +49,7 @@ SHOWN_TO_DELEGATES: Final = (
         "passed_on_at_post",
         "priority",
     ),
-    *("not_before", "window", "wait_until", "handover_requested", "cancel_requested", "return_requested"),
+    *("not_before", "window", "estimate", "wait_until", "handover_requested", "cancel_requested", "return_requested"),
 )
 """Where it is, when it comes, and whether a hand-over is still wanted."""
 UNSAID_TO_DELEGATES: Final = MappingProxyType({"why": None, "why_words": None, "battery": None})
@@ -136,17 +138,23 @@ def role_in(order: Order, person: Person) -> MyRole | None:
     return "dispatcher" if person.has_role(Role.DISPATCHER) else None
 
 
-def view_for(person: Person, facts: OrderFacts, campus: CampusMap, settings: Settings) -> OrderView | None:
+def view_for(
+    person: Person, facts: OrderFacts, campus: CampusMap, settings: Settings, now: datetime
+) -> OrderView | None:
     """The order as `person` sees it; None if it is not theirs to see."""
     role = role_in(facts.order, person)
-    return None if role is None else order_view(facts, role, person.id, campus, settings)
+    return None if role is None else order_view(facts, role, person.id, campus, settings, now)
 
 
-def order_view(facts: OrderFacts, role: MyRole, person_id: str, campus: CampusMap, settings: Settings) -> OrderView:
+def order_view(
+    facts: OrderFacts, role: MyRole, person_id: str, campus: CampusMap, settings: Settings, now: datetime
+) -> OrderView:
     """The order in one role. The robot is shown while it has to do with the order, and not after."""
     order = facts.order
-    robot = robot_view(facts.robot, campus, settings) if facts.robot and order.state not in ENDED else None
-    why = order.why or (robot.why if robot else None)
+    row = facts.robot if order.state not in ENDED else None
+    why = why_it_waits(order, row)
+    why_words = words_of(why) if why and not _is_why_typed(facts) else None
+    estimate = _estimate(facts, row, why, now)
     turn = turn_of(order, person_id) or (mailrooms_turn(order) if role == "dispatcher" else None)
     return OrderView(
         id=order.id,
@@ -159,10 +167,11 @@ def order_view(facts: OrderFacts, role: MyRole, person_id: str, campus: CampusMa
         description=order.description,
         created_at=order.created_at,
         updated_at=order.updated_at,
-        window=_window(order),
-        robot=robot,
+        window=_window(estimate),
+        estimate=estimate,
+        robot=row and _shown(robot_view(row, campus, settings, now), why),
         why=why,
-        why_words=words_of(why) if why and not _is_why_typed(facts) else None,
+        why_words=why_words,
         my_role=role,
         my_code=None if turn is None else turn.value,
         handover_requested=_handover_requested(facts.events, settings),
@@ -181,12 +190,15 @@ def order_view(facts: OrderFacts, role: MyRole, person_id: str, campus: CampusMa
     )
 
 
-def delegates_view(facts: OrderFacts, turn: Purpose | None, campus: CampusMap, settings: Settings) -> OrderView:
+def delegates_view(
+    facts: OrderFacts, turn: Purpose | None, campus: CampusMap, settings: Settings, now: datetime
+) -> OrderView:
     """The order for somebody who was named to hand over: where it is and whose, nothing of what it holds or went
     through, and no `why`, which may be anybody's own words. `turn`: what their code is good for now."""
-    whole = order_view(facts, "recipient", "", campus, settings)
+    whole = order_view(facts, "recipient", "", campus, settings, now)
     return OrderView(
-        **{name: getattr(whole, name) for name in SHOWN_TO_DELEGATES},
+        **{name: getattr(whole, name) for name in SHOWN_TO_DELEGATES if name != "estimate"},
+        estimate=whole.estimate and _without_own_words(whole.estimate),
         sender=Somebody(email="", name=facts.sender.name),
         recipient=Somebody(email="", name=facts.recipient.name),
         robot=whole.robot and whole.robot.model_copy(update=UNSAID_TO_DELEGATES),
@@ -247,10 +259,29 @@ def _handover_requested(events: Sequence[OrderEvent], settings: Settings) -> Han
     return HandoverRequested(how=last.reason or "tap", at=last.at, expires_at=expires_at)
 
 
-def _window(order: Order) -> WindowView | None:
-    if order.window_from is None or order.window_to is None:
+def _estimate(facts: OrderFacts, robot: RobotRow | None, why: str | None, now: datetime) -> EstimateView | None:
+    estimate = estimate_view(facts.order, robot, why, now)
+    if estimate is None or estimate.reason is None or not _is_why_typed(facts):
+        return estimate
+    return estimate.model_copy(update={"reason_words": None})
+
+
+def _window(estimate: EstimateView | None) -> WindowView | None:
+    if estimate is None or estimate.from_ is None or estimate.to is None:
         return None
-    return WindowView(from_=order.window_from, to=order.window_to, assumed=order.window_assumed)
+    return WindowView(from_=estimate.from_, to=estimate.to, assumed=estimate.assumed)
+
+
+def _without_own_words(estimate: EstimateView) -> EstimateView:
+    """A reason that the catalogue does not have may be anybody's own words."""
+    return estimate if estimate.reason_words else estimate.model_copy(update={"reason": None})
+
+
+def _shown(robot: RobotView, why: str | None) -> RobotView:
+    """The robot as the people of one order see it: without the stop of another."""
+    if why != OTHER_STOP_FIRST:
+        return robot
+    return robot.model_copy(update={"why": why, "why_words": words_of(why)})
 
 
 def somebody(person: Person) -> Somebody:

@@ -11,7 +11,7 @@ from app.orders.ledger import Ledger, Word
 from app.orders.schemas import OrderView
 from app.orders.stops import stops_of_order, wait_anew
 from app.orders.transitions import By
-from app.orders.views import MyRole, load_facts, order_view
+from app.orders.views import MyRole, load_facts
 from app.tables import Order, OrderEvent, OrderState, Person
 
 WAIT_EXTENDED: Final = "wait_extended"
@@ -35,7 +35,7 @@ class Waiting(Ledger):
         await self._check_share(session, order, role, extend_s)
         await self._extend(session, order, extend_s or self.settings.wait_extension_s)
         await self.note(session, order.id, WAIT_EXTENDED, Word(By(role), person_id=person.id))
-        return order_view((await load_facts(session, [order]))[0], role, person.id, self.campus, self.settings)
+        return self.view_of((await load_facts(session, [order]))[0], role, person.id)
 
     async def _check_share(self, session: AsyncSession, order: Order, role: MyRole, extend_s: float | None) -> None:
         if role == "dispatcher":

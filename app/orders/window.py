@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from datetime import datetime, timedelta
 
 from app.estimates.arrivals import Estimates, Promise
+from app.tables import Order
 
 
 @dataclass(frozen=True)
@@ -19,6 +20,13 @@ class Window:
     def assumed(self) -> bool:
         """By the map alone: nothing was measured yet."""
         return self.promise.assumed
+
+
+def promise(order: Order, window: Window | None, now: datetime) -> None:
+    """Tell its people this window from now on, or that no time is known."""
+    times = (None, None) if window is None else (window.begins_at, window.ends_at)
+    order.window_from, order.window_to = order.expected_from, order.expected_to = times
+    order.window_assumed, order.estimated_at = window is None or window.assumed, now
 
 
 def arrival_window(estimates: Estimates, from_post: str, to_post: str, since: datetime) -> Window:

@@ -44,6 +44,8 @@ class Order(SQLModel, table=True):
     that take effect on the robot's word; `let_go_by` is a robot that is still to be told to drop this order.
     `occurs_on` is the day of its standing order (local, as 2026-01-05). `passed_on_at_post` is where somebody of the
     mailroom has the mail in hand for its next leg with another robot.
+    `window_…` is the arrival that was promised, `expected_…` the one expected now, worked out at `estimated_at`; they
+    are null while no time is known.
     """
 
     __tablename__ = "orders"
@@ -63,6 +65,9 @@ class Order(SQLModel, table=True):
     window_from: datetime | None = Field(default=None, sa_type=UtcTime)
     window_to: datetime | None = Field(default=None, sa_type=UtcTime)
     window_assumed: bool = True
+    expected_from: datetime | None = Field(default=None, sa_type=UtcTime)
+    expected_to: datetime | None = Field(default=None, sa_type=UtcTime)
+    estimated_at: datetime | None = Field(default=None, sa_type=UtcTime)
     robot: str | None = Field(default=None, foreign_key="robots.name")
     why: str | None = Field(default=None, max_length=500)
     state_before_attention: OrderState | None = Field(default=None, sa_type=WordOf(OrderState))

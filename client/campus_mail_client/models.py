@@ -303,11 +303,17 @@ class EnrolmentCodeView(Model):
 
 
 class Estimate(Model):
-    """Before ordering: when mail would arrive, and how far it has to go."""
+    """Before ordering: when mail would arrive, and how far it has to go.
+
+    `reason` (and `reason_words`, as a text of the catalogue): why no robot can come as things are. The window
+    then only says how long it would take with one.
+    """
 
     window: WindowView
     length_m: float
     assumed: bool = True
+    reason: str | None = None
+    reason_words: Words | None = None
 
 
 class EstimateError(Model):
@@ -339,6 +345,26 @@ class EstimateQuality(Model):
     durations: list[DurationView]
 
 
+class EstimateView(Model):
+    """The arrival at the recipient's that is expected now.
+
+    `from` and `to` are null while no time is known: an interval that is over is never given. `made_at`: when it
+    was worked out. `assumed`: by the map alone, nothing was measured yet. `reason` (and `reason_words`, as a
+    text of the catalogue) is what the order waits for; there is always one where no time is known.
+    `promised_to` is the end of the window that its people were told; `late`: that is over, or a delay was told
+    of.
+    """
+
+    from_: datetime | None = Field(alias="from")
+    to: datetime | None
+    made_at: datetime | None
+    assumed: bool
+    reason: str | None
+    reason_words: Words | None
+    promised_to: datetime | None
+    late: bool
+
+
 class EventView(Model):
     """One step of the timeline: when by the server, when by the robot, on whose word, where, why.
 
@@ -358,7 +384,7 @@ class EventView(Model):
 
 
 class Expected(Model):
-    """Where it should be seen next, and between which times."""
+    """Where it should be seen next, and between which times; never times that are over."""
 
     post: str
     from_: datetime = Field(alias="from")
@@ -641,8 +667,10 @@ OrderState = (
 class OrderView(Model):
     """An order as one person may see it. A delegate sees where it is, and of sender and recipient the names alone.
 
-    `passed_on_at_post`: where somebody of the mailroom has taken the mail out of one robot for another to carry
-    it on.
+    `estimate`: when the robot should be at the recipient's, or why that is not known; null once it is there, or
+    the mail goes elsewhere. `window` has the same times, or null. `why`: what the order waits for, never
+    another order's stop. `passed_on_at_post`: where somebody of the mailroom has taken the mail out of one
+    robot for another to carry it on.
     """
 
     id: str
@@ -656,6 +684,7 @@ class OrderView(Model):
     created_at: datetime
     updated_at: datetime
     window: WindowView | None
+    estimate: EstimateView | None = None
     robot: RobotView | None
     why: str | None
     why_words: Words | None

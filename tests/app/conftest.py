@@ -21,7 +21,7 @@ from app.orders.service import Word
 from app.orders.transitions import By
 from app.serving import Server, config_of, listen
 from app.settings import Settings
-from app.tables import OrderState, RobotRow
+from app.tables import MissionRow, OrderState, RobotRow
 from protocol.clock import SteppedClock
 from tests.app.postgresql import TEMPLATE, PostgreSQL
 
@@ -200,6 +200,18 @@ class Mailroom:
         state = self.app.state
         async with state.database.transaction() as session:
             session.add(RobotRow(name="r1", enrolled_at=state.clock.utc(), server_journal="j1", post="post5"))
+
+    def robot_connects(self, *, online: bool = True) -> None:
+        """r1 is there with something to do that no order is part of, or is gone again; and estimates know of it."""
+        self._portal.call(self._connect, online)
+
+    async def _connect(self, online: bool) -> None:
+        state = self.app.state
+        async with state.database.transaction() as session:
+            (await session.get_one(RobotRow, "r1")).online = online
+            if await session.get(MissionRow, "m1") is None:
+                session.add(MissionRow(id="m1", robot="r1", created_at=state.clock.utc()))
+        await state.fleet.learning.look()
 
     def move(self, order_id: str, *states: str, by: By = By.ROBOT, **known: Any) -> list[bool]:
         return [self._portal.call(self._move, order_id, OrderState(state), by, known) for state in states]

@@ -78,6 +78,7 @@ def test_what_anybody_makes_up_is_not_counted_by_its_name(watcher: Watcher, send
 def test_how_far_a_promise_was_off_is_counted_once(
     watcher: Watcher, sender: Browser, mailroom: Mailroom, clock: SteppedClock
 ) -> None:
+    mailroom.robot_connects()
     clock.advance(1)
     order = sender.order().json()
     clock.advance(3600)

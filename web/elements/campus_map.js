@@ -11,6 +11,7 @@ import { placeLabels } from "../map_labels.js";
 import { aheadOf, signBox, wordingsOf } from "../map_notes.js";
 import { sizeOf, spreadOf, windowOf } from "../map_view.js";
 import { shortestWay } from "../posts.js";
+import { serverNow } from "../server_clock.js";
 import { withStyles } from "../styles_later.js";
 import { t } from "../texts.js";
 import { Ticking } from "../ticking.js";
@@ -43,6 +44,7 @@ export class CampusMapElement extends PageElement {
     traffic: { attribute: false },
     alarms: { attribute: false },
     closed: { attribute: false },
+    arrival: { attribute: false },
     from: {},
     to: {},
     facts: { type: Boolean },
@@ -60,6 +62,8 @@ export class CampusMapElement extends PageElement {
     this.alarms = [];
     /** @type {readonly ClosedCorridor[]} into which no robot is let */
     this.closed = [];
+    /** @type {MapFacts["arrival"]} of the order that it is about, if it is about one */
+    this.arrival = null;
     this.from = "";
     this.to = "";
     /** Whether what is known of the robots stands below it. */
@@ -80,7 +84,7 @@ export class CampusMapElement extends PageElement {
   render() {
     const { map } = this;
     if (!map) return nothing;
-    const facts = factsOf(map, this.robots, this.traffic, this.alarms, this.closed);
+    const facts = factsOf(map, this.robots, this.traffic, this.alarms, this.closed, serverNow(), this.arrival);
     const whole = drawing(map);
     this.#camera.lookAt(whole.frame);
     return html`<figure class="campus">

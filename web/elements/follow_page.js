@@ -1,14 +1,16 @@
 /** One order, followed: where it stands, when it arrives, what to do, where the robot was seen, what has happened. */
 import { html, nothing } from "lit";
 import * as api from "../api.js";
+import { arrivalOf } from "../arrival.js";
 import { followedOrder } from "../early.js";
 import { PAGES } from "../links.js";
 import { OnLive } from "../live.js";
-import { hasEnded, isAtAStop, isMyTurn, orderReason, robotWhy, stateSentence } from "../order_words.js";
+import { hasEnded, isAtAStop, isMyTurn, orderWhy, stateSentence } from "../order_words.js";
 import { loadMap } from "../posts.js";
 import { inWords } from "../problems.js";
 import { serverNow } from "../server_clock.js";
 import { t } from "../texts.js";
+import { Ticking } from "../ticking.js";
 import { TrafficNow } from "../traffic.js";
 import { orderActions } from "./order_actions.js";
 import { orderCustody, orderDetails } from "./order_details.js";
@@ -52,6 +54,7 @@ export class FollowPage extends PageElement {
     /** @type {Robot | null} */
     this.robot = null;
     this.problem = "";
+    new Ticking(this);
     new OnLive(this, {
       order: (order) => order.id === this.order_id && this.#hear(() => this.#show(order)),
       robot: (robot) => this.#concerns(robot) && this.#hear(() => (this.robot = robot)),
@@ -109,7 +112,7 @@ export class FollowPage extends PageElement {
         <section class="card where" aria-labelledby="map-title">
           <h2 id="map-title">${t(hasEnded(order) ? "follow.map_ended" : "follow.map")}</h2>
           <campus-map .map=${map} .robots=${hasEnded(order) || !this.robot ? [] : [this.robot]} .traffic=${this.#traffic.taken}
-            .from=${order.passed_on_at_post ?? order.from_post} .to=${order.to_post} ?facts=${!hasEnded(order)}></campus-map>
+            .arrival=${this.#arrival(order)} .from=${order.passed_on_at_post ?? order.from_post} .to=${order.to_post} ?facts=${!hasEnded(order)}></campus-map>
         </section>
         ${orderCustody(order)} ${orderDetails(order)} ${orderActions(order, (changed) => this.#show(changed))}
       </div>
@@ -128,13 +131,21 @@ export class FollowPage extends PageElement {
       <wait-longer .order=${order} @changed=${(/** @type {CustomEvent<Order>} */ event) => this.#show(event.detail)}></wait-longer>`;
   }
 
-  /** A robot that is on its way waits for nothing, whatever it says that it is doing. @param {Order} order @param {CampusMap} map */
+  /** The map tells the time that all of the page tells. @param {Order} order */
+  #arrival(order) {
+    const arrival = arrivalOf(order, serverNow());
+    return hasEnded(order) ? null : { post: order.to_post, window: arrival?.window ?? null };
+  }
+
+  /** The service's word about this order, never what its robot does elsewhere; said once, where no time is known beside that.
+   *  A robot that is on its way waits for nothing. @param {Order} order @param {CampusMap} map */
   #why(order, map) {
     const { robot } = this;
-    if (!(robot ?? order).why || hasEnded(order) || (robot && !WAITING.includes(robot.activity))) return nothing;
+    const arrival = isMyTurn(order) ? null : arrivalOf(order, serverNow());
+    if (!order.why || hasEnded(order) || (arrival && !arrival.window) || (robot && !WAITING.includes(robot.activity))) return nothing;
     return html`<section class="card why" aria-labelledby="why-title">
       <h2 id="why-title">${t("follow.why")}</h2>
-      <p>${robot ? robotWhy(robot, map) : orderReason(order, map)}</p>
+      <p>${orderWhy({ ...order, robot: robot ?? order.robot }, map)}</p>
     </section>`;
   }
 

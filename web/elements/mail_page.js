@@ -6,6 +6,7 @@ import { OnLive } from "../live.js";
 import { loadMap } from "../posts.js";
 import { inWords } from "../problems.js";
 import { counted, t } from "../texts.js";
+import { Ticking } from "../ticking.js";
 import { problemLine } from "./field.js";
 import { icon } from "./icon.js";
 import { orderCard } from "./order_card.js";
@@ -43,6 +44,7 @@ export class MailPage extends PageElement {
     this.state = "all";
     this.looking = false;
     this.problem = "";
+    new Ticking(this, 5_000);
     new OnLive(this, { order: (order) => this.#update(order), resync: () => this.#fetch() });
   }
 

@@ -1,5 +1,6 @@
 /** The mailroom on one screen: what is wrong and how it is mended, the queue, the robots, the map. */
 import { html, nothing } from "lit";
+import { expectedWithOrders } from "../arrival.js";
 import * as api from "../api.js";
 import { ClosedNow } from "../closed_now.js";
 import { OnLive } from "../live.js";
@@ -7,6 +8,7 @@ import { orderActions } from "../mailroom_actions.js";
 import { MailroomNow } from "../mailroom_now.js";
 import { isHeldUp, orderTitle, whatIsWrong } from "../mailroom_words.js";
 import { inWords } from "../problems.js";
+import { serverNow } from "../server_clock.js";
 import { t } from "../texts.js";
 import { Ticking } from "../ticking.js";
 import { TrafficNow } from "../traffic.js";
@@ -84,7 +86,7 @@ export class MailroomPage extends PageElement {
           </section>
           <section class="card" aria-labelledby="map-title">
             <h2 id="map-title" tabindex="-1">${map.title}</h2>
-            <campus-map .map=${map} .robots=${known.robots} .traffic=${this.traffic.taken} .alarms=${known.alarms}
+            <campus-map .map=${map} .robots=${expectedWithOrders(known.robots, known.orders, serverNow())} .traffic=${this.traffic.taken} .alarms=${known.alarms}
               .closed=${this.corridors.closed}></campus-map>
           </section>
         </div>

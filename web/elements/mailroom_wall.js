@@ -3,6 +3,7 @@
  * than whoever walks past may read.
  */
 import { html, nothing } from "lit";
+import { expectedWithOrders } from "../arrival.js";
 import { ClosedNow } from "../closed_now.js";
 import { PAGES } from "../links.js";
 import { MailroomNow } from "../mailroom_now.js";
@@ -64,7 +65,7 @@ export class MailroomWall extends PageElement {
         </section>
         <section aria-labelledby="map-title">
           <h2 id="map-title">${t("mailroom.map")}</h2>
-          <campus-map .map=${map} .robots=${known.robots} .traffic=${this.traffic.taken} .alarms=${known.alarms}
+          <campus-map .map=${map} .robots=${expectedWithOrders(known.robots, known.orders, serverNow())} .traffic=${this.traffic.taken} .alarms=${known.alarms}
             .closed=${this.corridors.closed}></campus-map>
         </section>
       </div>`;

@@ -7,6 +7,7 @@ import { loadMap } from "../posts.js";
 import { inWords } from "../problems.js";
 import { serverNow } from "../server_clock.js";
 import { t } from "../texts.js";
+import { Ticking } from "../ticking.js";
 import { problemLine } from "./field.js";
 import "./handover_code.js";
 import { icon } from "./icon.js";
@@ -37,6 +38,7 @@ export class OneOrder extends PageElement {
   constructor() {
     super();
     this.token = "";
+    new Ticking(this);
     /** @type {Order | null} */
     this.order = null;
     /** @type {CampusMap | null} */

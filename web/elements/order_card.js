@@ -1,12 +1,13 @@
 /** One order in a list: what, between where, how it stands; the whole card leads to its page. */
 import { html, nothing } from "lit";
 import { followPage } from "../links.js";
-import { hasEnded } from "../order_words.js";
+import { arrivalText, isLate } from "../arrival.js";
 import { titleOf } from "../posts.js";
 import { serverNow } from "../server_clock.js";
 import { t } from "../texts.js";
-import { dayAndTime, windowText } from "../times.js";
+import { dayAndTime } from "../times.js";
 import { icon } from "./icon.js";
+import { lateMark } from "./late_mark.js";
 /** @import { CampusMap, Order } from "../api_types.ts" */
 
 /** @param {Order} order @param {CampusMap} map @param {unknown} [action] something to press beside it */
@@ -14,7 +15,7 @@ export function orderCard(order, map, action = nothing) {
   const other = order.my_role === "recipient" ? t("mail.from", { name: order.sender.name }) : t("mail.to", { name: order.recipient.name });
   return html`<li class="order">
     <a class="row" href=${followPage(order.id)}>
-      <span class="badge ${order.state}">${t(`badge.${order.state}`)}</span>
+      <span class="badge ${order.state}">${t(`badge.${order.state}`)}</span>${isLate(order, serverNow()) ? lateMark() : nothing}
       <span class="who">${order.description || other}</span>
       <span class="ends">${titleOf(map, order.from_post)}${icon("arrow")}<span class="unseen">→</span>${titleOf(map, order.to_post)}</span>
       <span class="when">${order.description ? html`${other} · ` : nothing}<span>${when(order)}</span></span>
@@ -23,6 +24,5 @@ export function orderCard(order, map, action = nothing) {
   </li>`;
 }
 
-/** The window while it is under way, the day afterwards. @param {Order} order */
-const when = (order) =>
-  order.window && !hasEnded(order) ? windowText(order.window, serverNow()) : dayAndTime(order.updated_at, serverNow());
+/** The arrival while it is ahead, the day afterwards. @param {Order} order */
+const when = (order) => arrivalText(order, serverNow()) || dayAndTime(order.updated_at, serverNow());

@@ -2,6 +2,7 @@
 import { html } from "lit";
 import * as api from "../api.js";
 import { FIELD_OF_CODE, atFields } from "../problems.js";
+import { reasonText } from "../reason_words.js";
 import { serverNow } from "../server_clock.js";
 import { t } from "../texts.js";
 import { length, windowText } from "../times.js";
@@ -46,6 +47,7 @@ export class OrderEstimate extends PageElement {
   #words() {
     const { estimate } = this;
     if (estimate === null || estimate === "looking") return html`<span class="hint">${t(estimate ? "estimate.looking" : "estimate.wait")}</span>`;
+    if (estimate.reason && this.when === "now") return html`<span class="of">${t("window.none")}</span> <span class="hint">${reasonText(estimate.reason, estimate.reason_words ?? null, null)}</span>`;
     return html`<span class="of">${t("estimate.title")}</span> <strong>${this.#window(estimate)}</strong>
       <span class="hint">${t(estimate.assumed ? "estimate.assumed" : "estimate.based", { length: length(estimate.length_m) })}</span>`;
   }

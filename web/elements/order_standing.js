@@ -1,10 +1,10 @@
 /** Where an order stands: its two ends, a sentence, what comes next, when, and how far it has come. */
 import { html, nothing } from "lit";
+import { arrivalOf, arrivalText, whyUnknown } from "../arrival.js";
 import { hasEnded, isMyTurn, nextSentence, stages, stateSentence } from "../order_words.js";
 import { titleOf } from "../posts.js";
 import { serverNow } from "../server_clock.js";
 import { t } from "../texts.js";
-import { windowText } from "../times.js";
 import { helpWords } from "./field.js";
 import { icon } from "./icon.js";
 /** @import { CampusMap, Order } from "../api_types.ts" */
@@ -28,14 +28,15 @@ function way(order) {
   </ol>`;
 }
 
-/** When the letter arrives: an interval, never a countdown. @param {Order} order @param {CampusMap} map */
-export function arrivalWindow({ window, to_post }, map) {
-  if (!window) return html`<p class="window">${t("window.none")}</p>`;
-  const late = Date.parse(window.to) < serverNow();
+/** When the letter arrives: an interval, never a countdown; or what is waited for until that is known. @param {Order} order @param {CampusMap} map */
+export function arrivalWindow(order, map) {
+  const arrival = arrivalOf(order, serverNow());
+  if (!arrival) return nothing;
+  const late = arrival.late ? html`<span class="remark">${t("window.past")}</span>` : nothing;
+  if (!arrival.window) return html`<p class="window"><span class="of">${t("window.none")}</span> <span class="remark">${whyUnknown(order, map)}</span> ${late}</p>`;
   return html`<p class="window">
-    <span class="of">${t("window.label", { post: titleOf(map, to_post) })}</span>
-    <strong>${windowText(window, serverNow())}</strong>
-    ${late ? html`<span class="remark">${t("window.past")}</span>` : nothing}
-    ${window.assumed ? html`<span class="remark">${t("window.assumed")}</span>` : nothing}
+    <span class="of">${t("window.label", { post: titleOf(map, order.to_post) })}</span>
+    <strong>${arrivalText(order, serverNow())}</strong>
+    ${late} ${arrival.assumed ? html`<span class="remark">${t("window.assumed")}</span>` : nothing}
   </p>`;
 }

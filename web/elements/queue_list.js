@@ -1,14 +1,16 @@
 /** Orders as a list: where each stands, why it waits, and what can be done with it. */
 import { html, nothing } from "lit";
 import { repeat } from "lit-html/directives/repeat.js";
+import { arrivalOf, arrivalText, isLate } from "../arrival.js";
 import { followPage, robotPage } from "../links.js";
 import { since, whyItWaits } from "../mailroom_words.js";
 import { hasEnded } from "../order_words.js";
 import { titleOf } from "../posts.js";
 import { serverNow } from "../server_clock.js";
 import { t } from "../texts.js";
-import { ago, dayAndTime, windowText } from "../times.js";
+import { ago, dayAndTime } from "../times.js";
 import { icon } from "./icon.js";
+import { lateMark } from "./late_mark.js";
 /** @import { CampusMap, Order } from "../api_types.ts" */
 
 /**
@@ -21,7 +23,7 @@ export const queueList = (orders, map, whose, act) => html`<ul class="queue">
     <div class="what">
       <div class="way">
         <strong>${titleOf(map, order.from_post)}${icon("arrow")}<span class="unseen">→</span>${titleOf(map, order.to_post)}</strong>
-        <span class="badge ${order.state}">${t(`badge.${order.state}`)}</span>
+        <span class="badge ${order.state}">${t(`badge.${order.state}`)}</span>${isLate(order, serverNow()) ? lateMark() : nothing}
       </div>
       ${act ? html`<a href=${followPage(order.id)}>${whose(order)}</a>` : html`<span>${whose(order)}</span>`}
       ${act && order.description ? html`<span class="hint">${order.description}</span>` : nothing}
@@ -29,7 +31,7 @@ export const queueList = (orders, map, whose, act) => html`<ul class="queue">
     <div class="why-now">${hasEnded(order) ? order.why : whyItWaits(order, map)}${priorityMark(order)}</div>
     <div class="when">
       ${robotOf(order, act !== null)}<span>${age(order)}</span>
-      ${order.window && !hasEnded(order) ? html`<span>${t("mailroom.window", { window: windowText(order.window, serverNow()) })}</span>` : nothing}
+      ${arrives(order)}
     </div>
     ${act ? html`<button type="button" class="act" @click=${() => act(order)}>${t("mailroom.act")}<span class="unseen">: ${whose(order)}</span></button>` : nothing}
   </li>`)}
@@ -38,7 +40,15 @@ export const queueList = (orders, map, whose, act) => html`<ul class="queue">
 /** @param {Order} order */
 function priorityMark({ priority }) {
   if (priority === "normal") return nothing;
-  return html` <span class="mark">${t(`mailroom.priority.${priority}`)}</span>`;
+  return html` <span class="mark ${priority}">${t(`mailroom.priority.${priority}`)}</span>`;
+}
+
+/** @param {Order} order */
+function arrives(order) {
+  const arrival = arrivalOf(order, serverNow());
+  if (!arrival) return nothing;
+  const window = arrivalText(order, serverNow());
+  return html`<span>${arrival.window ? t("mailroom.window", { window }) : window}</span>`;
 }
 
 /** @param {Order} order @param {boolean} linked */

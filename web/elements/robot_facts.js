@@ -1,5 +1,6 @@
 /** What is known of the robots on a map, as a list: everything that the map shows of them, and why they do it. */
 import { html, nothing } from "lit";
+import { expectedNext } from "../arrival.js";
 import { conditionsOf, isSilentAsExpected } from "../map_facts.js";
 import { batteryText, robotWhy } from "../order_words.js";
 import { corridorTitle, titleOf } from "../posts.js";
@@ -30,9 +31,9 @@ const ofSeveral = (map, facts, robot) => html`<li>
 /** @param {CampusMap} map @param {MapFacts} facts @param {Robot} robot */
 const aboutRobot = (map, facts, robot) => [
   fact("robot", seenText(map, robot)),
-  aheadFact(map, robot),
+  aheadFact(map, robot, facts.arrival),
   conditionsOf(robot).includes("stopped") ? fact("warning", t("map.stopped")) : nothing,
-  robot.why ? fact("send", robotWhy(robot, map)) : nothing,
+  robot.why && !facts.arrival ? fact("send", robotWhy(robot, map)) : nothing,
   facts.taken.filter((taken) => taken.robot === robot.name).map((taken) => fact("corridor", takenText(map, taken))),
   facts.closed.filter((alarm) => alarm.robot === robot.name).map((alarm) => fact("warning", closedText(map, alarm))),
   conditionsOf(robot).includes("offline") ? fact("network", silentText(map, facts, robot)) : nothing,
@@ -43,9 +44,11 @@ const aboutRobot = (map, facts, robot) => [
 const seenText = (map, { last_seen }) =>
   last_seen ? t("map.seen", { post: titleOf(map, last_seen.post), ago: ago(last_seen.at, serverNow()) }) : t("map.never_seen");
 
-/** @param {CampusMap} map @param {Robot} robot */
-function aheadFact(map, { expected, towards, activity }) {
-  if (expected) return fact("clock", t("map.expected", { post: titleOf(map, expected.post), window: windowText(expected) }));
+/** On the map of one order its arrival is the only time. @param {CampusMap} map @param {Robot} robot @param {MapFacts["arrival"]} arrival */
+function aheadFact(map, robot, arrival) {
+  const { towards, activity } = robot;
+  const expected = arrival ? arrival.window && { post: arrival.post, ...arrival.window } : expectedNext(robot, serverNow());
+  if (expected) return fact("clock", t("map.expected", { post: titleOf(map, expected.post), window: windowText(expected, serverNow()) }));
   return towards && activity === "driving" ? fact("clock", t("map.towards", { post: titleOf(map, towards) })) : nothing;
 }
 

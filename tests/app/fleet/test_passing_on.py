@@ -53,7 +53,7 @@ class Mailroom:
         state = self.service.app.state
         async with state.database.transaction() as session:
             (facts,) = await load_facts(session, [await session.get_one(Order, order_id)])
-            view = view_for(await self.person(session), facts, state.orders.campus, state.settings)
+            view = view_for(await self.person(session), facts, state.orders.campus, state.settings, state.clock.utc())
             return [(one.holder, one.name) for one in view.custody]
 
     async def code(self, order_id: str) -> str:

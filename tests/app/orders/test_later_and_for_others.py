@@ -102,8 +102,9 @@ def test_an_order_that_nobody_fetched_in_a_day_expires_and_the_sender_is_told(
 
 
 def test_who_waits_too_long_is_told_once_and_sees_a_later_window(
-    sender: Browser, recipient: Browser, clock: SteppedClock, tick: Any
+    sender: Browser, recipient: Browser, mailroom: Mailroom, clock: SteppedClock, tick: Any
 ) -> None:
+    mailroom.robot_connects()
     order = sender.order().json()
     clock.advance(HOUR_S)
     tick()
@@ -116,3 +117,42 @@ def test_who_waits_too_long_is_told_once_and_sees_a_later_window(
     clock.advance(2 * HOUR_S)
     tick()
     assert kinds(sender) == ["accepted", "delayed"], "once"
+
+
+def test_what_is_late_while_no_robot_can_come_is_told_without_a_time(
+    sender: Browser, mailroom: Mailroom, clock: SteppedClock, tick: Any, app: FastAPI
+) -> None:
+    mailroom.robot_connects()
+    order = sender.order().json()
+    promised_to = order["window"]["to"]
+    assert order["estimate"]["promised_to"] == promised_to
+    mailroom.robot_connects(online=False)
+    mailroom.call(app.state.dispatcher.look_round)
+    clock.advance(HOUR_S)
+    late = seen(sender, order["id"])
+    assert (late["estimate"]["late"], late["estimate"]["promised_to"]) == (True, promised_to)
+    tick()
+    told = seen(sender, order["id"])
+    assert (told["window"], told["estimate"]["from"], told["estimate"]["to"]) == (None, None, None)
+    assert told["estimate"]["reason"] == "No robot is connected at the moment."
+    assert told["estimate"]["late"] is True
+    assert kinds(sender) == ["accepted", "delayed"]
+    delayed = next(one for one in sender.get("/api/v1/notices").json()["items"] if one["kind"] == "delayed")
+    assert "A new time is not known yet" in delayed["body"]
+
+
+def test_nothing_is_promised_while_no_robot_can_come_and_the_first_time_that_is_known_is_the_promise(
+    sender: Browser, mailroom: Mailroom, app: FastAPI
+) -> None:
+    order = sender.order().json()
+    estimate = order["estimate"]
+    assert (order["window"], estimate["to"], estimate["promised_to"]) == (None, None, None)
+    assert estimate["reason"] == "No robot is connected at the moment."
+    (accepted,) = sender.get("/api/v1/notices").json()["items"]
+    assert "between" not in accepted["body"]
+    assert "not known yet" in accepted["body"]
+    mailroom.robot_connects()
+    mailroom.call(app.state.dispatcher.look_round)
+    known = seen(sender, order["id"])
+    assert known["estimate"]["reason"] == "Every robot is busy."
+    assert known["estimate"]["promised_to"] == known["estimate"]["to"] == known["window"]["to"]

@@ -19,7 +19,8 @@ def refused(answer: Any) -> tuple[int, str]:
     return answer.status_code, answer.json()["code"]
 
 
-def test_an_order_is_accepted_with_a_window_and_its_place(sender: Browser) -> None:
+def test_an_order_is_accepted_with_a_window_and_its_place(sender: Browser, mailroom: Mailroom) -> None:
+    mailroom.robot_connects()
     answer = sender.order(description="A letter")
     order = answer.json()
     assert answer.status_code == 201
@@ -30,7 +31,7 @@ def test_an_order_is_accepted_with_a_window_and_its_place(sender: Browser) -> No
     assert order["window"]["from"] < order["window"]["to"]
     assert [event["by"] for event in order["events"]] == ["sender"]
     found = sender.get(answer.headers["Location"]).json()
-    waits = {"why", "why_words"}  # dispatch may have said meanwhile why it waits
+    waits = {"why", "why_words", "estimate"}  # dispatch may have said meanwhile why it waits
     assert found.keys() == order.keys()
     assert all(found[name] == order[name] for name in found.keys() - waits)
 
@@ -135,11 +136,14 @@ def test_two_connections_at_once_with_one_key_make_one_order(served: Served, sen
     assert [order["id"] for order in sender.get("/api/v1/orders").json()["items"]] == placed[:1]
 
 
-def test_the_estimate_says_window_and_length_before_anything_is_ordered(sender: Browser) -> None:
+def test_the_estimate_says_window_and_length_before_anything_is_ordered(sender: Browser, mailroom: Mailroom) -> None:
     answer = sender.get("/api/v1/estimate", params={"from_post": "post1", "to_post": "post4"}).json()
     assert answer["assumed"] is True
     assert answer["length_m"] > 1
     assert answer["window"]["from"] < answer["window"]["to"]
+    assert answer["reason"] == "No robot is connected at the moment.", "how long it would take with one"
+    mailroom.robot_connects()
+    assert sender.get("/api/v1/estimate", params={"from_post": "post1", "to_post": "post4"}).json()["reason"] is None
     same = sender.get("/api/v1/estimate", params={"from_post": "post1", "to_post": "post1"})
     assert refused(same) == (422, "same_post")
 

@@ -1,0 +1,40 @@
+"""Robots that cannot take any order until a person has done something, and what is said of that."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Final
+
+from sqlmodel.ext.asyncio.session import AsyncSession
+
+from app.dispatch.choice import NONE_CONNECTED
+from app.dispatch.open_work import HeldUp, OpenWork, RobotNow, look_at_work
+from app.fleet.service import Fleet
+
+SENTENCES: Final = {
+    HeldUp.STUCK_MAIL: "No robot is free: somebody has to see to mail that is stuck first.",
+    HeldUp.STOPPED: "Every robot that could fetch it has stopped and needs help.",
+    HeldUp.PAUSED: "The robots that may fetch it take no orders at the moment.",
+}
+
+
+def why_held_up(robots: Iterable[RobotNow]) -> str | None:
+    """The first reason that holds of a connected robot, if each of them has one; None if one could come."""
+    reasons = {robot.held_up for robot in robots if robot.is_there}
+    if not reasons or None in reasons:
+        return None
+    return next(sentence for reason, sentence in SENTENCES.items() if reason in reasons)
+
+
+def why_no_robot_comes(work: OpenWork) -> str | None:
+    """The reason for which no robot would come for an order of this moment; None if one would."""
+    return why_held_up(work.robots.values()) if work.connected else NONE_CONNECTED
+
+
+@dataclass(frozen=True)
+class NoRobotComes:
+    """Asked by the estimates, before anything is ordered."""
+
+    fleet: Fleet
+
+    async def why(self, session: AsyncSession) -> str | None:
+        return why_no_robot_comes(await look_at_work(session, self.fleet.clock.utc()))

@@ -1,0 +1,96 @@
+"""Forecasts of all stops that robots have before them: by the timetable, or, without one, by the way of each robot."""
+
+import asyncio
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from random import Random
+from typing import Any, Final, NamedTuple
+
+from app.estimates.arrivals import Estimates
+from app.estimates.durations import Kind
+from app.estimates.forecast import Chance, forecast
+from app.estimates.intervals import Interval
+from app.estimates.on_the_way import Ahead, Place, on_the_way
+from app.tables import RobotRow
+from app.traffic.controller import TrafficController
+from app.traffic.journey import Goal
+from app.traffic.network import Lane, Network
+from protocol.parts import StopAction
+
+KIND_OF: Final[Mapping[str, Kind]] = {
+    StopAction.LOAD: Kind.LOAD,
+    StopAction.RECEIVE: Kind.RECEIVE,
+    StopAction.RETURN: Kind.RECEIVE,
+}
+
+
+class Stop(NamedTuple):
+    """A stop that is not over, of a mission that is not over; a robot's in their order."""
+
+    id: str
+    action: str
+    post: str
+    order_id: str | None
+    robot: str
+    arrived_at: datetime | None
+
+
+@dataclass(frozen=True)
+class Foresight:
+    """What is drawn of each goal and corridor of the timetable, as it stands at one moment."""
+
+    estimates: Estimates
+    network: Network
+    stops: Mapping[str, Stop]
+    now: datetime
+    now_s: float
+    rng: Random
+
+    def chance(self) -> Chance:
+        return Chance(self._travel_s, self._handling_s, self._arrives_s)
+
+    def _travel_s(self, _robot: str, lane: Lane) -> float:
+        return self._draw_s(lane, 0.0)
+
+    def _arrives_s(self, _robot: str, lane: Lane, entered_s: float) -> float:
+        return entered_s + self._draw_s(lane, max(0.0, self.now_s - entered_s))
+
+    def _draw_s(self, lane: Lane, over_s: float) -> float:
+        posts = self.network.posts
+        thing = self.estimates.corridor(posts[lane.start], posts[lane.end])
+        return lane.travel_s if thing is None else self.estimates.durations.draw_s(thing, self.rng, over_s)
+
+    def _handling_s(self, goal: Goal) -> float:
+        stop = self.stops.get(goal.key)
+        kind = KIND_OF.get(stop.action) if stop is not None else None
+        if stop is None or kind is None:
+            return goal.handling_s
+        thing = self.estimates.stop(kind, stop.arrived_at or self.now)
+        over_s = max(0.0, (self.now - stop.arrived_at).total_seconds()) if stop.arrived_at else 0.0
+        return self.estimates.durations.draw_s(thing, self.rng, over_s) - over_s
+
+
+async def by_timetable(
+    estimates: Estimates, controller: TrafficController, stops: Sequence[Stop], now: datetime, now_s: float, rng: Random
+) -> dict[str, Interval]:
+    """In how many seconds each stop is reached, by its id; without those that are in no timetable yet."""
+    network, tasks, journeys = controller.network, controller.tasks(now_s), controller.journeys(now_s)
+    sees = Foresight(estimates, network, {stop.id: stop for stop in stops}, now, now_s, rng)
+    return await asyncio.to_thread(forecast, network, tasks, journeys, now_s, sees.chance())
+
+
+def by_their_ways(
+    estimates: Estimates, robots: Mapping[str, RobotRow], stops: Sequence[Stop], now: datetime, rng: Random
+) -> dict[str, Interval]:
+    """The same where every corridor is granted at once."""
+    ahead: dict[str, list[Ahead]] = {}
+    for stop in stops:
+        ahead.setdefault(stop.robot, []).append(Ahead(stop.id, stop.post, KIND_OF.get(stop.action), stop.arrived_at))
+    expected: dict[str, Interval] = {}
+    for name, theirs in ahead.items():
+        robot: Any = robots.get(name)
+        if robot is not None and robot.post is not None:
+            place = Place(robot.post, robot.towards, robot.seen_at)
+            expected |= on_the_way(estimates, place, theirs, now, rng)
+    return expected
