@@ -13,6 +13,7 @@ FOR_LATER: Final = "It is ordered for later."
 NO_ROBOT_YET: Final = "A robot is being chosen."
 NO_NETWORK: Final = "The robot has no network at the moment. The time is known again when it reports."
 TAKES_LONGER: Final = "It takes longer than expected. A new time is being worked out."
+WORKED_OUT: Final = "The time is being worked out."
 AT_A_STOP: Final = frozenset({OrderState.AT_SENDER, OrderState.AT_RECIPIENT, OrderState.AT_RETURN})
 OF_A_STOP: Final = frozenset({"why.sender", "why.recipient", "why.to_return", "why.step_back"})
 """Texts that name the person for whom a robot waits."""
@@ -37,7 +38,9 @@ def why_no_time(order: Order, robot: RobotRow | None, now: datetime) -> str:
     """The reason for which no time is known, where nothing else is said of the order."""
     if order.state is OrderState.QUEUED:
         return FOR_LATER if order.not_before is not None and order.not_before > now else NO_ROBOT_YET
-    return NO_NETWORK if robot is not None and not robot.online else TAKES_LONGER
+    if robot is not None and not robot.online:
+        return NO_NETWORK
+    return WORKED_OUT if order.expected_to is None else TAKES_LONGER
 
 
 def is_waiting(robot: RobotRow) -> bool:

@@ -135,7 +135,7 @@ async def test_two_people_and_a_robot_ordered_loaded_by_code_followed_received_b
     await demonstration.says("Driving towards post2")
     facts = ada.page.get_by_role("region", name="Where the robot is").get_by_role("list")
     await expect(facts.get_by_text(re.compile("^Last seen at Post 3, "))).to_be_visible()
-    await expect(facts.get_by_text(re.compile("^Expected at Post 2, "))).to_be_visible()
+    await expect(facts.get_by_text(re.compile("^Expected at Post 4, "))).to_be_visible()
     await expect(facts.get_by_text("Driving towards Post 2")).to_be_visible()
     await expect(facts.get_by_text("Battery 82%")).to_be_visible()
     await expect(ada.page.get_by_role("region", name="Why it waits")).to_be_hidden()

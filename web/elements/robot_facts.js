@@ -33,7 +33,7 @@ const aboutRobot = (map, facts, robot) => [
   fact("robot", seenText(map, robot)),
   aheadFact(map, robot, facts.arrival),
   conditionsOf(robot).includes("stopped") ? fact("warning", t("map.stopped")) : nothing,
-  robot.why && !facts.arrival ? fact("send", robotWhy(robot, map)) : nothing,
+  robot.why && (!facts.arrival || robot.activity === "driving") ? fact("send", robotWhy(robot, map)) : nothing,
   facts.taken.filter((taken) => taken.robot === robot.name).map((taken) => fact("corridor", takenText(map, taken))),
   facts.closed.filter((alarm) => alarm.robot === robot.name).map((alarm) => fact("warning", closedText(map, alarm))),
   conditionsOf(robot).includes("offline") ? fact("network", silentText(map, facts, robot)) : nothing,
