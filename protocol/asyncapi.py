@@ -11,7 +11,7 @@ from typing import Any, Final
 
 from pydantic.json_schema import models_json_schema
 
-from protocol.envelope import DURABLE, MAJOR_VERSION, TO_ROBOT, TO_SERVER, Envelope
+from protocol.envelope import DURABLE, MAJOR_VERSION, MINOR_VERSION, TO_ROBOT, TO_SERVER, Envelope
 from protocol.example_files import examples_of
 from protocol.parts import Part
 
@@ -36,7 +36,7 @@ def document() -> Json:
         "id": "urn:campus-mail:robot-link",
         "info": {
             "title": "Campus Mail: the link between service and robot",
-            "version": f"{MAJOR_VERSION}.0.0",
+            "version": f"{MAJOR_VERSION}.{MINOR_VERSION}.0",
             "description": DESCRIPTION,
             "tags": [{"name": "durable", "description": "Numbered, kept on disk, sent until it is acknowledged."}],
         },

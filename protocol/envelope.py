@@ -18,6 +18,8 @@ from protocol.errors import MalformedMessage, MessageTooLarge, NewerVersion, Pro
 from protocol.parts import Identifier, Moment, Part, Seq
 
 MAJOR_VERSION: Final = 1
+MINOR_VERSION: Final = 1
+"""Goes up with what robots may say besides: 1 has proofs in receipts. Told nowhere on the wire (see `YOUNGER`)."""
 MAX_MESSAGE_BYTES: Final = 64 * 1024
 
 BOTH_WAYS: Final[Mapping[str, type[Part]]] = {"ack": both_ways.Ack, "error": both_ways.Error}
@@ -50,9 +52,9 @@ TO_ROBOT: Final[Mapping[str, type[Part]]] = {
     "watch": to_robot.Watch,
     **BOTH_WAYS,
 }
-YOUNGER: Final = ("confirm", "watch", "open_way", "detour", "revoke", "until_ratio")
-"""Types to robots that came later, and one field: sent only to those that name them in `hello`; an older robot would
-hang up."""
+YOUNGER: Final = ("confirm", "watch", "open_way", "detour", "revoke", "until_ratio", "proof")
+"""What came later: types to robots and one field, sent only to those that name them in `hello`, since an older robot
+would hang up; and what a robot proves, which is expected of those that name it."""
 
 DURABLE: Final = frozenset({"event", "claim", "withdraw", "clear"}) | {
     *("mission", "verifiers", "grant", "deny", "detour"),

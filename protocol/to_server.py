@@ -23,14 +23,16 @@ from protocol.parts import (
     Sha256Hex,
     Signature,
 )
+from protocol.proofs import proof_of
 
 
 class Hello(Part):
     """The first message on every connection: where to resume from, and what the robot knows of itself.
 
     `received` is what it last had from the server, `resume_from` the lowest `seq` of its own journal that can still
-    come. `understands` names what is younger than the protocol and known to this robot (messages, and the field
-    `until_ratio` of stops); it is sent nothing else of that kind. `home` is the post of its own dock.
+    come. `understands` names what is younger than the protocol and known to this robot (messages, the field
+    `until_ratio` of stops, and `proof`: its receipts prove that a code was shown); it is sent nothing else of that
+    kind. `home` is the post of its own dock.
     """
 
     received: Received = Received()
@@ -95,7 +97,9 @@ class HandoverReceipt(Part):
     """Mail changed hands. Only the robot writes custody.
 
     `code_sha256` is the verifier that matched (or the `by` of the `confirm`), None if nobody was identified (the Spot
-    button). `command_id` names the `confirm`, if one led to it. `signature` is Ed25519 over `signed_by(robot)`, base64;
+    button). `proof` is what only the shown code gives, over this one hand-over: None if none was shown. `number` counts
+    the receipts of this robot's memory, `mission_id` is the mission as it held it: None from a robot that is older than
+    proofs. `command_id` names the `confirm`, if one led to it. `signature` is Ed25519 over `signed_by(robot)`, base64;
     None from a robot that was enrolled without a key.
     """
 
@@ -108,13 +112,28 @@ class HandoverReceipt(Part):
     code_sha256: Sha256Hex | None
     how: How = Field(default_factory=_how_before_it_was_told)
     command_id: Identifier | None = None
+    mission_id: Identifier | None = None
+    number: Seq | None = None
+    proof: Sha256Hex | None = None
     signature: Signature | None = None
 
     def signed_by(self, robot: str) -> bytes:
         """What this robot's signature is over: one value a line, `-` for none, no line end after the last."""
-        happened_at = self.happened_at.astimezone(UTC).isoformat(timespec="microseconds").replace("+00:00", "Z")
-        values = ("campus-mail receipt 1", robot, self.purpose, self.order_id, self.stop_id, self.post, happened_at)
-        return "\n".join((*values, self.code_sha256 or "-", self.how, self.command_id or "-")).encode("ascii")
+        values = (robot, self.purpose, self.order_id, self.stop_id, self.post, self._moment)
+        how = (self.code_sha256 or "-", self.how, self.command_id or "-")
+        if self.number is None:
+            return "\n".join(("campus-mail receipt 1", *values, *how)).encode("ascii")
+        later = (self.mission_id or "-", str(self.number), self.proof or "-")
+        return "\n".join(("campus-mail receipt 2", *values, *how, *later)).encode("ascii")
+
+    def proved_with(self, key: bytes) -> str:
+        """The proof of this hand-over, for whoever has read the code with this key."""
+        place = (self.order_id, self.mission_id or "-", self.stop_id, self.purpose, self.post)
+        return proof_of(key, (*place, str(self.number or "-"), self._moment))
+
+    @property
+    def _moment(self) -> str:
+        return self.happened_at.astimezone(UTC).isoformat(timespec="microseconds").replace("+00:00", "Z")
 
 
 class Charge(Part):

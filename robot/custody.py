@@ -5,10 +5,11 @@ effect if the robot waits for that person's hand-over just then.
 """
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import datetime
 
 from protocol.parts import Purpose, Stop
+from protocol.proofs import ShownCode
 from protocol.to_robot import Confirm, Mission, Verifier
 from protocol.to_server import Event, HandoverReceipt, How
 from robot.memory import Loading, Memory
@@ -20,16 +21,20 @@ Sign = Callable[[HandoverReceipt], HandoverReceipt]
 
 @dataclass(frozen=True)
 class Proof:
-    """What a hand-over goes by: the verifier that matched, how it came, and the command that brought it, if one did."""
+    """What a hand-over goes by: the verifier that matched, how it came, and the command that brought it, if one did.
+
+    `key`: of a code that was shown. It proves this one hand-over, and is written down nowhere.
+    """
 
     code_sha256: str | None
     how: How
     command_id: str | None = None
+    key: bytes | None = field(default=None, repr=False)
 
     @classmethod
-    def seen(cls, code_sha256: str | None) -> "Proof":
+    def seen(cls, shown: ShownCode | None) -> "Proof":
         """By the camera; nothing seen is the Spot button."""
-        return cls(code_sha256, "code" if code_sha256 else "button")
+        return cls(None, "button") if shown is None else cls(shown.sha256, "code", key=shown.key)
 
 
 @dataclass
@@ -87,12 +92,13 @@ class Custody:
         else:
             self._memory.unload(order_id)
         self._memory.pass_stop(stop.id)
-        self._outbox.put(Event(happened=self._sign(self._receipt(stop, purpose, post, proof))))
+        self._outbox.put(Event(happened=self._sign(self._receipt(place, purpose, post, proof))))
         self._memory.forget_verifiers(order_id, purpose if purpose is Purpose.LOAD else None)
         return True
 
-    def _receipt(self, stop: Stop, purpose: Purpose, post: str, proof: Proof) -> HandoverReceipt:
-        return HandoverReceipt(
+    def _receipt(self, place: tuple[Mission, Stop], purpose: Purpose, post: str, proof: Proof) -> HandoverReceipt:
+        mission, stop = place
+        receipt = HandoverReceipt(
             purpose=purpose,
             order_id=stop.order_id or "",
             stop_id=stop.id,
@@ -101,7 +107,12 @@ class Custody:
             code_sha256=proof.code_sha256,
             how=proof.how,
             command_id=proof.command_id,
+            mission_id=mission.id,
+            number=self._memory.next_receipt(),
         )
+        if proof.key is None:
+            return receipt
+        return receipt.model_copy(update={"proof": receipt.proved_with(proof.key)})
 
 
 def _is_meant(wish: Confirm, waiting: Waiting) -> bool:

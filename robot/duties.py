@@ -10,6 +10,7 @@ from datetime import datetime, timedelta
 from typing import Final, Literal
 
 from protocol.parts import Part, Purpose, Stop
+from protocol.proofs import ShownCode
 from protocol.to_robot import (
     Cancel,
     Confirm,
@@ -295,14 +296,14 @@ class Duties:
         """A stop of the mission held, with its mission. Raises NoSuchStop."""
         return self._stop(stop_id)
 
-    def handed_over(self, place: tuple[Mission, Stop], purpose: Purpose, post: str, code_sha256: str | None) -> None:
+    def handed_over(self, place: tuple[Mission, Stop], purpose: Purpose, post: str, shown: ShownCode | None) -> None:
         """Mail changed hands at a stop. What is aboard, how far the mission is and the receipt: all or nothing.
 
         `place` is the stop as it was when the robot began to wait: mail that was taken aboard is aboard, even if the
         mission was dropped in the same moment.
         """
         with self._store.transaction():
-            if not self.custody.hand_over(place, purpose, post, Proof.seen(code_sha256)):
+            if not self.custody.hand_over(place, purpose, post, Proof.seen(shown)):
                 return
             if purpose is Purpose.LOAD and self.memory.mission() is None:
                 self._bring_back(place[0])  # dropped while somebody loaded it: it is given back where it stands

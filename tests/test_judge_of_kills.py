@@ -11,6 +11,7 @@ from benchmarks.body.kills_robot import Remembered, remembered
 from benchmarks.body.kills_service import Service, told_twice
 from benchmarks.body.played_server import AT, from_server
 from protocol.parts import Battery, Leg, Position, Purpose, Received, Stop, StopAction
+from protocol.proofs import ShownCode
 from protocol.to_robot import Grant, Mission
 from protocol.to_server import Claim, Hello, Step
 from robot.duties import Duties
@@ -36,7 +37,7 @@ def loaded(folder: Path, then: Forgets = lambda memory, outbox: None) -> Facts:
             memory.receive(from_server(message, seq))
         duties = Duties(store, memory, outbox, lambda: AT)
         duties.report(Step.ARRIVED, "s1", "post1")
-        duties.handed_over((LETTER, LOAD), Purpose.LOAD, "post1", "a" * 64)
+        duties.handed_over((LETTER, LOAD), Purpose.LOAD, "post1", ShownCode("a" * 64, b"key"))
         told = {kept.seq: kept.message for kept in outbox.pending()}
         outbox.put(Claim(claim_id="c2", legs=(OTHER_LEG,)))  # which nobody has heard yet
         outbox.acknowledged(1)

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from datetime import datetime
+from typing import Final
 
 from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
@@ -18,6 +19,8 @@ from protocol.envelope import Envelope
 from protocol.parts import Received
 from protocol.to_robot import Cancel, Grant, Welcome
 from protocol.to_server import Hello
+
+PROOF: Final = "proof"
 
 
 @dataclass(frozen=True)
@@ -46,6 +49,8 @@ async def greet(session: AsyncSession, fleet: Fleet, robot: RobotRow, envelope: 
     note_state(robot, hello.position, hello.battery)
     robot.software, robot.map_version, robot.online, robot.heard_at = hello.software, hello.map_version, True, now
     robot.takes_confirm, robot.home = "confirm" in hello.understands, hello.home
+    if PROOF in hello.understands:
+        robot.proves_since = robot.proves_since or now
     await tell_again(session, fleet, robot, understands=REVOKE in hello.understands)
     await fleet.batteries.note(session, [robot], now)
     fleet.announce(session, robot)

@@ -1,5 +1,8 @@
 """What follows from a receipt: mail has changed hands. It is written down whatever the order's state says: only the
-robot writes custody, and what it proves has happened. Refused is only what no chain of custody could contain."""
+robot writes custody, and what it proves has happened. Refused is only what no chain of custody could contain.
+
+What a robot only claims is written down as claimed. Mail that is said to be aboard goes its way; mail that is said to
+be out waits for a person who asks whoever should have it."""
 
 from collections.abc import Mapping
 from typing import Final
@@ -14,11 +17,11 @@ from app.fleet.receipts import judged
 from app.fleet.reports import Report
 from app.orders.codes import Holder, codes_of, delegates_of
 from app.orders.errors import TransitionRefused
-from app.orders.returning import last_handover
 from app.orders.service import Word
 from app.orders.stops import stops_of_order
-from app.orders.transitions import ENDED, TURNED_BACK
-from app.tables import Handover, MissionRow, Order, OrderState, StopRow
+from app.orders.transitions import ENDED, MAIL_ABOARD, TURNED_BACK
+from app.orders.unproven import last_handover, was_aboard
+from app.tables import Evidence, Handover, MissionRow, Order, OrderState, StopRow
 from protocol.parts import Purpose
 from protocol.to_server import HandoverReceipt
 
@@ -36,21 +39,45 @@ TAKEN_BACK_BY: Final[Mapping[Holder, OrderState]] = {
 }
 
 
+NOT_PROVED: Final = (
+    "The robot says that the mail is out, and nothing proves it: somebody has to ask who should have it."
+)
+
+
 async def follow_receipt(report: Report, receipt: HandoverReceipt) -> None:
     """Raises UnknownStop, and TransitionRefused for what would break the chain of custody."""
-    stop = await _stop(report, receipt)
+    stop, mission = await _stop(report, receipt)
     if await _is_receipted(report, receipt):
         return
     order = await report.orders.order(report.session, receipt.order_id)
-    handover = await judged(report.session, report.orders.key, report.robot, order, receipt, report.now)
+    handover = await judged(report, order, mission, receipt)
     if handover is None:
-        return  # it proves nothing: custody does not move
+        return  # it counts for nothing: custody does not move
     await _check_chain(report, receipt)
     stop.done_at = stop.done_at or receipt.happened_at
+    await _settle(report, receipt, handover)
     report.session.add(handover)
-    await _move(report, receipt)
+    if handover.evidence == Evidence.CLAIMED and receipt.purpose != Purpose.LOAD:
+        await _let_somebody_ask(report, receipt)
+    else:
+        await _move(report, receipt, quietly=handover.evidence == Evidence.CLAIMED)
     await _drop_the_rest(report, receipt)
-    await end_if_nothing_is_left(report, await report.session.get_one(MissionRow, stop.mission_id))
+    await end_if_nothing_is_left(report, mission)
+
+
+async def _settle(report: Report, receipt: HandoverReceipt, handover: Handover) -> None:
+    """Mail that is proved to have come out was aboard, and had not come out before."""
+    if receipt.purpose != Purpose.LOAD and handover.evidence != Evidence.CLAIMED:
+        await was_aboard(report.session, receipt.order_id, report.now)
+
+
+async def _let_somebody_ask(report: Report, receipt: HandoverReceipt) -> None:
+    """Nobody is told that they have it. An order that has ended or was given to another stays as it is: the alarm rings
+    all the same."""
+    order = await report.orders.order(report.session, receipt.order_id)
+    if order.robot == report.robot and order.state in MAIL_ABOARD:
+        word = report.word(receipt.happened_at, receipt.post, NOT_PROVED)
+        await report.orders.move(report.session, order.id, OrderState.ATTENTION, word)
 
 
 async def _drop_the_rest(report: Report, receipt: HandoverReceipt) -> None:
@@ -72,18 +99,19 @@ async def _check_chain(report: Report, receipt: HandoverReceipt) -> None:
         raise TransitionRefused(f"Robot {report.robot} does not have the mail of order {receipt.order_id}.")
 
 
-async def _stop(report: Report, receipt: HandoverReceipt) -> StopRow:
+async def _stop(report: Report, receipt: HandoverReceipt) -> tuple[StopRow, MissionRow]:
     stop = await report.session.get(StopRow, receipt.stop_id)
     mission = await report.session.get(MissionRow, stop.mission_id) if stop else None
     if stop is None or mission is None or mission.robot != report.robot:
         raise UnknownStop(f"{report.robot} was given no stop {receipt.stop_id}")
     if (stop.order_id, stop.action) != (receipt.order_id, receipt.purpose):
         raise UnknownStop(f"stop {stop.id} is not to {receipt.purpose} order {receipt.order_id}")
-    return stop
+    return stop, mission
 
 
-async def _move(report: Report, receipt: HandoverReceipt) -> None:
-    """The order follows its mail. An order that has ended otherwise stays ended, and a person has to look."""
+async def _move(report: Report, receipt: HandoverReceipt, *, quietly: bool) -> None:
+    """The order follows its mail. An order that has ended otherwise stays ended, and a person has to look. `quietly`:
+    people are told nothing that nobody knows."""
     order = await report.orders.order(report.session, receipt.order_id)
     if order.robot not in (None, report.robot):
         order.let_go_by = order.robot  # it was given to another, but this one had the mail already
@@ -94,7 +122,7 @@ async def _move(report: Report, receipt: HandoverReceipt) -> None:
     states, state = await _states(report, order, receipt), order.state
     try:
         async with savepoint(report.session):
-            await report.along(order.id, states, word)
+            await report.along(order.id, states, word, quietly=quietly)
     except TransitionRefused:
         await _contradiction(report, receipt, state)
 

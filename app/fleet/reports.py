@@ -9,6 +9,7 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 from app.fleet.clocks import put_right
 from app.orders.service import Orders, Word
 from app.orders.transitions import By, is_old_news
+from app.orders.unproven import claim_of_handing_out
 from app.tables import Order, OrderState
 
 
@@ -35,20 +36,35 @@ class Report:
         return min(self.when(since), self.now) + timedelta(seconds=limit_s)
 
     async def aboard(self, *states: OrderState) -> list[Order]:
-        """The orders of this robot in one of these states."""
+        """The orders of this robot in one of these states, but for those whose mail it says it has not any more."""
         wanted = select(Order).where(Order.robot == self.robot, col(Order.state).in_(states)).order_by(col(Order.id))
-        return list((await self.session.exec(wanted)).all())
+        orders = (await self.session.exec(wanted)).all()
+        return [order for order in orders if not await self._says_it_is_out(order)]
+
+    async def _says_it_is_out(self, order: Order) -> bool:
+        waits = order.state is OrderState.ATTENTION
+        return waits and await claim_of_handing_out(self.session, order.id) is not None
 
     async def along(
-        self, order_id: str, states: tuple[OrderState, ...], word: Word, wait_until: datetime | None = None
+        self,
+        order_id: str,
+        states: tuple[OrderState, ...],
+        word: Word,
+        wait_until: datetime | None = None,
+        *,
+        quietly: bool = False,
     ) -> None:
         """Take an order through `states`, from wherever it is among them. Raises TransitionRefused.
 
         A robot that was given up on and goes on by itself takes its order out of attention: what it does is the truth.
-        People have been told of where that was, and are now told of what it has come to.
+        People have been told of where that was, and are now told of what it has come to. But for mail that it says it
+        has not any more: what becomes of that is for the person to say who has asked. `quietly`: nobody is told of the
+        last state.
         """
         order = await self.orders.order(self.session, order_id)
         before = order.state_before_attention
+        if before is not None and await claim_of_handing_out(self.session, order_id):
+            return
         goes_on = order.state not in states and states and not is_old_news(order.state, states[-1], before)
         if before is not None and goes_on:
             await self.orders.move(self.session, order_id, before, word, quietly=before is not states[-1])
@@ -56,4 +72,5 @@ class Report:
             states = states[states.index(order.state) :]
         for state in states:
             last = state is states[-1]
-            await self.orders.move(self.session, order_id, state, word, wait_until if last else None)
+            until = wait_until if last else None
+            await self.orders.move(self.session, order_id, state, word, until, quietly=quietly and last)

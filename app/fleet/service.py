@@ -64,7 +64,8 @@ async def enrol(session: AsyncSession, clock: Clock, name: str) -> str:
 
 async def new_token(session: AsyncSession, clock: Clock, name: str) -> str:
     """Another token for an enrolled robot; the ones it had are revoked. Raises UnknownRobot."""
-    await known_robot(session, name)
+    robot = await known_robot(session, name)
+    robot.proves_since = None  # it may be another machine, or have been given older software
     await revoke_tokens(session, clock, name)
     token = make_token()
     session.add(RobotToken(prefix=token.prefix, secret_hash=token.secret_hash, robot=name, created_at=clock.utc()))

@@ -82,9 +82,10 @@ class Attention(Body):
 
 class Resolution(Body):
     """What becomes of an order that needed attention: on as before, with mail aboard back or into the mailroom's hands,
-    without into the queue again or not at all."""
+    without into the queue again or not at all. `handed_over`: mail that its robot says it has not any more, without a
+    proof, is with whoever should have it, who was asked."""
 
-    to: Literal["resume", "returning", "held", "queued", "cancelled"]
+    to: Literal["resume", "returning", "held", "queued", "cancelled", "handed_over"]
     reason: Reason | None = None
 
 
@@ -138,7 +139,8 @@ async def stop_order_for_attention(asked: ByDispatcher, attention: Attention) ->
 
 
 @dispatch_router.post(
-    "/orders/{order_id}/resolve", responses=_answers(errors.TransitionRefused, errors.NothingToResume)
+    "/orders/{order_id}/resolve",
+    responses=_answers(errors.TransitionRefused, errors.NothingToResume, errors.NothingClaimed),
 )
 async def resolve_order(asked: ByDispatcher, resolution: Resolution) -> OrderView:
     """Decide what becomes of an order that needed attention."""

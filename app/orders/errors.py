@@ -19,6 +19,7 @@ Conflict           ├── StillRunning
                    ├── WaitedLongEnough
                    ├── NotReassignable
                    ├── NothingToResume
+                   ├── NothingClaimed
                    ├── NothingToPassOn
                    └── StandingOrderEnded
 PreconditionFailed └── OrderChanged
@@ -145,6 +146,12 @@ class NotReassignable(Conflict):
     """The mail is aboard, or the order has ended."""
 
     code = "not_reassignable"
+
+
+class NothingClaimed(Conflict):
+    """The robot says that it has this mail still, or nothing: there is no word of it to be believed."""
+
+    code = "nothing_claimed"
 
 
 class NothingToResume(Conflict):

@@ -5,15 +5,17 @@ from typing import Final, Literal
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.orders import errors, stops
+from app.orders.codes import Holder
 from app.orders.ledger import Word
-from app.orders.returning import Returning, last_handover
+from app.orders.returning import Returning
 from app.orders.schemas import OrderView
 from app.orders.transitions import ENDED, MAIL_ABOARD, ROBOT_COMING, By
+from app.orders.unproven import claim_of_handing_out, is_true, last_handover, was_aboard, was_never_aboard
 from app.orders.views import load_facts
-from app.tables import Handover, Order, OrderState, Person, Priority, RobotRow
+from app.tables import Evidence, Handover, Order, OrderState, Person, Priority, RobotRow
 from protocol.parts import Purpose, StopAction
 
-WayOut = Literal["resume", "returning", "held", "queued", "cancelled"]
+WayOut = Literal["resume", "returning", "held", "queued", "cancelled", "handed_over"]
 PRIORITY_CHANGED: Final = "priority_changed"
 REASSIGNED: Final = "reassigned"
 BY_HAND: Final = "dispatcher"
@@ -41,9 +43,10 @@ class Intervening(Returning):
     async def resolve(
         self, session: AsyncSession, person: Person, order_id: str, to: WayOut, reason: str | None, if_match: str = ""
     ) -> OrderView:
-        """Out of attention: on as before, back, into the mailroom's hands, into the queue again, or not at all.
+        """Out of attention: on as before, back, into the mailroom's hands, into the queue again, or not at all; or its
+        mail is out as its robot says.
 
-        Raises UnknownOrder, OrderChanged, TransitionRefused, NothingToResume.
+        Raises UnknownOrder, OrderChanged, TransitionRefused, NothingToResume, NothingClaimed.
         """
         order = await self._theirs(session, person, order_id, if_match)
         before = order.state_before_attention
@@ -61,9 +64,24 @@ class Intervening(Returning):
             action = DESTINATION[before]
             post = order.to_post if action is StopAction.RECEIVE else self.return_post(order)
             await self.send(session, order, action, post)
+        await self._found_aboard(session, order, before)
         await self.move(session, order.id, before, word)
 
+    async def _found_aboard(self, session: AsyncSession, order: Order, before: OrderState) -> None:
+        """On the word of whoever decides what becomes of it."""
+        if before in MAIL_ABOARD:
+            await was_aboard(session, order.id, self.clock.utc())
+
+    async def _handed_over(self, session: AsyncSession, order: Order, before: OrderState, word: Word) -> None:
+        """Whoever should have it was asked, and has it."""
+        claim = await claim_of_handing_out(session, order.id)
+        if claim is None:
+            raise errors.NothingClaimed("Its robot does not say that the mail is out.")
+        await is_true(session, claim, self.clock.utc())
+        await self.move(session, order.id, _where_it_went(order, claim), word)
+
     async def _return(self, session: AsyncSession, order: Order, before: OrderState, word: Word) -> None:
+        await self._found_aboard(session, order, before)
         await self.bring_back(session, order)
         await self.move(session, order.id, OrderState.RETURNING, word)
 
@@ -75,7 +93,8 @@ class Intervening(Returning):
             await self.move(session, order.id, OrderState.HELD, word)
 
     async def _queue(self, session: AsyncSession, order: Order, before: OrderState, word: Word) -> None:
-        if before in MAIL_ABOARD:
+        was_a_claim = await was_never_aboard(session, order.id, self.clock.utc())
+        if before in MAIL_ABOARD and not was_a_claim:
             raise errors.TransitionRefused(f"Robot {order.robot} has the mail of order {order.id}: pass it on.")
         order.let_go_by, order.avoided_robot = order.robot, order.robot
         await self.move(session, order.id, OrderState.QUEUED, word)
@@ -98,6 +117,7 @@ class Intervening(Returning):
             return  # the mailroom has it already
         if order.state in ENDED and await self.robot_with_mail(session, order) is None:
             raise errors.TransitionRefused(f"Order {order.id} is {order.state}, and no robot has its mail.")
+        await was_aboard(session, order.id, self.clock.utc())
         if order.robot is not None:
             order.let_go_by = order.robot
             session.add(self._taken_by_hand(order, word))
@@ -119,6 +139,7 @@ class Intervening(Returning):
             robot=order.robot or "",
             post=self.return_post(order),
             how=BY_HAND,
+            evidence=Evidence.DISPATCHER,
             holder="mailroom",
             person_id=word.person_id,
             robot_at=self.clock.utc(),
@@ -167,7 +188,16 @@ _WAYS_OUT: Final = {
     "held": Intervening._hold,
     "queued": Intervening._queue,
     "cancelled": Intervening._cancel_by_hand,
+    "handed_over": Intervening._handed_over,
 }
+
+
+def _where_it_went(order: Order, claim: Handover) -> OrderState:
+    """As who took it says, and for want of that the place."""
+    if claim.purpose == Purpose.RECEIVE or claim.holder == Holder.RECIPIENT:
+        return OrderState.DELIVERED
+    is_senders = claim.holder == Holder.SENDER or (claim.holder != Holder.MAILROOM and claim.post == order.from_post)
+    return OrderState.RETURNED if is_senders else OrderState.HELD
 
 
 def _word(person: Person, reason: str | None) -> Word:

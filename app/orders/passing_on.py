@@ -11,8 +11,9 @@ from app.orders.intervening import BY_HAND, Intervening
 from app.orders.ledger import Word
 from app.orders.schemas import OrderView
 from app.orders.transitions import CARRIED, By
+from app.orders.unproven import was_aboard
 from app.orders.window import arrival_window, promise
-from app.tables import Handover, Order, OrderState, Person, RobotRow
+from app.tables import Evidence, Handover, Order, OrderState, Person, RobotRow
 from protocol.parts import Purpose
 
 
@@ -37,6 +38,7 @@ class PassingOn(Intervening):
         if post == order.to_post:
             raise errors.SamePost("The mail is at its recipient's post: there is no way left to carry it.")
         word = Word(By.DISPATCHER, person_id=person.id, post=post, reason=reason)
+        await was_aboard(session, order.id, self.clock.utc())
         session.add(self._taken_out(order, post, word))
         order.passed_on_at_post = post
         promise(order, arrival_window(self.estimates, post, order.to_post, self.clock.utc()), self.clock.utc())
@@ -66,6 +68,7 @@ class PassingOn(Intervening):
             robot=order.robot or "",
             post=post,
             how=BY_HAND,
+            evidence=Evidence.DISPATCHER,
             holder="mailroom",
             person_id=word.person_id,
             robot_at=now,

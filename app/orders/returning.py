@@ -6,15 +6,15 @@ The robot is asked by an update of its mission; until it says that it has turned
 from datetime import timedelta
 from typing import Final
 
-from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.orders import errors, stops
 from app.orders.ledger import Ledger, Word
 from app.orders.schemas import OrderView
 from app.orders.transitions import CARRIED, ENDED, TURNED_BACK, By
+from app.orders.unproven import last_handover
 from app.orders.views import load_facts
-from app.tables import Handover, Order, Person
+from app.tables import Order, Person
 from maps import shortest_route
 from protocol.parts import Purpose, StopAction
 
@@ -87,9 +87,3 @@ class Returning(Ledger):
         now, lifetime = self.clock.utc(), timedelta(seconds=self.settings.handover_code_lifetime_s)
         order.codes_expire_at = max(order.codes_expire_at, now + lifetime)
         await stops.bring(session, order, action, post, self.settings.wait_limit_s, now)
-
-
-async def last_handover(session: AsyncSession, order_id: str) -> Handover | None:
-    """The newest link of the chain of custody: it tells who has the mail now."""
-    newest = select(Handover).where(Handover.order_id == order_id).order_by(col(Handover.id).desc()).limit(1)
-    return (await session.exec(newest)).first()

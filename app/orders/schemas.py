@@ -147,6 +147,11 @@ class CustodyView(BaseModel):
     for the sender's own. `confirmed_by` is whose code, tap or digits it was (null for the button), and
     `confirmed_by_name` which delegate's; `signed`: the robot has signed for it, and the signature was checked. A
     delegate of the other side is a delegate without a name.
+
+    `evidence` says what the link goes by: `proof` (only the code that was shown gives it), `tap`, `digits`,
+    `dispatcher`, `digest` (weaker: an older robot), `button`, `claimed` (nothing but the robot's word, so that nobody
+    has confirmed it) or `settled` (claimed, and found true since); null for the sender's own. Who is said to have mail
+    that is claimed to be out stands last, while the robot answers for it still.
     """
 
     model_config = ConfigDict(validate_by_name=True, validate_by_alias=True, serialize_by_alias=True)
@@ -159,6 +164,7 @@ class CustodyView(BaseModel):
     confirmed_by: str | None
     confirmed_by_name: str | None
     signed: bool
+    evidence: str | None
 
     @classmethod
     def of(cls, held: Held) -> "CustodyView":
@@ -171,6 +177,7 @@ class CustodyView(BaseModel):
             confirmed_by=held.confirmed_by,
             confirmed_by_name=held.confirmed_by_name,
             signed=held.signed,
+            evidence=held.evidence,
         )
 
 

@@ -7,6 +7,7 @@ queued | assigned | to_sender | at_sender → cancelled
 assigned | to_sender | at_sender → queued (the robot was told to let go)
 a fault → attention → the state it left
                     → queued | cancelled (nothing aboard), returning | held (mail aboard), on a dispatcher's word
+                    → delivered | returned (mail that its robot says is out, and a dispatcher has asked)
 carrying | at_recipient | attention → queued (passed on: the mailroom has it, another robot carries it further)
   and what was passed on ends held, where another order would be cancelled or expire
 """
@@ -53,7 +54,7 @@ TRANSITIONS: Final[Mapping[OrderState, Mapping[OrderState, set[By]]]] = {
     # On the way back the recipient's code opens too: what they have taken is delivered.
     S.AT_RETURN: {S.RETURNED: {ROBOT}, S.HELD: {ROBOT, DISPATCHER}, S.DELIVERED: {ROBOT}, **FAULT},
     # Out of attention also leads back to the state that was left; which of these, depends on it (see `is_allowed`).
-    S.ATTENTION: {S.RETURNING: {DISPATCHER}, S.HELD: {DISPATCHER}, S.QUEUED: {DISPATCHER}, S.CANCELLED: {DISPATCHER}},
+    S.ATTENTION: {to: {DISPATCHER} for to in (S.RETURNING, S.HELD, S.QUEUED, S.CANCELLED, S.DELIVERED, S.RETURNED)},
     S.DELIVERED: {},
     S.RETURNED: {},
     S.HELD: {},
@@ -120,5 +121,6 @@ def is_allowed(
 def _ways_out(before_attention: OrderState | None, is_passed_on: bool) -> set[OrderState]:
     """Out of attention, beside the state that was left."""
     if before_attention in MAIL_ABOARD:
-        return {S.RETURNING, S.HELD, *((S.QUEUED,) if before_attention in CARRIED else ())}
+        out = {S.DELIVERED, S.RETURNED, S.HELD}
+        return {S.RETURNING, *out, *((S.QUEUED,) if before_attention in CARRIED else ())}
     return {S.QUEUED, S.HELD if is_passed_on else S.CANCELLED}

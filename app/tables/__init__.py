@@ -13,7 +13,7 @@ from app.tables.contacts import Contact
 from app.tables.delegates import Delegate, DigitLock
 from app.tables.enrolment_codes import EnrolmentCode
 from app.tables.forecasts import DurationRow, ForecastRow
-from app.tables.handovers import Handover, RefusedReceipt
+from app.tables.handovers import Evidence, Handover, RefusedReceipt, Settled
 from app.tables.idempotency_keys import IdempotencyKey
 from app.tables.identities import Identity
 from app.tables.missions import MissionRow, MissionState, StopRow
@@ -44,6 +44,7 @@ __all__ = [
     "DigitLock",
     "DurationRow",
     "EnrolmentCode",
+    "Evidence",
     "ForecastRow",
     "GrantRow",
     "Handover",
@@ -72,6 +73,7 @@ __all__ = [
     "RobotRow",
     "RobotToken",
     "Role",
+    "Settled",
     "SignInCode",
     "StandingOrder",
     "StopRow",

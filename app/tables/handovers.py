@@ -1,11 +1,32 @@
 """Chain of custody: every time mail changed hands, as the robot's receipt says. Only the robot writes custody."""
 
 from datetime import datetime
+from enum import StrEnum
 
 from sqlalchemy import UniqueConstraint
 from sqlmodel import Field, SQLModel
 
 from app.tables.columns import UtcTime
+
+
+class Evidence(StrEnum):
+    """What a hand-over goes by, from a code that was proved to be shown down to nothing but the robot's word."""
+
+    PROOF = "proof"
+    TAP = "tap"
+    DIGITS = "digits"
+    DISPATCHER = "dispatcher"
+    DIGEST = "digest"
+    """An older robot repeats what it was told of the code: it could do so without having seen it."""
+    BUTTON = "button"
+    CLAIMED = "claimed"
+
+
+class Settled(StrEnum):
+    """What was found of a hand-over that was only claimed."""
+
+    TRUE = "true"
+    FALSE = "false"
 
 
 class Handover(SQLModel, table=True):
@@ -14,6 +35,9 @@ class Handover(SQLModel, table=True):
     `how`: code, tap, digits or button by a receipt; `dispatcher` if a person fetched the mail by hand. `holder` says
     whose code it was (one of `app.orders.codes.Holder`), `person_id` and `delegate_id` who that is, as far as known.
     `signature` None: the robot was enrolled without a key.
+
+    `evidence` says what it goes by. If that is nothing but the robot's word, `problem` says why, and `settled` what was
+    found since: until then mail that is said to be out is still the robot's to answer for.
     """
 
     __tablename__ = "handovers"
@@ -23,7 +47,7 @@ class Handover(SQLModel, table=True):
     order_id: str = Field(foreign_key="orders.id", index=True)
     stop_id: str = Field(max_length=64)
     purpose: str = Field(max_length=16)
-    robot: str = Field(foreign_key="robots.name")
+    robot: str = Field(foreign_key="robots.name", index=True)
     post: str = Field(max_length=64)
     code_sha256: str | None = Field(default=None, max_length=64)
     robot_at: datetime = Field(sa_type=UtcTime)
@@ -34,6 +58,9 @@ class Handover(SQLModel, table=True):
     delegate_id: str | None = Field(default=None, foreign_key="delegates.id")
     command_id: str | None = Field(default=None, max_length=64)
     signature: str | None = Field(default=None, max_length=100)
+    evidence: str = Field(default=Evidence.DIGEST, max_length=16)
+    problem: str | None = Field(default=None, max_length=64)
+    settled: str | None = Field(default=None, max_length=16)
 
 
 class RefusedReceipt(SQLModel, table=True):

@@ -16,7 +16,9 @@ class RobotRow(SQLModel, table=True):
     (Ed25519, base64) is what its receipts are signed with; None: enrolled without one. `clock_off_s` is how far its
     clock was ahead at its last hello, or when it was seen to have been set since. `home` and `docked` as it says;
     None: it has not said. `waits_for`: the corridor it wishes to enter, for which robots, until about when.
-    `taken_out_at`: a person has given its corridors to others, and it has not heard so yet.
+    `taken_out_at`: a person has given its corridors to others, and it has not heard so yet. `proves_since`: from then
+    on its receipts prove that a code was shown; it stays even if a later hello does not say so, until it is enrolled
+    again.
     """
 
     __tablename__ = "robots"
@@ -44,6 +46,7 @@ class RobotRow(SQLModel, table=True):
     docked: bool | None = None
     waits_for: dict[str, Any] | None = Field(default=None, sa_type=JSON(none_as_null=True))
     taken_out_at: datetime | None = Field(default=None, sa_type=UtcTime)
+    proves_since: datetime | None = Field(default=None, sa_type=UtcTime)
 
 
 class RobotToken(SQLModel, table=True):

@@ -3,7 +3,6 @@
 import asyncio
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from hashlib import sha256
 from pathlib import Path
 from random import Random
 
@@ -14,6 +13,7 @@ from benchmarks.body.kills_service import Service, handovers, told_twice
 from benchmarks.body.played_server import playing
 from protocol import to_robot
 from protocol.parts import Purpose, Stop, StopAction
+from protocol.proofs import ShownCode
 from protocol.to_robot import Verifier, Verifiers
 from protocol.to_server import Charge, Claim, Event, HandoverReceipt, Progress, Step
 
@@ -103,7 +103,7 @@ class Mission:
         expires_at = self.robot.clock.utc().replace(year=2999)
         return Verifiers(
             verifiers=tuple(
-                Verifier(order_id=ORDER, purpose=purpose, sha256=_sha256(code), expires_at=expires_at)
+                Verifier(order_id=ORDER, purpose=purpose, sha256=ShownCode.of(code).sha256, expires_at=expires_at)
                 for purpose, code in self._codes.items()
             )
         )
@@ -229,8 +229,5 @@ class Mission:
 
     def _is_true(self, receipt: HandoverReceipt) -> bool:
         shown = (receipt.order_id, receipt.purpose) in self.service.shown
-        return shown and receipt.code_sha256 == _sha256(self._codes[receipt.purpose])
-
-
-def _sha256(code: str) -> str:
-    return sha256(code.encode()).hexdigest()
+        code = ShownCode.of(self._codes[receipt.purpose])
+        return shown and (receipt.code_sha256, receipt.proof) == (code.sha256, receipt.proved_with(code.key))

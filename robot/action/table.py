@@ -154,7 +154,7 @@ def _wait_handover(hands: Hands, arguments: Sequence[Value], now: float) -> Run:
         hands.body.start(Say("accepted"), now)
 
     def custody(done: Done) -> None:
-        duties.handed_over(place, purpose, waiting.post, done.result)
+        duties.handed_over(place, purpose, waiting.post, done.shown)
         promise()
 
     # Only loading may be confirmed by the Spot button: it identifies nobody.

@@ -14,6 +14,7 @@ from protocol.both_ways import Ack, Error
 from protocol.clock import Clock
 from protocol.envelope import TO_SERVER, Envelope, parse, type_of
 from protocol.parts import Activity, Part, Purpose, Received, Stop, StopAction
+from protocol.proofs import ShownCode
 from protocol.sequence import Reception
 from protocol.to_robot import Grant, Mission, Verifier, Verifiers, Welcome
 from protocol.to_server import (
@@ -254,6 +255,8 @@ class StandIn:
         letter = self.letters.get(receipt.order_id)
         if letter is None:
             session.errors.append(f"a receipt for {receipt.order_id}, which nobody ordered")
+        elif receipt.how == "code" and not _proves(receipt, letter):
+            session.errors.append(f"a receipt for {receipt.order_id} that no code of it proves")
         else:
             letter.receipts.append(Receipt(self._clock.now(), session.robot, receipt.purpose, receipt.post))
 
@@ -266,6 +269,11 @@ class StandIn:
 def _is_free(session: Session) -> bool:
     """By our record and by its own word: mail that nobody took is brought back by a mission of its own."""
     return session.mission is None and (session.snapshot is None or session.snapshot.mission is None)
+
+
+def _proves(receipt: HandoverReceipt, letter: Letter) -> bool:
+    keys = [ShownCode.of(code).key for code in (letter.load_code, letter.receive_code)]
+    return receipt.proof in [receipt.proved_with(key) for key in keys]
 
 
 def _go_together(one: Letter, other: Letter) -> bool:

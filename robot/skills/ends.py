@@ -61,7 +61,7 @@ ENDS: Final = (
         "wait_handover",
         600.0,
         "no_one_came",
-        "the verifier that matched, none for Spot pressed twice",
+        "the code that was shown, none for Spot pressed twice",
         {"no_one_came": "nobody showed a valid code in time"},
     ),
     Ends("say", 5.0, "timeout", "at once", {"timeout": "never: the base plays by itself"}),

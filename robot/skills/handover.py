@@ -1,9 +1,10 @@
 """Waiting for mail to change hands: a code held up to the camera, or the Spot button pressed twice."""
 
 from collections.abc import Callable, Iterable
-from hashlib import sha256
 from hmac import compare_digest
 from typing import ClassVar
+
+from protocol.proofs import ShownCode
 
 from .interfaces import Done, Play, Running, Step, View
 from .tunes import REFUSED
@@ -14,7 +15,7 @@ FORGET_WRONG_S = 3.0
 
 
 class WaitHandover:
-    """Done(sha256 of the code) when it matches, Done(None) when Spot was pressed twice; else no_one_came.
+    """Done(shown=the code) when it matches, Done() when Spot was pressed twice; else no_one_came.
 
     It does not say that a code was right: whoever starts it does, once the hand-over is written down.
     """
@@ -44,12 +45,12 @@ class WaitHandover:
         code = view.code
         if code is not None and code.at_s > self._seen_s:
             self._seen_s = code.at_s
-            verifier = sha256(code.text.encode("ascii", "replace")).hexdigest()
-            if self._opens(verifier):
-                return Done(verifier)
+            shown = ShownCode.of(code.text)
+            if self._opens(shown.sha256):
+                return Done(shown=shown)
             return self._refuse(code.text, now)
         if self._spot_counts and self._pressed_twice(view, now):
-            return Done(None)
+            return Done()
         return Running()
 
     def _opens(self, verifier: str) -> bool:

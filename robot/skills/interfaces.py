@@ -11,6 +11,8 @@ import math
 from dataclasses import dataclass
 from typing import Protocol
 
+from protocol.proofs import ShownCode
+
 from ..drivers.interfaces import (
     NOTHING_SEEN,
     STOP,
@@ -110,7 +112,8 @@ class Running:
 
 @dataclass(frozen=True, slots=True)
 class Done:
-    """Success. `result`: the post that was reached (follow_line), the verifier that matched or None (wait_handover)."""
+    """Success. `result`: the post that was reached (follow_line). `shown`: the code that opens; None: the button was
+    pressed (wait_handover)."""
 
     result: str | None = None
     requests: tuple[BaseRequest, ...] = ()
@@ -119,6 +122,7 @@ class Done:
     pulse_s: float = 0.0
     unread: bool = False
     """The post was reached by map and wheels alone: its marker could not be read (follow_line)."""
+    shown: ShownCode | None = None
 
 
 @dataclass(frozen=True, slots=True)

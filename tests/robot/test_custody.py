@@ -11,6 +11,7 @@ from cryptography.exceptions import InvalidSignature
 from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PublicKey
 
 from protocol.parts import Part, Purpose, Stop, StopAction
+from protocol.proofs import ShownCode
 from protocol.to_robot import Cancel, Confirm, Mission, Recall, Verifier, Verifiers
 from protocol.to_server import HandoverReceipt, Step
 from robot.config import ConfigError
@@ -152,7 +153,7 @@ def test_a_robot_with_a_key_signs_each_receipt_and_nobody_can_change_it(store: S
     (tmp_path / "r1.key").write_text(pem)
     duties = Duties(store, Memory(store), Outbox(store), lambda: NOW, sign=signer(tmp_path / "r1.key", "r1"))
     duties.give(LETTER)
-    duties.handed_over((LETTER, LOAD), Purpose.LOAD, "post1", SENDERS)
+    duties.handed_over((LETTER, LOAD), Purpose.LOAD, "post1", ShownCode(SENDERS, b"key"))
     receipt: HandoverReceipt = duties.outbox.pending()[-1].message.happened  # type: ignore[attr-defined]
     key = Ed25519PublicKey.from_public_bytes(base64.b64decode(public))
     key.verify(base64.b64decode(receipt.signature or ""), receipt.signed_by("r1"))
@@ -175,7 +176,7 @@ def test_a_key_that_others_may_read_or_that_is_none_is_named(tmp_path: Path) -> 
 
 
 def test_mail_that_a_person_has_taken_out_by_hand_is_forgotten(desk: Desk) -> None:
-    desk.duties.handed_over((LETTER, LOAD), Purpose.LOAD, "post1", SENDERS)
+    desk.duties.handed_over((LETTER, LOAD), Purpose.LOAD, "post1", ShownCode(SENDERS, b"key"))
     (refused,) = desk.hears(Cancel(command_id="c1", order_id="o1"))
     assert (refused["accepted"], desk.duties.held.cargo) == (False, ("o1",))
     (done,) = desk.hears(Cancel(command_id="c2", order_id="o1", by_hand=True))
@@ -184,7 +185,7 @@ def test_mail_that_a_person_has_taken_out_by_hand_is_forgotten(desk: Desk) -> No
 
 def test_mail_loaded_while_its_mission_was_dropped_is_given_back_where_it_stands(desk: Desk) -> None:
     desk.hears(Cancel(command_id="c1", order_id="o1"))
-    desk.duties.handed_over((LETTER, LOAD), Purpose.LOAD, "post1", SENDERS)
+    desk.duties.handed_over((LETTER, LOAD), Purpose.LOAD, "post1", ShownCode(SENDERS, b"key"))
     mission = desk.duties.held.mission
     assert mission
     assert [(stop.action, stop.post, stop.order_id) for stop in mission.stops] == [(StopAction.RETURN, "post1", "o1")]

@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 from protocol.parts import Leg, Part, Purpose, Stop, StopAction
+from protocol.proofs import ShownCode
 from protocol.to_robot import (
     Cancel,
     EmergencyStop,
@@ -19,7 +20,7 @@ from protocol.to_robot import (
     Verifier,
     Verifiers,
 )
-from protocol.to_server import Step
+from protocol.to_server import HandoverReceipt, Step
 from robot.duties import Duties, NoSuchStop
 from robot.memory import Incoming, Memory
 from robot.outbox import Outbox
@@ -109,10 +110,10 @@ def test_each_step_of_a_stop_is_told_once_and_each_post_passed_once(desk: Desk) 
 
 def test_what_was_told_before_a_restart_is_not_told_again(desk: Desk, store: Store) -> None:
     desk.hears(LETTER)
-    desk.duties.handed_over((LETTER, LOAD), Purpose.LOAD, "post1", "ab" * 32)
+    desk.duties.handed_over((LETTER, LOAD), Purpose.LOAD, "post1", shown("ab" * 32))
     again = Duties(store, Memory(store), Outbox(store), lambda: NOW)
     assert (again.held.cargo, again.held.stop) == (("o1",), RECEIVE)
-    again.handed_over((LETTER, LOAD), Purpose.LOAD, "post1", "ab" * 32)
+    again.handed_over((LETTER, LOAD), Purpose.LOAD, "post1", shown("ab" * 32))
     again.report(Step.DEPARTED, "s2", "post1")
     assert [one["kind"] for one in desk.told()] == ["progress", "handover", "progress"]
 
@@ -132,7 +133,7 @@ def test_a_cancelled_order_is_answered_and_its_mission_gone(desk: Desk) -> None:
 
 def test_an_order_whose_mail_is_aboard_is_not_cancelled_and_says_why(desk: Desk) -> None:
     desk.hears(LETTER)
-    desk.duties.handed_over((LETTER, LOAD), Purpose.LOAD, "post1", "ab" * 32)
+    desk.duties.handed_over((LETTER, LOAD), Purpose.LOAD, "post1", shown("ab" * 32))
     (answer,) = desk.hears(Cancel(command_id="c1", order_id="o1"))
     assert (answer["accepted"], answer["reason"]) == (False, "The mail is aboard.")
     assert desk.duties.held.stop == RECEIVE
@@ -194,6 +195,10 @@ def test_a_fault_that_was_told_is_known_after_a_restart_and_told_to_be_over_once
     assert [one["cleared"] for one in desk.told()] == [False, True]
 
 
+def shown(sha256: str) -> ShownCode:
+    return ShownCode(sha256, b"key")
+
+
 def verifier(purpose: Purpose, text: str, expires_at: datetime = NOW + timedelta(hours=1)) -> Verifier:
     return Verifier(order_id="o1", purpose=purpose, sha256=text * 64, expires_at=expires_at)
 
@@ -213,17 +218,17 @@ def test_a_code_opens_once(desk: Desk) -> None:
         Verifiers(verifiers=(verifier(Purpose.LOAD, "a"), verifier(Purpose.RECEIVE, "b"))), NOW
     )
     desk.hears(LETTER)
-    desk.duties.handed_over((LETTER, LOAD), Purpose.LOAD, "post1", "a" * 64)
+    desk.duties.handed_over((LETTER, LOAD), Purpose.LOAD, "post1", shown("a" * 64))
     assert desk.duties.codes("o1", Purpose.LOAD) == ()
     assert desk.duties.codes("o1", Purpose.RECEIVE) == ("b" * 64,)
-    desk.duties.handed_over((LETTER, RECEIVE), Purpose.RECEIVE, "post4", "b" * 64)
+    desk.duties.handed_over((LETTER, RECEIVE), Purpose.RECEIVE, "post4", shown("b" * 64))
     assert desk.duties.codes("o1", Purpose.RECEIVE) == ()
 
 
 def test_mail_that_came_aboard_is_aboard_though_the_order_is_cancelled_in_that_moment(desk: Desk) -> None:
     desk.hears(LETTER)
     desk.hears(Cancel(command_id="c1", order_id="o1"))
-    desk.duties.handed_over((LETTER, LOAD), Purpose.LOAD, "post1", "a" * 64)
+    desk.duties.handed_over((LETTER, LOAD), Purpose.LOAD, "post1", shown("a" * 64))
     assert desk.duties.held.cargo == ("o1",)
     assert [one["kind"] for one in desk.told()[-2:]] == ["handover", "progress"], "and is brought back"
 
@@ -232,7 +237,7 @@ def with_mail(desk: Desk, code: str | None = "a" * 64) -> None:
     """The letter is aboard, and post4 is next."""
     desk.duties.memory.keep_verifiers(Verifiers(verifiers=(verifier(Purpose.RECEIVE, "b"),)), NOW)
     desk.hears(LETTER)
-    desk.duties.handed_over((LETTER, LOAD), Purpose.LOAD, "post1", code)
+    desk.duties.handed_over((LETTER, LOAD), Purpose.LOAD, "post1", code and shown(code))
 
 
 def way_back(desk: Desk) -> tuple[Mission, Stop]:
@@ -273,7 +278,7 @@ def test_on_the_way_back_the_code_that_loaded_it_opens_and_so_does_the_recipient
     assert desk.duties.codes("o1", Purpose.RECEIVE) == ("b" * 64,), "to its recipient, the sender's code is none"
     assert set(desk.duties.codes("o1", Purpose.RETURN)) == {"a" * 64, "b" * 64}
     desk.hears(Recall(command_id="c1", reason="closing early"))
-    desk.duties.handed_over(way_back(desk), Purpose.RETURN, "post1", "a" * 64)
+    desk.duties.handed_over(way_back(desk), Purpose.RETURN, "post1", shown("a" * 64))
     assert (desk.duties.held.cargo, desk.duties.codes("o1", Purpose.RETURN)) == ((), ())
     assert desk.told()[-1] | {"happened_at": ""} == {
         "kind": "handover",
@@ -285,6 +290,9 @@ def test_on_the_way_back_the_code_that_loaded_it_opens_and_so_does_the_recipient
         "code_sha256": "a" * 64,
         "how": "code",
         "command_id": None,
+        "mission_id": desk.told()[-2]["mission_id"],
+        "number": 2,
+        "proof": HandoverReceipt.model_validate(desk.told()[-1]).proved_with(b"key"),
         "signature": None,
     }
 
@@ -304,7 +312,7 @@ def test_mail_that_is_not_taken_back_either_is_told_once_and_the_robot_is_free(d
     (fault,) = [one for one in desk.told() if one["kind"] == "fault"]
     assert (fault["name"], "o1" in fault["reason"]) == ("mail_aboard", True)
     desk.hears(Recall(command_id="c3", reason="somebody waits now"))
-    desk.duties.handed_over(way_back(desk), Purpose.RETURN, "post1", "a" * 64)
+    desk.duties.handed_over(way_back(desk), Purpose.RETURN, "post1", shown("a" * 64))
     assert [one["cleared"] for one in desk.told() if one["kind"] == "fault"] == [False, True]
 
 

@@ -1,6 +1,7 @@
 """The real service on a real port, and a robot that the test plays over a real WebSocket."""
 
 import asyncio
+import math
 import socket
 import time
 from collections.abc import AsyncIterator, Awaitable, Callable
@@ -22,13 +23,19 @@ from app.orders.schemas import NewOrder
 from app.outside import Outside
 from app.settings import Settings
 from app.tables import Order, OrderEvent
-from protocol.clock import Clock
+from maps import builtin_map
+from maps.ways import Ways
+from protocol.clock import Clock, SteppedClock
 from protocol.envelope import DURABLE, TO_ROBOT, Envelope, parse, type_of
 from protocol.parts import Battery, Part, Position, Received, Stop
+from protocol.proofs import ShownCode
 from protocol.to_robot import Mission, Verifiers, Welcome
 from protocol.to_server import Event, HandoverReceipt, Hello, Progress, Step
 from tests.app.placed import placed
 
+WAYS = Ways(builtin_map("test_track"))
+DRIVES_M_S = 0.2
+"""As fast as our robots are let drive."""
 WITHIN_S = 30.0
 """What comes at all comes at once, but on a busy machine."""
 
@@ -134,6 +141,8 @@ class PlayedRobot:
     heard: list[Envelope] = field(default_factory=list)
     socket: ClientConnection | None = None
     token: str = ""
+    handed_over_at: str | None = None
+    receipts: int = 0
 
     @asynccontextmanager
     async def connected(self, url: str, token: str) -> AsyncIterator["PlayedRobot"]:
@@ -203,7 +212,9 @@ class PlayedRobot:
         return Event(happened=happened)
 
     def receipt(self, stop: Stop, **facts: Any) -> Event:
-        """Mail changed hands there, for the code that the server has told of; for none, a button was pressed."""
+        """Mail changed hands there, as a robot tells that is older than proofs: for the code that the server has told
+        of; for none, a button was pressed."""
+        self._drive_to(stop.post)
         receipt = {
             "purpose": stop.action.value,
             "order_id": stop.order_id,
@@ -213,6 +224,22 @@ class PlayedRobot:
             "code_sha256": next(iter(self.codes(stop)), None),
         }
         return Event(happened=HandoverReceipt.model_validate({**receipt, **facts}))
+
+    def proved_receipt(self, mission: Mission, stop: Stop, code: str, **facts: Any) -> Event:
+        """The same by a robot of today, which has read this code."""
+        self.receipts += 1
+        shown = ShownCode.of(code)
+        told = {"code_sha256": shown.sha256, "mission_id": mission.id, "number": self.receipts, **facts}
+        receipt = self.receipt(stop, **told).happened
+        assert isinstance(receipt, HandoverReceipt)
+        return Event(happened=receipt.model_copy(update={"proof": receipt.proved_with(shown.key)}))
+
+    def _drive_to(self, post: str) -> None:
+        """It takes the time that a robot needs, where the test says when time passes."""
+        way_m = WAYS.length_m(self.handed_over_at or post, post)
+        if isinstance(self.clock, SteppedClock) and math.isfinite(way_m):
+            self.clock.advance(way_m / DRIVES_M_S)
+        self.handed_over_at = post
 
     def codes(self, stop: Stop) -> list[str]:
         """What opens there, as the server has told."""

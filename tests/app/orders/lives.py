@@ -38,10 +38,12 @@ from app.server_key import ServerKey
 from app.settings import Settings
 from app.tables import MessageToRobot, Order, OrderState, Person, RobotRow, Role
 from maps import builtin_map
+from maps.ways import Ways
 from protocol.both_ways import Error
 from protocol.clock import SteppedClock
 from protocol.envelope import TO_ROBOT, Envelope, type_of
 from protocol.parts import Purpose, StopAction
+from protocol.proofs import ShownCode
 from protocol.to_robot import Recall
 from protocol.to_server import Event, Step
 from robot.duties import Duties
@@ -51,6 +53,9 @@ from robot.store import Store
 from tests.app.placed import placed
 
 TRACK = builtin_map("test_track")
+WAYS = Ways(TRACK)
+DRIVES_M_S = 0.2
+"""As fast as our robots are let drive."""
 
 
 @dataclass(eq=False)
@@ -62,6 +67,7 @@ class PlayedRobot:
     clock: SteppedClock
     online: bool = True
     acknowledged: int = 0
+    stands_at: str | None = None
     heard_seq: int = 0
     journal: str = ""
     said: list[Event] = field(default_factory=list)
@@ -297,12 +303,19 @@ class World:
             duties.report(Step.GAVE_UP, stop.id, "post3", "no_route")
             duties.finish_stop(stop.id)
             return
+        self._drive(robot, stop.post)
         duties.report(Step.ARRIVED, stop.id, stop.post)
         if luck == "arrives":
             return
         if luck == "nobody comes" or not self._changes_hands(robot, stop, luck):
             duties.report(Step.GAVE_UP, stop.id, stop.post, "no_one_came")
             duties.finish_stop(stop.id)
+
+    def _drive(self, robot: PlayedRobot, post: str) -> None:
+        """Nobody gets there in no time."""
+        way_m = WAYS.length_m(robot.stands_at or post, post)
+        self.clock.advance(way_m / DRIVES_M_S)
+        robot.stands_at = post
 
     def _changes_hands(self, robot: PlayedRobot, stop: Any, luck: str) -> bool:
         """Only what is there can change hands, and only for somebody with the code."""
@@ -315,10 +328,10 @@ class World:
         holder = {Purpose.LOAD: loads, Purpose.RECEIVE: Holder.RECIPIENT}.get(purpose, wanted)
         known = codes_of(self._order(order_id, stop.post if is_passed_on else None))
         code = next(one for one in known if one.holder is holder and _fits(one.purpose, purpose))
-        sha256 = code.sha256(self.orders.key)
-        if self.where[order_id] != giver or sha256 not in codes:
+        shown = ShownCode.of(code.text(self.orders.key))
+        if self.where[order_id] != giver or shown.sha256 not in codes:
             return False
-        robot.duties.handed_over(robot.duties.at_stop(stop.id), purpose, stop.post, sha256)
+        robot.duties.handed_over(robot.duties.at_stop(stop.id), purpose, stop.post, shown)
         self.where[order_id] = robot.name if purpose is Purpose.LOAD else str(holder)
         return True
 

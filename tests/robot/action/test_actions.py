@@ -12,6 +12,7 @@ from bdi import parse_term
 from maps import builtin_map
 from protocol.envelope import Envelope
 from protocol.parts import Leg, Stop, StopAction
+from protocol.proofs import ShownCode
 from protocol.to_robot import Detour, Mission
 from robot.action.actions import Actions, table_for
 from robot.action.hands import Hands
@@ -289,7 +290,7 @@ def test_the_corridor_that_it_is_in_is_never_given_back(bench: Bench) -> None:
 def test_mail_is_written_down_before_the_tune_promises_it(bench: Bench) -> None:
     bench.duties.give(MISSION)
     bench.ask("wait_handover(load,o1,s1,600)")
-    bench.body.end("wait_handover", Done("ab" * 32))
+    bench.body.end("wait_handover", Done(shown=ShownCode("ab" * 32, b"key")))
     assert "say" not in bench.body.started
     bench.body.at_start = lambda skill: cargo.append((skill.name, bench.duties.held.cargo))
     cargo: list[tuple[str, tuple[str, ...]]] = []
@@ -312,7 +313,7 @@ def test_a_confirmed_handover_is_kept_and_told_in_one_go(bench: Bench) -> None:
     bench.duties.give(MISSION)
     bench.navigator.place("post1", "post2")
     id_ = bench.ask("wait_handover(load,o1,s1,600)")
-    bench.body.end("wait_handover", Done("ab" * 32))
+    bench.body.end("wait_handover", Done(shown=ShownCode("ab" * 32, b"key")))
     assert bench.actions.finished(1.0) == [(id_, None)]
     assert (bench.duties.held.cargo, bench.duties.held.next_stop) == (("o1",), 1)
     assert [text for text in bench.told() if '"handover"' in text and "ab" * 32 in text]
@@ -321,7 +322,7 @@ def test_a_confirmed_handover_is_kept_and_told_in_one_go(bench: Bench) -> None:
 def test_mail_handed_over_in_the_moment_its_plan_is_dropped_is_in_custody_all_the_same(bench: Bench) -> None:
     bench.duties.give(MISSION)
     id_ = bench.ask("wait_handover(load,o1,s1,600)")
-    bench.body.end("wait_handover", Done("ab" * 32))
+    bench.body.end("wait_handover", Done(shown=ShownCode("ab" * 32, b"key")))
     bench.actions.cancel([id_])
     assert bench.actions.finished(1.0) == [], "the agent does not hear of it"
     assert bench.duties.held.cargo == ("o1",)

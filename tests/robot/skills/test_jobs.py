@@ -8,6 +8,7 @@ from itertools import pairwise
 
 import pytest
 
+from protocol.proofs import ShownCode
 from robot.drivers.interfaces import STOP, Mode, WheelSpeeds
 from robot.errors import UnknownSkill
 from robot.simulated import Pose
@@ -99,7 +100,7 @@ def test_the_right_code_opens(drive: Make):
     robot.steps(2)
     robot.robot.show_code(CODE)
     outcome = robot.end_of(job, 2.0)
-    assert isinstance(outcome, Done) and outcome.result == VERIFIER
+    assert isinstance(outcome, Done) and outcome.shown == ShownCode.of(CODE)
 
 
 def test_a_wrong_code_is_refused_with_a_sound_once_and_waited_on(drive: Make):
@@ -190,7 +191,7 @@ def test_spot_pressed_twice_loads_without_a_name(drive: Make):
     assert not robot.loop.finished(), "once may be an accident"
     press_spot(robot)
     outcome = robot.end_of(job, 1.0)
-    assert isinstance(outcome, Done) and outcome.result is None
+    assert isinstance(outcome, Done) and outcome.shown is None
 
 
 def test_spot_does_not_open_where_it_must_not(drive: Make):
