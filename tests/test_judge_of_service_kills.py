@@ -34,7 +34,10 @@ def in_order() -> dict[str, Any]:
         "tables": {
             "orders": [{"id": "o1", "state": "delivered", "sender_id": "ada", "recipient_id": "bob"}],
             "order_events": events,
-            "handovers": [{"order_id": "o1", "purpose": purpose} for purpose in ("load", "receive")],
+            "handovers": [
+                {"order_id": "o1", "purpose": purpose, "evidence": "proof", "problem": None}
+                for purpose in ("load", "receive")
+            ],
             "refused_receipts": [],
             "notices": notices,
             "outbox": outbox,
@@ -73,6 +76,10 @@ Damage = Callable[[dict[str, Any]], object]
         (lambda f: f["tables"]["orders"][0].update(state="carrying"), "it has not ended, it is carrying"),
         (lambda f: f["tables"]["handovers"].pop(), "was delivered with the receipts ['load']"),
         (lambda f: f["tables"]["handovers"].append(f["tables"]["handovers"][0]), "['load', 'load', 'receive']"),
+        (
+            lambda f: f["tables"]["handovers"][1].update(evidence="claimed", problem="no_proof"),
+            "a hand-over (receive) of order o1 goes by claimed: no_proof",
+        ),
         (
             lambda f: f["tables"]["refused_receipts"].append({"order_id": "o1", "problem": "unknown_code"}),
             "a receipt of order o1 was refused",

@@ -10,7 +10,7 @@ from itertools import pairwise
 from typing import Any, Final
 
 from app.orders.transitions import ENDED, By, is_allowed
-from app.tables import OrderState
+from app.tables import Evidence, OrderState
 
 Row = Mapping[str, Any]
 ALWAYS_TOLD: Final = {
@@ -85,6 +85,10 @@ def _custody(facts: Facts) -> Iterator[str]:
             purposes = sorted(row["purpose"] for row in receipts.get(order["id"], []))
             if purposes != ["load", "receive"]:
                 yield f"order {order['id']} was delivered with the receipts {purposes}"
+    for row in facts.tables["handovers"]:
+        if row["evidence"] != Evidence.PROOF:
+            why = f"{row['evidence']}: {row['problem']}"
+            yield f"a hand-over ({row['purpose']}) of order {row['order_id']} goes by {why}"
     yield from (
         f"a receipt of order {row['order_id']} was refused: {row['problem']}"
         for row in facts.tables["refused_receipts"]

@@ -4,8 +4,8 @@ import asyncio
 import signal
 import time
 from collections import Counter
-from collections.abc import AsyncIterator, Callable
-from contextlib import ExitStack, asynccontextmanager
+from collections.abc import AsyncIterator, Callable, Mapping
+from contextlib import AsyncExitStack, ExitStack, asynccontextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from random import Random
@@ -20,10 +20,12 @@ from app.settings import Settings
 from app.tables import metadata
 from benchmarks.service_kills.judge import Facts, judged, mails_repeated
 from benchmarks.service_kills.mail_server import Mailbox, SpoolFolder, is_sign_in, mail_server
+from benchmarks.service_kills.people import Everybody, Somebody
 from benchmarks.service_kills.senders import Sender
 from benchmarks.service_kills.stand_in import StandIn
 from benchmarks.service_kills.victim import Victim
-from maps import builtin_map
+from maps import read_map
+from maps.ways import Ways
 
 DOMAIN: Final = "campus.example"
 RECIPIENTS: Final = tuple(f"recipient{n}@{DOMAIN}" for n in range(3))
@@ -31,7 +33,6 @@ STANDS_STILL_S: Final = 60.0
 """Whatever is owed then, after so long without any of it being done, would never have been done."""
 WHILE_STARTING: Final = 0.15
 """So many kills strike before the service is up again."""
-MAP: Final = "test_track"
 ORDERLY: Final = (0, -signal.SIGTERM)
 """Uvicorn ends in order and then dies of the signal that it was sent."""
 
@@ -56,42 +57,58 @@ async def killed(plan: Plan, folder: Path, say: Callable[[int], None] = lambda k
         mailbox: Mailbox = server or SpoolFolder(folder / "data" / "spool")
         victim = Victim(folder, server.port if server else None)
         closing.callback(victim.end)
-        robots = await _enrolled(plan, victim)
+        tokens = await _enrolled(plan, victim)
         victim.start()
         await victim.is_up()
-        scene = _Scene(plan, victim, mailbox, robots)
-        await scene.play(say)
+        async with AsyncExitStack() as browsers:
+            scene = _Scene(plan, victim, mailbox, tokens, browsers)
+            await scene.play(say)
         exit_code = await victim.stop()
         return scene.report(exit_code)
 
 
-async def _enrolled(plan: Plan, victim: Victim) -> list[StandIn]:
-    campus = builtin_map(MAP)
-    posts = sorted(campus.posts)
-    names = [f"r{n}" for n in range(1, plan.robots + 1)]
+async def _enrolled(plan: Plan, victim: Victim) -> dict[str, str]:
+    """The robots' tokens."""
     settings = Settings(data=victim.folder / "data")
-    tokens = [await enrol(settings, name, again=False) for name in names]
-    return [
-        StandIn(name, token, victim.link_url, posts[n % len(posts)], campus.version, Random(f"{plan.seed}/{name}"))
-        for n, (name, token) in enumerate(zip(names, tokens, strict=True))
-    ]
+    return {name: await enrol(settings, name, again=False) for name in (f"r{n}" for n in range(1, plan.robots + 1))}
 
 
 class _Scene:
     """Everybody who takes part in a run."""
 
-    def __init__(self, plan: Plan, victim: Victim, mailbox: Mailbox, robots: list[StandIn]) -> None:
-        self._plan, self._victim, self._mailbox, self._robots = plan, victim, mailbox, robots
+    def __init__(
+        self, plan: Plan, victim: Victim, mailbox: Mailbox, tokens: Mapping[str, str], browsers: AsyncExitStack
+    ) -> None:
+        self._plan, self._victim, self._mailbox, self._browsers = plan, victim, mailbox, browsers
         self._senders = [
-            Sender(victim.url, f"sender{n}@{DOMAIN}", RECIPIENTS, Random(f"{plan.seed}/{n}"), plan.order_pause_s)
+            Sender(**self._person(f"sender{n}@{DOMAIN}"), recipients=RECIPIENTS, pause_s=plan.order_pause_s)
             for n in range(plan.senders)
         ]
+        self._recipients = [Somebody(**self._person(email)) for email in RECIPIENTS]
+        self._robots = self._stand_ins(tokens)
         self._over = False
         self._struck: Counter[str] = Counter()
         self._drained = False
 
+    def _person(self, email: str) -> dict[str, Any]:
+        browser = httpx.AsyncClient()
+        self._browsers.push_async_callback(browser.aclose)
+        return {"url": self._victim.url, "email": email, "random": self._random(email), "http": browser}
+
+    def _random(self, name: str) -> Random:
+        return Random(f"{self._plan.seed}/{name}")
+
+    def _stand_ins(self, tokens: Mapping[str, str]) -> list[StandIn]:
+        ways = Ways(read_map(self._victim.map_file))
+        posts, show = sorted(ways.campus.posts), Everybody(self._senders, self._recipients).show
+        return [
+            StandIn(name, token, self._victim.link_url, posts[n % len(posts)], ways, self._random(name), show)
+            for n, (name, token) in enumerate(tokens.items())
+        ]
+
     async def play(self, say: Callable[[int], None]) -> None:
         """Load, kills, and peace at the end."""
+        await asyncio.gather(*(one.sign_in(self._mailbox) for one in self._recipients))
         async with self._robots_driving():
             async with asyncio.TaskGroup() as group:
                 for sender in self._senders:
@@ -116,9 +133,8 @@ class _Scene:
                     robot.errors.append(f"it broke: {result!r}")
 
     async def _send(self, sender: Sender) -> None:
-        async with httpx.AsyncClient() as http:
-            await sender.sign_in(http, self._mailbox)
-            await sender.order_until(http, lambda: self._over)
+        await sender.sign_in(self._mailbox)
+        await sender.order_until(lambda: self._over)
 
     async def _have_ordered(self) -> None:
         """Everybody has an answer to one order more: before the first kill since it is orders that are to be hit, and
@@ -206,7 +222,7 @@ class _Scene:
             "struck": dict(self._struck),
             "mails_by": "smtp" if self._plan.with_smtp else "spool",
             "orders": len(facts.acknowledged),
-            "requests": sum(sender.tried for sender in self._senders),
+            "requests": sum(one.tried for one in (*self._senders, *self._recipients)),
             "answers_replayed": sum(sender.replayed for sender in self._senders),
             "robot_messages": sum(len(said) for said in facts.said.values()),
             "robot_connections": sum(robot.connections for robot in self._robots),

@@ -1,10 +1,12 @@
-"""A stand-in for a robot: it speaks the real protocol on a real WebSocket and drives nowhere.
+"""A stand-in for a robot: it speaks the real protocol on a real WebSocket, and for a drive it waits as long as one
+takes. It hands over for nothing but a code that somebody shows.
 
 It keeps to the robot's side of the bargain: what it has to say is numbered and said again until it is acknowledged,
 what it is told is taken once. It is never killed, so that its memory is the record to compare the service's with.
 """
 
 import asyncio
+from collections.abc import Awaitable, Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
@@ -14,20 +16,26 @@ from typing import Any, Final
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import InvalidHandshake, InvalidMessage, WebSocketException
 
+from app.fleet.evidence import FASTEST_M_S
+from maps.ways import Ways
 from protocol.both_ways import Ack, Error
 from protocol.envelope import DURABLE, TO_ROBOT, Envelope, parse, type_of
 from protocol.parts import Activity, Battery, MissionHeld, Part, Position, Purpose, Received, Stop, StopAction
+from protocol.proofs import ShownCode
 from protocol.sequence import Reception, reception, resume
-from protocol.to_robot import Cancel, Mission, Verifiers, Welcome
+from protocol.to_robot import Cancel, Mission, Verifier, Verifiers, Welcome
 from protocol.to_server import CommandAnswer, Event, HandoverReceipt, Hello, Progress, Snapshot, Step
 
 AGAIN_AFTER_S: Final = 0.05
+SHOWN_AGAIN_AFTER_S: Final = 0.2
 PURPOSES: Final = {
     StopAction.LOAD: Purpose.LOAD,
     StopAction.RECEIVE: Purpose.RECEIVE,
     StopAction.RETURN: Purpose.RETURN,
 }
 BATTERY: Final = Battery(ratio=0.9)
+Show = Callable[[str, Purpose], Awaitable[str | None]]
+"""Asks whoever stands there for the code of an order."""
 
 
 @dataclass
@@ -38,8 +46,9 @@ class StandIn:
     token: str
     url: str
     post: str
-    map_version: str
+    ways: Ways
     random: Random
+    show: Show
     step_s: float = 0.02
     journal: str = "stand-in"
     said: dict[int, Part] = field(default_factory=dict)
@@ -47,7 +56,8 @@ class StandIn:
     connections: int = 0
     _acknowledged: int = 0
     _received: Received = field(default_factory=Received)
-    _codes: dict[tuple[str, Purpose], str] = field(default_factory=dict)
+    _codes: dict[str, Sequence[Verifier]] = field(default_factory=dict)
+    _receipts: int = 0
     _mission: Mission | None = None
     _over: set[str] = field(default_factory=set)
     _cancelled: set[str] = field(default_factory=set)
@@ -100,7 +110,8 @@ class StandIn:
             mission=self._held(),
             battery=BATTERY,
             software="stand-in",
-            map_version=self.map_version,
+            map_version=self.ways.campus.version,
+            understands=("proof",),
         )
 
     def _snapshot(self) -> Snapshot:
@@ -142,7 +153,8 @@ class StandIn:
     async def _take(self, message: Part) -> None:
         match message:
             case Verifiers(verifiers=verifiers):
-                self._codes |= {(one.order_id, one.purpose): one.sha256 for one in verifiers}
+                for order_id in {one.order_id for one in verifiers}:
+                    self._codes[order_id] = [one for one in verifiers if one.order_id == order_id]
             case Mission():
                 self._mission = message
                 self._cancelled -= {stop.order_id for stop in message.stops if stop.order_id}  # given anew
@@ -204,6 +216,7 @@ class StandIn:
     async def _do(self, stop: Stop) -> None:
         await self._report(Step.DEPARTED, stop)
         await self._a_moment()
+        await asyncio.sleep(self.ways.length_m(self.post, stop.post) / FASTEST_M_S)
         if stop not in self._left():
             return
         self.post = stop.post
@@ -213,26 +226,44 @@ class StandIn:
         if stop not in self._left():
             return
         if stop.order_id is not None and stop.action in PURPOSES:
-            await self._hand_over(stop, stop.order_id, PURPOSES[stop.action])
+            shown = await self._is_shown(stop, stop.order_id, PURPOSES[stop.action])
+            if shown is None:
+                return
+            await self._hand_over(stop, stop.order_id, PURPOSES[stop.action], shown)
         self._over.add(stop.id)
         await self._report(Step.DONE, stop)
         if self._next_stop() is None:
             await self._report(Step.DONE)
 
-    async def _hand_over(self, stop: Stop, order_id: str, purpose: Purpose) -> None:
+    async def _is_shown(self, stop: Stop, order_id: str, purpose: Purpose) -> ShownCode | None:
+        """Wait for a code that opens; None: it is not to be handed over any more."""
+        while stop in self._left():
+            text = await self.show(order_id, purpose)
+            shown = ShownCode.of(text or "")
+            opens = {one.sha256 for one in self._codes[order_id] if one.purpose is purpose}
+            if stop in self._left() and shown.sha256 in opens:
+                return shown
+            await asyncio.sleep(SHOWN_AGAIN_AFTER_S)
+        return None
+
+    async def _hand_over(self, stop: Stop, order_id: str, purpose: Purpose, shown: ShownCode) -> None:
         if purpose is Purpose.LOAD:
             self._cargo.append(order_id)
         else:
             self._cargo.remove(order_id)
+        assert self._mission is not None
+        self._receipts += 1
         receipt = HandoverReceipt(
             purpose=purpose,
             order_id=order_id,
             stop_id=stop.id,
             post=stop.post,
             happened_at=datetime.now(UTC),
-            code_sha256=self._codes[(order_id, purpose)],
+            code_sha256=shown.sha256,
+            mission_id=self._mission.id,
+            number=self._receipts,
         )
-        await self.say(Event(happened=receipt))
+        await self.say(Event(happened=receipt.model_copy(update={"proof": receipt.proved_with(shown.key)})))
 
     async def _report(self, step: Step, stop: Stop | None = None) -> None:
         assert self._mission is not None

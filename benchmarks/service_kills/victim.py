@@ -13,9 +13,18 @@ from typing import Final
 
 import httpx
 
+from maps.campus_map import map_path
+from maps.map_file import load_map_file, toml_of
+from maps.scaling import scaled
+
 CHECKOUT: Final = Path(__file__).parents[2]
 STARTS_WITHIN_S: Final = 180.0
 ENDS_WITHIN_S: Final = 15.0
+
+
+MAP: Final = "test_track"
+SCALE: Final = 0.02
+"""A campus that fits on a table: robots drive as fast as their base can, and are there in a moment all the same."""
 
 
 class DidNotStart(Exception):
@@ -36,6 +45,10 @@ class Victim:
     port: int = field(default_factory=free_port)
     process: "subprocess.Popen[bytes] | None" = None
 
+    def __post_init__(self) -> None:
+        self.map_file = self.folder / "table_top.toml"
+        self.map_file.write_text(toml_of(scaled(load_map_file(map_path(MAP)), SCALE)), encoding="utf-8")
+
     @property
     def url(self) -> str:
         return f"http://127.0.0.1:{self.port}"
@@ -48,6 +61,7 @@ class Victim:
         """Settings of the environment that would lead elsewhere are left out."""
         ours = {
             "CAMPUS_MAIL_DATA": str(self.folder / "data"),
+            "CAMPUS_MAIL_MAP": str(self.map_file),
             "CAMPUS_MAIL_PUBLIC_URL": "https://mail.campus.example",
             "CAMPUS_MAIL_SIGN_IN_CODES_PER_ADDRESS": "1000 per minute",
             "CAMPUS_MAIL_ORDERS_PER_PERSON": "1000000 per hour",

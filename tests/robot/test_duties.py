@@ -278,7 +278,8 @@ def test_on_the_way_back_the_code_that_loaded_it_opens_and_so_does_the_recipient
     assert desk.duties.codes("o1", Purpose.RECEIVE) == ("b" * 64,), "to its recipient, the sender's code is none"
     assert set(desk.duties.codes("o1", Purpose.RETURN)) == {"a" * 64, "b" * 64}
     desk.hears(Recall(command_id="c1", reason="closing early"))
-    desk.duties.handed_over(way_back(desk), Purpose.RETURN, "post1", shown("a" * 64))
+    place = way_back(desk)
+    desk.duties.handed_over(place, Purpose.RETURN, "post1", shown("a" * 64))
     assert (desk.duties.held.cargo, desk.duties.codes("o1", Purpose.RETURN)) == ((), ())
     assert desk.told()[-1] | {"happened_at": ""} == {
         "kind": "handover",
@@ -290,7 +291,7 @@ def test_on_the_way_back_the_code_that_loaded_it_opens_and_so_does_the_recipient
         "code_sha256": "a" * 64,
         "how": "code",
         "command_id": None,
-        "mission_id": desk.told()[-2]["mission_id"],
+        "mission_id": place[0].id,
         "number": 2,
         "proof": HandoverReceipt.model_validate(desk.told()[-1]).proved_with(b"key"),
         "signature": None,

@@ -8,6 +8,7 @@ from random import Random
 
 from protocol.envelope import Envelope, type_of
 from protocol.parts import Part, Purpose
+from protocol.proofs import ShownCode
 from protocol.to_robot import Grant
 from protocol.to_server import Claim
 from robot.duties import Duties
@@ -46,10 +47,10 @@ def steps(duties: Duties, server: FakeServer) -> Iterator[Callable[[], object]]:
         for incoming in memory.unhandled():
             server.waiting = [incoming]
             yield duties.take_messages
-        yield partial(duties.handed_over, (letter, LOAD), Purpose.LOAD, "post1", "a" * 64)
+        yield partial(duties.handed_over, (letter, LOAD), Purpose.LOAD, "post1", ShownCode("a" * 64, b"key"))
         yield partial(duties.claims.clear, [TO_POST3, TO_POST4])
         yield lambda: outbox.acknowledged(outbox.last_seq())
-        yield partial(duties.handed_over, (letter, RECEIVE), Purpose.RECEIVE, "post4", "b" * 64)
+        yield partial(duties.handed_over, (letter, RECEIVE), Purpose.RECEIVE, "post4", ShownCode("b" * 64, b"key"))
         yield partial(duties.finish_mission, letter.id, "post4")
 
 

@@ -8,6 +8,7 @@ from app.errors import ServiceError
 from app.tables import Alarm, Handover, MissionRow, Notice, Order, OrderEvent, RobotCommand, StopRow
 from app.tables import OrderState as S
 from protocol.parts import Purpose
+from protocol.proofs import ShownCode
 from protocol.to_server import CommandAnswer, Event
 from tests.app.orders.lives import World
 from tests.app.orders.what_holds import Record
@@ -115,7 +116,7 @@ async def test_a_robot_gives_only_what_it_was_given(world: World) -> None:
     duties = world.robots["r1"].duties
     assert duties.held.mission is not None
     place = duties.at_stop(duties.held.mission.stops[1].id)
-    duties.handed_over(place, Purpose.RECEIVE, "post5", duties.codes(order_id, Purpose.RECEIVE)[0])
+    duties.handed_over(place, Purpose.RECEIVE, "post5", ShownCode(duties.codes(order_id, Purpose.RECEIVE)[0], b"key"))
     await world.speak("r1")
     assert [one.code for one in world.robots["r1"].refused] == ["transition_refused"]
     assert await world.rows(Handover) == []

@@ -79,15 +79,18 @@ def test_every_state_can_be_reached_and_every_life_can_end() -> None:
 
 
 def test_only_the_robot_writes_custody() -> None:
-    """Loaded, received and returned are confirmed by the robot's receipt and by nobody else's word."""
+    """Loaded, received and returned are confirmed by the robot's receipt and by nobody else's word; what it claims and
+    does not prove, by whoever has asked (`resolve`, with nothing claimed, refuses)."""
     for state, following in TRANSITIONS.items():
         for custody in (S.CARRYING, S.DELIVERED, S.RETURNED):
-            assert following.get(custody, {By.ROBOT}) == {By.ROBOT}, state
+            word = By.DISPATCHER if state is S.ATTENTION else By.ROBOT
+            assert following.get(custody, {word}) == {word}, state
 
 
 def test_out_of_attention_leads_back_or_home_or_into_hands_as_far_as_the_mail_allows() -> None:
     for before in S:
-        out = {S.RETURNING, S.HELD} if before in MAIL_ABOARD else {S.QUEUED, S.CANCELLED}
+        claimed = {S.DELIVERED, S.RETURNED}
+        out = {S.RETURNING, S.HELD, *claimed} if before in MAIL_ABOARD else {S.QUEUED, S.CANCELLED}
         if before in CARRIED:
             out.add(S.QUEUED)  # passed on to another robot
         assert {to for to in S if is_allowed(S.ATTENTION, to, By.DISPATCHER, before)} == {before} | out
