@@ -31,7 +31,7 @@ const PRIORITIES = ["high", "normal", "low"];
  * @param {Order} order @param {Robot[]} robots @param {CampusMap | null} map @returns {Action[]}
  */
 export function orderActions(order, robots, map) {
-  if (hasEnded(order)) return order.custody.at(-1)?.holder === "robot" ? [hold(order)] : [];
+  if (hasEnded(order)) return order.custody.some(({ holder, to }) => holder === "robot" && !to) ? [hold(order)] : [];
   const stuck = order.state === "attention";
   const waits = order.state === "queued" || isRobotComing(order);
   return [
@@ -51,13 +51,21 @@ const named = (order) => ({ names: { order: t("mailroom.mail_of", { sender: orde
 
 /** @param {Order} order @returns {Action} */
 export function resolve(order) {
-  const ways = WAYS_OUT[ABOARD_BEFORE.includes(stateBeforeAttention(order)) ? "aboard" : "notAboard"];
+  const isAboard = ABOARD_BEFORE.includes(stateBeforeAttention(order));
+  const ways = isAboard ? [...claimedWays(order), ...WAYS_OUT.aboard] : WAYS_OUT.notAboard;
   const choices = ways.map((way) => ({ value: way, label: t(`mailroom.way_out.${way}`), hint: t(`mailroom.way_out_means.${way}`) }));
   return {
     ...named(order),
     ...{ name: "resolve", reason: "may", choices, chosen: "resume" },
     run: ({ choice, reason }) => api.resolveOrder(order.id, choice, reason),
   };
+}
+
+/** Of what a robot claims: that it is so, or, of mail that it says came aboard, that it is not. @param {Order} order */
+function claimedWays({ custody }) {
+  const last = custody.at(-1);
+  if (last?.evidence !== "claimed") return [];
+  return [last.holder === "robot" ? "queued" : "handed_over"];
 }
 
 /** @param {Order} order @returns {Action} */

@@ -385,6 +385,11 @@ export interface components {
          *     for the sender's own. `confirmed_by` is whose code, tap or digits it was (null for the button), and
          *     `confirmed_by_name` which delegate's; `signed`: the robot has signed for it, and the signature was checked. A
          *     delegate of the other side is a delegate without a name.
+         *
+         *     `evidence` says what the link goes by: `proof` (only the code that was shown gives it), `tap`, `digits`,
+         *     `dispatcher`, `digest` (weaker: an older robot), `button`, `claimed` (nothing but the robot's word, so that nobody
+         *     has confirmed it) or `settled` (claimed, and found true since); null for the sender's own. Who is said to have mail
+         *     that is claimed to be out stands last, while the robot answers for it still.
          */
         CustodyView: {
             /** Holder */
@@ -406,6 +411,8 @@ export interface components {
             confirmed_by_name: string | null;
             /** Signed */
             signed: boolean;
+            /** Evidence */
+            evidence: string | null;
         };
         /**
          * DelegateView
@@ -1329,7 +1336,8 @@ export interface components {
         /**
          * Resolution
          * @description What becomes of an order that needed attention: on as before, with mail aboard back or into the mailroom's hands,
-         *     without into the queue again or not at all.
+         *     without into the queue again or not at all. `handed_over`: mail that its robot says it has not any more, without a
+         *     proof, is with whoever should have it, who was asked.
          * @example {
          *       "to": "returning",
          *       "reason": "The corridor stays closed today."
@@ -1340,7 +1348,7 @@ export interface components {
              * To
              * @enum {string}
              */
-            to: "resume" | "returning" | "held" | "queued" | "cancelled";
+            to: "resume" | "returning" | "held" | "queued" | "cancelled" | "handed_over";
             /** Reason */
             reason?: string | null;
         };

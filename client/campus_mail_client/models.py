@@ -228,6 +228,11 @@ class CustodyView(Model):
     word, null for the sender's own. `confirmed_by` is whose code, tap or digits it was (null for the button),
     and `confirmed_by_name` which delegate's; `signed`: the robot has signed for it, and the signature was
     checked. A delegate of the other side is a delegate without a name.
+
+    `evidence` says what the link goes by: `proof` (only the code that was shown gives it), `tap`, `digits`,
+    `dispatcher`, `digest` (weaker: an older robot), `button`, `claimed` (nothing but the robot's word, so that
+    nobody has confirmed it) or `settled` (claimed, and found true since); null for the sender's own. Who is
+    said to have mail that is claimed to be out stands last, while the robot answers for it still.
     """
 
     holder: str
@@ -238,6 +243,7 @@ class CustodyView(Model):
     confirmed_by: str | None
     confirmed_by_name: str | None
     signed: bool
+    evidence: str | None
 
 
 class DelegateView(Model):
@@ -763,10 +769,11 @@ class Reassignment(Model):
 
 class Resolution(Model):
     """What becomes of an order that needed attention: on as before, with mail aboard back or into the mailroom's
-    hands, without into the queue again or not at all.
+    hands, without into the queue again or not at all. `handed_over`: mail that its robot says it has not any
+    more, without a proof, is with whoever should have it, who was asked.
     """
 
-    to: Literal["resume", "returning", "held", "queued", "cancelled"] | str
+    to: Literal["resume", "returning", "held", "queued", "cancelled", "handed_over"] | str
     reason: str | None = None
 
 

@@ -278,6 +278,12 @@ class NotYoursToDelegate(Problem):
     code = "not_yours_to_delegate"
 
 
+class NothingClaimed(Problem):
+    """The robot says that it has this mail still, or nothing: there is no word of it to be believed. (409)"""
+
+    code = "nothing_claimed"
+
+
 class NothingToPassOn(Problem):
     """Mail changes robots while one is bringing it to its recipient, not before or after. (409)"""
 
@@ -624,6 +630,7 @@ BY_CODE: Final[Mapping[str, type[Problem]]] = {
     "not_waiting": NotWaiting,
     "not_your_turn": NotYourTurn,
     "not_yours_to_delegate": NotYoursToDelegate,
+    "nothing_claimed": NothingClaimed,
     "nothing_to_pass_on": NothingToPassOn,
     "nothing_to_resume": NothingToResume,
     "oidc_refused": OidcRefused,

@@ -2,6 +2,7 @@
 
 import ast
 import base64
+import hmac
 import json
 from collections.abc import Mapping
 from pathlib import Path
@@ -18,6 +19,8 @@ from protocol.envelope import DURABLE, MAX_MESSAGE_BYTES, TO_ROBOT, TO_SERVER, E
 from protocol.errors import MalformedMessage, MessageTooLarge, NewerVersion, ProtocolError, UnknownMessage
 from protocol.example_files import EXAMPLES, examples_of
 from protocol.parts import Part, sentence
+from protocol.proofs import ShownCode
+from protocol.to_server import HandoverReceipt
 
 ROOT = Path(__file__).parents[2]
 EVERY = {**TO_SERVER, **TO_ROBOT}
@@ -225,9 +228,47 @@ def test_the_signatures_of_the_examples_are_those_of_the_key_in_the_documentatio
         key.verify(base64.b64decode(receipt.signature), receipt.signed_by("r1"))
 
 
+def test_the_proof_of_the_example_is_that_of_the_code_in_the_documentation() -> None:
+    receipt = parse(TEXTS["event"], TO_SERVER).body.happened  # type: ignore[attr-defined]
+    shown = ShownCode.of("CM1:000102030405060708090a0b0c0d0e0f")
+    assert shown.sha256 == receipt.code_sha256
+    key = hmac.digest(b"campus-mail hand-over proof 1", b"CM1:000102030405060708090a0b0c0d0e0f", "sha256")
+    values = (
+        receipt.order_id,
+        receipt.mission_id,
+        receipt.stop_id,
+        "load",
+        "post1",
+        "7",
+        "2026-01-05T09:03:40.000000Z",
+    )
+    framed = b"".join(len(value).to_bytes(4, "big") + value.encode() for value in values)
+    assert receipt.proof == hmac.new(key, framed, "sha256").hexdigest() == receipt.proved_with(shown.key)
+
+
+def test_no_two_hand_overs_have_the_same_proof() -> None:
+    receipt = parse(TEXTS["event"], TO_SERVER).body.happened  # type: ignore[attr-defined]
+    moved = receipt.model_copy(update={"order_id": receipt.order_id[:-1], "mission_id": f"4{receipt.mission_id}"})
+    others = [
+        moved,
+        *(receipt.model_copy(update=change) for change in ({"number": 8}, {"stop_id": "s"}, {"post": "p"})),
+    ]
+    assert len({one.proved_with(b"key") for one in (receipt, *others)}) == 5
+
+
+def test_the_signature_of_a_robot_that_is_older_than_proofs_is_good_still() -> None:
+    raw = example("event")["body"]["happened"]
+    for name in ("mission_id", "number", "proof"):
+        del raw[name]
+    receipt = HandoverReceipt.model_validate_json(json.dumps({**raw, "code_sha256": "b7f1" * 16}))
+    key = Ed25519PublicKey.from_public_bytes(base64.b64decode("A6EHv/POEL4dcN0Y50vAmWfk1jCbpQ1fHdyGZBJVMbg="))
+    as_it_was = "1CppfAhf4wkUBAaHmBx2KbZReb5u9O+c3VcyG6EYTuhuu4zJ3haiH60c9g3MZT4c6sPcVYbSZP9uTG+9Y4qMBw=="
+    key.verify(base64.b64decode(as_it_was), receipt.signed_by("r1"))
+
+
 def test_a_receipt_of_a_robot_that_knows_no_signatures_is_understood() -> None:
     raw = example("event")
-    for name in ("how", "command_id", "signature"):
+    for name in ("how", "command_id", "mission_id", "number", "proof", "signature"):
         del raw["body"]["happened"][name]
     receipt = parse(json.dumps(raw), TO_SERVER).body.happened  # type: ignore[attr-defined]
     assert (receipt.how, receipt.signature) == ("code", None)

@@ -59,7 +59,8 @@ def test_a_letter_goes_by_a_tap_and_six_digits_and_is_stopped_on_the_way_from_th
     assert custody(sender, path) == [("sender", None), ("robot", "tap"), ("recipient", "digits")]
     details = desk.get("/robots/r1")
     assert (details["signs_receipts"], details["takes_taps"]) == (True, True)
-    assert [one["name"] for one in details["alarms"] if one["name"] == "receipt_refused"] == []
+    assert [one["name"] for one in details["alarms"] if one["name"] in ("receipt_refused", "handover_claimed")] == []
+    assert [one["evidence"] for one in sender.get(path)["custody"]] == [None, "tap", "digits"]
 
 
 def answer_to(desk: Person, command_id: str) -> bool:
@@ -82,6 +83,7 @@ def test_a_delegate_loads_a_revoked_one_does_not_and_what_is_recalled_goes_back_
     show(rig, texts[porter])
     rig.wait_for_state(sender, order_id, "carrying")
     assert custody(sender, path)[-1] == ("robot", "code")
+    assert sender.get(path)["custody"][-1]["evidence"] == "proof", "what only the shown code gives"
 
     rig.at_the_door({"do": "hide_code"})  # what it was loaded with would open the way back, too
     assert sender.post(f"{path}/cancel").status_code == 200
@@ -91,6 +93,7 @@ def test_a_delegate_loads_a_revoked_one_does_not_and_what_is_recalled_goes_back_
     show(rig, back["text"])
     rig.wait_for_state(sender, order_id, "returned")
     assert custody(sender, path)[-1] == ("sender", "code")
+    assert sender.get(path)["custody"][-1]["evidence"] == "proof"
 
 
 def test_a_robot_with_a_wrong_code_is_not_enrolled_and_is_told_so_in_words(rig: Rig, tmp_path: Path) -> None:

@@ -30,7 +30,7 @@ export function orderCustody(order) {
     <h2 id="custody-title">${t("follow.custody.title")}</h2>
     <ol class="custody">
       ${order.custody.map(
-        (link) => html`<li class=${link.to ? "" : "now"}>
+        (link) => html`<li class=${link.to || isSaidToBeOut(link) ? "" : "now"}>
           <span class="what">${nameOf(order, link.holder, link.name)}</span>
           <span class="remark">${span(link)}</span>
           ${link.how ? html`<span class="remark">${howText(order, link)}</span>` : nothing}
@@ -48,6 +48,9 @@ function nameOf({ sender, recipient }, holder, name) {
   return name ?? t(`follow.custody.holder.${holder}`);
 }
 
+/** The robot answers for it until somebody has asked. @param {Custody} link */
+const isSaidToBeOut = ({ evidence, holder }) => evidence === "claimed" && holder !== "robot";
+
 /** @param {Custody} link */
 function span({ from, to }) {
   const since = dayAndTime(from, serverNow());
@@ -55,8 +58,10 @@ function span({ from, to }) {
 }
 
 /** @param {Order} order @param {Custody} link */
-function howText(order, { how, confirmed_by, confirmed_by_name, signed }) {
+function howText(order, { how, confirmed_by, confirmed_by_name, signed, evidence }) {
+  if (evidence === "claimed" || evidence === "settled") return t(`follow.custody.${evidence}`);
   const name = confirmed_by ? nameOf(order, confirmed_by, confirmed_by_name) : "";
-  const confirmed = t(`follow.custody.how.${how}`, { name });
+  const said = t(`follow.custody.how.${how}`, { name });
+  const confirmed = evidence === "digest" ? t("follow.custody.weaker", { confirmed: said }) : said;
   return signed ? t("follow.custody.signed", { confirmed }) : confirmed;
 }
