@@ -108,7 +108,7 @@ class Custody:
             how=proof.how,
             command_id=proof.command_id,
             mission_id=mission.id,
-            number=self._memory.next_receipt(),
+            number=self._outbox.next_receipt(),
         )
         if proof.key is None:
             return receipt

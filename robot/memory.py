@@ -209,13 +209,6 @@ class Memory:
             )
             self._write("verifiers", _VERIFIERS, kept)
 
-    def next_receipt(self) -> int:
-        """The number of the next receipt, each given once. Put the receipt into the outbox in the same transaction."""
-        with self._store.transaction():
-            number = self._read("receipts", _NUMBER, 0) + 1
-            self._write("receipts", _NUMBER, number)
-            return number
-
     # What it was told to leave undone, and what is wrong with it.
 
     def paused(self) -> bool:

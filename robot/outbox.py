@@ -15,6 +15,7 @@ from protocol.parts import Part
 from robot.store import Store
 
 _JOURNAL: Final = "outbox_journal"
+_RECEIPTS: Final = "receipts"
 
 
 class NotDurable(ValueError):
@@ -58,6 +59,14 @@ class Outbox:
             cursor = database.execute("INSERT INTO outbox (type, body) VALUES (?, ?)", values)
             assert cursor.lastrowid is not None  # noqa: S101  # sqlite3 gives one for every INSERT
             return cursor.lastrowid
+
+    def next_receipt(self) -> int:
+        """The number of the next receipt, each given once. Put the receipt in the same transaction."""
+        with self._store.transaction() as database:
+            row = database.execute("SELECT value FROM facts WHERE name = ?", (_RECEIPTS,)).fetchone()
+            number = int(row[0]) + 1 if row else 1
+            database.execute("INSERT OR REPLACE INTO facts (name, value) VALUES (?, ?)", (_RECEIPTS, str(number)))
+            return number
 
     def pending(self, after: int = 0, limit: int = 100) -> Sequence[Kept]:
         """The messages with a `seq` above `after` that nobody has acknowledged yet, oldest first, at most `limit`."""

@@ -54,7 +54,7 @@ def _print_order(found: dict[str, Any]) -> None:
     names: tuple[str, ...] = ("at", "kind", "state", "by", "person", "robot", "post", "reason")
     say_table(names, [[event[name] for name in names] for event in events], "Nothing has happened.")
     console().print(f"\n[bold]custody[/bold] {escape('(as the robots signed for it)')}")
-    names = ("robot_at", "purpose", "how", "holder", "person", "robot", "post")
+    names = ("robot_at", "purpose", "how", "evidence", "problem", "settled", "holder", "person", "robot", "post")
     say_table(names, [[row[name] for name in names] for row in custody], "The mail has not changed hands.")
 
 

@@ -9,8 +9,10 @@ from itertools import cycle
 from pathlib import Path
 
 from app.fleet.answers import RECALLED
+from app.fleet.evidence import UNPROVED
+from app.fleet.handed_over import NOT_PROVED
 from app.fleet.missions import NOT_REPORTED, UNLOADED
-from app.fleet.receipts import PROBLEMS
+from app.fleet.receipts import PROBLEMS, claimed
 from app.orders.timer import NOBODY_CAME
 from app.settings import ROOT
 from app.tables import OrderState
@@ -65,6 +67,8 @@ def sentences_with_codes() -> Iterator[str]:
         yield f"Order 01ARZ is {state}. But its mail changed hands ({purpose}) at post1."
     for problem, purpose in zip(PROBLEMS.values(), cycle(Purpose), strict=False):
         yield f"a receipt ({purpose}) for order 01ARZ counts for nothing: {problem}"
+    for problem, purpose in zip(UNPROVED, cycle(Purpose), strict=False):
+        yield claimed(purpose, "01ARZ", "post1", problem)
 
 
 @cache
@@ -102,7 +106,7 @@ def said(node: ast.AST | None) -> str | None:
 
 def what_the_service_tells() -> Iterator[str]:
     """Of orders, and of messages that it or a robot could not follow."""
-    yield from (NOBODY_CAME, RECALLED, UNLOADED, NOT_REPORTED, "The recipient cannot take it now.")
+    yield from (NOT_PROVED, NOBODY_CAME, RECALLED, UNLOADED, NOT_REPORTED, "The recipient cannot take it now.")
     yield from told_beside_alarms(ROOT / "app/fleet/intake.py")
 
 

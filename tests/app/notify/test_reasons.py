@@ -12,8 +12,9 @@ from hypothesis import strategies as st
 from app.dispatch.choice import IdleRobot, why_nobody_comes
 from app.dispatch.planning.why import SENTENCES, Why
 from app.fleet.answers import RECALLED
+from app.fleet.evidence import UNPROVED
 from app.fleet.missions import NOT_REPORTED, UNLOADED
-from app.fleet.receipts import PROBLEMS, counts_for_nothing
+from app.fleet.receipts import PROBLEMS, claimed, counts_for_nothing
 from app.orders.timer import NOBODY_CAME
 from app.settings import ROOT
 from app.texts import LANGUAGES, catalogue
@@ -160,6 +161,12 @@ def test_every_way_of_turning_back_is_known() -> None:
 def test_every_reason_for_which_a_receipt_counts_for_nothing_is_known(problem: str) -> None:
     words = words_of(counts_for_nothing("load", "1f2e3d", problem))
     assert words and words.key == f"alarm.of.receipt.{problem}"
+
+
+@pytest.mark.parametrize("problem", UNPROVED)
+def test_every_reason_for_which_a_hand_over_is_only_claimed_is_known(problem: str) -> None:
+    words = words_of(claimed("receive", "1f2e3d", "post4", problem))
+    assert words and words.key == f"alarm.of.claimed.{problem}"
 
 
 ALARMS = {
