@@ -98,8 +98,9 @@ class HandoverReceipt(Part):
 
     `code_sha256` is the verifier that matched (or the `by` of the `confirm`), None if nobody was identified (the Spot
     button). `proof` is what only the shown code gives, over this one hand-over: None if none was shown. `number` counts
-    its receipts, `mission_id` is the mission as it held it: None from a robot that is older than proofs. `command_id` names the `confirm`, if one led to it. `signature` is Ed25519 over `signed_by(robot)`, base64;
-    None from a robot that was enrolled without a key.
+    its receipts, `mission_id` is the mission as it held it: None from a robot that is older than proofs. `command_id`
+    names the `confirm`, if one led to it. `signature` is Ed25519 over `signed_by(robot)`, base64; None from a robot
+    that was enrolled without a key.
     """
 
     kind: Literal["handover"] = "handover"

@@ -141,7 +141,7 @@ class PlayedRobot:
     heard: list[Envelope] = field(default_factory=list)
     socket: ClientConnection | None = None
     token: str = ""
-    handed_over_at: str | None = None
+    handed_over_at: tuple[str, float] | None = None
     receipts: int = 0
 
     @asynccontextmanager
@@ -235,11 +235,12 @@ class PlayedRobot:
         return Event(happened=receipt.model_copy(update={"proof": receipt.proved_with(shown.key)}))
 
     def _drive_to(self, post: str) -> None:
-        """It takes the time that a robot needs, where the test says when time passes."""
-        way_m = WAYS.length_m(self.handed_over_at or post, post)
-        if isinstance(self.clock, SteppedClock) and math.isfinite(way_m):
-            self.clock.advance(way_m / DRIVES_M_S)
-        self.handed_over_at = post
+        """It takes the time that a robot needs, where the test says when time passes and has not let so much pass."""
+        before, since_s = self.handed_over_at or (post, 0.0)
+        needs_s = WAYS.length_m(before, post) / DRIVES_M_S
+        if isinstance(self.clock, SteppedClock) and math.isfinite(needs_s):
+            self.clock.advance(max(0.0, since_s + needs_s - self.clock.now()))
+        self.handed_over_at = (post, self.clock.now())
 
     def codes(self, stop: Stop) -> list[str]:
         """What opens there, as the server has told."""
