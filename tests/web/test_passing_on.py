@@ -9,12 +9,11 @@ from playwright.async_api import expect
 
 from maps import find_map
 from protocol.clock import RealClock
-from protocol.envelope import YOUNGER
 from protocol.parts import StopAction
 from protocol.to_server import Step
 from tests.app.fleet.playing import PlayedRobot
 from tests.web.mailroom_scene import Campus
-from tests.web.service import Service
+from tests.web.service import ALL_BUT_PROOFS, Service
 
 pytestmark = pytest.mark.browser
 
@@ -31,7 +30,7 @@ async def test_a_letter_changes_robots_and_everybody_sees_who_has_it(campus, vis
     link, version = campus.service.link, find_map("test_track").version
     first, second = [PlayedRobot(RealClock(), name, journal=f"journal-{name}") for name in ("r1", "r2")]
     async with first.connected(link, await campus.service.enrol_robot("r1")):
-        await first.greet("post5", map_version=version, understands=YOUNGER)
+        await first.greet("post5", map_version=version, understands=ALL_BUT_PROOFS)
         order_id = await ada.order("bob.martin@campus.example", what="Signed forms")
         mission = await first.mission()
         load = next(stop for stop in mission.stops if stop.action is StopAction.LOAD)
@@ -56,7 +55,7 @@ async def test_a_letter_changes_robots_and_everybody_sees_who_has_it(campus, vis
         await expect(ada.page.get_by_role("heading", name="Your letter changes robots at Post 2")).to_be_visible()
         await expect(ada.page.get_by_text("Taken out at Post 2, for another robot")).to_be_visible()
         async with second.connected(link, await campus.service.enrol_robot("r2")):
-            await second.greet("post5", map_version=version, understands=YOUNGER)
+            await second.greet("post5", map_version=version, understands=ALL_BUT_PROOFS)
             mission = await second.mission()
             load = mission.stops[0]
             assert load.post == "post2"

@@ -7,6 +7,7 @@ import time
 from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
+from datetime import datetime, timedelta
 from typing import Any
 
 import pytest
@@ -143,6 +144,7 @@ class PlayedRobot:
     token: str = ""
     handed_over_at: tuple[str, float] | None = None
     receipts: int = 0
+    late_s: float = 120.0
 
     @asynccontextmanager
     async def connected(self, url: str, token: str) -> AsyncIterator["PlayedRobot"]:
@@ -220,7 +222,7 @@ class PlayedRobot:
             "order_id": stop.order_id,
             "stop_id": stop.id,
             "post": stop.post,
-            "happened_at": self.clock.utc(),
+            "happened_at": self._handed_over_at(),
             "code_sha256": next(iter(self.codes(stop)), None),
         }
         return Event(happened=HandoverReceipt.model_validate({**receipt, **facts}))
@@ -235,12 +237,20 @@ class PlayedRobot:
         return Event(happened=receipt.model_copy(update={"proof": receipt.proved_with(shown.key)}))
 
     def _drive_to(self, post: str) -> None:
-        """It takes the time that a robot needs, where the test says when time passes and has not let so much pass."""
+        """It takes the time that a robot needs, where the test says when time passes and has not let so much pass; on a
+        real clock it tells late what it did before."""
         before, since_s = self.handed_over_at or (post, 0.0)
-        needs_s = WAYS.length_m(before, post) / DRIVES_M_S
-        if isinstance(self.clock, SteppedClock) and math.isfinite(needs_s):
+        way_m = WAYS.length_m(before, post)
+        needs_s = way_m / DRIVES_M_S if math.isfinite(way_m) else 0.0
+        if isinstance(self.clock, SteppedClock):
             self.clock.advance(max(0.0, since_s + needs_s - self.clock.now()))
+        else:
+            self.late_s = max(0.0, self.late_s - needs_s)
         self.handed_over_at = (post, self.clock.now())
+
+    def _handed_over_at(self) -> datetime:
+        late_s = 0.0 if isinstance(self.clock, SteppedClock) else self.late_s
+        return self.clock.utc() - timedelta(seconds=late_s)
 
     def codes(self, stop: Stop) -> list[str]:
         """What opens there, as the server has told."""
