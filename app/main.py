@@ -242,7 +242,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     await app.state.fleet.learning.begin()
     await app.state.fleet.spending.learn()
     state = app.state
-    await asyncio.to_thread(state.mailer.begin)
+    await state.mailer.begin()
     workers = {
         "dispatch": state.dispatcher,
         "timer": state.timer,
@@ -269,9 +269,9 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         await _ended(background, STOP_WITHIN_S)
         # The last, so that what the others have just written goes out too.
         state.outbox_worker.stop()
+        finishing = asyncio.create_task(state.mailer.finish(FINISH_WITHIN_S))
         await _ended([outbox], FINISH_WITHIN_S + STOP_WITHIN_S)
-        await _say_what_is_left(state)
-        app.state.mailer.stop()
+        await _say_what_is_left(state, await finishing)
         await app.state.http.aclose()
         await app.state.service_http.aclose()
         await app.state.database.close()
@@ -283,15 +283,16 @@ async def _compare_clock_with_records(state: State) -> None:
             state.clock.compare_with_records(await last_record(session))
 
 
-async def _say_what_is_left(state: State) -> None:
+async def _say_what_is_left(state: State, sign_in_mails: int) -> None:
     """Whoever stops the service for good, to move it or to put it back, has to know what nobody has been told yet."""
     try:
         async with state.database.reading() as session:
             lag = await outbox_lag(session, state.clock.utc())
     except Exception:
-        log.exception("the service stops; what is left in the outbox could not be counted")
+        log.exception("the service stops; what is left could not be counted", sign_in_mails_left=sign_in_mails)
     else:
-        log.info("the service stops", notices_left=sum(lag.waiting.values()) + lag.not_routed)
+        left = {"notices_left": sum(lag.waiting.values()) + lag.not_routed, "sign_in_mails_left": sign_in_mails}
+        log.info("the service stops", **left)
 
 
 async def _ended(background: list[asyncio.Task[None]], within_s: float) -> None:

@@ -280,6 +280,10 @@ class Settings(BaseSettings):
         return self.spool or self.data / "spool"
 
     @property
+    def waiting_mails_folder(self) -> Path:
+        return self.data / "waiting-mails"
+
+    @property
     def server_key_path(self) -> Path:
         return self.server_key_file or self.data / "server.key"
 

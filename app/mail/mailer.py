@@ -2,19 +2,17 @@
 
 import asyncio
 from dataclasses import dataclass, field
-from typing import Final, Protocol
+from typing import Protocol
 
 import structlog
 
 from app.mail.message import Mail, message_of
 from app.mail.smtp import NotMailed, SmtpServer
+from app.mail.soon import SentSoon
 from app.mail.spool import Spool
 from app.settings import Settings
 
 log = structlog.get_logger(__name__)
-
-PAUSES_S: Final = (0.0, 5.0, 20.0, 60.0, 180.0)
-"""Before each try of a mail that nobody keeps: within the ten minutes for which a sign-in code is good."""
 
 
 class Mailer(Protocol):
@@ -31,12 +29,12 @@ class Mailer(Protocol):
         """For what is kept nowhere (a sign-in code): the caller does not wait for a slow server, and asks no more."""
         ...
 
-    def begin(self) -> None:
+    async def begin(self) -> None:
         """Before the first mail; takes a moment."""
         ...
 
-    def stop(self) -> None:
-        """End what `send_soon` still has to do."""
+    async def finish(self, within_s: float) -> int:
+        """End what `send_soon` still has to do; how many mails are left for the next start."""
         ...
 
 
@@ -75,17 +73,17 @@ class SpoolMailer:
             for _, written in batch:  # cut off: nobody shall wait for ever
                 written.cancel()
 
-    def begin(self) -> None:
+    async def begin(self) -> None:
         try:
-            count = self.spool.tidy()
+            count = await asyncio.to_thread(self.spool.tidy)
         except OSError as problem:  # a folder that cannot be tidied may still take mails
             log.warning("the spool cannot be tidied", problem=str(problem))
         else:
             if count:
                 log.info("half-written mails removed", count=count)
 
-    def stop(self) -> None:
-        pass
+    async def finish(self, within_s: float) -> int:
+        return 0
 
 
 def _end(written: asyncio.Future[None], problem: Exception | None) -> None:
@@ -103,39 +101,27 @@ class SmtpMailer:
 
     server: SmtpServer
     sender: str
+    soon: SentSoon
     at_once: int = 8
-    _soon: set[asyncio.Task[None]] = field(default_factory=set)
 
     async def send(self, mail: Mail) -> None:
         await self.server.send(message_of(mail, self.sender))
 
     async def send_soon(self, mail: Mail) -> None:
         # How long it takes must not tell whether somebody is known here, and a slow server keeps nobody waiting.
-        task = asyncio.create_task(self._try_again_and_again(mail))
-        self._soon.add(task)
-        task.add_done_callback(self._soon.discard)
+        await self.soon.send(mail)
 
-    async def _try_again_and_again(self, mail: Mail) -> None:
-        for pause_s in PAUSES_S:
-            await asyncio.sleep(pause_s)
-            try:
-                return await self.send(mail)
-            except NotMailed as problem:
-                log.warning("mail not sent", key=mail.key, problem=str(problem), for_good=problem.for_good)
-                if problem.for_good:
-                    return None
-        return None
+    async def begin(self) -> None:
+        await self.soon.begin()
 
-    def begin(self) -> None:
-        pass
-
-    def stop(self) -> None:
-        for task in self._soon:
-            task.cancel()
+    async def finish(self, within_s: float) -> int:
+        return await self.soon.finish(within_s)
 
 
 def open_mailer(settings: Settings) -> Mailer:
     """SMTP if a server is set, else the spool."""
-    if settings.smtp_host:
-        return SmtpMailer(SmtpServer.of(settings), settings.mail_from)
-    return SpoolMailer(Spool(settings.spool_folder, settings.mail_from))
+    if not settings.smtp_host:
+        return SpoolMailer(Spool(settings.spool_folder, settings.mail_from))
+    server = SmtpServer.of(settings)
+    waiting = Spool(settings.waiting_mails_folder, settings.mail_from)
+    return SmtpMailer(server, settings.mail_from, SentSoon(server, waiting, settings.sign_in_code_lifetime_s))

@@ -3,6 +3,7 @@
 Each mail has a connection of its own, so that what goes wrong with one is no other's concern.
 """
 
+import asyncio
 import ssl
 from collections.abc import Iterator
 from contextlib import suppress
@@ -18,6 +19,7 @@ from pydantic import SecretStr
 from app.setting_kinds import SmtpTls
 from app.settings import Settings
 
+QUIT_WITHIN_S: Final = 2.0
 REFUSED_FOR_GOOD: Final = range(500, 600)
 
 
@@ -83,8 +85,10 @@ class SmtpServer:
 
 
 async def _end(client: aiosmtplib.SMTP) -> None:
-    with suppress(aiosmtplib.SMTPException, OSError):
-        await client.quit()
+    """Politely, but soon: a server that hangs would hold up the end of the service."""
+    with suppress(aiosmtplib.SMTPException, OSError):  # TimeoutError is an OSError
+        async with asyncio.timeout(QUIT_WITHIN_S):
+            await client.quit()
     client.close()
 
 

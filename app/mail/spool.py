@@ -6,7 +6,7 @@ The file's name is the key of the sending: writing it a second time, after a cra
 import os
 import re
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, TypeVar
@@ -43,6 +43,13 @@ class Spool:
         if unfinished is not None:
             _finish(unfinished)
         return unfinished is not None
+
+    def file_of(self, mail: Mail) -> Path:
+        return self.folder / f"{name_of(mail.key)}.eml"
+
+    def files(self) -> Iterator[Path]:
+        """All mails that are written whole."""
+        return self.folder.glob("*.eml")
 
     def send_all(self, mails: Sequence[Mail]) -> list[Exception | None]:
         """The same for several: what went wrong with which, which is no other's concern.

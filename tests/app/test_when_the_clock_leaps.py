@@ -1,15 +1,11 @@
 """A wall clock that leaps three days ahead for some seconds: nothing is done that cannot be undone."""
 
 import asyncio
-import json
-import os
 import signal
 import sqlite3
-import subprocess
-import sys
 import time
-from collections.abc import Callable, Iterator
-from contextlib import closing, contextmanager
+from collections.abc import Callable
+from contextlib import closing
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
@@ -21,11 +17,12 @@ from prometheus_client.parser import text_string_to_metric_families
 from sqlmodel import col, select
 
 from app.main import create_app
-from app.settings import ROOT, Settings
+from app.settings import Settings
 from app.tables import Order, OutgoingNotice, PersonSession, StandingOrder
 from protocol.clock import SteppedClock
 from tests.app.conftest import HERE, RECIPIENT, SENDER, Browser, Mailroom, sqlite_alone
 from tests.app.notify.test_killed_while_sending import free_port
+from tests.app.service_process import said, serving
 from tests.app.test_trusted_clock import DAY_S, NINE, Machine
 
 STANDING = {"from_post": "post1", "to_post": "post4", "recipient": RECIPIENT, "weekdays": [1, 2, 3, 4, 5, 6]}
@@ -207,15 +204,15 @@ def test_a_service_that_starts_so_waits_by_true_time(settings: Settings, tmp_pat
     settings, settles_s = settings.model_copy(update=AWAY), 4.0
     ordered(settings, datetime.now(UTC) - timedelta(days=3))
     log = tmp_path / "log"
-    with serving(settings.data, log, PORT=str(free_port()), CLOCK_SETTLES_S=str(settles_s)) as process:
+    with serving(settings.data, log, **AWAY, port=free_port(), clock_settles_s=settles_s) as process:
         until_s = time.monotonic() + 60
         while not (expired := asked(settings.data, "select at from order_events where state = 'expired'")):
             assert time.monotonic() < until_s, log.read_text()
             time.sleep(0.1)
         process.send_signal(signal.SIGTERM)
         process.wait(30)
-    (said_at,) = [one["timestamp"] for one in said(log) if one["event"] == "clock_not_confirmed_by_records"]
-    waited = datetime.fromisoformat(expired[0][0]).replace(tzinfo=UTC) - datetime.fromisoformat(said_at)
+    (line,) = said(log, "clock_not_confirmed_by_records")
+    waited = datetime.fromisoformat(expired[0][0]).replace(tzinfo=UTC) - datetime.fromisoformat(line["timestamp"])
     assert waited.total_seconds() > settles_s - 0.5
 
 
@@ -231,22 +228,6 @@ def ordered(settings: Settings, at: datetime) -> None:
         client.portal.call(_wait_for_tries, app, 1)
 
 
-@contextmanager
-def serving(data: Path, log: Path, **known: str) -> Iterator["subprocess.Popen[bytes]"]:
-    known = {"DATA": str(data), **{name.upper(): str(value) for name, value in AWAY.items()}, **known}
-    environment = {**os.environ, **{f"CAMPUS_MAIL_{name}": value for name, value in known.items()}}
-    command = [sys.executable, "-m", "app", "serve"]
-    with log.open("wb") as file, subprocess.Popen(command, cwd=ROOT, env=environment, stderr=file) as process:
-        try:
-            yield process
-        finally:
-            process.kill()
-
-
 def asked(data: Path, question: str) -> list[tuple[Any, ...]]:
     with closing(sqlite3.connect(data / "campus-mail.sqlite")) as database:
         return database.execute(question).fetchall()
-
-
-def said(log: Path) -> list[dict[str, Any]]:
-    return [json.loads(line) for line in log.read_text().splitlines() if line.startswith("{")]

@@ -1,0 +1,104 @@
+"""Mails of which their caller keeps nothing (sign-in codes): each is a file until it is out, and survives a stop.
+
+The database has the hash of a code alone, so its mail cannot be written anew. The file lies in the data folder, beside
+the key that makes hand-over codes, for as long as the mail server is away and the code is good.
+"""
+
+import asyncio
+import time
+from contextlib import suppress
+from dataclasses import dataclass, field
+from email.message import EmailMessage
+from email.parser import BytesParser
+from pathlib import Path
+from typing import Final, cast
+
+import structlog
+
+from app.mail.headers import MAIL
+from app.mail.message import Mail, message_of
+from app.mail.smtp import NotMailed, SmtpServer
+from app.mail.spool import Spool
+
+PAUSES_S: Final = (0.0, 5.0, 20.0, 60.0, 180.0)
+"""Before each try: within the ten minutes for which a sign-in code is good."""
+
+_READ: Final = BytesParser(EmailMessage, policy=MAIL)
+log = structlog.get_logger(__name__)
+
+
+@dataclass(frozen=True)
+class SentSoon:
+    """`waiting`: a folder of its own; `lifetime_s`: for how long a mail is of use."""
+
+    server: SmtpServer
+    waiting: Spool
+    lifetime_s: float
+    _tries: set[asyncio.Task[None]] = field(default_factory=set)
+    _told_to_finish: asyncio.Event = field(default_factory=asyncio.Event)
+
+    async def begin(self) -> None:
+        """Go on with what the last process could not send."""
+        try:
+            for file, message in await asyncio.to_thread(self._still_of_use):
+                self._start(file, message)
+        except OSError as problem:
+            log.warning("mails that wait cannot be read", problem=str(problem))
+
+    async def send(self, mail: Mail) -> None:
+        """Keep it and begin; how long the mail server takes is not the caller's concern."""
+        try:
+            await asyncio.to_thread(self.waiting.send, mail)
+        except OSError as problem:  # it may go out all the same
+            log.warning("a mail that waits cannot be kept", problem=str(problem))
+        self._start(self.waiting.file_of(mail), message_of(mail, self.waiting.sender))
+
+    async def finish(self, within_s: float) -> int:
+        """Try each once more, without a pause; how many are left for the next start."""
+        self._told_to_finish.set()
+        if self._tries:
+            await asyncio.wait(self._tries, timeout=within_s)
+        for task in self._tries:
+            task.cancel()
+        await asyncio.gather(*self._tries, return_exceptions=True)
+        return len(list(self.waiting.files()))
+
+    def _still_of_use(self) -> list[tuple[Path, EmailMessage]]:
+        self.waiting.tidy()
+        since_s, found = time.time() - self.lifetime_s, []
+        for file in self.waiting.files():
+            if file.stat().st_mtime < since_s:
+                file.unlink()
+            else:
+                found.append((file, cast(EmailMessage, _READ.parsebytes(file.read_bytes()))))
+        return found
+
+    def _start(self, file: Path, message: EmailMessage) -> None:
+        task = asyncio.create_task(self._try_again_and_again(file, message))
+        self._tries.add(task)
+        task.add_done_callback(self._tries.discard)
+
+    async def _try_again_and_again(self, file: Path, message: EmailMessage) -> None:
+        for pause_s in PAUSES_S:
+            is_last = await self._rest(pause_s)
+            try:
+                await self.server.send(message)
+                break
+            except NotMailed as problem:
+                log.warning("mail not sent", key=file.stem, problem=str(problem), for_good=problem.for_good)
+                if problem.for_good:
+                    break
+                if is_last:
+                    return
+        _forget(file)
+
+    async def _rest(self, pause_s: float) -> bool:
+        """Whether the service ends meanwhile."""
+        with suppress(TimeoutError):
+            async with asyncio.timeout(pause_s):
+                await self._told_to_finish.wait()
+        return self._told_to_finish.is_set()
+
+
+def _forget(file: Path) -> None:
+    file.unlink(missing_ok=True)
