@@ -1,9 +1,17 @@
 """Ordering a letter."""
 
+import asyncio
 import re
+import zlib
+from collections.abc import AsyncIterator, Awaitable, Callable
 
 import pytest
+import pytest_asyncio
 from playwright.async_api import Page, Route, expect
+
+from protocol.parts import Battery
+from tests.web.service import Service
+from tests.web.visitor import Visitor
 
 pytestmark = pytest.mark.browser
 
@@ -22,8 +30,37 @@ async def send(page: Page):
     await page.get_by_role("button", name="Send the robot").click()
 
 
-async def test_the_time_of_arrival_is_shown_as_an_assumption_before_anything_is_ordered(visit):
+@pytest_asyncio.fixture(loop_scope="session")
+async def there(
+    service: Service, request: pytest.FixtureRequest
+) -> AsyncIterator[Callable[[Visitor], Awaitable[None]]]:
+    """A robot is connected, with too little charge to be given anything; to be awaited until the service knows."""
+    name = f"r{zlib.crc32(request.node.name.encode())}"
+    async with service.connected(name, battery=Battery(ratio=0.1)):
+
+        async def is_known(to: Visitor) -> None:
+            while (await to.api("/estimate?from_post=post1&to_post=post4"))["reason"]:  # noqa: ASYNC110  # over HTTP
+                await asyncio.sleep(0.1)
+
+        yield is_known
+
+
+async def test_who_orders_while_no_robot_can_come_reads_so_instead_of_a_time(visit):
     ada = await visit("ada.king", on="phone")
+    await ada.page.goto("/")
+    button = ada.page.get_by_role("button", name="Send the robot")
+    await expect(ada.page.get_by_text("Choose both posts to see when it arrives.")).to_be_visible()
+    place = await button.evaluate(PLACE)
+    await fill(ada.page)
+    told = ada.page.locator(".estimate")
+    await expect(told).to_contain_text("The time of arrival is not known yet.")
+    await expect(told).to_contain_text("No robot is connected at the moment.")
+    assert await button.evaluate(PLACE) == place, "nothing moves under a finger"
+
+
+async def test_the_time_of_arrival_is_shown_as_an_assumption_before_anything_is_ordered(visit, there):
+    ada = await visit("ada.king", on="phone")
+    await there(ada)
     await ada.page.goto("/")
     await expect(ada.page.get_by_text("Choose both posts to see when it arrives.")).to_be_visible()
     button = ada.page.get_by_role("button", name="Send the robot")
@@ -50,7 +87,8 @@ async def test_an_ordered_letter_is_followed_at_once_and_stands_in_my_mail(visit
     await fill(page, what="Signed forms")
     await send(page)
     await expect(page.get_by_role("heading", name="Looking for a robot")).to_be_visible()
-    await expect(page.get_by_text("Expected at Post 4")).to_be_visible()
+    await expect(page.get_by_text("The time of arrival is not known yet.")).to_be_visible()
+    await expect(page.get_by_text("No robot is connected at the moment.")).to_be_visible()
     await expect(page.get_by_text("No robot is on this order yet.")).to_be_visible()
     await page.get_by_role("link", name="My mail").click()
     sent = page.get_by_role("region", name="Sent")
@@ -59,8 +97,9 @@ async def test_an_ordered_letter_is_followed_at_once_and_stands_in_my_mail(visit
     ).to_be_visible()
 
 
-async def test_the_same_post_twice_is_refused_at_the_field(visit):
+async def test_the_same_post_twice_is_refused_at_the_field(visit, there):
     ada = await visit()
+    await there(ada)
     ada.refusals_expected.add("/api/v1/orders")
     await ada.page.goto("/")
     await fill(ada.page, to_post="Post 1")
@@ -161,8 +200,9 @@ async def test_an_order_without_any_answer_is_kept_and_sent_again_with_its_key_a
     assert len((await ada.api("/orders"))["items"]) == 1
 
 
-async def test_a_repeat_takes_three_taps(visit):
+async def test_a_repeat_takes_three_taps(visit, there):
     ada = await visit()
+    await there(ada)
     await ada.order(BOB, to_post="post3", what="First")
     page = ada.page
     await page.goto("/")
@@ -227,8 +267,9 @@ async def test_a_recipient_is_chosen_from_those_one_knows_with_the_keyboard(visi
     await expect(page.get_by_label("To", exact=True)).to_have_value("post2")  # where they are found
 
 
-async def test_a_letter_is_ordered_for_later_and_again_and_again(visit):
+async def test_a_letter_is_ordered_for_later_and_again_and_again(visit, there):
     ada = await visit(on="phone", timezone_id="America/Toronto")
+    await there(ada)
     page = ada.page
     await page.goto("/")
     await fill(page, what="Later")
