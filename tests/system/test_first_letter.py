@@ -42,6 +42,7 @@ class Letter:
         assert [event["state"] for event in order["events"]] == WAY
         times = [event["robot_at"] for event in order["events"] if event["robot_at"]]
         assert times == sorted(times), "replayed in the order in which it happened"
+        assert [link["evidence"] for link in order["custody"]] == [None, "proof", "proof"]
         assert self.sender.notices() == TOLD_SENDER
         assert self.recipient.notices() == TOLD_RECIPIENT
         for person in (self.sender, self.recipient):

@@ -10,10 +10,10 @@ from app.fleet.service import new_token
 from app.tables import Alarm, Handover, Notice, RefusedReceipt, RobotRow, Role
 from protocol.clock import SteppedClock
 from protocol.envelope import YOUNGER
-from protocol.parts import Stop
+from protocol.parts import Activity, Battery, Position, Stop
 from protocol.proofs import ShownCode
-from protocol.to_robot import Confirm
-from protocol.to_server import CommandAnswer, Event, HandoverReceipt, Step
+from protocol.to_robot import Confirm, Mission
+from protocol.to_server import CommandAnswer, Event, HandoverReceipt, Snapshot, Step
 from tests.app.handover.conftest import Campus
 from tests.app.handover.test_receipts import give_key, signed
 
@@ -265,6 +265,36 @@ async def claim(campus: Campus) -> None:
     await load(campus)
     await arrive(campus)
     await campus.robot.ends(await campus.robot.say(made_up(campus, campus.receive, how="code")))
+
+
+async def test_a_robot_that_claims_and_then_says_otherwise_does_not_lead_the_order_on(campus: Campus) -> None:
+    await claim(campus)
+    own = Mission(id="return-1", update=1, stops=())
+    back = campus.receive.model_copy(update={"id": f"return-{campus.order_id}", "post": "post1"})
+    for step, stop in ((Step.ACCEPTED, None), (Step.DEPARTED, back), (Step.ARRIVED, back)):
+        await campus.robot.ends(await campus.robot.report(own, step, stop))
+    await is_claimed(campus, "no_proof")
+
+
+async def test_a_robot_that_was_seen_elsewhere_a_moment_ago_is_not_believed(
+    campus: Campus, clock: SteppedClock
+) -> None:
+    await begin(campus)
+    await load(campus)
+    await arrive(campus)
+    clock.advance(60)
+    seen = Snapshot(
+        position=Position(post="post1", seen_at=clock.utc()), activity=Activity.DRIVING, battery=Battery(ratio=0.8)
+    )
+    await campus.robot.say(seen)
+    clock.advance(0.5)
+    assert campus.mission
+    code = await code_of(campus, "recipient")
+    campus.robot.handed_over_at = None
+    await campus.robot.ends(
+        await campus.robot.say(signed(campus.robot.proved_receipt(campus.mission, campus.receive, code)))
+    )
+    await is_claimed(campus, "too_fast")
 
 
 async def test_a_dispatcher_who_has_asked_says_that_it_was_handed_over(campus: Campus) -> None:
