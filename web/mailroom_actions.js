@@ -61,11 +61,11 @@ export function resolve(order) {
   };
 }
 
-/** Of what a robot claims: that it is so, or, of mail that it says came aboard, that it is not. @param {Order} order */
+/** Of what a robot claims: that mail is out after all, or that it has never come aboard. @param {Order} order */
 function claimedWays({ custody }) {
-  const last = custody.at(-1);
-  if (last?.evidence !== "claimed") return [];
-  return [last.holder === "robot" ? "queued" : "handed_over"];
+  const holders = custody.filter(({ evidence }) => evidence === "claimed").map(({ holder }) => holder);
+  const isSaidToBeOut = holders.some((holder) => holder !== "robot");
+  return [...(isSaidToBeOut ? ["handed_over"] : []), ...(holders.includes("robot") ? ["queued"] : [])];
 }
 
 /** @param {Order} order @returns {Action} */

@@ -50,19 +50,22 @@ async def claim_of_handing_out(session: AsyncSession, order_id: str) -> Handover
 
 async def was_aboard(session: AsyncSession, order_id: str, now: datetime) -> None:
     """The mail was in its robot until now: who said that it came aboard was right, who said that it went was not."""
-    for one in await _open_claims(session, order_id):
+    claims = await _open_claims(session, order_id)
+    for one in claims:
         one.settled = Settled.TRUE if _is_load(one) else Settled.FALSE
-    await _silence(session, order_id, now)
+    if claims:
+        await _silence(session, order_id, now)
 
 
 async def was_never_aboard(session: AsyncSession, order_id: str, now: datetime) -> bool:
-    """It did not come aboard after all; False if that was not a claim."""
-    claims = [one for one in await _open_claims(session, order_id) if _is_load(one)]
+    """It did not come aboard after all, so nor did it come out; False if that it came aboard was not a claim."""
+    claims = await _open_claims(session, order_id)
+    if not any(_is_load(one) for one in claims):
+        return False
     for one in claims:
         one.settled = Settled.FALSE
-    if claims:
-        await _silence(session, order_id, now)
-    return bool(claims)
+    await _silence(session, order_id, now)
+    return True
 
 
 async def is_true(session: AsyncSession, claim: Handover, now: datetime) -> None:

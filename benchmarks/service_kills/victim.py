@@ -46,6 +46,7 @@ class Victim:
     process: "subprocess.Popen[bytes] | None" = None
 
     def __post_init__(self) -> None:
+        self.folder.mkdir(parents=True, exist_ok=True)
         self.map_file = self.folder / "table_top.toml"
         self.map_file.write_text(toml_of(scaled(load_map_file(map_path(MAP)), SCALE)), encoding="utf-8")
 

@@ -17,13 +17,16 @@ import pytest
 from app.administration import enrol
 from app.settings import Settings
 from benchmarks.service_kills.mail_server import SpoolFolder
+from benchmarks.service_kills.people import Everybody, Somebody
 from benchmarks.service_kills.senders import Sender
 from benchmarks.service_kills.stand_in import StandIn
 from benchmarks.service_kills.victim import CHECKOUT, Victim
-from maps import builtin_map
+from maps import read_map
+from maps.ways import Ways
 
 pytestmark = pytest.mark.system
 SENDERS = 4
+BOB = "bob@campus.example"
 
 
 async def command(*words: str, data: Path) -> Any:
@@ -42,20 +45,23 @@ async def test_a_backup_under_load_restores_to_a_sound_database_that_a_service_s
     victim = Victim(tmp_path)
     data, over, before = tmp_path / "data", asyncio.Event(), set[str]()
     token = await enrol(Settings(data=data), "r1", again=False)
-    robot = StandIn("r1", token, victim.link_url, "post5", builtin_map("test_track").version, Random(1))
+    spool, browsers = SpoolFolder(data / "spool"), [httpx.AsyncClient() for _ in range(SENDERS + 1)]
     senders = [
-        Sender(victim.url, f"sender{n}@campus.example", ("bob@campus.example",), Random(n), 0.01)
+        Sender(victim.url, f"sender{n}@campus.example", Random(n), browsers[n], recipients=(BOB,), pause_s=0.01)
         for n in range(SENDERS)
     ]
+    bob = Somebody(victim.url, BOB, Random(SENDERS), browsers[-1])
+    ways, show = Ways(read_map(victim.map_file)), Everybody(senders, [bob]).show
+    robot = StandIn("r1", token, victim.link_url, "post5", ways, Random(1), show)
 
     async def send(sender: Sender) -> None:
-        async with httpx.AsyncClient() as http:
-            await sender.sign_in(http, SpoolFolder(data / "spool"))
-            await sender.order_until(http, over.is_set)
+        await sender.sign_in(spool)
+        await sender.order_until(over.is_set)
 
     try:
         victim.start()
         await victim.is_up()
+        await bob.sign_in(spool)
         driving = asyncio.create_task(robot.run())
         async with asyncio.TaskGroup() as group:
             for sender in senders:
@@ -69,6 +75,7 @@ async def test_a_backup_under_load_restores_to_a_sound_database_that_a_service_s
         assert await victim.stop() in (0, -15)
     finally:
         victim.end()
+        await asyncio.gather(*(browser.aclose() for browser in browsers))
     everything = {order for sender in senders for order in sender.acknowledged.values()}
     assert len(everything) > len(before), "nobody ordered while the backup was taken"
 

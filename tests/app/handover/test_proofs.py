@@ -329,6 +329,18 @@ async def test_mail_that_never_came_aboard_goes_back_into_the_queue(campus: Camp
     assert (await campus.robot.hear("cancel")).body.order_id == campus.order_id  # type: ignore[attr-defined]
 
 
+async def test_mail_that_never_came_aboard_did_not_come_out_either(campus: Campus) -> None:
+    await begin(campus)
+    await campus.robot.ends(await campus.robot.say(made_up(campus, campus.load, how="code")))
+    await arrive(campus)
+    await campus.robot.ends(await campus.robot.say(made_up(campus, campus.receive, how="code")))
+    assert [one["evidence"] for one in await links(campus)][1:] == ["claimed", "claimed"]
+    assert await resolved(campus, "queued") == 200
+    assert [one["holder"] for one in await links(campus)] == ["sender"]
+    assert [one.settled for one in await campus.service.rows(Handover)] == ["false", "false"]
+    assert [one for one in await campus.service.rows(Alarm, name=CLAIMED) if one.cleared_at is None] == []
+
+
 async def test_nothing_is_believed_that_no_robot_has_claimed(campus: Campus) -> None:
     await begin(campus)
     await load(campus)
