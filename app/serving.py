@@ -15,6 +15,7 @@ from app.errors import StartError
 from app.fleet.attentive import ANSWERS_WITHIN_S, LOOKS_AFTER_S, AttentiveSocket
 from app.keeping.running import the_only_one
 from app.main import create_app
+from app.punctual import PunctualConfig
 from app.settings import Settings, open_clock
 
 # Without this an open event stream holds the server for ever. Streams end by themselves sooner (see `shutdown`).
@@ -104,8 +105,9 @@ def check_tls(settings: Settings) -> None:
 def config_of(app: FastAPI) -> uvicorn.Config:
     """How uvicorn serves the application."""
     settings: Settings = app.state.settings
-    return uvicorn.Config(
+    return PunctualConfig(
         app,
+        within_s=settings.request_within_s,
         log_config=None,
         access_log=False,
         timeout_graceful_shutdown=GRACEFUL_S,

@@ -63,6 +63,11 @@ class Settings(BaseSettings):
     database_wait_s: float = Field(
         10, gt=0, description="How long a request may wait for the database in all; after that it is answered 503."
     )
+    request_within_s: float = Field(
+        30,
+        gt=0,
+        description="How long a client may take for its TLS handshake, the head of a request and its body; real time.",
+    )
     spool: Path | None = Field(None, description="Folder for .eml files; default: `spool` in the data folder.")
     server_key_file: Path | None = Field(
         None,
