@@ -28,8 +28,7 @@ def message_of(mail: Mail, sender: str) -> EmailMessage:
     message = EmailMessage(policy=MAIL)
     message["From"] = sender
     message["To"] = mail.to
-    # Names of people stand in it, and a line of its own would be another header.
-    message["Subject"] = " ".join(mail.subject.split())
+    message["Subject"] = _words(mail.subject)
     message["Date"] = format_datetime(mail.at)
     message["Message-ID"] = f"<{name_of(mail.key)}@{sender.rpartition('@')[2].strip('<> ')}>"
     message["Auto-Submitted"] = "auto-generated"
@@ -40,6 +39,14 @@ def message_of(mail: Mail, sender: str) -> EmailMessage:
         name, picture = mail.png
         message.add_attachment(picture, maintype="image", subtype="png", filename=name)
     return message
+
+
+def _words(subject: str) -> str:
+    """The subject without what would become a line of its own, another header: names of people stand in it.
+
+    `=?` begins letters in disguise (RFC 2047): the library would read them, line breaks among them, and write them out.
+    """
+    return " ".join(subject.split()).replace("=?", "= ?")
 
 
 def name_of(key: str) -> str:

@@ -15,6 +15,10 @@ from protocol.to_server import Fault
 from tests.app.conftest import RECIPIENT, SENDER, Browser, Mailroom, Mails
 
 PARAGRAPH = "Eve\r\n\r\nYour account ends today:\u2028https://evil.example/"
+HEADERS = {
+    *("From", "To", "Subject", "Date", "Message-ID", "Auto-Submitted"),
+    *("Content-Type", "Content-Transfer-Encoding", "MIME-Version"),
+}
 UNPRINTABLE = (
     "\r\n",
     "\n",
@@ -119,6 +123,23 @@ def test_a_name_that_was_stored_before_writes_no_paragraph_into_a_mail(
         assert "Eve Your account ends today: https://evil.example/" in text
         assert text.count("Your account") == text.count("Eve Your account"), "never at the beginning of a line"
         assert not re.search("[\u2028\u202e]", text)
+
+
+@pytest.mark.parametrize("hidden", ["=0d=0aBcc:_eve@evil.example=0d=0a=0d=0aPay_Eve", "=E2=80=AEdiaP", "=E2=80=A8Paid"])
+def test_a_name_hides_no_line_in_the_letters_of_a_mails_header(
+    sender: Browser, mailroom: Mailroom, mails: Mails, hidden: str
+) -> None:
+    """`=?utf-8?q?…?=` stands for other letters in a header, also for those that a name may not have."""
+    assert sender.patch("/api/v1/me", json={"name": f"=?utf-8?q?{hidden}?="}).status_code == 200
+    mailroom.move(sender.order().json()["id"], "assigned", "to_sender", "at_sender", "carrying")
+    mailroom.send_mails()
+    (raw,) = [file.read_bytes() for file in mails.folder.iterdir() if RECIPIENT.encode() in file.read_bytes()]
+    head = raw.partition(b"\r\n\r\n")[0].decode("ascii")
+    assert "\n" not in head.replace("\r\n", "")
+    assert {line.partition(":")[0] for line in head.split("\r\n") if line[0] != " "} == HEADERS
+    (mail,) = mails.to(RECIPIENT)
+    assert str(mail["Subject"]).isprintable()
+    assert hidden in mail["Subject"], "it is shown as it was written"
 
 
 async def _rename(mailroom: Mailroom, name: str) -> None:
