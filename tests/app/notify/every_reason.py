@@ -8,11 +8,13 @@ from functools import cache
 from itertools import cycle
 from pathlib import Path
 
+from app.dispatch import choice, held_up, why_orders_wait
 from app.fleet.answers import RECALLED
 from app.fleet.evidence import UNPROVED
 from app.fleet.handed_over import NOT_PROVED
 from app.fleet.missions import NOT_REPORTED, UNLOADED
 from app.fleet.receipts import PROBLEMS, claimed
+from app.orders import reasons
 from app.orders.timer import NOBODY_CAME
 from app.settings import ROOT
 from app.tables import OrderState
@@ -108,6 +110,10 @@ def what_the_service_tells() -> Iterator[str]:
     """Of orders, and of messages that it or a robot could not follow."""
     yield from (NOT_PROVED, NOBODY_CAME, RECALLED, UNLOADED, NOT_REPORTED, "The recipient cannot take it now.")
     yield from told_beside_alarms(ROOT / "app/fleet/intake.py")
+    for module in (reasons, held_up, why_orders_wait, choice):
+        texts = (value for name, value in vars(module).items() if name.isupper())
+        yield from (text.format(orders=3) for text in texts if isinstance(text, str))
+    yield from held_up.SENTENCES.values()
 
 
 def told_beside_alarms(file: Path) -> Iterator[str]:
