@@ -3,7 +3,7 @@
  * @import { CampusMap, Expected, Order, Robot } from "./api_types.ts"
  * @typedef {{window: {from: string, to: string} | null, assumed: boolean, late: boolean}} Arrival `window`: null while no time is known
  */
-import { reasonText } from "./reason_words.js";
+import { orderReason } from "./order_words.js";
 import { t } from "./texts.js";
 import { windowText } from "./times.js";
 
@@ -26,12 +26,9 @@ export function arrivalText(order, now_ms) {
 export const isLate = (order, now_ms) => arrivalOf(order, now_ms)?.late === true;
 
 /** Why no time is known; one whose time has run out while nobody asked takes longer. @param {Order} order @param {CampusMap} map */
-export function whyUnknown({ estimate, events }, map) {
-  const { reason, reason_words } = estimate ?? {};
-  if (!reason) return t("why.takes_longer");
-  const moved = events.findLast(({ kind }) => kind === "moved");
-  const isTyped = !reason_words && moved?.state === "attention" && moved.by !== "robot" && moved.by !== "timer";
-  return isTyped ? reason : reasonText(reason, reason_words ?? null, map);
+export function whyUnknown(order, map) {
+  const { reason, reason_words } = order.estimate ?? {};
+  return reason ? orderReason({ ...order, why: reason, why_words: reason_words ?? null }, map) : t("why.takes_longer");
 }
 
 /** Where a robot is expected next, as long as that is not over. @param {Robot} robot @param {number} now_ms @returns {Expected | null} */

@@ -1,14 +1,20 @@
 """A notice in words, the same on every channel."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Final
 
-from app.tables import Notice
-from app.texts import catalogue, text
+from app.tables import Notice, NoticeKind
+from app.texts import text
 from app.texts.reasons import in_words
 from app.texts.times import day_and_time, of_fact
 
 TIMES: Final = ("window_from", "window_to")
+WITHOUT_TIME: Final[Mapping[NoticeKind, str]] = {
+    NoticeKind.ACCEPTED: "notice.accepted.body_no_time",
+    NoticeKind.ON_ITS_WAY: "notice.on_its_way.body_no_time",
+    NoticeKind.DELAYED: "notice.delayed.body_no_time",
+}
+"""What is told while no time of arrival is known."""
 
 
 def title_of(notice: Notice, language: str) -> str:
@@ -19,9 +25,9 @@ def title_of(notice: Notice, language: str) -> str:
 def body_of(notice: Notice, language: str) -> str:
     times = dict(_times(notice, language))
     key = f"notice.{notice.kind}.body"
-    without = f"{key}_no_time"
-    is_known = all(name in notice.facts for name in TIMES) or without not in catalogue(language)
-    return text(language, key if is_known else without, {**in_words(language, notice.facts), **times})
+    if not all(name in notice.facts for name in TIMES):
+        key = WITHOUT_TIME.get(notice.kind, key)
+    return text(language, key, {**in_words(language, notice.facts), **times})
 
 
 def _times(notice: Notice, language: str) -> Iterator[tuple[str, str]]:

@@ -33,6 +33,10 @@ class EstimateView(BaseModel):
     promised_to: datetime | None
     late: bool
 
+    def without_own_words(self) -> "EstimateView":
+        """The same without a reason that the catalogue does not have: it may be anybody's own words."""
+        return self if self.reason_words else self.model_copy(update={"reason": None})
+
 
 def expected_of(order: Order, now: datetime) -> tuple[datetime, datetime] | None:
     """The interval in which the robot should come to the recipient; None if that is not known."""
@@ -42,8 +46,11 @@ def expected_of(order: Order, now: datetime) -> tuple[datetime, datetime] | None
     return begins_at, ends_at
 
 
-def estimate_view(order: Order, robot: RobotRow | None, why: str | None, now: datetime) -> EstimateView | None:
-    """None where no arrival is ahead: the robot is there, the mail goes back, or the order has ended."""
+def estimate_view(
+    order: Order, robot: RobotRow | None, why: str | None, why_words: Words | None, now: datetime
+) -> EstimateView | None:
+    """None where no arrival is ahead: the robot is there, the mail goes back, or the order has ended. `why_words`: None
+    for what a person has typed, whatever it looks like."""
     is_stopped = order.state is OrderState.ATTENTION and order.state_before_attention not in TURNED_BACK
     if order.state not in STILL_TO_COME and not is_stopped:
         return None
@@ -51,6 +58,7 @@ def estimate_view(order: Order, robot: RobotRow | None, why: str | None, now: da
     reason = why if order.why or robot is None or is_waiting(robot) else None
     if reason is None and expected is None:
         reason = why_no_time(order, robot, now)
+        why_words = words_of(reason)
     begins_at, ends_at = expected or (None, None)
     return EstimateView(
         from_=begins_at,
@@ -58,7 +66,7 @@ def estimate_view(order: Order, robot: RobotRow | None, why: str | None, now: da
         made_at=order.estimated_at,
         assumed=order.window_assumed,
         reason=reason,
-        reason_words=words_of(reason) if reason else None,
+        reason_words=why_words if reason else None,
         promised_to=order.window_to,
         late=is_late(order, now),
     )

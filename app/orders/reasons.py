@@ -3,7 +3,7 @@
 from datetime import datetime
 from typing import Final
 
-from app.orders.robot_view import why_of_robot
+from app.orders.robot_view import RobotView, why_of_robot
 from app.tables import Order, OrderState, RobotRow
 from app.texts.reasons import words_of
 from protocol.parts import Activity
@@ -27,6 +27,13 @@ def why_it_waits(order: Order, robot: RobotRow | None) -> str | None:
         return order.why
     why = why_of_robot(robot)
     return OTHER_STOP_FIRST if order.state not in AT_A_STOP and is_about_a_stop(why) else why
+
+
+def as_of_order(robot: RobotView, why: str | None) -> RobotView:
+    """The robot as the people of one order see it: without the stop of another."""
+    if why != OTHER_STOP_FIRST:
+        return robot
+    return robot.model_copy(update={"why": why, "why_words": words_of(why)})
 
 
 def is_about_a_stop(why: str | None) -> bool:

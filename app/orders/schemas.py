@@ -99,6 +99,13 @@ class WindowView(BaseModel):
     def of(cls, window: Window) -> "WindowView":
         return cls(from_=window.begins_at, to=window.ends_at, assumed=window.assumed)
 
+    @classmethod
+    def of_estimate(cls, estimate: EstimateView) -> "WindowView | None":
+        """The same times; None while none are known."""
+        if estimate.from_ is None or estimate.to is None:
+            return None
+        return cls(from_=estimate.from_, to=estimate.to, assumed=estimate.assumed)
+
 
 class Estimate(BaseModel):
     """Before ordering: when mail would arrive, and how far it has to go.

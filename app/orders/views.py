@@ -13,9 +13,9 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.orders.codes import mailrooms_turn, turn_of
 from app.orders.custody import custody_of
-from app.orders.estimate import EstimateView, estimate_view
-from app.orders.reasons import OTHER_STOP_FIRST, why_it_waits
-from app.orders.robot_view import RobotView, robot_view
+from app.orders.estimate import estimate_view
+from app.orders.reasons import as_of_order, why_it_waits
+from app.orders.robot_view import robot_view
 from app.orders.schemas import CustodyView, EventView, HandoverRequested, OrderView, Somebody, WindowView
 from app.orders.transitions import CARRIED, ENDED, LOADED, ROBOT_COMING, By
 from app.settings import Settings
@@ -154,7 +154,7 @@ def order_view(
     row = facts.robot if order.state not in ENDED else None
     why = why_it_waits(order, row)
     why_words = words_of(why) if why and not _is_why_typed(facts) else None
-    estimate = _estimate(facts, row, why, now)
+    estimate = estimate_view(order, row, why, why_words, now)
     turn = turn_of(order, person_id) or (mailrooms_turn(order) if role == "dispatcher" else None)
     return OrderView(
         id=order.id,
@@ -167,9 +167,9 @@ def order_view(
         description=order.description,
         created_at=order.created_at,
         updated_at=order.updated_at,
-        window=_window(estimate),
+        window=estimate and WindowView.of_estimate(estimate),
         estimate=estimate,
-        robot=row and _shown(robot_view(row, campus, settings, now), why),
+        robot=row and as_of_order(robot_view(row, campus, settings, now), why),
         why=why,
         why_words=why_words,
         my_role=role,
@@ -198,7 +198,7 @@ def delegates_view(
     whole = order_view(facts, "recipient", "", campus, settings, now)
     return OrderView(
         **{name: getattr(whole, name) for name in SHOWN_TO_DELEGATES if name != "estimate"},
-        estimate=whole.estimate and _without_own_words(whole.estimate),
+        estimate=whole.estimate and whole.estimate.without_own_words(),
         sender=Somebody(email="", name=facts.sender.name),
         recipient=Somebody(email="", name=facts.recipient.name),
         robot=whole.robot and whole.robot.model_copy(update=UNSAID_TO_DELEGATES),
@@ -257,31 +257,6 @@ def _handover_requested(events: Sequence[OrderEvent], settings: Settings) -> Han
         return None
     expires_at = last.at + timedelta(seconds=settings.confirm_lifetime_s)
     return HandoverRequested(how=last.reason or "tap", at=last.at, expires_at=expires_at)
-
-
-def _estimate(facts: OrderFacts, robot: RobotRow | None, why: str | None, now: datetime) -> EstimateView | None:
-    estimate = estimate_view(facts.order, robot, why, now)
-    if estimate is None or estimate.reason is None or not _is_why_typed(facts):
-        return estimate
-    return estimate.model_copy(update={"reason_words": None})
-
-
-def _window(estimate: EstimateView | None) -> WindowView | None:
-    if estimate is None or estimate.from_ is None or estimate.to is None:
-        return None
-    return WindowView(from_=estimate.from_, to=estimate.to, assumed=estimate.assumed)
-
-
-def _without_own_words(estimate: EstimateView) -> EstimateView:
-    """A reason that the catalogue does not have may be anybody's own words."""
-    return estimate if estimate.reason_words else estimate.model_copy(update={"reason": None})
-
-
-def _shown(robot: RobotView, why: str | None) -> RobotView:
-    """The robot as the people of one order see it: without the stop of another."""
-    if why != OTHER_STOP_FIRST:
-        return robot
-    return robot.model_copy(update={"why": why, "why_words": words_of(why)})
 
 
 def somebody(person: Person) -> Somebody:

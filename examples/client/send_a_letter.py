@@ -13,7 +13,8 @@ from campus_mail_client import CampusMail, CampusMailError
 def main(from_post: str, to_post: str, recipient: str) -> None:
     with CampusMail(os.environ["CAMPUS_MAIL_URL"], os.environ["CAMPUS_MAIL_TOKEN"]) as mail:
         placed = mail.place(from_post, to_post, recipient, "A letter")
-        print(f"{placed.id}: expected by {placed.window.to:%H:%M} UTC" if placed.window else placed.id)
+        expected = f"expected by {placed.window.to:%H:%M} UTC" if placed.window else "no time of arrival is known yet"
+        print(f"{placed.id}: {expected}")
         state = ""
         for order in mail.follow(placed.id):
             if order.state != state:

@@ -46,11 +46,16 @@ async def lost_at_first(number: int, answer: httpx.Response) -> httpx.Response:
     return answer
 
 
-async def test_an_order_is_placed_read_changed_and_cancelled(mail: AsyncCampusMail) -> None:
+async def test_an_order_is_placed_read_changed_and_cancelled(campus: Campus, mail: AsyncCampusMail) -> None:
+    await campus.enrol()
+    await campus.announce("r1", online=True)
+    await campus.service.app.state.fleet.learning.look()
     order = await mail.place("post1", "post4", RECIPIENT, "A letter")
     assert (order.state, order.sender.email, order.description) == ("queued", SENDER, "A letter")
     assert order.window is not None
     assert order.window.from_ < order.window.to
+    assert order.estimate is not None
+    assert (order.estimate.from_, order.estimate.to) == (order.window.from_, order.window.to)
     assert (await mail.one_order(order.id)).id == order.id
     assert (await mail.cancel_order(order.id, if_match=f'"{order.version}"')).state == "cancelled"
 

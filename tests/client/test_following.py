@@ -28,8 +28,16 @@ async def until(ready: object, limit_s: float = 20) -> None:
 
 
 def orders_in(told: list[Change]) -> list[tuple[str, int]]:
-    """Each state an order came to, once for each time that it was told."""
-    return [(one.data["id"], one.data["version"]) for one in told if one.event == "order" and one.data["why"] is None]
+    """Each version of an order, once for each time that the same was told; a new estimate of it is another event."""
+    versions: list[tuple[str, int]] = []
+    told_before: dict[tuple[str, int], list[object]] = {}
+    for one in told:
+        if one.event == "order":
+            version = one.data["id"], one.data["version"]
+            if version not in told_before or one.data in told_before[version]:
+                versions.append(version)
+            told_before.setdefault(version, []).append(one.data)
+    return versions
 
 
 async def test_a_stream_that_breaks_in_the_middle_of_events_misses_nothing_and_doubles_nothing(campus: Campus) -> None:

@@ -86,6 +86,8 @@ async def test_more_orders_than_are_given_at_once_all_get_a_robot_and_nobody_is_
                 row = RobotRow(name=f"r{name}", enrolled_at=clock.utc(), server_journal="j", post="post5")
                 row.online, row.battery_ratio = True, 0.9
                 session.add(row)
+        await state.fleet.learning.look()
+        async with state.database.transaction() as session:
             sender = await state.sign_in_desk.person(session, "sender@campus.example", clock.utc())
             for _ in range(number):
                 wish = NewOrder(from_post="post1", to_post="post4", recipient="recipient@campus.example")

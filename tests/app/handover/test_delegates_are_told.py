@@ -74,7 +74,7 @@ def test_a_delegate_is_mailed_their_own_code_and_a_link_that_opens_where_it_is_a
 
 
 WHERE_IT_IS = {
-    *("id", "state", "version", "created_at", "updated_at", "from_post", "to_post", "priority", "window", "robot"),
+    *("id", "state", "version", "created_at", "updated_at", "from_post", "to_post", "priority", "estimate", "robot"),
     *("my_role", "sender", "recipient"),
 }
 

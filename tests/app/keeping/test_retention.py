@@ -169,6 +169,7 @@ def technical_rows(clock: SteppedClock, order_id: str, ada: str, notice: int) ->
 def test_everything_technical_goes_when_its_days_are_over_and_not_a_day_before(
     kept: Kept, sender: Browser, mailroom: Mailroom, clock: SteppedClock
 ) -> None:
+    mailroom.robot_connects()
     order_id = sender.order().json()["id"]
     ada, notice = kept.rows(Order)[0].sender_id, kept.rows(Notice)[0].id
     rows = technical_rows(clock, order_id, ada, notice)
