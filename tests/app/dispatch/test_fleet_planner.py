@@ -245,3 +245,34 @@ def _with_routes(decision: Decision, routes: Routes) -> Decision:
 
 async def _all_have_robots(service: Service) -> bool:
     return not await service.rows(Order, state="queued")
+
+
+async def test_who_waits_reads_how_many_are_ahead_and_is_expected_after_them(
+    service: Service, robots: tuple[PlayedRobot, PlayedRobot]
+) -> None:
+    for order_id in [await service.order("post2", "post3") for _ in range(4)]:
+        await has_robot(service, order_id)
+    first, second = await service.order("post2", "post3"), await service.order("post2", "post3")
+    await waits_because(service, first, "Every robot is busy.")
+    await waits_because(service, second, "Every robot is busy, and one order is ahead of this one.")
+    rows = [await service.row(Order, id=order_id) for order_id in (first, second)]
+    now = service.app.state.clock.utc()
+    assert now < rows[0].expected_from <= rows[1].expected_from
+    assert rows[0].expected_to <= rows[1].expected_to
+
+
+async def test_who_waits_for_robots_that_need_help_is_told_so_and_no_time(
+    service: Service, robots: tuple[PlayedRobot, PlayedRobot]
+) -> None:
+    for robot, post in zip(robots, ("post1", "post4"), strict=True):
+        stopped = Snapshot(position=at_post(post), activity=Activity.STOPPED, battery=Battery(ratio=0.9))
+        await robot.say(stopped)
+
+    async def have_stopped() -> bool:
+        return {row.activity for row in await service.rows(RobotRow)} == {Activity.STOPPED}
+
+    await until(have_stopped)
+    order_id = await service.order("post2", "post3")
+    await waits_because(service, order_id, "Every robot that could fetch it has stopped and needs help.")
+    order = await service.row(Order, id=order_id)
+    assert (order.expected_from, order.expected_to) == (None, None)
