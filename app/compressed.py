@@ -19,6 +19,8 @@ FAST: Final[dict[str, Callable[[bytes], bytes]]] = {
     "br": partial(brotli.compress, quality=4),
     "gzip": partial(gzip.compress, compresslevel=5),
 }
+NEEDLESS: Final = ("Last-Modified", "Accept-Ranges")
+"""The ETag says when to ask again, and ranges are of the file as it lies on the disk. A page has dozens of files."""
 Kept = dict[tuple[str, str], tuple[str, bytes]]
 
 
@@ -68,6 +70,8 @@ class _Answer:
             headers = MutableHeaders(scope=head)
             body = await self._compressed(self._encoding, headers.get("etag", ""), body)
             headers["Content-Encoding"], headers["Content-Length"] = self._encoding, str(len(body))
+            for name in NEEDLESS:
+                del headers[name]
         await self._send(head)
         await self._send({"type": "http.response.body", "body": body})
 

@@ -6,9 +6,10 @@ without those that only some pages or only mails have.
 
 import asyncio
 import json
-from collections.abc import Awaitable, Callable, Iterator
+from collections.abc import Awaitable, Callable, Iterator, Mapping
 from functools import partial
 from hashlib import sha256
+from itertools import product
 from pathlib import Path
 from typing import Final
 
@@ -22,11 +23,17 @@ MODULE: Final = "/page_files.js"
 WORKER: Final = "/service_worker.js"
 STYLES: Final = "/styles/everywhere.css"
 STYLES_OF: Final = ("tokens", "base", "shell", "controls")
-TEXTS: Final = "/texts/{language}.everyday.json"
-NOT_EVERYDAY: Final = frozenset(
-    {"email", "notice", "mailroom", "print", "alarm", "robots", "mind", "sensor", "settings"}
-)
-"""Families of texts for mails and for the pages that `texts.js` names; a test says if another page needs one."""
+TEXTS: Final = "/texts/{language}.{pages}.json"
+IN_NEITHER: Final = frozenset({"email", "notice", "robots", "mind", "sensor", "settings"})
+LEFT_OUT: Final[Mapping[str, frozenset[str]]] = {
+    "everyday": IN_NEITHER | {"mailroom", "print", "alarm"},
+    "mailroom": IN_NEITHER
+    | {"code", "delegate", "estimate", "follow", "mail", "next", "one_order", "quality", "stage", "state"},
+}
+"""By kind of page, as `texts.js` names them, the families of texts that are for others and for mails; a test says if a
+page needs one that it is not sent."""
+CATALOGUES: Final = tuple(product(LANGUAGES, LEFT_OUT))
+JSON: Final = "application/json"
 KEPT: Final = frozenset({".html", ".js", ".css", ".json", ".svg"})
 """Pictures of the app for the home screen are fetched by the system once, not by pages."""
 NPM_MODULES: Final = "npm_modules.json"
@@ -58,11 +65,11 @@ class PageFiles:
         """The styles that every page has."""
         return b"\n".join((self._folder / f"styles/{name}.css").read_bytes() for name in STYLES_OF)
 
-    def everyday_texts(self, language: str) -> bytes:
-        """The texts of one language that the everyday pages use."""
+    def texts(self, language: str, pages: str) -> bytes:
+        """The texts of one language that these pages use."""
         texts = json.loads((self._folder / f"texts/{language}.json").read_bytes())
-        everyday = {key: text for key, text in texts.items() if key.partition(".")[0] not in NOT_EVERYDAY}
-        return json.dumps(everyday, ensure_ascii=False, separators=(",", ":")).encode()
+        used = {key: text for key, text in texts.items() if key.partition(".")[0] not in LEFT_OUT[pages]}
+        return json.dumps(used, ensure_ascii=False, separators=(",", ":")).encode()
 
     def _files(self) -> Iterator[tuple[str, Path]]:
         for path in self._folder.rglob("*"):
@@ -81,7 +88,7 @@ class PageFiles:
         for address, path in files.items():
             version.update(address.encode() + b"\0" + sha256(path.read_bytes()).digest())
         parts = {f"/styles/{name}.css" for name in STYLES_OF}
-        made = [STYLES, *(TEXTS.format(language=language) for language in LANGUAGES)]
+        made = [STYLES, *(TEXTS.format(language=language, pages=pages) for language, pages in CATALOGUES)]
         addresses = json.dumps([*(address for address in files if address not in parts), *made])
         name = json.dumps(version.hexdigest()[:VERSION_CHARACTERS])
         return f"export const VERSION = {name};\nexport const FILES = {addresses};\n".encode()
@@ -93,7 +100,10 @@ def add_page_files(app: FastAPI, files: PageFiles) -> None:
         (MODULE, "text/javascript", files.module),
         (WORKER, "text/javascript", files.worker),
         (STYLES, "text/css", files.styles),
-        *((TEXTS.format(language=one), "application/json", partial(files.everyday_texts, one)) for one in LANGUAGES),
+        *(
+            (TEXTS.format(language=one, pages=pages), JSON, partial(files.texts, one, pages))
+            for one, pages in CATALOGUES
+        ),
     )
     for address, media_type, read in made:
         app.get(address, include_in_schema=False)(_made(media_type, read))

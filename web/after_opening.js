@@ -1,5 +1,4 @@
-/** What nobody waits for, done once a page stands: notices that pop up, orders that wait on this device, the worker. */
-import "./elements/notice_toast.js";
+/** What nobody waits for, done once a page stands: orders that wait on this device, the worker. */
 import { onKept } from "./session.js";
 import { workOffline } from "./with_worker.js";
 /** @import { Person } from "./api_types.ts" */

@@ -101,7 +101,7 @@ const orderPath = (id) => `/orders/${encodeURIComponent(id)}`;
 export const about = () => ask("/about");
 
 /** @param {{fresh?: boolean}} [wish] `fresh`: from the service or not at all
- *  @returns {Promise<Api.Person | null>} who is signed in here, null for nobody */
+ *  @returns {Promise<Api.Me | null>} who is signed in here, null for nobody */
 export async function me({ fresh = false } = {}) {
   try {
     return await ask("/me", { cache: fresh ? "no-store" : "default" });

@@ -8,6 +8,8 @@ type Schemas = components["schemas"];
 
 export type About = Schemas["About"];
 export type Person = Schemas["PersonView"];
+/** Whoever is signed in here. */
+export type Me = Schemas["MyView"];
 export type Party = Schemas["Somebody"];
 
 export type CampusMap = Schemas["MapView"];

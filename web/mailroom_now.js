@@ -1,7 +1,7 @@
 /**
  * Everything that the mailroom has to know, fetched once and kept as it changes.
  * @import { ReactiveController, ReactiveControllerHost } from "lit"
- * @import { Alarm, CampusMap, Order, Robot, Sending } from "./api_types.ts"
+ * @import { Alarm, CampusMap, Order, Page, Robot, Sending } from "./api_types.ts"
  */
 import * as api from "./api.js";
 import { OnLive } from "./live.js";
@@ -82,17 +82,12 @@ export class MailroomNow {
   async fetch() {
     this.#heard = { orders: [], robots: [] };
     await this.#attempt(async () => {
-      const [map, robots, open, stuck] = await Promise.all([
-        loadMap(),
-        api.robots(),
-        api.orders("all", { state: "open", limit: AT_ONCE }),
-        api.orders("all", { state: "attention", limit: AT_ONCE }),
-      ]);
+      const [map, robots, [open, stuck]] = await Promise.all([loadMap(), api.robots(), openOrders()]);
       this.map = map;
       this.more = open.next;
       this.robots = new Map([...robots, ...this.#heard.robots].map((robot) => [robot.name, robot]));
       this.orders = new Map();
-      for (const order of [...open.items, ...stuck.items, ...this.#heard.orders]) this.take(order);
+      for (const order of [...open.items, ...stuck, ...this.#heard.orders]) this.take(order);
     });
     await this.look();
   }
@@ -130,4 +125,12 @@ export class MailroomNow {
     }
     this.host.requestUpdate();
   }
+}
+
+/** The newest that are open, and those in attention: asked for apart only where some may be further down.
+ *  @returns {Promise<[Page<Order>, Order[]]>} */
+async function openOrders() {
+  const open = await api.orders("all", { state: "open", limit: AT_ONCE });
+  if (open.next === null) return [open, []];
+  return [open, (await api.orders("all", { state: "attention", limit: AT_ONCE })).items];
 }

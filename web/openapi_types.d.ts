@@ -928,6 +928,26 @@ export interface components {
             next: string | null;
         };
         /**
+         * MyView
+         * @description Oneself, with what every page shows of it.
+         */
+        MyView: {
+            /** Id */
+            id: string;
+            /** Email */
+            email: string;
+            /** Name */
+            name: string;
+            /** Language */
+            language: string;
+            /** Usual Post */
+            usual_post: string | null;
+            /** Roles */
+            roles: components["schemas"]["Role"][];
+            /** Unread Notices */
+            unread_notices: number;
+        };
+        /**
          * NewDelegate
          * @description Somebody who hands over instead of the sender or the recipient. `purpose` follows from who names them.
          * @example {

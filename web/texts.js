@@ -25,12 +25,13 @@ export function fetchTexts(wanted) {
   return texts;
 }
 
-/** Pages with texts of their own, which the everyday ones need not fetch (app/page_files.py leaves them out). */
-const WITH_ALL_TEXTS = ["/mailroom.html", "/robots.html", "/print.html", "/settings.html"];
+/** Which pages fetch more than the everyday ones need: some a part (app/page_files.py says which), some all texts.
+ *  @type {Record<string, string>} */
+const TEXTS_OF = { "/mailroom.html": ".mailroom", "/robots.html": "", "/print.html": "", "/settings.html": "" };
 
 /** @param {string} wanted @returns {Promise<Record<string, string>>} */
 async function fetched(wanted) {
-  const answer = await fetch(`/texts/${wanted}${WITH_ALL_TEXTS.includes(location.pathname) ? "" : ".everyday"}.json`);
+  const answer = await fetch(`/texts/${wanted}${TEXTS_OF[location.pathname] ?? ".everyday"}.json`);
   if (!answer.ok) throw new Error(`no texts for ${wanted}`);
   return answer.json();
 }

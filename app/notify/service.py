@@ -4,13 +4,14 @@ from collections.abc import Mapping, Sequence
 from datetime import datetime, timedelta
 from typing import Any, Final
 
-from sqlalchemy import String, cast, delete, func, update
+from sqlalchemy import String, cast, delete, update
 from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.database import write_all_once, write_once
 from app.notify.schemas import Inbox, NoticeView
 from app.paging import Paging, Sorting
+from app.people.unread import unread_notices
 from app.tables import Alarm, Notice, NoticeKind, OutgoingNotice, Person, Role
 
 COMES_AND_GOES: Final = timedelta(minutes=10)
@@ -90,11 +91,10 @@ async def _with_role(session: AsyncSession, role: Role) -> list[Person]:
 async def inbox(session: AsyncSession, person: Person, page: Paging) -> Inbox:
     """What a person was told, newest first."""
     notices, following = await page.of(session, select(Notice).where(Notice.person_id == person.id), NEWEST_FIRST)
-    unread = select(func.count()).where(Notice.person_id == person.id, col(Notice.read_at).is_(None))
     return Inbox(
         items=[NoticeView.of(notice, person.language) for notice in notices],
         next=following,
-        unread=(await session.exec(unread)).one(),
+        unread=await unread_notices(session, person.id),
     )
 
 

@@ -19,6 +19,7 @@ from app.people.schemas import (
     ContactView,
     ContactWish,
     Email,
+    MyView,
     NewTokenView,
     PersonView,
     SessionPage,
@@ -30,6 +31,7 @@ from app.people.schemas import (
 from app.people.search import SearchText
 from app.people.sessions import end_others, end_session, open_sessions
 from app.people.tokens import good_tokens, issue_token, revoke_token
+from app.people.unread import unread_notices
 from app.settings import CampusDep, ClockDep
 from app.tables import Person, PersonSession, PersonToken
 from maps import CampusMap, UnknownPost
@@ -48,9 +50,10 @@ Prefix = Annotated[str, Path(pattern=r"^[0-9a-f]{8}$")]
 
 
 @me_router.get("/me")
-async def who_am_i(user: CurrentUser) -> PersonView:
+async def who_am_i(user: CurrentUser, session: ReadingDep) -> MyView:
     """The signed-in person; of a script: whose it is, with the roles that its scopes leave."""
-    return PersonView.of(user)
+    unread = await unread_notices(session, user.id)
+    return MyView(**PersonView.of(user).model_dump(), unread_notices=unread)
 
 
 @me_router.patch("/me", dependencies=CHANGES, responses=problems(NoSuchPost, 429))

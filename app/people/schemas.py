@@ -56,6 +56,12 @@ class PersonView(BaseModel):
         return cls.model_validate(person, from_attributes=True)
 
 
+class MyView(PersonView):
+    """Oneself, with what every page shows of it."""
+
+    unread_notices: int
+
+
 class PeoplePage(PageOf[PersonView]):
     """Some people, by mail address."""
 

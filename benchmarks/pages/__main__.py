@@ -14,17 +14,14 @@ from typing import Annotated, Any, Final
 import typer
 from playwright.async_api import Browser
 
-from app.orders.schemas import NewOrder
 from benchmarks.body.report import Wanted, missed, say, table
 from benchmarks.pages import visits
+from benchmarks.pages.scene import Scene, make_scene, order_all
 from benchmarks.pages.visits import PHONE, Visit, a_browser, visit
-from benchmarks.service.filling import Account, Filling, campus, fill
+from benchmarks.service.filling import Account
 from benchmarks.service.servers import Server, service
-from benchmarks.service.web_client import Visitor
 
-EARLIER_ORDERS: Final = 40
 FORM: Final = "[name=from_post]"
-STANDING: Final = ".standing h1"
 FIRST: Final = (
     Wanted("transferred_kb", at_most=100, unit="kB"),
     Wanted("usable_ms", at_most=1500, unit="ms"),
@@ -38,13 +35,21 @@ class Page(StrEnum):
     ORDER = "order"
     ORDER_AGAIN = "order_again"
     FOLLOW = "follow"
+    MAILROOM = "mailroom"
 
 
 PARTS: Final[dict[Page, tuple[Wanted, ...]]] = {
-    Page.ORDER: FIRST,
+    Page.ORDER: (*FIRST, Wanted("calls", at_most=5)),
     Page.ORDER_AGAIN: (Wanted("usable_ms", at_most=1000, unit="ms"), Wanted("layout_shift", at_most=0.05)),
     Page.FOLLOW: FIRST[1:],
+    Page.MAILROOM: (Wanted("transferred_kb", at_most=120, unit="kB"), Wanted("calls", at_most=12), FIRST[2]),
 }
+
+SHOWN: Final = {
+    Page.FOLLOW: ("/follow.html?order={order}", ".standing h1"),
+    Page.MAILROOM: ("/mailroom.html", ".queue .act"),
+}
+"""The address, and what can be used once it is there; the others show the form."""
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
 
@@ -58,8 +63,9 @@ def measure(
 ) -> None:
     """Print what was measured, as JSON, beside what is wanted. Ends with 1 if anything wanted was missed.
 
-    A page can be used when the field "from" (followed: the sentence that says where the letter is) is visible and
-    enabled. The browser's own throttling makes the phone: the person is signed in, the cache is empty.
+    A page can be used when the field "from" (followed: the sentence that says where the letter is; the mailroom: the
+    queue) is visible and enabled. The browser's own throttling makes the phone: the person is signed in, the cache is
+    empty. Calls are requests to the API, the event stream among them.
     """
     wanted = {page: PARTS[page] for page in pages or PARTS}
     seen = _visits(runs, set(wanted))
@@ -71,7 +77,7 @@ def measure(
 
 
 def _report(seen: Sequence[Visit], wanted: Sequence[Wanted]) -> dict[str, Any]:
-    names = ("usable_ms", "transferred_kb", "requests", "layout_shift")
+    names = ("usable_ms", "transferred_kb", "requests", "calls", "layout_shift")
     figures: dict[str, Any] = {name: round(median(getattr(one, name) for one in seen), 3) for name in names}
     figures["each_usable_ms"] = [round(one.usable_ms) for one in seen]
     return {"figures": figures, "wanted": [one.judged(figures) for one in wanted]}
@@ -84,62 +90,48 @@ def _machine() -> dict[str, Any]:
 
 
 def _visits(runs: int, wanted: Set[Page]) -> dict[Page, list[Visit]]:
-    async def somebody(filling: Filling) -> Account:
-        accounts = await filling.people(3)
-        await filling.history(accounts, EARLIER_ORDERS)
-        return accounts[0]
-
     with tempfile.TemporaryDirectory() as folder:
-        account = fill(Path(folder), somebody)
+        scene = make_scene(Path(folder))
         with service(Path(folder)) as server:
-            return asyncio.run(_visit_all(server, account, runs, wanted))
+            return asyncio.run(_visit_all(server, scene, runs, wanted))
 
 
-async def _visit_all(server: Server, account: Account, runs: int, wanted: Set[Page]) -> dict[Page, list[Visit]]:
+async def _visit_all(server: Server, scene: Scene, runs: int, wanted: Set[Page]) -> dict[Page, list[Visit]]:
     seen: dict[Page, list[Visit]] = {page: [] for page in wanted}
-    order_id = await _an_order(server, account)
+    followed = await order_all(server, scene)
     async with a_browser() as browser:
         for run in range(runs):
             say(f"  visit {run + 1} of {runs}")
-            for page, found in (await _visit_once(browser, server, account, order_id, wanted)).items():
-                seen.get(page, []).append(found)
+            for pages in _in_one_browser(wanted):
+                account = scene.dispatcher if Page.MAILROOM in pages else scene.sender
+                for page, found in (await _visit_once(browser, server, account, followed, pages)).items():
+                    seen.get(page, []).append(found)
     return seen
 
 
 async def _visit_once(
-    browser: Browser, server: Server, account: Account, order_id: str, wanted: Set[Page]
+    browser: Browser, server: Server, account: Account, followed: str, pages: Sequence[Page]
 ) -> dict[Page, Visit]:
+    """One after the other in a browser of its own."""
     origin = f"http://127.0.0.1:{server.port}"
     cookie: Any = {"name": "session", "value": account.cookie, "url": origin}
     seen: dict[Page, Visit] = {}
-    followed = (f"/follow.html?order={order_id}", STANDING)
-    for visits_in_order in _in_one_browser(wanted):
-        context = await browser.new_context(base_url=origin, **PHONE)
-        await context.add_cookies([cookie])
-        for page in visits_in_order:
-            seen[page] = await visit(context, *(followed if page is Page.FOLLOW else ("/", FORM)))
-            if page != visits_in_order[-1]:
-                await visits.until_kept(context)
-        await context.close()
+    context = await browser.new_context(base_url=origin, **PHONE)
+    await context.add_cookies([cookie])
+    for page in pages:
+        address, selector = SHOWN.get(page, ("/", FORM))
+        seen[page] = await visit(context, address.format(order=followed), selector)
+        if page != pages[-1]:
+            await visits.until_kept(context)
+    await context.close()
     return seen
 
 
 def _in_one_browser(wanted: Set[Page]) -> list[list[Page]]:
     """The second visit of a page has a first one before it."""
     orders = [Page.ORDER, Page.ORDER_AGAIN] if Page.ORDER_AGAIN in wanted else [Page.ORDER]
-    return [*([orders] if wanted - {Page.FOLLOW} else []), *([[Page.FOLLOW]] if Page.FOLLOW in wanted else [])]
-
-
-async def _an_order(server: Server, account: Account) -> str:
-    """One that is under way, to be followed and to stand on the order page."""
-    client = Visitor(server.port, account.cookie)
-    posts = list(campus().posts)
-    wish = NewOrder(from_post=posts[0], to_post=posts[-1], recipient="person.1@campus.example")
-    answer = await client.post(
-        "/api/v1/orders", wish.model_dump(mode="json", exclude_unset=True), "Idempotency-Key: bench\r\n"
-    )
-    client.close()
-    return str(answer.json()["id"])
+    others = [page for page in SHOWN if page in wanted]
+    return [*([orders] if wanted - {*others} else []), *([page] for page in others)]
 
 
 if __name__ == "__main__":

@@ -54,6 +54,8 @@ class Visit:
     usable_ms: float
     transferred_kb: float
     requests: int
+    calls: int
+    """Of the API, the event stream among them."""
     layout_shift: float
 
 
@@ -69,13 +71,15 @@ class _Traffic:
     def __init__(self, cdp: CDPSession) -> None:
         self.heads: dict[str, float] = {}
         self.whole: dict[str, float] = {}
-        self.asked = 0
+        self.asked = self.calls = 0
         cdp.on("Network.requestWillBeSent", self._ask)
         cdp.on("Network.responseReceived", self._head)
         cdp.on("Network.loadingFinished", self._end)
 
     def _ask(self, event: dict[str, Any]) -> None:
-        self.asked += not event["request"]["url"].startswith("data:")
+        url = event["request"]["url"]
+        self.asked += not url.startswith("data:")
+        self.calls += "/api/" in url
 
     def _head(self, event: dict[str, Any]) -> None:
         self.heads[event["requestId"]] = event["response"]["encodedDataLength"]
@@ -104,7 +108,7 @@ async def visit(context: BrowserContext, address: str, selector: str) -> Visit:
         await asyncio.sleep(QUIET_S)
     shift = float(await page.evaluate("window.layoutShift"))
     await page.close()
-    return Visit(usable_ms, round(traffic.kb, 1), traffic.asked, round(shift, 4))
+    return Visit(usable_ms, round(traffic.kb, 1), traffic.asked, traffic.calls, round(shift, 4))
 
 
 async def _slowed(page: Page) -> CDPSession:

@@ -2,7 +2,7 @@
 
 import asyncio
 import secrets
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Sequence, Set
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from functools import cache
@@ -16,7 +16,7 @@ from sqlmodel import SQLModel
 
 from app.database import Database
 from app.fleet.tokens import make_token
-from app.people.service import make_person
+from app.people.service import make_person, set_roles
 from app.schema_version import bring_to_head
 from app.settings import Settings, make_data_folder
 from app.tables import (
@@ -28,6 +28,7 @@ from app.tables import (
     PersonSession,
     RobotRow,
     RobotToken,
+    Role,
     StopRow,
 )
 from app.tables.order_events import MOVED
@@ -93,9 +94,11 @@ class Filling:
             async with self._database.writing.begin() as connection:
                 await connection.execute(insert(table), values[first : first + ROWS_AT_ONCE])
 
-    async def people(self, number: int, word: str = "person") -> list[Account]:
+    async def people(self, number: int, word: str = "person", roles: Set[Role] = frozenset()) -> list[Account]:
         """Signed in, with a session of their own."""
         people = [make_person(f"{word}.{n}@campus.example", "en", self.now) for n in range(number)]
+        for person in people:
+            set_roles(person, set(roles), set())
         cookies = [secrets.token_urlsafe(32) for _ in people]
         await self._write(Person, people)
         sessions = [

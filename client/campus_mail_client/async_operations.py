@@ -41,6 +41,7 @@ from campus_mail_client.models import (
     LongerWait,
     MapView,
     MyDelegates,
+    MyView,
     NewDelegate,
     NewDevice,
     NewOrder,
@@ -186,9 +187,9 @@ class AsyncOperations:
             "GET", "/api/v1/sign-in/oidc/callback", None, query={"state": state, "code": code, "error": error}
         )
 
-    async def who_am_i(self) -> PersonView:
+    async def who_am_i(self) -> MyView:
         """The signed-in person; of a script: whose it is, with the roles that its scopes leave."""
-        answer: PersonView = await self._call("GET", "/api/v1/me", PersonView)
+        answer: MyView = await self._call("GET", "/api/v1/me", MyView)
         return answer
 
     async def change_me(self, wish: AboutMe) -> PersonView:

@@ -527,6 +527,18 @@ class MyDelegates(Model):
     next: str | None
 
 
+class MyView(Model):
+    """Oneself, with what every page shows of it."""
+
+    id: str
+    email: str
+    name: str
+    language: str
+    usual_post: str | None
+    roles: list[Role]
+    unread_notices: int
+
+
 class NewDelegate(Model):
     """Somebody who hands over instead of the sender or the recipient. `purpose` follows from who names them."""
 

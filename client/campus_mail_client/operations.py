@@ -41,6 +41,7 @@ from campus_mail_client.models import (
     LongerWait,
     MapView,
     MyDelegates,
+    MyView,
     NewDelegate,
     NewDevice,
     NewOrder,
@@ -184,9 +185,9 @@ class Operations:
         """Come back from there, with a session or with `sign_in_problem`."""
         self._call("GET", "/api/v1/sign-in/oidc/callback", None, query={"state": state, "code": code, "error": error})
 
-    def who_am_i(self) -> PersonView:
+    def who_am_i(self) -> MyView:
         """The signed-in person; of a script: whose it is, with the roles that its scopes leave."""
-        answer: PersonView = self._call("GET", "/api/v1/me", PersonView)
+        answer: MyView = self._call("GET", "/api/v1/me", MyView)
         return answer
 
     def change_me(self, wish: AboutMe) -> PersonView:

@@ -71,6 +71,8 @@ LINES: Final[dict[tuple[str, str], Line]] = {
     ("GET", "/styles/everywhere.css"): NOT_SET_UP,
     ("GET", "/texts/en.everyday.json"): NOT_SET_UP,
     ("GET", "/texts/fr.everyday.json"): NOT_SET_UP,
+    ("GET", "/texts/en.mailroom.json"): NOT_SET_UP,
+    ("GET", "/texts/fr.mailroom.json"): NOT_SET_UP,
     ("GET", "/api/v1/openapi.json"): OPEN,
     ("GET", "/api/v1/about"): OPEN,
     ("GET", "/api/v1/map"): OPEN,

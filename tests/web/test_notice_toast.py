@@ -69,7 +69,8 @@ async def test_a_notice_lies_never_over_the_keyboard_and_waits_for_whoever_is_at
     await expect(toast).to_be_visible()
     await page.clock.fast_forward(SHOWN_MS)
     await expect(toast).to_be_hidden()
-    async with page.expect_response("**/notices?limit*"):
-        await ada.asks_anew()
+    await page.evaluate("() => dispatchEvent(new Event('pagehide'))")
+    async with page.expect_request("**/api/v1/live*"):
+        await page.evaluate("() => dispatchEvent(new PageTransitionEvent('pageshow', {persisted: true}))")
     await page.evaluate("() => new Promise((done) => setTimeout(done, 100))")
     await expect(toast).to_be_hidden()

@@ -5,12 +5,12 @@ from pathlib import Path
 
 import pytest
 
-from app.page_files import NOT_EVERYDAY
+from app.page_files import LEFT_OUT
 from web import make_pages
 
 WEB = Path(__file__).parents[2] / "web"
 PAGES = sorted(WEB.glob("*.html"))
-WITH_ALL_TEXTS = re.compile(r"const WITH_ALL_TEXTS = \[(.*?)\]")
+TEXTS_OF = re.compile(r"const TEXTS_OF = \{(.*?)\}")
 LATER = re.compile(r"\bimport\(\"([^\"]+)\"\)")
 TEXT = re.compile(r"\b(?:t|counted|hasText)\((?:[^()\"`]*\? ?)?[\"`](\w+)\.")
 SCRIPTS = [path for path in sorted(WEB.rglob("*.js")) if "node_modules" not in path.parts]
@@ -48,14 +48,17 @@ def test_a_lock_file_names_no_host(folder):
     assert "://" not in (folder / "package-lock.json").read_text(encoding="utf-8")
 
 
-def everyday_modules() -> set[str]:
-    """Every module of ours that an everyday page may fetch, at once or later."""
-    listed = WITH_ALL_TEXTS.search((WEB / "texts.js").read_text(encoding="utf-8"))
+def pages_sent(kind: str) -> list[Path]:
+    """The pages that fetch the texts of this kind."""
+    listed = TEXTS_OF.search((WEB / "texts.js").read_text(encoding="utf-8"))
     assert listed
-    pages = [page for page in PAGES if f'"/{page.name}"' not in listed[1]]
-    assert {page.name for page in PAGES} - {page.name for page in pages} == set(
-        re.findall(r"/([\w-]+\.html)", listed[1])
-    )
+    named = dict(re.findall(r'"/([\w-]+\.html)": "\.?(\w*)"', listed[1]))
+    assert named.keys() <= {page.name for page in PAGES}
+    return [page for page in PAGES if named.get(page.name, "everyday") == kind]
+
+
+def modules_of(pages: list[Path]) -> set[str]:
+    """Every module of ours that these pages may fetch, at once or later."""
     html = "".join(page.read_text(encoding="utf-8") for page in pages)
     waiting, found = [one for one in re.findall(r"/[\w/.@-]+\.js", html) if not one.startswith("/npm/")], set()
     while waiting:
@@ -69,11 +72,18 @@ def everyday_modules() -> set[str]:
     return found
 
 
-def test_everyday_pages_need_no_text_that_they_are_not_sent():
-    modules = everyday_modules()
-    assert {"/pages/order.js", "/elements/follow_page.js", "/elements/campus_map.js", "/push.js"} <= modules
+@pytest.mark.parametrize(
+    ("kind", "among_others"),
+    [
+        ("everyday", {"/pages/order.js", "/elements/follow_page.js", "/elements/campus_map.js", "/push.js"}),
+        ("mailroom", {"/pages/mailroom.js", "/elements/mailroom_wall.js", "/elements/unsent_mail.js"}),
+    ],
+)
+def test_pages_need_no_text_that_they_are_not_sent(kind, among_others):
+    modules = modules_of(pages_sent(kind))
+    assert among_others <= modules
     texts = {module: make_pages.file_of(module).read_text(encoding="utf-8") for module in modules}
     missed = {
-        (module, family) for module, text in texts.items() for family in TEXT.findall(text) if family in NOT_EVERYDAY
+        (module, family) for module, text in texts.items() for family in TEXT.findall(text) if family in LEFT_OUT[kind]
     }
     assert not missed

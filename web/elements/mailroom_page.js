@@ -7,13 +7,13 @@ import { OnLive } from "../live.js";
 import { orderActions } from "../mailroom_actions.js";
 import { MailroomNow } from "../mailroom_now.js";
 import { isHeldUp, orderTitle, whatIsWrong } from "../mailroom_words.js";
+import { fetchMapWhenSeen } from "../map_later.js";
 import { inWords } from "../problems.js";
 import { serverNow } from "../server_clock.js";
 import { t } from "../texts.js";
 import { Ticking } from "../ticking.js";
 import { TrafficNow } from "../traffic.js";
 import "./ask_dialog.js";
-import "./campus_map.js";
 import { closedCorridors } from "./closed_corridors.js";
 import { problemLine } from "./field.js";
 import { mailroomDialogs, mailroomTools } from "./mailroom_tools.js";
@@ -36,6 +36,7 @@ export class MailroomPage extends PageElement {
   corridors = new ClosedNow(this);
   /** Robots that were told to wait and have not said yet that they do. @type {Set<string>} */
   #asked = new Set();
+  #hasPlaceForMap = false;
   #doing = {
     ask: (/** @type {Action} */ action, /** @type {string} */ about) => this.#ask([action], about),
     acknowledge: (/** @type {Alarm} */ alarm) => this.#do("alarm.acknowledged", () => api.acknowledgeAlarm(alarm.id)),
@@ -93,6 +94,13 @@ export class MailroomPage extends PageElement {
       </div>
       <ask-dialog @done=${this.#done} @refused=${() => this.now.fetch()}></ask-dialog>
       ${mailroomDialogs()}`;
+  }
+
+  updated() {
+    const place = this.#hasPlaceForMap ? null : this.querySelector("campus-map");
+    if (!place) return;
+    this.#hasPlaceForMap = true;
+    fetchMapWhenSeen(place);
   }
 
   /** @param {ReturnType<typeof whatIsWrong>} wrongs @param {CampusMap} map */

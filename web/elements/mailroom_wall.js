@@ -36,11 +36,6 @@ export class MailroomWall extends PageElement {
     new StaysAwake(this);
   }
 
-  connectedCallback() {
-    super.connectedCallback();
-    document.documentElement.classList.add("wall");
-  }
-
   render() {
     const { map, problem, known } = this.now;
     if (!map) return problem ? problemLine(problem) : html`<p class="waiting" role="status">${t("app.loading")}</p>`;

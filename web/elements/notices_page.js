@@ -10,18 +10,18 @@ import { Ticking } from "../ticking.js";
 import { ago } from "../times.js";
 import { problemLine } from "./field.js";
 import { PageElement } from "./page_element.js";
-/** @import { Notice } from "../api_types.ts" */
+/** @import { Inbox, Notice } from "../api_types.ts" */
 
 export class NoticesPage extends PageElement {
   /** How often some were read here. */
   #reads = 0;
 
-  static properties = { notices: { state: true }, problem: { state: true } };
+  static properties = { inbox: { state: true }, problem: { state: true } };
 
   constructor() {
     super();
-    /** @type {Notice[] | null} */
-    this.notices = null;
+    /** @type {Inbox | null} */
+    this.inbox = null;
     this.problem = "";
     new Ticking(this, 5_000);
     new OnLive(this, { notice: () => this.#fetch(), resync: () => this.#fetch() });
@@ -32,13 +32,18 @@ export class NoticesPage extends PageElement {
   }
 
   render() {
-    const unread = this.notices?.filter(({ read }) => !read) ?? [];
+    const unread = this.inbox?.items.filter(({ read }) => !read) ?? [];
     return html`<div class="title-line">
         <h1>${t("notices.title")}</h1>
         ${unread.length ? html`<button class="quiet" @click=${() => this.#read(unread)}>${t("notices.all_read")}</button>` : nothing}
       </div>
       ${this.problem ? problemLine(this.problem) : nothing}
-      ${this.notices === null ? nothing : this.#list(this.notices)}`;
+      ${this.inbox ? this.#list(this.inbox.items) : nothing}`;
+  }
+
+  /** The shell counts what is unread. @param {Map<string, unknown>} changed */
+  updated(changed) {
+    if (this.inbox && changed.has("inbox")) this.dispatchEvent(new CustomEvent("inbox", { bubbles: true, detail: this.inbox }));
   }
 
   /** @param {Notice[]} notices */
@@ -64,8 +69,7 @@ export class NoticesPage extends PageElement {
     await this.#attempt(async () => {
       await api.markRead(ids);
       this.#reads += 1;
-      this.notices = this.notices?.map((notice) => (ids.includes(notice.id) ? { ...notice, read: true } : notice)) ?? null;
-      this.dispatchEvent(new CustomEvent("notices-read", { bubbles: true }));
+      if (this.inbox) this.inbox = withRead(this.inbox, ids);
     });
   }
 
@@ -73,9 +77,9 @@ export class NoticesPage extends PageElement {
   #fetch() {
     return this.#attempt(async () => {
       const reads = this.#reads;
-      const { items } = await api.notices();
+      const inbox = await api.notices();
       if (reads !== this.#reads) return this.#fetch(); // the answer may be older than what was read meanwhile
-      this.notices = items;
+      this.inbox = inbox;
     });
   }
 
@@ -88,6 +92,12 @@ export class NoticesPage extends PageElement {
       this.problem = inWords(failure);
     }
   }
+}
+
+/** @param {Inbox} inbox @param {Notice["id"][]} ids @returns {Inbox} */
+function withRead(inbox, ids) {
+  const items = inbox.items.map((notice) => (ids.includes(notice.id) ? { ...notice, read: true } : notice));
+  return { ...inbox, items, unread: inbox.unread - ids.length };
 }
 
 customElements.define("notices-page", NoticesPage);

@@ -7,7 +7,7 @@ import { signOut } from "../session.js";
 import { counted, t } from "../texts.js";
 import { icon } from "./icon.js";
 import { PageElement } from "./page_element.js";
-/** @import { About, Inbox, Person } from "../api_types.ts" */
+/** @import { About, Inbox, Me } from "../api_types.ts" */
 /** @import { PageName } from "../links.js" */
 /** @import { KeptOrder } from "../outbox.js" */
 /** @import { NewVersion } from "../with_worker.js" */
@@ -40,7 +40,7 @@ export class PageShell extends PageElement {
     this.page = "order";
     /** @type {About | null} */
     this.about = null;
-    /** @type {Person | null} */
+    /** @type {Me | null} */
     this.person = null;
     /** @type {() => unknown} */
     this.content = () => nothing;
@@ -51,7 +51,7 @@ export class PageShell extends PageElement {
     this.takeNewVersion = null;
     /** @type {InstallOffer | null} */
     this.installOffer = null;
-    /** @type {Inbox | null} */
+    /** @type {Inbox | null} as it was asked for last: before anything is told, the person's own count is enough */
     this.inbox = null;
     this.connected = true;
     new OnLive(this, {
@@ -59,7 +59,7 @@ export class PageShell extends PageElement {
       resync: () => this.#count(),
       connected: (connected) => this.#nowConnected(connected),
     });
-    this.addEventListener("notices-read", () => this.#count());
+    this.addEventListener("inbox", (event) => (this.inbox = /** @type {CustomEvent<Inbox>} */ (event).detail));
     addEventListener("new-version", (event) => (this.takeNewVersion = /** @type {NewVersion} */ (event).detail.take));
     addEventListener("beforeinstallprompt", (event) => this.#offer(/** @type {InstallOffer} */ (event)));
     addEventListener("appinstalled", () => (this.installOffer = null));
@@ -97,14 +97,14 @@ export class PageShell extends PageElement {
     </div>`;
   }
 
-  /** @param {Person} person */
+  /** @param {Me} person */
   #page(person) {
     if (mayOpen(this.page, person)) return this.content();
     import("./no_role.js");
     return html`<no-role .page=${this.page}></no-role>`;
   }
 
-  /** @param {Person} person */
+  /** @param {Me} person */
   #navigation(person) {
     return html`<nav class="pages" aria-label=${t("nav.pages")}>
       ${ENTRIES.filter(([page]) => mayOpen(page, person)).map(
@@ -116,14 +116,18 @@ export class PageShell extends PageElement {
     </nav>`;
   }
 
+  get #unread() {
+    return this.inbox?.unread ?? this.person?.unread_notices ?? 0;
+  }
+
   #unreadMark() {
-    const unread = this.inbox?.unread;
+    const unread = this.#unread;
     if (!unread) return nothing;
     return html`<span class="unread"><span aria-hidden="true">${unread}</span
       ><span class="unseen">${counted("nav.unread", unread)}</span></span>`;
   }
 
-  /** @param {Person} person */
+  /** @param {Me} person */
   #account(person) {
     return html`<details class="account">
       <summary>${initials(person.name)}<span class="unseen"> ${t("account.open")}: ${person.name}</span></summary>
@@ -156,17 +160,20 @@ export class PageShell extends PageElement {
     location.assign(PAGES.order);
   }
 
+  /** The page of the notices asks by itself, and tells. */
   async #count() {
-    const inbox = this.person && (await api.notices().catch(() => null));
-    if (!inbox) return;
-    this.inbox = inbox;
-    await navigator.setAppBadge?.(inbox.unread).catch(() => undefined);
+    if (!this.person || this.page === "notices") return;
+    [this.inbox] = await Promise.all([api.notices().catch(() => this.inbox), import("./notice_toast.js").catch(() => undefined)]);
+  }
+
+  /** @param {Map<string, unknown>} changed */
+  updated(changed) {
+    if (this.person && (changed.has("person") || changed.has("inbox"))) navigator.setAppBadge?.(this.#unread).catch(() => undefined);
   }
 
   /** @param {boolean} connected */
   async #nowConnected(connected) {
     this.connected = connected;
-    if (!this.inbox) await this.#count();
     if (!connected && (await api.me().catch(() => this.person)) === null) location.reload();
   }
 }

@@ -1,7 +1,7 @@
 import { html } from "lit";
-import "../elements/mailroom_page.js";
-import "../elements/mailroom_wall.js";
 import { openPage } from "../open_page.js";
 
 const wall = new URLSearchParams(location.search).has("wall");
+document.documentElement.classList.toggle("wall", wall);
+if (wall) await import("../elements/mailroom_wall.js");
 await openPage("mailroom", () => (wall ? html`<mailroom-wall></mailroom-wall>` : html`<mailroom-page></mailroom-page>`));

@@ -105,9 +105,11 @@ def test_reading_a_notice_lowers_the_count_and_only_for_oneself(sender: Browser,
     notice = sender.get("/api/v1/notices").json()["items"][0]
     recipient.post("/api/v1/notices/read", json={"ids": [notice["id"]]})
     assert sender.get("/api/v1/notices").json()["unread"] == 1
+    assert sender.get("/api/v1/me").json()["unread_notices"] == 1
     assert sender.post("/api/v1/notices/read", json={"ids": [notice["id"]]}).status_code == 204
     inbox = sender.get("/api/v1/notices").json()
     assert (inbox["unread"], inbox["items"][0]["read"]) == (0, True)
+    assert sender.get("/api/v1/me").json()["unread_notices"] == 0
 
 
 def test_somebody_who_reads_french_is_told_in_french(nobody: TestClient, mails: Mails, mailroom: Mailroom) -> None:
