@@ -65,7 +65,7 @@ export class Offers {
   #option(id, one, isActive, { name, address }) {
     return html`<li id=${id} role="option" aria-selected=${isActive ? "true" : "false"}
       @pointerdown=${(/** @type {Event} */ event) => event.preventDefault()} @click=${() => this.#take(one)}>
-      <strong>${name}</strong><span class="address">${address}</span>
+      <strong><bdi>${name}</bdi></strong><span class="address">${address}</span>
     </li>`;
   }
 

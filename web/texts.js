@@ -54,7 +54,13 @@ export const hasText = (key) => key in catalogue;
  * @param {string} key @param {Record<string, string | number>} [values]
  */
 export const t = (key, values = {}) =>
-  (catalogue[key] ?? key).replace(/\{(\w+)\}/g, (whole, name) => `${values[name] ?? whole}`);
+  (catalogue[key] ?? key).replace(/\{(\w+)\}/g, (whole, name) => isolated(`${values[name] ?? whole}`));
+
+const RIGHT_TO_LEFT = /[\u0590-\u08ff\ufb1d-\ufdff\ufe70-\ufefc\u{10800}-\u{10fff}\u{1e800}-\u{1efff}]/u;
+
+/** Words that run from right to left, kept from turning round what stands beside them; where there is an element for them,
+ *  it is a <bdi>. @param {string} words */
+export const isolated = (words) => (RIGHT_TO_LEFT.test(words) ? `\u2068${words}\u2069` : words);
 
 /** A text that has ".one" and ".other" forms. @param {string} key @param {number} count */
 export const counted = (key, count) =>

@@ -7,6 +7,7 @@ from typing import Final, get_args
 
 from app.setting_kinds import Language
 from app.settings import ROOT
+from app.texts.isolation import isolated
 from protocol.one_line import one_line
 
 LANGUAGES: Final[tuple[str, ...]] = get_args(Language)
@@ -26,4 +27,4 @@ def text(language: str, key: str, facts: Mapping[str, str] | None = None) -> str
 
     KeyError for a text or a fact that is not there: never a text with holes.
     """
-    return catalogue(language)[key].format_map({name: one_line(fact) for name, fact in (facts or {}).items()})
+    return catalogue(language)[key].format_map({name: isolated(one_line(fact)) for name, fact in (facts or {}).items()})

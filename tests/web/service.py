@@ -141,6 +141,16 @@ class Service:
             subjects = [(at, subject) for at, subject in subjects if "sign-in code" not in subject]
         return subjects
 
+    def newest_mail_to(self, email: str) -> str:
+        """Subject and text of it."""
+        until_s = time.monotonic() + MAIL_LIMIT_S
+        while time.monotonic() < until_s:
+            for mail in self._newest_mails_to(email):
+                if "sign-in code" not in mail["Subject"]:
+                    return f"{mail['Subject']}\n{mail.get_body(('plain',)).get_content()}"
+            time.sleep(0.05)
+        raise AssertionError(f"nothing was mailed to {email}")
+
     def _mails_to(self, email: str) -> list[str]:
         return [mail.get_body(("plain",)).get_content() for mail in self._newest_mails_to(email)]
 

@@ -94,7 +94,7 @@ export class AskDialog extends PageElement {
   #reason({ reason, suggestion = "" }) {
     return field(
       { name: "reason", label: t("mailroom.reason"), problem: this.problems.reason, optional: reason === "may" },
-      ({ id, describedBy, invalid }) => html`<input id=${id} name="reason" maxlength=${LONGEST_REASON} autocomplete="off"
+      ({ id, describedBy, invalid }) => html`<input id=${id} name="reason" dir="auto" maxlength=${LONGEST_REASON} autocomplete="off"
         .value=${suggestion} ?required=${reason === "needed"} aria-describedby=${describedBy} aria-invalid=${invalid} />`,
     );
   }

@@ -26,7 +26,7 @@ function row(closed, map, doing) {
   return html`${icon("corridor")}
     <div class="what">
       <strong>${name}</strong>
-      <span>${why(closed)} <small>${ago(closed.closed_at, serverNow())}</small></span>
+      <span><bdi>${why(closed)}</bdi> <small>${ago(closed.closed_at, serverNow())}</small></span>
     </div>
     ${doing
       ? html`<button type="button" @click=${() => doing.ask(openAgain(map, closed), name)}>${t("mailroom.do.reopen")}<span

@@ -45,7 +45,7 @@ export class MyContacts extends SettingsPart {
   #row(one, map) {
     const name = one.label || one.name || one.email;
     return html`<li>
-      <span><strong>${name}</strong><span class="address">${one.email}${one.post ? ` · ${titleOf(map, one.post)}` : ""}</span></span>
+      <span><strong><bdi>${name}</bdi></strong><span class="address">${one.email}${one.post ? ` · ${titleOf(map, one.post)}` : ""}</span></span>
       <span class="does">
         <button class="quiet" aria-label="${t(one.saved ? "settings.change" : "settings.save")}, ${name}" @click=${() => this.#edit(one)}>
           ${t(one.saved ? "settings.change" : "settings.save")}
@@ -65,7 +65,7 @@ export class MyContacts extends SettingsPart {
       ${field({ name: "contact_email", label: t("settings.contact_email") }, ({ id }) => html`<input id=${id} name="contact_email" type="email"
         autocomplete="off" required ?readonly=${edited !== null} .value=${edited?.email ?? ""} />`)}
       <div class="pair">
-        ${field({ name: "label", label: t("settings.label"), optional: true }, ({ id }) => html`<input id=${id} name="label" maxlength="80"
+        ${field({ name: "label", label: t("settings.label"), optional: true }, ({ id }) => html`<input id=${id} name="label" dir="auto" maxlength="80"
           autocomplete="off" .value=${edited?.label || edited?.name || ""} />`)}
         ${field({ name: "post", label: t("settings.their_post"), optional: true }, ({ id }) => html`<select id=${id} name="post">
           <option value="" .selected=${!edited?.post}>${t("settings.no_post")}</option>

@@ -4,7 +4,7 @@ import * as api from "../api.js";
 import { followPage } from "../links.js";
 import { titleOf } from "../posts.js";
 import { serverNow } from "../server_clock.js";
-import { t } from "../texts.js";
+import { isolated, t } from "../texts.js";
 import { dayAndTime } from "../times.js";
 import { SettingsPart, remark } from "./settings_part.js";
 /** @import { CampusMap, MyDelegate } from "../api_types.ts" */
@@ -45,11 +45,11 @@ export class MyDelegates extends SettingsPart {
     const [what, until] = [letter(one), t("code.expires", { time: dayAndTime(expires_at, serverNow()) })];
     return html`<li>
       <span>
-        <strong>${name}</strong>${email ? html`<span class="address">${email}</span>` : nothing}
+        <strong><bdi>${name}</bdi></strong>${email ? html`<span class="address">${email}</span>` : nothing}
         ${remark("", html`<a href=${followPage(order_id)}>${what}</a>`)}
         ${remark(t(`settings.delegates.${purpose}`, { post: titleOf(map, post) }), until)}
       </span>
-      <button class="quiet danger" aria-label="${t("delegate.revoke")}, ${name}, ${what}" @click=${() => this.#revoke(one)}>${t("delegate.revoke")}</button>
+      <button class="quiet danger" aria-label="${t("delegate.revoke")}, ${isolated(name)}, ${what}" @click=${() => this.#revoke(one)}>${t("delegate.revoke")}</button>
     </li>`;
   }
 
@@ -70,7 +70,7 @@ export class MyDelegates extends SettingsPart {
 /** What it is, and between whom. @param {MyDelegate} one */
 function letter({ description, my_role, sender, recipient }) {
   const other = my_role === "recipient" ? t("mail.from", { name: sender.name }) : t("mail.to", { name: recipient.name });
-  return description ? `${description} · ${other}` : other;
+  return description ? `${isolated(description)} · ${other}` : other;
 }
 
 const noneYet = () =>

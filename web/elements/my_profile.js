@@ -28,7 +28,7 @@ export class MyProfile extends SettingsPart {
       "profile",
       html`<form @submit=${(/** @type {Event} */ event) => event.preventDefault()} @change=${this.#change}>
         ${field({ name: "name", label: t("settings.name"), hint: t("settings.name_hint") }, ({ id, describedBy }) => html`<input id=${id} name="name"
-          autocomplete="name" maxlength="80" required .value=${person.name} aria-describedby=${describedBy} />`)}
+          autocomplete="name" dir="auto" maxlength="80" required .value=${person.name} aria-describedby=${describedBy} />`)}
         <div class="pair">
           ${field({ name: "language", label: t("settings.language") }, ({ id }) => html`<select id=${id} name="language">
             ${Object.entries(LANGUAGES).map(([tag, name]) => html`<option value=${tag} lang=${tag} .selected=${tag === person.language}>${name}</option>`)}

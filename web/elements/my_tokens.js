@@ -45,7 +45,7 @@ export class MyTokens extends SettingsPart {
     const until = t("settings.until", { time: dayAndTime(expires_at, serverNow()) });
     const used = used_at ? t("settings.used", { time: dayAndTime(used_at, serverNow()) }) : t("settings.never_used");
     return html`<li>
-      <span><strong>${name}</strong> <code>cmp_${prefix}…</code>${remark(scopes.join(", "), "")}${remark(until, `· ${used}`)}</span>
+      <span><strong><bdi>${name}</bdi></strong> <code>cmp_${prefix}…</code>${remark(scopes.join(", "), "")}${remark(until, `· ${used}`)}</span>
       <button class="quiet danger" aria-label="${t("settings.revoke")}, ${name}" @click=${() => this.#revoke(prefix)}>${t("settings.revoke")}</button>
     </li>`;
   }

@@ -64,7 +64,7 @@ export class NoticeToast extends PageElement {
   #toast(notice) {
     return html`<div class="toast" @pointerenter=${() => this.#point(true)} @pointerleave=${() => this.#point(false)}
       @focusin=${this.#takeKeyboard} @focusout=${() => this.#count()}>
-      <a href=${pageOf(notice) ?? nothing}><strong>${notice.title}</strong><span>${notice.body}</span></a>
+      <a href=${pageOf(notice) ?? nothing}><strong><bdi>${notice.title}</bdi></strong><bdi>${notice.body}</bdi></a>
       <button class="quiet" aria-label=${t("notices.dismiss")} @click=${this.#putAway}>${icon("cross")}</button>
     </div>`;
   }

@@ -53,8 +53,8 @@ export class NoticesPage extends PageElement {
       ${notices.map(
         (notice) => html`<li class=${notice.read ? "" : "new"}>
           <a href=${pageOf(notice) ?? nothing} @click=${() => this.#read([notice])}>
-            <strong>${notice.title}${notice.read ? nothing : html` <span class="unseen">(${t("notices.unread")})</span>`}</strong>
-            <span>${notice.body}</span>
+            <strong><bdi>${notice.title}</bdi>${notice.read ? nothing : html` <span class="unseen">(${t("notices.unread")})</span>`}</strong>
+            <bdi>${notice.body}</bdi>
             <time datetime=${notice.at}>${ago(notice.at, serverNow())}</time>
           </a>
         </li>`,

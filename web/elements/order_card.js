@@ -16,7 +16,7 @@ export function orderCard(order, map, action = nothing) {
   return html`<li class="order">
     <a class="row" href=${followPage(order.id)}>
       <span class="badge ${order.state}">${t(`badge.${order.state}`)}</span>${isLate(order, serverNow()) ? lateMark() : nothing}
-      <span class="who">${order.description || other}</span>
+      <span class="who">${order.description ? html`<bdi>${order.description}</bdi>` : other}</span>
       <span class="ends">${titleOf(map, order.from_post)}${icon("arrow")}<span class="unseen">→</span>${titleOf(map, order.to_post)}</span>
       <span class="when">${order.description ? html`${other} · ` : nothing}<span>${when(order)}</span></span>
     </a>

@@ -53,7 +53,7 @@ export class OrderDelegates extends PageElement {
   #row(one) {
     const { id, name, email, revoked_at } = one;
     return html`<li>
-      <span><strong>${name}</strong><span class="address">${email ?? t("delegate.no_mail")}</span></span>
+      <span><strong><bdi>${name}</bdi></strong><span class="address">${email ?? t("delegate.no_mail")}</span></span>
       ${revoked_at
         ? html`<span class="badge cancelled">${t("delegate.revoked")}</span>`
         : html`<span class="does">
@@ -77,7 +77,7 @@ export class OrderDelegates extends PageElement {
 
   #form() {
     return html`<form novalidate @submit=${this.#name}>
-      ${field({ name: "delegate_name", label: t("delegate.name") }, ({ id }) => html`<input id=${id} name="delegate_name" maxlength="80" autocomplete="off" required />`)}
+      ${field({ name: "delegate_name", label: t("delegate.name") }, ({ id }) => html`<input id=${id} name="delegate_name" dir="auto" maxlength="80" autocomplete="off" required />`)}
       ${field(
         { name: "delegate_email", label: t("delegate.email"), hint: t("delegate.email_hint"), optional: true },
         ({ id, describedBy }) => html`<input id=${id} name="delegate_email" type="email" autocomplete="off" aria-describedby=${describedBy} />`,

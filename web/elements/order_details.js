@@ -11,17 +11,20 @@ export const orderDetails = (order) => html`<section class="card" aria-labelledb
   <dl class="details">
     ${row("follow.sender", party(order.sender, order.my_role === "sender"))}
     ${row("follow.recipient", party(order.recipient, order.my_role === "recipient"))}
-    ${order.description ? row("follow.description", order.description) : nothing}
+    ${order.description ? row("follow.description", own(order.description)) : nothing}
     ${row("follow.number", html`<code>${order.id}</code>`)}
   </dl>
 </section>`;
+
+/** What somebody has written. @param {string} words */
+const own = (words) => html`<bdi>${words}</bdi>`;
 
 /** @param {string} label @param {unknown} value */
 const row = (label, value) => html`<div><dt>${t(label)}</dt><dd>${value}</dd></div>`;
 
 /** @param {Party} person @param {boolean} isMe */
 const party = ({ name, email }, isMe) =>
-  html`${isMe ? t("follow.you", { name }) : name}<span class="address">${email}</span>`;
+  html`${isMe ? t("follow.you", { name }) : own(name)}<span class="address">${email}</span>`;
 
 /** From when to when, and how each hand-over was confirmed; nothing as long as it has never changed hands. @param {Order} order */
 export function orderCustody(order) {
@@ -31,7 +34,7 @@ export function orderCustody(order) {
     <ol class="custody">
       ${order.custody.map(
         (link) => html`<li class=${link.to || isSaidToBeOut(link) ? "" : "now"}>
-          <span class="what">${nameOf(order, link.holder, link.name)}</span>
+          <span class="what">${own(nameOf(order, link.holder, link.name))}</span>
           <span class="remark">${span(link)}</span>
           ${link.how ? html`<span class="remark">${howText(order, link)}</span>` : nothing}
         </li>`,

@@ -65,7 +65,7 @@ export class OrderForm extends PageElement {
           ...{ name: "description", label: t("order.description"), hint: t("order.description_hint") },
           ...{ problem: this.problems.description, optional: true },
         },
-        ({ id, describedBy, invalid }) => html`<input id=${id} name="description" maxlength="200" autocomplete="off"
+        ({ id, describedBy, invalid }) => html`<input id=${id} name="description" dir="auto" maxlength="200" autocomplete="off"
           .value=${this.wanted.description} aria-describedby=${describedBy} aria-invalid=${invalid} />`,
       )}
       ${this.#whenField()} ${this.#estimate()} ${helpWords("window")} ${this.problems.form ? problemLine(this.problems.form) : nothing}
@@ -103,7 +103,7 @@ export class OrderForm extends PageElement {
     return html`<div class="recent" role="group" aria-label=${t("order.recent")}>
       ${recent.map(
         (order) => html`<button type="button" @click=${() => this.#repeat(order)}>
-          <span>${order.recipient.name}</span><span class="unseen">, </span><small>${this.map ? titleOf(this.map, order.to_post) : nothing}</small>
+          <bdi>${order.recipient.name}</bdi><span class="unseen">, </span><small>${this.map ? titleOf(this.map, order.to_post) : nothing}</small>
         </button>`,
       )}
     </div>`;

@@ -11,16 +11,19 @@ import { dayAndTime } from "../times.js";
 export const orderSlip = (order, map, code, link) => html`<article class="slip" aria-label=${t("print.slip")}>
   <header><img src="/icons/icon.svg" alt="" width="40" height="40" /><strong>${t("app.name")}</strong></header>
   <dl>
-    ${row("print.from", titleOf(map, order.from_post), order.sender.name)}
-    ${row("print.to", titleOf(map, order.to_post), order.recipient.name)}
-    ${order.description ? row("order.description", order.description) : nothing}
+    ${row("print.from", titleOf(map, order.from_post), own(order.sender.name))}
+    ${row("print.to", titleOf(map, order.to_post), own(order.recipient.name))}
+    ${order.description ? row("order.description", own(order.description)) : nothing}
     ${row("print.ordered", dayAndTime(order.created_at, serverNow()))}
     ${row("print.number", html`<code>${order.id}</code>`)}
   </dl>
   ${code ? withCode(code) : withLink(order, link)}
 </article>`;
 
-/** @param {string} label @param {unknown} value @param {string} [more] */
+/** What somebody has written. @param {string} words */
+const own = (words) => html`<bdi>${words}</bdi>`;
+
+/** @param {string} label @param {unknown} value @param {unknown} [more] */
 const row = (label, value, more) => html`<div><dt>${t(label)}</dt><dd><strong>${value}</strong>${more ? html`<br />${more}` : nothing}</dd></div>`;
 
 /** One picture on a slip, never two: this one is for a phone, the robot would refuse it. @param {Order} order @param {string} link */

@@ -2,7 +2,7 @@
 import { html, nothing } from "lit";
 import { eventReason, timeline } from "../order_words.js";
 import { serverNow } from "../server_clock.js";
-import { t } from "../texts.js";
+import { isolated, t } from "../texts.js";
 import { clockTime, dayAndTime } from "../times.js";
 /** @import { CampusMap, Order, OrderEvent } from "../api_types.ts" */
 
@@ -30,6 +30,6 @@ export function orderTimeline(order, map) {
 function remarks(event, map) {
   const { at, robot_at } = event;
   const late = robot_at !== null && Date.parse(at) - Date.parse(robot_at) > TOLD_LATER_MS;
-  const told = [eventReason(event, map), late && t("timeline.told_later", { time: clockTime(at) })].filter(Boolean);
+  const told = [isolated(eventReason(event, map) ?? ""), late && t("timeline.told_later", { time: clockTime(at) })].filter(Boolean);
   return told.length ? html`<span class="remark">${told.join(" · ")}</span>` : nothing;
 }

@@ -132,7 +132,7 @@ export class PageShell extends PageElement {
     return html`<details class="account">
       <summary>${initials(person.name)}<span class="unseen"> ${t("account.open")}: ${person.name}</span></summary>
       <div class="sheet">
-        <strong>${person.name}</strong><span class="address">${person.email}</span>
+        <strong><bdi>${person.name}</bdi></strong><span class="address">${person.email}</span>
         <div class="entries">
           <a class="entry" href=${PAGES.settings} aria-current=${this.page === "settings" ? "page" : nothing}>
             ${icon("settings")}${t("nav.settings")}

@@ -26,9 +26,9 @@ export const queueList = (orders, map, whose, act) => html`<ul class="queue">
         <span class="badge ${order.state}">${t(`badge.${order.state}`)}</span>${isLate(order, serverNow()) ? lateMark() : nothing}
       </div>
       ${act ? html`<a href=${followPage(order.id)}>${whose(order)}</a>` : html`<span>${whose(order)}</span>`}
-      ${act && order.description ? html`<span class="hint">${order.description}</span>` : nothing}
+      ${act && order.description ? html`<bdi class="hint">${order.description}</bdi>` : nothing}
     </div>
-    <div class="why-now">${hasEnded(order) ? order.why : whyItWaits(order, map)}${priorityMark(order)}</div>
+    <div class="why-now"><bdi>${hasEnded(order) ? order.why : whyItWaits(order, map)}</bdi>${priorityMark(order)}</div>
     <div class="when">
       ${robotOf(order, act !== null)}<span>${age(order)}</span>
       ${arrives(order)}

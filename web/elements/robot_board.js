@@ -30,7 +30,7 @@ export function robotBoard(robots, alarms, map, doing) {
         <h3>${doing ? html`<a href=${robotPage(robot.name)}>${t("robot.name", { name: robot.name })}</a>` : t("robot.name", { name: robot.name })}</h3>
         ${state(robot)} ${charge(robot)}
       </div>
-      <p>${why(robot, map)}</p>
+      <p><bdi>${why(robot, map)}</bdi></p>
       <p class="hint">${whereSeen(robot, map)}</p>
       ${seenTo(robot, alarms, map)} ${doing ? buttons(robot, alarms, map, doing) : nothing}
     </li>`)}

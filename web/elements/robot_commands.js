@@ -106,7 +106,7 @@ function toldLine({ kind, asked_at, accepted, reason, reason_words, online }, ma
   const answer = accepted === null ? (online ? "waits" : "has_not_heard") : accepted ? "did" : "refused";
   return html`<li class=${answer}>
     <strong>${t(`robots.command.${kind}`)}</strong>
-    <span>${t(`robots.answer.${answer}`)}${reason ? html`: ${reasonText(reason, reason_words, map)}` : nothing}</span>
+    <span>${t(`robots.answer.${answer}`)}${reason ? html`: <bdi>${reasonText(reason, reason_words, map)}</bdi>` : nothing}</span>
     <time datetime=${asked_at}>${ago(asked_at, serverNow())}</time>
   </li>`;
 }

@@ -50,7 +50,7 @@ export class RobotFaults extends PageElement {
     return html`<li class=${standing}>
       <span class="badge ${standing}">${t(`robots.fault.${standing}`)}</span>
       <div>
-        <p>${alarmText(alarm, this.map)}</p>
+        <p><bdi>${alarmText(alarm, this.map)}</bdi></p>
         <p class="hint">
           <time datetime=${at}>${dayAndTime(at, now_ms)}</time>${until ? ` ${until}` : nothing}${
             post && this.map ? ` · ${titleOf(this.map, post)}` : nothing} · <code>${name}</code>

@@ -5,7 +5,7 @@ import { titleOf } from "../posts.js";
 import { inWords } from "../problems.js";
 import { inEnglish } from "../reason_words.js";
 import { serverNow } from "../server_clock.js";
-import { t } from "../texts.js";
+import { isolated, t } from "../texts.js";
 import { dayAndTime, weekdayNames, wallClock } from "../times.js";
 import "./ask_first.js";
 import { problemLine } from "./field.js";
@@ -52,7 +52,7 @@ export class StandingOrders extends PageElement {
     return html`<li class="order">
       <div class="row">
         <span class="badge ${one.ended ? "cancelled" : one.paused ? "attention" : ""}">${t(badgeOf(one))}</span>
-        <span class="who">${one.description || t("mail.to", { name: one.recipient.name })}</span>
+        <span class="who">${one.description ? html`<bdi>${one.description}</bdi>` : t("mail.to", { name: one.recipient.name })}</span>
         <span class="ends">${titleOf(map, one.from_post)}${icon("arrow")}<span class="unseen">→</span>${titleOf(map, one.to_post)}</span>
         <span class="when">${one.description ? html`${t("mail.to", { name: one.recipient.name })} · ` : nothing}${rhythm}</span>
         ${one.next_at ? html`<span class="when">${t("mail.next", { time: dayAndTime(one.next_at, serverNow()) })}</span>` : nothing}
@@ -64,7 +64,7 @@ export class StandingOrders extends PageElement {
 
   /** @param {StandingOrder} one @param {string} rhythm */
   #actions(one, rhythm) {
-    const what = `${one.recipient.name}, ${rhythm}`;
+    const what = `${isolated(one.recipient.name)}, ${rhythm}`;
     const turn = one.paused ? /** @type {const} */ ("resume") : "pause";
     const verb = t(one.paused ? "mail.resume" : "mail.pause");
     return html`<div class="under">

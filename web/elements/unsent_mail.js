@@ -61,7 +61,7 @@ export class UnsentMail extends PageElement {
       <ul class="letters">
         ${this.spool.map((mail) => html`<li>
           <button type="button" class="letter" @click=${() => this.#open(mail)}>
-            <strong>${mail.subject}</strong><span>${mail.to}</span><small>${dayAndTime(mail.at, serverNow())}</small>
+            <strong><bdi>${mail.subject}</bdi></strong><span>${mail.to}</span><small>${dayAndTime(mail.at, serverNow())}</small>
           </button>
         </li>`)}
       </ul>
@@ -84,7 +84,7 @@ export class UnsentMail extends PageElement {
 
   /** Text alone: nothing in a mail is drawn or followed here. @param {SpooledText} mail */
   #mail({ subject, to, at, text, attachments }) {
-    return html`<h2 id="unsent-title" tabindex="-1">${subject}</h2>
+    return html`<h2 id="unsent-title" tabindex="-1"><bdi>${subject}</bdi></h2>
       <p class="hint">${t("mailroom.mail_to", { to, time: dayAndTime(at, serverNow()) })}</p>
       <pre class="mail" tabindex="0" aria-labelledby="unsent-title">${text}</pre>
       ${attachments.length ? html`<p class="hint">${t("mailroom.attached", { names: attachments.join(", ") })}</p>` : nothing}

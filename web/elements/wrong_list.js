@@ -44,7 +44,7 @@ function row(wrong, map, doing) {
 /** @param {string} what @param {string} more @param {string | null} at @param {unknown} action */
 const line = (what, more, at, action) => html`<div class="what">
     <strong>${what}</strong>
-    <span>${more}${at ? html` <small>${ago(at, serverNow())}</small>` : nothing}</span>
+    <span><bdi>${more}</bdi>${at ? html` <small>${ago(at, serverNow())}</small>` : nothing}</span>
   </div>
   ${action}`;
 
