@@ -28,7 +28,7 @@ export class NoAnswer extends Error {}
  * @returns {Promise<any>} the JSON of the answer, or null where it has none
  */
 function ask(path, request = {}) {
-  const answer = send(path, request);
+  const answer = sendInSession(path, request);
   const read = answer.then(jsonOf);
   if (!request.method) notePosition(answer, read);
   return read;
@@ -48,6 +48,25 @@ async function send(path, { method = "GET", body, headers = {}, cache }) {
   } catch (error) {
     throw new NoAnswer(String(error));
   }
+}
+
+/** What a page does once the service no longer knows who asks. @type {((isAct: boolean) => Promise<boolean>) | null} */
+let signInAgain = null;
+
+/** @param {(isAct: boolean) => Promise<boolean>} act promises whether the same person is signed in again; `isAct`: whether
+ *  something was to be done, not only asked */
+export const whenSessionIsLost = (act) => (signInAgain = act);
+
+/** A question is asked again once its person is signed in again; what was to be done is theirs to say again.
+ * @param {string} path @param {{method?: string, body?: unknown, headers?: Record<string, string>, cache?: RequestCache}} request
+ * @returns {Promise<Response>} */
+async function sendInSession(path, request) {
+  const answer = await send(path, request);
+  if (answer.status !== 401 || !signInAgain || path.startsWith("/sign-in")) return answer;
+  const isBack = signInAgain(Boolean(request.method));
+  // Who is here is asked to know just that.
+  const isHeld = !request.method && path !== "/me";
+  return isHeld && (await isBack) ? sendInSession(path, request) : answer;
 }
 
 /** @param {Response} answer */

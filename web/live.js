@@ -143,6 +143,9 @@ export function startLive(person_id) {
 /** Nobody is signed in any more. */
 export const stopLive = () => feed.stop();
 
+/** They are again. @param {string} person_id */
+export const goOnLive = (person_id) => feed.start(person_id);
+
 /** Lets an element hear changes for as long as it is on the page. @implements {ReactiveController} */
 export class OnLive {
   /** @type {AbortController | null} */

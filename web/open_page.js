@@ -6,6 +6,7 @@ import "./elements/page_shell.js";
 import { startLive } from "./live.js";
 import { keepServerTime } from "./server_clock.js";
 import { beginSession, hasKept } from "./session.js";
+import { keepSession } from "./session_lost.js";
 import { chooseLanguage, loadTexts, t } from "./texts.js";
 import { prepareTimes } from "./times.js";
 /** @import { About, Person } from "./api_types.ts" */
@@ -27,6 +28,7 @@ export async function openPage(page, content) {
     document.title = `${t(person ? `title.${page}` : "title.sign_in")} · ${t("app.name")}`;
     keepServerTime(about);
     beginSession(person);
+    keepSession(person);
     const kept = person && hasKept() ? await keptHere(person) : [];
     const draw = () => person && content({ about, person });
     render(

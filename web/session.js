@@ -1,5 +1,6 @@
 /** Who is signed in on this page, what this browser remembers for them, and what goes with them when they sign out. */
 import * as api from "./api.js";
+import { leaving } from "./session_lost.js";
 /** @import { Person } from "./api_types.ts" */
 
 /** @type {Person | null} */
@@ -48,8 +49,14 @@ export function onKept(tell) {
 /** Nothing of theirs stays on the device but orders that wait to be sent: those wait for them. */
 export async function signOut() {
   const [{ endPush }, { inSession }] = await Promise.all([import("./push.js"), import("./outbox.js")]);
-  await endPush().catch(() => undefined);
-  await inSession(api.signOut);
+  await leaving(async () => {
+    await endPush().catch(() => undefined);
+    await inSession(api.signOut).catch(unlessSignedOut);
+  });
   await Promise.all([caches.delete("answers"), navigator.clearAppBadge?.()]).catch(() => undefined);
-  person = null;
+}
+
+/** A session that had ended already is as good as one that ends now. @param {unknown} failure */
+function unlessSignedOut(failure) {
+  if (!(failure instanceof api.ApiProblem && failure.status === 401)) throw failure;
 }

@@ -15,13 +15,6 @@ pytestmark = pytest.mark.browser
 ORDERS = "/api/v1/orders"
 
 
-async def end_sessions(person: Visitor) -> None:
-    """On the server, from elsewhere: this browser's cookie is good for nothing from now on."""
-    async with Visitor(person.browser, person.service, person.email, person.options) as elsewhere:
-        await elsewhere.sign_in()
-        await elsewhere.delete("/sessions")
-
-
 async def ordered(person: Visitor) -> list[str]:
     return [order["description"] for order in (await person.api("/orders"))["items"]]
 
@@ -58,13 +51,12 @@ async def opened_again(page: Page) -> None:
 async def test_an_order_that_was_refused_for_its_lost_session_is_shown_and_waits_for_its_persons_word(visit):
     ada = await visit("ada.king", on="phone")
     page, kept = ada.page, ada.page.get_by_role("region", name=KEPT)
-    ada.refusals_expected.add("/api/v1/live")
     keys = placings(ada.context)
     await page.goto("/")
     await fill(page, what="Ghost")
-    await end_sessions(ada)
+    await ada.end_sessions()
     await send(page)
-    await expect(kept.get_by_text(re.compile("^Not sent. You are no longer signed in"))).to_be_visible()
+    await expect(kept.get_by_text(re.compile("^Not sent. You were signed out"))).to_be_visible()
     assert len(keys) == 1, "no 401 is tried again"
     await ada.sign_in()
     await page.reload()

@@ -45,6 +45,7 @@ class Visitor:
     refusals_expected: set[str] = field(default_factory=lambda: {WHO_AM_I})
     complaints: list[str] = field(default_factory=list)
     loses_answers: bool = False
+    loses_session: bool = False
 
     async def __aenter__(self) -> "Visitor":
         self.context: BrowserContext = await self.browser.new_context(base_url=self.service.url, **self.options)
@@ -69,6 +70,7 @@ class Visitor:
         path = re.sub(r"^https?://[^/]+", "", message.location["url"]).partition("?")[0]
         expected = path in self.refusals_expected and REFUSED.match(message.text)
         expected = expected or (ORDERS.fullmatch(path) and NOBODY.match(message.text))
+        expected = expected or (self.loses_session and NOBODY.match(message.text))
         expected = expected or (self.loses_answers and "net::ERR_" in message.text)
         expected = expected or message.text == NO_WORKER
         if message.type in ("error", "warning") and not expected:
@@ -96,6 +98,13 @@ class Visitor:
         """Their page fetches everything once more, as when the tab that reads the stream has missed something."""
         person = await self.api("/me")
         await self.page.evaluate(RESYNC, f"live {person['id']}")
+
+    async def end_sessions(self) -> None:
+        """On the server, from elsewhere: this browser's cookie is good for nothing from now on."""
+        self.loses_session = True
+        async with Visitor(self.browser, self.service, self.email, self.options) as elsewhere:
+            await elsewhere.sign_in()
+            await elsewhere.delete("/sessions")
 
     async def assert_accessible(self, page: Page | None = None) -> None:
         """axe-core finds no violation of WCAG 2.2 A and AA on what the page shows now."""

@@ -5,6 +5,7 @@ import { OnLive } from "../live.js";
 import { announce, anyKept, discard, isForLater, isWaiting, keptOrders, sendAgain, sendKept } from "../outbox.js";
 import { loadMap, titleOf } from "../posts.js";
 import { onKept, sayKept } from "../session.js";
+import { askAgain, isLost, whenBack } from "../session_lost.js";
 import { hasText, t } from "../texts.js";
 import { problemLine } from "./field.js";
 import { icon } from "./icon.js";
@@ -50,7 +51,7 @@ export class KeptOrders extends PageElement {
   }
 
   async firstUpdated() {
-    if (this.justNow) this.focusOn(".kept");
+    if (this.justNow) this.#come();
     this.#send();
     this.map = await loadMap().catch(() => null);
   }
@@ -61,7 +62,12 @@ export class KeptOrders extends PageElement {
     // The shell binds them: what it does not know it would take away when it is drawn again.
     this.dispatchEvent(new CustomEvent("kept", { detail: this.kept }));
     sayKept(await anyKept());
-    if (this.kept.length > before) this.focusOn(".kept");
+    if (this.kept.length > before) this.#come();
+  }
+
+  /** While a dialog asks to sign in again, nothing below it takes the keyboard. */
+  #come() {
+    whenBack(() => this.focusOn(".kept"));
   }
 
   render() {
@@ -98,6 +104,7 @@ export class KeptOrders extends PageElement {
 
   /** @param {KeptOrder} order */
   async #again(order) {
+    if (isLost()) return askAgain();
     await sendAgain(order).catch(() => undefined);
     announce();
     await this.#look();

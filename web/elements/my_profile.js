@@ -1,16 +1,20 @@
 /** My name, the language of pages and notices, and the post where I usually am. */
-import { html } from "lit";
+import { html, nothing } from "lit";
 import * as api from "../api.js";
 import { speak } from "../language.js";
 import { t } from "../texts.js";
 import { field } from "./field.js";
 import { SettingsPart } from "./settings_part.js";
 /** @import { AboutMe, CampusMap, Person } from "../api_types.ts" */
+/** @typedef {HTMLInputElement | HTMLSelectElement} Changed */
 
 // Each in its own words: whoever looks for theirs may read no other.
 const LANGUAGES = { en: "English", fr: "Français" };
 
 export class MyProfile extends SettingsPart {
+  /** What was changed and could not be saved by itself. @type {Changed | null} */
+  #unsaved = null;
+
   static properties = { person: { attribute: false }, map: { attribute: false } };
 
   constructor() {
@@ -26,7 +30,7 @@ export class MyProfile extends SettingsPart {
     if (!person || !map) return html``;
     return this.card(
       "profile",
-      html`<form @submit=${(/** @type {Event} */ event) => event.preventDefault()} @change=${this.#change}>
+      html`<form @submit=${(/** @type {Event} */ event) => event.preventDefault()} @change=${(/** @type {Event} */ { target }) => this.#change(/** @type {Changed} */ (target))}>
         ${field({ name: "name", label: t("settings.name"), hint: t("settings.name_hint") }, ({ id, describedBy }) => html`<input id=${id} name="name"
           autocomplete="name" dir="auto" maxlength="80" required .value=${person.name} aria-describedby=${describedBy} />`)}
         <div class="pair">
@@ -38,17 +42,24 @@ export class MyProfile extends SettingsPart {
             ${map.posts.map(({ name, title }) => html`<option value=${name} .selected=${name === person.usual_post}>${title}</option>`)}
           </select>`)}
         </div>
+        ${this.#unsaved ? html`<button type="button" @click=${this.#again}>${t("settings.save")}</button>` : nothing}
       </form>`,
     );
   }
 
-  /** @param {Event} event */
-  async #change({ target }) {
-    const { name, value } = /** @type {HTMLInputElement | HTMLSelectElement} */ (target);
+  #again() {
+    if (this.#unsaved) this.#change(this.#unsaved);
+  }
+
+  /** @param {Changed} target */
+  async #change(target) {
+    const { name, value } = target;
     const text = value.trim();
     if (name === "name" && !text) return void (this.problem = t("settings.name_missing"));
     const changes = /** @type {AboutMe} */ ({ [name]: name === "usual_post" ? text || null : text });
-    await this.attempt(async () => (this.person = await api.changeMe(changes)));
+    const isSaved = await this.attempt(async () => (this.person = await api.changeMe(changes)));
+    this.#unsaved = isSaved ? null : target;
+    this.requestUpdate();
     if (this.problem || !this.person) return;
     if (name === "language") await this.#speak(this.person.language);
     this.said = t("settings.saved");

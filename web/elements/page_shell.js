@@ -4,13 +4,16 @@ import * as api from "../api.js";
 import { mayOpen, PAGES } from "../links.js";
 import { OnLive, stopLive } from "../live.js";
 import { signOut } from "../session.js";
+import { askAgain } from "../session_lost.js";
 import { counted, t } from "../texts.js";
 import { icon } from "./icon.js";
 import { PageElement } from "./page_element.js";
 /** @import { About, Inbox, Me } from "../api_types.ts" */
 /** @import { PageName } from "../links.js" */
 /** @import { KeptOrder } from "../outbox.js" */
+/** @import { SessionEvent } from "../session_lost.js" */
 /** @import { NewVersion } from "../with_worker.js" */
+/** @import { SignInAgain } from "./sign_in_again.js" */
 /** A browser's own offer to install. @typedef {Event & {prompt: () => Promise<unknown>}} InstallOffer */
 
 const ENTRIES = /** @type {const} */ ([
@@ -32,6 +35,7 @@ export class PageShell extends PageElement {
     installOffer: { state: true },
     inbox: { state: true },
     connected: { state: true },
+    lost: { state: true },
   };
 
   constructor() {
@@ -54,6 +58,8 @@ export class PageShell extends PageElement {
     /** @type {Inbox | null} as it was asked for last: before anything is told, the person's own count is enough */
     this.inbox = null;
     this.connected = true;
+    /** Whether the session has ended though this person did not leave. */
+    this.lost = false;
     new OnLive(this, {
       notice: () => this.#count(),
       resync: () => this.#count(),
@@ -61,6 +67,7 @@ export class PageShell extends PageElement {
     });
     this.addEventListener("inbox", (event) => (this.inbox = /** @type {CustomEvent<Inbox>} */ (event).detail));
     addEventListener("new-version", (event) => (this.takeNewVersion = /** @type {NewVersion} */ (event).detail.take));
+    addEventListener("session", (event) => this.#session(/** @type {SessionEvent} */ (event).detail));
     addEventListener("beforeinstallprompt", (event) => this.#offer(/** @type {InstallOffer} */ (event)));
     addEventListener("appinstalled", () => (this.installOffer = null));
   }
@@ -78,14 +85,15 @@ export class PageShell extends PageElement {
         <a class="brand" href=${PAGES.order}><img src="/icons/icon.svg" alt="" width="32" height="32" />${t("app.name")}</a>
         ${this.person ? [this.#navigation(this.person), this.#account(this.person)] : nothing}
       </header>
-      ${this.connected ? nothing : html`<p class="banner" role="status">${icon("network")}${t("app.reconnecting")}</p>`}
+      ${this.lost ? lostBanner() : this.connected ? nothing : html`<p class="banner" role="status">${icon("network")}${t("app.reconnecting")}</p>`}
       ${this.takeNewVersion ? this.#newVersion(this.takeNewVersion) : nothing}
       <main id="content" tabindex="-1">
         ${this.person && this.kept.length ? html`<kept-orders .person_id=${this.person.id} .kept=${this.kept}
           ?justNow=${this.keptJustNow} @kept=${(/** @type {CustomEvent<KeptOrder[]>} */ { detail }) => (this.kept = detail)}></kept-orders>` : nothing}
-        ${this.person ? this.#page(this.person) : html`<sign-in .about=${this.about}></sign-in>`}
+        ${this.person ? this.#page(this.person) : html`<sign-in .about=${this.about} @signed-in=${() => location.reload()}></sign-in>`}
       </main>
       ${this.person && this.page !== "notices" ? html`<notice-toast .inbox=${this.inbox} .since=${this.about?.now}></notice-toast>` : nothing}
+      ${this.person ? html`<sign-in-again .about=${this.about} .email=${this.person.email}></sign-in-again>` : nothing}
       ${this.about?.simulated ? html`<footer class="foot">${t("app.demo")}</footer>` : nothing}
     `;
   }
@@ -174,9 +182,23 @@ export class PageShell extends PageElement {
   /** @param {boolean} connected */
   async #nowConnected(connected) {
     this.connected = connected;
-    if (!connected && (await api.me().catch(() => this.person)) === null) location.reload();
+    // A stream that was refused does not say why.
+    if (!connected) await api.me().catch(() => undefined);
+  }
+
+  /** @param {"lost" | "back"} what */
+  async #session(what) {
+    this.lost = what === "lost";
+    const again = /** @type {Partial<SignInAgain>} */ (this.querySelector("sign-in-again"));
+    if (!this.lost) return again.close?.();
+    await import("./sign_in_again.js");
+    if (this.lost) again.open?.();
   }
 }
+
+const lostBanner = () => html`<div class="banner new-version" role="status">
+  <span>${t("sign_in.lost")}</span><button @click=${askAgain}>${t("sign_in.again")}</button>
+</div>`;
 
 /** "Ada Lovelace" → "AL" @param {string} name */
 const initials = (name) =>

@@ -1,4 +1,4 @@
-/** Signing in: an address, then the code that was mailed to it. */
+/** Signing in: an address, then the code that was mailed to it. Tells `signed-in` with the person. */
 import { html, nothing } from "lit";
 import * as api from "../api.js";
 import { atFields } from "../problems.js";
@@ -22,7 +22,8 @@ function whatCameBack() {
 export class SignIn extends PageElement {
   static properties = {
     about: { attribute: false },
-    email: { state: true },
+    email: {},
+    again: { type: Boolean },
     codeSent: { state: true },
     busy: { state: true },
     problems: { state: true },
@@ -33,6 +34,8 @@ export class SignIn extends PageElement {
     /** @type {About | null} */
     this.about = null;
     this.email = "";
+    /** Whether this is over a page that goes on afterwards, and has its own heading. */
+    this.again = false;
     this.codeSent = false;
     this.busy = false;
     /** @type {Record<string, string>} */
@@ -40,12 +43,14 @@ export class SignIn extends PageElement {
   }
 
   render() {
+    const form = this.codeSent ? this.#codeForm() : [this.#emailForm(), this.#campus()];
+    if (this.again) return form;
     return html`<section class="welcome">
       <img src="/icons/welcome.svg" alt="" class="picture" width="360" height="200" />
       <div class="card">
         <h1>${t("sign_in.title")}</h1>
         <p class="lead">${t("sign_in.lead")}</p>
-        ${this.codeSent ? this.#codeForm() : [this.#emailForm(), this.#campus()]}
+        ${form}
       </div>
     </section>`;
   }
@@ -70,7 +75,13 @@ export class SignIn extends PageElement {
 
   #campus() {
     if (!this.about?.campus_sign_in) return nothing;
-    return html`<p class="hint">${t("sign_in.or")}</p><a class="button" href=${api.CAMPUS_SIGN_IN}>${t("sign_in.campus")}</a>`;
+    if (this.again) return html`<p class="hint">${t("sign_in.or_in_a_tab")}</p>${this.#campusLink("_blank")}`;
+    return html`<p class="hint">${t("sign_in.or")}</p>${this.#campusLink()}`;
+  }
+
+  /** Another tab leaves this page as it is. @param {"_blank"} [target] */
+  #campusLink(target) {
+    return html`<a class="button" href=${api.CAMPUS_SIGN_IN} target=${target ?? nothing}>${t("sign_in.campus")}</a>`;
   }
 
   #codeForm() {
@@ -111,8 +122,8 @@ export class SignIn extends PageElement {
     const code = input.value.replace(/\D/g, "");
     if (code.length !== 8) return this.#refuse({ code: t("error.malformed.code") });
     await this.#attempt(async () => {
-      await api.signIn(this.email, code);
-      location.reload();
+      const detail = await api.signIn(this.email, code);
+      this.dispatchEvent(new CustomEvent("signed-in", { detail }));
     });
   }
 

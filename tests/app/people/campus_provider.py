@@ -21,9 +21,11 @@ def campus_provider() -> Iterator[str]:
     command = [sys.executable, "-W", "ignore", "-m", "oidc_provider_mock", "--port", str(port)]
     with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
         issuer = f"http://127.0.0.1:{port}"
-        _wait_for(issuer)
-        yield issuer
-        process.terminate()
+        try:
+            _wait_for(issuer)
+            yield issuer
+        finally:
+            process.terminate()
 
 
 def _wait_for(url: str) -> None:
