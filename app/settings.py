@@ -143,7 +143,8 @@ class Settings(BaseSettings):
         "600 per hour", description="The same of all such browsers, wherever they are: guessing is bounded by it."
     )
     sign_in_tries_per_host: Limit = Field(
-        "200 per 15 minutes", description="Sign-in requests from one network address."
+        "200 per 15 minutes",
+        description="Sign-in requests from one network address; of a browser where somebody has signed in, its own.",
     )
     orders_per_person: Limit = Field("600 per hour", description="Orders that one person may place.")
     changes_per_person: Limit = Field(

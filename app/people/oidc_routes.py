@@ -9,11 +9,12 @@ from fastapi.responses import RedirectResponse
 
 from app.database import DatabaseDep
 from app.errors import ServiceError, problems
+from app.people.browsers import AskingBrowser, per_browser, remember
 from app.people.cookies import read_cookie, set_cookie
 from app.people.current_user import SESSION_COOKIE
 from app.people.errors import NoCampusSignIn, OidcRefused, WrongState
 from app.people.oidc import LIFETIME, Attempt, Provider, person_of
-from app.people.rate_limits import Door, per_host
+from app.people.rate_limits import Door
 from app.people.routes import DeskDep, Language, UserAgent
 from app.people.same_origin import require_https_or_loopback
 from app.people.service import language_from
@@ -25,7 +26,7 @@ HOME = "/"
 
 router = APIRouter(
     tags=["people"],
-    dependencies=[Depends(require_https_or_loopback), per_host(Door.SIGN_IN)],
+    dependencies=[Depends(require_https_or_loopback), per_browser(Door.SIGN_IN)],
     responses=problems(NoCampusSignIn, 429),
 )
 
@@ -59,6 +60,7 @@ async def sign_in_at_the_campus(
 async def come_back_from_the_campus(
     *,
     request: Request,
+    browser: AskingBrowser,
     provider: ProviderDep,
     desk: DeskDep,
     database: DatabaseDep,
@@ -78,12 +80,13 @@ async def come_back_from_the_campus(
         claims = await provider.claims(attempt, code, _callback(request, settings))
         async with database.transaction() as session:
             person = await person_of(session, desk, claims, language, clock.utc())
-            token = desk.open_session(session, person, user_agent, clock.utc())
+            token = desk.open_session(session, person, user_agent, clock.utc(), browser.secret)
     except ServiceError as refusal:
         answer = _refused(refusal)
     else:
         answer = _to(HOME)
         set_cookie(request, answer, SESSION_COOKIE, token, round(settings.session_lifetime_s))
+        remember(request, answer, browser, has_signed_in=True)
     set_cookie(request, answer, ATTEMPT_COOKIE, "", 0)
     return answer
 

@@ -6,11 +6,11 @@ from fastapi import APIRouter, Depends, Header, Request, Response
 
 from app.database import Database, DatabaseDep, SessionDep
 from app.errors import problems
-from app.people.browsers import AskingBrowser, has_signed_in, remember
+from app.people.browsers import AskingBrowser, Browser, has_signed_in, per_browser, remember
 from app.people.cookies import set_cookie
 from app.people.current_user import SESSION_COOKIE, AtBrowser, ThisSession
 from app.people.errors import AddressNotAllowed, CodeExpired, WrongCode
-from app.people.rate_limits import Door, LimitsDep, RateLimits, host_of, per_host
+from app.people.rate_limits import Door, LimitsDep, RateLimits, host_of
 from app.people.same_origin import refuse_other_sites, require_https_or_loopback
 from app.people.schemas import CodeMailed, CodeRequest, PersonView, SignIn
 from app.people.service import SignInDesk, language_from
@@ -34,7 +34,7 @@ async def _door(request: Request) -> None:
 
 
 DeskDep = Annotated[SignInDesk, Depends(_desk)]
-DOOR = [Depends(_door), per_host(Door.SIGN_IN)]
+DOOR = [Depends(_door), per_browser(Door.SIGN_IN)]
 
 
 @router.post("/sign-in/codes", status_code=202, dependencies=DOOR, responses=problems(AddressNotAllowed, 429))
@@ -55,17 +55,17 @@ async def mail_code(
     await _count(request, wish.email, browser, limits, database)
     language = language_from(accept_language, settings.default_language)
     async with database.transaction() as session:
-        row, code = await desk.make_code(session, wish.email, clock.utc(), browser)
+        row, code = await desk.make_code(session, wish.email, clock.utc(), browser.secret)
     await desk.mail_code(row, code, language)
     remember(request, response, browser)
     return CodeMailed(expires_at=row.expires_at)
 
 
-async def _count(request: Request, email: str, browser: str, limits: RateLimits, database: Database) -> None:
+async def _count(request: Request, email: str, browser: Browser, limits: RateLimits, database: Database) -> None:
     """Strangers are counted together as well; whoever has signed in here before is not kept out by them."""
-    await limits.count(Door.CODES, f"{email} {browser}")
+    await limits.count(Door.CODES, f"{email} {browser.secret}")
     async with database.asking() as connection:
-        is_known = await has_signed_in(connection, email, browser)
+        is_known = await has_signed_in(connection, email, browser.secret)
     if not is_known:
         await limits.count(Door.CODES_OF_HOST, f"{email} {host_of(request)}")
         await limits.count(Door.CODES_OF_NEW_BROWSERS, email)
@@ -87,15 +87,16 @@ async def sign_in(
 ) -> PersonView:
     """Exchange the mailed code for a session cookie, in the browser that asked for it."""
     async with database.transaction() as session:
-        refusal = await desk.check_code(session, wish.email, wish.code, clock.utc(), browser)
+        refusal = await desk.check_code(session, wish.email, wish.code, clock.utc(), browser.secret)
     if refusal:
         raise refusal
     async with database.transaction() as session:
         language = language_from(accept_language, settings.default_language)
         person = await desk.newcomer(session, wish.email, language, clock.utc())
-        token = desk.open_session(session, person, user_agent, clock.utc(), browser)
+        token = desk.open_session(session, person, user_agent, clock.utc(), browser.secret)
     # Browsers count real seconds; a session that ends sooner is refused here.
     set_cookie(request, response, SESSION_COOKIE, token, round(settings.session_lifetime_s))
+    remember(request, response, browser, has_signed_in=True)
     return PersonView.of(person)
 
 

@@ -108,6 +108,21 @@ def test_a_name_from_the_campus_is_one_printable_line(nobody: TestClient, campus
     assert (len(name), name.isprintable()) == (80, True)
 
 
+class TestAHostThatIsFlooded:
+    @pytest.fixture
+    def settings(self, settings: Settings) -> Settings:
+        return settings.model_copy(update={"sign_in_tries_per_host": "4 per 15 minutes"})
+
+    def test_keeps_nobody_out_of_a_browser_where_they_have_signed_in(
+        self, app: FastAPI, nobody: TestClient, campus: Campus
+    ) -> None:
+        come_back(nobody, campus.sign_in(start(nobody), "ada"))
+        other = TestClient(app, base_url=HERE)
+        other.portal = nobody.portal
+        assert [other.get(START, follow_redirects=False).status_code for _ in range(3)] == [303, 303, 429]
+        assert come_back(nobody, campus.sign_in(start(nobody), "ada")) == "/"
+
+
 def test_a_wrong_state_is_refused(app: FastAPI, nobody: TestClient, campus: Campus) -> None:
     back = campus.sign_in(start(nobody), "ada")
     other = TestClient(app, base_url=HERE)

@@ -149,6 +149,35 @@ class TestManyNewBrowsers:
         assert nobody.post(CODES, json={"email": "other@campus.example"}).status_code == 202, "another address"
 
 
+class TestAHostThatIsFlooded:
+    @pytest.fixture
+    def settings(self, settings: Settings) -> Settings:
+        return settings.model_copy(update={"sign_in_tries_per_host": "6 per 15 minutes"})
+
+    def test_keeps_nobody_out_of_a_browser_where_they_have_signed_in(
+        self, app: FastAPI, nobody: TestClient, mails: Mails
+    ) -> None:
+        assert nobody.post(SIGN_IN, json=asked(nobody, mails)).status_code == 200
+        assert nobody.delete("/api/v1/session", headers={"Sec-Fetch-Site": "same-origin"}).status_code == 204
+        stranger = another_browser(app, nobody)
+        guess = {"email": "eve@campus.example", "code": "00000000"}
+        assert [stranger.post(SIGN_IN, json=guess).status_code for _ in range(5)] == [401] * 4 + [429]
+        assert nobody.post(SIGN_IN, json=asked(nobody, mails)).status_code == 200
+        assert [nobody.post(SIGN_IN, json=guess).status_code for _ in range(5)] == [401] * 4 + [429], "its own count"
+
+    def test_is_not_passed_by_with_a_cookie_of_ones_own_making(
+        self, app: FastAPI, nobody: TestClient, mails: Mails
+    ) -> None:
+        assert nobody.post(SIGN_IN, json=asked(nobody, mails)).status_code == 200
+        secret, _, seal = nobody.cookies["browser"].partition(".")
+        assert seal, "sealed"
+        guess = {"email": "eve@campus.example", "code": "00000000"}
+        for cookie in (f"{'A' * 43}.{seal}", f"{secret}.{'A' * 43}", f"{secret}.é", secret, "", "."):
+            forged = another_browser(app, nobody)
+            forged.post(SIGN_IN, json=guess, headers={"Cookie": f"browser={cookie}".encode()})
+        assert another_browser(app, nobody).post(SIGN_IN, json=guess).status_code == 429
+
+
 def test_asking_too_often_for_codes_is_slowed_down(nobody: TestClient) -> None:
     answers = [nobody.post(CODES, json={"email": SENDER}) for _ in range(11)]
     assert [answer.status_code for answer in answers] == [202] * 10 + [429]
