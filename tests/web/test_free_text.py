@@ -89,7 +89,11 @@ async def test_one_word_of_190_letters_stays_within_every_page_that_shows_it(cam
     shown = 0
     for address in (
         *("/", f"/follow.html?order={order}", "/mail.html", "/notices.html", "/settings.html", "/mailroom.html"),
-        *("/mailroom.html?wall", f"/print.html?order={order}", campus.service.link_mailed_to("grace.hopper@campus.example")),
+        *(
+            "/mailroom.html?wall",
+            f"/print.html?order={order}",
+            campus.service.link_mailed_to("grace.hopper@campus.example"),
+        ),
     ):
         await page.goto(address)
         await expect(page.get_by_role("heading").first).to_be_visible()
