@@ -97,6 +97,33 @@ async def test_an_ordered_letter_is_followed_at_once_and_stands_in_my_mail(visit
     ).to_be_visible()
 
 
+@pytest.mark.parametrize("address", ["/", "/follow.html"], ids=["typed", "repeated by a link"])
+@pytest.mark.parametrize("is_kept", [True, False], ids=["page kept by the browser", "page opened anew"])
+async def test_going_back_after_ordering_offers_nothing_that_one_tap_orders_twice(visit, address, is_kept):
+    ada = await visit()
+    page = ada.page
+    if not is_kept:
+        await page.add_init_script("addEventListener('unload', () => undefined)")  # no browser keeps such a page
+    if address == "/":
+        await page.goto("/")
+        await fill(page, what="Keys")
+    else:
+        await page.goto(f"/follow.html?order={await ada.order(BOB)}")
+        await page.get_by_role("button", name="Cancel this order").click()
+        await page.get_by_role("dialog").get_by_role("button", name="Yes, cancel it").click()
+        await page.get_by_role("link", name="Send another like this").click()
+        await expect(page.get_by_label("Recipient’s e-mail")).to_have_value(BOB)
+    await send(page)
+    await expect(page.get_by_role("heading", name="Looking for a robot")).to_be_visible()
+    before = len((await ada.api("/orders"))["items"])
+    await page.go_back()
+    await expect(page.get_by_role("heading", name="Send a letter")).to_be_visible()
+    await expect(page.get_by_label("Recipient’s e-mail")).to_have_value("")
+    await send(page)
+    await expect(page.locator("[aria-invalid=true]").first).to_be_visible()
+    assert len((await ada.api("/orders"))["items"]) == before
+
+
 async def test_the_same_post_twice_is_refused_at_the_field(visit, there):
     ada = await visit()
     await there(ada)

@@ -193,10 +193,23 @@ export class OrderForm extends PageElement {
     this.problems = {};
     const { page, kept, problems = {} } = await end.sendOrder(this);
     this.problems = problems;
-    if (page) return location.assign(page);
+    if (page) return this.#leaveFor(page);
     // The shell shows what is kept; the form is free for the next one.
-    if (kept) return this.#want({ to_post: "", recipient: "", description: "" });
+    if (kept) return this.#empty();
     this.focusOn("[aria-invalid]");
+  }
+
+  #empty() {
+    [this.when, this.#chosen, this.schedule] = ["now", "now", {}];
+    this.#want({ to_post: "", recipient: "", description: "", not_before: undefined });
+  }
+
+  /** Who goes back finds an empty form: what is filled in already would be ordered twice by one tap. @param {string} page */
+  async #leaveFor(page) {
+    this.#empty();
+    history.replaceState(null, "", location.pathname); // a link that repeats an order fills the form in, too
+    await this.updateComplete;
+    location.assign(page);
   }
 }
 
