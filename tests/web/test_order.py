@@ -218,8 +218,8 @@ async def test_an_order_without_any_answer_is_kept_and_sent_again_with_its_key_a
     await expect(
         kept.get_by_text("Will be sent by itself as soon as there is a network, and only once.")
     ).to_be_visible()
-    await page.unroute_all(behavior="wait")  # one that is on its way would go to the service beside the next
-    async with page.expect_request(re.compile("/api/v1/orders$")) as sent:
+    async with page.expect_request(re.compile("/api/v1/orders$")) as sent:  # before the reload, or because of it
+        await page.unroute_all(behavior="wait")  # one that is on its way would go to the service beside the next
         await page.reload()
     assert {(await sent.value).headers["idempotency-key"]} == set(keys)
     await kept.get_by_role("link", name="Follow it").click()
