@@ -44,7 +44,9 @@ def test_a_checkout_that_cannot_be_written_to_is_one_sentence(read_only: Path, v
     # Permissions do not stop root: it looks as somebody else.
     as_somebody = {"user": NOBODY, "group": NOBODY, "extra_groups": []} if os.geteuid() == 0 else {}
     finished = subprocess.run(  # type: ignore[call-overload]
-        ["make", verb], cwd=read_only, capture_output=True, text=True, check=False, timeout=60, **as_somebody
+        ["make", verb],
+        **{"cwd": read_only, "env": {"PATH": os.environ["PATH"]}, "capture_output": True, "text": True},
+        **{"check": False, "timeout": 60, **as_somebody},
     )
     assert finished.returncode != 0
     (said,) = sentences(finished)

@@ -10,6 +10,17 @@ export const HEIGHT = 200;
 /** Nothing heard for so long is drawn as nothing: a robot without network tells no charge. */
 const GAP_MS = 15 * 60_000;
 
+/** The least that the axis spans. */
+const LEAST_MS = 60 * 60_000;
+
+/** The same, from where there is something to draw. @param {BatteryHistory} history @returns {BatteryHistory} */
+export function fromItsFirst(history) {
+  const { samples, since, until } = history;
+  if (!samples.length) return history;
+  const first_ms = Math.min(Date.parse(samples[0].at), Date.parse(until) - LEAST_MS);
+  return { ...history, since: new Date(Math.max(Date.parse(since), first_ms)).toISOString() };
+}
+
 /** @param {BatteryHistory} history */
 function scale({ since, until }) {
   const [from_ms, to_ms] = [Date.parse(since), Date.parse(until)];

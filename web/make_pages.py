@@ -64,7 +64,7 @@ HEADS: Final[Mapping[str, Head]] = {
     "notices": Head("notices", ("notices",), "notices_page"),
     "settings": Head("settings", ("settings",), "settings_page"),
     "one-order": Head("one_order", ("follow",), "one_order", kind=SAYS_NOT_WHENCE),
-    "mailroom": Head("mailroom", ("mailroom", "asking", "wall"), "mailroom_page"),
+    "mailroom": Head("mailroom", ("mailroom", "asking"), "mailroom_page"),
     "robots": Head("robots", ("asking", "robots")),
     "print": Head("print", ("mailroom", "asking", "print")),
 }

@@ -3,7 +3,8 @@ import { withStyles } from "./styles_later.js";
 
 const BEFORE = "200px";
 
-export const fetchMap = () => Promise.all([withStyles("/styles/map.css"), import("./elements/campus_map.js")]);
+/** In this order: without its styles a map is black shapes for a moment. */
+export const fetchMap = () => withStyles("/styles/map.css").then(() => import("./elements/campus_map.js"));
 
 /** @param {Element} place where it has its room */
 export function fetchMapWhenSeen(place) {

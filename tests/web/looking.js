@@ -34,13 +34,14 @@
     return found;
   };
 
-  const scrolls = (style) => /auto|scroll/.test(style.overflowX) || /auto|scroll/.test(style.overflowY);
+  /** What does not fit is there for who scrolls, or ends in an ellipsis because the whole stands elsewhere. */
+  const scrolls = (style) => /auto|scroll/.test(style.overflowX) || /auto|scroll/.test(style.overflowY) || style.webkitLineClamp !== "none";
 
   /** Whether a line is not scrolled out of the box that holds it. */
   const isInSight = ({ owner, rect }) => {
     for (let box = owner; box && box !== document.documentElement; box = box.parentElement) {
       const place = box.getBoundingClientRect();
-      if (scrolls(getComputedStyle(box)) && (rect.top >= place.bottom || rect.bottom <= place.top)) return false;
+      if (scrolls(getComputedStyle(box)) && (rect.top >= place.bottom - SLACK || rect.bottom <= place.top + SLACK)) return false;
     }
     return true;
   };
@@ -61,7 +62,7 @@
         const style = getComputedStyle(box);
         const place = box.getBoundingClientRect();
         const isOut = rect.right > place.right + SLACK || rect.left < place.left - SLACK;
-        if (scrolls(style) && box !== document.documentElement && (isOut || rect.top > place.bottom)) break;
+        if (scrolls(style) && box !== document.documentElement && (isOut || rect.top >= place.bottom - SLACK)) break;
         if (isOut && style.display !== "inline" && (style.overflowX !== "visible" || box.matches(BOXES)))
           found.add(`${words(owner)} sticks out of ${words(box).slice(0, 40)}`);
         if (/hidden|clip/.test(style.overflowY) && rect.bottom > place.bottom + 3) found.add(`${words(owner)} is cut off`);

@@ -36,7 +36,7 @@ async def test_a_french_speaker_orders_in_french(visit):
     await page.get_by_label("De", exact=True).select_option("Post 1")
     await page.get_by_label("À", exact=True).select_option("Post 4")
     await page.get_by_label("E-mail du destinataire").fill(BOB)
-    await expect(page.get_by_text(re.compile(r"Une hypothèse d’après les 6\sm de la carte"))).to_be_visible()
+    await expect(page.get_by_text("L’heure d’arrivée n’est pas encore connue.")).to_be_visible()
     await page.get_by_role("button", name="Envoyer le robot").click()
     await expect(page.get_by_role("heading", name="Recherche d’un robot")).to_be_visible()
     await expect(page.locator("html")).to_have_attribute("lang", "fr")

@@ -28,6 +28,8 @@ import "./wait_longer.js";
 const WAITING = ["waiting", "charging", "stopped"];
 
 export class FollowPage extends PageElement {
+  /** The state in which the code was shown by a tap. @type {Order["state"] | null} */
+  #shownIn = null;
   /** How often something was heard. */
   #heard = 0;
   #door = this.#ownDoor();
@@ -100,7 +102,7 @@ export class FollowPage extends PageElement {
       <div class="column">
         ${orderStanding(order, map)}
         <handover-code .door=${this.#door} .purpose=${order.my_code} .needed=${isMyTurn(order)}
-          .asked=${order.handover_requested !== null}></handover-code>
+          .asked=${order.handover_requested !== null} @shown=${() => (this.#shownIn = order.state)}></handover-code>
         ${isMyTurn(order) ? this.#whileItWaits(order, map) : nothing}
         ${this.#why(order, map)} ${this.#others(order)}
         <section class="card" aria-labelledby="timeline-title">
@@ -120,9 +122,16 @@ export class FollowPage extends PageElement {
   }
 
   updated() {
+    if (this.#shownIn && this.order?.state !== this.#shownIn) this.#bringIntoView();
     // After the words: where the letter stands is what people come for.
     if (this.order && this.map) import("../map_later.js").then(({ fetchMap }) => fetchMap());
     if (this.order && this.map) document.title = `${stateSentence(this.order, this.map, serverNow())} · ${t("app.name")}`;
+  }
+
+  /** What came of the tap stands above the code, and who tapped has scrolled down to it. */
+  #bringIntoView() {
+    this.#shownIn = null;
+    this.querySelector(".standing")?.scrollIntoView({ block: "center" });
   }
 
   /** Below the code, which is needed first. @param {Order} order @param {CampusMap} map */

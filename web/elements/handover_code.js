@@ -136,6 +136,7 @@ export class HandoverCodeElement extends PageElement {
     await this.#attempt(async (door) => {
       await door.showToCamera?.();
       this.said = t("code.camera_done");
+      this.dispatchEvent(new CustomEvent("shown"));
     });
   }
 

@@ -6,6 +6,7 @@ import { html, nothing } from "lit";
 import { expectedWithOrders } from "../arrival.js";
 import { ClosedNow } from "../closed_now.js";
 import { PAGES } from "../links.js";
+import { fetchMap } from "../map_later.js";
 import { MailroomNow } from "../mailroom_now.js";
 import { shortName, sorted, whatIsWrong, withoutOwnWords } from "../mailroom_words.js";
 import { serverNow } from "../server_clock.js";
@@ -14,7 +15,6 @@ import { Ticking } from "../ticking.js";
 import { clockTime } from "../times.js";
 import { TrafficNow } from "../traffic.js";
 import { StaysAwake } from "../stays_awake.js";
-import "./campus_map.js";
 import { problemLine } from "./field.js";
 import { PageElement } from "./page_element.js";
 import { queueList } from "./queue_list.js";
@@ -34,6 +34,10 @@ export class MailroomWall extends PageElement {
     super();
     new Ticking(this);
     new StaysAwake(this);
+  }
+
+  firstUpdated() {
+    fetchMap();
   }
 
   render() {

@@ -6,6 +6,7 @@ import { titleOf } from "../posts.js";
 import { serverNow } from "../server_clock.js";
 import { isolated, t } from "../texts.js";
 import { dayAndTime } from "../times.js";
+import { address } from "./address.js";
 import { SettingsPart, remark } from "./settings_part.js";
 /** @import { CampusMap, MyDelegate } from "../api_types.ts" */
 
@@ -45,7 +46,7 @@ export class MyDelegates extends SettingsPart {
     const [what, until] = [letter(one), t("code.expires", { time: dayAndTime(expires_at, serverNow()) })];
     return html`<li>
       <span>
-        <strong><bdi>${name}</bdi></strong>${email ? html`<span class="address">${email}</span>` : nothing}
+        <strong><bdi>${name}</bdi></strong>${email ? address(email) : nothing}
         ${remark("", html`<a href=${followPage(order_id)}>${what}</a>`)}
         ${remark(t(`settings.delegates.${purpose}`, { post: titleOf(map, post) }), until)}
       </span>

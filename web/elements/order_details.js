@@ -3,6 +3,7 @@ import { html, nothing } from "lit";
 import { serverNow } from "../server_clock.js";
 import { t } from "../texts.js";
 import { dayAndTime } from "../times.js";
+import { address } from "./address.js";
 /** @import { Custody, Order, Party } from "../api_types.ts" */
 
 /** @param {Order} order */
@@ -24,7 +25,7 @@ const row = (label, value) => html`<div><dt>${t(label)}</dt><dd>${value}</dd></d
 
 /** @param {Party} person @param {boolean} isMe */
 const party = ({ name, email }, isMe) =>
-  html`${isMe ? t("follow.you", { name }) : own(name)}<span class="address">${email}</span>`;
+  html`${isMe ? t("follow.you", { name }) : own(name)}${address(email)}`;
 
 /** From when to when, and how each hand-over was confirmed; nothing as long as it has never changed hands. @param {Order} order */
 export function orderCustody(order) {

@@ -6,6 +6,7 @@ import { OnLive, stopLive } from "../live.js";
 import { signOut } from "../session.js";
 import { askAgain } from "../session_lost.js";
 import { counted, t } from "../texts.js";
+import { address } from "./address.js";
 import { icon } from "./icon.js";
 import { PageElement } from "./page_element.js";
 /** @import { About, Inbox, Me } from "../api_types.ts" */
@@ -140,7 +141,7 @@ export class PageShell extends PageElement {
     return html`<details class="account">
       <summary>${initials(person.name)}<span class="unseen"> ${t("account.open")}: ${person.name}</span></summary>
       <div class="sheet">
-        <strong><bdi>${person.name}</bdi></strong><span class="address">${person.email}</span>
+        <strong><bdi>${person.name}</bdi></strong>${address(person.email)}
         <div class="entries">
           <a class="entry" href=${PAGES.settings} aria-current=${this.page === "settings" ? "page" : nothing}>
             ${icon("settings")}${t("nav.settings")}

@@ -1,7 +1,7 @@
 /** A robot's charge over time: a curve, and the same in words and numbers. */
 import { html, nothing, svg } from "lit";
 import * as api from "../api.js";
-import { bands, charges, curve, height, HEIGHT, lowest, some, WIDTH } from "../battery_facts.js";
+import { bands, charges, curve, fromItsFirst, height, HEIGHT, lowest, some, WIDTH } from "../battery_facts.js";
 import { inWords } from "../problems.js";
 import { serverNow } from "../server_clock.js";
 import { counted, t } from "../texts.js";
@@ -71,7 +71,7 @@ export class RobotBattery extends PageElement {
     this.fetched_ms = performance.now();
     try {
       const since = new Date(serverNow() - SPANS[this.span]).toISOString();
-      [this.history, this.problem] = [await api.batteryHistory(this.robot, since), ""];
+      [this.history, this.problem] = [fromItsFirst(await api.batteryHistory(this.robot, since)), ""];
     } catch (failure) {
       this.problem = inWords(failure);
     }

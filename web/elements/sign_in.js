@@ -25,6 +25,7 @@ export class SignIn extends PageElement {
     email: {},
     again: { type: Boolean },
     codeSent: { state: true },
+    sentAgain: { state: true },
     busy: { state: true },
     problems: { state: true },
   };
@@ -37,6 +38,7 @@ export class SignIn extends PageElement {
     /** Whether this is over a page that goes on afterwards, and has its own heading. */
     this.again = false;
     this.codeSent = false;
+    this.sentAgain = false;
     this.busy = false;
     /** @type {Record<string, string>} */
     this.problems = whatCameBack();
@@ -94,7 +96,9 @@ export class SignIn extends PageElement {
       ${this.about?.demo ? html`<p class="hint">${t("sign_in.code_demo")}</p>` : nothing}
       ${this.#formProblem()}
       <button class="main" ?disabled=${this.busy}>${t("sign_in.enter")}</button>
+      <button class="quiet" type="button" ?disabled=${this.busy} @click=${this.#sendAgain}>${t("sign_in.send_again")}</button>
       <button class="quiet" type="button" @click=${this.#startAgain}>${t("sign_in.other")}</button>
+      <p role="status" class="hint">${this.sentAgain ? t("sign_in.sent_again", { email: this.email }) : nothing}</p>
     </form>`;
   }
 
@@ -127,8 +131,16 @@ export class SignIn extends PageElement {
     });
   }
 
+  #sendAgain() {
+    this.sentAgain = false;
+    return this.#attempt(async () => {
+      await api.requestCode(this.email);
+      this.sentAgain = true;
+    });
+  }
+
   #startAgain() {
-    this.codeSent = false;
+    this.codeSent = this.sentAgain = false;
     this.problems = {};
     this.focusOn("[name=email]");
   }
