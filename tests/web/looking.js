@@ -162,7 +162,7 @@
       const { fill, stroke, paintOrder } = getComputedStyle(text);
       return least(contrast(fill, paintOrder.startsWith("stroke") ? stroke : groundOf(text)), 4.5, `"${text.textContent}" on the drawing`);
     });
-    const shapes = Object.entries(TELLING).flatMap(([colour, which]) => [...root().querySelectorAll(which)].flatMap((shape) =>
+    const shapes = Object.entries(TELLING).flatMap(([colour, which]) => [...root().querySelectorAll(`svg :is(${which})`)].flatMap((shape) =>
       least(contrast(getComputedStyle(shape)[colour], groundOf(shape)), 3, `the ${shape.getAttribute("class")} of the drawing`)));
     return [...new Set([...letters, ...shapes])];
   };
