@@ -42,7 +42,10 @@ PARTS_OF_A_PAGE: Final = frozenset({"text/javascript", "text/css"})
 """What says nothing by itself: the page that asks for it has said what it may do. A page has dozens of them."""
 SAME_FOR_EVERYBODY: Final = "/api/v1/map"
 """No secret is in it and nothing that anybody sent."""
-OF_EVERY_ANSWER: Final = frozenset({"X-Content-Type-Options", "Cache-Control"})
+DATA: Final = frozenset({"application/json", "application/problem+json", "text/event-stream"})
+"""What is no document: opened as one, it may do nothing at all."""
+OF_EVERY_ANSWER: Final = {"X-Content-Type-Options": "nosniff", "Cache-Control": "no-cache"}
+OF_DATA: Final = OF_EVERY_ANSWER | {"Content-Security-Policy": "default-src 'none'; frame-ancestors 'none'"}
 IMPORT_MAP = re.compile(rb'<script type="importmap">(.*?)</script>', re.DOTALL)
 
 
@@ -111,13 +114,11 @@ class SafeHeaders:
 
     def __init__(self, app: ASGIApp, policy: str) -> None:
         self._app = app
-        self._headers = {
+        self._of_documents = OF_EVERY_ANSWER | {
             "Content-Security-Policy": policy,
-            "X-Content-Type-Options": "nosniff",
             "Referrer-Policy": "same-origin",
             "Cross-Origin-Opener-Policy": "same-origin",
             "Permissions-Policy": "camera=(), microphone=(), geolocation=()",
-            "Cache-Control": "no-cache",
         }
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -128,12 +129,16 @@ class SafeHeaders:
         async def send_safely(message: Message) -> None:
             if message["type"] == "http.response.start":
                 headers = MutableHeaders(scope=message)
-                is_part = scope["path"] != WORKER and headers.get("content-type", "").split(";")[0] in PARTS_OF_A_PAGE
-                for name, value in self._headers.items():
-                    if not is_part or name in OF_EVERY_ANSWER:
-                        headers.setdefault(name, value)
+                for name, value in self._strict(scope["path"], headers.get("content-type", "")).items():
+                    headers.setdefault(name, value)
                 if scope["scheme"] == "https":
                     headers.setdefault("Strict-Transport-Security", "max-age=31536000")
             await send(message)
 
         await self._app(scope, receive, send_safely)
+
+    def _strict(self, path: str, content_type: str) -> dict[str, str]:
+        kind = content_type.partition(";")[0]
+        if kind in PARTS_OF_A_PAGE and path != WORKER:
+            return OF_EVERY_ANSWER
+        return OF_DATA if kind in DATA else self._of_documents
