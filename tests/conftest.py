@@ -2,7 +2,6 @@
 
 import gc
 import os
-import shutil
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -11,11 +10,12 @@ import pytest
 import structlog
 from hypothesis import settings
 
+from benchmarks.pages.chromium import find_chromium
+
 # A shared machine is slow at times; slowness is for the benchmarks to judge.
 settings.register_profile("campus_mail", deadline=None, print_blob=True)
 settings.load_profile("campus_mail")
 
-NAMES_OF_CHROMIUM = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 NOT_RUN = pytest.StashKey[int]()
 ALONE_IN = ("robot", "system")
 """CI looks for tests that run alone in these folders only: to collect all the others takes ten seconds."""
@@ -34,14 +34,11 @@ def pytest_collection_finish() -> None:
     gc.freeze()
 
 
-def find_chromium() -> str | None:
-    """$CHROMIUM, else the first known name on the PATH. A $CHROMIUM that is not there is an error, not an absence."""
-    named = os.environ.get("CHROMIUM")
-    if named:
-        if shutil.which(named) is None:
-            raise pytest.UsageError(f"CHROMIUM={named} is no program that can be run")
-        return named
-    return next(filter(None, map(shutil.which, NAMES_OF_CHROMIUM)), None)
+def chromium() -> str | None:
+    try:
+        return find_chromium()
+    except FileNotFoundError as error:
+        raise pytest.UsageError(str(error)) from error
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -55,7 +52,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         raise pytest.UsageError(f".ci/run would never run these alone: {', '.join(elsewhere)}")
     items.sort(key=lambda item: item.get_closest_marker("system") is None)
     browser_tests = [item for item in items if item.get_closest_marker("browser")]
-    if not browser_tests or find_chromium():
+    if not browser_tests or chromium():
         return
     if os.environ.get("CAMPUS_MAIL_REQUIRE_BROWSER"):
         raise pytest.UsageError(f"no Chromium found, and {len(browser_tests)} browser tests must run")
@@ -94,4 +91,4 @@ def pytest_unconfigure(config: pytest.Config) -> None:
 def browser_type_launch_args(browser_type_launch_args: dict[str, Any]) -> dict[str, Any]:
     """Playwright drives the system's Chromium. Root (a container) has no sandbox to give."""
     no_sandbox = ["--no-sandbox"] if os.geteuid() == 0 else []
-    return {**browser_type_launch_args, "executable_path": find_chromium(), "args": no_sandbox}
+    return {**browser_type_launch_args, "executable_path": chromium(), "args": no_sandbox}

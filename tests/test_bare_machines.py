@@ -67,7 +67,7 @@ def run_browser_tests(tmp_path: Path, **environment: str) -> subprocess.Complete
     shutil.copy(CHECKOUT / "pyproject.toml", tmp_path)
     (tmp_path / "test_pages.py").write_text(BROWSER_TESTS)
     command = [sys.executable, "-m", "pytest", "-q", "-o", "testpaths=.", "-p", "no:cacheprovider"]
-    environment = {"PATH": os.defpath, "HOME": str(tmp_path), **environment}
+    environment = {"PATH": os.defpath, "HOME": str(tmp_path), "PYTHONPATH": str(CHECKOUT), **environment}
     return subprocess.run(
         command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False, timeout=60
     )

@@ -8,7 +8,8 @@ from typing import Any, Final
 
 from playwright.async_api import Browser, BrowserContext, CDPSession, Page, async_playwright
 
-CHROMIUM: Final = "/usr/bin/chromium"
+from benchmarks.pages.chromium import find_chromium
+
 PHONE: Final[dict[str, Any]] = {
     "viewport": {"width": 412, "height": 839},
     "device_scale_factor": 2.625,
@@ -62,7 +63,9 @@ class Visit:
 @asynccontextmanager
 async def a_browser() -> AsyncIterator[Browser]:
     async with async_playwright() as playwright:
-        yield await playwright.chromium.launch(executable_path=CHROMIUM, args=["--disable-background-networking"])
+        yield await playwright.chromium.launch(
+            executable_path=find_chromium(), args=["--disable-background-networking"]
+        )
 
 
 class _Traffic:

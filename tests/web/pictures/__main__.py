@@ -10,13 +10,13 @@ from typing import Annotated, Any, Final
 import typer
 from playwright.async_api import async_playwright
 
+from benchmarks.pages.chromium import find_chromium
 from tests.web.pictures.gallery import PICTURES, Picture
 from tests.web.pictures.letters import environment
 from tests.web.pictures.stage import SCREENS, set_up
 from tests.web.pictures.taking import NotTaken, Shots, chosen, take
 from tests.web.service import ROOT
 
-CHROMIUM: Final = "/usr/bin/chromium"
 QUIET: Final = ["--disable-gpu", "--disable-background-networking"]
 GALLERY: Final = ROOT / "docs/pictures/pages"
 PageName = StrEnum("PageName", {one.name.replace("-", "_").upper(): one.name for one in PICTURES})
@@ -53,7 +53,7 @@ async def _take(pictures: list[Picture], shots: Shots, context: dict[str, Any]) 
     with tempfile.TemporaryDirectory() as folder:
         async with async_playwright() as playwright:
             letters = {**os.environ, **environment(Path(folder))}
-            browser = await playwright.chromium.launch(executable_path=CHROMIUM, args=QUIET, env=letters)
+            browser = await playwright.chromium.launch(executable_path=find_chromium(), args=QUIET, env=letters)
             async with set_up(Path(folder), browser, playwright, **context) as stage:
                 async for done in take(stage, pictures, shots):
                     failed += isinstance(done, NotTaken)
