@@ -14,6 +14,7 @@ import pytest
 import pytest_asyncio
 from playwright.async_api import Browser, Playwright, async_playwright, expect
 
+from benchmarks.pages.chromium import find_chromium
 from tests.app.fleet.playing import PlayedRobot
 from tests.web.mailroom_scene import Campus
 from tests.web.service import Service
@@ -42,6 +43,17 @@ async def playwright_here() -> AsyncIterator[Playwright]:
 async def chromium(playwright_here: Playwright, browser_type_launch_args: dict[str, Any]) -> AsyncIterator[Browser]:
     arguments = {**browser_type_launch_args, "args": [*browser_type_launch_args.get("args", []), *QUIET]}
     browser = await playwright_here.chromium.launch(**arguments)
+    yield browser
+    await browser.close()
+
+
+@pytest_asyncio.fixture(scope="session", loop_scope="session")
+async def whole_chromium(
+    playwright_here: Playwright, browser_type_launch_args: dict[str, Any]
+) -> AsyncIterator[Browser]:
+    """With all that belongs to windows and the system: notices, installed apps, what is sent later."""
+    arguments = {**browser_type_launch_args, "executable_path": find_chromium(whole=True)}
+    browser = await playwright_here.chromium.launch(**arguments, args=[*arguments.pop("args", []), *QUIET])
     yield browser
     await browser.close()
 

@@ -9,6 +9,11 @@ from tests.web.service import ROOT
 
 EYES: Final = (ROOT / "tests/web/keys.js").read_text(encoding="utf-8")
 IS_ASKED_FOR: Final = "() => performance.getEntriesByType('resource').some(({name}) => /keeps_keyboard/.test(name))"
+MAP_COMES: Final = (
+    "() => [...document.querySelectorAll('campus-map')].find((one) => one.checkVisibility())?.scrollIntoView()"
+)
+MAP_IS_THERE: Final = """() => [...document.querySelectorAll("campus-map")]
+  .every((one) => !one.checkVisibility() || one.querySelector("svg"))"""
 MOST_STOPS: Final = 250
 
 
@@ -33,7 +38,10 @@ class Keyboard:
         await self.page.keyboard.type(text)
 
     async def stands(self) -> None:
-        """What looks after the keyboard comes once a page stands, at the first key."""
+        """What looks after the keyboard comes once a page stands, at the first key; a map comes when it is seen."""
+        await self.page.evaluate(MAP_COMES)
+        await self.page.wait_for_function(MAP_IS_THERE)
+        await self.page.evaluate("() => scrollTo(0, 0)")
         while not await self.page.evaluate(IS_ASKED_FOR):
             await self.press("Shift")
         await self.page.evaluate("() => import('/keeps_keyboard.js')")

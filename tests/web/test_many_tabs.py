@@ -26,6 +26,8 @@ INSIGHT = Insight.model_validate_json(
     json.dumps(json.loads((ROOT / "protocol/examples/insight.json").read_text(encoding="utf-8"))["body"])
 )
 MAILROOM, ROBOT = 10, 11
+ALL_AT_ONCE_MS = 60_000
+"""Eleven pages opened in one moment, beside other tests."""
 
 
 class Streams:
@@ -69,7 +71,7 @@ async def test_twelve_tabs_share_one_stream_and_each_of_them_works(quiet_campus,
     await tabs[0].goto("/")
     await streams.are_read_by(tabs[0])
     special = {MAILROOM: "/mailroom.html", ROBOT: f"/robots.html?robot={robot.name}"}
-    await asyncio.gather(*(tab.goto(special.get(n, "/")) for n, tab in enumerate(tabs[1:], 1)))
+    await asyncio.gather(*(tab.goto(special.get(n, "/"), timeout=ALL_AT_ONCE_MS) for n, tab in enumerate(tabs[1:], 1)))
     for n, tab in enumerate(tabs):
         await expect(tab.get_by_label("From") if n not in special else tab.locator("main h1")).to_be_visible()
     assert streams.readers == tabs[:1]

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from playwright.async_api import CDPSession, Page, Route, expect
+from playwright.async_api import Browser, CDPSession, Page, Route, expect
 
 from app.page_files import PageFiles
 from protocol.parts import StopAction
@@ -23,6 +23,13 @@ from tests.web.test_order import fill, send
 from tests.web.visitor import Visitor
 
 pytestmark = pytest.mark.browser
+
+
+@pytest.fixture
+def chromium(whole_chromium: Browser) -> Browser:
+    """The shell sends nothing once its pages are closed."""
+    return whole_chromium
+
 
 WORKER_IS_THERE = "() => navigator.serviceWorker.controller !== null"
 KEPT_ANSWERS = """async () => {

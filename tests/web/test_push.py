@@ -9,8 +9,9 @@ from typing import Any
 
 import pytest
 import pytest_asyncio
-from playwright.async_api import Playwright, expect
+from playwright.async_api import Browser, Playwright, expect
 
+from benchmarks.pages.chromium import find_chromium
 from tests.app.fleet.playing import until
 from tests.web.conftest import QUIET
 from tests.web.service import Service
@@ -18,6 +19,14 @@ from tests.web.test_offline import WORKER_IS_THERE, worker_of
 from tests.web.visitor import Visitor
 
 pytestmark = pytest.mark.browser
+
+
+@pytest.fixture
+def chromium(whole_chromium: Browser) -> Browser:
+    """The shell shows no notices."""
+    return whole_chromium
+
+
 # Who asks for the notices while one is on its way to the screen makes Chromium forget that one: it is in the list and
 # not shown yet. Therefore nobody asks before the worker has been told that it is shown.
 NOTE_WHAT_IS_SHOWN = """() => {
@@ -152,6 +161,7 @@ async def installed(
 ) -> AsyncIterator[Visitor]:
     """Ada, who has installed the app: in a browser that keeps things, since a test's usual window installs nothing."""
     arguments = {**browser_type_launch_args, "args": [*browser_type_launch_args.get("args", []), *QUIET]}
+    arguments["executable_path"] = find_chromium(whole=True)
     options = {"base_url": service.url, "locale": "en-CA", "permissions": ["notifications"]}
     context = await playwright_here.chromium.launch_persistent_context(str(tmp_path), **arguments, **options)
     assert context.browser is not None
