@@ -15,7 +15,7 @@ const ROOM = { width: 82, height: 100 };
 /** Around all of it: room for robots that stand on the outermost posts. */
 const MARGIN = 28;
 /** As wide as a phone: a narrower frame would only be blown up, and what is noted beside posts needs the room. */
-const NARROWEST = 370;
+const NARROWEST = 384;
 
 /** @template {WeakKey} Key @template Value @param {(key: Key) => Value} make @returns {(key: Key) => Value} */
 export function onceFor(make) {
