@@ -1,6 +1,6 @@
 /**
- * From metres to a drawing: where posts and corridors lie, and the frame around all of it. Pure: nothing here touches
- * the page. Lengths are units of the drawing at its plain size; a map is worked out once.
+ * From metres to a drawing: where posts and corridors lie, and the frame around all of it with its names. Lengths
+ * are units of the drawing at its plain size; a map is worked out once.
  * @import { CampusMap, MapCorridor, MapPost } from "./api_types.ts"
  * @typedef {{x: number, y: number}} Point
  * @typedef {{x: number, y: number, width: number, height: number}} Box
