@@ -59,8 +59,8 @@ COPIED = """(owner) => {
 @pytest_asyncio.fixture(scope="module", loop_scope="session")
 async def chromium(playwright_here: Playwright, browser_type_launch_args: dict[str, Any]) -> AsyncIterator[Browser]:
     """Without a window it hides scrollbars unless it is told not to."""
-    with_bars = {"args": QUIET, "ignore_default_args": ["--hide-scrollbars"]}
-    browser = await playwright_here.chromium.launch(**{**browser_type_launch_args, **with_bars})
+    arguments = {**browser_type_launch_args, "args": [*browser_type_launch_args.get("args", []), *QUIET]}
+    browser = await playwright_here.chromium.launch(**arguments, ignore_default_args=["--hide-scrollbars"])
     yield browser
     await browser.close()
 
@@ -77,7 +77,7 @@ async def test_the_header_stands_at_the_same_place_on_every_page(quiet_campus, v
     order_id = await dana.order("bob.martin@campus.example")
     more = {"follow": f"?order={order_id}"}
     places, long = {}, set[bool]()
-    for name in HEADS.keys() - {"one-order"}:  # which is for people without an account, and leads nowhere
+    for name in sorted(HEADS.keys() - {"one-order"}):  # which is for people without an account, and leads nowhere
         await dana.page.goto(f"/{name}.html{more.get(name, '')}")
         await expect(dana.page.get_by_role("heading", level=1)).to_be_visible()
         places[name] = await dana.page.evaluate(HEADER)
