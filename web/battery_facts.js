@@ -10,8 +10,8 @@ export const HEIGHT = 200;
 /** Nothing heard for so long is drawn as nothing: a robot without network tells no charge. */
 const GAP_MS = 15 * 60_000;
 
-/** The least that the axis spans. */
-const LEAST_MS = 60 * 60_000;
+/** The least that the axis spans: of a robot just switched on, a minute's tremble is not a fall. */
+const LEAST_MS = 15 * 60_000;
 
 /** The same, from where there is something to draw. @param {BatteryHistory} history @returns {BatteryHistory} */
 export function fromItsFirst(history) {

@@ -1,6 +1,6 @@
 /**
- * From metres to a drawing: where posts and corridors lie, and the frame around all of it. Pure: nothing here touches
- * the page. Lengths are units of the drawing at its plain size; a map is worked out once.
+ * From metres to a drawing: where posts and corridors lie, and the frame around all of it with its names. Lengths
+ * are units of the drawing at its plain size; a map is worked out once.
  * @import { CampusMap, MapCorridor, MapPost } from "./api_types.ts"
  * @typedef {{x: number, y: number}} Point
  * @typedef {{x: number, y: number, width: number, height: number}} Box
@@ -15,7 +15,7 @@ const ROOM = { width: 82, height: 100 };
 /** Around all of it: room for robots that stand on the outermost posts. */
 const MARGIN = 28;
 /** As wide as a phone: a narrower frame would only be blown up, and what is noted beside posts needs the room. */
-const NARROWEST = 370;
+const NARROWEST = 384;
 
 /** @template {WeakKey} Key @template Value @param {(key: Key) => Value} make @returns {(key: Key) => Value} */
 export function onceFor(make) {

@@ -4,6 +4,7 @@
  * @import { ReactiveController, ReactiveControllerHost } from "lit"
  */
 import { html, nothing } from "lit";
+import { address } from "./elements/address.js";
 import { counted } from "./texts.js";
 
 /** @template T @implements {ReactiveController} */
@@ -53,7 +54,7 @@ export class Offers {
     return this.open && this.active >= 0 ? `${list}-${this.active}` : null;
   }
 
-  /** @param {string} list its id @param {string} label @param {(one: T) => {name: unknown, address: string}} words @param {string} [kind] */
+  /** @param {string} list its id @param {string} label @param {(one: T) => {name: unknown, email: string}} words @param {string} [kind] */
   draw(list, label, words, kind = "") {
     return html`<ul id=${list} role="listbox" class=${kind} aria-label=${label} ?hidden=${!this.open}>
         ${this.found.map((one, i) => this.#option(`${list}-${i}`, one, i === this.active, words(one)))}
@@ -61,11 +62,11 @@ export class Offers {
       <span class="unseen" role="status">${this.open ? counted(this.count, this.found.length) : nothing}</span>`;
   }
 
-  /** @param {string} id @param {T} one @param {boolean} isActive @param {{name: unknown, address: string}} words */
-  #option(id, one, isActive, { name, address }) {
+  /** @param {string} id @param {T} one @param {boolean} isActive @param {{name: unknown, email: string}} words */
+  #option(id, one, isActive, { name, email }) {
     return html`<li id=${id} role="option" aria-selected=${isActive ? "true" : "false"}
       @pointerdown=${(/** @type {Event} */ event) => event.preventDefault()} @click=${() => this.#take(one)}>
-      <strong><bdi>${name}</bdi></strong><span class="address">${address}</span>
+      <strong><bdi>${name}</bdi></strong>${address(email)}
     </li>`;
   }
 

@@ -153,6 +153,7 @@ async def test_two_people_and_a_robot_ordered_loaded_by_code_followed_received_b
     await code.get_by_role("button", name="Hold the code to the robot’s camera (simulated)").click()
     await demonstration.checks_the_code_and_hands_over(StopAction.LOAD)
     await expect(standing).to_have_text("Your letter is on its way to Post 4")
+    await expect(standing).to_be_in_viewport(ratio=1)
     await expect(code).to_be_hidden()
     await expect(ada.page.get_by_role("button", name="Cancel this order")).to_be_hidden()
     await expect(ada.page.get_by_role("button", name="Have it brought back")).to_be_visible()
@@ -342,6 +343,7 @@ async def test_a_recipient_without_account_takes_the_letter_by_the_link_in_the_m
     await expect(code.get_by_text("The robot has been asked.")).to_be_visible()
     await demonstration.hands_over_as_asked(StopAction.RECEIVE)
     await expect(standing).to_have_text("Delivered")
+    await expect(standing).to_be_in_viewport(ratio=1)
 
 
 async def test_a_delegate_sees_by_the_link_in_their_mail_where_it_is_and_their_code_and_no_more(demonstration, visit):

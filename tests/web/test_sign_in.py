@@ -22,6 +22,26 @@ async def test_a_person_signs_in_with_the_code_from_their_mail(visit, service):
     await expect(page).to_have_title(re.compile("^Send a letter"))
 
 
+@pytest.mark.parametrize("which", ["first", "second"])
+async def test_a_code_is_sent_again_and_either_of_them_signs_in(visit, service, which):
+    """Mails overtake each other: docs/decisions/0078-a-code-belongs-to-the-browser-that-asked.md."""
+    ada = await visit("ada.king", on="phone", signed_in=False)
+    page = ada.page
+    await page.goto("/")
+    await page.get_by_label("E-mail address").fill(ada.email)
+    await page.get_by_role("button", name="Send me a code").click()
+    await expect(page.get_by_label("Code from the e-mail")).to_be_visible()
+    (first,) = service.codes_mailed_to(ada.email, 1)
+    await page.get_by_role("button", name="Send the code again").click()
+    await expect(page.get_by_role("status")).to_have_text(re.compile(f"Another code is on its way to {ada.email}"))
+    codes = service.codes_mailed_to(ada.email, 2)
+    (second,) = {*codes} - {first}
+    assert len(codes) == 2
+    await page.get_by_label("Code from the e-mail").fill({"first": first, "second": second}[which])
+    await page.get_by_role("button", name="Sign in").click()
+    await expect(page.get_by_role("heading", name="Send a letter")).to_be_visible()
+
+
 async def test_a_wrong_code_is_refused_in_words_beside_the_field(visit, service):
     ada = await visit("ada.king", signed_in=False)
     ada.refusals_expected.add("/api/v1/sign-in")

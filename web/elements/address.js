@@ -1,6 +1,8 @@
-/** A mail address that breaks after its @ and its dots, and within a word only where nothing else fits. */
+/** A mail address breaks after its signs, and within a word only where nothing else fits. */
 import { html } from "lit";
 
 /** @param {string} email */
-export const address = (email) =>
-  html`<span class="address">${email.split(/(?<=[@.])/).map((part, i) => (i ? html`<wbr />${part}` : part))}</span>`;
+export const inParts = (email) => email.split(/(?<=[@._+-])/).map((part, i) => (i ? html`<wbr />${part}` : part));
+
+/** @param {string} email @param {string} [more] what is said behind it */
+export const address = (email, more = "") => html`<span class="address">${inParts(email)}${more}</span>`;

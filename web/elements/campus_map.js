@@ -143,7 +143,7 @@ export class CampusMapElement extends PageElement {
    *  the whole @param {MapFacts} facts */
   #places(whole, wordings, room, { taken, robots }) {
     const signs = robots.length > 1 ? taken : [];
-    const steady = wordings.map((wording) => ({ ...wording, notes: wording.notes.map((note) => note.replace(/\d+/g, "00")) }));
+    const steady = wordings.map((wording) => ({ ...wording, notes: wording.notes.map((note) => note.replace(/\d/g, "0")) }));
     const key = JSON.stringify([this.map?.version, this.map?.name, room, steady, signs]);
     if (key !== this.#placed.key) {
       const drawn = spread(whole, room.factor);

@@ -41,7 +41,7 @@ export class ContactOffers extends PageElement {
   }
 
   render() {
-    return this.#offers.draw(LIST, t("order.known"), ({ label, name, email }) => ({ name: label || name || email, address: email }));
+    return this.#offers.draw(LIST, t("order.known"), ({ label, name, email }) => ({ name: label || name || email, email }));
   }
 
   updated() {

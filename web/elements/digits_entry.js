@@ -1,6 +1,7 @@
 /** Six digits instead of the camera: typed by whoever sees the letter, they open for the one whose digits they are. */
 import { html, nothing } from "lit";
 import { inWords } from "../problems.js";
+import { robotAsked } from "../shows_outcome.js";
 import { t } from "../texts.js";
 import { field } from "./field.js";
 import { PageElement } from "./page_element.js";
@@ -40,6 +41,7 @@ export class DigitsEntry extends PageElement {
     [this.said, this.problem] = ["", digits.length === DIGITS ? "" : t("follow.digits.missing")];
     if (this.problem || this.busy || !this.door) return this.focusOn("[aria-invalid]");
     this.busy = true;
+    this.dispatchEvent(robotAsked());
     try {
       await this.door.handOver(digits);
       input.value = "";

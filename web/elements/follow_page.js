@@ -9,6 +9,7 @@ import { hasEnded, isAtAStop, isMyTurn, orderWhy, stateSentence } from "../order
 import { loadMap } from "../posts.js";
 import { inWords } from "../problems.js";
 import { serverNow } from "../server_clock.js";
+import { ShowsOutcome } from "../shows_outcome.js";
 import { t } from "../texts.js";
 import { Ticking } from "../ticking.js";
 import { TrafficNow } from "../traffic.js";
@@ -28,8 +29,6 @@ import "./wait_longer.js";
 const WAITING = ["waiting", "charging", "stopped"];
 
 export class FollowPage extends PageElement {
-  /** The state in which the code was shown by a tap. @type {Order["state"] | null} */
-  #shownIn = null;
   /** How often something was heard. */
   #heard = 0;
   #door = this.#ownDoor();
@@ -56,6 +55,7 @@ export class FollowPage extends PageElement {
     /** @type {Robot | null} */
     this.robot = null;
     this.problem = "";
+    new ShowsOutcome(this);
     new Ticking(this);
     new OnLive(this, {
       order: (order) => order.id === this.order_id && this.#hear(() => this.#show(order)),
@@ -102,7 +102,7 @@ export class FollowPage extends PageElement {
       <div class="column">
         ${orderStanding(order, map)}
         <handover-code .door=${this.#door} .purpose=${order.my_code} .needed=${isMyTurn(order)}
-          .asked=${order.handover_requested !== null} @shown=${() => (this.#shownIn = order.state)}></handover-code>
+          .asked=${order.handover_requested !== null}></handover-code>
         ${isMyTurn(order) ? this.#whileItWaits(order, map) : nothing}
         ${this.#why(order, map)} ${this.#others(order)}
         <section class="card" aria-labelledby="timeline-title">
@@ -122,16 +122,9 @@ export class FollowPage extends PageElement {
   }
 
   updated() {
-    if (this.#shownIn && this.order?.state !== this.#shownIn) this.#bringIntoView();
     // After the words: where the letter stands is what people come for.
     if (this.order && this.map) import("../map_later.js").then(({ fetchMap }) => fetchMap());
     if (this.order && this.map) document.title = `${stateSentence(this.order, this.map, serverNow())} · ${t("app.name")}`;
-  }
-
-  /** What came of the tap stands above the code, and who tapped has scrolled down to it. */
-  #bringIntoView() {
-    this.#shownIn = null;
-    this.querySelector(".standing")?.scrollIntoView({ block: "center" });
   }
 
   /** Below the code, which is needed first. @param {Order} order @param {CampusMap} map */

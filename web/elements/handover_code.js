@@ -2,6 +2,7 @@
 import { html, nothing } from "lit";
 import { inWords } from "../problems.js";
 import { serverNow } from "../server_clock.js";
+import { robotAsked } from "../shows_outcome.js";
 import { t } from "../texts.js";
 import { dayAndTime } from "../times.js";
 import { helpWords, problemLine } from "./field.js";
@@ -126,6 +127,7 @@ export class HandoverCodeElement extends PageElement {
 
   async #handOver() {
     if (this.asked) return;
+    this.dispatchEvent(robotAsked());
     await this.#attempt(async (door) => {
       await door.handOver("");
       this.said = t("code.asked");
@@ -133,10 +135,10 @@ export class HandoverCodeElement extends PageElement {
   }
 
   async #showToCamera() {
+    this.dispatchEvent(robotAsked());
     await this.#attempt(async (door) => {
       await door.showToCamera?.();
       this.said = t("code.camera_done");
-      this.dispatchEvent(new CustomEvent("shown"));
     });
   }
 

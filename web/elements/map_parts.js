@@ -2,7 +2,7 @@
 import { nothing, svg } from "lit";
 import { middleOf, pathOf, pointsFrom } from "../map_drawing.js";
 import { conditionsOf } from "../map_facts.js";
-import { crowdRadius, inLines, LINE_HEIGHT, notesIn, robotPlaces } from "../map_labels.js";
+import { crowdRadius, inLines, LINE_HEIGHT, notesIn, robotPlaces } from "../map_sides.js";
 /** @import { Robot, TakenCorridor } from "../api_types.ts" */
 /** @import { DrawnPost, Drawing } from "../map_drawing.js" */
 /** @import { Place, Wording } from "../map_labels.js" */

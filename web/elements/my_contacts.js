@@ -4,6 +4,7 @@ import * as api from "../api.js";
 import { looksLikeEmail } from "../email.js";
 import { titleOf } from "../posts.js";
 import { t } from "../texts.js";
+import { address } from "./address.js";
 import { field } from "./field.js";
 import { SettingsPart } from "./settings_part.js";
 /** @import { CampusMap, Contact } from "../api_types.ts" */
@@ -45,7 +46,7 @@ export class MyContacts extends SettingsPart {
   #row(one, map) {
     const name = one.label || one.name || one.email;
     return html`<li>
-      <span><strong><bdi>${name}</bdi></strong><span class="address">${one.email}${one.post ? ` · ${titleOf(map, one.post)}` : ""}</span></span>
+      <span><strong><bdi>${name}</bdi></strong>${address(one.email, one.post ? ` · ${titleOf(map, one.post)}` : "")}</span>
       <span class="does">
         <button class="quiet" aria-label="${t(one.saved ? "settings.change" : "settings.save")}, ${name}" @click=${() => this.#edit(one)}>
           ${t(one.saved ? "settings.change" : "settings.save")}

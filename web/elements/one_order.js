@@ -6,6 +6,7 @@ import { hasEnded, isAtAStop, isMyTurn, stateSentence } from "../order_words.js"
 import { loadMap } from "../posts.js";
 import { inWords } from "../problems.js";
 import { serverNow } from "../server_clock.js";
+import { ShowsOutcome } from "../shows_outcome.js";
 import { t } from "../texts.js";
 import { Ticking } from "../ticking.js";
 import { problemLine } from "./field.js";
@@ -38,6 +39,7 @@ export class OneOrder extends PageElement {
   constructor() {
     super();
     this.token = "";
+    new ShowsOutcome(this);
     new Ticking(this);
     /** @type {Order | null} */
     this.order = null;

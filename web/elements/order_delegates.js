@@ -6,6 +6,7 @@ import { inWords } from "../problems.js";
 import { serverNow } from "../server_clock.js";
 import { t } from "../texts.js";
 import { dayAndTime } from "../times.js";
+import { address } from "./address.js";
 import { field, problemLine } from "./field.js";
 import { PageElement } from "./page_element.js";
 /** @import { Delegate, NewDelegate, ShownCode } from "../api_types.ts" */
@@ -53,7 +54,7 @@ export class OrderDelegates extends PageElement {
   #row(one) {
     const { id, name, email, revoked_at } = one;
     return html`<li>
-      <span><strong><bdi>${name}</bdi></strong><span class="address">${email ?? t("delegate.no_mail")}</span></span>
+      <span><strong><bdi>${name}</bdi></strong>${email ? address(email) : html`<span class="address">${t("delegate.no_mail")}</span>`}</span>
       ${revoked_at
         ? html`<span class="badge cancelled">${t("delegate.revoked")}</span>`
         : html`<span class="does">

@@ -44,7 +44,7 @@ export class PersonBox extends PageElement {
         autocomplete="off" autocapitalize="off" spellcheck="false" aria-describedby=${describedBy} aria-invalid=${invalid} .value=${this.typed}
         @input=${this.#type} @keydown=${this.#key} @blur=${() => this.offers.close()} />`,
     )}
-    ${this.offers.draw(list, this.label, ({ name, email }) => ({ name, address: email }), "people")}`;
+    ${this.offers.draw(list, this.label, (person) => person, "people")}`;
   }
 
   /** @param {InputEvent} event */

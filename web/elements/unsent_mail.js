@@ -6,6 +6,7 @@ import { inWords } from "../problems.js";
 import { serverNow } from "../server_clock.js";
 import { t } from "../texts.js";
 import { ago, dayAndTime } from "../times.js";
+import { inParts } from "./address.js";
 import { problemLine } from "./field.js";
 import { PageElement } from "./page_element.js";
 /** @import { Page, Sending, SpooledMail, SpooledText } from "../api_types.ts" */
@@ -61,7 +62,7 @@ export class UnsentMail extends PageElement {
       <ul class="letters">
         ${this.spool.map((mail) => html`<li>
           <button type="button" class="letter" @click=${() => this.#open(mail)}>
-            <strong><bdi>${mail.subject}</bdi></strong><span>${mail.to}</span><small>${dayAndTime(mail.at, serverNow())}</small>
+            <strong><bdi>${mail.subject}</bdi></strong><span>${inParts(mail.to)}</span><small>${dayAndTime(mail.at, serverNow())}</small>
           </button>
         </li>`)}
       </ul>
@@ -73,7 +74,7 @@ export class UnsentMail extends PageElement {
     return html`<ul class="letters">
       ${repeat(sendings, ({ id }) => id, (sending) => html`<li class="sending">
         <div>
-          <strong>${sending.email}</strong>
+          <strong>${inParts(sending.email)}</strong>
           <span>${t(`mailroom.channel.${sending.channel}`)} · ${t(sending.gave_up_at ? "mailroom.gave_up" : "mailroom.tries", { tries: sending.tries, ago: ago(sending.created_at, serverNow()) })}</span>
           ${sending.problem ? html`<small>${sending.problem}</small>` : nothing}
         </div>
