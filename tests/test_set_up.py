@@ -46,7 +46,8 @@ def test_a_checkout_that_cannot_be_written_to_is_one_sentence(read_only: Path, v
     finished = subprocess.run(  # type: ignore[call-overload]
         ["make", verb],
         **{"cwd": read_only, "env": {"PATH": os.environ["PATH"]}, "capture_output": True, "text": True},
-        **{"check": False, "timeout": 60, **as_somebody},
+        **{"timeout": 60, **as_somebody},
+        check=False,
     )
     assert finished.returncode != 0
     (said,) = sentences(finished)

@@ -53,7 +53,8 @@ async def whole_chromium(
 ) -> AsyncIterator[Browser]:
     """With all that belongs to windows and the system: notices, installed apps, what is sent later."""
     arguments = {**browser_type_launch_args, "executable_path": find_chromium(whole=True)}
-    browser = await playwright_here.chromium.launch(**arguments, args=[*arguments.pop("args", []), *QUIET])
+    arguments["args"] = [*arguments.get("args", []), *QUIET]
+    browser = await playwright_here.chromium.launch(**arguments)
     yield browser
     await browser.close()
 
