@@ -1,6 +1,6 @@
 /**
- * What a link in a mail has opened, kept for when the service cannot be asked. Whoever comes by a link has no session: each
- * link is told by what the page asked with it, and found again only with the link itself, of which a hash is kept.
+ * What a link in a mail has opened, kept for when the service cannot be asked. It is found again with the same link alone:
+ * of the link itself only a hash is kept.
  */
 import { ApiProblem } from "./api.js";
 import { hasEnded } from "./order_words.js";

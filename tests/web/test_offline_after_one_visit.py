@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 from playwright.async_api import Page, expect
 
+from app.tables import Role
 from protocol.parts import StopAction
 from protocol.to_robot import Mission
 from protocol.to_server import Step
@@ -18,12 +19,14 @@ from tests.web.service import Service
 from tests.web.states import stands
 from tests.web.test_offline import KEPT, KEPT_ANSWERS, WORKER_IS_THERE, is_kept, no_network, sign_out
 from tests.web.test_order import BOB, fill, send
+from tests.web.test_robots import give_roles
 from tests.web.visitor import Visitor
 
 pytestmark = pytest.mark.browser
 
 ONE_MOMENT, NO_ANSWER, NOT_LOADED = "One moment", "No answer", "Without a network this could not be loaded."
-STAFF = ("/mailroom.html", "/mailroom.html?wall", "/robots.html", "/robots.html?robot=r1", "/print.html")
+NOT_KEPT = ("/notices.html", "/settings.html", "/follow.html?order=none")
+NOT_KEPT_OF_STAFF = ("/mailroom.html", "/mailroom.html?wall", "/robots.html", "/print.html?order=none")
 EVERYBODYS = ["/about", "/map"]
 KEPT_OF_LINKS = """async () => {
   const cache = await caches.open("links");
@@ -230,9 +233,11 @@ async def test_a_session_that_has_ended_leaves_nothing(visit):
 
 
 async def test_what_is_not_kept_says_one_clear_thing(visit):
-    ada = await come_once(visit, "/", "ada.king")
+    ada = await visit("ada.king", on="phone", service_workers="allow")
+    await give_roles(ada.service, ada.email, Role.DISPATCHER, Role.MAINTAINER)
+    await open_once(ada, "/")
     async with no_network(ada):
-        for address in ("/notices.html", "/settings.html", "/follow.html?order=none"):
+        for address in NOT_KEPT + NOT_KEPT_OF_STAFF:
             await ada.page.goto(address)
             await expect_one_word(ada.page)
             await ada.assert_accessible()
