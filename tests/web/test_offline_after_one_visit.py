@@ -31,7 +31,7 @@ EVERYBODYS = ["/about", "/map"]
 KEPT_OF_LINKS = """async () => {
   const cache = await caches.open("links");
   const kept = await cache.keys();
-  return Promise.all(kept.map(async (one) => `${one.url} ${await (await cache.match(one)).text()}`));
+  return Promise.all(kept.map(async (one) => `${one.url} ${await (await cache.match(one))?.text()}`));
 }"""
 
 
