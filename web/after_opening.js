@@ -1,12 +1,14 @@
 /** What nobody waits for, done once a page stands: orders that wait on this device, the worker. */
+import { OnLive } from "./live.js";
 import { onKept } from "./session.js";
-import { workOffline } from "./with_worker.js";
+import { tellWorker, workOffline } from "./with_worker.js";
 /** @import { Person } from "./api_types.ts" */
 /** @import { PageShell } from "./elements/page_shell.js" */
 
 /** @param {PageShell} shell @param {Person | null} person */
 export async function afterOpening(shell, person) {
   if (person) onKept(() => showFirstKept(shell, person));
+  if (person) new OnLive(shell, { order: (order) => tellWorker({ order, person_id: person.id }) });
   addEventListener("keydown", () => import("./keeps_keyboard.js").then(({ keepKeyboard }) => keepKeyboard()), { once: true });
   await workOffline(person);
 }

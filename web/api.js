@@ -20,7 +20,10 @@ export class ApiProblem extends Error {
 }
 
 /** No answer came: no network, or no service. Whether the request arrived is not known. */
-export class NoAnswer extends Error {}
+export class NoAnswer extends Error {
+  /** Whether something was only asked. */
+  isQuestion = false;
+}
 
 /**
  * @param {string} path
@@ -46,7 +49,7 @@ async function send(path, { method = "GET", body, headers = {}, cache }) {
       body: body ? JSON.stringify(body) : undefined,
     });
   } catch (error) {
-    throw new NoAnswer(String(error));
+    throw Object.assign(new NoAnswer(String(error)), { isQuestion: method === "GET" });
   }
 }
 
@@ -439,12 +442,26 @@ const ME = BASE + "/me";
 const LIST = BASE + "/orders";
 const ORDER = new RegExp(`^${LIST}/[^/]+$`);
 const CODE = new RegExp(`^${LIST}/[^/]+/code(\\.svg)?$`);
-const ALWAYS = [BASE + "/about", ME, ME + "/contacts", BASE + "/map"];
+/** The same for everybody. */
+const PUBLIC = [BASE + "/about", BASE + "/map"];
+const CONTACTS = ME + "/contacts";
 const SESSION = new RegExp(`^${BASE}/sessions?(/|$)`);
+
+/** @param {string} path */
+const here = (path) => new URL(path, location.origin);
+
+/** What is kept before any page has asked for it: for everybody, and for who is signed in. */
+export const forEverybody = () => PUBLIC.map(here);
+export const aboutMe = () => here(ME);
+export const myFirstContacts = () => here(CONTACTS + query({ search: "", limit: 6 }));
+export const myRunningOrders = () => ["sent", "coming"].map((role) => here(LIST + query({ role, state: "open", limit: 20 })));
 
 /** Whether an answer is of the few that may be kept on the device (docs/decisions/0037). @param {URL} url */
 export const isKeptOffline = (url) =>
-  ALWAYS.includes(url.pathname) || isList(url) || isOrder(url) || CODE.test(url.pathname);
+  isPublic(url) || isMe(url) || url.pathname === CONTACTS || isList(url) || isOrder(url) || CODE.test(url.pathname);
+
+/** @param {URL} url */
+export const isPublic = (url) => PUBLIC.includes(url.pathname);
 
 /** @param {URL} url */
 export const isMe = (url) => url.pathname === ME;
@@ -452,11 +469,14 @@ export const isMe = (url) => url.pathname === ME;
 /** The first page of my own orders. @param {URL} url */
 export const isList = (url) => url.pathname === LIST && !url.searchParams.has("cursor") && !url.searchParams.get("search");
 
+/** All lists are answered from the orders that are kept: this tells that some list was. */
+export const anyList = () => here(LIST);
+
 /** @param {URL} url */
 export const isOrder = (url) => ORDER.test(url.pathname);
 
 /** @param {string} id */
-export const aboutOrder = (id) => new URL(BASE + orderPath(id), location.origin);
+export const aboutOrder = (id) => here(BASE + orderPath(id));
 
 /** @param {string} id */
 export function aboutCode(id) {

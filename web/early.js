@@ -9,7 +9,8 @@ import { fetchTexts } from "./texts.js";
 /** @import { Order, Page } from "./api_types.ts" */
 
 const LANGUAGE = "language";
-const WITH_MAP = ["/", "/mail.html", "/follow.html"];
+const BY_LINK = "/one-order.html";
+const WITH_MAP = ["/", "/mail.html", "/follow.html", BY_LINK];
 /** What is under way, and whom one wrote to last. */
 const NEWEST = { limit: 6 };
 
@@ -17,7 +18,8 @@ const NEWEST = { limit: 6 };
 const language = localStorage.getItem(LANGUAGE) ?? navigator.languages[0]?.split("-")[0] ?? "en";
 
 const about = api.about();
-const me = api.me();
+/** By a link comes whoever need not be signed in. */
+const me = location.pathname === BY_LINK ? Promise.resolve(null) : api.me();
 fetchTexts(language).catch(() => undefined);
 /** Asked before it is known who is here: nobody is refused it. @type {Promise<Page<Order>> | null} */
 let orders = location.pathname === "/" ? api.orders("all", NEWEST) : null;

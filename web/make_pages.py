@@ -40,7 +40,8 @@ STYLES: Final = '<link rel="stylesheet" href="/styles/{}.css" />'
 INSTALLS: Final = '<link rel="manifest" href="/manifest.webmanifest" />'
 SAYS_NOT_WHENCE: Final = '<meta name="referrer" content="no-referrer" />'
 EARLY: Final = "/early.js"
-ASKED_BY_ALL: Final = ("/api/v1/about", "/api/v1/me")
+ABOUT: Final = "/api/v1/about"
+ME: Final = "/api/v1/me"
 
 
 @dataclass(frozen=True)
@@ -54,7 +55,8 @@ class Head:
     """The element in that place, if it has a script of its own: the shell stands while that is on its way."""
     answers: tuple[str, ...] = ()
     """What `early.js` asks for whatever the page's address is: begun while `early.js` is still on its way."""
-    kind: str = INSTALLS
+    by_link: bool = False
+    """Whether people come by a link that is a secret, and without being signed in."""
 
 
 HEADS: Final[Mapping[str, Head]] = {
@@ -63,7 +65,7 @@ HEADS: Final[Mapping[str, Head]] = {
     "mail": Head("mail", ("mail",), "mail_page", ("/api/v1/map",)),
     "notices": Head("notices", ("notices",), "notices_page"),
     "settings": Head("settings", ("settings",), "settings_page"),
-    "one-order": Head("one_order", ("follow",), "one_order", kind=SAYS_NOT_WHENCE),
+    "one-order": Head("one_order", ("follow",), "one_order", ("/api/v1/map",), by_link=True),
     "mailroom": Head("mailroom", ("mailroom", "asking"), "mailroom_page"),
     "robots": Head("robots", ("asking", "robots")),
     "print": Head("print", ("mailroom", "asking", "print")),
@@ -92,10 +94,10 @@ def html_of(head: Head) -> str:
     """A whole page: all else is drawn by its scripts."""
     scripts = [EARLY, f"/pages/{head.opens}.js", *([f"/elements/{head.shows}.js"] if head.shows else ())]
     lines = [
-        head.kind,
+        SAYS_NOT_WHENCE if head.by_link else INSTALLS,
         *map(STYLES.format, ("everywhere", *head.styles)),
         f'<script type="importmap">{json.dumps({"imports": IMPORTS})}</script>',
-        *_begun(scripts, (*ASKED_BY_ALL, *head.answers)),
+        *_begun(scripts, (ABOUT, *(() if head.by_link else (ME,)), *head.answers)),
         *map(SCRIPT.format, scripts),
     ]
     return PAGE.format(lines="\n    ".join(lines))

@@ -75,6 +75,7 @@ export async function openPageForGuest(title, content) {
     document.title = `${t(title)} · ${t("app.name")}`;
     keepServerTime(about);
     render(html`${guestHeader()}<main id="content" tabindex="-1">${content()}</main>`, root);
+    afterwards(() => import("./with_worker.js").then(({ workOffline }) => workOffline(null)));
   });
 }
 

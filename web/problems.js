@@ -12,7 +12,7 @@ export const FIELD_OF_CODE = {
 
 /** A sentence about any failure. @param {unknown} failure */
 export function inWords(failure) {
-  if (failure instanceof NoAnswer) return t("error.no_answer");
+  if (failure instanceof NoAnswer) return t(failure.isQuestion ? "error.not_loaded" : "error.no_answer");
   if (failure instanceof ApiProblem && hasText(`error.${failure.code}`)) return t(`error.${failure.code}`);
   return failure instanceof Error ? failure.message : String(failure);
 }

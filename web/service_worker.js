@@ -5,15 +5,18 @@
  */
 import { changesSession, isKeptOffline } from "./api.js";
 import { SYNC_TAG, sendKept } from "./outbox.js";
-import { answer, forgetAnswers } from "./worker/kept_answers.js";
+import { keepAtHand, keepMoreAtHand } from "./worker/at_hand.js";
+import { answer, forgetAll, isHeard, keepHeard } from "./worker/kept_answers.js";
 import { dropOldFiles, file, isFile, keepFiles } from "./worker/kept_files.js";
 import { open, renewSubscription, show } from "./worker/pushed.js";
 
 const worker = /** @type {WorkerScope} */ (/** @type {unknown} */ (self));
 
-worker.addEventListener("install", (event) => event.waitUntil(keepFiles()));
+worker.addEventListener("install", (event) => event.waitUntil(keepFiles().then(keepAtHand)));
 worker.addEventListener("activate", (event) => event.waitUntil(dropOldFiles(worker).then(() => worker.clients.claim())));
 worker.addEventListener("message", (event) => event.data === "take over" && worker.skipWaiting());
+worker.addEventListener("message", (event) => event.data === "keep at hand" && event.waitUntil(keepMoreAtHand()));
+worker.addEventListener("message", (event) => isHeard(event.data) && event.waitUntil(keepHeard(event.data)));
 worker.addEventListener("push", (event) => event.waitUntil(show(worker, event.data)));
 worker.addEventListener("notificationclick", (event) => event.waitUntil(open(worker, event.notification)));
 worker.addEventListener("pushsubscriptionchange", (event) => event.waitUntil(renewSubscription(worker)));
@@ -22,7 +25,7 @@ worker.addEventListener("sync", (event) => event.tag === SYNC_TAG && event.waitU
 worker.addEventListener("fetch", (event) => {
   const url = new URL(event.request.url);
   if (url.origin !== location.origin) return;
-  if (changesSession(event.request.method, url)) event.waitUntil(forgetAnswers());
+  if (changesSession(event.request.method, url)) event.waitUntil(forgetAll());
   else if (event.request.method !== "GET") return;
   else if (isFile(url, event.request)) event.respondWith(file(url, event));
   else if (isKeptOffline(url) && event.request.cache !== "no-store") event.respondWith(answer(event));

@@ -53,7 +53,7 @@ export async function signOut() {
     await endPush().catch(() => undefined);
     await inSession(api.signOut).catch(unlessSignedOut);
   });
-  await Promise.all([caches.delete("answers"), navigator.clearAppBadge?.()]).catch(() => undefined);
+  await Promise.all([caches.delete("answers"), caches.delete("links"), navigator.clearAppBadge?.()]).catch(() => undefined);
 }
 
 /** A session that had ended already is as good as one that ends now. @param {unknown} failure */

@@ -1,6 +1,7 @@
 /** Puts the service worker in, once the page stands, and says when a new version of the pages is there. */
 import { hasPush } from "./session.js";
 /** @import { Person } from "./api_types.ts" */
+/** @import { Heard } from "./worker/kept_answers.js" */
 
 /** What a page hears when a new version is there: `take` changes to it. @typedef {CustomEvent<{take: () => void}>} NewVersion */
 
@@ -10,6 +11,8 @@ export async function workOffline(person) {
   const wasControlled = navigator.serviceWorker.controller !== null;
   const registration = await registered();
   if (!registration) return;
+  // One that is only coming does so by itself.
+  if (person) registration.active?.postMessage("keep at hand");
   const look = () => registration.active && registration.waiting && sayNewVersion(() => takeOver(registration));
   look();
   registration.addEventListener("updatefound", () => registration.installing?.addEventListener("statechange", look));
@@ -21,6 +24,11 @@ export async function workOffline(person) {
 /** Where a browser has no workers made of modules, or its person wants none, pages work as long as there is a network. */
 const registered = () =>
   navigator.serviceWorker.register("/service_worker.js", { type: "module", updateViaCache: "none" }).catch(() => undefined);
+
+/** What changes while a page is open is kept, too. @param {Heard} heard */
+export function tellWorker(heard) {
+  if (heard.order.my_role !== "dispatcher") navigator.serviceWorker?.controller?.postMessage(heard);
+}
 
 /** @param {() => void} take */
 const sayNewVersion = (take) => dispatchEvent(new CustomEvent("new-version", { detail: { take } }));

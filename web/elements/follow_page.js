@@ -42,6 +42,7 @@ export class FollowPage extends PageElement {
     map: { state: true },
     robot: { state: true },
     problem: { state: true },
+    unreached: { state: true },
   };
 
   constructor() {
@@ -55,6 +56,8 @@ export class FollowPage extends PageElement {
     /** @type {Robot | null} */
     this.robot = null;
     this.problem = "";
+    /** Whether it is only not known here. */
+    this.unreached = false;
     new ShowsOutcome(this);
     new Ticking(this);
     new OnLive(this, {
@@ -168,7 +171,7 @@ export class FollowPage extends PageElement {
 
   #notHere() {
     return html`<section class="blank">
-      <h1>${t("follow.unknown.title")}</h1>
+      <h1>${t(this.unreached ? "app.failed.title" : "follow.unknown.title")}</h1>
       ${problemLine(this.problem)}
       <a class="button" href=${PAGES.mail}>${t("follow.unknown.back")}</a>
     </section>`;
@@ -208,6 +211,7 @@ export class FollowPage extends PageElement {
       [this.map, this.problem] = [map, ""];
       this.#show(order);
     } catch (failure) {
+      this.unreached = failure instanceof api.NoAnswer;
       if (!this.order) this.problem = failure instanceof api.ApiProblem ? t("follow.unknown.body") : inWords(failure);
     }
   }

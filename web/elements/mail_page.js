@@ -37,7 +37,7 @@ export class MailPage extends PageElement {
     super();
     /** @type {CampusMap | null} */
     this.map = null;
-    /** @type {Record<"coming" | "sent", Page<Order>>} */
+    /** @type {Record<"coming" | "sent", Page<Order> & {only_running?: boolean}>} the latter without a network */
     this.lists = { coming: { items: [], next: null }, sent: { items: [], next: null } };
     this.search = "";
     /** @type {"all" | "open" | "ended"} */
@@ -64,7 +64,7 @@ export class MailPage extends PageElement {
       ${map
         ? html`<div class="lists">${ROLES.map((role) => this.#list(role, map))}</div>
             <standing-orders .map=${map}></standing-orders>`
-        : html`<p class="waiting" role="status">${t("app.loading")}</p>`}`;
+        : this.problem ? nothing : html`<p class="waiting" role="status">${t("app.loading")}</p>`}`;
   }
 
   #filter() {
@@ -94,13 +94,13 @@ export class MailPage extends PageElement {
 
   /** @param {"coming" | "sent"} role @param {CampusMap} map */
   #list(role, map) {
-    const { items, next } = this.lists[role];
-    const narrowed = this.search || this.state !== "all";
+    const { items, next, only_running } = this.lists[role];
+    const none = only_running ? "none_running" : this.search || this.state !== "all" ? "none_found" : `none_${role}`;
     return html`<section aria-labelledby="${role}-title">
       <h2 id="${role}-title">${t(`mail.${role}`)}</h2>
       ${items.length
         ? html`<ul class="orders">${items.map((order) => orderCard(order, map, role === "sent" ? repeatLink(order) : nothing))}</ul>`
-        : html`<p class="empty">${t(narrowed ? "mail.none_found" : `mail.none_${role}`)}</p>`}
+        : html`<p class="empty">${t(`mail.${none}`)}</p>`}
       ${next ? html`<button class="quiet" @click=${() => this.#more(role)}>${t("mail.more")}</button>` : nothing}
     </section>`;
   }

@@ -55,7 +55,7 @@ export class MailroomPage extends PageElement {
 
   render() {
     const { map, problem } = this.now;
-    if (!map) return problem ? problemLine(problem) : html`<p class="waiting" role="status">${t("app.loading")}</p>`;
+    if (!map) return problem ? html`<h1>${t("mailroom.title")}</h1>${problemLine(problem)}` : html`<p class="waiting" role="status">${t("app.loading")}</p>`;
     const { known } = this.now;
     const wrongs = whatIsWrong(known);
     return html`<div class="title-line">

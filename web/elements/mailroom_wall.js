@@ -42,7 +42,7 @@ export class MailroomWall extends PageElement {
 
   render() {
     const { map, problem, known } = this.now;
-    if (!map) return problem ? problemLine(problem) : html`<p class="waiting" role="status">${t("app.loading")}</p>`;
+    if (!map) return problem ? html`<h1>${t("mailroom.title")}</h1>${problemLine(problem)}` : html`<p class="waiting" role="status">${t("app.loading")}</p>`;
     const orders = sorted(known.orders, "waiting", map);
     const unseen = orders.length - SHOWN;
     return html`<div class="wall-head">

@@ -1,6 +1,7 @@
 /** One order for whoever came by the link in a mail: where it stands, the code, "not now". No account, no event stream. */
 import { html, nothing } from "lit";
 import * as api from "../api.js";
+import { askedOrKept } from "../kept_link.js";
 import { speak } from "../language.js";
 import { hasEnded, isAtAStop, isMyTurn, stateSentence } from "../order_words.js";
 import { loadMap } from "../posts.js";
@@ -46,10 +47,10 @@ export class OneOrder extends PageElement {
     /** @type {CampusMap | null} */
     this.map = null;
     this.problem = "";
-    /** Whether the service could not be asked just now: what is shown is what was known last. */
+    /** Whether the service could not be asked just now: what is shown, if anything is, is what was known last. */
     this.unreached = false;
     this.door = {
-      code: () => api.linkedCode(this.token),
+      code: async () => (await askedOrKept(this.token, "code", () => api.linkedCode(this.token))).answer,
       handOver: (/** @type {string | undefined} */ digits) => api.linkedHandOver(this.token, digits),
       showToCamera: null,
     };
@@ -129,27 +130,22 @@ export class OneOrder extends PageElement {
 
   #refused() {
     return html`<section class="blank">
-      <h1>${t("one_order.refused")}</h1>
+      <h1>${t(this.unreached ? "app.failed.title" : "one_order.refused")}</h1>
       ${problemLine(this.problem)}
     </section>`;
   }
 
   async #look() {
     if (this.order && hasEnded(this.order)) return;
-    await this.#attempt(async () => {
-      const [map, order] = await Promise.all([loadMap(), api.linkedOrder(this.token)]);
-      [this.map, this.order] = [map, order];
-    });
-  }
-
-  /** @param {() => Promise<unknown>} attempt */
-  async #attempt(attempt) {
     try {
-      await attempt();
-      [this.problem, this.unreached] = ["", false];
+      const [map, { answer, isKept }] = await Promise.all([
+        loadMap(),
+        askedOrKept(this.token, "order", () => api.linkedOrder(this.token)),
+      ]);
+      [this.map, this.order, this.unreached, this.problem] = [map, answer, isKept, ""];
     } catch (failure) {
-      this.unreached = failure instanceof api.NoAnswer && this.order !== null;
-      this.problem = this.unreached ? "" : inWords(failure);
+      this.unreached = failure instanceof api.NoAnswer;
+      this.problem = this.unreached ? (this.order ? "" : t("error.not_loaded")) : inWords(failure);
     }
   }
 }

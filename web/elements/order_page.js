@@ -53,7 +53,7 @@ export class OrderPage extends PageElement {
 
   render() {
     const { map } = this;
-    if (!map) return this.problem ? problemLine(this.problem) : html`<p class="waiting" role="status">${t("app.loading")}</p>`;
+    if (!map) return this.problem ? html`<h1>${t("order.title")}</h1>${problemLine(this.problem)}` : html`<p class="waiting" role="status">${t("app.loading")}</p>`;
     return html`
       ${this.help ? html`<first-steps @put-away=${() => (this.help = false)}></first-steps>` : nothing} ${this.#underWay(map)}
       <div class="ordering">

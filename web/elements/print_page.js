@@ -51,13 +51,17 @@ export class PrintPage extends PageElement {
 
   render() {
     const { map } = this;
-    if (!map) return this.problem ? problemLine(this.problem) : html`<p class="waiting" role="status">${t("app.loading")}</p>`;
+    if (!map) return this.problem ? this.#notHere() : html`<p class="waiting" role="status">${t("app.loading")}</p>`;
     return this.order_id === null ? this.#markers(map) : this.#slip(map);
+  }
+
+  #notHere() {
+    return html`<h1>${t("title.print")}</h1>${problemLine(this.problem)}`;
   }
 
   /** @param {CampusMap} map */
   #slip(map) {
-    if (!this.order) return problemLine(this.problem);
+    if (!this.order) return this.#notHere();
     return html`<div class="before-print">
         <h1>${t("print.slip")}</h1>
         <p class="lead" role="status">${t(`print.slip.${this.code ? "with_code" : this.#isAwaited(this.order) ? "waits" : "without_code"}`)}</p>

@@ -39,7 +39,7 @@ export class RobotsPage extends PageElement {
   render() {
     return html`<h1>${t("robots.title")}</h1>
       ${this.problem ? problemLine(this.problem) : nothing}
-      ${this.robots && this.map ? this.#list(this.robots, this.map) : html`<p class="waiting" role="status">${t("app.loading")}</p>`}`;
+      ${this.robots && this.map ? this.#list(this.robots, this.map) : this.problem ? nothing : html`<p class="waiting" role="status">${t("app.loading")}</p>`}`;
   }
 
   /** @param {Robot[]} robots @param {CampusMap} map */

@@ -40,7 +40,7 @@ export class SettingsPage extends PageElement {
 
   render() {
     const { person, map, wishes } = this;
-    if (!map || !wishes) return this.problem ? problemLine(this.problem) : html`<p class="waiting" role="status">${t("app.loading")}</p>`;
+    if (!map || !wishes) return this.problem ? html`<h1>${t("title.settings")}</h1>${problemLine(this.problem)}` : html`<p class="waiting" role="status">${t("app.loading")}</p>`;
     return html`<h1>${t("title.settings")}</h1>
       <div class="settings">
         <nav class="contents" aria-label=${t("settings.contents")}>

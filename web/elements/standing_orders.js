@@ -41,7 +41,7 @@ export class StandingOrders extends PageElement {
       ${this.problem ? problemLine(this.problem) : nothing}
       ${items?.length
         ? html`<ul class="orders">${items.map((one) => this.#card(one, map))}</ul>`
-        : html`<p class="empty">${t("mail.none_standing")}</p>`}
+        : this.problem ? nothing : html`<p class="empty">${t("mail.none_standing")}</p>`}
       ${this.next ? html`<button class="quiet" @click=${() => this.#more()}>${t("mail.more")}</button>` : nothing}
     </section>`;
   }

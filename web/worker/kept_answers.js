@@ -1,95 +1,96 @@
 /**
- * What the service answered, kept for when it cannot be asked: one person's, what `isKeptOffline` names, of orders
- * only those that are the person's own and go on. Asked first is always the service.
+ * What the service answered, kept for when it cannot be asked: what `isKeptOffline` names. Asked first is always the
+ * service. Each question takes the store that it found when it was asked: once that was deleted, since somebody else may
+ * be here, what is still put there is gone as well.
  */
-import { aboutCode, aboutOrder, isList, isMe, isOrder } from "../api.js";
-import { hasEnded } from "../order_words.js";
-/** @import { Order } from "../api_types.ts" */
+import { aboutMe, aboutOrder, anyList, isList, isMe, isOrder, isPublic } from "../api.js";
+import { LINKS } from "../kept_link.js";
+import { keepList, keepOwn, keptList } from "./running_orders.js";
 
-const KEPT = "answers";
+/** @import { Order } from "../api_types.ts" */
+/** What a page has heard, and whose page it is. @typedef {{order: Order, person_id: string}} Heard */
+
+const PERSONAL = "answers";
+const PUBLIC = "public answers";
 const PATIENCE_MS = 4_000;
 
-/** Changes whenever somebody else may be signed in: what was asked before is not kept any more. */
-let era = 0;
-
-export async function forgetAnswers() {
-  era += 1;
-  await caches.delete(KEPT);
-}
+/** Somebody else may be here: nothing of anybody stays. */
+export const forgetAll = () => Promise.all([PERSONAL, LINKS].map((name) => caches.delete(name)));
 
 /** @param {FetchedEvent} event @returns {Promise<Response>} */
 export async function answer(event) {
   const { request } = event;
-  const asked_in = era;
-  const asked = fetch(request);
-  event.waitUntil(asked.then((fresh) => (era === asked_in ? keep(request, fresh.clone()) : undefined), () => undefined));
-  const kept = await caches.match(request, { cacheName: KEPT, ignoreVary: true });
-  if (!kept) return asked;
-  const patience = new Promise((resolve) => setTimeout(resolve, PATIENCE_MS));
-  return Promise.race([asked, patience.then(() => kept)]).catch(() => kept);
-}
-
-/** @param {Request} request @param {Response} fresh */
-async function keep(request, fresh) {
   const url = new URL(request.url);
-  if (fresh.status === 401) return forgetAnswers();
-  if (isMe(url)) await forgetAnother(request, fresh.clone());
-  const cache = await caches.open(KEPT);
-  if (!fresh.ok) return void (await cache.delete(request));
-  if (isList(url)) return keepOpen(cache, request, await fresh.json());
-  if (isOrder(url)) return keepIfOpen(cache, request, fresh);
-  await cache.put(request, fresh);
+  const store = storeOf(url);
+  const asked = fetch(request);
+  event.waitUntil(asked.then((fresh) => keep(store, request, fresh.clone())).catch(() => undefined));
+  return inTime(asked, async () => keptFor(await store, url, request));
 }
 
-/** @param {Cache} cache @param {Request} request @param {Response} fresh */
-async function keepIfOpen(cache, request, fresh) {
-  const order = /** @type {Order} */ (await fresh.clone().json());
-  if (!isOwnAndOpen(order)) return forgetOrder(cache, new URL(request.url));
-  await cache.put(request, fresh);
-  await keepCode(cache, order);
-}
-
-/** Whoever was signed in here before. @param {Request} request @param {Response} me */
-async function forgetAnother(request, me) {
-  const before = await caches.match(request, { cacheName: KEPT, ignoreVary: true });
-  if (before && (await before.json()).id !== (await me.json()).id) await forgetAnswers();
-}
-
-/** Of a list only what goes on; what has ended is forgotten wherever it was kept.
- * @param {Cache} cache @param {Request} request @param {{items: Order[], next: string | null}} page */
-async function keepOpen(cache, request, page) {
-  const items = page.items.filter(isOwnAndOpen);
-  const ended = page.items.filter(hasEnded).map(({ id }) => aboutOrder(id));
-  await cache.put(request, Response.json({ ...page, items, next: null }));
-  await Promise.all(ended.map((url) => forgetOrder(cache, url)));
-  for (const order of items) await keepIfOpen(cache, new Request(aboutOrder(order.id)), Response.json(order));
+/** Ask and keep the answer. @param {URL} url @param {AbortSignal} [signal] @returns {Promise<boolean>} whether there is one */
+export async function fetchAndKeep(url, signal) {
+  const request = new Request(url, { signal });
+  const store = storeOf(url);
+  const fresh = await fetch(request);
+  await keep(store, request, fresh);
+  return fresh.ok;
 }
 
 /** An order with its code, for a robot that waits where there is no network: fetched while there is one. @param {string} id */
 export const keepOrder = (id) => fetchAndKeep(aboutOrder(id));
 
-/** The code for what its person does next; one for what is done would only mislead. @param {Cache} cache @param {Order} order */
-async function keepCode(cache, { id, my_code }) {
-  const { code, picture } = aboutCode(id);
-  const before = await cache.match(code, { ignoreVary: true });
-  if (before && (await before.json()).purpose === my_code) return;
-  await Promise.all([cache.delete(code), cache.delete(picture)]);
-  if (my_code) await Promise.all([fetchAndKeep(code), fetchAndKeep(picture)]);
+/** @param {unknown} told @returns {told is Heard} */
+export const isHeard = (told) => typeof told === "object" && told !== null && "order" in told;
+
+/** A page that is still open may be of somebody who has left. @param {Heard} heard */
+export async function keepHeard({ order, person_id }) {
+  const cache = await caches.open(PERSONAL);
+  const me = await cache.match(aboutMe(), { ignoreVary: true });
+  if ((await me?.json())?.id === person_id) await keepOwn(cache, order);
 }
 
 /** @param {URL} url */
-async function fetchAndKeep(url) {
-  const asked_in = era;
-  const request = new Request(url);
-  const fresh = await fetch(request);
-  if (era === asked_in) await keep(request, fresh);
+export const isKept = async (url) => Boolean(await (await storeOf(url)).match(url, { ignoreVary: true }));
+
+/** @param {URL} url */
+const storeOf = (url) => caches.open(isPublic(url) ? PUBLIC : PERSONAL);
+
+/** What is kept, where the service does not answer at all, or not soon.
+ * @param {Promise<Response>} asked @param {() => Promise<Response | undefined>} kept */
+async function inTime(asked, kept) {
+  const patience = new Promise((resolve) => setTimeout(resolve, PATIENCE_MS));
+  try {
+    const fresh = await Promise.race([asked, patience]);
+    if (fresh) return asked;
+  } catch {
+    // What is kept answers, or the same failure.
+  }
+  return (await kept()) ?? asked;
 }
 
-/** @param {Order} order */
-const isOwnAndOpen = (order) => order.my_role !== "dispatcher" && !hasEnded(order);
+/** @param {Cache} cache @param {URL} url @param {Request} request */
+async function keptFor(cache, url, request) {
+  if (!isList(url)) return cache.match(request, { ignoreVary: true });
+  return (await cache.match(anyList())) && keptList(cache, url);
+}
 
-/** The order and its code. @param {Cache} cache @param {URL} url */
-async function forgetOrder(cache, url) {
-  const kept = (await cache.keys()).filter((request) => new URL(request.url).pathname.startsWith(url.pathname));
-  await Promise.all(kept.map((request) => cache.delete(request)));
+/** @param {Promise<Cache>} store @param {Request} request @param {Response} fresh */
+async function keep(store, request, fresh) {
+  const url = new URL(request.url);
+  // Nobody is signed in, as is whoever comes by a link.
+  if (fresh.status === 401 && !isPublic(url)) return caches.delete(PERSONAL);
+  const cache = isMe(url) ? await storeFor(await store, request, fresh.clone()) : await store;
+  if (!fresh.ok) return void (await cache.delete(request));
+  if (isOrder(url)) return keepOwn(cache, await fresh.json());
+  if (!isList(url)) return cache.put(request, fresh);
+  await keepList(cache, url, await fresh.json());
+  await cache.put(anyList(), new Response());
+}
+
+/** Nothing is left of anybody who was signed in here before. @param {Cache} cache @param {Request} request @param {Response} me */
+async function storeFor(cache, request, me) {
+  const before = await cache.match(request, { ignoreVary: true });
+  if (!before || !me.ok || (await before.json()).id === (await me.json()).id) return cache;
+  await forgetAll();
+  return caches.open(PERSONAL);
 }
