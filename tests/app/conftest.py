@@ -23,7 +23,10 @@ from app.serving import Server, config_of, listen
 from app.settings import Settings
 from app.tables import MissionRow, OrderState, RobotRow
 from protocol.clock import SteppedClock
+from tests.app.compiled_once import compile_once
 from tests.app.postgresql import TEMPLATE, PostgreSQL
+
+compile_once()
 
 HERE = "http://127.0.0.1"
 SENDER, RECIPIENT, STRANGER = (f"{name}@campus.example" for name in ("sender", "recipient", "stranger"))

@@ -1,0 +1,29 @@
+"""Statements compiled once for all tests: each test has an engine of its own, which would compile all of them anew."""
+
+from typing import Any
+
+from sqlalchemy import Connection, Engine, event
+
+
+class CompiledOnce(dict[Any, Any]):
+    """What SQLAlchemy keeps compiled statements in, by the name of the dialect: that of each engine is the same."""
+
+    def get(self, key: Any, default: Any = None) -> Any:
+        return super().get(_by_name(key), default)
+
+    def __setitem__(self, key: Any, compiled: Any) -> None:
+        super().__setitem__(_by_name(key), compiled)
+
+
+def _by_name(key: Any) -> tuple[Any, ...]:
+    dialect, *rest = key
+    return dialect.name, *rest
+
+
+def compile_once() -> None:
+    """For every engine of this process."""
+    compiled = CompiledOnce()
+
+    @event.listens_for(Engine, "engine_connect")
+    def share(connection: Connection) -> None:
+        connection.execution_options(compiled_cache=compiled)
