@@ -18,7 +18,7 @@ const NEWEST = { limit: 6 };
 const language = localStorage.getItem(LANGUAGE) ?? navigator.languages[0]?.split("-")[0] ?? "en";
 
 const about = api.about();
-/** By a link comes whoever need not be signed in. */
+/** A person who comes by a link need not be signed in. */
 const me = location.pathname === BY_LINK ? Promise.resolve(null) : api.me();
 fetchTexts(language).catch(() => undefined);
 /** Asked before it is known who is here: nobody is refused it. @type {Promise<Page<Order>> | null} */

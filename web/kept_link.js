@@ -56,7 +56,7 @@ async function keptFor(token, what) {
   return (await cache.match(await placeOf(token, what)))?.json();
 }
 
-/** Of whoever never came back. @param {Cache} cache */
+/** Of links that were never opened again. @param {Cache} cache */
 async function dropOld(cache) {
   for (const request of await cache.keys()) {
     const kept_at = Number((await cache.match(request))?.headers.get(KEPT_AT));

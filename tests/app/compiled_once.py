@@ -6,18 +6,18 @@ from sqlalchemy import Connection, Engine, event
 
 
 class CompiledOnce(dict[Any, Any]):
-    """What SQLAlchemy keeps compiled statements in, by the name of the dialect: that of each engine is the same."""
+    """What SQLAlchemy keeps compiled statements in, by dialect and driver: each engine has a dialect of its own."""
 
     def get(self, key: Any, default: Any = None) -> Any:
-        return super().get(_by_name(key), default)
+        return super().get(_by_driver(key), default)
 
     def __setitem__(self, key: Any, compiled: Any) -> None:
-        super().__setitem__(_by_name(key), compiled)
+        super().__setitem__(_by_driver(key), compiled)
 
 
-def _by_name(key: Any) -> tuple[Any, ...]:
+def _by_driver(key: Any) -> tuple[Any, ...]:
     dialect, *rest = key
-    return dialect.name, *rest
+    return dialect.name, dialect.driver, *rest
 
 
 def compile_once() -> None:

@@ -33,6 +33,11 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             item.add_marker(pytest.mark.asyncio(loop_scope="session"), append=False)
 
 
+@pytest.fixture(scope="session")
+def browser_type_launch_args(browser_type_launch_args: dict[str, Any]) -> dict[str, Any]:
+    return {**browser_type_launch_args, "args": [*browser_type_launch_args["args"], *QUIET]}
+
+
 @pytest_asyncio.fixture(scope="session", loop_scope="session")
 async def playwright_here() -> AsyncIterator[Playwright]:
     async with async_playwright() as playwright:
@@ -41,8 +46,7 @@ async def playwright_here() -> AsyncIterator[Playwright]:
 
 @pytest_asyncio.fixture(scope="session", loop_scope="session")
 async def chromium(playwright_here: Playwright, browser_type_launch_args: dict[str, Any]) -> AsyncIterator[Browser]:
-    arguments = {**browser_type_launch_args, "args": [*browser_type_launch_args.get("args", []), *QUIET]}
-    browser = await playwright_here.chromium.launch(**arguments)
+    browser = await playwright_here.chromium.launch(**browser_type_launch_args)
     yield browser
     await browser.close()
 
@@ -53,7 +57,6 @@ async def whole_chromium(
 ) -> AsyncIterator[Browser]:
     """With all that belongs to windows and the system: notices, installed apps, what is sent later."""
     arguments = {**browser_type_launch_args, "executable_path": find_chromium(whole=True)}
-    arguments["args"] = [*arguments.get("args", []), *QUIET]
     browser = await playwright_here.chromium.launch(**arguments)
     yield browser
     await browser.close()

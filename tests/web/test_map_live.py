@@ -17,8 +17,6 @@ pytestmark = pytest.mark.browser
 
 CHANGES = 300
 QUIET_S = 1.5
-TEMPLATES = 30
-"""Nodes of those that a change needs for the first time; a node left by every change would be 300."""
 # The engine goes on compiling what runs often: some 100 kB in the first hundreds of changes, ever less after that.
 WARM_UP, HEAP_SLACK_BYTES = 100, 400_000
 WAY = ("post5", "post3", "post2", "post1")
@@ -50,7 +48,7 @@ async def drives_about(robot: PlayedRobot, changes: int, battery: float) -> None
 
 
 async def left_behind(browser: CDPSession) -> dict[str, float]:
-    """What there is once all that changed is drawn, which takes a moment, and all that nobody holds is gone."""
+    """What there is once all that changed is drawn, which takes a moment, and all that is held no more is gone."""
     before, now = None, await held(browser)
     while before != now["Nodes"]:
         await asyncio.sleep(QUIET_S)
@@ -99,9 +97,13 @@ async def test_after_hundreds_of_changes_the_page_is_as_light_as_before(visit, r
 
     browser = await page.context.new_cdp_session(page)
     await browser.send("Performance.enable")
-    await drives_about(robot, WARM_UP, battery=0.91)
-    await battery_is(page, 91)
-    before = await left_behind(browser)
+    for percent in (
+        90,
+        91,
+    ):  # what is drawn for the first time brings its template; where the robot is expected comes late
+        await drives_about(robot, WARM_UP, battery=percent / 100)
+        await battery_is(page, percent)
+        before = await left_behind(browser)
     heard: list[str] = []
     browser.on("Network.eventSourceMessageReceived", lambda event: heard.append(event["eventName"]))
     await browser.send("Network.enable")
@@ -110,7 +112,7 @@ async def test_after_hundreds_of_changes_the_page_is_as_light_as_before(visit, r
         await battery_is(page, 92)
     await browser.send("Network.disable")
     after = await left_behind(browser)
-    assert after["Nodes"] <= before["Nodes"] + TEMPLATES
+    assert after["Nodes"] <= before["Nodes"] + 5
     assert after["JSEventListeners"] <= before["JSEventListeners"]
     assert after["JSHeapUsedSize"] <= before["JSHeapUsedSize"] + HEAP_SLACK_BYTES
 

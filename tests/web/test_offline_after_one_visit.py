@@ -116,7 +116,7 @@ async def test_after_one_visit_of_any_page_orders_their_codes_and_the_order_form
 
 
 async def test_what_a_page_hears_while_it_is_open_is_there_as_well(visit, own_service: Service):
-    """Whoever has read that a robot comes to them goes to meet it."""
+    """A person who reads that a robot comes goes to meet it."""
     ada = await visit("ada.king", at=own_service)
     bob = await come_once(visit, "/settings.html", "bob.martin", at=own_service)
     async with under_way(ada, bob.email) as (order, robot, mission):
@@ -134,7 +134,7 @@ async def test_what_a_page_hears_while_it_is_open_is_there_as_well(visit, own_se
 
 @asynccontextmanager
 async def delegate_of(ada: Visitor, visit) -> AsyncIterator[tuple[Visitor, str, str]]:
-    """Somebody without account who has opened once the link that they were mailed."""
+    """A guest who has opened once the link in their mail."""
     guest = await visit("grace.hill", on="phone", at=ada.service, signed_in=False, service_workers="allow")
     guest.refusals_expected.add("/api/v1/link/order")
     async with under_way(ada, BOB) as (order, _, _):

@@ -13,7 +13,6 @@ from playwright.async_api import Browser, Playwright, expect
 
 from benchmarks.pages.chromium import find_chromium
 from tests.app.fleet.playing import until
-from tests.web.conftest import QUIET
 from tests.web.service import Service
 from tests.web.test_offline import WORKER_IS_THERE, worker_of
 from tests.web.visitor import Visitor
@@ -160,8 +159,7 @@ async def installed(
     playwright_here: Playwright, service: Service, tmp_path: Path, browser_type_launch_args: dict[str, Any]
 ) -> AsyncIterator[Visitor]:
     """Ada, who has installed the app: in a browser that keeps things, since a test's usual window installs nothing."""
-    arguments = {**browser_type_launch_args, "args": [*browser_type_launch_args.get("args", []), *QUIET]}
-    arguments["executable_path"] = find_chromium(whole=True)
+    arguments = {**browser_type_launch_args, "executable_path": find_chromium(whole=True)}
     options = {"base_url": service.url, "locale": "en-CA", "permissions": ["notifications"]}
     context = await playwright_here.chromium.launch_persistent_context(str(tmp_path), **arguments, **options)
     assert context.browser is not None

@@ -75,7 +75,7 @@ async def test_every_reason_is_said_in_words_on_every_page(quiet_campus: Campus,
     remarks = await texts(page, ".timeline .remark")
     assert remarks == [shown(language, reason) for reason in [*of_orders, "no_one_came"]]
     assert RAW.findall(" ".join(remarks)) == []
-    why = page.locator(".standing .window .remark").first
+    why = page.locator(".standing .window .remark")
     await expect(why).to_have_text(shown(language, "no_one_came"))
     await page.goto(f"/follow.html?order={ids[1]}")
     await expect(page.locator(".timeline .remark")).to_have_text(TYPED)

@@ -13,7 +13,6 @@ import pytest_asyncio
 from playwright.async_api import Browser, Locator, Playwright, expect
 
 from app.tables import BatterySample, RobotRow, Role
-from tests.web.conftest import QUIET
 from tests.web.looking import DESK, NARROW
 from tests.web.mailroom_scene import Campus
 from tests.web.test_robots import give_roles
@@ -59,8 +58,8 @@ COPIED = """(owner) => {
 @pytest_asyncio.fixture(scope="module", loop_scope="session")
 async def chromium(playwright_here: Playwright, browser_type_launch_args: dict[str, Any]) -> AsyncIterator[Browser]:
     """Without a window it hides scrollbars unless it is told not to."""
-    arguments = {**browser_type_launch_args, "args": [*browser_type_launch_args.get("args", []), *QUIET]}
-    browser = await playwright_here.chromium.launch(**arguments, ignore_default_args=["--hide-scrollbars"])
+    shown = {**browser_type_launch_args, "ignore_default_args": ["--hide-scrollbars"]}
+    browser = await playwright_here.chromium.launch(**shown)
     yield browser
     await browser.close()
 

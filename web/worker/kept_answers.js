@@ -1,6 +1,6 @@
 /**
  * What the service answered, kept for when it cannot be asked: what `isKeptOffline` names. Asked first is always the
- * service. Each question takes the store that it found when it was asked: once that was deleted, since somebody else may
+ * service. Each question takes the store that it found when it was asked: once that was deleted, since another person may
  * be here, what is still put there is gone as well.
  */
 import { aboutMe, aboutOrder, anyList, isList, isMe, isOrder, isPublic } from "../api.js";
@@ -14,7 +14,7 @@ const PERSONAL = "answers";
 const PUBLIC = "public answers";
 const PATIENCE_MS = 4_000;
 
-/** Somebody else may be here: nothing of anybody stays. */
+/** Another person may be here: nothing personal stays. */
 export const forgetAll = () => Promise.all([PERSONAL, LINKS].map((name) => caches.delete(name)));
 
 /** @param {FetchedEvent} event @returns {Promise<Response>} */
@@ -42,7 +42,7 @@ export const keepOrder = (id) => fetchAndKeep(aboutOrder(id));
 /** @param {unknown} told @returns {told is Heard} */
 export const isHeard = (told) => typeof told === "object" && told !== null && "order" in told;
 
-/** A page that is still open may be of somebody who has left. @param {Heard} heard */
+/** A page that is still open may be of a person who has left. @param {Heard} heard */
 export async function keepHeard({ order, person_id }) {
   const cache = await caches.open(PERSONAL);
   const me = await cache.match(aboutMe(), { ignoreVary: true });
@@ -77,7 +77,7 @@ async function keptFor(cache, url, request) {
 /** @param {Promise<Cache>} store @param {Request} request @param {Response} fresh */
 async function keep(store, request, fresh) {
   const url = new URL(request.url);
-  // Nobody is signed in, as is whoever comes by a link.
+  // No one is signed in, as for guests by a link.
   if (fresh.status === 401 && !isPublic(url)) return caches.delete(PERSONAL);
   const cache = isMe(url) ? await storeFor(await store, request, fresh.clone()) : await store;
   if (!fresh.ok) return void (await cache.delete(request));

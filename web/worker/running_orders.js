@@ -6,7 +6,7 @@ import { aboutCode, aboutOrder, isOrder } from "../api.js";
 import { hasEnded } from "../order_words.js";
 /** @import { Order, Page } from "../api_types.ts" */
 
-/** Whoever has more under way meets the robots of these first. */
+/** Of more, the first are those whose robots come first. */
 const CODES_AT_MOST = 10;
 const ROLES = { sent: "sender", coming: "recipient" };
 

@@ -258,10 +258,10 @@ async def test_who_waits_reads_how_many_are_ahead_and_is_expected_after_them(
     async def in_sequence() -> list[Order] | None:
         """Orders of one second are fetched in any sequence."""
         found = [row for row in await service.rows(Order) if row.id in both]
-        found.sort(key=lambda row: str(row.why))
-        return found if [row.why for row in found] == [one_ahead, "Every robot is busy."] else None
+        found.sort(key=lambda row: row.why == one_ahead)
+        return found if [row.why for row in found] == ["Every robot is busy.", one_ahead] else None
 
-    rows = list(reversed(await until(in_sequence)))
+    rows = await until(in_sequence)
     now = service.app.state.clock.utc()
     assert now < rows[0].expected_from <= rows[1].expected_from
     assert rows[0].expected_to <= rows[1].expected_to
