@@ -99,6 +99,11 @@ export class LiveFeed extends EventTarget {
     this.#hear(told);
   }
 
+  /** Whether the stream stands: what is told now is heard. */
+  get stands() {
+    return this.#connected === true;
+  }
+
   /** @param {Message | "hello"} message */
   #hear(message) {
     if (message === "hello") return void (this.#source && this.#connected !== null && this.#pass({ open: this.#connected }));
@@ -139,6 +144,9 @@ export function startLive(person_id) {
   addEventListener("pagehide", () => feed.stop());
   addEventListener("pageshow", (event) => event.persisted && feed.start(person_id));
 }
+
+/** Whether what the service tells now is heard on this page. */
+export const isLive = () => feed.stands;
 
 /** Nobody is signed in any more. */
 export const stopLive = () => feed.stop();

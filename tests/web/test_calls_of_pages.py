@@ -97,6 +97,22 @@ async def test_a_page_asks_for_each_answer_once(busy_campus, visit, address):
     await expect(unread).to_have_count(0 if "wall" in address else 1)
 
 
+async def test_a_robot_is_asked_to_tell_once_there_is_a_stream_to_hear_it_by(busy_campus, visit):
+    """What it tells comes once: said before the stream stands it would be lost, and asked for again."""
+    ada = await of_all_trades(busy_campus, visit)
+    asked = Asked(ada.page)
+    me = (await (await ada.page.request.get(f"{API}me")).json())["id"]
+    await ada.page.add_init_script(
+        f"navigator.locks.request('live {me}', () => new Promise((go) => (window.letGo = go)))"
+    )
+    await ada.page.goto("/robots.html?robot=r1")
+    await expect(ada.page.get_by_role("status").filter(has_text="is asked to tell")).to_be_visible()
+    await asyncio.sleep(QUIET_S)
+    assert not [call for call in asked.calls if "/watch" in call or call == LIVE]
+    await ada.page.evaluate("window.letGo()")
+    assert (await asked.until_quiet())[f"POST {API}robots/r1/watch?anew=true"] == 1
+
+
 async def test_what_is_told_later_is_asked_for_once(busy_campus, visit):
     """The page of the notices and what stands around it show the same answer."""
     ada = await of_all_trades(busy_campus, visit)

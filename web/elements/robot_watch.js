@@ -4,7 +4,7 @@
  */
 import { html, nothing } from "lit";
 import * as api from "../api.js";
-import { OnLive } from "../live.js";
+import { isLive, OnLive } from "../live.js";
 import { inWords } from "../problems.js";
 import { counted, t } from "../texts.js";
 import { WatchedRun } from "../watched_run.js";
@@ -73,8 +73,9 @@ export class RobotWatch extends PageElement {
     if (changed.has("robot")) this.#run = new WatchedRun(this.robot);
   }
 
+  /** What a robot tells comes by the stream alone, and once: it is asked when there is one to hear it by. */
   firstUpdated() {
-    this.#say();
+    if (isLive()) this.#say();
   }
 
   render() {
