@@ -15,6 +15,7 @@ LONG_FILES: dict[str, str] = {
     for name in ("async_operations", "models", "operations", "problems")
 }
 LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)|(?:src|srcset|href)=\"([^\"]+)\"")
+DECISION = re.compile(r"docs/decisions/(\d{4})")
 # Spelled with brackets so that this file does not find itself.
 MACHINE_PATH = re.compile(r"(^|[^\w.-])/([w]ork|[r]oot|[f]arm)/")
 REGISTRY = re.compile(r'"[r]esolved": *"https?://|[i]ndex-url *=|[r]egistry *= *.?https?://')
@@ -55,6 +56,16 @@ def test_every_decision_is_in_the_index():
     decisions = [path.name for path in (CHECKOUT / "docs/decisions").glob("[0-9]*.md")]
     assert decisions
     assert [name for name in decisions if f"({name})" not in index] == []
+
+
+def test_every_decision_that_code_speaks_of_is_there():
+    spoken_of = {
+        number
+        for file in tracked("*.py", "*.js", "*.css", "*.asl", "*.toml", "Makefile")
+        for number in DECISION.findall(file.read_text(encoding="utf-8"))
+    }
+    assert len(spoken_of) > 3
+    assert spoken_of - {path.name[:4] for path in (CHECKOUT / "docs/decisions").glob("[0-9]*.md")} == set()
 
 
 def test_every_page_of_the_documentation_is_reached_from_the_readme():

@@ -87,6 +87,7 @@ async def of_all_trades(campus: Campus, visit) -> Visitor:
 async def test_a_page_asks_for_each_answer_once(busy_campus, visit, address):
     ada = await of_all_trades(busy_campus, visit)
     order = await ada.order("bob.martin@campus.example")
+    await ada.is_told()
     asked = Asked(ada.page)
     await ada.page.goto(address.format(order=order))
     await expect(ada.page.get_by_role("heading").first).to_be_visible()

@@ -1,5 +1,6 @@
 """Somebody with a browser. What their browser complains of fails the test."""
 
+import asyncio
 import re
 import uuid
 from collections.abc import AsyncIterator, Callable
@@ -32,6 +33,8 @@ AXE_RUN = """async () => {
 }"""
 Visit = Callable[..., Any]
 """How somebody comes: the fixture `visit`."""
+TOLD_APART_S = 0.3
+TOLD_WITHIN_LOOKS = 20
 
 
 @dataclass
@@ -126,6 +129,19 @@ class Visitor:
         answer = await self.context.request.post("/api/v1/orders", data=body, headers=headers)
         assert answer.ok, await answer.text()
         return str((await answer.json())["id"])
+
+    async def is_told(self) -> None:
+        """Once there is a first notice for them, and the event stream has had its last word about it."""
+        for _ in range(TOLD_WITHIN_LOOKS):
+            first, second = await self._told(), await self._told()
+            if first == second and first[0]:
+                return
+        raise AssertionError(f"{self.email} is told nothing, or more and more")
+
+    async def _told(self) -> tuple[int, str]:
+        answer = await self.context.request.get("/api/v1/notices?limit=9")
+        await asyncio.sleep(TOLD_APART_S)
+        return len((await answer.json())["items"]), answer.headers["feed-position"]
 
     async def orders(self, number: int, recipient: str) -> None:
         """Many of them, without description; a few at a time, as the service takes so many from one person."""

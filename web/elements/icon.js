@@ -1,5 +1,6 @@
 /** Our own line icons, 24 units square, drawn in the colour of the text around them. They never carry meaning alone. */
 import { html, svg } from "lit";
+import { t } from "../texts.js";
 
 const DRAWINGS = {
   letter: svg`<rect x="3" y="5.5" width="18" height="13" rx="2.5"/><path d="m3.8 7.5 8.2 6 8.2-6"/>`,
@@ -31,3 +32,6 @@ const DRAWINGS = {
 
 /** @param {keyof typeof DRAWINGS} name */
 export const icon = (name) => html`<svg class="icon" viewBox="0 0 24 24" aria-hidden="true">${DRAWINGS[name]}</svg>`;
+
+/** What marks an order that is later than was promised: a word and a drawing, not a colour alone. */
+export const lateMark = () => html`<span class="late">${icon("clock")}${t("late.mark")}</span>`;

@@ -6,8 +6,7 @@ import { titleOf } from "../posts.js";
 import { serverNow } from "../server_clock.js";
 import { t } from "../texts.js";
 import { dayAndTime } from "../times.js";
-import { icon } from "./icon.js";
-import { lateMark } from "./late_mark.js";
+import { icon, lateMark } from "./icon.js";
 /** @import { CampusMap, Order } from "../api_types.ts" */
 
 /** @param {Order} order @param {CampusMap} map @param {unknown} [action] something to press beside it */

@@ -9,8 +9,7 @@ import { titleOf } from "../posts.js";
 import { serverNow } from "../server_clock.js";
 import { t } from "../texts.js";
 import { ago, dayAndTime } from "../times.js";
-import { icon } from "./icon.js";
-import { lateMark } from "./late_mark.js";
+import { icon, lateMark } from "./icon.js";
 /** @import { CampusMap, Order } from "../api_types.ts" */
 
 /**
