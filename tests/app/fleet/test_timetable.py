@@ -96,17 +96,18 @@ async def test_who_takes_back_what_it_waits_for_is_in_nobodys_way(
         row: RobotRow = await service.row(RobotRow, name="r2")
         return row.waits_for is not None
 
-    async def has_somewhere_to_go() -> bool:
+    async def goes_somewhere() -> bool | None:
+        """None for a moment, where what was taken back had just been decided: all is planned anew then."""
         timetable = service.app.state.traffic_desk.timetable
-        return bool(timetable.controller.goals("r2"))
+        return None if timetable is None else bool(timetable.controller.goals("r2"))
 
-    async def has_nowhere_to_go() -> bool:
-        return not await waits() and not await has_somewhere_to_go()
+    async def goes_nowhere() -> bool:
+        return not await waits() and await goes_somewhere() is False
 
     await until(waits)
-    assert await has_somewhere_to_go()
+    assert await goes_somewhere()
     await second.robot.say(Withdraw(claim_id="c1"))
-    await until(has_nowhere_to_go)
+    await until(goes_nowhere)
     (claim,) = await service.rows(ClaimRow, robot="r2")
     assert (claim.granted, claim.reason) == (False, WITHDRAWN)
 
