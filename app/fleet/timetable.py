@@ -93,16 +93,17 @@ class Timetable:
                 self._join(now, now_s)
             else:
                 self._follow_one(before, now, now_s)
-            self._follow_goals(now, now_s)
             self._follow_standing(now, now_s)
+            self._follow_goals(now, now_s)
 
     def _follow_closed(self, picture: Picture, now_s: float) -> None:
         """What people have closed, and what a robot may enter besides the corridor that it is thought to be in."""
-        spare = {hold.corridor for one in picture.robots.values() for hold in one.holds[len(one.way) :]}
-        closed = picture.closed | spare
-        for corridor in closed - self._closed:
+        self._close_and_open(picture.closed.union(*map(_spare, picture.robots.values())), now_s)
+
+    def _close_and_open(self, closed: frozenset[str], now_s: float) -> None:
+        for corridor in sorted(closed - self._closed):
             self.controller.close(corridor, now_s)
-        for corridor in self._closed - closed:
+        for corridor in sorted(self._closed - closed):
             self.controller.open(corridor, now_s)
         self._closed = closed
 
@@ -181,7 +182,7 @@ class Timetable:
                 continue  # first it does there what it has to do
             verdict = self._verdict(one, understood.get(name, False), now_s)
             if isinstance(verdict, MayEnter):
-                self._note_grant(one, verdict)
+                self._note_grant(one, verdict, now_s)
             yield verdict
 
     def _verdict(self, one: Whereabouts, knows_detours: bool, now_s: float) -> Verdict:
@@ -232,14 +233,20 @@ class Timetable:
         posts = self.controller.network.posts
         return posts[lane.start], posts[lane.end]
 
-    def _note_grant(self, one: Whereabouts, verdict: MayEnter) -> None:
-        """As the next picture will have it."""
+    def _note_grant(self, one: Whereabouts, verdict: MayEnter, now_s: float) -> None:
+        """As the next picture will have it; what it may enter besides is closed for those who are asked after it."""
         holds = tuple(Hold(*leg) for leg in verdict.legs)
-        self._known[one.robot] = replace(one, wish=None, at_home=False, holds=holds)
+        noted = replace(one, wish=None, at_home=False, holds=holds)
+        self._known[one.robot] = noted
+        self._close_and_open(self._closed | _spare(noted), now_s)
 
 
 def _places(goals: Iterable[Goal]) -> list[tuple[str, int]]:
     return [(goal.key, goal.post) for goal in goals]
+
+
+def _spare(one: Whereabouts) -> frozenset[str]:
+    return frozenset(hold.corridor for hold in one.holds[len(one.way) :])
 
 
 def _on_its_way(before: Whereabouts | None, now: Whereabouts) -> Whereabouts:

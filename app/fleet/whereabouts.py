@@ -6,7 +6,7 @@ from datetime import datetime
 from itertools import takewhile
 from typing import Final
 
-from sqlmodel import col, func, select
+from sqlmodel import col, func, select, tuple_
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.fleet.closed import closed_names
@@ -179,11 +179,16 @@ def _wish(row: ClaimRow) -> Wish:
     return Wish(row.claim_id, tuple(first), goal, tuple(legs[1:to_goal]) if len(first) == 1 else ())
 
 
-_LAST_LEFT: Final = select(GrantRow).where(
-    col(GrantRow.id).in_(
-        select(func.max(GrantRow.id)).where(col(GrantRow.cleared_at).is_not(None)).group_by(col(GrantRow.robot))
+_LAST_LEFT: Final = (
+    select(GrantRow)
+    .where(
+        tuple_(col(GrantRow.robot), col(GrantRow.cleared_at)).in_(
+            select(GrantRow.robot, func.max(GrantRow.cleared_at)).group_by(col(GrantRow.robot))
+        )
     )
+    .order_by(col(GrantRow.id))
 )
+"""Not the one that was granted last: what a robot may enter besides its way is cleared first."""
 
 
 async def _goals(session: AsyncSession) -> dict[str, list[tuple[str, str]]]:

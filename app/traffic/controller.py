@@ -122,9 +122,12 @@ class TrafficController:
         self._plan_all(now_s)
 
     def give(self, robot: str, goals: Sequence[Goal], now_s: float, rounds: int = ROUNDS) -> bool:
-        """These are its goals from now on, all of them, if there is a timetable with them; else nothing changes."""
+        """These are its goals from now on, all of them, if there is a timetable with them; else nothing changes. Those
+        of a frozen robot are planned for when it goes on."""
         its, before = self._robots[robot], replace(self._robots[robot])
         its.wants(goals, now_s)
+        if its.frozen:
+            return True
         its.goals_wait = False
         tasks, kept = self.tasks(now_s), self.journeys_of_others(robot, now_s)
         found = plan(self._network, tasks, [robot], kept) or insert(self._network, tasks, kept, robot)

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from app.fleet.timetable import MayEnter, Timetable
+from app.fleet.timetable import HasToWait, MayEnter, Timetable
 from app.fleet.whereabouts import Picture, Whereabouts, Wish
 from app.settings import Settings
 from maps import builtin_map
@@ -40,3 +40,27 @@ def test_a_robot_asks_from_where_it_stands_wherever_it_was_seen_last(settings: S
     asks = replace(ASKS_WHILE_IT_COMES, post="post5", goals=(GIVES,), wish=Wish("c1", WAY[:1], "post4", WAY[1:]))
     timetable.follow(Picture({"r1": asks}, frozenset()), {}, 0.0)
     assert list(timetable.verdicts({}, 0.0)) == [MayEnter("r1", WAY)]
+
+
+def test_a_robot_that_was_silent_and_asks_again_in_the_same_look_is_let_in(settings: Settings) -> None:
+    timetable = Timetable(builtin_map("test_track"), settings, vanished=frozenset({"r1"}))
+    silent = replace(ASKS_WHILE_IT_COMES, wish=None, goals=(), online=False)
+    timetable.follow(Picture({"r1": silent}, frozenset()), {}, 0.0)
+    timetable.vanished = frozenset()
+    asks = replace(ASKS_WHILE_IT_COMES, goals=(GIVES,), wish=Wish("c1", WAY[:1], "post4", WAY[1:]))
+    timetable.follow(Picture({"r1": asks}, frozenset()), {}, 60.0)
+    assert list(timetable.verdicts({}, 60.0)) == [MayEnter("r1", WAY)]
+
+
+def test_what_a_robot_may_enter_besides_is_nobody_elses_in_the_same_look(settings: Settings) -> None:
+    """It does not know which way it looks, so all that leads away from where it stands is its own."""
+    timetable = Timetable(builtin_map("test_track"), settings)
+    first = (("post3", "post2"), ("post3", "post4"), ("post3", "post5"))
+    lost = replace(ASKS_WHILE_IT_COMES, post="post3", goals=(LOADS,), wish=Wish("c1", first, "post1"))
+    other = replace(lost, robot="r2", post="post5", goals=(GIVES,), wish=Wish("c2", (("post5", "post3"),), "post4"))
+    timetable.follow(Picture({"r1": lost, "r2": other}, frozenset()), {}, 0.0)
+    granted, waits = timetable.verdicts({}, 0.0)
+    assert isinstance(granted, MayEnter)
+    assert granted.legs == first
+    assert isinstance(waits, HasToWait)
+    assert waits.robots == ("r1",)

@@ -32,3 +32,15 @@ def test_where_there_is_one_more_bay_a_dead_robot_is_passed() -> None:
     for now_s, (start, end) in zip((3.0, 110.0, 220.0), ("dc", "cb", "ba"), strict=True):
         assert isinstance(controller.claims("r1", start, end, now_s), Granted)
         controller.cleared("r1", start, end, now_s + 100.0)
+
+
+def test_what_is_given_to_a_robot_that_stands_is_planned_for_when_it_goes_on() -> None:
+    controller = TrafficController(line(4))
+    controller.joins("r1", post="a", home="a", at_home=True, now_s=0.0)
+    controller.freeze("r1", 1.0)
+    goal = Goal(3, 10.0, key="later")
+    assert controller.give("r1", [goal], 2.0)
+    assert (controller.goals("r1"), controller.leads("r1")) == ((goal,), None)
+    controller.unfreeze("r1", 3.0)
+    assert [left.key for left in controller.tasks(3.0)["r1"].goals] == ["later"]
+    assert isinstance(controller.claims("r1", "a", "b", 4.0), Granted)
