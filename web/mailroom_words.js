@@ -80,7 +80,10 @@ export function whyItWaits(order, map) {
   if (order.state === "queued" && not_before && Date.parse(not_before) > now_ms) {
     return t("mailroom.why.not_before", { time: dayAndTime(not_before, now_ms) });
   }
-  if (isBetweenLegs(order) && !order.why) return t("mailroom.why.passed_on", { at: titleOf(map, order.passed_on_at_post ?? "") });
+  if (isBetweenLegs(order)) {
+    const held = t("mailroom.why.passed_on", { at: titleOf(map, order.passed_on_at_post ?? "") });
+    return order.why ? t("mailroom.why.passed_on_waits", { held, why: orderWhy(order, map) }) : held;
+  }
   const why = order.why ? orderWhy(order, map) : t(`mailroom.why.${order.state}`);
   return wait_until && robotStands(order) ? t("mailroom.why.until", { why, time: clockTime(wait_until) }) : why;
 }
