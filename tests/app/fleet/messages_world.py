@@ -1,5 +1,5 @@
 """Robots that move and say so by messages that come late, the rows that a database would have of them, and a timetable
-that is asked about both. What is true and what is known are kept apart: whoever meets whom is looked up in the truth.
+that is asked about both. What is true and what is known are kept apart: meetings are looked for in the truth.
 """
 
 from collections import deque
@@ -9,8 +9,8 @@ from datetime import UTC, datetime, timedelta
 from itertools import count, pairwise
 from random import Random
 
-from app.fleet.timetable import Elsewhere, HasToWait, Leg, MayEnter, Timetable
-from app.fleet.whereabouts import Hold, Picture, Whereabouts, Wish
+from app.fleet.timetable import Elsewhere, Leg, MayEnter, Timetable, Verdict
+from app.fleet.whereabouts import OF_ITS_OWN, Hold, Picture, Whereabouts, Wish
 from app.settings import Settings
 from maps import CampusMap, NoRoute, corridor_name, shortest_route
 
@@ -79,7 +79,7 @@ class World:
         self.grants: list[Grant] = []
         self.closed: set[str] = set()
         self.timetable: Timetable | None = None
-        self.given = self.served = self.looks = 0
+        self.served = self.looks = 0
         self._numbers = count(1)
         self._coming: dict[str, deque[tuple[float, Callable[[], None]]]] = {r.name: deque() for r in self.robots}
         self._answers: dict[str, deque[tuple[float, Callable[[], None]]]] = {r.name: deque() for r in self.robots}
@@ -246,7 +246,6 @@ class World:
 
     def _order(self, robot: Robot) -> None:
         if len(self._goals(robot)) < 3:
-            self.given += 1
             self._goals(robot).append((f"g{next(self._numbers)}", self.rng.choice(sorted(self.campus.posts))))
 
     def _drop(self, robot: Robot) -> None:
@@ -306,7 +305,7 @@ class World:
             at_home=row.docked and row.post == robot.home,
             online=row.online,
             holds=holds,
-            goals=((("own", row.wish.goal),) if row.wish and own else ()) + tuple(row.goals),
+            goals=(((OF_ITS_OWN, row.wish.goal),) if row.wish and own else ()) + tuple(row.goals),
             wish=row.wish,
             stopped=row.stopped,
             heard_at=row.heard_at,
@@ -318,7 +317,7 @@ class World:
         is_news = last is not None and (one.seen_at is None or one.seen_at < last.cleared_at)
         return replace(one, post=last.left_at) if last and last.left_at and is_news else one
 
-    def _write(self, verdict: MayEnter | HasToWait | Elsewhere) -> None:
+    def _write(self, verdict: Verdict) -> None:
         robot = next(one for one in self.robots if one.name == verdict.robot)
         row = self.rows[robot.name]
         claim = row.wish.claim_id if row.wish else ""

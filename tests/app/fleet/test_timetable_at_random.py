@@ -1,5 +1,5 @@
 """`Timetable` itself, driven at random: restarts, deaths, stops, withdrawals, closed corridors and messages that come
-late. Nobody meets anybody, nothing raises, and when all is well again everybody does their work and comes home.
+late. No two robots meet, nothing raises, and when all is well again each does its work and comes home.
 """
 
 from random import Random
@@ -18,7 +18,7 @@ COME_HOME_WITHIN = 5000
 
 @pytest.mark.parametrize("campus", ["test_track", "carleton"])
 @pytest.mark.parametrize("seed", range(LIVES))
-def test_nobody_meets_anybody_and_everybody_comes_home(settings: Settings, campus: str, seed: int) -> None:
+def test_no_two_robots_meet_and_all_come_home(settings: Settings, campus: str, seed: int) -> None:
     rng = Random(f"{campus} {seed}")
     world = World(builtin_map(campus), settings, rng, robots=rng.randint(2, 4))
     for _ in world.steps(STEPS):
