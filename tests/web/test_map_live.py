@@ -16,12 +16,16 @@ from tests.web.service import Service
 pytestmark = pytest.mark.browser
 
 CHANGES = 300
+ROUNDS = 4
+"""What is left behind by changes is left behind in each round of them. What the browser itself holds on to for a while
+(34 nodes were seen, in one round of many) is not."""
 QUIET_S = 1.5
 # The engine goes on compiling what runs often: some 100 kB in the first hundreds of changes, ever less after that.
 WARM_UP, HEAP_SLACK_BYTES = 100, 400_000
 MORE_TO_SAY = 30
 """Nodes: the page may say more at the end than at the beginning, as when the robot is expected. Three hundred changes
 that leave something behind leave hundreds."""
+MAY_GROW = {"Detached": 5, "Nodes": MORE_TO_SAY, "JSEventListeners": 0, "JSHeapUsedSize": HEAP_SLACK_BYTES}
 WAY = ("post5", "post3", "post2", "post1")
 LEG = Leg(from_post="post3", to_post="post2")
 
@@ -48,6 +52,20 @@ async def drives_about(robot: PlayedRobot, changes: int, battery: float) -> None
         await robot.say(Snapshot(position=position, activity=activity, battery=Battery(ratio=ratio)))
         await robot.say(Why(sentence=f"Driving towards {towards}"))
         await asyncio.sleep(0.012)
+
+
+async def many_changes(page: Page, browser: CDPSession, robot: PlayedRobot) -> None:
+    """Until the page has heard of so many of them: what comes at once is told at once."""
+    heard: list[str] = []
+
+    def note(event: dict[str, str]) -> None:
+        heard.append(event["eventName"])
+
+    browser.on("Network.eventSourceMessageReceived", note)
+    while heard.count("robot") < CHANGES:
+        await drives_about(robot, 50, battery=0.92)
+        await battery_is(page, 92)
+    browser.remove_listener("Network.eventSourceMessageReceived", note)
 
 
 async def left_behind(page: Page, browser: CDPSession) -> dict[str, float]:
@@ -116,18 +134,18 @@ async def test_after_hundreds_of_changes_the_page_is_as_light_as_before(visit, r
         await drives_about(robot, WARM_UP, battery=percent / 100)
         await battery_is(page, percent)
         before = await left_behind(page, browser)
-    heard: list[str] = []
-    browser.on("Network.eventSourceMessageReceived", lambda event: heard.append(event["eventName"]))
     await browser.send("Network.enable")
-    while heard.count("robot") < CHANGES:  # what comes at once is told at once
-        await drives_about(robot, 50, battery=0.92)
-        await battery_is(page, 92)
-    await browser.send("Network.disable")
-    after = await left_behind(page, browser)
-    assert after["Detached"] <= before["Detached"] + 5
-    assert after["Nodes"] <= before["Nodes"] + MORE_TO_SAY
-    assert after["JSEventListeners"] <= before["JSEventListeners"]
-    assert after["JSHeapUsedSize"] <= before["JSHeapUsedSize"] + HEAP_SLACK_BYTES
+    grown = []
+    for _ in range(ROUNDS):
+        await many_changes(page, browser, robot)
+        after = await left_behind(page, browser)
+        grown.append(
+            {name: after[name] - before[name] for name in MAY_GROW if after[name] - before[name] > MAY_GROW[name]}
+        )
+        if not grown[-1]:
+            break
+        before = after
+    assert not grown[-1], grown
 
     await expect(facts.get_by_text(re.compile(r"^Last seen at Post 5, \d+ sec"))).to_be_visible()
     changed = await page.locator("campus-map").evaluate(CHANGED)
