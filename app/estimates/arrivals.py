@@ -4,7 +4,6 @@ How long until it is fetched depends on the orders before it and on the robots t
 corridor by corridor. What a plan is known of is forecast by `app.estimates.forecast` instead.
 """
 
-from collections.abc import Iterable
 from dataclasses import dataclass, field
 from datetime import datetime, tzinfo
 from functools import cached_property
@@ -76,6 +75,7 @@ class Estimates:
     ahead: Ahead = Ahead()
     _rng: Random = field(default_factory=lambda: Random(0))
     _drawn: dict[tuple[str, ...], Interval] = field(default_factory=dict)
+    _parts_s: dict[Thing, list[float]] = field(default_factory=dict)
     _drawn_at: int = -1
 
     # What is told.
@@ -147,16 +147,18 @@ class Estimates:
     def _draws(self, fetch: Thing, from_post: str, to_post: str, hours: str) -> Interval:
         """Drawn anew when enough was learned to change it; a thousand orders of one minute are told the same."""
         if self.durations.version > self._drawn_at * (1 + WORTH_DRAWING):
-            self._drawn, self._drawn_at = {}, self.durations.version
+            self._drawn, self._parts_s, self._drawn_at = {}, {}, self.durations.version
         known = (fetch.name, f"{fetch.assumed_s:.0f}", from_post, to_post, hours)
         if known not in self._drawn:
             parts = [fetch, Thing(Kind.LOAD, hours, self.handover_s), *self._corridors(from_post, to_post)]
-            draws = (self._draw_s(parts) for _ in range(DRAWS))
-            self._drawn[known] = interval_of(list(draws))
+            self._drawn[known] = interval_of([sum(one) for one in zip(*map(self._part_s, parts), strict=True)])
         return self._drawn[known]
 
-    def _draw_s(self, parts: Iterable[Thing]) -> float:
-        return sum(self.durations.draw_s(part, self._rng) for part in parts)
+    def _part_s(self, part: Thing) -> list[float]:
+        """The draws of one part, which many ways have in common: no way has the same part twice."""
+        if part not in self._parts_s:
+            self._parts_s[part] = self.durations.draws_s(part, self._rng, DRAWS)
+        return self._parts_s[part]
 
     def _corridors(self, from_post: str, to_post: str) -> list[Thing]:
         posts = shortest_route(self.ways.campus, from_post, to_post).posts

@@ -96,6 +96,11 @@ class Durations:
                 return drawn_s
         return max(drawn_s, over_s * LONGER)
 
+    def draws_s(self, thing: Thing, rng: Random, count: int) -> list[float]:
+        """So many draws of one thing, independent of each other."""
+        draw = self._drawer(thing, rng)
+        return [draw() for _ in range(count)]
+
     def _drawer(self, thing: Thing, rng: Random) -> Callable[[], float]:
         own, kind = self._of_thing.get((thing.kind, thing.name), ()), self._of_kind[thing.kind]
         assumed_s = max(thing.assumed_s, SHORTEST_ASSUMED_S)
