@@ -5,8 +5,9 @@ from collections.abc import AsyncIterator
 from contextlib import suppress
 from typing import Final
 
-REST: Final = 4
-"""A busy service has other things to do than to look again: a rest of so many times as long as a look has taken."""
+REST: Final = 9
+"""A busy service has other things to do than to look again: a rest of so many times as long as a look has taken, so
+that no look takes more than a tenth of the time."""
 LONGEST_REST_S: Final = 1.0
 """Real seconds. A look that had to wait for others took long without having done much."""
 
@@ -15,11 +16,14 @@ class Looks:
     """`async for _ in looks.until_stopped()`: each turn is one look. All times are real seconds, on the event loop.
 
     `again_s`: nothing should be missed between two wakes; if it is after all, it does not wait for ever.
-    `rest_s`: after each look, so that what changes in one moment is looked at once.
+    `rest_s`: after each look, so that what changes in one moment is looked at once; after a long look `rest` times as
+    long as it took, up to `longest_rest_s`.
     """
 
-    def __init__(self, again_s: float, rest_s: float) -> None:
-        self._again_s, self._rest_s = again_s, rest_s
+    def __init__(
+        self, again_s: float, rest_s: float, *, rest: float = REST, longest_rest_s: float = LONGEST_REST_S
+    ) -> None:
+        self._again_s, self._rest_s, self._rest, self._longest_rest_s = again_s, rest_s, rest, longest_rest_s
         self._woken, self._stopped = asyncio.Event(), asyncio.Event()
 
     def wake(self, _changed: str = "") -> None:
@@ -38,7 +42,8 @@ class Looks:
             self._woken.clear()
             begun_s = now_s()
             yield
-            await _for(self._stopped, min(max(self._rest_s, REST * (now_s() - begun_s)), LONGEST_REST_S))
+            rest_s = min(self._rest * (now_s() - begun_s), self._longest_rest_s)
+            await _for(self._stopped, max(self._rest_s, rest_s))
             await _for(self._woken, self._again_s)
 
 

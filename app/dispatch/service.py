@@ -13,6 +13,7 @@ from app.dispatch.situation import Todo, look_for_work
 from app.fleet.commands import ask, new_command_id, unanswered
 from app.fleet.mission_updates import tell_mission
 from app.fleet.service import Fleet
+from app.looks import LONGEST_REST_S, REST
 from app.tables import MissionRow, RobotRow
 from protocol.to_robot import Cancel
 
@@ -20,10 +21,6 @@ LOOK_AGAIN_S: Final = 30.0
 """Real seconds. Nothing should be missed between two wakes; if it is after all, it does not wait for ever."""
 NOBODY_FREE_S: Final = 0.1
 """Real seconds. While orders wait for robots, looking more often finds nothing new and takes time from what is."""
-REST: Final = 4
-"""And a busy service has other things to do than to look again: so many times as long as a look has taken."""
-LONGEST_REST_S: Final = 1.0
-"""Real seconds. A look that had to wait for others took long without having done much."""
 
 
 class Assigning(Protocol):

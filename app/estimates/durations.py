@@ -89,17 +89,12 @@ class Durations:
 
     def draw_s(self, thing: Thing, rng: Random, over_s: float = 0.0) -> float:
         """As long as it may take, the next time. `over_s`: it has taken so long already, and is not over."""
-        draw = self._drawer(thing, rng)
-        for _ in range(TRIES if over_s else 1):
-            drawn_s = draw()
-            if drawn_s > over_s:
-                return drawn_s
-        return max(drawn_s, over_s * LONGER)
+        return self.draws_s(thing, rng, 1, over_s)[0]
 
-    def draws_s(self, thing: Thing, rng: Random, count: int) -> list[float]:
-        """So many draws of one thing, independent of each other."""
+    def draws_s(self, thing: Thing, rng: Random, count: int, over_s: float = 0.0) -> list[float]:
+        """So many such draws, independent of each other."""
         draw = self._drawer(thing, rng)
-        return [draw() for _ in range(count)]
+        return [_longer_than(over_s, draw) for _ in range(count)] if over_s else [draw() for _ in range(count)]
 
     def _drawer(self, thing: Thing, rng: Random) -> Callable[[], float]:
         own, kind = self._of_thing.get((thing.kind, thing.name), ()), self._of_kind[thing.kind]
@@ -128,3 +123,11 @@ class Durations:
 TRIES: Final = 20
 LONGER: Final = 1.2
 """What has taken longer than all that was ever seen takes this much longer still."""
+
+
+def _longer_than(over_s: float, draw: Callable[[], float]) -> float:
+    for _ in range(TRIES):
+        drawn_s = draw()
+        if drawn_s > over_s:
+            return drawn_s
+    return max(drawn_s, over_s * LONGER)

@@ -4,9 +4,7 @@ A corridor has been driven between two posts that a robot has told of one after 
 time without network teaches nothing wrong. What it waited before it was let in is not counted.
 """
 
-import asyncio
 from collections.abc import Awaitable, Callable, Iterable
-from contextlib import suppress
 from dataclasses import dataclass, field
 from datetime import datetime
 from functools import partial
@@ -20,6 +18,7 @@ from app.database import Database, after_commit, connection_of, write_all
 from app.estimates.arrivals import Ahead, Estimates, Promise
 from app.estimates.durations import Durations, Kind, Thing
 from app.estimates.intervals import Interval
+from app.looks import Looks
 from app.tables import DurationRow, ForecastRow, Order, OrderState, RobotRow, StopRow
 from protocol.clock import Clock
 from protocol.parts import Leg, Part, Purpose, StopAction
@@ -30,6 +29,8 @@ REMEMBERED_FORECASTS: Final = 500
 LOOK_EVERY_S: Final = 30.0
 """Real seconds; sooner when an order has changed."""
 REST_S: Final = 2.0
+REST: Final = 100
+"""Of a thousand robots a look takes a tenth of a second, in which the service answers nobody: times as long."""
 NOT_FETCHED: Final = (OrderState.QUEUED, OrderState.ASSIGNED, OrderState.TO_SENDER)
 KIND_OF: Final = {Purpose.LOAD: Kind.LOAD, Purpose.RECEIVE: Kind.RECEIVE}
 
@@ -70,8 +71,7 @@ class Learning:
     _on_way: dict[str, tuple[str, datetime]] = field(default_factory=dict)
     """The post that each robot passed last, and when, by its clock put right."""
     _let_in: dict[tuple[str, str, str], datetime] = field(default_factory=dict)
-    _woken: asyncio.Event = field(default_factory=asyncio.Event)
-    _stopped: asyncio.Event = field(default_factory=asyncio.Event)
+    _looks: Looks = field(default_factory=lambda: Looks(LOOK_EVERY_S, REST_S, rest=REST, longest_rest_s=LOOK_EVERY_S))
 
     # At the start, and now and then.
 
@@ -88,25 +88,16 @@ class Learning:
 
     def wake(self, _changed: str = "") -> None:
         """An order or a robot has changed."""
-        self._woken.set()
+        self._looks.wake()
 
     def stop(self) -> None:
         """End `run`."""
-        self._stopped.set()
-        self.wake()
+        self._looks.stop()
 
     async def run(self) -> None:
         """Until stopped or cancelled."""
-        while not self._stopped.is_set():
-            with suppress(TimeoutError):
-                async with asyncio.timeout(LOOK_EVERY_S):
-                    await self._woken.wait()
-            if not self._stopped.is_set():
-                self._woken.clear()
-                await self.look()
-                with suppress(TimeoutError):
-                    async with asyncio.timeout(REST_S):
-                        await self._stopped.wait()
+        async for _ in self._looks.until_stopped():
+            await self.look()
 
     async def look(self) -> None:
         """How many orders wait for how many robots, and whether one of these could come."""

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from random import Random
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 from app.estimates.arrivals import Estimates
 from app.estimates.durations import Kind
@@ -80,17 +80,18 @@ async def by_timetable(
     return await asyncio.to_thread(forecast, network, tasks, journeys, now_s, sees.chance())
 
 
-def by_their_ways(
+async def by_their_ways(
     estimates: Estimates, robots: Mapping[str, RobotRow], stops: Sequence[Stop], now: datetime, rng: Random
 ) -> dict[str, Interval]:
     """The same where every corridor is granted at once."""
-    ahead: dict[str, list[Ahead]] = {}
+    places = {name: Place(one.post, one.towards, one.seen_at) for name, one in robots.items() if one.post is not None}
+    ahead: dict[str, list[Ahead]] = {name: [] for name in places}
     for stop in stops:
-        ahead.setdefault(stop.robot, []).append(Ahead(stop.id, stop.post, KIND_OF.get(stop.action), stop.arrived_at))
-    expected: dict[str, Interval] = {}
-    for name, theirs in ahead.items():
-        robot: Any = robots.get(name)
-        if robot is not None and robot.post is not None:
-            place = Place(robot.post, robot.towards, robot.seen_at)
-            expected |= on_the_way(estimates, place, theirs, now, rng)
-    return expected
+        if stop.robot in places:
+            ahead[stop.robot].append(Ahead(stop.id, stop.post, KIND_OF.get(stop.action), stop.arrived_at))
+
+    def all_of_them() -> dict[str, Interval]:
+        found = (on_the_way(estimates, places[name], theirs, now, rng) for name, theirs in ahead.items())
+        return {key: interval for one in found for key, interval in one.items()}
+
+    return await asyncio.to_thread(all_of_them)

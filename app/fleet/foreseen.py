@@ -5,9 +5,7 @@ What people were promised is kept beside it and is not made later here: whoever 
 tells of it.
 """
 
-import asyncio
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, field
 from datetime import datetime, timedelta
 from random import Random
@@ -22,6 +20,7 @@ from app.estimates.intervals import Interval
 from app.fleet.forecasts import Stop, by_their_ways, by_timetable
 from app.fleet.service import Fleet
 from app.fleet.traffic_desk import TrafficDesk
+from app.looks import Looks
 from app.orders.ledger import Expected
 from app.orders.reasons import is_held_up, why_it_waits
 from app.orders.transitions import MAIL_ABOARD, ROBOT_COMING
@@ -59,28 +58,22 @@ class Foreseen:
     _rng: Random = field(default_factory=lambda: Random(0))
     _said: dict[str, str | None] = field(default_factory=dict)
     """The reason of each order, as pages have it."""
-    _woken: asyncio.Event = field(default_factory=asyncio.Event)
-    _stopped: asyncio.Event = field(default_factory=asyncio.Event)
+    _looks: Looks = field(
+        default_factory=lambda: Looks(LOOK_AGAIN_S, LEAST_REST_S, rest=REST, longest_rest_s=LONGEST_REST_S)
+    )
 
     def wake(self, _changed: str = "") -> None:
         """A robot, an order or the timetable has changed."""
-        self._woken.set()
+        self._looks.wake()
 
     def stop(self) -> None:
         """End `run`."""
-        self._stopped.set()
-        self.wake()
+        self._looks.stop()
 
     async def run(self) -> None:
         """Until stopped or cancelled."""
-        now_s = asyncio.get_running_loop().time
-        while not self._stopped.is_set():
-            self._woken.clear()
-            begun_s = now_s()
+        async for _ in self._looks.until_stopped():
             await self.look()
-            rest_s = min(max(LEAST_REST_S, REST * (now_s() - begun_s)), LONGEST_REST_S)
-            await _for(self._stopped, rest_s)
-            await _for(self._woken, LOOK_AGAIN_S)
 
     async def look(self) -> None:
         """Foresee all stops, and write down and tell what has changed."""
@@ -106,7 +99,7 @@ class Foreseen:
     ) -> Mapping[str, Interval]:
         estimates = self.fleet.orders.estimates
         if self.desk is None:
-            return by_their_ways(estimates, robots, stops, now, self._rng)
+            return await by_their_ways(estimates, robots, stops, now, self._rng)
         timetable = self.desk.timetable
         if timetable is None:
             return {}
@@ -146,12 +139,6 @@ def is_otherwise(before: Expected | None, expected: Expected | None, now: dateti
     enough = min(NEWS, max(SHORTEST, SHARE * (expected[1] - now)))
     off = max(abs(was - becomes) for was, becomes in zip(before, expected, strict=True))
     return off >= enough or (before[1] <= now + enough and before != expected)
-
-
-async def _for(event: asyncio.Event, at_most_s: float) -> None:
-    with suppress(TimeoutError):
-        async with asyncio.timeout(at_most_s):
-            await event.wait()
 
 
 _UNDER_WAY: Final = (
