@@ -33,6 +33,8 @@ REST: Final = 20
 """After each look so many times as long as it has taken: forecasting is the least of what the service has to do."""
 LEAST_REST_S: Final = 0.3
 LONGEST_REST_S: Final = 20.0
+AT_ONCE: Final = 10
+"""Orders of one transaction."""
 NEWS: Final = timedelta(seconds=30)
 """An interval that begins and ends by less than this otherwise, or by less than a share of what is left, stays."""
 SHARE: Final = 0.25
@@ -106,6 +108,11 @@ class Foreseen:
         return await by_timetable(estimates, timetable.controller, stops, now, self.fleet.clock.now(), self._rng)
 
     async def _tell(self, news: Sequence[UnderWay]) -> None:
+        """A few in one transaction: what robots report in that time waits for it."""
+        for first in range(0, len(news), AT_ONCE):
+            await self._tell_some(news[first : first + AT_ONCE])
+
+    async def _tell_some(self, news: Sequence[UnderWay]) -> None:
         async with self.fleet.database.transaction(durable=False) as session:
             for one in sorted(news, key=lambda one: one.order.id):
                 order = await self.fleet.orders.order(session, one.order.id)
