@@ -4,7 +4,9 @@ import gc
 import json
 import os
 import platform
+import subprocess
 import traceback
+from contextlib import suppress
 from importlib import import_module
 from pathlib import Path
 from typing import Annotated, Any
@@ -12,9 +14,10 @@ from typing import Annotated, Any
 import typer
 
 from benchmarks.body.report import log_to_error_stream, missed, say, table
+from benchmarks.service import yardsticks
 from benchmarks.service.pinned import pin
 from benchmarks.service.samples import Samples
-from benchmarks.service.servers import LOAD_CORE, SERVER_CORE
+from benchmarks.service.servers import CHECKOUT, LOAD_CORE, SERVER_CORE
 
 # What each shows; the modules are loaded when they are run.
 PARTS = {
@@ -59,10 +62,16 @@ def measure(
     if not pin(LOAD_CORE):
         say(f"there is no core {LOAD_CORE} for the load generator: it shares one with the service")
     samples = Samples(seconds, rounds, robots, followers, history, backlog, first_seed, data)
-    reports = {name: _report(name, samples) for name in PARTS if not parts or name in parts}
+    taken, reports = [yardsticks.measure(samples)], dict[str, Any]()
+    for name in parts or PARTS:
+        reports[name] = _report(name, samples)
+        taken.append(yardsticks.measure(samples))
+    middle = yardsticks.middle(taken)
+    found = {"yardsticks": {**middle, "taken": taken}, "ratios": yardsticks.ratios(reports, middle)}
     if not as_json:
         say("\n" + table(reports))
-    print(json.dumps({"machine": machine, "first_seed": first_seed, "parts": reports}, indent=2))
+    said = {"commit": commit(), "machine": machine, "first_seed": first_seed, **found, "parts": reports}
+    print(json.dumps(said, indent=2))
     raise typer.Exit(bool(missed(reports)))
 
 
@@ -76,6 +85,14 @@ def _report(name: str, samples: Samples) -> dict[str, Any]:
     except Exception as error:
         say(traceback.format_exc())
         return {"figures": {}, "wanted": [], "failed": f"{type(error).__name__}: {error}"}
+
+
+def commit() -> str:
+    """The one that is measured, with a plus where files differ from it; empty where there is no git."""
+    with suppress(OSError, subprocess.CalledProcessError):
+        command = ["git", "describe", "--always", "--abbrev=10", "--dirty=+"]
+        return subprocess.run(command, cwd=CHECKOUT, check=True, capture_output=True, text=True).stdout.strip()
+    return ""
 
 
 def _machine() -> dict[str, Any]:

@@ -27,9 +27,9 @@ WANTED = (
 class Load:
     """Orders for one server, and which of them it has acknowledged."""
 
-    def __init__(self, server: Server, accounts: list[Account], recipient: str) -> None:
+    def __init__(self, server: Server, cookies: list[str], recipient: str) -> None:
         self._server = server
-        self._visitors = [Visitor(server.port, account.cookie) for account in accounts]
+        self._visitors = [Visitor(server.port, cookie) for cookie in cookies]
         self._recipient = recipient
         self._count = 0
         self.acknowledged: list[str] = []
@@ -81,8 +81,8 @@ def measure(samples: Samples) -> dict[str, Any]:
 async def _measure(
     samples: Samples, server: Server, plain: Server, accounts: list[Account], folder: Path
 ) -> dict[str, Any]:
-    recipient = accounts[-1].person.email
-    own, other = Load(server, accounts[:-1], recipient), Load(plain, accounts[:-1], recipient)
+    recipient, cookies = accounts[-1].person.email, [account.cookie for account in accounts[:-1]]
+    own, other = Load(server, cookies, recipient), Load(plain, cookies, recipient)
     seconds = samples.seconds / (2 * samples.rounds)
     database = folder / "service" / "campus-mail.sqlite"
     settled_s = []
