@@ -18,7 +18,7 @@ from benchmarks.paper.figures import figures_of, most_stages, real_time_figures
 from benchmarks.paper.logged_run import logged
 from benchmarks.paper.plots import draw
 from benchmarks.paper.real_time import Views
-from benchmarks.paper.stages import CHARGING, COLLECTED, NAMES
+from benchmarks.paper.stages import CHARGING, COLLECTED, MOVED_ON_M, NAMES, PROCEEDING
 from maps import find_map
 
 CHECKOUT = Path(__file__).parents[1]
@@ -102,6 +102,7 @@ def test_our_run_on_the_papers_track_is_logged_and_drawn(tmp_path: Path) -> None
     places = {stage.name: stage.place[:2] for stage in log.stages}
     dock = find_map("test_track").posts["post5"].dock
     assert math.dist(places[CHARGING], (dock.x_m, dock.y_m)) < 0.3
+    assert math.dist(places[CHARGING], places[PROCEEDING]) >= MOVED_ON_M
     samples = {"ours": {"view_ms": [20.0, 21.0], "cycle_ms": [0.1, 0.2], "view_age_ms": [3.0], "would_wait": [4, 8]}}
     draw(tmp_path, ours, report, samples, {"ours": most_stages([log])})
     drawn = {file.stem for file in tmp_path.glob("*.svg")}

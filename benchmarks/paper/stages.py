@@ -16,6 +16,8 @@ PROCEEDING: Final = "on to the destination"
 NAMES: Final = (COLLECTED, POST_POINT, TURNED, INTERRUPTED, CHARGING, PROCEEDING)
 """In the paper's order, which is not always that of a run: the battery is low 5 to 20 s after the mail is aboard."""
 TURNED_RAD: Final = math.radians(60)
+MOVED_ON_M: Final = 0.5
+"""So far from where the stage before was reached, a robot has turned, or left the dock, for good."""
 TRAIL_EVERY_M: Final = 0.02
 
 Place = tuple[float, float, float]
@@ -40,7 +42,6 @@ class Stages:
     parts: Parts
     reached: list[Stage] = field(default_factory=list)
     _trail: list[tuple[float, float]] = field(default_factory=list)
-    _heading_at_post: float | None = None
 
     def look(self, now: float, low_battery: bool) -> None:
         """After a tick of the mind."""
@@ -55,30 +56,31 @@ class Stages:
     def _names(self) -> set[str]:
         return {stage.name for stage in self.reached}
 
+    def _moved_on(self, name: str, place: Place) -> bool:
+        """Away from where this stage was reached, if it was."""
+        return any(stage.name == name and math.dist(stage.place[:2], place[:2]) >= MOVED_ON_M for stage in self.reached)
+
     def _holding(self, place: Place, low_battery: bool) -> list[str]:
         """The stages that are reached by now; those before the mail is aboard do not count."""
         if not (COLLECTED in self._names or self.contender.has_collected(self.parts)):
             return []
         docked = self.parts.robot is not None and self.parts.robot.docked
-        charged = CHARGING in self._names and not docked and not self.parts.mind.hands.view.sent.still
         holds = {
             COLLECTED: True,
             POST_POINT: self.parts.navigator.visited[-1:] not in ([], [SENDER]),
             TURNED: self._has_turned(place),
             INTERRUPTED: low_battery,
             CHARGING: docked,
-            PROCEEDING: charged,
+            PROCEEDING: self._moved_on(CHARGING, place),
         }
         return [name for name in NAMES if holds[name]]
 
     def _has_turned(self, place: Place) -> bool:
-        """Away from where it looked when it saw the first post point on its way."""
-        if POST_POINT not in self._names:
+        """Away from the first post point on its way, looking elsewhere than when it was detected."""
+        post = next((stage for stage in self.reached if stage.name == POST_POINT), None)
+        if post is None or not self._moved_on(POST_POINT, place):
             return False
-        if self._heading_at_post is None:
-            self._heading_at_post = place[2]
-        turned = math.remainder(place[2] - self._heading_at_post, math.tau)
-        return abs(turned) >= TURNED_RAD
+        return abs(math.remainder(place[2] - post.place[2], math.tau)) >= TURNED_RAD
 
     def _place(self) -> Place:
         assert self.parts.robot is not None
