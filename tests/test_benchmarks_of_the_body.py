@@ -2,6 +2,7 @@
 elsewhere: by people on a quiet machine, and by the tests that run small samples of missions, kills and tracks."""
 
 import json
+import math
 import subprocess
 import sys
 from importlib import import_module
@@ -13,9 +14,12 @@ import pytest
 from benchmarks.body.__main__ import PARTS
 from benchmarks.body.report import Part, Samples, Wanted, at_path, missed, part_report, table
 from benchmarks.paper.contenders import contenders
-from benchmarks.paper.figures import figures_of
+from benchmarks.paper.figures import figures_of, most_stages, real_time_figures
 from benchmarks.paper.logged_run import logged
 from benchmarks.paper.plots import draw
+from benchmarks.paper.real_time import Views
+from benchmarks.paper.stages import CHARGING, COLLECTED, MOVED_ON_M, NAMES, PROCEEDING
+from maps import find_map
 
 CHECKOUT = Path(__file__).parents[1]
 PAPERS_PROGRAM = CHECKOUT.parent / "shared" / "cases" / "paper" / "mail.asl"
@@ -92,9 +96,36 @@ def test_our_run_on_the_papers_track_is_logged_and_drawn(tmp_path: Path) -> None
     assert report["ours"]["missions_lost"] == 0
     assert report["ours"]["actions"]["follow_line"]["count"] >= 4
     assert sum(plan["share"] for plan in report["ours"]["plans"].values()) == pytest.approx(1.0)
-    samples = {"ours": {"percepts_ms": [100.0, 101.0], "cycle_ms": [0.1, 0.2]}}
-    draw(tmp_path, ours, report, samples)
-    assert len(list(tmp_path.glob("figure-*.svg"))) == 4
+    assert {stage.name for stage in log.stages} == set(NAMES)
+    assert [stage.time_s for stage in log.stages] == sorted(stage.time_s for stage in log.stages)
+    assert log.stages[0].name == COLLECTED
+    places = {stage.name: stage.place[:2] for stage in log.stages}
+    dock = find_map("test_track").posts["post5"].dock
+    assert math.dist(places[CHARGING], (dock.x_m, dock.y_m)) < 0.3
+    assert math.dist(places[CHARGING], places[PROCEEDING]) >= MOVED_ON_M
+    samples = {"ours": {"view_ms": [20.0, 21.0], "cycle_ms": [0.1, 0.2], "view_age_ms": [3.0], "would_wait": [4, 8]}}
+    draw(tmp_path, ours, report, samples, {"ours": most_stages([log])})
+    drawn = {file.stem for file in tmp_path.glob("*.svg")}
+    assert {"figure-06-stages-ours", "figure-07-perception", "percept-queue"} <= drawn
+    assert "on to the destination" in (tmp_path / "figure-06-stages-ours.svg").read_text()
+
+
+def test_the_perception_period_is_that_of_the_body_and_not_of_the_mind() -> None:
+    """Ten views between two ticks of the mind: in a queue that each tick takes one from, nine more wait every time."""
+    samples: dict[str, list[float]] = {"view_ms": [], "cycle_ms": [], "view_age_ms": [], "would_wait": []}
+    views = Views(samples)
+    for tick in range(1, 51):
+        at_s = tick / 50
+        views.renewed(at_s)
+        views.renewed(at_s)
+        if tick % 10 == 0:
+            views.reasoned(at_s + 0.003, at_s)
+    assert samples["view_ms"] == pytest.approx([20.0] * 49)
+    assert samples["view_age_ms"] == pytest.approx([3.0] * 5)
+    assert samples["would_wait"] == [9, 18, 27, 36, 45]
+    figures = real_time_figures(samples, 1.0)
+    assert (figures["queue_would_grow_per_s"], figures["view_ms"]["p50"]) == (36.0, pytest.approx(20.0))
+    assert "would_wait" not in figures
 
 
 @pytest.mark.skipif(not PAPERS_PROGRAM.exists(), reason="the paper's program lies in ../shared, which is absent")

@@ -105,3 +105,20 @@ def test_every_package_has_its_layers_written_down():
     config = tomllib.loads((CHECKOUT / "pyproject.toml").read_text())["tool"]["importlinter"]
     layered = {c["containers"][0] for c in config["contracts"] if c.get("exhaustive") and len(c["containers"]) == 1}
     assert set(config["root_packages"]) <= layered
+
+
+def test_the_glossary_defines_no_word_twice():
+    glossary = (CHECKOUT / "docs/glossary.md").read_text(encoding="utf-8")
+    words = [word for word in re.findall(r"^\| ([^|]+?) \|", glossary, re.MULTILINE) if word not in ("word", "---")]
+    assert len(words) > 80
+    assert sorted(word for word in words if words.count(word) > 1) == []
+
+
+def test_no_test_patches_a_module_of_ours():
+    """docs/architecture.md says so; what belongs to the system may be watched, as the writes of `os`."""
+    patched = {
+        (path.name, target)
+        for path in tracked("tests/**/*.py")
+        for target in re.findall(r"\b(?:monkeypatch\.setattr|mock\.patch\S*)\(\s*([^,)]+)", path.read_text())
+    }
+    assert {(name, target) for name, target in patched if target != "os" and name != Path(__file__).name} == set()

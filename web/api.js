@@ -116,6 +116,17 @@ export function isAfter(one, other) {
 const query = (fields) =>
   "?" + new URLSearchParams(Object.entries(fields).flatMap(([name, value]) => (value === undefined ? [] : [[name, `${value}`]])));
 
+/** The whole of a list, page after page. @param {string} path @returns {Promise<any[]>} */
+async function everyPage(path) {
+  const found = [];
+  for (let cursor = ""; cursor !== null; ) {
+    const page = await ask(path + query({ limit: 100, cursor }));
+    found.push(...page.items);
+    cursor = page.next;
+  }
+  return found;
+}
+
 /** @param {string} id */
 const orderPath = (id) => `/orders/${encodeURIComponent(id)}`;
 
@@ -177,7 +188,7 @@ export const sayNotNow = (id) => ask(orderPath(id) + "/not-now", { method: "POST
 export const extendWait = (id, extend_s) => ask(orderPath(id) + "/wait", { method: "POST", body: { extend_s } });
 
 /** Who may hand over for me. @param {string} id @returns {Promise<Api.Delegate[]>} */
-export const delegates = async (id) => (await ask(orderPath(id) + "/delegates")).items;
+export const delegates = (id) => everyPage(orderPath(id) + "/delegates");
 
 /** @param {string} id @param {Api.NewDelegate} delegate @returns {Promise<Api.Delegate>} */
 export const nameDelegate = (id, delegate) => ask(orderPath(id) + "/delegates", { method: "POST", body: delegate });
@@ -242,16 +253,8 @@ export async function linkedDelegate(token, delegate) {
 /** The recipient cannot come: the robot brings it back. @param {string} token @returns {Promise<Api.Order>} */
 export const linkedNotNow = (token) => askByLink("not-now", token);
 
-/** @returns {Promise<Api.Robot[]>} all of them, page after page */
-export async function robots() {
-  const found = [];
-  for (let cursor = ""; cursor !== null; ) {
-    const page = await ask("/robots" + query({ limit: 100, cursor }));
-    found.push(...page.items);
-    cursor = page.next;
-  }
-  return found;
-}
+/** @returns {Promise<Api.Robot[]>} */
+export const robots = () => everyPage("/robots");
 
 /** @param {{limit?: number, cursor?: string}} [page] @returns {Promise<Api.Inbox>} newest first */
 export const notices = (page = { limit: 50 }) => ask("/notices" + query(page));

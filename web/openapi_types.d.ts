@@ -440,11 +440,13 @@ export interface components {
         };
         /**
          * Delegates
-         * @description Everybody who was named for an order, as far as one may see them, oldest first.
+         * @description Who was named for an order, as far as one may see them, oldest first.
          */
         Delegates: {
             /** Items */
             items: components["schemas"]["DelegateView"][];
+            /** Next */
+            next: string | null;
         };
         /**
          * DeviceView

@@ -6,7 +6,7 @@ from typing import Annotated
 from pydantic import BaseModel, ConfigDict, StringConstraints
 
 from app.fleet.closed_ways import closed_corridor
-from app.lines import Line
+from app.lines import Reason
 from app.orders.robot_view import RobotView
 from app.tables import Alarm, RobotCommand, RobotRow
 from app.texts.reasons import Words, words_of
@@ -18,7 +18,7 @@ class CommandReason(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    reason: Annotated[Line, StringConstraints(min_length=1, max_length=500)]
+    reason: Reason
 
 
 class WayIsOpen(BaseModel):

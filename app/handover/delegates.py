@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import Final
 
+from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.fleet.service import Fleet
@@ -15,7 +16,8 @@ from app.orders.codes import HandoverCode, Holder, delegates_of
 from app.orders.schemas import OrderView
 from app.orders.service import Word
 from app.orders.transitions import ENDED, By
-from app.orders.views import MyRole, delegates_view, load_facts
+from app.orders.views import THEIRS, MyRole, delegates_view, load_facts
+from app.paging import Paging, Sorting
 from app.tables import Delegate, Order, OrderState, Person, RobotRow
 from app.tables.order_events import DELEGATE_NAMED, DELEGATE_REVOKED
 from protocol.ids import new_id
@@ -23,6 +25,7 @@ from protocol.parts import Purpose
 from protocol.to_robot import Verifiers
 
 MOST: Final = 10
+OLDEST_FIRST: Final = Sorting("delegates", col(Delegate.named_at), col(Delegate.id))
 
 
 @dataclass(frozen=True)
@@ -31,10 +34,13 @@ class Delegating:
 
     fleet: Fleet
 
-    async def all_of(self, session: AsyncSession, person: Person, order_id: str) -> list[Delegate]:
-        """Those that this person may see, revoked ones too. Raises UnknownOrder."""
+    async def page_of(
+        self, session: AsyncSession, person: Person, order_id: str, page: Paging
+    ) -> tuple[list[Delegate], str | None]:
+        """Those that this person may see, revoked ones too, and the cursor of the next. Raises UnknownOrder."""
         order, role = await theirs(session, person, order_id)
-        return [one for one in await delegates_of(session, [order]) if may_see(one, role)]
+        seen = col(Delegate.purpose).in_(THEIRS[role])
+        return await page.of(session, select(Delegate).where(Delegate.order_id == order.id, seen), OLDEST_FIRST)
 
     async def name(self, session: AsyncSession, person: Person, order_id: str, wish: NewDelegate) -> Delegate:
         """Give somebody a code of their own, by mail if there is an address. Raises UnknownOrder, NotYoursToDelegate,

@@ -120,12 +120,13 @@ async def release_digits(
     return await orders.view(session, dispatcher, order_id)
 
 
-@router.get("/orders/{order_id}/delegates", responses=problems(UnknownOrder))
+@router.get("/orders/{order_id}/delegates", responses={**PAGED, **problems(UnknownOrder)})
 async def list_delegates(
-    order_id: OrderId, user: CurrentUser, delegating: DelegatingDep, session: ReadingDep
+    order_id: OrderId, user: CurrentUser, delegating: DelegatingDep, page: PageDep, session: ReadingDep
 ) -> Delegates:
-    """List who may hand over for the caller, those whose code was taken back too."""
-    return Delegates(items=[DelegateView.of(one) for one in await delegating.all_of(session, user, order_id)])
+    """List who may hand over for the caller, those whose code was taken back too, oldest first."""
+    rows, following = await delegating.page_of(session, user, order_id, page)
+    return Delegates(items=[DelegateView.of(one) for one in rows], next=following)
 
 
 @router.get("/me/delegates", responses=PAGED)

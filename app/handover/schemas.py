@@ -87,10 +87,8 @@ class DelegateView(BaseModel):
         return cls.model_validate(row, from_attributes=True)
 
 
-class Delegates(BaseModel):
-    """Everybody who was named for an order, as far as one may see them, oldest first."""
-
-    items: list[DelegateView]
+class Delegates(PageOf[DelegateView]):
+    """Who was named for an order, as far as one may see them, oldest first."""
 
 
 class MyDelegateView(BaseModel):

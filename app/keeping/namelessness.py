@@ -6,7 +6,7 @@ Old orders all refer to one row that is nobody: not even that two of them were t
 from datetime import UTC, datetime
 from typing import Any, Final
 
-from sqlalchemy import delete, exists, update
+from sqlalchemy import ColumnElement, delete, exists, update
 from sqlmodel import col, or_, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
@@ -46,10 +46,24 @@ async def forget_orders(session: AsyncSession, before: datetime, at_most: int) -
     await session.exec(update(RobotCommand).where(col(RobotCommand.order_id).in_(ids)).values(asked_by_id=None))
     await forget_delegates(session, col(Delegate.order_id).in_(ids), named_by_id=NOBODY)
     await session.exec(delete(OrderLink).where(col(OrderLink.order_id).in_(ids)))
-    told = select(Notice.id).where(col(Notice.order_id).in_(ids))
-    await session.exec(delete(OutgoingNotice).where(col(OutgoingNotice.notice_id).in_(told)))
-    await session.exec(delete(Notice).where(col(Notice.order_id).in_(ids)))
+    await _forget_notices(session, col(Notice.order_id).in_(ids))
     return len(ids)
+
+
+async def forget_alarm_notices(session: AsyncSession, before: datetime, at_most: int) -> int:
+    """Delete what was told before of alarms: no order takes it along."""
+    old = select(Notice.id).where(col(Notice.order_id).is_(None), col(Notice.at) < before)
+    ids = list((await session.exec(old.limit(at_most))).all())
+    if ids:
+        await _forget_notices(session, col(Notice.id).in_(ids))
+    return len(ids)
+
+
+async def _forget_notices(session: AsyncSession, which: ColumnElement[bool]) -> None:
+    """Their sendings first, which refer to them."""
+    sent = col(OutgoingNotice.notice_id).in_(select(Notice.id).where(which))
+    await session.exec(delete(OutgoingNotice).where(sent))
+    await session.exec(delete(Notice).where(which))
 
 
 async def forget_standing_orders(session: AsyncSession, before: datetime, at_most: int) -> int:

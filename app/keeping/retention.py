@@ -15,7 +15,7 @@ from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.database import Database
-from app.keeping.namelessness import forget_orders, forget_people, forget_standing_orders
+from app.keeping.namelessness import forget_alarm_notices, forget_orders, forget_people, forget_standing_orders
 from app.settings import Settings
 from app.tables import (
     Alarm,
@@ -77,6 +77,7 @@ RULES: Final = (
     Rule("orders", ORDERS, forget_orders),
     Rule("standing orders", ORDERS, forget_standing_orders),
     Rule("alarms", ORDERS, rows(Alarm.cleared_at)),
+    Rule("notices of alarms", ORDERS, forget_alarm_notices),
     Rule("refused receipts", ORDERS, rows(RefusedReceipt.at)),
     Rule("commands", ORDERS, rows(RobotCommand.asked_at)),
     Rule("battery samples", TELEMETRY, rows(BatterySample.at)),

@@ -79,7 +79,7 @@ async def live(
     last_event_id: Annotated[str, Header(max_length=64)] = "",
     since: Since = "",
 ) -> EventStream:
-    """Events `order`, `robot`, `traffic`, `notice` as they happen, as one may see them; `resync`: fetch anew.
+    """Events `order`, `robot`, `traffic`, `closed`, `notice` as they happen, as one may see them; `resync`: fetch anew.
 
     `Last-Event-ID` outranks `since`.
 

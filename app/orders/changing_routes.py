@@ -9,7 +9,7 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.database import SessionDep
 from app.errors import Conflict, answering, problems
-from app.lines import Line
+from app.lines import Reason, Text
 from app.orders import errors
 from app.orders.routes import OrderId, OrdersDep
 from app.orders.schemas import OrderView, etag_of
@@ -21,7 +21,6 @@ router = APIRouter(tags=["orders"])
 dispatch_router = APIRouter(tags=["dispatch"])
 
 IfMatch = Annotated[str, Header(max_length=200)]
-Reason = Annotated[Line, StringConstraints(max_length=400)]
 KNOWN: Final = (errors.UnknownOrder, errors.OrderChanged)
 LONGEST_WAIT_S: Final = 7200
 
@@ -77,7 +76,7 @@ class LongerWait(Body):
 class Attention(Body):
     """Why a person has to see to the order."""
 
-    reason: Annotated[Reason, StringConstraints(min_length=1)]
+    reason: Reason
 
 
 class Resolution(Body):
@@ -86,20 +85,20 @@ class Resolution(Body):
     proof, is with whoever should have it, who was asked."""
 
     to: Literal["resume", "returning", "held", "queued", "cancelled", "handed_over"]
-    reason: Reason | None = None
+    reason: Text | None = None
 
 
 class IntoHands(Body):
     """Somebody has taken the mail out by hand."""
 
-    reason: Reason | None = None
+    reason: Text | None = None
 
 
 class PassingOn(Body):
     """At which post somebody has taken the mail out of its robot for another one; null: where that was seen last."""
 
     post: Annotated[str, StringConstraints(max_length=64, pattern=ONE_LINE)] | None = None
-    reason: Reason | None = None
+    reason: Text | None = None
 
 
 class Reassignment(Body):

@@ -6,7 +6,7 @@ from zoneinfo import available_timezones
 
 from pydantic import AwareDatetime, BaseModel, ConfigDict, Field, StringConstraints, field_validator
 
-from app.lines import Line
+from app.lines import Text
 from app.orders.custody import Held
 from app.orders.estimate import EstimateView
 from app.orders.robot_view import RobotView
@@ -33,7 +33,7 @@ class Wish(BaseModel):
     from_post: PostName
     to_post: PostName
     recipient: Email
-    description: Annotated[Line, StringConstraints(max_length=500)] | None = None
+    description: Text | None = None
     priority: Annotated[Priority, Field(description="`high` is for dispatchers.")] = Priority.NORMAL
     on_behalf_of: EmailOfSomebody = None
 

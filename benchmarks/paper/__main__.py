@@ -14,7 +14,7 @@ from benchmarks.body.report import aligned, log_to_error_stream, say
 from benchmarks.mind.engines import CHECKOUT
 from benchmarks.mind.workloads import RECORDED
 from benchmarks.paper.contenders import Contender, contenders
-from benchmarks.paper.figures import figures_of, quantiles
+from benchmarks.paper.figures import figures_of, most_stages, real_time_figures
 from benchmarks.paper.logged_run import Log, logged
 
 PLOTS = Path(__file__).parent / "plots"
@@ -36,11 +36,11 @@ def measure(
     plots: Annotated[Path, typer.Option(help="Where the plots are written.", show_default=False)] = PLOTS,
     as_json: Annotated[bool, typer.Option("--json", help="JSON alone, without the table.")] = False,
 ) -> None:
-    """Log runs of the paper's own program and of ours on the test track, and draw its Figures 7 to 10 side by side.
+    """Log runs of the paper's own program and of ours on the test track, and draw its Figures 6 to 10 side by side.
 
     Each run: a letter from post1 to post4, and a battery that becomes low on the way. The runs are stepped, with the
-    time of the simulated clock; a part at real time then measures perception and reasoning. JSON goes to the output,
-    progress and a table for people to the error stream.
+    time of the simulated clock; a part at real time then measures perception and reasoning. No outliers are removed.
+    JSON goes to the output, progress and a table for people to the error stream.
     """
     from benchmarks.paper.plots import draw
 
@@ -49,11 +49,12 @@ def measure(
     taking_part = contenders(at_hand)
     if at_hand is None:
         say(WITHOUT)
-    reports = {one.name: figures_of(_logged_runs(one, runs, first_seed)) for one in taking_part}
+    logs = {one.name: _logged_runs(one, runs, first_seed) for one in taking_part}
+    reports = {name: figures_of(of_one) for name, of_one in logs.items()}
     samples = {one.name: _real_time(one, real_s, first_seed, at_hand) for one in taking_part} if real_s else {}
     for name, kept in samples.items():
-        reports[name]["real_time"] = {what: quantiles(values) for what, values in kept.items()}
-    draw(plots, taking_part, reports, samples)
+        reports[name]["real_time"] = real_time_figures(kept, real_s)
+    draw(plots, taking_part, reports, samples, {name: most_stages(of_one) for name, of_one in logs.items()})
     if not as_json:
         say("\n" + _table(taking_part, reports))
     state = {

@@ -1,11 +1,12 @@
 """From logs to figures: what became of the missions, and how often each plan and action was used."""
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from statistics import mean, median
 from typing import Any
 
 from benchmarks.paper.logged_run import Log
+from benchmarks.paper.stages import Stage
 
 DAEMON_TICK_MS = 100.0
 
@@ -29,6 +30,20 @@ def figures_of(logs: Sequence[Log]) -> dict[str, Any]:
         "plans": shares(sum((log.plans for log in logs), Counter())),
         "actions": shares(sum((log.actions for log in logs), Counter())),
     }
+
+
+def real_time_figures(samples: Mapping[str, Sequence[float]], duration_s: float) -> dict[str, Any]:
+    """Quantiles of all samples: unlike in the paper no outliers are removed, start-up and end are not measured. What
+    would wait in a queue is said by how many it becomes more each second."""
+    times = {name: quantiles(values) for name, values in samples.items() if name.endswith("_ms")}
+    would_wait = samples["would_wait"]
+    grows = (would_wait[-1] - would_wait[0]) / duration_s if would_wait else 0.0
+    return {**times, "queue_would_grow_per_s": grows}
+
+
+def most_stages(logs: Sequence[Log]) -> list[Stage]:
+    """Those of the first run that came furthest through the paper's Figure 6."""
+    return max(logs, key=lambda log: len(log.stages)).stages
 
 
 def shares(counted: Counter[str]) -> dict[str, dict[str, float]]:

@@ -14,6 +14,7 @@ from bdi.syntax import Plan, Trigger
 from bdi.terms import Literal
 from bdi.trace import Deliberated, TraceEntry
 from benchmarks.paper.contenders import SIMULATED_LINE_HZ, Contender
+from benchmarks.paper.stages import Stage, Stages
 from protocol.clock import SteppedClock
 from robot.assembly import Parts
 from robot.runners import LockstepRunner
@@ -48,6 +49,7 @@ class Log:
     cycle_ms: list[float] = field(default_factory=list)
     plans: Counter[str] = field(default_factory=Counter)
     actions: Counter[str] = field(default_factory=Counter)
+    stages: list[Stage] = field(default_factory=list)
 
 
 class TimedAgent:
@@ -95,6 +97,7 @@ class _Logger:
         self._collected_s: float | None = None
         self._busy_s = 0.0
         self._was_low = False
+        self._stages = Stages(contender, parts, self.log.stages)
 
     def _heard(self, entry: TraceEntry) -> None:
         if isinstance(entry, Deliberated) and entry.plan and not self._robot.docked:
@@ -112,6 +115,7 @@ class _Logger:
         if not self._parts.mind.is_quiet:
             self._busy_s = now
         self._let_battery_sag(now)
+        self._stages.look(now, self._was_low)
         if self._contender.has_delivered(self._parts):
             self._end(now, None)
         elif self._contender.program and now - self._busy_s >= GIVEN_UP_S:

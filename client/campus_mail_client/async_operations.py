@@ -696,10 +696,13 @@ class AsyncOperations:
         )
         return answer
 
-    async def list_delegates(self, order_id: str) -> Delegates:
-        """List who may hand over for the caller, those whose code was taken back too."""
+    async def list_delegates(self, order_id: str, *, limit: int | None = None, cursor: str | None = None) -> Delegates:
+        """List who may hand over for the caller, those whose code was taken back too, oldest first."""
         answer: Delegates = await self._call(
-            "GET", f"/api/v1/orders/{quote(str(order_id), safe='')}/delegates", Delegates
+            "GET",
+            f"/api/v1/orders/{quote(str(order_id), safe='')}/delegates",
+            Delegates,
+            query={"limit": limit, "cursor": cursor},
         )
         return answer
 

@@ -25,7 +25,7 @@ SILENCE_S = 60.0
 
 
 class Page(Protocol[Item_co]):
-    """What every list answers."""
+    """What a list answers, one page of it."""
 
     @property
     def items(self) -> Sequence[Item_co]: ...

@@ -258,9 +258,10 @@ class DelegateView(Model):
 
 
 class Delegates(Model):
-    """Everybody who was named for an order, as far as one may see them, oldest first."""
+    """Who was named for an order, as far as one may see them, oldest first."""
 
     items: list[DelegateView]
+    next: str | None
 
 
 class DeviceView(Model):

@@ -678,9 +678,14 @@ class Operations:
         )
         return answer
 
-    def list_delegates(self, order_id: str) -> Delegates:
-        """List who may hand over for the caller, those whose code was taken back too."""
-        answer: Delegates = self._call("GET", f"/api/v1/orders/{quote(str(order_id), safe='')}/delegates", Delegates)
+    def list_delegates(self, order_id: str, *, limit: int | None = None, cursor: str | None = None) -> Delegates:
+        """List who may hand over for the caller, those whose code was taken back too, oldest first."""
+        answer: Delegates = self._call(
+            "GET",
+            f"/api/v1/orders/{quote(str(order_id), safe='')}/delegates",
+            Delegates,
+            query={"limit": limit, "cursor": cursor},
+        )
         return answer
 
     def name_delegate(self, order_id: str, wish: NewDelegate) -> DelegateView:

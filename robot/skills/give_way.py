@@ -1,7 +1,7 @@
 """Something is ahead, or has touched the bumper: how fast the robot goes, and how long it stands.
 
-What the light bumpers see only makes it gentler and quicker, never safer: they overlook dark clothes and see shiny
-walls. So it slows down but never stands for them, and in the end it tries again whatever they say.
+What the light bumpers see only makes it slower, and lets it go on sooner; never safer: they overlook dark clothes and
+see shiny walls. So it slows down but never stands for them, and in the end it tries again whatever they say.
 """
 
 import math
@@ -9,7 +9,8 @@ import math
 from .interfaces import View
 
 NEAR_SOMETHING_MM_S = 65.0
-"""A touch at this speed is a nudge; from cruising it is reached within 40 mm, and the light bumpers see 120 mm far."""
+"""A touch at this speed is a nudge; from cruising it is reached within 40 mm, and the light
+bumpers of the simulated world see 120 mm far (docs/safety.md)."""
 MOST_BUMPS = 3
 GIVES_WAY_S = (6.0, 8.0)
 """How long it waits after each bump but the last, from where the reflex lets it go on: whoever is in the way has heard

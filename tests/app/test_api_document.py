@@ -10,6 +10,7 @@ import pytest
 from app.api_document import HEADERS, TAGS, all_codes, operations
 from app.api_examples import EXAMPLES
 from app.errors import PROBLEM_JSON
+from app.lines import LONGEST_TEXT
 from app.main import create_app
 from app.settings import Settings
 from protocol.clock import SteppedClock
@@ -49,6 +50,19 @@ def test_every_parameter_says_what_it_is(every: list[Operation]) -> None:
     for _, path, operation in every:
         for parameter in operation.get("parameters", ()):
             assert parameter.get("description"), f"{path} {parameter['name']}: add it to PARAMETERS of app/api_document"
+
+
+def test_whatever_people_write_as_a_description_or_a_reason_may_be_equally_long(document: dict[str, Any]) -> None:
+    schemas = document["components"]["schemas"]
+    asked = {name: schema for name, schema in schemas.items() if schema.get("additionalProperties") is False}
+    longest = {
+        f"{name}.{field}": [one["maxLength"] for one in said.get("anyOf", [said]) if "maxLength" in one]
+        for name, schema in asked.items()
+        for field, said in schema["properties"].items()
+        if field in ("description", "reason")
+    }
+    assert len(longest) > 6
+    assert {name: found for name, found in longest.items() if found != [LONGEST_TEXT]} == {}
 
 
 def test_every_tag_is_described_and_used(every: list[Operation]) -> None:

@@ -1,6 +1,7 @@
 """The client against the real service: what is asked, what is raised, what is sent again."""
 
 import asyncio
+import inspect
 from collections.abc import Awaitable, Callable
 
 import httpx
@@ -8,7 +9,7 @@ import pytest
 
 from app.people.scopes import Scope
 from campus_mail_client import AsyncCampusMail, CampusMail, NoAnswer, Retrying, UnexpectedAnswer
-from campus_mail_client.models import NewOrder, NoticesRead
+from campus_mail_client.models import NewDelegate, NewOrder, NoticesRead
 from campus_mail_client.problems import (
     InvalidRequest,
     NotCancellable,
@@ -86,6 +87,24 @@ async def test_a_long_list_is_walked_page_by_page(mail: AsyncCampusMail) -> None
     placed = [(await mail.place("post1", "post4", RECIPIENT)).id for _ in range(5)]
     walked = [order.id async for order in mail.each(mail.list_orders, role="sent", limit=2)]
     assert sorted(walked) == sorted(placed)
+
+
+async def test_the_delegates_of_an_order_are_walked_page_by_page(mail: AsyncCampusMail) -> None:
+    order = await mail.place("post1", "post4", RECIPIENT)
+    names = ["Eve", "Joe", "Zoe"]
+    for name in names:
+        await mail.name_delegate(order.id, NewDelegate(name=name))
+    walked = [one.name async for one in mail.each(mail.list_delegates, order_id=order.id, limit=2)]
+    assert sorted(walked) == names
+
+
+@pytest.mark.parametrize("client", [AsyncCampusMail, CampusMail])
+def test_whatever_answers_items_can_be_walked(client: type) -> None:
+    """The spool alone shows the newest, without a way to the others."""
+    methods = {name: inspect.signature(method) for name, method in inspect.getmembers(client, inspect.isfunction)}
+    lists = {name for name, said in methods.items() if "items" in getattr(said.return_annotation, "model_fields", {})}
+    assert len(lists) > 10
+    assert {name for name in lists if "cursor" not in methods[name].parameters} == {"spooled_mails"}
 
 
 async def test_what_the_service_refuses_is_raised_by_name(campus: Campus, mail: AsyncCampusMail) -> None:

@@ -48,6 +48,14 @@ def test_every_message_has_an_example_file(name: str) -> None:
     assert EXAMPLES / f"{name}.json" in examples_of(name)
 
 
+def test_the_example_of_an_error_is_what_a_robot_answers_today() -> None:
+    unknown = json.dumps({**example("pause"), "type": "dance"})
+    with pytest.raises(UnknownMessage) as refused:
+        parse(unknown, TO_ROBOT)
+    assert example("error")["body"]["message"] == str(refused.value)
+    assert example("error")["body"]["code"] == refused.value.code
+
+
 def test_every_example_file_is_of_a_message_and_every_kind_of_event_is_among_them() -> None:
     kinds = set()
     for stem, text in TEXTS.items():

@@ -1,8 +1,11 @@
 """The words of the pages: one catalogue per language."""
 
+import itertools
 import json
 import re
 from pathlib import Path
+
+from app.lines import LONGEST_TEXT
 
 WEB = Path(__file__).parents[2] / "web"
 CATALOGUES = {
@@ -27,6 +30,15 @@ PREFIXES_BY_NAME = {
 def test_all_languages_have_the_same_keys():
     assert set(CATALOGUES) == {"en", "fr"}
     assert list(CATALOGUES["en"]) == list(CATALOGUES["fr"])
+
+
+def test_texts_and_fields_allow_what_the_service_does():
+    for language, field in itertools.product(CATALOGUES, ("description", "reason")):
+        assert re.findall(r"\d+", CATALOGUES[language][f"error.malformed.{field}"]) == [str(LONGEST_TEXT)]
+    code = "\n".join(path.read_text(encoding="utf-8") for path in SCRIPTS)
+    fields = re.findall(r'name="description"[^>]*?maxlength="(\d+)"', code)
+    assert len(fields) == 2
+    assert {*fields, *re.findall(r"LONGEST_REASON = (\d+)", code)} == {str(LONGEST_TEXT)}
 
 
 def test_a_text_names_the_same_values_in_all_languages():

@@ -10,7 +10,7 @@ import { field, problemLine } from "./field.js";
 import { PageElement } from "./page_element.js";
 /** @import { Action } from "../mailroom_actions.js" */
 
-const LONGEST_REASON = 400;
+const LONGEST_REASON = 500;
 
 export class AskDialog extends PageElement {
   static properties = {

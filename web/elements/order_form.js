@@ -65,7 +65,7 @@ export class OrderForm extends PageElement {
           ...{ name: "description", label: t("order.description"), hint: t("order.description_hint") },
           ...{ problem: this.problems.description, optional: true },
         },
-        ({ id, describedBy, invalid }) => html`<input id=${id} name="description" dir="auto" maxlength="200" autocomplete="off"
+        ({ id, describedBy, invalid }) => html`<input id=${id} name="description" dir="auto" maxlength="500" autocomplete="off"
           .value=${this.wanted.description} aria-describedby=${describedBy} aria-invalid=${invalid} />`,
       )}
       ${this.#whenField()} ${this.#estimate()} ${helpWords("window")} ${this.problems.form ? problemLine(this.problems.form) : nothing}

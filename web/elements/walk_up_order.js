@@ -70,7 +70,7 @@ export class WalkUpOrderElement extends PageElement {
       <div class="pair">${this.#post("from_post", t("order.from"))} ${this.#post("to_post", t("order.to"))}</div>
       ${field(
         { name: "description", label: t("order.description"), problem: problems.description, optional: true },
-        ({ id, describedBy, invalid }) => html`<input id=${id} name="description" dir="auto" maxlength="200" autocomplete="off"
+        ({ id, describedBy, invalid }) => html`<input id=${id} name="description" dir="auto" maxlength="500" autocomplete="off"
           .value=${this.wanted.description} aria-describedby=${describedBy} aria-invalid=${invalid} />`,
       )}
       ${field(

@@ -26,6 +26,7 @@ from app.tables import (
     IdempotencyKey,
     MessageToRobot,
     Notice,
+    NoticeKind,
     Order,
     OrderEvent,
     OrderLink,
@@ -137,6 +138,11 @@ def test_an_order_that_has_not_ended_keeps_everything(kept: Kept, sender: Browse
     assert {person.email for person in kept.rows(Person)} >= {SENDER, RECIPIENT}
 
 
+def alarm_notice(person: str, clock: SteppedClock) -> Notice:
+    facts = {"robot": "r1", "reason": "It stands.", "post": ""}
+    return Notice(key="alarm.1", kind=NoticeKind.ALARM, person_id=person, at=clock.utc(), facts=facts)
+
+
 def technical_rows(clock: SteppedClock, order_id: str, ada: str, notice: int) -> list[SQLModel]:
     """One of everything that is over now."""
     now = clock.utc()
@@ -154,6 +160,7 @@ def technical_rows(clock: SteppedClock, order_id: str, ada: str, notice: int) ->
         MessageToRobot(**robot, seq=90, type="mission", body={}, created_at=now, acked_at=now),
         GrantRow(**robot, **legs, claim_id="c1", granted_at=now, cleared_at=now),
         ClaimRow(**robot, claim_id="c1", legs=[], at=now, granted=False),
+        alarm_notice(ada, clock),
         OutgoingNotice(key="k1", channel="webhook", notice_id=notice, created_at=now, next_try_at=None, gave_up_at=now),
         SignInCode(email=SENDER, code_hash="h", **life),
         EnrolmentCode(robot="r2", code_hash="h", **life),
@@ -184,10 +191,26 @@ def test_everything_technical_goes_when_its_days_are_over_and_not_a_day_before(
         due = {name for name, wanted in names.items() if wanted == setting} - {"orders", "people"}
         assert due <= set(done), due - set(done)
         assert not due & set(before), before
-    tables = {type(row) for row in rows} - {StandingOrder, OutgoingNotice}
+    tables = {type(row) for row in rows} - {StandingOrder, Notice, OutgoingNotice}
     assert {table.__name__: kept.rows(table) for table in tables} == {table.__name__: [] for table in tables}
     (standing,) = kept.rows(StandingOrder)
     assert (standing.sender_id, standing.description) == ("nobody", None)
+
+
+def test_what_dispatchers_were_told_of_an_alarm_goes_400_days_after_it(
+    kept: Kept, sender: Browser, mailroom: Mailroom, clock: SteppedClock
+) -> None:
+    sender.order()
+    now, ada = clock.utc(), kept.rows(Order)[0].sender_id
+    of_alarm = alarm_notice(ada, clock)
+    kept.add(of_alarm)
+    told = len(kept.rows(Notice)) - 1
+    sending = {"channel": "webhook", "created_at": now, "next_try_at": None, "gave_up_at": now}
+    kept.add(OutgoingNotice(key="k1", notice_id=of_alarm.id, **sending))
+    assert "notices of alarms" not in kept.retain_after(399.5)
+    assert kept.retain_after(1)["notices of alarms"] == 1
+    assert len(kept.rows(Notice)) == told, "those of orders stay as long as their order has names"
+    assert kept.problems() == []
 
 
 def test_what_a_robot_still_has_to_hear_or_to_clear_stays_however_old(kept: Kept, clock: SteppedClock) -> None:
