@@ -19,7 +19,7 @@ from starlette.requests import HTTPConnection
 
 from app.database import ReadingDep
 from app.errors import Forbidden, problems
-from app.estimates.score import Score
+from app.estimates.arrivals import Estimates
 from app.notify.lag import outbox_lag
 from app.settings import ClockDep, Settings, SettingsDep
 from app.tables import Alarm, Order, OrderState, RobotRow
@@ -58,14 +58,12 @@ class Metrics:
         self._given_up = self._gauge("notices_given_up", "Notices that a channel has given up.", "channel")
         self._lag = self._gauge("notices_lag_seconds", "Age of the oldest notice that is still owed.")
         self._alarms = self._gauge("alarms", "Alarms that are not over, by name.", "name")
-        self._scored = self._gauge("estimates_scored", "Latest orders by which the estimates are judged.")
-        self._inside = self._gauge(
-            "estimates_inside_ratio", "Share of them that came between p10 and p90; 0.8 is meant."
-        )
-        self._off = self._gauge("estimates_median_error_ratio", "How far the middle was off, by whose estimate.", "by")
-        self._loss = self._gauge(
-            "estimates_pinball_seconds", "Mean loss of the three quantiles, by whose estimate.", "by"
-        )
+        self._scored = self._gauge("estimates_scored", "Latest arrivals by which estimates are judged.", "basis")
+        inside = "Share of them that came between p10 and p90; 0.8 is meant."
+        middle, quantiles = "How far the middle was off, by whose estimate.", "Mean loss of p10, p50 and p90, by whose."
+        self._inside = self._gauge("estimates_inside_ratio", inside, "basis")
+        self._off = self._gauge("estimates_median_error_ratio", middle, "basis", "by")
+        self._loss = self._gauge("estimates_pinball_seconds", quantiles, "basis", "by")
         off = "How far it was delivered from the middle of the window that was told last."
         late = "Delivered after the end of the window that was told last."
         name, registry = "campus_mail_estimate_error_seconds", self.registry
@@ -91,13 +89,16 @@ class Metrics:
         await self._gather_errors(session, now)
         return generate_latest(self.registry)
 
-    def judge(self, score: Score | None) -> None:
-        """How good estimates have lately been, beside what the lengths on the map alone would have told."""
-        if score is not None:
-            self._scored.set(score.count)
-            self._inside.set(score.inside)
-            _set_all(self._off, {"told": score.median_error, "map": score.median_error_by_map})
-            _set_all(self._loss, {"told": score.pinball_s, "map": score.pinball_by_map_s})
+    def judge(self, estimates: Estimates) -> None:
+        """How good estimates have lately been on each basis, beside what lengths on the map alone would have told."""
+        for basis, told in estimates.told.items():
+            if (score := told.score()) is not None:
+                self._scored.labels(basis).set(score.count)
+                self._inside.labels(basis).set(score.inside)
+                self._off.labels(basis, "told").set(score.median_error)
+                self._off.labels(basis, "map").set(score.median_error_by_map)
+                self._loss.labels(basis, "told").set(score.pinball_s)
+                self._loss.labels(basis, "map").set(score.pinball_by_map_s)
 
     def look_at(self, clock: Clock) -> None:
         """Whether the machine's clock goes on as it went."""
@@ -167,6 +168,6 @@ async def metrics(connection: HTTPConnection, session: ReadingDep, clock: ClockD
     """Figures for Prometheus, in its text format; for this machine alone, or by the operator's token."""
     gathered: Metrics = connection.app.state.metrics
     gathered.look_at(clock)
-    gathered.judge(connection.app.state.orders.estimates.score())
+    gathered.judge(connection.app.state.orders.estimates)
     content = await gathered.gather(session, clock.utc())
     return Response(content, headers={"Content-Type": CONTENT_TYPE_PLAIN_0_0_4})

@@ -182,7 +182,7 @@ class Settings(BaseSettings):
     queue_limit_s: float = Field(86400, gt=0, description="An order that no robot has fetched for so long expires.")
     delayed_after_s: float = Field(600, gt=0, description="So long after its window an order counts as delayed.")
     traffic: Literal["timetable", "at_once"] = Field(
-        "timetable", description="How corridors are granted: by the timetable of all, or at once, for one robot alone."
+        "timetable", description="How corridors are granted: by the timetable of all, or at once, to measure with."
     )
     vanished_after_s: float = Field(
         900, gt=0, description="A robot that was not heard of for so long is gone round, and people are told."

@@ -565,28 +565,19 @@ export interface components {
         };
         /**
          * EstimateQuality
-         * @description How good arrivals were estimated of the latest orders, `scored` in number.
+         * @description How good estimated arrivals were: `placed`, as told when an order was placed; `under_way`, as told first when a
+         *     robot had it and first after its mail was loaded, so up to twice for each order.
          *
-         *     `assumed`: people are still told what the lengths on the map say, since too little was seen. `inside_ratio` is how
-         *     often the robot came between the times that were told (`inside_meant` is aimed at), `earlier_ratio` and
-         *     `later_ratio` how often before and after them. `by_map`: what the lengths alone would have told of the same orders.
-         *     All of it is null as long as no robot has come.
+         *     `assumed`: people are still told what the lengths on the map say, since too little was seen. `inside_meant` is aimed
+         *     at as `inside_ratio`.
          */
         EstimateQuality: {
-            /** Scored */
-            scored: number;
             /** Assumed */
             assumed: boolean;
             /** Inside Meant */
             inside_meant: number;
-            /** Inside Ratio */
-            inside_ratio: number | null;
-            /** Earlier Ratio */
-            earlier_ratio: number | null;
-            /** Later Ratio */
-            later_ratio: number | null;
-            told: components["schemas"]["EstimateError"] | null;
-            by_map: components["schemas"]["EstimateError"] | null;
+            placed: components["schemas"]["ToldQuality"];
+            under_way: components["schemas"]["ToldQuality"];
             /** Durations */
             durations: components["schemas"]["DurationView"][];
         };
@@ -1809,6 +1800,26 @@ export interface components {
              * @default 90
              */
             days: number;
+        };
+        /**
+         * ToldQuality
+         * @description How good arrivals were estimated of the latest orders, `scored` in number.
+         *
+         *     `inside_ratio` is how often the robot came between the times that were told, `earlier_ratio` and `later_ratio` how
+         *     often before and after them. `by_map`: what the lengths on the map alone would have told of the same orders. All of
+         *     it is null as long as no robot has come.
+         */
+        ToldQuality: {
+            /** Scored */
+            scored: number;
+            /** Inside Ratio */
+            inside_ratio: number | null;
+            /** Earlier Ratio */
+            earlier_ratio: number | null;
+            /** Later Ratio */
+            later_ratio: number | null;
+            told: components["schemas"]["EstimateError"] | null;
+            by_map: components["schemas"]["EstimateError"] | null;
         };
         /**
          * Traffic

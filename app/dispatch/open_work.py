@@ -12,7 +12,7 @@ from sqlmodel import col
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.database import connection_of
-from app.dispatch.situation import LOAD_POST, WAITING_AT_A_STOP, is_waiting
+from app.dispatch.situation import LOAD_POST, WAITING_AT_A_STOP, is_aboard, is_waiting
 from app.orders.stops import is_own
 from app.orders.transitions import MAIL_ABOARD, ROBOT_COMING
 from app.tables import MissionRow, MissionState, Order, OrderState, Priority, RobotCommand, RobotRow, StopRow
@@ -23,7 +23,7 @@ LOOKED_AT: Final = 200
 
 
 class OrderNow(NamedTuple):
-    """`is_let_go`: its robot is being told to drop it."""
+    """`is_let_go`: its robot is being told to drop it. `is_aboard`: its mail is in its robot, as far as is known."""
 
     id: str
     state: OrderState
@@ -35,6 +35,7 @@ class OrderNow(NamedTuple):
     created_at: datetime
     priority: Priority
     is_let_go: bool
+    is_aboard: bool
 
 
 class StopNow(NamedTuple):
@@ -113,13 +114,13 @@ def _put_together(
     missions: Iterable[Any],
     commands: Sequence[Any],
 ) -> OpenWork:
-    orders = {row.id: OrderNow(*row) for row in rows}
     by_robot, by_order = _grouped(stops)
+    orders = {row.id: OrderNow(*row) for row in rows if not _only_a_person_can(row, by_order)}
     its_missions: dict[str, list[str]] = {}
     for mission_id, robot in missions:
         its_missions.setdefault(robot, []).append(mission_id)
     busy = _not_to_be_disturbed(orders.values(), by_robot, its_missions, commands)
-    stuck = {order.robot for order in orders.values() if order.state is OrderState.ATTENTION}
+    stuck = {order.robot for order in orders.values() if order.state is OrderState.ATTENTION and order.is_aboard}
     paused = _paused(commands)
     dropping: dict[str, frozenset[str]] = {}
     for one in commands:
@@ -134,6 +135,11 @@ def _put_together(
         sum(1 for row in robots if row.online),
         by_order,
     )
+
+
+def _only_a_person_can(row: Any, by_order: Container[str]) -> bool:
+    """A dispatcher decides about it, and its robot has nothing more to do with it: that one is free for other work."""
+    return row.state is OrderState.ATTENTION and not row.is_aboard and row.id not in by_order
 
 
 def _grouped(stops: Iterable[StopNow]) -> tuple[dict[str, list[StopNow]], dict[str, list[StopNow]]]:
@@ -193,7 +199,7 @@ def _orders() -> Any:
     return select(
         *(col(Order.id), col(Order.state), col(Order.robot), LOAD_POST, col(Order.to_post)),
         *(col(Order.wanted_robot), col(Order.avoided_robot), col(Order.created_at), col(Order.priority)),
-        is_let_go.label("is_let_go"),
+        *(is_let_go.label("is_let_go"), is_aboard().label("is_aboard")),
     )
 
 

@@ -12,10 +12,10 @@ from random import Random
 from statistics import fmean
 from typing import Final
 
-from app.estimates.calibration import Calibration
+from app.estimates.calibration import Basis
 from app.estimates.durations import Durations, Kind, Thing
 from app.estimates.intervals import MIDDLE, Interval, interval_of
-from app.estimates.score import Score, ScoreBoard, Truth
+from app.estimates.told import Told
 from maps import shortest_route
 from maps.ways import Ways
 
@@ -70,8 +70,7 @@ class Estimates:
     zone: tzinfo | None = None
     office_hours: range = USUAL_OFFICE_HOURS
     durations: Durations = field(default_factory=Durations)
-    calibration: Calibration = field(default_factory=Calibration)
-    board: ScoreBoard = field(default_factory=ScoreBoard)
+    told: dict[Basis, Told] = field(default_factory=lambda: {basis: Told() for basis in Basis})
     ahead: Ahead = Ahead()
     _rng: Random = field(default_factory=lambda: Random(0))
     _drawn: dict[tuple[str, ...], Interval] = field(default_factory=dict)
@@ -85,7 +84,7 @@ class Estimates:
         fetch, by_map = self.fetching(from_post), self._by_map(from_post, to_post)
         hours = self.hours(begins_at)
         raw = self._draws(fetch, from_post, to_post, hours)
-        told = by_map if self.is_assumed else self.calibration.corrected(raw)
+        told = by_map if self.is_assumed else self.told[Basis.PLACED].corrected(raw)
         return Promise(raw, told, by_map, fetch, self.is_assumed)
 
     @property
@@ -93,16 +92,12 @@ class Estimates:
         """Whether too little was seen, so that people are told what the lengths on the map say."""
         return min(self.durations.seen(Kind.FETCH), self.durations.seen(Kind.CORRIDOR)) < ENOUGH
 
-    def score(self) -> Score | None:
-        """How good what was told has lately been."""
-        return self.board.score()
-
-    # What is learned.
-
-    def arrived(self, raw: Interval, told: Interval, by_map: Interval, took_s: float) -> None:
-        """An order's robot came to its recipient after so long."""
-        self.calibration.learn(raw, told, took_s)
-        self.board.add(Truth(told, by_map, took_s))
+    def by_map_under_way(self, from_post: str, to_post: str, *, is_aboard: bool) -> Interval:
+        """What the lengths on the map alone say of mail that a robot has. Raises the map's UnknownPost and NoRoute."""
+        if not is_aboard:
+            return self._by_map(from_post, to_post)
+        way_s = self._length_m(from_post, to_post) / self.speed_m_s
+        return Interval(way_s, (1 + SPREAD) / 2 * way_s, SPREAD * way_s)
 
     # The things that take time.
 

@@ -7,7 +7,7 @@ even when the errors of tomorrow are not those of today.
 """
 
 from collections import deque
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 from statistics import NormalDist
@@ -36,10 +36,10 @@ def _assumed_errors() -> list[float]:
 class Basis(StrEnum):
     """What an estimate was worked out from."""
 
-    TIMETABLE = "timetable"
-    """The stop has its place in the timetable that is carried out."""
-    NO_ROBOT_YET = "no_robot_yet"
-    """A robot is still to be found, or to be charged, for the order."""
+    PLACED = "placed"
+    """How long the parts of an order have lately taken: told when it is placed."""
+    UNDER_WAY = "under_way"
+    """The timetable that is carried out: told of an order that a robot has."""
 
 
 @dataclass
@@ -65,14 +65,6 @@ class Calibration:
         self._learned += 1
         self.low = _near(LOW, self.low + STEP * (LOW - (truth_s < told.p10_s)))
         self.high = _near(HIGH, self.high + STEP * ((truth_s > told.p90_s) - (1.0 - HIGH)))
-
-
-@dataclass(frozen=True)
-class Calibrations:
-    """One for each basis: how far off an order under way comes says nothing of one that waits for a charge. Put right
-    together, the one kind is told much too widely and the other too narrowly, and four of five is true of neither."""
-
-    of: Mapping[Basis, Calibration] = field(default_factory=lambda: {basis: Calibration() for basis in Basis})
 
 
 def _bound(ordered: Sequence[float], share: float) -> float:

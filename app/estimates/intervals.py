@@ -35,7 +35,7 @@ def interval_of(values: Sequence[float]) -> Interval:
 
 def around(middle_s: float) -> Interval:
     """Of something that no draws can be made for, as what robots will be given next: from half to twice as long. That
-    is assumed, and leaves to the errors that come how long it really is."""
+    is assumed."""
     return Interval(middle_s / 2, middle_s, 2 * middle_s)
 
 

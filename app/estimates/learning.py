@@ -8,24 +8,24 @@ from collections.abc import Awaitable, Callable, Iterable
 from dataclasses import dataclass, field
 from datetime import datetime
 from functools import partial
-from typing import Any, Final, Protocol
+from typing import Final, Protocol
 
 from sqlalchemy import func, or_, select
 from sqlmodel import col
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.database import Database, after_commit, connection_of, write_all
-from app.estimates.arrivals import Ahead, Estimates, Promise
+from app.estimates.arrivals import Ahead, Estimates
+from app.estimates.calibration import Basis
 from app.estimates.durations import Durations, Kind, Thing
-from app.estimates.intervals import Interval
+from app.estimates.kept import LATEST_PLACED, LATEST_UNDER_WAY, Intervals, intervals_of, told_under_way
 from app.looks import Looks
-from app.tables import DurationRow, ForecastRow, Order, OrderState, RobotRow, StopRow
+from app.tables import DurationRow, ForecastRow, ForecastUnderWayRow, Order, OrderState, RobotRow, StopRow
 from protocol.clock import Clock
 from protocol.parts import Leg, Part, Purpose, StopAction
 from protocol.to_server import HandoverReceipt, Progress, Step
 
 REMEMBERED_DURATIONS: Final = 3000
-REMEMBERED_FORECASTS: Final = 500
 LOOK_EVERY_S: Final = 30.0
 """Real seconds; sooner when an order has changed."""
 REST_S: Final = 2.0
@@ -49,16 +49,6 @@ class Corrected(Protocol):
     def __call__(self, at: datetime) -> datetime: ...
 
 
-def forecast_row(order_id: str, begins_at: datetime, promise: Promise) -> dict[str, Any]:
-    """What is kept of a promise until its truth has come."""
-    intervals = {"raw": promise.raw, "told": promise.told, "map": promise.by_map}
-    quantiles = {
-        f"{whose}_{share}": seconds for whose, one in intervals.items() for share, seconds in one._asdict().items()
-    }
-    fetch = {"fetch_name": promise.fetch.name, "fetch_assumed_s": promise.fetch.assumed_s}
-    return {"order_id": order_id, "begins_at": begins_at, **quantiles, **fetch, "arrived_at": None}
-
-
 @dataclass
 class Learning:
     """Hears what robots tell, and looks now and then how many orders wait."""
@@ -79,11 +69,14 @@ class Learning:
         """All that is remembered of earlier days, oldest first."""
         async with self.database.asking() as connection:
             durations = (await connection.execute(_LATEST_DURATIONS)).all()
-            forecasts = (await connection.execute(_LATEST_FORECASTS)).all()
+            placed = (await connection.execute(LATEST_PLACED)).all()
+            under_way = (await connection.execute(LATEST_UNDER_WAY)).all()
         for kind, name, assumed_s, seconds in reversed(durations):
             self._learn(Thing(Kind(kind), name, assumed_s), seconds)
-        for row in reversed(forecasts):
-            self._arrived(_intervals(row), (row.arrived_at - row.begins_at).total_seconds())
+        for row in reversed(placed):
+            self._arrived(Basis.PLACED, intervals_of(row), row.begins_at, row.arrived_at)
+        for row in reversed(under_way):
+            self._arrived(Basis.UNDER_WAY, intervals_of(row), row.told_at, row.arrived_at)
         await self.look()
 
     def wake(self, _changed: str = "") -> None:
@@ -121,7 +114,8 @@ class Learning:
             at = corrected(happened.happened_at)
             await self._drove(session, robot, happened, at)
             if happened.step is Step.ARRIVED and happened.order_id is not None:
-                await self._came(session, happened, at)
+                stop = await session.get(StopRow, happened.stop_id)
+                await self._came(session, happened.order_id, stop, at)
 
     def let_in(self, robot: str, legs: Iterable[Leg], now: datetime) -> None:
         """These corridors may be entered from now on: what it waited before was no driving."""
@@ -140,18 +134,25 @@ class Learning:
         if thing is not None:
             await self._observe(session, thing, entered_at, at)
 
-    async def _came(self, session: AsyncSession, progress: Progress, at: datetime) -> None:
-        stop, row = await session.get(StopRow, progress.stop_id), await session.get(ForecastRow, progress.order_id)
-        if stop is None or row is None or row.arrived_at is not None:
-            return
-        if stop.action == StopAction.LOAD:
-            if stop.post != (await session.get_one(Order, progress.order_id)).from_post:
+    async def _came(self, session: AsyncSession, order_id: str, stop: StopRow | None, at: datetime) -> None:
+        placed = await session.get(ForecastRow, order_id)
+        if stop is not None and stop.action == StopAction.LOAD and placed is not None and placed.arrived_at is None:
+            if stop.post != (await session.get_one(Order, order_id)).from_post:
                 return  # passed on: it was fetched before
-            await self._observe(session, Thing(Kind.FETCH, row.fetch_name, row.fetch_assumed_s), row.begins_at, at)
-        elif stop.action == StopAction.RECEIVE and at > row.begins_at:
+            fetch = Thing(Kind.FETCH, placed.fetch_name, placed.fetch_assumed_s)
+            await self._observe(session, fetch, placed.begins_at, at)
+        elif stop is not None and stop.action == StopAction.RECEIVE:
+            if placed is not None:
+                self._note_arrival(session, Basis.PLACED, placed, placed.begins_at, at)
+            for row in await told_under_way(session, order_id):
+                self._note_arrival(session, Basis.UNDER_WAY, row, row.told_at, at)
+
+    def _note_arrival(
+        self, session: AsyncSession, basis: Basis, row: ForecastRow | ForecastUnderWayRow, since: datetime, at: datetime
+    ) -> None:
+        if row.arrived_at is None and at > since:
             row.arrived_at = at
-            took_s = (at - row.begins_at).total_seconds()
-            after_commit(session, partial(self._arrived, _intervals(row), took_s))
+            after_commit(session, partial(self._arrived, basis, intervals_of(row), since, at))
 
     async def _handed_over(self, session: AsyncSession, receipt: HandoverReceipt, corrected: Corrected) -> None:
         stop, kind = await session.get(StopRow, receipt.stop_id), KIND_OF.get(receipt.purpose)
@@ -172,8 +173,8 @@ class Learning:
     def _learn(self, thing: Thing, seconds: float) -> None:
         self.estimates.durations.observe(thing, seconds)
 
-    def _arrived(self, intervals: tuple[Interval, Interval, Interval], took_s: float) -> None:
-        self.estimates.arrived(*intervals, took_s)
+    def _arrived(self, basis: Basis, intervals: Intervals, told_at: datetime, at: datetime) -> None:
+        self.estimates.told[basis].arrived(*intervals, (at - told_at).total_seconds())
 
 
 ON_ITS_WAY: Final = frozenset({Step.DEPARTED, Step.PASSED, Step.ARRIVED})
@@ -183,18 +184,3 @@ _LATEST_DURATIONS: Final = (
     .order_by(col(DurationRow.id).desc())
     .limit(REMEMBERED_DURATIONS)
 )
-_LATEST_FORECASTS: Final = (
-    select(*ForecastRow.__table__.columns)  # type: ignore[attr-defined]
-    .where(col(ForecastRow.arrived_at).is_not(None))
-    .order_by(col(ForecastRow.arrived_at).desc())
-    .limit(REMEMBERED_FORECASTS)
-)
-
-
-def _intervals(row: ForecastRow) -> tuple[Interval, Interval, Interval]:
-    """Worked out, told, and by the map."""
-    return (
-        Interval(row.raw_p10_s, row.raw_p50_s, row.raw_p90_s),
-        Interval(row.told_p10_s, row.told_p50_s, row.told_p90_s),
-        Interval(row.map_p10_s, row.map_p50_s, row.map_p90_s),
-    )

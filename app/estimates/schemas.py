@@ -5,6 +5,7 @@ from typing import Literal, cast
 from pydantic import BaseModel
 
 from app.estimates.arrivals import Estimates
+from app.estimates.calibration import Basis
 from app.estimates.durations import Kind, Thing
 from app.estimates.intervals import HIGH, LOW, MIDDLE
 from app.estimates.score import Score
@@ -34,50 +35,60 @@ class DurationView(BaseModel):
     p90_s: float
 
 
-class EstimateQuality(BaseModel):
+class ToldQuality(BaseModel):
     """How good arrivals were estimated of the latest orders, `scored` in number.
 
-    `assumed`: people are still told what the lengths on the map say, since too little was seen. `inside_ratio` is how
-    often the robot came between the times that were told (`inside_meant` is aimed at), `earlier_ratio` and
-    `later_ratio` how often before and after them. `by_map`: what the lengths alone would have told of the same orders.
-    All of it is null as long as no robot has come.
+    `inside_ratio` is how often the robot came between the times that were told, `earlier_ratio` and `later_ratio` how
+    often before and after them. `by_map`: what the lengths on the map alone would have told of the same orders. All of
+    it is null as long as no robot has come.
     """
 
     scored: int
-    assumed: bool
-    inside_meant: float
     inside_ratio: float | None
     earlier_ratio: float | None
     later_ratio: float | None
     told: EstimateError | None
     by_map: EstimateError | None
+
+    @classmethod
+    def of(cls, score: Score | None) -> "ToldQuality":
+        if score is None:
+            return cls(scored=0, inside_ratio=None, earlier_ratio=None, later_ratio=None, told=None, by_map=None)
+        by_map = EstimateError(median_error_ratio=score.median_error_by_map, pinball_s=score.pinball_by_map_s)
+        return cls(
+            scored=score.count,
+            inside_ratio=score.inside,
+            earlier_ratio=score.below,
+            later_ratio=score.above,
+            told=EstimateError(median_error_ratio=score.median_error, pinball_s=score.pinball_s),
+            by_map=by_map,
+        )
+
+
+class EstimateQuality(BaseModel):
+    """How good estimated arrivals were: `placed`, as told when an order was placed; `under_way`, as told first when a
+    robot had it and first after its mail was loaded, so up to twice for each order.
+
+    `assumed`: people are still told what the lengths on the map say, since too little was seen. `inside_meant` is aimed
+    at as `inside_ratio`.
+    """
+
+    assumed: bool
+    inside_meant: float
+    placed: ToldQuality
+    under_way: ToldQuality
     durations: list[DurationView]
 
     @classmethod
     def of(cls, estimates: Estimates) -> "EstimateQuality":
         """As it is now; of all things that were ever seen, corridors first."""
-        score = estimates.score()
         return cls(
-            scored=score.count if score else 0,
             assumed=estimates.is_assumed,
             inside_meant=round(HIGH - LOW, 2),
-            inside_ratio=score.inside if score else None,
-            earlier_ratio=score.below if score else None,
-            later_ratio=score.above if score else None,
-            told=_told(score),
-            by_map=_by_map(score),
+            placed=ToldQuality.of(estimates.told[Basis.PLACED].score()),
+            under_way=ToldQuality.of(estimates.told[Basis.UNDER_WAY].score()),
             durations=[_view(estimates, thing) for thing in estimates.things()],
         )
-
-
-def _told(score: Score | None) -> EstimateError | None:
-    return None if score is None else EstimateError(median_error_ratio=score.median_error, pinball_s=score.pinball_s)
-
-
-def _by_map(score: Score | None) -> EstimateError | None:
-    if score is None:
-        return None
-    return EstimateError(median_error_ratio=score.median_error_by_map, pinball_s=score.pinball_by_map_s)
 
 
 def _view(estimates: Estimates, thing: Thing) -> DurationView:

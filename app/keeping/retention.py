@@ -24,6 +24,7 @@ from app.tables import (
     DurationRow,
     EnrolmentCode,
     ForecastRow,
+    ForecastUnderWayRow,
     GrantRow,
     IdempotencyKey,
     MessageToRobot,
@@ -83,6 +84,7 @@ RULES: Final = (
     Rule("battery samples", TELEMETRY, rows(BatterySample.at)),
     Rule("durations", TELEMETRY, rows(DurationRow.at)),
     Rule("forecasts", TELEMETRY, rows(ForecastRow.begins_at)),
+    Rule("forecasts under way", TELEMETRY, rows(ForecastUnderWayRow.told_at)),
     Rule("robot messages", TELEMETRY, rows(RobotMessage.received_at)),
     # What a robot has not acknowledged is still to be told to it, however old.
     Rule("messages to robots", TELEMETRY, rows(MessageToRobot.acked_at)),

@@ -9,7 +9,7 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.database import new_row, row_of, write_all
 from app.errors import Unprocessable
-from app.estimates.learning import forecast_row
+from app.estimates.kept import promise_row
 from app.notify.service import tell_all
 from app.orders import errors
 from app.orders.ledger import Ledger, Word, event_row
@@ -130,7 +130,7 @@ class Placing(Ledger):
             **self._expectation(window, now),
         }
         is_promised = row["window_to"] is not None
-        forecast = forecast_row(order_id, window.since, window.promise) if is_promised else None
+        forecast = promise_row(order_id, window.since, window.promise) if is_promised else None
         return self._with_its_people(row, parties, forecast)
 
     def _expectation(self, window: Window, now: datetime) -> dict[str, Any]:

@@ -12,7 +12,7 @@ from app.tables.claims import ClaimRow, ClosedCorridor, GrantRow
 from app.tables.contacts import Contact
 from app.tables.delegates import Delegate, DigitLock
 from app.tables.enrolment_codes import EnrolmentCode
-from app.tables.forecasts import DurationRow, ForecastRow
+from app.tables.forecasts import DurationRow, ForecastRow, ForecastUnderWayRow
 from app.tables.handovers import Evidence, Handover, RefusedReceipt, Settled
 from app.tables.idempotency_keys import IdempotencyKey
 from app.tables.identities import Identity
@@ -46,6 +46,7 @@ __all__ = [
     "EnrolmentCode",
     "Evidence",
     "ForecastRow",
+    "ForecastUnderWayRow",
     "GrantRow",
     "Handover",
     "IdempotencyKey",

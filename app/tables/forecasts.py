@@ -20,18 +20,9 @@ class DurationRow(SQLModel, table=True):
     at: datetime = Field(sa_type=UtcTime, index=True)
 
 
-class ForecastRow(SQLModel, table=True):
-    """What an order was forecast when it was placed, in seconds since `begins_at`, and when its robot came.
+class Quantiles(SQLModel):
+    """`raw_…` is as it was worked out, `told_…` as people were told, `map_…` as the lengths on the map alone say."""
 
-    `raw_…` is as it was worked out, `told_…` as people were told, `map_…` as the lengths on the map alone say.
-    `fetch_…` names the wait that it began with.
-    """
-
-    __tablename__ = "forecasts"
-
-    # No reference: what it says of estimates outlives the order, and is about nobody.
-    order_id: str = Field(primary_key=True, max_length=64)
-    begins_at: datetime = Field(sa_type=UtcTime, index=True)
     raw_p10_s: float
     raw_p50_s: float
     raw_p90_s: float
@@ -41,6 +32,29 @@ class ForecastRow(SQLModel, table=True):
     map_p10_s: float
     map_p50_s: float
     map_p90_s: float
+
+
+class ForecastRow(Quantiles, table=True):
+    """What was told of an order when it was placed, in seconds since `begins_at`, and when its robot came. `fetch_…`
+    names the wait that it began with."""
+
+    __tablename__ = "forecasts"
+
+    # No reference: what it says of estimates outlives the order, and is about nobody.
+    order_id: str = Field(primary_key=True, max_length=64)
+    begins_at: datetime = Field(sa_type=UtcTime, index=True)
     fetch_name: str = Field(max_length=130)
     fetch_assumed_s: float
+    arrived_at: datetime | None = Field(default=None, sa_type=UtcTime, index=True)
+
+
+class ForecastUnderWayRow(Quantiles, table=True):
+    """What was told of an order that a robot has, in seconds since `told_at`, and when the robot came: the first that
+    was told, and the first after the mail was loaded."""
+
+    __tablename__ = "forecasts_under_way"
+
+    order_id: str = Field(primary_key=True, max_length=64)
+    is_aboard: bool = Field(primary_key=True)
+    told_at: datetime = Field(sa_type=UtcTime, index=True)
     arrived_at: datetime | None = Field(default=None, sa_type=UtcTime, index=True)

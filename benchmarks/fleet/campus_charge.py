@@ -19,7 +19,6 @@ from app.charging.energy import Rates, Use, assumed_rates
 from app.charging.history import Driven, Sample, learned_from
 from app.charging.levels import Thresholds
 from app.charging.top_ups import NEEDS_IT_MORE, Move, Wish, top_ups
-from app.dispatch.planning.ahead import Charging, Dock
 from app.traffic.journey import Goal
 from app.traffic.network import Lane, Network
 from benchmarks.fleet.campus_ground import ASSUMED_HANDOVER_S, ASSUMED_M_S, Ground
@@ -208,26 +207,6 @@ class Charges:
         """Before its own battery plan takes over."""
         spare, rates = robot.ratio - self.thresholds.low, self.rates[robot.name]
         return any(rates.at_most(way) <= spare for dock, way in self._ways(robot.post).items() if dock != robot.post)
-
-    def after(self, robot: Charged, goals: Sequence[Goal]) -> Charge:
-        """Its charge once it has done these, as it is likely; a charge among them is for what comes behind it."""
-        charge, spent = self._charge(robot), self.rates[robot.name].expected(self._work(robot.post, goals))
-        if any(goal.key.endswith("-dock") for goal in goals):
-            last = self.ground.network.posts[goals[-1].post]
-            least = self.thresholds.low + self.rates[robot.name].at_most(self._to_dock(last))
-            return replace(charge, ratio=max(least, robot.ratio - spent), docked=False, until_full=False)
-        return replace(charge, ratio=robot.ratio - spent, docked=robot.charging and not goals)
-
-    def charging(self) -> Charging:
-        """All docks, and who has them."""
-        number, docks = self.ground.network.number_of, dict.fromkeys(self.ground.chargers, Dock(self._now_s))
-        stays = self.plan().stays
-        for robot in self.robots.values():
-            dock = robot.post if robot.charging else robot.bound_for
-            stay = stays.get(robot.name)
-            if dock is not None and stay is not None and stay.dock == dock:
-                docks[dock] = Dock(stay.until_s, robot.name)
-        return Charging({number(name): dock for name, dock in docks.items()}, self.thresholds, _drive)
 
     def moves(self, resting: Sequence[Charged], taken: Mapping[str, str | None], local: datetime) -> list[Move]:
         self.count_hour(local)

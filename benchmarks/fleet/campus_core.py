@@ -163,7 +163,8 @@ class Core:
         arrived_at = known.arrived.pop(receipt.stop_id, None)
         if arrived_at is not None:
             kind = Kind.LOAD if receipt.purpose is Purpose.LOAD else Kind.RECEIVE
-            self.dispatch.told.handed_over(kind, self.now_s, (receipt.happened_at - arrived_at).total_seconds())
+            since_s = self.now_s - (receipt.happened_at - arrived_at).total_seconds()
+            self.dispatch.told.handed_over(kind, since_s, (receipt.happened_at - arrived_at).total_seconds())
         if receipt.purpose is Purpose.LOAD:
             order.loaded = True
         else:
@@ -172,6 +173,8 @@ class Core:
             del self.dispatch.open[order.id]
         known.without_stop(receipt.stop_id)
         self.controller.served(known.name, receipt.stop_id, self.now_s)
+        if order.loaded and receipt.purpose is Purpose.LOAD:
+            self.dispatch.is_loaded(order)
         self._wake(decide=True)
 
     def _cleared(self, known: Known, message: Clear) -> None:

@@ -3,17 +3,15 @@
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from functools import partial
 from random import Random
 from typing import Final
 
 from app.charging.acceptance import Answer
-from app.dispatch.planning.ahead import Free, carried_ahead
 from app.dispatch.planning.carrying_out import Able, adopt, scene_of
 from app.dispatch.planning.deciding import decide
 from app.dispatch.planning.improving import improved
-from app.dispatch.planning.scene import OpenOrder, RobotAtWork, Route, Routes, Rules, Scene
-from app.dispatch.planning.timing import served_s, tasks_of
+from app.dispatch.planning.scene import OpenOrder, Rules, Scene
+from app.estimates.arrivals import Ahead
 from app.traffic.controller import TrafficController
 from app.traffic.journey import Goal
 from benchmarks.fleet.campus_charge import Charges
@@ -71,6 +69,7 @@ class Dispatch:
     counts: Counter[str]
     orders: dict[str, Ordered] = field(default_factory=dict)
     open: dict[str, Ordered] = field(default_factory=dict)
+    _foreseen: set[str] = field(default_factory=set)
 
     @property
     def now_s(self) -> float:
@@ -80,9 +79,8 @@ class Dispatch:
         order = Ordered(len(self.orders), start, end, self.now_s)
         self.orders[order.id] = self.open[order.id] = order
         self.charges.ordered(self.ground.clock.local)
+        self.told.placed(order, self._ahead())
         self.decide()
-        scene = self.scene()
-        self.told.promise(f"{order.id}-receive", start, end, scene, partial(self._ahead, scene))
 
     # What is decided.
 
@@ -98,6 +96,18 @@ class Dispatch:
             self.counts["refused"] += 1
             return
         self.tell_missions(self.robots)
+        self._foresee()
+
+    def _foresee(self) -> None:
+        """What is told first of orders that have a robot now."""
+        new = [one for one in self.open.values() if one.robot is not None and one.id not in self._foreseen]
+        if new:
+            self.told.under_way(new, self.controller, self.robots.values(), is_aboard=False)
+            self._foreseen.update(one.id for one in new)
+
+    def is_loaded(self, order: Ordered) -> None:
+        """What is told first after that."""
+        self.told.under_way([order], self.controller, self.robots.values(), is_aboard=True)
 
     def scene(self) -> Scene:
         able = {name: self._able(known) for name, known in self.robots.items()}
@@ -105,22 +115,10 @@ class Dispatch:
         orders = {one.id: self._with_avoided(one, kept_for) for one in self.open.values()}
         return scene_of(self.controller, able, orders, self.now_s, Rules(age_limit_s=AGE_LIMIT_S))
 
-    def _ahead(self, scene: Scene) -> Routes:
-        """What robots have before them, and behind it what waits, as they will have the charge for it."""
-        has = {name: _without_last_charge(robot.route) for name, robot in scene.robots.items()}
-        known = {stop.order for route in has.values() for stop in route}
-        waiting = [one.open() for one in self.open.values() if one.id not in known]
-        served = {} if scene.kept is None else served_s(tasks_of(scene, has), scene.kept.timetable)
-        free = {name: self._free(name, robot, has[name], served) for name, robot in scene.robots.items()}
-        ahead = carried_ahead(scene.network, free, waiting, self.charges.charging())
-        return {name: (*route, *ahead[name]) for name, route in has.items()}
-
-    def _free(self, name: str, robot: RobotAtWork, route: Route, served: Mapping[str, float]) -> Free:
-        known = self.robots[name]
-        goals = [stop.goal for stop in route]
-        at_s = served.get(goals[-1].key, robot.start.ready_s) if goals else robot.start.ready_s
-        post = goals[-1].post if goals else robot.start.post
-        return Free(post, at_s, self.charges.after(known, goals), self.charges.curves[name])
+    def _ahead(self) -> Ahead:
+        """Orders that nobody has fetched, but for the one just placed, for how many robots."""
+        waiting = sum(1 for one in self.open.values() if not one.loaded) - 1
+        return Ahead(waiting, sum(1 for known in self.robots.values() if known.is_heard))
 
     def goals(self, name: str) -> tuple[Goal, ...]:
         """Of its mission: without what it does for reasons of its own."""
@@ -224,8 +222,3 @@ class Dispatch:
         kept = {name for name, its in kept_for.items() if its != order.id and name != order.robot}
         avoided = kept.union(name for name, answer in answers.items() if answer is not best)
         return replace(order.open(), avoided=frozenset(avoided))
-
-
-def _without_last_charge(route: Route) -> Route:
-    """A charge with nothing behind it lasts as long as what comes next needs it."""
-    return route[:-1] if route and route[-1].goal.key.endswith("-dock") else route

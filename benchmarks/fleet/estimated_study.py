@@ -7,15 +7,18 @@ Orders are given, first come first served, to whoever will be there first; `app.
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
+from datetime import UTC, datetime
+from math import inf
 from random import Random
 from typing import Any, Final
 
-from app.estimates.calibration import Basis
+from app.estimates.arrivals import Ahead, Estimates
 from app.estimates.durations import Kind, Thing
 from app.estimates.forecast import forecast
 from app.estimates.intervals import Interval
+from app.fleet.forecasts import Stop as Foreseen
 from app.traffic.execution import retimed
-from app.traffic.journey import Goal, Start
+from app.traffic.journey import Start
 from app.traffic.network import Network, network_of
 from app.traffic.planning import Timetable, first_plan, improve, insert, plan
 from benchmarks.fleet.estimated_world import (
@@ -24,6 +27,7 @@ from benchmarks.fleet.estimated_world import (
     CLOSES_H,
     DAY_S,
     HOUR_S,
+    OFFICE_H,
     OPENS_H,
     RUSH_H,
     Robot,
@@ -31,10 +35,11 @@ from benchmarks.fleet.estimated_world import (
     Truth,
     World,
     hour_of,
-    is_attended,
 )
-from benchmarks.fleet.promises import Promises, corridor, handling
+from benchmarks.fleet.promises import Promises
 from maps import builtin_map
+from maps.ways import Ways
+from protocol.parts import StopAction
 
 SPEED_M_S: Final = 0.15
 HANDOVER_S: Final = 120.0
@@ -43,6 +48,9 @@ PACE: Final = (0.9, 1.6)
 """Of the seconds by length, each corridor in each direction for itself."""
 FOLLOWING_S: Final = 60.0
 ROUNDS: Final = 4
+CHARGED_S: Final = sum(CHARGE_S) / 2
+BEGINS: Final = datetime(2026, 1, 5, tzinfo=UTC)
+"""A Monday."""
 
 
 @dataclass
@@ -51,26 +59,37 @@ class Study:
 
     rng: Random
     network: Network
+    promises: Promises
     world: World = field(init=False)
-    promises: Promises = field(default_factory=Promises)
+    _not_fetched: set[str] = field(default_factory=set)
 
     # What the world tells.
 
-    def handled(self, stop: Stop, at_s: float) -> None:
+    def handled(self, stop: Stop, _at_s: float) -> None:
         if stop.kind is not None:
-            self.promises.durations.observe(_handling(stop.kind, at_s), stop.takes_s)
+            self.promises.handled(stop.kind, stop.begun_s, stop.takes_s)
+
+    def reached(self, key: str, at_s: float) -> None:
+        order, _, what = key.rpartition(" ")
+        if what == "load":
+            self._not_fetched.discard(order)
+            self.promises.fetched(order, at_s)
+        elif what == "receive":
+            self.promises.came(order, at_s)
 
     # What is planned and forecast.
 
     def place(self, name: str, start: int, end: int) -> None:
-        """One order: given to whoever is likely to have it done first, and told when it will arrive."""
+        """One order: told when it is placed, given at once to whoever is likely to have it done first, told then."""
+        self.promises.estimates.ahead = Ahead(len(self._not_fetched), len(self.world.robots))
+        self.promises.placed(name, self.world.now_s, start, end)
+        self._not_fetched.add(name)
         load, receive = Stop(f"{name} load", Kind.LOAD, start), Stop(f"{name} receive", Kind.RECEIVE, end)
         robot = self._soonest(start)
         its = self.world.robots[robot]
         charge = [Stop(f"{name} charge", None, its.home)] if self._must_charge(its) else []
         self._give(robot, [*charge, load, receive])
-        raw = self._forecast()[receive.key]
-        self.promises.make(receive.key, self.world.now_s, Basis.TIMETABLE, raw, self._by_map(start, end))
+        self.promises.under_way(name, self.world.now_s, (start, end), self._forecast()[receive.key])
 
     def _soonest(self, start: int) -> str:
         tasks = self._tasks()
@@ -102,40 +121,27 @@ class Study:
         self.world.journeys = dict(better.journeys)
 
     def _tasks(self) -> dict[str, Any]:
-        durations = self.promises.durations
+        durations = self.promises.estimates.durations
         return self.world.believed(
-            lambda stop: sum(CHARGE_S) / 2 if stop.kind is None else durations.quantile_s(self._of(stop), 0.5),
-            lambda lane: durations.quantile_s(corridor(lane), 0.5),
+            lambda stop: CHARGED_S if stop.kind is None else durations.quantile_s(self._handling(stop.kind), 0.5),
+            lambda lane: durations.quantile_s(self.promises.corridor(lane), 0.5),
         )
 
-    def _of(self, stop: Stop) -> Thing:
-        assert stop.kind is not None
-        return _handling(stop.kind, self.world.now_s)
+    def _handling(self, kind: Kind) -> Thing:
+        return self.promises.estimates.stop(kind, self.promises.local(self.world.now_s))
 
     def _forecast(self) -> dict[str, Interval]:
         tasks, now_s = self._tasks(), self.world.now_s
         journeys = retimed(self.network, tasks, self.world.journeys)
-        stops = {stop.key: stop for robot in self.world.robots.values() for stop in robot.stops}
+        robots = self.world.robots.items()
+        stops = {stop.key: self._seen(stop, name) for name, robot in robots for stop in robot.stops if stop.kind}
+        return forecast(self.network, tasks, journeys, now_s, self.promises.foresight(stops, now_s, self.rng).chance())
 
-        def handling_s(goal: Goal) -> float:
-            stop = stops[goal.key]
-            lasted_s = max(0.0, now_s - stop.begun_s)
-            if stop.kind is None:
-                return max(60.0, self.rng.uniform(*CHARGE_S) - lasted_s)
-            return self.promises.durations.draw_s(self._of(stop), self.rng, lasted_s) - lasted_s
-
-        return forecast(self.network, tasks, journeys, now_s, self.promises.chance(self.rng, now_s, handling_s))
-
-    def _by_map(self, start: int, end: int) -> Interval:
-        """As `app/orders/window.py` has it, with the middle in the middle."""
-        way_s = self.network.shortest_s[start][end]
-        coming_s = max(self.network.shortest_s[robot.home][start] for robot in self.world.robots.values())
-        first_s, last_s = way_s + HANDOVER_S, 2 * (way_s + coming_s + HANDOVER_S)
-        return Interval(first_s, (first_s + last_s) / 2, last_s)
-
-
-def _handling(kind: Kind, now_s: float) -> Thing:
-    return handling(kind, is_attended=is_attended(now_s), assumed_s=HANDOVER_S)
+    def _seen(self, stop: Stop, robot: str) -> Foreseen:
+        """As the service has it."""
+        order, _, what = stop.key.rpartition(" ")
+        arrived_at = None if stop.begun_s == inf else self.promises.local(stop.begun_s)
+        return Foreseen(stop.key, StopAction(what), self.network.posts[stop.post], order, robot, arrived_at)
 
 
 def arrivals(rng: Random, days: float) -> Iterator[float]:
@@ -154,12 +160,13 @@ def study(seed: int, days: float, robots: int = 4, bays: int = 2) -> Study:
     rng, campus = Random(seed), builtin_map("carleton")
     network = network_of(campus, lambda way, _: way.length_m / SPEED_M_S, lambda _: FOLLOWING_S)
     network = replace(network, bays=tuple(bays for _ in network.posts))
-    its = Study(rng, network)
+    estimates = Estimates(Ways(campus), SPEED_M_S, HANDOVER_S, UTC, range(*OFFICE_H))
+    its = Study(rng, network, Promises(network, estimates, BEGINS))
     pace = {(at, back): rng.uniform(*PACE) for at in range(len(network.corridors)) for back in (0, 1)}
     homes = [network.number_of(post.name) for post in campus.docks()]
     fleet = {f"r{number}": homes[number % len(homes)] for number in range(robots)}
     there = {name: Robot(home, Start(home, True, 0.0, 0.0)) for name, home in fleet.items()}
-    its.world = World(network, there, Truth(rng, pace), its.promises.drove, its.handled, its.promises.came)
+    its.world = World(network, there, Truth(rng, pace), its.promises.drove, its.handled, its.reached)
     first = first_plan(network, its.world.believed(lambda _: 0.0, lambda lane: lane.travel_s), rng)
     assert first is not None, "everybody is at home"
     its.world.journeys = dict(first.journeys)

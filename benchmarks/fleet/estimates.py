@@ -1,4 +1,5 @@
-"""Whether people are told the truth: arrivals that were estimated in a simulated fleet, beside those by lengths alone.
+"""Whether people are told the truth: arrivals as the service's own estimates tell them, in a simulated fleet, beside
+those by lengths alone: `placed` with each order, `under_way` once a robot has it, which it has at once here.
 
 The orders of a first time teach and are not scored (`WARM_UP`). "Not corrected" is the simulated plan alone: it does
 not know of orders to come, for which the timetable is changed; `app.estimates.calibration` has to make up for it.
@@ -9,6 +10,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any, Final
 
+from app.estimates.calibration import Basis
 from app.estimates.intervals import quantile
 from app.estimates.score import Truth, score_of
 from benchmarks.body.report import Wanted, say
@@ -20,30 +22,38 @@ WARM_UP: Final = 100
 TOGETHER: Final = 200
 """Orders of one point of the plot."""
 WANTED = [
-    Wanted("told.inside", at_least=0.78, at_most=0.82),
-    Wanted("told.median_error", at_most=0.15),
-    Wanted("told.pinball_of_map", at_most=0.99),
+    wanted
+    for basis in Basis
+    for wanted in (
+        Wanted(f"{basis}.told.inside", at_least=0.78, at_most=0.82),
+        Wanted(f"{basis}.told.median_error", at_most=0.15),
+        Wanted(f"{basis}.told.pinball_of_map", at_most=0.99),
+    )
 ]
-Run = tuple[list[Truth], list[Truth]]
-"""Of one seed: as people were told, and as it was worked out."""
+Run = dict[Basis, tuple[list[Truth], list[Truth]]]
+"""Of one seed, on each basis: as people were told, and as it was worked out."""
 
 
 def measure(samples: Samples) -> dict[str, Any]:
     """All seeds together, and what each had inside."""
     runs = list(samples.each(run, [(seed, DAYS) for seed in samples.some_seeds()]))
-    for told, _ in runs:
-        say(f"  {len(told)} orders scored")
-    draw(samples.plots, runs)
+    for one in runs:
+        say("  " + ", ".join(f"{basis}: {len(told)} orders scored" for basis, (told, _) in one.items()))
+    draw(samples.plots, [one[Basis.UNDER_WAY] for one in runs])
     return figures(runs)
 
 
 def run(job: tuple[int, float]) -> Run:
     """One seed for so many days, after the warm-up."""
-    its = study(*job)
-    return its.promises.scored[WARM_UP:], its.promises.raw[WARM_UP:]
+    its = study(*job).promises
+    return {basis: (its.scored[basis][WARM_UP:], its.raw[basis][WARM_UP:]) for basis in Basis}
 
 
 def figures(runs: Sequence[Run]) -> dict[str, Any]:
+    return {basis: _of_basis([one[basis] for one in runs]) for basis in Basis}
+
+
+def _of_basis(runs: Sequence[tuple[list[Truth], list[Truth]]]) -> dict[str, Any]:
     told = [truth for theirs, _ in runs for truth in theirs]
     raw = [truth for _, theirs in runs for truth in theirs]
     took_s = sorted(truth.seconds for truth in told)
@@ -62,7 +72,7 @@ def _figures(truths: Sequence[Truth]) -> dict[str, Any]:
     return asdict(score) | {"pinball_of_map": score.pinball_s / score.pinball_by_map_s}
 
 
-def draw(folder: Path, runs: Sequence[Run]) -> None:
+def draw(folder: Path, runs: Sequence[tuple[list[Truth], list[Truth]]]) -> None:
     """How many came inside, of so many orders one after the other."""
     import matplotlib as mpl
 

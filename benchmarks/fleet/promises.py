@@ -1,21 +1,26 @@
-"""What people are told in a simulation, and what came of it: as `app/estimates/learning.py` keeps it."""
+"""What people are told in a simulation, and what came of it: by the service's own estimates (`app.estimates`), fed and
+asked as `app/estimates/learning.py` and `app/fleet/foreseen.py` do it."""
 
+from collections import defaultdict
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from datetime import datetime, timedelta
 from random import Random
+from typing import NamedTuple
 
-from app.estimates.calibration import Basis, Calibrations
-from app.estimates.durations import Durations, Kind, Thing
-from app.estimates.forecast import Chance, Handling
+from app.estimates.arrivals import Estimates
+from app.estimates.calibration import Basis
+from app.estimates.durations import Kind, Thing
 from app.estimates.intervals import Interval
 from app.estimates.score import Truth
-from app.traffic.network import Lane
+from app.fleet.forecasts import Foresight, Stop
+from app.traffic.network import Lane, Network
 
 
-@dataclass(frozen=True)
-class Promise:
-    """`placed_s`: when it was made."""
+class Promise(NamedTuple):
+    """`told_s`: when it was told."""
 
-    placed_s: float
+    told_s: float
     basis: Basis
     raw: Interval
     told: Interval
@@ -24,44 +29,66 @@ class Promise:
 
 @dataclass
 class Promises:
-    """`scored`: each truth that came, beside what was told of it; `raw`: beside what was worked out."""
+    """`begins`: when the simulation does. `scored`: each truth that came, beside what was told of it; `raw`: beside
+    what was worked out."""
 
-    durations: Durations = field(default_factory=Durations)
-    calibrations: Calibrations = field(default_factory=Calibrations)
-    scored: list[Truth] = field(default_factory=list)
-    raw: list[Truth] = field(default_factory=list)
-    _open: dict[str, Promise] = field(default_factory=dict)
+    network: Network
+    estimates: Estimates
+    begins: datetime
+    scored: dict[Basis, list[Truth]] = field(default_factory=lambda: {basis: [] for basis in Basis})
+    raw: dict[Basis, list[Truth]] = field(default_factory=lambda: {basis: [] for basis in Basis})
+    _open: dict[str, list[Promise]] = field(default_factory=lambda: defaultdict(list))
+    _fetches: dict[str, tuple[float, Thing]] = field(default_factory=dict)
+
+    def local(self, now_s: float) -> datetime:
+        return self.begins + timedelta(seconds=now_s)
+
+    # What robots do.
 
     def drove(self, lane: Lane, seconds: float) -> None:
-        self.durations.observe(corridor(lane), seconds)
+        self.estimates.durations.observe(self.corridor(lane), seconds)
 
-    def make(self, key: str, now_s: float, basis: Basis, raw: Interval, by_map: Interval) -> None:
-        told = self.calibrations.of[basis].corrected(raw)
-        self._open[key] = Promise(now_s, basis, raw, told, by_map)
+    def handled(self, kind: Kind, arrived_s: float, seconds: float) -> None:
+        self.estimates.durations.observe(self.estimates.stop(kind, self.local(arrived_s)), seconds)
 
-    def came(self, key: str, now_s: float) -> None:
+    def fetched(self, order: str, now_s: float) -> None:
+        """A robot is at its sender's."""
+        placed_s, fetch = self._fetches.pop(order, (0.0, None))
+        if fetch is not None:
+            self.estimates.durations.observe(fetch, now_s - placed_s)
+
+    def came(self, order: str, now_s: float) -> None:
         """A robot is at its recipient's with this mail."""
-        promise = self._open.pop(key, None)
-        if promise is None:
-            return
-        truth_s = now_s - promise.placed_s
-        self.calibrations.of[promise.basis].learn(promise.raw, promise.told, truth_s)
-        self.scored.append(Truth(promise.told, promise.by_map, truth_s))
-        self.raw.append(Truth(promise.raw, promise.by_map, truth_s))
+        for one in self._open.pop(order, ()):
+            truth_s = now_s - one.told_s
+            self.estimates.told[one.basis].arrived(one.raw, one.told, one.by_map, truth_s)
+            self.scored[one.basis].append(Truth(one.told, one.by_map, truth_s))
+            self.raw[one.basis].append(Truth(one.raw, one.by_map, truth_s))
 
-    def chance(self, rng: Random, now_s: float, handling_s: Handling) -> Chance:
-        """Corridors as they have lately been."""
-        durations = self.durations
-        return Chance(
-            lambda _, lane: durations.draw_s(corridor(lane), rng),
-            handling_s,
-            lambda _, lane, entered_s: entered_s + durations.draw_s(corridor(lane), rng, now_s - entered_s),
-        )
+    # What is told.
 
+    def placed(self, order: str, now_s: float, start: int, end: int) -> None:
+        """With a new order."""
+        posts = self.network.posts
+        its = self.estimates.promise(posts[start], posts[end], self.local(now_s))
+        self._fetches[order] = now_s, its.fetch
+        self._open[order].append(Promise(now_s, Basis.PLACED, its.raw, its.told, its.by_map))
 
-def corridor(lane: Lane) -> Thing:
-    return Thing(Kind.CORRIDOR, f"{lane.start} {lane.end}", lane.travel_s)
+    def under_way(
+        self, order: str, now_s: float, ends: tuple[int, int], raw: Interval, *, is_aboard: bool = False
+    ) -> None:
+        """First of an order that a robot has, or first after its mail was loaded. `ends`: from which post to which."""
+        start, end = (self.network.posts[post] for post in ends)
+        by_map = self.estimates.by_map_under_way(start, end, is_aboard=is_aboard)
+        told = self.estimates.told[Basis.UNDER_WAY].corrected(raw)
+        self._open[order].append(Promise(now_s, Basis.UNDER_WAY, raw, told, by_map))
 
+    def foresight(self, stops: Mapping[str, Stop], now_s: float, rng: Random) -> Foresight:
+        """What the service draws for a forecast of its timetable."""
+        return Foresight(self.estimates, self.network, stops, self.local(now_s), now_s, rng)
 
-def handling(kind: Kind, *, is_attended: bool, assumed_s: float) -> Thing:
-    return Thing(kind, "attended" if is_attended else "not attended", assumed_s)
+    def corridor(self, lane: Lane) -> Thing:
+        posts = self.network.posts
+        thing = self.estimates.corridor(posts[lane.start], posts[lane.end])
+        assert thing is not None, "the network is made from the map"
+        return thing

@@ -19,7 +19,8 @@ LOAD_CORE: Final = 1
 STARTS_WITHIN_S: Final = 60.0
 MAP: Final = "carleton"
 MORE_THAN_A_MAP_CARRIES: Final = {"TRAFFIC": "at_once"}
-"""For hundreds of robots: no map has homes for them, and no timetable is made for so many."""
+"""For hundreds of robots: no map has homes for them. Not the shipped mode, and the only reason that there is another
+(docs/decisions/0085-at-once-measures-more-than-a-map-carries.md)."""
 
 
 class DidNotStart(Exception):

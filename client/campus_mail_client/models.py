@@ -333,22 +333,17 @@ class EstimateError(Model):
 
 
 class EstimateQuality(Model):
-    """How good arrivals were estimated of the latest orders, `scored` in number.
+    """How good estimated arrivals were: `placed`, as told when an order was placed; `under_way`, as told first
+    when a robot had it and first after its mail was loaded, so up to twice for each order.
 
-    `assumed`: people are still told what the lengths on the map say, since too little was seen. `inside_ratio`
-    is how often the robot came between the times that were told (`inside_meant` is aimed at), `earlier_ratio`
-    and `later_ratio` how often before and after them. `by_map`: what the lengths alone would have told of the
-    same orders. All of it is null as long as no robot has come.
+    `assumed`: people are still told what the lengths on the map say, since too little was seen. `inside_meant`
+    is aimed at as `inside_ratio`.
     """
 
-    scored: int
     assumed: bool
     inside_meant: float
-    inside_ratio: float | None
-    earlier_ratio: float | None
-    later_ratio: float | None
-    told: EstimateError | None
-    by_map: EstimateError | None
+    placed: ToldQuality
+    under_way: ToldQuality
     durations: list[DurationView]
 
 
@@ -1022,6 +1017,22 @@ class TokenWish(Model):
     name: str
     scopes: list[Scope]
     days: int = 90
+
+
+class ToldQuality(Model):
+    """How good arrivals were estimated of the latest orders, `scored` in number.
+
+    `inside_ratio` is how often the robot came between the times that were told, `earlier_ratio` and
+    `later_ratio` how often before and after them. `by_map`: what the lengths on the map alone would have told
+    of the same orders. All of it is null as long as no robot has come.
+    """
+
+    scored: int
+    inside_ratio: float | None
+    earlier_ratio: float | None
+    later_ratio: float | None
+    told: EstimateError | None
+    by_map: EstimateError | None
 
 
 class Traffic(Model):

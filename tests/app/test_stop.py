@@ -40,7 +40,7 @@ def test_what_dispatch_has_begun_is_finished_before_the_end(
     clock: SteppedClock, mails: Mails, settings: Settings
 ) -> None:
     """Cut off in its transaction it would keep SQLite's write lock for a while, and others would wait for that."""
-    app = create_app(settings.model_copy(update={"traffic": "at_once"}), clock)
+    app = create_app(settings, clock)
     with TestClient(app, base_url=HERE) as client:
         browser = Browser(app)
         browser.portal = client.portal
@@ -64,16 +64,16 @@ async def _states(settings: Settings) -> Sequence[OrderState]:
 
 
 async def _let_dispatch_wait_for_the_lock(app: FastAPI) -> "asyncio.Task[None]":
-    """A robot is there at last, but who says so has not committed yet."""
+    """A robot is there at last, and somebody else is writing just when dispatch wants to."""
+    await _put(app, online=False)
+    while not (timetable := app.state.traffic_desk.timetable) or not timetable.known:
+        app.state.traffic_desk.wake()
+        await asyncio.sleep(0.02)
+    await _put(app, online=True)
     has_begun = asyncio.Event()
 
     async def hold() -> None:
-        async with app.state.database.transaction() as session:
-            at = app.state.clock.utc()
-            charged = RobotRow(name="r1", enrolled_at=at, server_journal="j1", post="post5", battery_ratio=1.0)
-            charged.online = True
-            session.add(charged)
-            await session.flush()
+        async with app.state.database.transaction():
             app.state.dispatcher.wake()
             has_begun.set()
             await asyncio.sleep(LONGEST_REST_S + 1.0)
@@ -83,6 +83,13 @@ async def _let_dispatch_wait_for_the_lock(app: FastAPI) -> "asyncio.Task[None]":
     # It takes a breath when nobody was free, a longer one where looking took long; then it begins, and waits for us.
     await asyncio.sleep(LONGEST_REST_S + 0.3)
     return holding
+
+
+async def _put(app: FastAPI, *, online: bool) -> None:
+    async with app.state.database.transaction() as session:
+        row = RobotRow(name="r1", enrolled_at=app.state.clock.utc(), server_journal="j1", post="post5")
+        row.battery_ratio, row.online = 1.0, online
+        await session.merge(row)
 
 
 def test_who_is_connected_is_told_at_once_and_nothing_is_cut_off(

@@ -19,11 +19,11 @@ from app.database import Database
 from app.fleet.service import enrol
 from app.main import create_app
 from app.settings import Settings
-from app.tables import GrantRow, MessageToRobot, RobotMessage, RobotRow
+from app.tables import ClaimRow, MessageToRobot, RobotMessage, RobotRow
 from maps import builtin_map
 from protocol.clock import RealClock
 from protocol.parts import Battery, Leg, Received
-from protocol.to_robot import Grant
+from protocol.to_robot import Deny
 from protocol.to_server import Claim, Clear, Hello
 from robot.connection import Rhythm
 from robot.link import Link, LinkState
@@ -35,6 +35,7 @@ pytestmark = pytest.mark.system
 
 TRACK = builtin_map("test_track")
 LEGS = [Leg(from_post=a, to_post=b) for c in TRACK.corridors for a, b in ((c.a, c.b), (c.b, c.a))]
+NO_LEG = Leg(from_post=TRACK.corridors[0].a, to_post="nowhere")
 EAGER = Rhythm(retry_first_s=0.05, retry_longest_s=0.1, retry_floor_s=0.02)
 
 
@@ -160,32 +161,31 @@ async def rows(database: Database, table: Any) -> list[Any]:
 async def test_over_a_wire_that_breaks_again_and_again_every_message_arrives_once_and_in_order(
     settings: Settings, store: Store
 ) -> None:
-    """Claims one way, grants the other, so that both journals are at work."""
+    """Claims of corridors that are not there one way, refusals the other, so that both journals are at work."""
     chance, count = random.Random(7), 60
     outbox, memory = Outbox(store), Memory(store)
-    at_once = settings.model_copy(update={"traffic": "at_once"})
-    async with serving(at_once) as (app, port), BreakingWire(port, chance) as wire:
+    async with serving(settings) as (app, port), BreakingWire(port, chance) as wire:
         token = await enrolled(app)
         async with linked(store, outbox, memory, wire.port, token) as link:
-            granted: list[str] = []
+            refused: list[str] = []
             for number in range(count):
-                outbox.put(Claim(claim_id=f"c{number}", legs=(LEGS[number % len(LEGS)],)))
+                outbox.put(Claim(claim_id=f"c{number}", legs=(NO_LEG,)))
                 link.wake()
                 await asyncio.sleep(0.01)
 
-            async def everything_is_granted() -> bool:
+            async def everything_is_refused() -> bool:
                 for incoming in link.incoming():
-                    assert isinstance(incoming.message, Grant)
-                    granted.append(incoming.message.claim_id)
+                    assert isinstance(incoming.message, Deny)
+                    refused.append(incoming.message.claim_id)
                     memory.handled(incoming)
-                return len(granted) >= count and outbox.waiting() == 0
+                return len(refused) >= count and outbox.waiting() == 0
 
-            await until(everything_is_granted)
+            await until(everything_is_refused)
         assert wire.connections > 3, "it did break"
-        assert granted == [f"c{number}" for number in range(count)]
+        assert refused == [f"c{number}" for number in range(count)]
         said = await rows(app.state.database, RobotMessage)
         assert [(row.seq, row.body["claim_id"]) for row in said] == [(n + 1, f"c{n}") for n in range(count)]
-        assert len(await rows(app.state.database, GrantRow)) == count
+        assert len(await rows(app.state.database, ClaimRow)) == count
         assert memory.received() == Received(
             journal=(await rows(app.state.database, RobotRow))[0].server_journal, seq=count
         )

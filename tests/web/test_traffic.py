@@ -10,9 +10,9 @@ from playwright.async_api import expect
 
 from app.tables import Role
 from protocol.clock import RealClock
-from protocol.parts import Leg
+from protocol.parts import Activity, Battery, Leg, Position
 from protocol.to_robot import Cancel
-from protocol.to_server import Claim, Clear, CommandAnswer, Event, Step
+from protocol.to_server import Claim, Clear, CommandAnswer, Event, Snapshot, Step
 from tests.app.fleet.playing import PlayedRobot
 from tests.web.service import Service
 from tests.web.test_robots import give_roles
@@ -23,20 +23,22 @@ OF_R1, OF_R2 = Leg(from_post="post5", to_post="post3"), Leg(from_post="post2", t
 
 @pytest.fixture(scope="module")
 def roads(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
-    at_once = {"CAMPUS_MAIL_TRAFFIC": "at_once"}  # the robots that are played here claim what nobody has planned
-    with Service(tmp_path_factory.mktemp("roads"), more=at_once) as service:
+    with Service(tmp_path_factory.mktemp("roads")) as service:
         yield service
 
 
 @pytest_asyncio.fixture(loop_scope="session")
 async def robots(roads: Service) -> AsyncIterator[list[PlayedRobot]]:
-    """Two that the test plays; the second is not there yet."""
+    """Two that the test plays; the second has not greeted yet."""
     async with AsyncExitStack() as connections:
         played = [PlayedRobot(RealClock(), name, journal=f"journal-of-{name}") for name in ("r1", "r2")]
         for robot in played:
             await connections.enter_async_context(robot.connected(roads.link, await roads.enrol_robot(robot.name)))
-        await played[0].greet("post5")
+        await played[0].greet("post5", home="post5")
         yield played
+
+
+FLAT, FULL = Battery(ratio=0.1), Battery(ratio=0.9)
 
 
 async def lets_go(robot: PlayedRobot) -> None:
@@ -52,13 +54,15 @@ async def test_when_another_robot_comes_for_a_letter_its_corridors_are_shown_and
     first, second = robots
     ada, dana = await visit("ada.king", at=roads, on="phone"), await visit("dana.desk", at=roads)
     await give_roles(roads, dana.email, Role.DISPATCHER)
+    await second.greet("post2", home="post2", battery=FLAT)
+    await second.say(Claim(claim_id="c2", legs=(OF_R2,)))
+    await second.hear("grant")
     order_id = await ada.order("bob.martin@campus.example")
     mission = await first.mission()
     await first.ends(await first.report(mission, Step.ACCEPTED))
     await first.say(Claim(claim_id="c1", legs=(OF_R1,)))
-    await second.greet("post2")
-    await second.say(Claim(claim_id="c2", legs=(OF_R2,)))
-    await second.hear("grant")
+    await first.hear("grant")
+    await second.say(Snapshot(position=Position(post="post2"), activity=Activity.DRIVING, battery=FULL))
 
     page = ada.page
     await page.goto(f"/follow.html?order={order_id}")

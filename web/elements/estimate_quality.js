@@ -50,12 +50,18 @@ export class EstimateQuality extends PageElement {
 }
 
 /** @param {Quality} quality */
-function said({ scored, assumed, inside_ratio, inside_meant, told, by_map }) {
+function said({ assumed, inside_meant, placed, under_way }) {
   const learned = assumed ? html`<p class="hint">${t("quality.assumed")}</p>` : nothing;
-  if (inside_ratio === null || !told || !by_map) return html`<p>${t("quality.none")}</p>${learned}`;
-  return html`<p>${counted("quality.scored", scored)} ${t("quality.inside", { ratio: percent(inside_ratio), meant: percent(inside_meant) })}</p>
-    <p>${t("quality.off", { told: percent(told.median_error_ratio), by_map: percent(by_map.median_error_ratio) })}</p>
-    ${learned}`;
+  if (!placed.scored && !under_way.scored) return html`<p>${t("quality.none")}</p>${learned}`;
+  return html`${compared("placed", placed, inside_meant)} ${compared("under_way", under_way, inside_meant)} ${learned}`;
+}
+
+/** @param {"placed" | "under_way"} basis @param {Quality["placed"]} quality @param {number} meant */
+function compared(basis, { scored, inside_ratio, told, by_map }, meant) {
+  if (inside_ratio === null || !told || !by_map) return nothing;
+  return html`<h3>${t(`quality.${basis}`)}</h3>
+    <p>${counted("quality.scored", scored)} ${t("quality.inside", { ratio: percent(inside_ratio), meant: percent(meant) })}</p>
+    <p>${t("quality.off", { told: percent(told.median_error_ratio), by_map: percent(by_map.median_error_ratio) })}</p>`;
 }
 
 /** @param {Quality} quality @param {CampusMap} map */

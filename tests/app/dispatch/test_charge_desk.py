@@ -16,7 +16,7 @@ from tests.app.fleet.playing import PlayedRobot, Service, serving
 
 @pytest.fixture
 async def service(settings: Settings, clock: SteppedClock) -> AsyncIterator[Service]:
-    async with serving(settings.model_copy(update={"traffic": "timetable"}), clock) as service:
+    async with serving(settings, clock) as service:
         yield service
 
 
@@ -77,7 +77,7 @@ async def test_who_does_not_know_of_charging_at_a_stop_is_left_to_its_own_batter
 async def test_hours_that_are_quiet_stay_so_when_clocks_are_put_back(settings: Settings) -> None:
     """Mail is sent at nine; half past seven in November is quiet, though by UTC it is when they sent in October."""
     october = SteppedClock(started_at=datetime(2026, 10, 19, 13, 10, tzinfo=UTC))
-    at_campus = settings.model_copy(update={"traffic": "timetable", "time_zone": "America/Toronto"})
+    at_campus = settings.model_copy(update={"time_zone": "America/Toronto"})
     async with serving(at_campus, october) as service:
         for _ in range(4):
             await service.cancel(await service.order())

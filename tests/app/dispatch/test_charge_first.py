@@ -21,7 +21,7 @@ TRACK = builtin_map("test_track")
 
 @pytest.fixture
 async def service(settings: Settings, clock: SteppedClock) -> AsyncIterator[Service]:
-    async with serving(settings.model_copy(update={"traffic": "timetable"}), clock) as service:
+    async with serving(settings, clock) as service:
         yield service
 
 

@@ -5,7 +5,6 @@ from typing import Any
 
 import pytest
 
-from app.dispatch.nearest import AT_ONCE
 from app.orders.schemas import NewOrder
 from app.settings import Settings
 from app.tables import MessageToRobot, MissionRow, Order, Person, RobotRow, Role
@@ -18,7 +17,7 @@ from tests.app.placed import placed
 
 @pytest.fixture
 async def service(settings: Settings, clock: SteppedClock) -> AsyncIterator[Service]:
-    async with serving(settings.model_copy(update={"traffic": "at_once"}), clock) as service:
+    async with serving(settings, clock) as service:
         yield service
 
 
@@ -61,24 +60,10 @@ async def test_verifiers_come_before_the_mission_that_needs_them(service: Servic
         assert [(one.type, one.seq) for one in robot.heard if one.seq] == [("verifiers", 1), ("mission", 2)]
 
 
-async def test_each_robot_has_one_mission_and_the_nearer_one_gets_the_first_order(
+async def test_many_orders_of_one_moment_all_get_a_robot_and_nobody_is_told_that_there_is_none(
     service: Service, clock: SteppedClock
 ) -> None:
-    near, far = PlayedRobot(clock, "near", "journal-n"), PlayedRobot(clock, "far", "journal-f")
-    near_token, far_token = await service.enrol("near"), await service.enrol("far")
-    async with far.connected(service.url, far_token), near.connected(service.url, near_token):
-        await far.greet("post4")
-        await near.greet("post2")
-        first, second = [await an_order(service, clock) for _ in range(2)]
-        assert (await near.mission()).stops[0].order_id == first
-        assert (await far.mission()).stops[0].order_id == second
-    assert [row.robot for row in await service.rows(MissionRow)] == ["near", "far"]
-
-
-async def test_more_orders_than_are_given_at_once_all_get_a_robot_and_nobody_is_told_that_there_is_none(
-    service: Service, clock: SteppedClock
-) -> None:
-    state, number = service.app.state, AT_ONCE + 5
+    state, number = service.app.state, 25
     dispatcher = Person(id="dan", email="dan@campus.example", name="Dan", roles=[Role.DISPATCHER])
     with state.feed.listening(dispatcher) as heard:
         async with state.database.transaction() as session:
@@ -152,15 +137,17 @@ async def test_a_robot_that_delivered_is_given_the_next_order(service: Service, 
     robot = PlayedRobot(clock)
     token = await service.enrol("r1")
     first = await an_order(service, clock)
-    clock.advance(1.0)
-    second = await service.order("post4", "post1")
     async with robot.connected(service.url, token):
         await robot.greet()
         mission = await robot.mission()
-        assert mission.stops[0].order_id == first
-        for stop in mission.stops:
-            await robot.report(mission, Step.ARRIVED, stop)
-            await robot.say(robot.receipt(stop))
+        load, receive = mission.stops
+        await robot.report(mission, Step.ARRIVED, load)
+        await robot.say(robot.receipt(load))
+        await robot.report(mission, Step.ARRIVED, receive)
+        await service.reaches(first, "at_recipient")
+        second = await service.order("post4", "post1")
+        await waits_because(service, second, "Every robot is busy.")
+        await robot.say(robot.receipt(receive))
         assert (await robot.mission()).stops[0].order_id == second
     assert await service.states(first) == [
         "queued", "assigned", "to_sender", "at_sender", "carrying", "at_recipient", "delivered",

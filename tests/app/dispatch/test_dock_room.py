@@ -19,7 +19,7 @@ DOCK = "post5"
 @pytest.fixture
 async def service(settings: Settings, clock: SteppedClock) -> AsyncIterator[Service]:
     """On the track, where the one dock is at post5."""
-    async with serving(settings.model_copy(update={"traffic": "timetable"}), clock) as service:
+    async with serving(settings, clock) as service:
         yield service
 
 

@@ -24,13 +24,8 @@ from tests.app.placed import placed
 
 
 @pytest.fixture
-def by_timetable(settings: Settings) -> Settings:
-    return settings.model_copy(update={"traffic": "timetable"})
-
-
-@pytest.fixture
-async def service(by_timetable: Settings, clock: SteppedClock) -> AsyncIterator[Service]:
-    async with serving(by_timetable, clock) as service:
+async def service(settings: Settings, clock: SteppedClock) -> AsyncIterator[Service]:
+    async with serving(settings, clock) as service:
         yield service
 
 

@@ -12,7 +12,7 @@ from tests.app.orders.lives import World
 @pytest.fixture
 async def world(sqlite_at_head: Path, tmp_path: Path) -> AsyncIterator[World]:
     """Ways take long. r1 is at post5, and r2, at post2, cannot be reached yet."""
-    world = World(sqlite_at_head, tmp_path / "data", traffic="timetable", assumed_speed_m_s=0.02)
+    world = World(sqlite_at_head, tmp_path / "data", assumed_speed_m_s=0.02)
     await world.begin()
     await world.set_online("r2", False)
     yield world

@@ -5,9 +5,10 @@ from random import Random
 
 import pytest
 
-from app.estimates.calibration import Basis, Calibration, Calibrations
+from app.estimates.calibration import Calibration
 from app.estimates.intervals import Interval, pinball_s
 from app.estimates.score import ScoreBoard, Truth, score_of
+from app.estimates.told import Told
 
 RAW = Interval(80.0, 100.0, 120.0)
 BY_MAP = Interval(50.0, 200.0, 350.0)
@@ -45,17 +46,18 @@ def test_four_of_five_come_inside_all_the_same(truth_s: Callable[[int, Random], 
 
 
 def test_four_of_five_come_inside_of_each_kind_of_estimate() -> None:
-    """Three of four estimates are nearly right, the fourth is much too early."""
-    calibrations, rng = Calibrations(), Random(3)
-    truths = dict[Basis, list[Truth]]({basis: [] for basis in Basis})
+    """Three of four estimates are nearly right, the fourth is much too early: each kind has its own corrections."""
+    kinds, rng = (Told(), Told()), Random(3)
+    truths: tuple[list[Truth], list[Truth]] = ([], [])
     for number in range(2000):
-        basis = Basis.NO_ROBOT_YET if number % 4 == 0 else Basis.TIMETABLE
-        seconds = rng.gauss(300.0, 90.0) if basis is Basis.NO_ROBOT_YET else rng.gauss(105.0, 20.0)
-        told = calibrations.of[basis].corrected(RAW)
-        calibrations.of[basis].learn(RAW, told, seconds)
-        truths[basis].append(Truth(told, BY_MAP, seconds))
-    for theirs in truths.values():
+        is_early = number % 4 == 0
+        seconds = rng.gauss(300.0, 90.0) if is_early else rng.gauss(105.0, 20.0)
+        told = kinds[is_early].corrected(RAW)
+        kinds[is_early].arrived(RAW, told, BY_MAP, seconds)
+        truths[is_early].append(Truth(told, BY_MAP, seconds))
+    for its, theirs in zip(kinds, truths, strict=True):
         assert 0.77 <= score_of(theirs[100:]).inside <= 0.83
+        assert its.score() == score_of(theirs[-500:])
 
 
 def test_who_always_comes_later_is_expected_later() -> None:

@@ -6,6 +6,7 @@ from random import Random
 
 import pytest
 
+from app.estimates.calibration import Basis
 from app.estimates.forecast import Chance, forecast
 from app.estimates.intervals import Interval
 from app.traffic.journey import Goal, Start, Task
@@ -98,7 +99,7 @@ def test_who_is_in_a_corridor_arrives_as_is_usual_since_its_entry() -> None:
 
 def test_in_a_simulated_fleet_they_are_better_than_lengths_on_the_map() -> None:
     """A short run of the benchmark; its coverage is measured there, over weeks."""
-    told = figures([run((1, 7.0))])["told"]
+    told = figures([run((1, 10.0))])[Basis.UNDER_WAY]["told"]
     assert told["count"] > 20
     assert told["median_error"] < 0.15
     assert told["pinball_of_map"] < 0.6

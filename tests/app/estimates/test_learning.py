@@ -10,6 +10,7 @@ from fastapi import FastAPI
 from fastapi.testclient import TestClient
 
 from app.estimates.arrivals import ENOUGH, Ahead, Estimates
+from app.estimates.calibration import Basis
 from app.estimates.durations import Kind, Thing
 from app.estimates.intervals import Interval
 from app.people.service import set_roles
@@ -87,14 +88,14 @@ async def test_what_robots_did_is_what_people_are_told_and_a_restart_forgets_not
         ]
         assert {seconds for thing, seconds, _ in before if thing.kind is Kind.CORRIDOR} == {CORRIDOR_S}
         assert {seconds for thing, seconds, _ in before if thing.kind is Kind.LOAD} == {HANDED_OVER_S}
-        score = learned.score()
+        score = learned.told[Basis.PLACED].score()
     async with serving(settings, clock) as service:
         again = estimates_of(service)
         after = [
             (thing, again.durations.quantile_s(thing, 0.5), again.durations.seen(thing.kind, thing.name))
             for thing in again.things()
         ]
-        assert (after, again.score(), again.is_assumed) == (before, score, False)
+        assert (after, again.told[Basis.PLACED].score(), again.is_assumed) == (before, score, False)
 
 
 async def test_what_a_robot_waited_before_it_was_let_in_or_stood_at_a_stop_is_no_driving(
@@ -143,22 +144,27 @@ def test_those_who_look_after_robots_see_how_good_it_is_and_so_does_prometheus(
 ) -> None:
     estimates: Estimates = mailroom.app.state.orders.estimates
     mailroom.call(make_dispatcher, mailroom.app)
-    nothing = sender.get("/api/v1/estimates").json()
-    assert (nothing["scored"], nothing["assumed"], nothing["inside_ratio"], nothing["told"]) == (0, True, None, None)
+    seen = sender.get("/api/v1/estimates").json()
+    assert (seen["assumed"], seen["inside_meant"]) == (True, 0.8)
+    assert seen["placed"] == seen["under_way"] == dict.fromkeys(seen["placed"]) | {"scored": 0}
     estimates.durations.observe(estimates.corridor("post1", "post2") or NOWHERE, 30.0)
     for took_s in (100.0, 150.0, 400.0):
-        estimates.arrived(*[Interval(90.0, 100.0, 200.0)] * 2, Interval(10.0, 50.0, 90.0), took_s)
+        told = estimates.told[Basis.PLACED]
+        told.arrived(*[Interval(90.0, 100.0, 200.0)] * 2, Interval(10.0, 50.0, 90.0), took_s)
+    estimates.told[Basis.UNDER_WAY].arrived(*[Interval(90.0, 100.0, 200.0)] * 3, 100.0)
     seen = sender.get("/api/v1/estimates").json()
-    assert (seen["scored"], seen["inside_ratio"], seen["later_ratio"]) == pytest.approx((3, 2 / 3, 1 / 3))
-    assert seen["told"]["median_error_ratio"] == pytest.approx(1 / 3)
-    assert seen["told"]["pinball_s"] < seen["by_map"]["pinball_s"]
+    placed, under_way = seen["placed"], seen["under_way"]
+    assert (placed["scored"], placed["inside_ratio"], placed["later_ratio"]) == pytest.approx((3, 2 / 3, 1 / 3))
+    assert (under_way["scored"], under_way["inside_ratio"]) == (1, 1.0)
+    assert placed["told"]["median_error_ratio"] == pytest.approx(1 / 3)
+    assert placed["told"]["pinball_s"] < placed["by_map"]["pinball_s"]
     (way,) = seen["durations"]
     assert (way["from_post"], way["to_post"], way["seen"]) == ("post1", "post2", 1)
     here = TestClient(mailroom.app, base_url=HERE, client=("127.0.0.1", 50000))
     here.portal = nobody.portal
     figures = here.get("/metrics").text
-    assert "campus_mail_estimates_scored 3.0" in figures
-    assert 'campus_mail_estimates_median_error_ratio{by="told"} 0.3333' in figures
+    assert 'campus_mail_estimates_scored{basis="placed"} 3.0' in figures
+    assert 'campus_mail_estimates_median_error_ratio{basis="placed",by="told"} 0.3333' in figures
 
 
 async def make_dispatcher(app: FastAPI) -> None:

@@ -11,8 +11,7 @@ from tests.app.fleet.playing import PlayedRobot, Service, serving
 
 @pytest.fixture
 async def service(settings: Settings, clock: SteppedClock) -> AsyncIterator[Service]:
-    for_one_robot = settings.model_copy(update={"traffic": "at_once"})
-    async with serving(for_one_robot, clock) as service:
+    async with serving(settings, clock) as service:
         yield service
 
 

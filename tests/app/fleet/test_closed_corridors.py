@@ -11,12 +11,11 @@ from app.tables import Person, RobotRow
 from protocol.clock import SteppedClock
 from protocol.envelope import YOUNGER
 from protocol.parts import Leg
-from protocol.to_robot import Deny
 from protocol.to_server import Claim, Event, Fault
 from robot.action.corridors import WAY_BLOCKED, tried_again, turned_back
 from tests.app.fleet.playing import PlayedRobot, Service, serving, until
 
-LEG, ON = Leg(from_post="post1", to_post="post2"), Leg(from_post="post2", to_post="post3")
+ON = Leg(from_post="post2", to_post="post3")
 NAME = "post2-post3"
 
 
@@ -39,27 +38,10 @@ async def open_it(service: Service) -> None:
         await open_again(session, service.app.state.fleet, NAME, by)
 
 
-async def test_granted_at_once_a_way_through_it_is_denied_and_the_corridor_named(
-    service: Service, robot: PlayedRobot
-) -> None:
-    token = await service.enrol("r1")
-    await close_it(service)
-    async with robot.connected(service.url, token):
-        await robot.greet("post1")
-        await robot.say(Claim(claim_id="c1", legs=(LEG, ON)))
-        denied = (await robot.hear("deny")).body
-        assert isinstance(denied, Deny)
-        assert (denied.avoid, denied.reason) == ((ON,), "this corridor is closed")
-        await open_it(service)
-        await robot.say(Claim(claim_id="c2", legs=(LEG, ON)))
-        await robot.hear("grant")
-
-
-async def test_by_the_timetable_robots_wait_before_it_are_seen_to_and_go_on_when_it_is_open(
+async def test_robots_wait_before_it_are_seen_to_and_go_on_when_it_is_open(
     settings: Settings, clock: SteppedClock, robot: PlayedRobot
 ) -> None:
-    by_timetable = settings.model_copy(update={"traffic": "timetable"})
-    async with serving(by_timetable, clock) as service:
+    async with serving(settings, clock) as service:
         token = await service.enrol("r1")
         await close_it(service)
         async with robot.connected(service.url, token):
@@ -84,9 +66,8 @@ async def found(service: Service) -> list[tuple[str, bool, list[str]]]:
 async def test_what_a_robot_finds_closed_is_closed_for_all_until_somebody_looks_and_the_robot_has_heard(
     settings: Settings, clock: SteppedClock, robot: PlayedRobot
 ) -> None:
-    by_timetable = settings.model_copy(update={"traffic": "timetable"})
     other = PlayedRobot(clock, "r2")
-    async with serving(by_timetable, clock) as service:
+    async with serving(settings, clock) as service:
         tokens = {name: await service.enrol(name) for name in ("r1", "r2")}
         async with robot.connected(service.url, tokens["r1"]), other.connected(service.url, tokens["r2"]):
             await robot.greet("post4", home="post5", understands=YOUNGER)  # it has gone another way since

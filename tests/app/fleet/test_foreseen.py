@@ -18,7 +18,7 @@ from protocol.clock import Clock, SteppedClock
 from protocol.parts import Activity, Battery, Position
 from protocol.to_robot import Mission
 from protocol.to_server import Snapshot, Step, Why
-from tests.app.fleet.playing import PlayedRobot, Service, serving, until
+from tests.app.fleet.playing import PlayedRobot, Service, until
 
 CORRIDOR_S, HANDOVER_S = 40.0, 30.0
 NOW = datetime(2026, 1, 5, 12, tzinfo=UTC)
@@ -47,13 +47,6 @@ async def expected(service: Service, order_id: str) -> tuple[datetime, datetime]
     return (order.expected_from, order.expected_to) if order.expected_from and order.expected_to else None
 
 
-@pytest.fixture(params=["timetable", "at_once"])
-async def service(request: pytest.FixtureRequest, settings: Settings, clock: SteppedClock) -> AsyncIterator[Service]:
-    """In either mode: the shipped one, and the one for a robot alone."""
-    async with serving(settings.model_copy(update={"traffic": request.param}), clock) as service:
-        yield service
-
-
 @pytest.fixture
 async def robot(service: Service, clock: SteppedClock) -> AsyncIterator[PlayedRobot]:
     robot = PlayedRobot(clock)
@@ -76,7 +69,7 @@ async def given(service: Service, robot: PlayedRobot) -> tuple[str, Mission]:
 
     async def is_planned() -> bool:
         desk = service.app.state.traffic_desk
-        return desk is None or (desk.timetable is not None and len(desk.timetable.controller.goals("r1")) == 2)
+        return desk.timetable is not None and len(desk.timetable.controller.goals("r1")) == 2
 
     await until(is_planned)
     await until(lambda: is_not_over(service, order_id, robot.clock))

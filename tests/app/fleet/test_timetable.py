@@ -22,13 +22,8 @@ async def until_nothing_is_held(service: Service) -> None:
 
 
 @pytest.fixture
-def by_timetable(settings: Settings) -> Settings:
-    return settings.model_copy(update={"traffic": "timetable"})
-
-
-@pytest.fixture
-async def service(by_timetable: Settings, clock: SteppedClock) -> AsyncIterator[Service]:
-    async with serving(by_timetable, clock) as service:
+async def service(settings: Settings, clock: SteppedClock) -> AsyncIterator[Service]:
+    async with serving(settings, clock) as service:
         yield service
 
 
@@ -113,13 +108,13 @@ async def test_who_takes_back_what_it_waits_for_is_in_nobodys_way(
 
 
 async def test_what_was_granted_is_granted_after_a_restart_of_the_service(
-    by_timetable: Settings, clock: SteppedClock
+    settings: Settings, clock: SteppedClock
 ) -> None:
     first, second = on_one_track(clock, r1="post1", r2="post2")
-    async with serving(by_timetable, clock) as service, second.greeted(service):
+    async with serving(settings, clock) as service, second.greeted(service):
         await second.claim("post3")
         inside = await second.answer()
-    async with serving(by_timetable, clock) as service:
+    async with serving(settings, clock) as service:
         both = first.greeted(service), second.greeted(service)
         async with both[0], both[1]:
             first.track.enter("r2", inside)
@@ -133,14 +128,14 @@ async def test_what_was_granted_is_granted_after_a_restart_of_the_service(
 
 
 async def test_after_a_restart_of_the_service_a_robot_stands_where_it_left_its_last_corridor(
-    by_timetable: Settings, clock: SteppedClock
+    settings: Settings, clock: SteppedClock
 ) -> None:
     """It was seen at post4 last, and has not said hello to the new service yet."""
     (second,) = on_one_track(clock, r2="post4")
-    async with serving(by_timetable, clock) as service, second.greeted(service):
+    async with serving(settings, clock) as service, second.greeted(service):
         await second.go_to("post3")
         await until_nothing_is_held(service)
-    async with serving(by_timetable, clock) as service:
+    async with serving(settings, clock) as service:
 
         async def stands_at() -> str | None:
             timetable = service.app.state.traffic_desk.timetable

@@ -21,6 +21,7 @@ from app.tables import (
     Delegate,
     DurationRow,
     EnrolmentCode,
+    ForecastUnderWayRow,
     GrantRow,
     Handover,
     IdempotencyKey,
@@ -44,6 +45,7 @@ from protocol.clock import SteppedClock
 from tests.app.conftest import RECIPIENT, SENDER, Browser, Mailroom
 
 DAY_S = 86400.0
+NO_TIME = {f"{whose}_{share}_s": 0.0 for whose in ("raw", "told", "map") for share in ("p10", "p50", "p90")}
 
 
 class Kept:
@@ -156,6 +158,7 @@ def technical_rows(clock: SteppedClock, order_id: str, ada: str, notice: int) ->
         RobotCommand(**robot, command_id="c1", kind="pause", asked_by_id=ada, asked_at=now),
         BatterySample(**robot, at=now, ratio=0.5, charging=False),
         DurationRow(kind="corridor", name="post1 post2", assumed_s=20.0, seconds=30.0, at=now),
+        ForecastUnderWayRow(order_id="o1", is_aboard=False, told_at=now, **NO_TIME),
         RobotMessage(**robot, journal="j", seq=1, type="event", body={}, sent_at=now, received_at=now),
         MessageToRobot(**robot, seq=90, type="mission", body={}, created_at=now, acked_at=now),
         GrantRow(**robot, **legs, claim_id="c1", granted_at=now, cleared_at=now),

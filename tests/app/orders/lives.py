@@ -165,7 +165,7 @@ class World:
                 token = await enrol(session, self.clock, name)
                 self.robots[name] = PlayedRobot(name, token.split("_")[1], self.clock)
                 row = await session.get_one(RobotRow, name)
-                row.online, row.post, row.battery_ratio = True, post, 0.9
+                row.online, row.post, row.home, row.battery_ratio = True, post, post, 0.9
         for robot in self.robots.values():
             await self._greet(robot)
 

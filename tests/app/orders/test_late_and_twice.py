@@ -28,8 +28,8 @@ async def two_on_one_way(world: World) -> tuple[str, str]:
     await world.goes_on("r1")
     assert await world.state(second) is S.ASSIGNED, "it goes along"
     await world.goes_on("r1", "sender")
-    assert [await world.state(one) for one in (first, second)] == [S.TO_SENDER, S.CARRYING]
-    return second, first
+    assert [await world.state(one) for one in (first, second)] == [S.CARRYING, S.ASSIGNED]
+    return first, second
 
 
 async def test_an_update_that_crosses_with_an_answer_does_not_give_again_what_was_to_be_dropped(world: World) -> None:

@@ -5,19 +5,12 @@ from typing import Any
 import pytest
 from fastapi import FastAPI
 
-from app.settings import Settings
 from app.tables import RobotRow
 from protocol.clock import SteppedClock
 from tests.app.conftest import SENDER, STRANGER, Browser, Mailroom, SignedIn
 from tests.app.orders.test_life_of_an_order import kinds, make_dispatcher, seen
 
 HOUR_S = 3600.0
-
-
-@pytest.fixture
-def settings(settings: Settings) -> Settings:
-    """At once: what is asked here is what waits and what goes first, not who lets whom pass."""
-    return settings.model_copy(update={"traffic": "at_once"})
 
 
 @pytest.fixture
@@ -35,11 +28,11 @@ def tick(app: FastAPI, mailroom: Mailroom) -> Any:
 def look_round(app: FastAPI, mailroom: Mailroom) -> None:
     """There is a robot, but nobody has told dispatch."""
     mailroom.call(_put_online, app)
+    mailroom.call(app.state.traffic_desk.look_round)
     mailroom.call(app.state.dispatcher.look_round)
 
 
 async def _put_online(app: FastAPI) -> None:
-
     async with app.state.database.transaction() as session:
         robot = await session.get_one(RobotRow, "r1")
         robot.online, robot.battery_ratio = True, 0.9

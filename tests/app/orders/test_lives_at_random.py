@@ -77,12 +77,10 @@ class LivesOfOrders(RuleBasedStateMachine):
     """A few orders, two robots, one of each kind of person. What they are called is drawn too: what is found first
     depends on it, and a life that failed must fail again."""
 
-    traffic = "at_once"
-
     def __init__(self) -> None:
         super().__init__()
         self.runner, self.lasting = asyncio.Runner(), ExitStack()
-        self.world = World(template(), Path(tempfile.mkdtemp(dir=folder.name)) / "data", traffic=self.traffic)
+        self.world = World(template(), Path(tempfile.mkdtemp(dir=folder.name)) / "data")
         self.ids: list[str] = []
         self.record = Record(self.world)
 
@@ -384,12 +382,12 @@ class LivesOfOrders(RuleBasedStateMachine):
 
 LIVES = os.environ.get("CAMPUS_MAIL_LIVES", "")
 LivesOfOrders.TestCase.settings = settings(
-    max_examples=int(LIVES or "12"),
+    max_examples=int(LIVES or "8"),
     # A life takes a second, and finding the shortest one that fails takes hundreds: ask for it.
     phases=[phase for phase in Phase if phase is not Phase.shrink or os.environ.get("CAMPUS_MAIL_SHRINK")],
     stateful_step_count=40,
     deadline=None,
     suppress_health_check=list(HealthCheck),
 )
-# Twenty seconds of work: on a machine that is busy with other things much longer.
+# Fifteen seconds of work: on a machine that is busy with other things much longer.
 TestLivesOfOrders = pytest.mark.timeout(400)(LivesOfOrders.TestCase)

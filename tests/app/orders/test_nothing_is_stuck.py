@@ -2,6 +2,8 @@
 
 import pytest
 
+from app.dispatch.held_up import SENTENCES, NoRobotComes
+from app.dispatch.open_work import HeldUp
 from app.fleet.alarms import raise_alarm
 from app.orders.errors import TransitionRefused
 from app.tables import Alarm, MissionRow, Order, OrderEvent, OrderState
@@ -211,3 +213,29 @@ async def test_a_mission_whose_mail_is_out_before_it_is_told_is_over(world: Worl
     another = await world.place("post3", "post5")
     await world.goes_on("r1", *["sender"] * 6)
     assert await world.state(another) is OrderState.DELIVERED
+
+
+async def test_a_robot_that_could_not_get_to_two_senders_takes_other_work_while_a_dispatcher_decides(
+    world: World,
+) -> None:
+    """As many as it can carry: none of them is aboard, so none takes a place in it or keeps it where it is."""
+    given_up = [await world.place("post3", "post4"), await world.place("post3", "post4")]
+    await world.goes_on("r1", "no way", "no way", "")
+    assert [await world.state(one) for one in given_up] == [OrderState.ATTENTION] * 2
+    others = [await world.place("post3", "post5"), await world.place("post3", "post5")]
+    await world.dispatch()
+    async with world.database.reading() as session:
+        assert await NoRobotComes(world.fleet).why(session) is None
+    assert [await world.state(one) for one in others] == [OrderState.ASSIGNED] * 2
+    for _ in range(3):
+        await world.goes_on("r1", *["sender"] * 6)
+    assert [await world.state(one) for one in others] == [OrderState.DELIVERED] * 2
+    await Record(world).check()
+
+
+async def test_a_robot_with_stuck_mail_is_kept_from_other_work_and_the_reason_says_so(world: World) -> None:
+    await left_aboard(world)
+    other = await world.place("post3", "post5")
+    await world.dispatch()
+    (order,) = await world.rows(Order, id=other)
+    assert (order.state, order.why) == (OrderState.QUEUED, SENTENCES[HeldUp.STUCK_MAIL])
