@@ -24,26 +24,7 @@ HANDOVER_SHARE = 0.75
 """Of the pictures that show a hand-over code; the others show a post's marker."""
 SMALLEST_MODULE_PX = 2.5
 TEXTURE_PX = 16  # of a module
-WORDS = [
-    "Please",
-    "do",
-    "not",
-    "leave",
-    "the",
-    "parcel",
-    "before",
-    "door",
-    "2140",
-    "between",
-    "Monday",
-    "and",
-    "Friday",
-    "unless",
-    "it",
-    "says",
-    "so",
-    "here",
-]
+NOTICE = "Please do not leave the parcel before door 2140 between Monday and Friday unless it says so here"
 
 
 class ShownPicture(NamedTuple):
@@ -69,7 +50,7 @@ def _text(width: int, height: int, random: Random) -> Frame:
     letter_px = height * random.uniform(0.012, 0.06)
     ink, y = random.randint(10, 70), letter_px
     while y < height + letter_px:
-        line = " ".join(random.choice(WORDS) for _ in range(40))
+        line = " ".join(random.choice(NOTICE.split()) for _ in range(40))
         at = (round(-random.random() * letter_px * 4), round(y))
         weight = max(1, round(letter_px / 9))
         cv2.putText(page, line, at, cv2.FONT_HERSHEY_SIMPLEX, letter_px / 22, ink, weight, cv2.LINE_AA)

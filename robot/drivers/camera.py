@@ -125,7 +125,7 @@ class GrabbingCamera:
 
     def _give_up_if_dead(self) -> None:
         if self._device is not None and time.monotonic() - max(self._frame_s, self._opened_s) > DEAD_AFTER_S:
-            log.warning("camera_lost", device=self._source, age_s=round(time.monotonic() - self._frame_s, 1))
+            log.warning("camera_silent", device=self._source, age_s=round(time.monotonic() - self._frame_s, 1))
             self._device.release()
             self._device = None
 

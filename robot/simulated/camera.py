@@ -24,6 +24,7 @@ class SimulatedCamera:
         self._clock = clock
         self._faults = faults
         self._open = True
+        self._newest: Frame | None = None
         self._shown: tuple[str, float, View] | None = None
         self.frames_read = 0
 
@@ -50,7 +51,9 @@ class SimulatedCamera:
         if not self._open or self._faults.camera_dead:
             return False, None
         self.frames_read += 1
-        return True, self._renderer.frame(self._view(), self.shown)
+        if self._newest is None or not self._faults.camera_frozen:
+            self._newest = self._renderer.frame(self._view(), self.shown)
+        return True, self._newest.copy()
 
     def isOpened(self) -> bool:  # noqa: N802  # OpenCV's own name
         return self._open

@@ -51,6 +51,7 @@ class Faults:
     floor_edge_mm: float = 0.0
     pins_stuck: bool = False
     camera_dead: bool = False
+    camera_frozen: bool = False
     darkness: float = 0.0
     dirt: float = 0.0
     under_voltage: bool = False
@@ -129,6 +130,7 @@ SWITCHES: dict[str, str] = {
     "floor_edge_mm": "width of the reflecting tape edge in which a diode reads by chance, in mm",
     "pins_stuck": "the line pins keep their last value",
     "camera_dead": "the camera gives no frame",
+    "camera_frozen": "the camera gives the same picture again and again",
     "darkness": "share of the light that is missing",
     "dirt": "share of every marker that is covered by dirt",
     "under_voltage": "the robot's computer gets too little voltage",

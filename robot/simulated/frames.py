@@ -103,21 +103,27 @@ class Renderer:
         self._noise = _noise(mount.noise, seed, self.size_px)
         self._sheets: dict[tuple[Marker | str, int], Frame] = {}
         self._shown: dict[str, tuple[Frame, ...]] = {}
+        self._chosen: Frame | None = None
         # Post or single marker → share that is covered, beside what the switch `dirt` covers of all of them.
         self.dirt: Mapping[Any, float] = {}
 
     def frame(self, view: View, shown: str | None = None) -> Frame:
         """Height × width, BGR as OpenCV's cameras give it, or grey. `shown` is a text held up as a QR code."""
-        grey = self._marker_frame(view) if shown is None else self._random.choice(self._held_up(shown))
+        grey = self._marker_frame(view) if shown is None else self._other(self._held_up(shown))
         if self._faults.darkness:
             grey = _darker(grey, self._faults.darkness)
         if self._mount.colour:
             return np.asarray(cv2.cvtColor(grey, cv2.COLOR_GRAY2BGR), np.uint8)
         return grey.copy()
 
+    def _other(self, pictures: tuple[Frame, ...]) -> Frame:
+        """No sensor gives the same picture twice."""
+        self._chosen = self._random.choice([one for one in pictures if one is not self._chosen])
+        return self._chosen
+
     def _marker_frame(self, view: View) -> Frame:
         """Whatever is farther off is drawn first."""
-        frame = self._random.choice(self._walls)
+        frame = self._other(self._walls)
         in_view: list[tuple[float, Marker, NDArray[np.float32]] | tuple[float, _Somebody, None]] = []
         for marker in self._markers:
             corners = sheet_corners(marker, view, self._mount)
