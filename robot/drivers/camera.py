@@ -42,6 +42,8 @@ class Device(Protocol):
 
 
 def _video(device: int | str) -> Device:
+    """Failures are told by name here; what OpenCV writes to the error stream of its own accord says nothing more."""
+    cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_SILENT)
     return cast(Device, cv2.VideoCapture(device))
 
 

@@ -41,6 +41,7 @@ class Faults:
     over_current: bool = False
     stuck: bool = False
     slipping: bool = False
+    slip: float = 0.0
     wheels_jammed: bool = False
     virtual_wall: bool = False
     dock_beams_off: bool = False
@@ -120,6 +121,7 @@ SWITCHES: dict[str, str] = {
     "over_current": "both wheel motors report over-current",
     "stuck": "the wheels turn and count, the robot does not move (stasis reads 0)",
     "slipping": "the wheels turn freely and count, the robot does not move, no motor notices (stasis reads 0)",
+    "slip": "share of what the wheels turn and count that is lost on the floor, ahead and in turns",
     "wheels_jammed": "no wheel turns, whatever it is told",
     "virtual_wall": "the virtual wall beam is seen",
     "dock_beams_off": "the docks send no infrared",
