@@ -111,7 +111,7 @@ WRITABLE = for folder in . .venv web; do test ! -e "$$folder" || test -w "$$fold
   echo "$(CURDIR) cannot be written to, and set-up puts the packages there: copy the checkout to where you may write." >&2; exit 1; }; done
 NOT_FETCHED = { echo "The packages could not be fetched: is this machine online? What was said: $(LOG)" >&2; exit 1; }
 PIP = $(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt
-# What the product needs, and the extras of pyproject.toml that are named.
+# What a robot needs, and the extras of pyproject.toml that are named.
 LIST = $(BIN)/python -c 'import sys, tomllib; p = tomllib.load(open("pyproject.toml", "rb"))["project"]; \
   print(*p["dependencies"], *(one for extra in sys.argv[1:] for one in p["optional-dependencies"][extra]), sep="\n")'
 # One small package comes first and must come soon: without a network pip would try each of the others five times.
@@ -137,17 +137,20 @@ endef
 .venv/.python-ready: pyproject.toml constraints.txt | .venv/bin/pip
 	@$(WRITABLE)
 	@echo "Fetching the Python packages that run, some 120 MB …"
-	$(call FETCH)
+	$(call FETCH,service)
 
 .venv/.develop-ready: .venv/.python-ready
 	@$(WRITABLE)
 	@echo "Fetching the Python packages of tests and tools, some 180 MB more …"
-	$(call FETCH,develop)
+	$(call FETCH,service develop)
 
-# lgpio, which reads the pins of a Raspberry Pi, is a robot's alone; it needs no pages.
+# lgpio, which reads the pins of a Raspberry Pi, is a robot's alone; it needs no pages and nothing of the service.
+CAN_HAVE_LGPIO = $(BIN)/python -c 'import sys; sys.exit(sys.version_info >= (3, 13))' || command -v swig >/dev/null || { \
+  echo "For this Python lgpio has to be built: apt install swig python3-dev build-essential liblgpio-dev" >&2; exit 1; }
 .venv/.robot-ready: pyproject.toml constraints.txt | .venv/bin/pip
 	@$(WRITABLE)
-	@echo "Fetching the robot's Python packages, some 120 MB …"
+	@$(CAN_HAVE_LGPIO)
+	@echo "Fetching the robot's Python packages, some 100 MB …"
 	$(call FETCH,pi)
 
 # npm is the system's if that is recent, else the one that comes with a Python package.

@@ -17,12 +17,19 @@ class Looks:
 
     `again_s`: nothing should be missed between two wakes; if it is after all, it does not wait for ever.
     `rest_s`: after each look, so that what changes in one moment is looked at once; after a long look `rest` times as
-    long as it took, up to `longest_rest_s`.
+    long as it took, up to `longest_rest_s`. `waits_first`: it was looked just before.
     """
 
     def __init__(
-        self, again_s: float, rest_s: float, *, rest: float = REST, longest_rest_s: float = LONGEST_REST_S
+        self,
+        again_s: float,
+        rest_s: float,
+        *,
+        rest: float = REST,
+        longest_rest_s: float = LONGEST_REST_S,
+        waits_first: bool = False,
     ) -> None:
+        self._waits_first = waits_first
         self._again_s, self._rest_s, self._rest, self._longest_rest_s = again_s, rest_s, rest, longest_rest_s
         self._woken, self._stopped = asyncio.Event(), asyncio.Event()
 
@@ -36,8 +43,10 @@ class Looks:
         self._woken.set()
 
     async def until_stopped(self) -> AsyncIterator[None]:
-        """The first at once. What wakes during a look is seen by the next one."""
+        """The first at once, or when woken. What wakes during a look is seen by the next one."""
         now_s = asyncio.get_running_loop().time
+        if self._waits_first:
+            await _for(self._woken, self._again_s)
         while not self._stopped.is_set():
             self._woken.clear()
             begun_s = now_s()

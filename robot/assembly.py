@@ -1,5 +1,6 @@
 """Puts a robot together from settings; for `__main__` alone. Problems are raised by name, before any wheel turns."""
 
+import math
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -172,7 +173,7 @@ def _devices(
 ) -> Devices:
     if simulation is None:
         return _real_devices(settings, clock, closing)
-    robot = _simulated_robot(settings, campus, clock, simulation)
+    robot = simulated_robot(settings, campus, clock, simulation)
     closing.callback(robot.close)
     saved = SavedWorld(robot, settings.data / "world.json")
     closing.callback(saved.close)
@@ -186,15 +187,15 @@ def _devices(
     return Devices(base, sensor, robot.camera, host, robot, saved)
 
 
-def _simulated_robot(settings: Settings, campus: CampusMap, clock: Clock, simulation: Simulation) -> SimulatedRobot:
+def simulated_robot(settings: Settings, campus: CampusMap, clock: Clock, simulation: Simulation) -> SimulatedRobot:
+    """A robot built as the settings say. Raises UnknownStart."""
     options = Options(
         build=Build(
             diodes=DiodeMount(lead_mm=settings.line.lead_mm, spacing_mm=settings.line.spacing_mm),
             pack=Pack(charger_ma=settings.battery.simulated_charger_ma),
             motion=simulation.motion,
         ),
-        # Grey is all that the decoder looks at.
-        camera=CameraMount(colour=False, april_tags=settings.camera.april_tags),
+        camera=_camera_mount(settings),
     )
     return SimulatedRobot(
         campus,
@@ -206,6 +207,18 @@ def _simulated_robot(settings: Settings, campus: CampusMap, clock: Clock, simula
         battery_ratio=simulation.battery_ratio,
         capacity_mah=settings.battery.simulated_capacity_mah,
         world=simulation.world,
+    )
+
+
+def _camera_mount(settings: Settings) -> CameraMount:
+    """The simulated camera of these settings. Grey is all that the decoder looks at."""
+    camera = settings.camera
+    return CameraMount(
+        across_rad=math.radians(camera.field_of_view_deg),
+        colour=False,
+        april_tags=camera.april_tags,
+        width_px=camera.width_px,
+        height_px=camera.height_px,
     )
 
 

@@ -51,6 +51,21 @@ def test_a_python_that_cannot_be_used_is_named(
     assert sentence in said
 
 
+def test_a_python_without_a_ready_made_lgpio_is_told_what_to_install(bare_machine: Path) -> None:
+    checkout = copied_to(bare_machine.parent / "checkout")
+    (checkout / ".venv/bin").mkdir(parents=True)
+    (checkout / ".venv/bin/pip").touch()
+    (bare_machine / "touch").symlink_to(shutil.which("touch") or "")
+    trixies = checkout / ".venv/bin/python"
+    trixies.write_text(f'#!{bare_machine}/sh\ncase "$2" in *"3, 13"*) exit 1;; esac; exit 0\n')
+    trixies.chmod(0o755)
+    finished = make(checkout, "setup-robot", PATH=str(bare_machine))
+    assert finished.returncode != 0
+    assert sentences(finished) == [
+        "For this Python lgpio has to be built: apt install swig python3-dev build-essential liblgpio-dev"
+    ]
+
+
 BROWSER_TESTS = """
 import pytest
 

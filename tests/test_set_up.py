@@ -8,7 +8,8 @@ import sys
 import tempfile
 import threading
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from functools import cache
 from importlib.metadata import packages_distributions, requires
 from pathlib import Path
 from typing import Any
@@ -116,7 +117,7 @@ def test_what_runs_is_set_up_without_what_tests_need(tmp_path: Path, verb: str) 
 @pytest.mark.parametrize("verb", ["setup-develop", "test", "check", "bench", "pages"])
 def test_tests_and_tools_are_set_up_with_all_of_it(tmp_path: Path, verb: str) -> None:
     plan = planned(tmp_path, verb)
-    assert re.search(r"\bdevelop > \.venv/requirements\.txt", plan)
+    assert re.search(r"\bservice develop > \.venv/requirements\.txt", plan)
     assert "npm ci" in plan
     assert "--omit=dev" not in plan
 
@@ -142,19 +143,71 @@ LATE_EXTRAS = {"asyncpg", "lgpio"}
 """Needed by settings that name them: a PostgreSQL database, the pins of a Raspberry Pi."""
 
 
-def test_what_runs_imports_nothing_that_only_tests_are_set_up_with() -> None:
-    there, distributions = closure(PROJECT["dependencies"]), packages_distributions()
-    found = {
+@cache
+def distributions_of() -> Mapping[str, list[str]]:
+    """Module → the packages that bring it; to find out takes half a second."""
+    return packages_distributions()
+
+
+ROBOTS = ("bdi", "maps", "protocol", "robot")
+"""What runs on a robot's own computer."""
+
+
+def imported(*packages: str) -> set[tuple[str, str]]:
+    """Others' modules that are imported, and where."""
+    distributions = distributions_of()
+    return {
         (name, module.relative_to(CHECKOUT).as_posix())
-        for package in ("app", "bdi", "maps", "protocol", "robot")
+        for package in packages
         for module in (CHECKOUT / package).rglob("*.py")
         for name in IMPORT.findall(module.read_text(encoding="utf-8"))
+        if name in distributions and name not in LATE_EXTRAS
     }
-    foreign = {(name, module) for name, module in found if name in distributions and name not in LATE_EXTRAS}
+
+
+def not_among(names: set[str], modules: set[tuple[str, str]]) -> set[tuple[str, str]]:
+    distributions = distributions_of()
+    return {one for one in modules if names.isdisjoint(map(canonicalize_name, distributions[one[0]]))}
+
+
+def test_what_runs_imports_nothing_that_only_tests_are_set_up_with() -> None:
+    foreign = imported("app", *ROBOTS)
     assert {"fastapi", "cv2", "lark"} <= {name for name, _ in foreign}
-    assert {
-        (name, module) for name, module in foreign if there.isdisjoint(map(canonicalize_name, distributions[name]))
-    } == set()
+    assert not_among(closure(PROJECT["dependencies"] + EXTRAS["service"]), foreign) == set()
+
+
+def test_a_robots_computer_gets_what_its_programs_import_and_nothing_of_the_service(tmp_path: Path) -> None:
+    plan = planned(tmp_path, "setup-robot")
+    assert re.search(r"\bpi > \.venv/requirements\.txt", plan)
+    assert "service" not in plan
+    foreign = imported(*ROBOTS)
+    assert not_among(closure(PROJECT["dependencies"]), foreign) == set()
+    needed = {canonicalize_name(one) for name, _ in foreign for one in distributions_of()[name]}
+    assert {canonicalize_name(Requirement(text).name) for text in PROJECT["dependencies"]} <= needed
+
+
+START_WITHOUT = """
+import sys
+from importlib import import_module
+
+class Missing:
+    def find_spec(self, name, path=None, target=None):
+        if name.partition(".")[0] in sys.argv[1].split():
+            raise ModuleNotFoundError(f"not on a robot: {name}", name=name)
+
+sys.meta_path.insert(0, Missing())
+for name in ("robot.__main__", "robot.scenarios.__main__", "robot.simulated.__main__", "maps.__main__", "bdi.__main__"):
+    import_module(name)
+"""
+
+
+def test_robots_programs_start_where_no_package_of_the_service_is() -> None:
+    there = closure(PROJECT["dependencies"])
+    absent = [name for name, homes in distributions_of().items() if there.isdisjoint(map(canonicalize_name, homes))]
+    assert {"fastapi", "sqlalchemy", "uvicorn"} <= set(absent)
+    command = [sys.executable, "-c", START_WITHOUT, " ".join(absent)]
+    started = subprocess.run(command, cwd=CHECKOUT, capture_output=True, text=True, timeout=60, check=False)
+    assert started.returncode == 0, started.stderr
 
 
 # Pins
@@ -171,6 +224,6 @@ def test_every_package_that_is_named_is_pinned_to_a_version_that_is_allowed() ->
 
 
 def test_pins_are_renewed_for_every_extra(tmp_path: Path) -> None:
-    assert {"pi", "postgres", "yardstick", "node", "develop"} == EXTRAS.keys()
+    assert {"service", "pi", "postgres", "yardstick", "node", "develop"} == EXTRAS.keys()
     command = planned(tmp_path, "pin").replace("\\\n", "")
     assert re.search(r"uv pip compile .*--all-extras .*--output-file constraints\.txt", command)

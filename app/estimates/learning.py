@@ -61,7 +61,9 @@ class Learning:
     _on_way: dict[str, tuple[str, datetime]] = field(default_factory=dict)
     """The post that each robot passed last, and when, by its clock put right."""
     _let_in: dict[tuple[str, str, str], datetime] = field(default_factory=dict)
-    _looks: Looks = field(default_factory=lambda: Looks(LOOK_EVERY_S, REST_S, rest=REST, longest_rest_s=LOOK_EVERY_S))
+    _looks: Looks = field(
+        default_factory=lambda: Looks(LOOK_EVERY_S, REST_S, rest=REST, longest_rest_s=LOOK_EVERY_S, waits_first=True)
+    )
 
     # At the start, and now and then.
 

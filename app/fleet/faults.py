@@ -12,7 +12,17 @@ from app.tables import Alarm, OrderState
 from protocol.to_server import Fault
 
 NEEDS_A_PERSON: Final = frozenset(
-    {"emergency_stop", "wheel_drop", "cliff", "line_sensor", "battery_critical", "base_silent", "agent_silent", "stuck"}
+    {
+        "emergency_stop",
+        "wheel_drop",
+        "cliff",
+        "line_sensor",
+        "camera_lost",
+        "battery_critical",
+        "base_silent",
+        "agent_silent",
+        "stuck",
+    }
 )
 """The robot's faults (docs/safety.md) that it does not get out of by itself; what passes is nobody's delay."""
 

@@ -16,6 +16,7 @@ from benchmarks.body.report import PLOTS, Part, Samples, log_to_error_stream, mi
 PARTS = {
     "line": "the follower on taped lines: lost samples, tracks driven, wheel speeds",
     "vision": "markers decoded on generated frames, and how long it takes",
+    "pictures": "codes that people show, at five sizes of picture, beside plain zxing-cpp",
     "stops": "from the first frame that shows a fault to the stop bytes on the wire",
     "missions": "seeded missions with faults: delivered or handed to a person, none lost, none claimed falsely",
     "kills": "SIGKILL of the daemon at random moments of missions: what the restarted one knows",

@@ -3,7 +3,7 @@ the mail.
 
 Each mission has a robot of its own: a process with a simulated body that is joined to a service over a WebSocket and
 runs on a shared clock faster than the machine's. The simulated body dies with the daemon and goes on from where it
-stood at most half a second before; a real base would roll on until its computer is back or somebody stops it.
+stood; a real base would roll on until its computer is back or somebody stops it.
 """
 
 import asyncio

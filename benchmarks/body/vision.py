@@ -63,15 +63,15 @@ def measure(samples: Samples) -> dict[str, Any]:
         shots = [shot(condition, number) for number in numbers]
         unseen += sum(not may_hold_code(one.frame) for one in shots)
         for name, decode in decoders.items():
-            reads = [_timed(decode, one.frame) for one in shots]
+            reads = [timed(decode, one.frame) for one in shots]
             right = sum(one.post in texts for one, (texts, _) in zip(shots, reads, strict=True))
             wrong += sum(bool(texts & set(NAMES) - {one.post}) for one, (texts, _) in zip(shots, reads, strict=True))
             took_ms = [ms for _, ms in reads]
             times[name] += took_ms
-            figures[name][condition.name] = {"decoded": right / len(shots), "median_ms": _rounded(median(took_ms))}
+            figures[name][condition.name] = {"decoded": right / len(shots), "median_ms": rounded(median(took_ms))}
         say(f"  {condition.name}: " + ", ".join(_said(name, figures[name][condition.name]) for name in decoders))
     for name, all_ms in times.items():
-        figures[name] |= {"median_ms": _rounded(median(all_ms)), "p99_ms": _rounded(float(np.quantile(all_ms, 0.99)))}
+        figures[name] |= {"median_ms": rounded(median(all_ms)), "p99_ms": rounded(float(np.quantile(all_ms, 0.99)))}
     figures |= {"wrong_posts": wrong, "not_looked_at": unseen, "frames_per_condition": len(numbers)}
     figures |= {"foreign": _foreign(samples), "planned": PLANNED}
     _plot(samples.plots, figures, numbers[0])
@@ -83,13 +83,13 @@ def _decoders() -> dict[str, Decoder]:
     return {
         "zxing": zxing_decoder(zxingcpp),
         "opencv_ladder": read_with_opencv,
-        "plain_zxing": _plain_zxing,
+        "plain_zxing": plain_zxing,
         "plain_opencv": _plain(cv2.QRCodeDetector()),
         "plain_opencv_aruco": _plain(cv2.QRCodeDetectorAruco()),
     }
 
 
-def _plain_zxing(frame: Frame) -> tuple[Decoded, ...]:
+def plain_zxing(frame: Frame) -> tuple[Decoded, ...]:
     found = zxingcpp.read_barcodes(frame, formats=zxingcpp.BarcodeFormat.QRCode)
     return tuple(Decoded(code.text, ((0, 0), (0, 0), (0, 0), (0, 0))) for code in found)
 
@@ -105,7 +105,7 @@ def _plain(detector: Any) -> Decoder:
     return read
 
 
-def _timed(decode: Callable[[Frame], tuple[Decoded, ...]], frame: Frame) -> tuple[set[str], float]:
+def timed(decode: Callable[[Frame], tuple[Decoded, ...]], frame: Frame) -> tuple[set[str], float]:
     """What was read, and processor time in ms: others use the machine too."""
     began_s = time.thread_time()
     found = decode(frame)
@@ -116,7 +116,7 @@ def _said(name: str, figure: Mapping[str, float]) -> str:
     return f"{name} {figure['decoded']:.0%} {figure['median_ms']:g} ms"
 
 
-def _rounded(value: float) -> float:
+def rounded(value: float) -> float:
     return float(f"{value:.3g}")
 
 

@@ -1,11 +1,17 @@
 """What the commands of a maintainer have in common: which robot is meant, and how a command ends that cannot begin."""
 
+from collections.abc import Iterator
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 from typing import Annotated, NoReturn
 
 import typer
 
+from maps import CampusMapError
+
 from ..config import ConfigError, Settings, load_settings
+from ..equipment import Equipment
+from ..simulated import SimulatedWorldError
 
 UNFINISHED, MISUSE = 1, 2
 INSTALLED = Path("/etc/campus-mail/robot.toml")
@@ -38,3 +44,13 @@ def settings_of(config: Path | None, data: Path | None = None) -> Settings:
 def settings_path(config: Path | None) -> Path | None:
     """The file that is meant, if there is one."""
     return config or (INSTALLED if INSTALLED.exists() else None)
+
+
+@contextmanager
+def simulated_bench(equipment: AbstractContextManager[Equipment]) -> Iterator[Equipment]:
+    """A simulated robot's devices; ends the command if the settings allow none."""
+    try:
+        with equipment as opened:
+            yield opened
+    except (CampusMapError, SimulatedWorldError) as problem:
+        refuse(str(problem))

@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 from typing import Annotated, Any, NoReturn
 
 import typer
@@ -15,15 +15,18 @@ from ..config import ConfigError, Settings
 from ..control import SOCKET_NAME
 from ..drivers.create2 import Create2
 from ..drivers.interfaces import Camera, Frame
+from ..equipment import Equipment, real_equipment, stepped_equipment
 from ..errors import PortAbsent, PortBusy, RobotError
-from ..hardware import pin_factory, real_camera, real_port
 from ..json_socket import NobodyAnswers, ask
 from ..line_pins import open_pins
 from ..settings_file import write_settings
-from .asking import INSTALLED, MISUSE, UNFINISHED, ConfigOption, refuse, settings_of, settings_path
+from .asking import INSTALLED, MISUSE, UNFINISHED, ConfigOption, refuse, settings_of, settings_path, simulated_bench
 
 FRAMES, FRAMES_WITHIN_S = 10, 10.0
 YesOption = Annotated[bool, typer.Option("--yes", help="Write without asking.")]
+SimulatedOption = Annotated[
+    bool, typer.Option("--simulated", help="A simulated robot at its first post; nothing is written.")
+]
 Found = dict[str, Any]
 
 cli = typer.Typer(
@@ -40,6 +43,7 @@ def distance(
     config: ConfigOption = None,
     length_mm: Annotated[float, typer.Option(help="How far to drive, about.")] = 1000.0,
     measured_mm: Annotated[float | None, typer.Option(help="How far it was; else you are asked.")] = None,
+    simulated: SimulatedOption = False,
     yes: YesOption = False,
 ) -> None:
     """drive.mm_per_count: it drives straight on; you measure how far the axle has come.
@@ -47,61 +51,71 @@ def distance(
     Mark the floor under a wheel's hub before and after, and measure between the marks to the millimetre.
     """
 
-    def measure(rig: Rig, settings: Settings) -> Found:
+    def measure(rig: Rig, settings: Settings, equipment: Equipment) -> Found:
+        before_mm = equipment.robot.driven_mm if equipment.robot else 0.0
         counts = roll(rig, length_mm, settings.drive.mm_per_count)
-        mm = measured_mm if measured_mm is not None else typer.prompt("How far has it come, in mm", type=float)
+        if measured_mm is not None:
+            mm = measured_mm
+        elif equipment.robot:
+            mm = equipment.robot.driven_mm - before_mm
+        else:
+            mm = typer.prompt("How far has it come, in mm", type=float)
         return {"drive.mm_per_count": round(mm_per_count(mm, counts), 5)}
 
-    _with_wheels(config, yes, measure)
+    _with_wheels(config, simulated, yes, measure)
 
 
 @cli.command()
 def turn(
     config: ConfigOption = None,
     turns: Annotated[int, typer.Option(min=1, max=20, help="Full turns: more are more exact.")] = 3,
+    simulated: SimulatedOption = False,
     yes: YesOption = False,
 ) -> None:
     """drive.wheel_base_mm: it turns on the spot over a straight piece of the line. Calibrate the distance first."""
 
-    def measure(rig: Rig, settings: Settings) -> Found:
-        with _pins(settings) as devices:
+    def measure(rig: Rig, settings: Settings, equipment: Equipment) -> Found:
+        with _pins(settings, equipment) as devices:
             counts = spin(rig, lambda: int(devices[CENTRE].value), turns)
         return {"drive.wheel_base_mm": round(wheel_base_mm(counts, turns, settings.drive.mm_per_count), 2)}
 
-    _with_wheels(config, yes, measure)
+    _with_wheels(config, simulated, yes, measure)
 
 
 @cli.command()
-def line(config: ConfigOption = None, yes: YesOption = False) -> None:
+def line(config: ConfigOption = None, simulated: SimulatedOption = False, yes: YesOption = False) -> None:
     """line.line_is_low, and whether the pins of left and right are exchanged: it swings once over the line.
 
     Put it on a straight piece of the line, the diodes over the tape. A diode that sees nothing is named.
     """
 
-    def measure(rig: Rig, settings: Settings) -> Found:
-        with _pins(settings) as devices:
+    def measure(rig: Rig, settings: Settings, equipment: Equipment) -> Found:
+        with _pins(settings, equipment) as devices:
             found = swing(rig, lambda: [int(device.value) for device in devices])
         pins = (settings.line.left_pin, settings.line.right_pin)
         left, right = reversed(pins) if found.swapped else pins
         return {"line.line_is_low": found.line_is_low, "line.left_pin": left, "line.right_pin": right}
 
-    _with_wheels(config, yes, measure)
+    _with_wheels(config, simulated, yes, measure)
 
 
 @cli.command()
 def camera(
     distance_mm: Annotated[float, typer.Argument(help="From the lens to the sheet, at right angles.")],
     config: ConfigOption = None,
+    simulated: SimulatedOption = False,
     yes: YesOption = False,
 ) -> None:
     """camera.field_of_view_deg: from one printed marker, 80 mm wide, at a distance that you measured."""
-    settings = _ready(config)
+    settings = _ready(config, simulated)
     try:
-        with _opened(lambda: real_camera(settings)) as device:
-            found = field_of_view_deg(list(_frames(device)), distance_mm)
+        with _equipment(settings, simulated) as equipment:
+            equipment.hold_before_marker(distance_mm)
+            with _opened(equipment.open_camera) as device:
+                found = field_of_view_deg(list(_frames(device)), distance_mm)
     except RobotError as problem:
         _give_up(problem)
-    _write(config, settings, {"camera.field_of_view_deg": round(found, 2)}, yes)
+    _write(config, settings, {"camera.field_of_view_deg": round(found, 2)}, simulated, yes)
 
 
 def _frames(device: Camera) -> Iterator[Frame]:
@@ -114,19 +128,39 @@ def _frames(device: Camera) -> Iterator[Frame]:
         time.sleep(0.01)
 
 
-def _with_wheels(config: Any, yes: bool, measure: Callable[[Rig, Settings], Found]) -> None:
-    """Whatever becomes of it, the base stands afterwards, in Passive."""
-    settings = _ready(config)
-    typer.echo(
-        "The wheels will turn. Make room, and stay beside it; Ctrl-C or a touch of the bumper stops it.", err=True
-    )
-    wake_up_line, open_port = real_port(settings)
+def _with_wheels(config: Any, simulated: bool, yes: bool, measure: Callable[[Rig, Settings, Equipment], Found]) -> None:
+    """The base stands afterwards, in Passive, also after a failure."""
+    settings = _ready(config, simulated)
+    if not simulated:
+        typer.echo(
+            "The wheels will turn. Make room, and stay beside it; Ctrl-C or a touch of the bumper stops it.", err=True
+        )
     try:
-        with _opened(lambda: Create2(open_port, wake_up_line)) as base:
-            found = measure(Rig(base, _wait), settings)
+        with (
+            _equipment(settings, simulated) as equipment,
+            _opened(lambda: Create2(equipment.open_port, equipment.wake_up_line)) as base,
+        ):
+            found = measure(Rig(base, _let_pass(equipment)), settings, equipment)
     except (RobotError, ConfigError) as problem:
         _give_up(problem)
-    _write(config, settings, found, yes)
+    _write(config, settings, found, simulated, yes)
+
+
+def _equipment(settings: Settings, simulated: bool) -> AbstractContextManager[Equipment]:
+    return simulated_bench(stepped_equipment(settings)) if simulated else nullcontext(real_equipment(settings))
+
+
+def _let_pass(equipment: Equipment) -> Callable[[float], float]:
+    """Wait, or step the simulated world; both say what time it is then."""
+    robot = equipment.robot
+    if robot is None:
+        return _wait
+
+    def step(seconds: float) -> float:
+        robot.step_until(robot.now + seconds)
+        return robot.now
+
+    return step
 
 
 def _wait(seconds: float) -> float:
@@ -135,8 +169,8 @@ def _wait(seconds: float) -> float:
 
 
 @contextmanager
-def _pins(settings: Settings) -> Iterator[Sequence[Any]]:
-    devices = open_pins(settings.line, pin_factory())
+def _pins(settings: Settings, equipment: Equipment) -> Iterator[Sequence[Any]]:
+    devices = open_pins(settings.line, equipment.pin_factory())
     try:
         yield devices
     finally:
@@ -153,8 +187,10 @@ def _opened(opening: Callable[[], Any]) -> Iterator[Any]:
         device.close()
 
 
-def _ready(config: Any) -> Settings:
+def _ready(config: Any, simulated: bool) -> Settings:
     settings = settings_of(config)
+    if simulated:
+        return settings
     with suppress(NobodyAnswers):
         ask(settings.data / SOCKET_NAME, {"do": "status"})
         refuse("The daemon is running and holds the devices: sudo systemctl stop campus-mail-robot")
@@ -167,12 +203,15 @@ def _give_up(problem: Exception) -> NoReturn:
     raise typer.Exit(MISUSE if isinstance(problem, PortAbsent | PortBusy | ConfigError) else UNFINISHED)
 
 
-def _write(config: Any, settings: Settings, found: Found, yes: bool) -> None:
+def _write(config: Any, settings: Settings, found: Found, simulated: bool, yes: bool) -> None:
+    """What a simulated robot is like is no setting of a real one."""
     path = settings_path(config) or INSTALLED
     for key, new in found.items():
         section, _, name = key.partition(".")
         old = getattr(getattr(settings, section), name)
         print(f"{key:26} {old} → {new}{'' if old != new else '  (as it was)'}")
+    if simulated:
+        return
     if not yes and not typer.confirm(f"Write this into {path}?"):
         raise typer.Exit(UNFINISHED)
     try:

@@ -3,26 +3,19 @@
 import json
 import tempfile
 from collections.abc import Iterator
-from contextlib import closing, contextmanager
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-from maps import CampusMapError, find_map
-from protocol.clock import RealClock
-
 from ..config import ConfigError, Settings, load_settings
 from ..control import SOCKET_NAME
-from ..doctor.findings import Equipment, Finding, Grade, Patient
+from ..doctor.findings import Finding, Grade, Patient
 from ..doctor.table import examine
-from ..drivers.serial_port import open_serial
-from ..errors import RobotError
-from ..hardware import pin_factory, real_camera, real_port
+from ..equipment import Equipment, living_equipment, real_equipment
 from ..json_socket import NobodyAnswers, ask
-from ..simulated import SimulatedRobot
-from ..simulated.live import Live
-from .asking import UNFINISHED, ConfigOption, JsonOption, refuse, settings_path
+from .asking import UNFINISHED, ConfigOption, JsonOption, refuse, settings_path, simulated_bench
 
 PUSH_S = 20.0
 
@@ -30,7 +23,7 @@ PUSH_S = 20.0
 def doctor(
     config: ConfigOption = None,
     simulated: Annotated[bool, typer.Option("--simulated", help="A simulated robot at its first post.")] = False,
-    push: Annotated[bool, typer.Option("--push", help="You push it over the tape: does each diode see it?")] = False,
+    push: Annotated[bool, typer.Option("--push", help="Push it over the tape: does each diode see it?")] = False,
     root: Annotated[Path, typer.Option(help="Where /proc, /sys, /boot and /etc are.", hidden=True)] = Path("/"),
     as_json: JsonOption = False,
 ) -> None:
@@ -46,7 +39,9 @@ def doctor(
             settings = load_settings(settings_path(config), asked)
         except ConfigError as problem:
             refuse(str(problem))
-        with _equipment(settings, simulated) as (settings, equipment):
+        with _equipment(settings, simulated) as equipment:
+            if equipment.robot:
+                settings = settings.model_copy(update={"serial_port": equipment.robot.port_path})
             daemon = None if simulated else _daemon(settings)
             patient = Patient(
                 settings, settings_path(config), equipment, root, daemon, PUSH_S if push else 0.0, tell=_tell
@@ -85,21 +80,5 @@ def _daemon(settings: Settings) -> dict[str, Any] | None:
         return None
 
 
-@contextmanager
-def _equipment(settings: Settings, simulated: bool) -> Iterator[tuple[Settings, Equipment]]:
-    if not simulated:
-        line, open_port = real_port(settings)
-        yield settings, Equipment(open_port, line, pin_factory, lambda: real_camera(settings))
-        return
-    clock = RealClock()
-    try:
-        campus = find_map(settings.map)
-        robot = SimulatedRobot(campus, clock.now(), next(iter(campus.posts)))
-    except (CampusMapError, RobotError) as problem:
-        refuse(str(problem))
-    with closing(robot), Live(robot, clock):
-        settings = settings.model_copy(update={"serial_port": robot.port_path})
-        equipment = Equipment(
-            lambda: open_serial(robot.port_path), robot.brc, lambda: robot.pin_factory, lambda: robot.camera, True
-        )
-        yield settings, equipment
+def _equipment(settings: Settings, simulated: bool) -> AbstractContextManager[Equipment]:
+    return simulated_bench(living_equipment(settings)) if simulated else nullcontext(real_equipment(settings))

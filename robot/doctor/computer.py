@@ -16,7 +16,22 @@ from ..config import ConfigError
 from ..host import DISK_LOW_MB, THROTTLED_FILE
 from .findings import Finding, Patient, fail, ok, skip, warn
 
-NEEDED = ("serial", "gpiozero", "numpy", "cv2", "websockets", "pydantic", "structlog", "typer", "lark", "tomlkit")
+NEEDED = (
+    "serial",
+    "gpiozero",
+    "numpy",
+    "cv2",
+    "websockets",
+    "httpx",
+    "pydantic",
+    "cryptography",
+    "segno",
+    "structlog",
+    "typer",
+    "rich",
+    "lark",
+    "tomlkit",
+)
 BETTER = {"zxingcpp": "markers are then read by OpenCV, twenty times slower and less surely"}
 ON_A_PI = "lgpio"
 LITTLE_FREE_MB = 1000.0

@@ -7,9 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from ..config import Settings
-from ..drivers.interfaces import Camera
-from ..drivers.serial_port import SerialPort
-from ..drivers.wake_up import WakeUpLine
+from ..equipment import Equipment
 
 
 class Grade(StrEnum):
@@ -44,17 +42,6 @@ def fail(said: str, way_out: str) -> Finding:
 
 def skip(said: str) -> Finding:
     return Finding(Grade.SKIP, said)
-
-
-@dataclass(frozen=True)
-class Equipment:
-    """How to reach the devices, real or simulated. Whoever opens one closes it."""
-
-    open_port: Callable[[], SerialPort]
-    wake_up_line: WakeUpLine
-    pin_factory: Callable[[], Any]
-    open_camera: Callable[[], Camera]
-    simulated: bool = False
 
 
 @dataclass(frozen=True)

@@ -47,8 +47,10 @@ def _standing(watch: PinWatch) -> Finding:
 
 
 def _pushed(patient: Patient, watch: PinWatch) -> Finding:
-    patient.tell(f"Push the robot over the tape and back, to and fro, for {patient.push_s:g} s.")
-    watch.look(patient.push_s, lambda: min(watch.changes) >= FEWEST_CHANGES)
+    if not patient.equipment.simulated:
+        patient.tell(f"Push the robot over the tape and back, to and fro, for {patient.push_s:g} s.")
+    with patient.equipment.pushed():
+        watch.look(patient.push_s, lambda: min(watch.changes) >= FEWEST_CHANGES)
     counts = list(zip(PIN_NAMES, watch.changes, strict=True))
     said = ", ".join(f"{name} changed {count} times" for name, count in counts)
     dead = [name for name, count in counts if count < FEWEST_CHANGES]
@@ -98,6 +100,8 @@ def _judged(patient: Patient, frames: list[tuple[float, Frame]]) -> Finding:
     wanted = patient.settings.camera
     if (width, height) != (wanted.width_px, wanted.height_px):
         return fail(f"{said}; {wanted.width_px}×{wanted.height_px} are set", "Set camera.width_px and height_px.")
+    if all(np.array_equal(newest, frame) for _, frame in frames):
+        return fail(f"{said}: always the same picture", "Pull the camera's plug and put it in again.")
     if rate < FEWEST_FPS:
         return fail(f"{said}: too few", "More light, a shorter exposure, or another camera.")
     if not DARK <= light <= BRIGHT:

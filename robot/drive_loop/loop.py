@@ -192,6 +192,7 @@ class DriveLoop:
             base_age_s=sensing.base_age_s(now),
             mind_age_s=now - self._heartbeat_s,
             camera_age_s=self.view.camera_age_s,
+            camera_frozen_s=sensing.camera_frozen_s,
             stop_asked=self._stop_asked,
             rearm=self._rearm or sensing.spot_went_down,
             own_wheels=self._wheels.own,

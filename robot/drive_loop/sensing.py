@@ -52,6 +52,7 @@ class Sensing:
         """At this tick."""
         self.something_ahead_s = -math.inf
         self._camera_s, self._camera_age_s = now, 0.0
+        self.camera_frozen_s = 0.0
         self._started_s = now
 
     def sense(self, sent: WheelSpeeds, now: float) -> None:
@@ -89,6 +90,7 @@ class Sensing:
     def take_report(self, report: CameraReport, now: float) -> None:
         """What the camera loop read in one frame."""
         self._camera_s, self._camera_age_s = now, report.frame_age_s
+        self.camera_frozen_s = report.frozen_s
         for sighting in report.posts:
             self.post, self.post_odometry = sighting, self.odometry
         for sighting in report.codes:

@@ -42,6 +42,8 @@ class Device(Protocol):
 
 
 def _video(device: int | str) -> Device:
+    """Failures are told by name here; what OpenCV writes to the error stream of its own accord says nothing more."""
+    cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_SILENT)
     return cast(Device, cv2.VideoCapture(device))
 
 
@@ -125,7 +127,7 @@ class GrabbingCamera:
 
     def _give_up_if_dead(self) -> None:
         if self._device is not None and time.monotonic() - max(self._frame_s, self._opened_s) > DEAD_AFTER_S:
-            log.warning("camera_lost", device=self._source, age_s=round(time.monotonic() - self._frame_s, 1))
+            log.warning("camera_silent", device=self._source, age_s=round(time.monotonic() - self._frame_s, 1))
             self._device.release()
             self._device = None
 

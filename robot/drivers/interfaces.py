@@ -312,6 +312,8 @@ class CameraReport:
     posts: tuple[Sighting, ...] = ()
     codes: tuple[Sighting, ...] = field(default=())
     frame_age_s: float = 0.0
+    frozen_s: float = 0.0
+    """The same picture has come for so long."""
 
 
 class Host(Protocol):

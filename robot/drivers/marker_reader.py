@@ -9,6 +9,7 @@ from collections.abc import Iterable, Mapping
 from maps.campus_map import MARKER_SIZE_M
 
 from .april_tags import TagDetector
+from .frozen_picture import FrozenPicture
 from .interfaces import BodyShape, Camera, CameraReport, Fix, Frame, Sighting
 from .marker_pose import Optics, SheetPose, code_pose, tag_pose
 from .qr_decoders import Decoded, Decoder, best_decoder, grey_of
@@ -81,13 +82,16 @@ class MarkerWatch:
         self._looks: deque[frozenset[str]] = deque(maxlen=OUT_OF)
         self._fixes: deque[Fix] = deque(maxlen=FIXES_KEPT)
         self._frame_at_s = now
+        self._frozen = FrozenPicture()
 
     def tick(self, now: float) -> CameraReport:
-        """One look. Without a new frame the report is empty but for the age of the last one."""
+        """One look. Without a new frame, or with the same again, the report holds nothing but its age."""
         there_is_one, frame = self._camera.read()
         if not there_is_one or frame is None:
             return CameraReport(frame_age_s=now - self._frame_at_s)
         self._frame_at_s = now
+        if frozen_s := self._frozen.age_s(frame, now):
+            return CameraReport(frozen_s=frozen_s)
         sightings = self._reader.look(frame, now)
         self._looks.append(frozenset(sighting.text for sighting in sightings))
         accepted = [sighting for sighting in sightings if self._agreed(sighting.text)]

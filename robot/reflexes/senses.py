@@ -17,6 +17,9 @@ class Senses:
     mind_age_s: float
     """Since the last heartbeat of the mind."""
     camera_age_s: float = 0.0
+    """Since the last picture, a frozen one too."""
+    camera_frozen_s: float = 0.0
+    """The camera has given the same picture for so long."""
     stop_asked: bool = False
     """An emergency stop from the command line, the service or a person's page."""
     rearm: bool = False

@@ -15,6 +15,9 @@ from .senses import Senses
 SILENCE_S = 1.0
 BASE_SILENT_S = 0.5
 CAMERA_STALE_S = 1.0
+CAMERA_FROZEN_S = 1.0
+CAMERA_LOST_S = 60.0
+"""Opening it again (once a second) would have helped by then: what hangs for a minute needs a hand."""
 OFFLINE_S = 10.0
 SLIPPING_S = 2.0
 CONSTANT_MM = 3000.0
@@ -86,6 +89,10 @@ def _battery_critical(senses: Senses) -> bool:
 def _battery_still_critical(senses: Senses) -> bool:
     base = _on_the_floor(senses)
     return base is not None and _below(base, RECOVERED_RATIO, RECOVERED_MV)
+
+
+def _camera_lost(senses: Senses) -> bool:
+    return senses.camera_age_s + senses.camera_frozen_s > CAMERA_LOST_S
 
 
 def _line_sensor(senses: Senses) -> bool:
@@ -210,13 +217,35 @@ FAULTS: Final[tuple[Fault, ...]] = (
     ),
     Fault(
         "camera_stale",
-        lambda s: s.camera_age_s > CAMERA_STALE_S,
+        lambda s: s.camera_age_s > CAMERA_STALE_S and not _camera_lost(s),
         Response.STOP,
         after_s=0.0,
         clears_s=0.0,
         stands_within_s=1.7,
         cleared_by="the next picture",
         told="The camera delivers no pictures, so the robot stands.",
+    ),
+    Fault(
+        "camera_frozen",
+        lambda s: s.camera_frozen_s > CAMERA_FROZEN_S and not _camera_lost(s),
+        Response.STOP,
+        after_s=0.0,
+        clears_s=0.0,
+        stands_within_s=1.7,
+        cleared_by="another picture",
+        told="The camera delivers the same picture again and again, so the robot stands.",
+    ),
+    Fault(
+        "camera_lost",
+        _camera_lost,
+        Response.STOP,
+        after_s=0.0,
+        clears_s=2.0,
+        # It has stood since the fault that this one takes over from.
+        stands_within_s=61.5,
+        cleared_by="2 s of new pictures",
+        told="The camera has delivered no new picture for a minute. The robot stands until its camera is seen to.",
+        halts=True,
     ),
     Fault(
         "line_sensor",

@@ -103,6 +103,9 @@ _DEEDS: Final[dict[str, Callable[[Actor, Deed, CampusMap], None]]] = {
     "sag": lambda actor, row, _: actor.body.sag(row.ratio),
     "spot": lambda actor, _, __: actor.body.press("spot"),
     "clean": lambda actor, _, __: actor.body.press("clean"),
+    "show_code": lambda actor, row, _: actor.body.show_code(row.text, row.for_s),
     "unplug": lambda actor, _, __: actor.body.unplug(),
+    "plug_in": lambda actor, _, __: actor.body.plug_in(),
+    "reset_base": lambda actor, _, __: actor.body.reset_base(),
     "stop": lambda actor, _, __: actor.parts.mind.hands.body.emergency_stop(),
 }

@@ -158,6 +158,8 @@ def _happenings(scenario: Scenario, campus: CampusMap, robots: set[str]) -> Iter
         if message.say == "cancel":
             yield from _one_of("message.order", message.order or "", {order.id for order in scenario.order})
     for deed in scenario.deed:
+        if deed.do == "show_code" and not deed.text:
+            yield "deed.text", "no text is given to show", "Give one, as text = 'post4'."
         if deed.do == "carry":
             try:
                 start_pose(campus, deed.to or "")

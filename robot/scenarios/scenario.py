@@ -150,14 +150,29 @@ class FaultRow(Timed):
 class Deed(Timed):
     """What a person does to a robot."""
 
-    do: Literal["bump", "lift", "put_down", "carry", "push", "sag", "spot", "clean", "unplug", "stop"] = Field(
-        description="bump, lift, put_down, carry (to `to`), push, sag (to `ratio`), spot or clean (buttons), unplug, "
-        "stop (python -m robot stop)"
+    do: Literal[
+        "bump",
+        "lift",
+        "put_down",
+        "carry",
+        "push",
+        "sag",
+        "spot",
+        "clean",
+        "show_code",
+        "unplug",
+        "plug_in",
+        "reset_base",
+        "stop",
+    ] = Field(
+        description="bump, lift, put_down, carry (to `to`), push, sag (to `ratio`), spot or clean (buttons), show_code "
+        "(`text`), unplug or plug_in (the cable to the base), reset_base, stop (python -m robot stop)"
     )
     to: str | None = Field(default=None, description="where it is carried, as in a robot's start")
     ratio: Share = Field(default=0.2, description="charge after a sag")
     ahead_mm: float = Field(default=100.0, description="how far it is pushed, mm")
-    for_s: Seconds = Field(default=0.5, description="how long a bump presses")
+    text: str = Field(default="", description="what is shown to the camera as a QR code: a post's name, or anything")
+    for_s: Seconds = Field(default=0.5, description="how long a bump presses, or a code is shown")
 
 
 class MessageRow(Timed):

@@ -117,7 +117,8 @@ class Body:
             base.jam()
             self._blocked_s += STEP_S
             return False
-        ahead_mm, turn_rad = base.roll(left, right)
+        grip = 1.0 - self.faults.slip
+        ahead_mm, turn_rad = (way * grip for way in base.roll(left, right))
         if self.faults.stuck or self.faults.slipping:
             self._blocked_s = self._blocked_s + STEP_S if self.faults.stuck else 0.0
             return False

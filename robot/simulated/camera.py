@@ -6,7 +6,7 @@ from collections.abc import Callable
 import cv2
 
 from .faults import Faults
-from .frames import HEIGHT, WIDTH, Frame, Renderer, View
+from .frames import Frame, Renderer, View
 
 SHOWN_FOR_S = 20.0
 STEPS_WITH_IT_M = 0.3
@@ -24,6 +24,7 @@ class SimulatedCamera:
         self._clock = clock
         self._faults = faults
         self._open = True
+        self._newest: Frame | None = None
         self._shown: tuple[str, float, View] | None = None
         self.frames_read = 0
 
@@ -46,18 +47,21 @@ class SimulatedCamera:
         return math.dist((here.x_m, here.y_m), (there.x_m, there.y_m)) > STEPS_WITH_IT_M
 
     def read(self) -> tuple[bool, Frame | None]:
-        """(True, 480 × 640 frame), or (False, None) after `release` and while the camera is dead."""
+        """(True, height × width frame), or (False, None) after `release` and while the camera is dead."""
         if not self._open or self._faults.camera_dead:
             return False, None
         self.frames_read += 1
-        return True, self._renderer.frame(self._view(), self.shown)
+        if self._newest is None or not self._faults.camera_frozen:
+            self._newest = self._renderer.frame(self._view(), self.shown)
+        return True, self._newest.copy()
 
     def isOpened(self) -> bool:  # noqa: N802  # OpenCV's own name
         return self._open
 
     def get(self, prop: int) -> float:
         """Width and height; 0.0 for everything else, as OpenCV says for what a camera does not know."""
-        return {cv2.CAP_PROP_FRAME_WIDTH: float(WIDTH), cv2.CAP_PROP_FRAME_HEIGHT: float(HEIGHT)}.get(prop, 0.0)
+        width_px, height_px = self._renderer.size_px
+        return {cv2.CAP_PROP_FRAME_WIDTH: float(width_px), cv2.CAP_PROP_FRAME_HEIGHT: float(height_px)}.get(prop, 0.0)
 
     def set(self, prop: int, value: float) -> bool:
         """Only the size it has can be set, and one frame of buffer, which is all there is."""

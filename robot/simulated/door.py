@@ -179,6 +179,16 @@ def _unplug(robot: SimulatedRobot, _: Request) -> dict[str, Any]:
     return {}
 
 
+def _plug_in(robot: SimulatedRobot, _: Request) -> dict[str, Any]:
+    robot.plug_in()
+    return {}
+
+
+def _reset_base(robot: SimulatedRobot, _: Request) -> dict[str, Any]:
+    robot.reset_base()
+    return {}
+
+
 def _state(robot: SimulatedRobot, _: Request) -> dict[str, Any]:
     return robot.state()
 
@@ -198,5 +208,7 @@ COMMANDS: dict[str, Callable[[SimulatedRobot, Request], dict[str, Any]]] = {
     "place": _place,  # {"x_m": …, "y_m": …, "heading_rad": …}
     "print_text": _print_text,  # {"text": …}
     "unplug": _unplug,
+    "plug_in": _plug_in,
+    "reset_base": _reset_base,
     "state": _state,
 }

@@ -41,6 +41,7 @@ class Faults:
     over_current: bool = False
     stuck: bool = False
     slipping: bool = False
+    slip: float = 0.0
     wheels_jammed: bool = False
     virtual_wall: bool = False
     dock_beams_off: bool = False
@@ -51,6 +52,7 @@ class Faults:
     floor_edge_mm: float = 0.0
     pins_stuck: bool = False
     camera_dead: bool = False
+    camera_frozen: bool = False
     darkness: float = 0.0
     dirt: float = 0.0
     under_voltage: bool = False
@@ -119,6 +121,7 @@ SWITCHES: dict[str, str] = {
     "over_current": "both wheel motors report over-current",
     "stuck": "the wheels turn and count, the robot does not move (stasis reads 0)",
     "slipping": "the wheels turn freely and count, the robot does not move, no motor notices (stasis reads 0)",
+    "slip": "share of what the wheels turn and count that is lost on the floor, ahead and in turns",
     "wheels_jammed": "no wheel turns, whatever it is told",
     "virtual_wall": "the virtual wall beam is seen",
     "dock_beams_off": "the docks send no infrared",
@@ -129,6 +132,7 @@ SWITCHES: dict[str, str] = {
     "floor_edge_mm": "width of the reflecting tape edge in which a diode reads by chance, in mm",
     "pins_stuck": "the line pins keep their last value",
     "camera_dead": "the camera gives no frame",
+    "camera_frozen": "the camera gives the same picture again and again",
     "darkness": "share of the light that is missing",
     "dirt": "share of every marker that is covered by dirt",
     "under_voltage": "the robot's computer gets too little voltage",

@@ -1,4 +1,4 @@
-"""What the camera sees: 640 × 480 frames from the robot's left side, 254 mm above the floor, looking left.
+"""What the camera sees: frames from the robot's left side, 254 mm above the floor, looking left.
 
 The marker sheets are those that `python -m maps markers` prints, seen in true perspective; people stand before them,
 or hold a hand-over code in front of the camera. What is not worth drawing is a dim wall with noise, drawn once.
@@ -32,7 +32,6 @@ from maps.tags import TAG_SIZE_MM
 from .faults import Faults
 from .obstacles import Obstacle
 
-WIDTH, HEIGHT = 640, 480
 BACKGROUNDS = 4
 Frame = NDArray[np.uint8]
 
@@ -40,7 +39,11 @@ CODE_MM = 80
 PX_PER_MODULE = (4, 8, 16)  # textures of a sheet: the renderer takes the nearest that is not finer than twice the view
 SEEN_FROM_M, SEEN_TO_M = 0.08, 1.5
 QUIET_MODULES = 4
-SHOWN_PX_PER_MODULE = 8
+SHOWN_SHARE = 1 / 60
+"""Side of a module of a code held up, of the picture's height; a code of many modules is drawn smaller, see below."""
+LARGEST_SHOWN_SHARE = 0.92
+"""Of the picture's height, quiet zone included."""
+TEXTURE_PX_PER_MODULE = 8
 WALL, PAPER, INK, CLOTHES = 96, 225, 25, 55
 PEOPLE_TO_M = 2.5  # farther off they are part of the wall
 
@@ -58,10 +61,12 @@ class CameraMount:
     colour: bool = True
     april_tags: bool = False
     """Whether the sheets were printed with tags."""
+    width_px: int = 640
+    height_px: int = 480
 
     @property
     def focal_px(self) -> float:
-        return WIDTH / 2 / math.tan(self.across_rad / 2)
+        return self.width_px / 2 / math.tan(self.across_rad / 2)
 
 
 @dataclass(frozen=True)
@@ -93,25 +98,32 @@ class Renderer:
         self._mount = mount
         self._faults = faults
         self._random = Random(f"{seed}/camera")
-        self._walls = _walls(mount.noise, seed)
-        self._noise = _noise(mount.noise, seed)
+        self.size_px = mount.width_px, mount.height_px
+        self._walls = _walls(mount.noise, seed, self.size_px)
+        self._noise = _noise(mount.noise, seed, self.size_px)
         self._sheets: dict[tuple[Marker | str, int], Frame] = {}
         self._shown: dict[str, tuple[Frame, ...]] = {}
+        self._chosen: Frame | None = None
         # Post or single marker → share that is covered, beside what the switch `dirt` covers of all of them.
         self.dirt: Mapping[Any, float] = {}
 
     def frame(self, view: View, shown: str | None = None) -> Frame:
-        """640 × 480, BGR as OpenCV's cameras give it, or grey. `shown` is a text held up as a QR code."""
-        grey = self._marker_frame(view) if shown is None else self._random.choice(self._held_up(shown))
+        """Height × width, BGR as OpenCV's cameras give it, or grey. `shown` is a text held up as a QR code."""
+        grey = self._marker_frame(view) if shown is None else self._other(self._held_up(shown))
         if self._faults.darkness:
             grey = _darker(grey, self._faults.darkness)
         if self._mount.colour:
             return np.asarray(cv2.cvtColor(grey, cv2.COLOR_GRAY2BGR), np.uint8)
         return grey.copy()
 
+    def _other(self, pictures: tuple[Frame, ...]) -> Frame:
+        """No sensor gives the same picture twice."""
+        self._chosen = self._random.choice([one for one in pictures if one is not self._chosen])
+        return self._chosen
+
     def _marker_frame(self, view: View) -> Frame:
         """Whatever is farther off is drawn first."""
-        frame = self._random.choice(self._walls)
+        frame = self._other(self._walls)
         in_view: list[tuple[float, Marker, NDArray[np.float32]] | tuple[float, _Somebody, None]] = []
         for marker in self._markers:
             corners = sheet_corners(marker, view, self._mount)
@@ -139,7 +151,7 @@ class Renderer:
 
     def _draw(self, frame: Frame, marker: Marker, corners: NDArray[np.float32], view: View) -> None:
         left, top = np.maximum(np.floor(corners.min(axis=0)).astype(int) - 8, 0)
-        right, bottom = np.minimum(np.ceil(corners.max(axis=0)).astype(int) + 8, (WIDTH, HEIGHT))
+        right, bottom = np.minimum(np.ceil(corners.max(axis=0)).astype(int) + 8, self.size_px)
         if right - left < 2 or bottom - top < 2:
             return
         sheet = self._sheet(marker, float(np.linalg.norm(corners[1] - corners[0])))
@@ -215,14 +227,15 @@ def sheet_corners(marker: Marker, view: View, mount: CameraMount) -> NDArray[np.
         if away < SEEN_FROM_M / 2:
             return None
         columns.append((away, right))
-    return _projected(columns, [height * per_mm + 0.254 - mount.height_m for height in heights_mm], mount.focal_px)
+    return _projected(columns, [height * per_mm + 0.254 - mount.height_m for height in heights_mm], mount)
 
 
-def _projected(columns: list[tuple[float, float]], heights_m: list[float], focal_px: float) -> NDArray[np.float32]:
+def _projected(columns: list[tuple[float, float]], heights_m: list[float], mount: CameraMount) -> NDArray[np.float32]:
+    middle_x, middle_y, focal_px = mount.width_px / 2, mount.height_px / 2, mount.focal_px
     order = ((0, 0), (1, 0), (1, 1), (0, 1))
     return np.array(
         [
-            (WIDTH / 2 + focal_px * columns[c][1] / columns[c][0], HEIGHT / 2 - focal_px * heights_m[r] / columns[c][0])
+            (middle_x + focal_px * columns[c][1] / columns[c][0], middle_y - focal_px * heights_m[r] / columns[c][0])
             for c, r in order
         ],
         np.float32,
@@ -283,13 +296,12 @@ def _people(obstacles: Iterable[Obstacle], view: View, mount: CameraMount) -> It
             continue
         middle, half = math.atan2(right_m, away_m), math.asin(radius_m / math.hypot(away_m, right_m))
         left, right = (
-            WIDTH / 2 + mount.focal_px * math.tan(max(-1.4, min(1.4, edge))) for edge in (middle - half, middle + half)
+            mount.width_px / 2 + mount.focal_px * math.tan(max(-1.4, min(1.4, edge)))
+            for edge in (middle - half, middle + half)
         )
-        if right > 0 and left < WIDTH:
-            floor_px = HEIGHT / 2 + mount.focal_px * mount.height_m / away_m
-            yield _Somebody(
-                away_m - radius_m, max(0, round(left)), min(WIDTH, round(right)), min(HEIGHT, round(floor_px))
-            )
+        if right > 0 and left < mount.width_px:
+            floor_px = min(mount.height_px, round(mount.height_px / 2 + mount.focal_px * mount.height_m / away_m))
+            yield _Somebody(away_m - radius_m, max(0, round(left)), min(mount.width_px, round(right)), floor_px)
 
 
 def _code_picture(modules: NDArray[np.uint8], px_per_module: int, quiet: int) -> Frame:
@@ -299,33 +311,36 @@ def _code_picture(modules: NDArray[np.uint8], px_per_module: int, quiet: int) ->
 
 def _held_up(text: str, wall: Frame, random: Random) -> Frame:
     """A phone's screen with the code, a little turned and never twice in the same place."""
-    code = _code_picture(_modules(text, "m"), SHOWN_PX_PER_MODULE, QUIET_MODULES)
+    height, width = wall.shape
+    code = _code_picture(_modules(text, "m"), TEXTURE_PX_PER_MODULE, QUIET_MODULES)
     size = code.shape[0]
-    scale = min(1.0, 440 / size)
-    turn = cv2.getRotationMatrix2D((size / 2, size / 2), random.uniform(-6, 6), scale)
-    turn[0, 2] += WIDTH / 2 - size / 2 + random.uniform(-20, 20)
-    turn[1, 2] += HEIGHT / 2 - size / 2 + random.uniform(-8, 8)
+    module_px = min(height, width * 3 / 4) * min(SHOWN_SHARE, LARGEST_SHOWN_SHARE * TEXTURE_PX_PER_MODULE / size)
+    turn = cv2.getRotationMatrix2D((size / 2, size / 2), random.uniform(-6, 6), module_px / TEXTURE_PX_PER_MODULE)
+    turn[0, 2] += width / 2 - size / 2 + random.uniform(-1, 1) * width / 32
+    turn[1, 2] += height / 2 - size / 2 + random.uniform(-1, 1) * height / 60
     frame = wall.copy()
-    cv2.warpAffine(code, turn, (WIDTH, HEIGHT), dst=frame, flags=cv2.INTER_LINEAR, borderMode=cv2.BORDER_TRANSPARENT)
+    cv2.warpAffine(code, turn, (width, height), dst=frame, flags=cv2.INTER_LINEAR, borderMode=cv2.BORDER_TRANSPARENT)
     return frame
 
 
 @lru_cache(maxsize=4)
-def _walls(noise: float, seed: int) -> tuple[Frame, ...]:
+def _walls(noise: float, seed: int, size_px: tuple[int, int]) -> tuple[Frame, ...]:
     """A dim wall above a darker floor, with the sensor's noise."""
+    width, height = size_px
     random = np.random.default_rng(seed)
-    rows = np.linspace(WALL + 20, WALL - 20, HEIGHT)[:, None] * np.ones((1, WIDTH))
-    rows[int(HEIGHT * 0.8) :] -= 30
+    rows = np.linspace(WALL + 20, WALL - 20, height)[:, None] * np.ones((1, width))
+    rows[int(height * 0.8) :] -= 30
     return tuple(
-        np.clip(rows + random.normal(0, noise, (HEIGHT, WIDTH)), 0, 255).astype(np.uint8) for _ in range(BACKGROUNDS)
+        np.clip(rows + random.normal(0, noise, (height, width)), 0, 255).astype(np.uint8) for _ in range(BACKGROUNDS)
     )
 
 
 @lru_cache(maxsize=4)
-def _noise(noise: float, seed: int) -> NDArray[np.int16]:
+def _noise(noise: float, seed: int, size_px: tuple[int, int]) -> NDArray[np.int16]:
     """A little larger than a frame, so that a random part of it is always new."""
+    width, height = size_px
     random = np.random.default_rng(seed + 1)
-    return random.normal(0, noise, (HEIGHT + 64, WIDTH + 64)).astype(np.int16)
+    return random.normal(0, noise, (height + 64, width + 64)).astype(np.int16)
 
 
 def _darker(frame: Frame, share: float) -> Frame:

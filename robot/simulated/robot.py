@@ -119,6 +119,14 @@ class SimulatedRobot:
         """Pull the serial cable."""
         self._line.close()
 
+    def plug_in(self) -> None:
+        """Put the serial cable in again; `port_path` or `memory_port()` is a new one."""
+        self._line.plug_in()
+
+    def reset_base(self) -> None:
+        """The firmware starts anew, as after a moment without power."""
+        self._body.interface.reset(b"")
+
     def close(self) -> None:
         self.world.robots.remove(self._body)
         self._line.close()

@@ -42,23 +42,33 @@ class SerialLine(Protocol):
         """Pull the plug."""
         ...
 
+    def plug_in(self) -> None:
+        """Put it in again: the host meets a new port, as after a pulled USB cable."""
+        ...
+
 
 class PtyLine:
     """A pseudo-terminal; the host opens `path` with pyserial. `link` is an optional stable name for it."""
 
     def __init__(self, random: Random, link: Path | None = None) -> None:
+        self._random = random
+        self._link = link
+        self._open = False
+        self.plug_in()
+
+    def plug_in(self) -> None:
+        if self._open:
+            return
+        self._open = True
         self._master, self._slave = pty.openpty()
         tty.setraw(self._slave)
         _set_speed(self._slave, termios.B115200)
         os.set_blocking(self._master, False)
         self.path = os.ttyname(self._slave)
-        self._random = random
-        self._link = link
-        self._open = True
-        if link:
-            if link.is_symlink():  # of a world that was killed; any other file is somebody's
-                link.unlink()
-            link.symlink_to(self.path)
+        if self._link:
+            if self._link.is_symlink():  # of a world that was killed; any other file is somebody's
+                self._link.unlink()
+            self._link.symlink_to(self.path)
 
     def wait(self, at_most_s: float) -> None:
         """Until the host has sent something, or so long at most."""
@@ -122,6 +132,10 @@ class MemoryLine:
 
     def close(self) -> None:
         self.port.unplugged = True
+
+    def plug_in(self) -> None:
+        if self.port.unplugged:
+            self.port = MemoryPort()
 
 
 class MemoryPort:

@@ -75,6 +75,8 @@ async def test_an_order_that_a_robot_has_is_expected_when_its_shortest_way_ends(
 
         async def is_foreseen() -> bool:
             order = await service.row(Order, id=order_id)
+            if order.expected_from is None or order.expected_to is None:
+                return False
             slack = timedelta(seconds=10)
             is_narrow = order.expected_to - order.expected_from < timedelta(seconds=120)
             return is_narrow and order.expected_from - slack <= comes_at <= order.expected_to + slack

@@ -90,11 +90,12 @@ async def test_mail_that_nobody_takes_back_either_waits_for_a_person(service: Se
     assert "still in robot r1" in (await service.row(Order, id=order_id)).why
 
 
+@pytest.mark.parametrize("name", ["wheel_drop", "camera_lost"])
 async def test_a_fault_with_mail_aboard_calls_a_person_and_ends_when_it_is_over_or_the_robot_goes_on(
-    service: Service, robot: PlayedRobot
+    service: Service, robot: PlayedRobot, name: str
 ) -> None:
     order_id, receive = await carrying(service, robot)
-    lifted = Fault(name="wheel_drop", happened_at=robot.clock.utc(), post="post3", reason="The robot was lifted.")
+    lifted = Fault(name=name, happened_at=robot.clock.utc(), post="post3", reason="The robot was lifted.")
     async with robot.connected(service.url, robot.token):
         await robot.greet()
         await robot.say(Event(happened=lifted))

@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+import pytest
+
 from protocol.parts import Leg, Purpose, Stop, StopAction
 from protocol.to_robot import Cancel, EmergencyStop, Mission, OpenWay, Pause, Recall, Resume, Revoke
 from robot.simulated.obstacles import Person
@@ -283,3 +285,25 @@ def press_twice(run: SimulatedRun) -> None:
     for _ in range(2):
         run.robot.press("spot")
         run.passes(0.7)
+
+
+@pytest.mark.parametrize("switch", ["camera_dead", "camera_frozen"])
+def test_a_camera_that_stays_away_ends_in_waiting_for_a_person(run: SimulatedRun, switch: str) -> None:
+    """It neither tries for ever nor believes a picture of long ago; seen to, it delivers after all."""
+    run.given_a_letter()
+    run.until(lambda: run.waits_for("wait_handover(load"))
+    run.shows(Purpose.LOAD)
+    run.until(lambda: bool(run.duties.held.cargo) and run.waits_for("follow_line"))
+    run.robot.set_fault(switch, True)
+    run.passes(70)
+    assert "fault camera_lost" in run.told()
+    assert run.mind.why is not None
+    assert "camera" in run.mind.why.sentence
+    before = run.told(), run.robot.pose
+    run.passes(300)
+    assert (run.told(), run.robot.pose) == before, "it neither tries again nor rolls on"
+    run.robot.set_fault(switch, False)
+    run.until(lambda: run.waits_for("wait_handover(receive"))
+    run.shows(Purpose.RECEIVE)
+    run.until(lambda: run.is_home)
+    assert not run.duties.held.cargo

@@ -11,6 +11,7 @@ import zxingcpp
 
 from benchmarks.body.foreign_frames import KINDS, foreign
 from benchmarks.body.marker_frames import CONDITIONS, NAMES, Condition, shot
+from benchmarks.body.shown_pictures import BACKGROUNDS, SIZES, shown_picture
 from robot.drivers.interfaces import Frame
 from robot.drivers.marker_reader import MarkerReader
 from robot.drivers.qr_decoders import may_hold_code, read_with_opencv, zxing_decoder
@@ -65,12 +66,27 @@ def test_a_frame_without_anything_is_not_looked_at(size: tuple[int, int], fill: 
     assert BY_ZXING.look(frame, 0.0) == ()
 
 
+@pytest.mark.parametrize("size", [(240, 320), (480, 640), (1080, 1920)])
 @pytest.mark.parametrize("grain", [1.0, 4.0, 9.0, 16.0])
-def test_grain_alone_is_not_taken_for_a_code(grain: float):
+def test_grain_alone_is_not_taken_for_a_code(grain: float, size: tuple[int, int]):
     chance = np.random.default_rng(int(grain))
-    frame = np.clip(chance.normal(70, grain, (480, 640)), 0, 255).astype(np.uint8)
+    frame = np.clip(chance.normal(70, grain, size), 0, 255).astype(np.uint8)
     assert not may_hold_code(frame)
 
 
 def test_every_frame_with_a_marker_is_looked_at():
     assert all(may_hold_code(shot(one, seed).frame) for one in CONDITIONS for seed in range(9300, 9304))
+
+
+@pytest.mark.parametrize("size_px", SIZES)
+def test_codes_shown_by_people_are_read_at_every_size_and_before_everything(size_px: tuple[int, int]):
+    """On a wall, over a page of text, before bricks and clutter; half of the codes fill the picture."""
+    first = 9000 + SIZES.index(size_px)
+    decode, readable = zxing_decoder(zxingcpp), 0
+    for picture in map(shown_picture, range(first, first + 2 * len(SIZES) * len(BACKGROUNDS), len(SIZES))):
+        assert picture.size_px == size_px
+        assert may_hold_code(picture.frame), picture.background
+        if picture.text in {code.text for code in zxingcpp.read_barcodes(picture.frame)}:
+            readable += 1
+            assert picture.text in {code.text for code in decode(picture.frame)}, picture.background
+    assert readable >= len(BACKGROUNDS)

@@ -173,10 +173,23 @@ def test_what_is_far_too_long_for_a_code_of_ours_is_foreign():
 
 def test_a_watch_is_a_position_source_that_tells_each_fix_once():
     frame = seen_from(0.05)
-    watch = MarkerWatch(Album(frame, frame, frame), MarkerReader(TRACK.posts))
+    watch = MarkerWatch(Album(*(frame + np.uint8(n) for n in range(3))), MarkerReader(TRACK.posts))
     told = []
     for now in (1.0, 1.1, 1.2):
         watch.tick(now)
         told.append([(fix.source, fix.post, fix.at_s) for fix in watch.fixes(now)])
     assert told == [[], [("marker", "post2", 1.1)], [("marker", "post2", 1.2)]]
     assert watch.fixes(2.0) == ()
+
+
+def test_the_same_picture_again_is_no_second_read_and_its_age_is_told():
+    watch = MarkerWatch(Album(*[frame_of("post3")] * 4), MarkerReader(TRACK.posts))
+    reports = [watch.tick(now) for now in (1.0, 1.1, 1.6, 2.2)]
+    assert [report.posts for report in reports] == [()] * 4
+    assert [report.frozen_s for report in reports] == pytest.approx([0.0, 0.1, 0.6, 1.2])
+
+
+def test_pictures_of_the_dark_may_be_equal():
+    black = np.full((480, 640), 3, np.uint8)
+    watch = MarkerWatch(Album(*[black] * 3), MarkerReader(TRACK.posts))
+    assert [watch.tick(float(now)).frozen_s for now in range(3)] == [0.0] * 3

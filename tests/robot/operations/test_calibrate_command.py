@@ -51,3 +51,31 @@ def test_without_a_base_it_says_so(tmp_path: Path) -> None:
     config.write_text(f'serial_port = "{tmp_path}/tty"\ndata = "{tmp_path}"\n')
     ran = calibrate(config, "distance")
     assert (ran.exit_code, "Nothing was written" in ran.output) == (2, True)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "key", "low", "high"),
+    [
+        (["distance", "--length-mm", "300"], "drive.mm_per_count", 0.42, 0.47),
+        (["turn", "--turns", "1"], "drive.wheel_base_mm", 225, 245),
+        (["camera", "300"], "camera.field_of_view_deg", 59, 61),
+    ],
+)
+def test_a_simulated_robot_is_measured_without_a_person_and_nothing_is_written(
+    tmp_path: Path, arguments: list[str], key: str, low: float, high: float
+) -> None:
+    config = tmp_path / "robot.toml"
+    config.write_text(f'data = "{tmp_path}"\n')
+    ran = calibrate(config, *arguments, "--simulated")
+    assert ran.exit_code == 0, ran.output
+    (row,) = [line for line in ran.stdout.splitlines() if line.startswith(key)]
+    assert low < float(row.split("→")[1].split()[0]) < high
+    assert config.read_text() == f'data = "{tmp_path}"\n'
+
+
+def test_a_simulated_line_is_swung_over(tmp_path: Path) -> None:
+    config = tmp_path / "robot.toml"
+    config.write_text(f'data = "{tmp_path}"\n')
+    ran = calibrate(config, "line", "--simulated")
+    assert ran.exit_code == 0, ran.output
+    assert "line.line_is_low           True → True  (as it was)" in ran.stdout

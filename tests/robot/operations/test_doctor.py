@@ -4,13 +4,11 @@ The computer's side is a made-up tree of /proc, /sys, /boot and /etc; the servic
 """
 
 import json
-import math
 import os
+import subprocess
 import sys
-import threading
 from collections.abc import Iterator
 from dataclasses import replace
-from itertools import cycle
 from pathlib import Path
 from typing import Any
 
@@ -22,12 +20,13 @@ from protocol.clock import RealClock
 from robot.__main__ import cli
 from robot.config import load_settings
 from robot.doctor import cable, computer, senses, service
-from robot.doctor.findings import Equipment, Finding, Grade, Patient
+from robot.doctor.findings import Finding, Grade, Patient
 from robot.doctor.table import CHECKS, examine
 from robot.drivers.serial_port import open_serial
 from robot.drivers.wake_up import NoWakeUpLine, SerialRts
+from robot.equipment import Equipment
 from robot.hardware import pin_factory
-from robot.simulated import Pose, SimulatedRobot
+from robot.simulated import SimulatedRobot
 from robot.simulated.live import Live
 
 
@@ -43,7 +42,7 @@ class World:
     def equipment(self) -> Equipment:
         robot = self.robot
         return Equipment(
-            lambda: open_serial(robot.port_path), robot.brc, lambda: robot.pin_factory, lambda: robot.camera, True
+            lambda: open_serial(robot.port_path), robot.brc, lambda: robot.pin_factory, lambda: robot.camera, robot
         )
 
     def close(self) -> None:
@@ -96,6 +95,23 @@ def test_a_simulated_robot_is_fit_and_every_check_is_made() -> None:
     assert "high" in rows["line"]["said"]
     assert [row for row in rows.values() if row["grade"] == "fail"] == []
     assert (ran.exit_code, found["ok"]) == (0, True)
+
+
+def test_the_simulated_world_pushes_its_robot_over_the_tape_itself() -> None:
+    ran = CliRunner().invoke(cli, ["doctor", "--simulated", "--push"])
+    assert ran.exit_code == 0, ran.output
+    (line,) = [row for row in ran.stdout.splitlines() if row.startswith("ok    line")]
+    assert "left changed" in line
+    assert "Push the robot" not in ran.output, "no person is needed"
+    assert "reads post1" in ran.stdout, "it was put back before the marker"
+
+
+def test_only_our_own_words_come_out_where_no_camera_is(tmp_path: Path) -> None:
+    config = write(tmp_path / "r.toml", f'serial_port = "{tmp_path}/tty"\ndata = "{tmp_path}"\ncamera.device = 63\n')
+    command = [sys.executable, "-m", "robot", "doctor", "--config", str(config), "--root", str(tmp_path)]
+    ran = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    assert "FAIL  camera" in ran.stdout
+    assert ran.stderr == ""
 
 
 def test_a_robot_without_a_cable_is_not_fit_and_a_person_reads_why(tmp_path: Path) -> None:
@@ -218,28 +234,8 @@ def test_a_running_daemon_keeps_its_devices_and_tells_of_the_base(tmp_path: Path
 
 
 def pushed(world: World, root: Path, for_s: float, **settings: object) -> Finding:
-    """What --push finds while somebody shoves the robot to and fro across the tape."""
-    pose, lead_m = world.robot.pose, 0.06
-    across = pose.heading_rad + math.pi / 2
-    back_m = lead_m + 0.04  # so that the diodes begin 40 mm beside the middle of the tape
-    world.robot.place(
-        Pose(pose.x_m - back_m * math.cos(across), pose.y_m - back_m * math.sin(across), across),
-    )
-    done = threading.Event()
-
-    def push() -> None:
-        for way_mm in cycle([10] * 8 + [-10] * 8):
-            if done.wait(0.03):
-                return
-            world.robot.push(way_mm)
-
-    person = threading.Thread(target=push)
-    person.start()
-    try:
-        return senses.pins(replace(patient(root, world.equipment(), **settings), push_s=for_s))
-    finally:
-        done.set()
-        person.join()
+    """What --push finds while the simulated world shoves its robot to and fro across the tape."""
+    return senses.pins(replace(patient(root, world.equipment(), **settings), push_s=for_s))
 
 
 def test_pushing_it_over_the_tape_shows_that_each_diode_sees_it(world: World, tmp_path: Path) -> None:
@@ -258,6 +254,12 @@ def test_a_dead_camera_is_told(world: World, tmp_path: Path) -> None:
     world.robot.set_fault("camera_dead", True)
     grade, said = graded(senses.camera(patient(tmp_path, world.equipment())))
     assert (grade, "no pictures" in said) == (Grade.FAIL, True)
+
+
+def test_a_frozen_camera_is_told(world: World, tmp_path: Path) -> None:
+    world.robot.set_fault("camera_frozen", True)
+    grade, said = graded(senses.camera(patient(tmp_path, world.equipment())))
+    assert (grade, "always the same picture" in said) == (Grade.FAIL, True)
 
 
 def test_another_size_than_the_settings_say_is_told(world: World, tmp_path: Path) -> None:

@@ -52,6 +52,8 @@ CAUSES: dict[str, tuple[Change, Change]] = {
     "bump": switch("bump_left"),
     "virtual_wall": switch("virtual_wall"),
     "camera_stale": switch("camera_dead"),
+    "camera_frozen": switch("camera_frozen"),
+    "camera_lost": switch("camera_dead"),
     "line_sensor": switch("pins_stuck"),
     "battery_critical": (lambda robot: robot.robot.sag(0.08), lambda robot: robot.robot.sag(0.9)),
     "under_voltage": switch("under_voltage"),
@@ -101,7 +103,7 @@ def test_when_the_cause_is_gone_it_drives_on_as_soon_as_the_table_says(moving: M
     row, (happens, is_over) = ROWS[name], CAUSES[name]
     moving.sets_off()
     happens(moving)
-    moving.until(lambda: name in moving.faults)
+    moving.until(lambda: name in moving.faults, 62.0)
     moving.steps(0.4)
     is_over(moving)
     if name == "line_sensor":

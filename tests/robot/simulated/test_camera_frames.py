@@ -3,6 +3,8 @@
 import math
 import time
 from collections import Counter
+from contextlib import closing
+from pathlib import Path
 
 import cv2
 import numpy as np
@@ -10,6 +12,11 @@ import pytest
 import zxingcpp
 
 from maps import builtin_map
+from protocol.clock import SteppedClock
+from robot.assembly import Simulation, simulated_robot
+from robot.config import load_settings
+from robot.drivers.marker_pose import Optics
+from robot.drivers.marker_reader import MarkerReader
 from robot.simulated import CameraMount, Options, Pose
 from robot.simulated.faults import Faults
 from robot.simulated.frames import Renderer, View
@@ -43,6 +50,26 @@ def test_a_frame_is_what_opencv_would_give(make):
 
 def test_a_grey_camera_gives_grey_frames(make):
     assert make("post1", options=Options(camera=CameraMount(colour=False))).robot.camera.read()[1].shape == (480, 640)
+
+
+@pytest.mark.parametrize("size_px", [(160, 120), (320, 240), (640, 480), (800, 600), (1280, 720), (1920, 1080)])
+def test_the_settings_choose_the_size_and_the_view(size_px: tuple[int, int], tmp_path: Path):
+    """The marker at 350 mm is as large as perspective makes it, and from 320 × 240 on what people show is read."""
+    width, height = size_px
+    camera = {"width_px": width, "height_px": height, "field_of_view_deg": 75.0}
+    settings = load_settings(None, {"data": tmp_path, "camera": camera})
+    simulation = Simulation("post1", in_memory=True)
+    with closing(simulated_robot(settings, builtin_map("test_track"), SteppedClock(), simulation)) as robot:
+        frame = robot.camera.read()[1]
+        assert frame.shape == (height, width)
+        assert [robot.camera.get(prop) for prop in (cv2.CAP_PROP_FRAME_WIDTH, cv2.CAP_PROP_FRAME_HEIGHT)] == [*size_px]
+        if width == 160:
+            return
+        reader = MarkerReader(["post1"], Optics(75.0))
+        (seen,) = reader.look(frame, 0.0)
+        assert (seen.text, seen.left_mm) == ("post1", pytest.approx(350, abs=6))
+        robot.show_code(CODE)
+        assert [code.text for code in reader.look(robot.camera.read()[1], 0.0)] == [CODE]
 
 
 @pytest.mark.parametrize("start", ["post1", "post2", "post3", "post4", "post5", "dock"])

@@ -330,3 +330,13 @@ def test_many_visitors_are_served_at_once(home):
     for visitor in visitors:
         visitor.join()
     assert [answer["ok"] for answer in answers] == [True] * 8
+
+
+def test_with_a_share_of_slip_the_wheels_count_more_than_the_robot_moves(make):
+    bench = make()
+    bench.robot.set_fault("slip", 0.25)
+    bench.send(128, 131)
+    bench.drive(200, 200)
+    bench.run(3.0)
+    counted_mm = bench.ask(43) * 0.44456
+    assert bench.robot.driven_mm == pytest.approx(0.75 * counted_mm, rel=0.02)
