@@ -278,6 +278,7 @@ class Memory:
             self._write("grants", _LEGS, ())
             self._write("detour", _LEG, None)
             self._write("position", _POSITION, Position())
+            self._write("moment", _WORD, None)
 
     def detour(self) -> Leg | None:
         """The corridor into which the service sends it first, for as long as it holds the grant."""
@@ -294,6 +295,7 @@ class Memory:
             previous = before.previous if before.post == post else before.post
             position = Position(post=post, previous=previous, towards=towards, seen_at=at)
             self._write("position", _POSITION, position)
+            self._write("moment", _WORD, None)
             return position
 
     def head(self, towards: str | None) -> Position:
@@ -301,7 +303,16 @@ class Memory:
         with self._store.transaction():
             position = self.position().model_copy(update={"towards": towards})
             self._write("position", _POSITION, position)
+            self._write("moment", _WORD, None)
             return position
+
+    def moment(self) -> str | None:
+        """What it is about that leaves doubt of its place after a power cut (`navigation.remembering.Moment`)."""
+        return self._read("moment", _WORD, None)
+
+    def note_moment(self, moment: str) -> None:
+        """Until it is seen at a post, or heads for another one."""
+        self._write("moment", _WORD, moment)
 
     def closed(self) -> dict[str, datetime]:
         """The corridors in which it turned back, by name, and when."""
