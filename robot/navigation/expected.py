@@ -8,13 +8,13 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from maps import CampusMap
+from maps import CampusMap, Corridor
 from maps.geometry import seen_from
 
 from ..drivers.interfaces import Sighting
 from .approach import marker_point, robot_heading_rad
 from .place import AtPost, Between, Coming, Leaving, Place, Unknown
-from .steps import LEFT_MM
+from .steps import LEFT_MM, corridor_between
 
 SHARE, SLACK_MM = 0.08, 200.0
 """A marker comes so much earlier than the map says at most: calibrated wheels and tape measures err by 3 % and 40 mm
@@ -82,11 +82,13 @@ def _least_mm(at_mm: float | None, length_mm: float) -> float:
     return -math.inf if at_mm is None else at_mm - SHARE * length_mm - SLACK_MM
 
 
-def is_own(place: Place, post: str, here_mm: float) -> bool:
-    """A marker of the post that it has just left."""
-    begin_mm = place.begin_mm if isinstance(place, Between | Leaving) else None
-    behind = place.behind if isinstance(place, Between) else place.here
-    return post == behind and begin_mm is not None and abs(here_mm - begin_mm) < OWN_POST_MM
+def is_own(place: Place, post: str, here_mm: float, at_mm: float) -> bool:
+    """A marker of the post where it stands, or that it has just left: it says nothing."""
+    if isinstance(place, Between):
+        if post != place.behind or place.begin_mm is None:
+            return False
+        return abs(here_mm - place.begin_mm) < OWN_POST_MM or abs(at_mm - place.begin_mm) < SLACK_MM
+    return post == place.here
 
 
 def hangs_beside_this_line(campus: CampusMap, sighting: Sighting) -> bool:
@@ -101,10 +103,24 @@ def hangs_beside_this_line(campus: CampusMap, sighting: Sighting) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class Foreign:
-    """A marker that was not expected, and the way driven when it was read last."""
+    """A marker that was not expected, the way driven when it was read last, and where its post would be."""
 
     post: str
     travelled_mm: float
+    at_mm: float
+
+
+def wrong_corridor(campus: CampusMap, place: Between, foreign: Foreign, real_per_counted: float) -> Corridor | None:
+    """The corridor of the same post in which the robot would be if the foreign marker were true.
+
+    It found no marker where it should, and this one where another corridor ends: its turn met the wrong line.
+    """
+    corridor = corridor_between(campus, place.here, foreign.post)
+    if corridor is None or place.begin_mm is None or place.turned_round:
+        return None
+    length_mm = 1000 * corridor.length_m / real_per_counted
+    off_mm = abs(foreign.at_mm - place.begin_mm - length_mm)
+    return corridor if off_mm < SHARE * length_mm + SLACK_MM else None
 
 
 def agree(campus: CampusMap, first: Foreign, second: Foreign) -> bool:

@@ -15,9 +15,10 @@ from robot.duties import Duties
 from robot.memory import Memory
 from robot.navigation.closed import CLOSED_S
 from robot.navigation.directions import kept_from
-from robot.navigator import KEPT_POSTS, Navigator
+from robot.navigator import Navigator
 from robot.outbox import Outbox
 from robot.store import Store
+from robot.tracking import KEPT_POSTS
 from tests.robot.fake_body import FakeBody
 
 CAMPUS = builtin_map("test_track")

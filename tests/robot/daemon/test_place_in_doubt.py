@@ -53,6 +53,7 @@ def test_without_its_marker_it_stands_and_says_so_until_it_is_put_down_elsewhere
     stood_mm = second.robot.driven_mm
     second.passes(30)
     assert second.robot.driven_mm == stood_mm
+    assert second.mind.why and second.mind.why.sentence == "Waiting to be put down at a post or in a dock"
     second.robot.lift(True)
     second.passes(1)
     second.robot.place(start_pose(second.parts.navigator.campus, "post1:post2"))
