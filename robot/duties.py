@@ -100,6 +100,7 @@ class Duties:
                 self.memory.faults(),
                 self.memory.charge() is not None,
                 self.memory.loadings(),
+                self.memory.moment(),
                 self.memory.detour(),
             )
         self.revision += 1
@@ -355,4 +356,9 @@ class Duties:
 
     def heading_for(self, towards: str | None) -> None:
         self.memory.head(towards)
+        self._changed()
+
+    def note_moment(self, moment: str) -> None:
+        """Remembered at once: a power cut now leaves doubt of its place."""
+        self.memory.note_moment(moment)
         self._changed()

@@ -31,6 +31,8 @@ class Held:
     """The battery was low, and it is not full again yet."""
     loadings: Mapping[str, Loading] = field(default_factory=dict)
     """Where the mail aboard came from."""
+    moment: str | None = None
+    """What it is about that leaves doubt of its place after a power cut."""
     detour: Leg | None = None
     """The corridor into which the service sends it first, so that others can pass."""
 

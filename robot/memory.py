@@ -20,6 +20,7 @@ from protocol.envelope import TO_ROBOT, Envelope, type_of
 from protocol.parts import Leg, MissionHeld, Part, Position, Purpose, Received
 from protocol.sequence import Reception
 from protocol.to_robot import Detour, Grant, Mission, Verifier, Verifiers
+from robot.mission_updates import MissionConflict, conflict, next_undone
 from robot.store import Store
 
 KEPT_COMMANDS: Final = 200
@@ -40,12 +41,6 @@ _TIMES: Final = TypeAdapter(dict[str, datetime])
 _RECEIVED: Final = TypeAdapter(Received)
 _WORD: Final = TypeAdapter[str | None](str | None)
 _LEG: Final = TypeAdapter[Leg | None](Leg | None)
-
-
-class MissionConflict(ValueError):
-    """Other stops under the number of the mission that is held: one of the two sides is wrong. Nothing is changed."""
-
-    code = "mission_conflict"
 
 
 class Loading(Part):
@@ -89,7 +84,7 @@ class Memory:
 
     def next_stop(self) -> int:
         """Which stop of the mission comes next: 0 is the first, `len(stops)` means that all are done."""
-        return _next_undone(self.mission(), self._read("next_stop", _NUMBER, 0), self.done())
+        return next_undone(self.mission(), self._read("next_stop", _NUMBER, 0), self.done())
 
     def done(self) -> frozenset[str]:
         """The stops that were done before the last update; it may have put new ones before them."""
@@ -278,6 +273,7 @@ class Memory:
             self._write("grants", _LEGS, ())
             self._write("detour", _LEG, None)
             self._write("position", _POSITION, Position())
+            self._write("moment", _WORD, None)
 
     def detour(self) -> Leg | None:
         """The corridor into which the service sends it first, for as long as it holds the grant."""
@@ -294,6 +290,7 @@ class Memory:
             previous = before.previous if before.post == post else before.post
             position = Position(post=post, previous=previous, towards=towards, seen_at=at)
             self._write("position", _POSITION, position)
+            self._write("moment", _WORD, None)
             return position
 
     def head(self, towards: str | None) -> Position:
@@ -301,7 +298,16 @@ class Memory:
         with self._store.transaction():
             position = self.position().model_copy(update={"towards": towards})
             self._write("position", _POSITION, position)
+            self._write("moment", _WORD, None)
             return position
+
+    def moment(self) -> str | None:
+        """What it is about that leaves doubt of its place after a power cut (`navigation.remembering.Moment`)."""
+        return self._read("moment", _WORD, None)
+
+    def note_moment(self, moment: str) -> None:
+        """Until it is seen at a post, or heads for another one."""
+        self._write("moment", _WORD, moment)
 
     def closed(self) -> dict[str, datetime]:
         """The corridors in which it turned back, by name, and when."""
@@ -376,21 +382,6 @@ class Memory:
         with self._store.transaction() as database:
             text = kind.dump_json(value).decode()
             database.execute("INSERT OR REPLACE INTO facts (name, value) VALUES (?, ?)", (name, text))
-
-
-def _next_undone(mission: Mission | None, number: int, done: frozenset[str]) -> int:
-    """The first stop from this number on that was not done under an earlier update."""
-    stops = mission.stops if mission else ()
-    while number < len(stops) and stops[number].id in done:
-        number += 1
-    return number
-
-
-def conflict(held: Mission | None, offered: Mission) -> MissionConflict | None:
-    """The contradiction between two missions, if they are the same one under the same number with other stops."""
-    if held is None or (held.id, held.update) != (offered.id, offered.update) or held.stops == offered.stops:
-        return None
-    return MissionConflict(f"mission {held.id} update {held.update} came again with other stops; the first is kept")
 
 
 def _without(order_ids: Sequence[str], order_id: str) -> tuple[str, ...]:

@@ -12,12 +12,13 @@ from typing import Final
 import structlog
 
 from bdi import Agent, Finished, Message
+from maps import CampusMapError
 from protocol.parts import Activity, Battery
 from protocol.to_server import Snapshot, Why
 
 from .action.actions import Actions
 from .action.corridors import WAY_BLOCKED, detour, tried_again
-from .action.hands import Hands
+from .action.hands import PLACE_UNKNOWN, Hands
 from .config import PerceptMode, Settings
 from .held import REVOKED
 from .long_silence import LongSilence
@@ -59,7 +60,16 @@ class Mind:
     _why: Why | None = None
 
     def tick(self, now: float) -> None:
-        """Once every 100 ms or so."""
+        """Once every 100 ms or so. An error of the map stops the wheels, and ends no loop."""
+        try:
+            self._look_and_act(now)
+        except CampusMapError as error:
+            log.error("map_error", error=repr(error), exc_info=error)
+            self.actions.fail_all(PLACE_UNKNOWN)
+            self.hands.lose_place(error)
+            self.hands.body.heartbeat(now)
+
+    def _look_and_act(self, now: float) -> None:
         view = self.hands.view = self.hands.body.view
         self.hands.navigator.look(view)
         ended = self.actions.finished(now)  # before what the server wants: mail that came aboard cannot be cancelled
@@ -133,12 +143,13 @@ class Mind:
         hands, navigator = self.hands, self.hands.navigator
         where = Whereabouts(
             navigator.at,
-            navigator.position.previous,
+            hands.duties.held.position.previous,
             navigator.destination,
             navigator.way(),
             navigator.rests_at,
             navigator.moved,
             navigator.astray,
+            navigator.doubted,
             navigator.closed.names,
             aside.to_post if (aside := detour(hands)) else None,
         )
@@ -177,8 +188,10 @@ class Mind:
         if duties.forget_place_asked:
             duties.forget_place_asked = False
             navigator.lose_place(view)
-        elif duties.held.revoked and (navigator.here or navigator.position.approaching):
+        elif duties.held.revoked and navigator.is_known:
             duties.report_fault(REVOKED, "It knows where it is again.", navigator.at, cleared=True)
+        if navigator.is_known and not navigator.doubted:
+            duties.report_fault(PLACE_UNKNOWN, "It knows where it is again.", navigator.at, cleared=True)
 
     def _stop_or_rearm(self, view: View) -> None:
         """What the server wants. (The Spot button re-arms in the body itself.)"""

@@ -38,6 +38,7 @@ _WAITS: Final[dict[str, Callable[[Navigator], tuple[str, str | None]]]] = {
     "follow_line": lambda n: (_driving(n), None),
     "turn": lambda n: (f"Turning at {n.here}", None),
     "find_line": lambda _: ("Looking for the line", None),
+    "look_back": lambda n: (f"Looking for the marker of {n.towards or n.here}", None),
     "dock": lambda n: (f"Docking at {n.here}", None),
     "undock": lambda n: (f"Leaving the dock at {n.here}", None),
     "claim": lambda n: (f"Waiting at {n.here} for permission to drive on", "permission from the server"),
@@ -59,7 +60,7 @@ def reason(under_way: Sequence[str], view: View, navigator: Navigator, duties: D
     goal = _PURPOSES[stop.action].format(post=stop.post) if stop else None
     for fault in sorted(view.faults & _STAND.keys()):
         return Why(sentence=_STAND[fault], goal=goal, waiting_for="a person" if fault != "bump" else "a free way")
-    if duties.held.revoked:
+    if duties.held.revoked or (navigator.doubted and not under_way):
         return Why(sentence=TAKEN_AWAY, goal=goal, waiting_for="a person")
     if under_way:
         sentence, waiting_for = _of_action(under_way[-1], navigator)

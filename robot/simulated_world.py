@@ -1,4 +1,4 @@
-"""What a simulated world remembers: a real robot stays where it is when its computer dies, so this one must too."""
+"""What a simulated world remembers: the robot stands where its daemon died. (A real base rolls on for a while.)"""
 
 import json
 import os

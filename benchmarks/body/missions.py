@@ -8,7 +8,6 @@ injected fault. The judge knows where the mail really is, and compares it with w
 replay page: the command that each failure is listed with.
 """
 
-import logging
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import asdict
@@ -19,9 +18,7 @@ from tempfile import TemporaryDirectory
 from time import perf_counter
 from typing import Any
 
-import structlog
-
-from benchmarks.body.report import Samples, Wanted, say
+from benchmarks.body.report import Samples, Wanted, quietly, say
 from robot.scenarios.drawing import WORLDS, drawn
 from robot.scenarios.figures import Figures, Stopwatch, figures
 from robot.scenarios.stage import Stage
@@ -70,7 +67,7 @@ def measure(samples: Samples) -> dict[str, Any]:
 
 def fly(world: str, seed: int) -> Figures | str:
     """One mission. What breaks instead of ending is told as text, and counts as lost."""
-    structlog.configure(wrapper_class=structlog.make_filtering_bound_logger(logging.CRITICAL))
+    quietly()
     folder = MEMORY if MEMORY.is_dir() else None
     try:
         with TemporaryDirectory(prefix="mission-", dir=folder) as data, Stage(drawn(world, seed), Path(data)) as stage:

@@ -4,6 +4,7 @@ A part is a module of this package with a function `measure(samples: Samples) ->
 with `WANTED`, what these figures have to be. A figure is named by its path: `lead_60.completed_share`.
 """
 
+import logging
 import sys
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -110,6 +111,11 @@ def aligned(rows: Sequence[tuple[str, ...]]) -> str:
 def log_to_error_stream() -> None:
     """What the robot logs is no JSON: call it where a process begins whose output is read."""
     structlog.configure(logger_factory=lambda *_: structlog.PrintLogger(sys.stderr))
+
+
+def quietly() -> None:
+    """Of what the robots log only what is critical: call it where a process of a pool begins."""
+    structlog.configure(wrapper_class=structlog.make_filtering_bound_logger(logging.CRITICAL))
 
 
 def say(line: str) -> None:

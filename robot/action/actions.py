@@ -3,12 +3,18 @@
 from collections.abc import Iterable, Sequence
 from typing import Final, Protocol
 
+import structlog
+
+from maps import CampusMapError
+
 from ..config import PerceptMode
 from ..duties import NoSuchStop
 from .arguments import WrongArguments, checked
-from .hands import Hands
-from .runs import AtOnce, Ended, Run
+from .hands import PLACE_UNKNOWN, Hands
+from .runs import AtOnce, Ended, Ends, Run
 from .table import ACTIONS, PAPER_ACTIONS, Action
+
+log = structlog.get_logger("robot.actions")
 
 UNKNOWN: Final = "unknown_action"
 
@@ -32,6 +38,7 @@ class Actions:
         self._runs: dict[int, Run] = {}
         self._terms: dict[int, str] = {}
         self._dropped: list[Run] = []
+        self._is_off_the_map = False
 
     @property
     def under_way(self) -> tuple[str, ...]:
@@ -56,6 +63,14 @@ class Actions:
             # The mission was taken back while the agent was about to do its next step.
             self._hands.noted(f"cannot do {term}: {error}")
             return AtOnce(Ended("no_such_stop"))
+        except CampusMapError as error:
+            return AtOnce(self._off_the_map(error))
+
+    def _off_the_map(self, error: CampusMapError) -> Ended:
+        log.error("map_error", error=repr(error), exc_info=error)
+        self._hands.lose_place(error)
+        self._is_off_the_map = True
+        return Ended(PLACE_UNKNOWN)
 
     def _action(self, term: Term) -> Action:
         action = self._table.get((term.functor, len(term.args)))
@@ -66,11 +81,28 @@ class Actions:
             checked(term.functor, forms[0].takes, term.args, self._hands.navigator.campus)
         raise WrongArguments(UNKNOWN, f"this robot knows no action {term.functor}")
 
+    def _poll(self, run: Run, ends: Ends, now: float) -> Ended | None:
+        try:
+            return run.poll(ends, now)
+        except CampusMapError as error:
+            run.cancel()
+            return self._off_the_map(error)
+
+    def fail_all(self, reason: str) -> None:
+        """Everything under way ends, and with it every motion."""
+        for run in self._runs.values():
+            run.cancel()
+        self._dropped += self._runs.values()
+        self._runs = {id_: AtOnce(Ended(reason)) for id_ in self._runs}
+
     def finished(self, now: float) -> list[tuple[int, str | None]]:
         """Those that have ended since the last call, with the atom that says why if they failed."""
+        if self._is_off_the_map:
+            self._is_off_the_map = False
+            self.fail_all(PLACE_UNKNOWN)
         ends = {end.job: end for end in self._hands.body.finished()}
-        self._dropped = [run for run in self._dropped if run.poll(ends, now) is None]
-        ended = [(id_, run.poll(ends, now)) for id_, run in self._runs.items()]
+        self._dropped = [run for run in self._dropped if self._poll(run, ends, now) is None]
+        ended = [(id_, self._poll(run, ends, now)) for id_, run in self._runs.items()]
         done = [(id_, end.failure) for id_, end in ended if end]
         for id_, failure in done:
             if failure:

@@ -2,13 +2,18 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Final
 
+from maps import CampusMapError
 from protocol.to_server import Step
 
 from ..drivers.interfaces import BodyShape
 from ..duties import Duties
 from ..navigator import Navigator
 from ..skills.interfaces import Body, View
+
+PLACE_UNKNOWN: Final = "place_unknown"
+"""The fault of a robot that cannot tell where it is, and the reason for which its actions fail meanwhile."""
 
 
 @dataclass
@@ -29,6 +34,11 @@ class Hands:
     def place(self) -> str | None:
         """The post to name in a report: where the robot stands, or the last one it has seen."""
         return self.navigator.here
+
+    def lose_place(self, error: CampusMapError) -> None:
+        """An error of the map that was not foreseen: where the robot believed to be cannot be."""
+        self.navigator.lose_place(self.view)
+        self.duties.report_fault(PLACE_UNKNOWN, f"The robot has lost its place on the map: {error}", None)
 
     def report(self, step: Step, stop_id: str, reason: str | None = None) -> None:
         self.duties.report(step, stop_id, self.place, reason)

@@ -17,6 +17,7 @@ from ..skills import (
     DrivePulse,
     FindLine,
     FollowLine,
+    LookBack,
     PaperTurn,
     Say,
     Turn,
@@ -28,8 +29,8 @@ from ..skills.interfaces import Done, Skill
 from ..skills.tunes import TUNES
 from .arguments import Argument, Kind, Value, word
 from .corridors import CLOSED_BY, claim, mark_blocked, noted_move, release, reopen, set_destination
-from .hands import Hands
-from .runs import AtOnce, Rest, Run, SkillMaker, Skills, Unless
+from .hands import PLACE_UNKNOWN, Hands
+from .runs import AtOnce, Ended, Rest, Run, SkillMaker, Skills, Unless
 
 
 @dataclass(frozen=True)
@@ -61,6 +62,8 @@ FOLLOW_LEAST_S, FOLLOW_TIMES = 180.0, 3.0
 def _follow_line(hands: Hands, _: Sequence[Value], now: float) -> Run:
     """Along the line; a robot that looks aslant (its turn was interrupted) straightens up first."""
     navigator = hands.navigator
+    if navigator.doubted:
+        return AtOnce(Ended(PLACE_UNKNOWN))
     aslant_rad = navigator.aslant_rad
 
     def straighten() -> Skill | None:
@@ -86,10 +89,16 @@ def _follow_line(hands: Hands, _: Sequence[Value], now: float) -> Run:
             left_mm,
             ahead,
             ahead in navigator.unread,
-            navigator.position.sighted,
+            navigator.sighted,
+            navigator.expected(),
         )
 
     return Skills(hands.body, [straighten, follow], now, lambda done: navigator.reached(done.result, done.unread))
+
+
+def _look_back(hands: Hands, _: Sequence[Value], now: float) -> Run:
+    """Not farther back than half of the corridor that it holds."""
+    return _one(hands, LookBack(hands.navigator.doubted, hands.navigator.look_back_mm), now)
 
 
 def _turn(hands: Hands, arguments: Sequence[Value], now: float) -> Run:
@@ -202,6 +211,7 @@ _STEP = word("Step", *(step.value for step in Step))
 
 ACTIONS: Final = (
     Action("follow_line", (), "follow the line to the next marker", _follow_line),
+    Action("look_back", (), "back a little, until the marker of the post ahead is read", _look_back),
     Action("turn", (word("Way", "left", "right", "behind"),), "turn on the spot, by the map's angle", _turn),
     Action("find_line", (), "look for the line nearby", _find_line),
     Action("dock", (), "drive into the dock ahead, until it charges", _dock),

@@ -58,8 +58,16 @@
 // After a restart or an interruption between two posts: drive on, the next marker tells.
 +!reach_a_post : at(_).
 +!reach_a_post : docked.
++!reach_a_post : doubted(_) <- !look_back; !reach_a_post.
 +!reach_a_post : astray(_) <- turn(behind); !follow.
 +!reach_a_post <- !follow.
+
+// Switched off just before a post, it may have passed it, and stand in a corridor that it was not granted. It goes back a
+// little for the marker. Without one it stands until a person puts it down where it can read one, or in a dock.
++!look_back <- look_back.
+-!look_back
+  <- raise_fault(place_unknown, "it was switched off just before a post and cannot tell whether it has passed it");
+     .wait(not doubted(_)).
 
 // The watchdog of the way: follow_line itself gives up when no post comes where one should.
 +!follow <- !follow(1).

@@ -2,11 +2,8 @@
 
 import math
 
-from maps import CampusMap, NoRoute, shortest_route
+from maps import CampusMap, NoRoute, Post, shortest_route
 from maps.geometry import wrapped
-
-from ..drivers.interfaces import Odometry
-from .position import Position
 
 STRAIGHT_ON_RAD = math.radians(30)
 
@@ -22,19 +19,10 @@ def nearest_dock(campus: CampusMap, here: str, avoid: frozenset[str]) -> str | N
     return min(reachable)[1] if reachable else None
 
 
-def in_dock(campus: CampusMap, position: Position, home: str | None, odometry: Odometry) -> Position:
-    """In a dock the robot knows its place, whatever it believed: the last post seen if that has one, else home."""
-    here = campus.posts.get(position.current or "")
-    post = here if here and here.dock else campus.posts.get(home or "")
-    if post is None or post.dock is None:
-        return position
-    return Position(
-        current=post.name,
-        previous=position.previous if position.current == post.name else position.current,
-        facing_rad=post.dock.heading_rad,
-        spot_turn_rad=odometry.spot_turn_rad,
-        post_at_mm=odometry.ahead_mm,
-    )
+def dock_post(campus: CampusMap, *posts: str | None) -> Post | None:
+    """The first of these posts that has a dock: a robot that is docked is there, whatever it believed."""
+    known = (campus.posts.get(post or "") for post in posts)
+    return next((post for post in known if post and post.dock), None)
 
 
 def way_out(campus: CampusMap, here: str | None, towards: str | None) -> tuple[float | None, bool]:

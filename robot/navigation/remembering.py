@@ -1,19 +1,47 @@
 """What a robot that is switched on again knows of its place."""
 
+from enum import StrEnum
+
 from maps import CampusMap
 from protocol import parts
 
-from .position import Position
+from ..drivers.interfaces import Odometry
+from .place import AtPost, Between, Leaving, Looks, Place, Unknown
+from .steps import corridor_between
 
 
-def remembered(campus: CampusMap, position: parts.Position) -> Position:
-    """Where the robot was when it was switched off. `towards` was written down before it left or turned."""
+class Moment(StrEnum):
+    """What it was about, if a power cut then leaves doubt of its place; written down before it begins."""
+
+    TURNING = "turning"
+    """At a post: it may look anywhere."""
+    NEARING = "nearing"
+    """Before the post ahead: its base may have rolled on, beyond the post and what it was granted."""
+    LIFTED = "lifted"
+    """In a person's hands, until a marker or a dock has told where it is."""
+
+
+def remembered(campus: CampusMap, position: parts.Position, moment: Moment | None) -> tuple[Place, Looks | None]:
+    """Where the robot was when it was switched off, and how it looked. `towards` was written down before it left or
+    turned."""
     post, previous, towards = position.post, position.previous, position.towards
     if post is None or post not in campus.posts:
-        return Position()
-    beside = {neighbour.name: corridor for neighbour, corridor in campus.neighbours(post)}
+        return Unknown(lifted=moment is Moment.LIFTED), None
+    if moment is Moment.LIFTED:
+        return Unknown(post, frozenset(one for one in (post, towards) if one), lifted=True), None
+    came_by = corridor_between(campus, post, previous) if previous else None
+    if moment is Moment.TURNING:
+        return AtPost(post, 0.0, 0.0, came_by), None
     if towards:
-        facing_rad = beside[towards].heading_leaving(post) if towards in beside else None
-        return Position(post, previous, facing_rad, has_left=True)
-    facing_rad = beside[previous].heading_arriving(post) if previous in beside else None
-    return Position(post, previous, facing_rad, post_at_mm=0.0)
+        return _on_its_way(campus, post, towards, doubted=moment is Moment.NEARING)
+    facing_rad = came_by.heading_arriving(post) if came_by else None
+    return AtPost(post, 0.0, 0.0, came_by), Looks.of(facing_rad, Odometry())
+
+
+def _on_its_way(campus: CampusMap, post: str, towards: str, doubted: bool) -> tuple[Place, Looks | None]:
+    """`towards` may be the same post: it had turned round."""
+    corridor = corridor_between(campus, post, towards)
+    if corridor is None:
+        return Leaving(post, doubted=doubted), None
+    facing_rad = corridor.heading_leaving(post)
+    return Between(corridor, post, towards, doubted=doubted), Looks.of(facing_rad, Odometry())

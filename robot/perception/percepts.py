@@ -132,6 +132,12 @@ PERCEPTS: Final = (
         lambda s: [f"astray({s.where.astray})"] if s.where.astray else [],
     ),
     Percept(
+        "doubted",
+        "doubted(Post): it was switched off just before this post and may have passed it; until a marker, a dock or a "
+        "person who lifts it tells",
+        lambda s: [f"doubted({s.where.doubted})"] if s.where.doubted else [],
+    ),
+    Percept(
         "closed",
         "closed(Corridor): it turned back in there; no way leads through it for a while",
         lambda s: (f"closed({atom_or_text(name)})" for name in sorted(s.where.closed)),

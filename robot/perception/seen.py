@@ -22,6 +22,8 @@ class Whereabouts:
     """The post where it found itself after it had been moved, until it has taken note."""
     astray: str | None = None
     """The post that it drives towards by mistake, until it has turned round."""
+    doubted: str | None = None
+    """The post just before which it was switched off, while it cannot tell whether it has passed it."""
     closed: frozenset[str] = frozenset()
     """Corridors, by name, in which it turned back a short while ago."""
     detour: str | None = None

@@ -14,7 +14,7 @@ SETTLES_S = 5.0
 """Somebody who hears a tune reaches into the box; the robot's receipt may be a moment earlier."""
 
 
-NOTICES = frozenset(("marker_unread", "link_loss", "clock_jump", "disk_low"))
+NOTICES = frozenset(("marker_unread", "foreign_marker", "link_loss", "clock_jump", "disk_low"))
 """What is told of the world, and says of no mail that it will not arrive."""
 
 

@@ -19,6 +19,7 @@ from .interfaces import (
     Step,
     View,
 )
+from .look_back import LookBack
 from .paper import DrivePulse, PaperTurn
 from .say import Say
 from .turn import Turn
@@ -32,6 +33,7 @@ __all__ = [
     "FindLine",
     "FollowLine",
     "JobEnd",
+    "LookBack",
     "Outcome",
     "PaperTurn",
     "Play",

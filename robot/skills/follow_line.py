@@ -9,6 +9,7 @@ from typing import ClassVar
 from maps import CampusMap
 
 from ..drivers.interfaces import STOP, BodyShape, WheelSpeeds
+from ..navigation.expected import Expected
 from .find_line import FindLine, over_line
 from .give_way import GiveWay, most_mm_s
 from .interfaces import Done, Failed, Running, Step, View
@@ -61,16 +62,18 @@ class FollowLine:
         ahead: str | None = None,
         unread: bool = False,
         sighted: tuple[str, float] | None = None,
+        expected: Expected | None = None,
     ) -> None:
         """`leaving`: the post it sets out from, if known: it tells which marker the next post will show.
         `way_left_mm`: how far the next post is by the map, if known; `ahead`: which one that is. With both, a post
         whose marker cannot be read is reached by map and wheels; `unread`: it could not be read the last time.
-        `sighted`: the post whose marker has been seen already, and where it is by odometry's `ahead_mm`."""
+        `sighted`: the post whose marker has been seen already, and where it is by odometry's `ahead_mm`. `expected`:
+        which markers may come next; at any other it drives by."""
         self._campus, self._leaving, self._cruise_mm_s = campus, leaving, cruise_mm_s
         self._shape = shape or BodyShape()
         self._look_ahead_mm = gains(self._shape.sensor_lead_mm).look_ahead_mm
         self._way_left_mm, self._ahead, self._is_unread = way_left_mm, ahead, unread
-        self._sighted = sighted
+        self._sighted, self._expected = sighted, expected
         self.limit_s = limit_s
 
     def start(self, view: View, now: float) -> None:
@@ -84,7 +87,7 @@ class FollowLine:
         self._branch_since_mm: float | None = None
         self._search: FindLine | None = None
         self._searches, self._searched_mm = 0, -FRUITLESS_MM
-        self._post = PostAhead(self._campus, self._leaving, view.odometry, now, self._sighted)
+        self._post = PostAhead(self._campus, self._leaving, view.odometry, now, self._sighted, self._expected)
         self._unread = UnreadPost(
             self._campus, self._leaving, self._ahead, view.odometry, self._way_left_mm, self._shape
         )
@@ -139,9 +142,10 @@ class FollowLine:
         return Running(STOP) if self._suppose_post() else Failed("post_missed")
 
     def _suppose_post(self) -> bool:
-        """Nobody reads its marker: it is where the tape shows it, else where the map says. False: not known."""
+        """Its marker cannot be read: it is where the tape shows it, else where the map says. False: not known, or a
+        foreign marker says that the robot may be elsewhere."""
         at_mm = self._unread.place_mm(self._line_end_mm)
-        if self._ahead is None or at_mm is None:
+        if self._ahead is None or at_mm is None or self._post.foreign:
             return False
         self._post.suppose(self._ahead, at_mm)
         return True

@@ -7,10 +7,9 @@ from maps import CampusMap
 
 from ..drivers.interfaces import Odometry
 from ..navigation.approach import arrival_heading_rad, post_ahead_mm
+from ..navigation.expected import OWN_POST_MM, Expected, hangs_beside_this_line
 from .interfaces import View
 
-OWN_POST_MM = 600.0
-"""A marker of the post it set out from does not count so near to it."""
 SHARP_MM = 40.0
 """The nearer to abreast the marker is, the less its distance ahead depends on how the camera was mounted."""
 BESIDE_MM = 300.0
@@ -29,10 +28,14 @@ class PostAhead:
         begin: Odometry,
         now: float,
         sighted: tuple[str, float] | None = None,
+        expected: Expected | None = None,
     ) -> None:
         """`sighted`: the post whose marker was seen before, and where it is by odometry's `ahead_mm`: from so near that
-        its marker may not come into sight again."""
+        its marker may not come into sight again. `expected`: which may be read; None: any."""
         self._campus, self._leaving, self._begin = campus, leaving, begin
+        self._expected = expected or Expected()
+        self.foreign = self._expected.foreign
+        """A marker was read that cannot be here: it may not be where it believes to be."""
         self._sighted_s = now
         self.name: str | None = None
         self.supposed = False
@@ -55,7 +58,13 @@ class PostAhead:
         along_mm = seen.ahead_mm * math.cos(line_heading) + seen.left_mm * math.sin(line_heading)
         heading = arrival_heading_rad(self._campus, self._leaving, seen.text)
         ahead_mm = post_ahead_mm(self._campus, replace(seen, ahead_mm=along_mm), heading)
-        if ahead_mm is not None and (self.name in (None, seen.text) or ahead_mm > 0):
+        if ahead_mm is None:
+            return
+        at_mm, disturbed = view.post_odometry.ahead_mm + ahead_mm, view.find_line_episodes + view.bumps
+        if not self._expected.allows(seen.text, at_mm, disturbed):
+            self.foreign = self.foreign or hangs_beside_this_line(self._campus, seen)
+        elif self.supposed or self.name in (None, seen.text):
+            self.foreign = False
             self._take(seen.text, view.post_odometry, ahead_mm, 1 / (SHARP_MM + abs(along_mm)) ** 2, line_heading)
 
     def suppose(self, post: str, at_mm: float) -> None:

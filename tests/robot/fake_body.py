@@ -86,13 +86,20 @@ class FakeBody:
                 "spot_turn_rad": old.spot_turn_rad + by_rad,
             }
         )
-        self.view = replace(self.view, odometry=turned)
+        self.view = replace(self.view, odometry=turned, motion=None)
 
     def follows_line(self, bending_rad: float = 0.0) -> None:
         """A follower has the wheels; the line bends (left positive)."""
         old = self.view.odometry
         odometry = replace(old, heading_rad=old.heading_rad + bending_rad)
         self.view = replace(self.view, odometry=odometry, motion="follow_line")
+
+    def searched(self) -> None:
+        """It has lost the line and found it again."""
+        self.view = replace(self.view, find_line_episodes=self.view.find_line_episodes + 1)
+
+    def has(self, *faults: str) -> None:
+        self.view = replace(self.view, faults=frozenset(faults))
 
     def sees(self, post: str) -> None:
         """The marker of a post abreast of the camera: 300 mm before the post."""

@@ -16,7 +16,8 @@ from protocol.envelope import Envelope, type_of
 from protocol.parts import Leg, Part, Position, Purpose, Received, Stop, StopAction
 from protocol.sequence import Reception
 from protocol.to_robot import Cancel, Grant, Mission, Verifier, Verifiers
-from robot.memory import Incoming, Memory, MissionConflict
+from robot.memory import Incoming, Memory
+from robot.mission_updates import MissionConflict
 from robot.outbox import Outbox
 from robot.store import Store
 

@@ -78,3 +78,36 @@ def test_without_knowing_which_way_it_looked_it_doubts_nothing(store: Store) -> 
 )
 def test_only_what_is_surely_another_corridor_counts(looks_deg: float, really: str | None) -> None:
     assert really_towards(TRACK, "post3", "post2", math.radians(looks_deg)) == really
+
+
+def test_out_of_its_dock_it_knows_by_its_compass_which_line_it_took(store: Store) -> None:
+    walk = Walk(store, home="uc", campus=builtin_map("carleton"))
+    walk.body.battery(0.5, docked=True)
+    walk.look()
+    walk.body.battery(0.5)
+    walk.body.turns(math.pi)
+    walk.look()
+    walk.navigator.undocked()
+    walk.body.turns(math.radians(-90))
+    walk.look()
+    walk.navigator.turned()
+    walk.navigator.leave()
+    assert walk.navigator.towards == "canal"
+    walk.body.follows_line(math.radians(90))  # a search brought it onto the line to the west
+    walk.body.rolls(200.0)
+    walk.look()
+    assert (walk.navigator.astray, walk.navigator.towards) == ("azrieli", "azrieli")
+
+
+def test_a_marker_where_another_corridor_ends_tells_on_the_way_back_which_line_it_took(walk: Walk) -> None:
+    walk.turns("left")
+    walk.navigator.leave()
+    assert walk.navigator.towards == "post2"
+    walk.body.rolls(1700.0)
+    walk.body.sees("post5")
+    walk.look()
+    walk.body.rolls(450.0)
+    walk.look()
+    assert (walk.navigator.at, walk.navigator.towards) == (None, "post2"), "one alone is not believed"
+    walk.turns("behind")
+    assert (walk.navigator.came_from, walk.navigator.towards) == ("post5", "post3")

@@ -10,8 +10,8 @@ import pytest
 from maps import builtin_map
 from protocol.parts import Leg
 from robot.drivers.interfaces import Sighting
-from robot.navigation.moved import cannot_be_next, facing_by
-from robot.navigation.position import Position
+from robot.navigation.expected import hangs_beside_this_line
+from robot.navigation.facing import facing_by
 from robot.store import Store
 from tests.robot.test_navigator import Walk
 
@@ -49,13 +49,19 @@ def sees_and_rolls(walk: Walk, post: str) -> None:
     walk.look()
 
 
-def test_a_marker_that_cannot_be_next_says_that_it_was_moved(walk: Walk) -> None:
+def test_two_markers_that_agree_say_that_it_was_moved(walk: Walk) -> None:
     walk.navigator.leave()
     walk.body.rolls(700.0)
+    walk.look()
+    sees_and_rolls(walk, "post3")
+    assert (walk.navigator.moved, walk.navigator.at) == (None, None), "one alone may be a stranger's"
+    assert walk.duties.held.grants == (LEG,)
+    walk.body.rolls(1700.0)
     walk.look()
     sees_and_rolls(walk, "post4")
     assert (walk.navigator.moved, walk.navigator.at) == ("post4", "post4")
     assert walk.duties.held.grants == (), "it is not in that corridor any more"
+    assert "foreign_marker" not in walk.duties.held.faults
     walk.navigator.destination = "post3"
     assert walk.navigator.way() == "behind", "post4 has one way in, so its marker says where the robot looks"
     walk.navigator.noted_move()
@@ -91,6 +97,7 @@ def test_put_down_before_a_crossing_it_asks_for_every_corridor_that_it_may_get_i
     ways = {Leg(from_post="post3", to_post=post.name) for post, _ in TRACK.neighbours("post3")}
     assert (walk.navigator.at, len(ways)) == ("post3", 3)
     assert set(walk.navigator.first_legs("post4")) == ways, "all its markers look the same"
+    walk.navigator.leave()
     walk.navigator.reached("post4")
     assert walk.navigator.first_legs("post3") == (Leg(from_post="post4", to_post="post3"),)
 
@@ -124,14 +131,10 @@ def test_the_way_left_in_the_corridor_is_known_from_map_and_wheels(walk: Walk) -
 
 
 def test_a_marker_across_the_room_moves_nobody():
-    position = Position.placed(TRACK, "post1", "post2")
-    assert cannot_be_next(TRACK, position, Sighting("post4", 1.0, 0.0, 350.0))
-    assert not cannot_be_next(TRACK, position, Sighting("post4", 1.0, 0.0, 1200.0))
-    assert not cannot_be_next(TRACK, position, Sighting("post2", 1.0, 0.0, 350.0))
-    assert not cannot_be_next(TRACK, Position(), Sighting("post4", 1.0, 0.0, 350.0)), "nothing was known before"
+    assert hangs_beside_this_line(TRACK, Sighting("post4", 1.0, 0.0, 350.0))
+    assert not hangs_beside_this_line(TRACK, Sighting("post4", 1.0, 0.0, 1200.0))
 
 
 def test_at_a_post_with_three_ways_in_the_marker_needs_odometry_to_tell_the_heading():
-    sighting = Sighting("post3", 1.0, 0.0, 350.0)
-    assert facing_by(TRACK, sighting, None) is None
-    assert facing_by(TRACK, sighting, 0.2) == pytest.approx(0.0)
+    assert facing_by(TRACK, "post3", None) is None
+    assert facing_by(TRACK, "post3", 0.2) == pytest.approx(0.0)

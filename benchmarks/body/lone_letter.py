@@ -1,0 +1,177 @@
+"""One letter for one simulated robot in stepped time: people at both ends, and a service that grants what is claimed.
+
+The robot may be killed and started again on what it left on its disk. All the time the truth is compared with what it
+was granted and with where it believes to stand.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from hashlib import sha256
+from pathlib import Path
+from random import Random
+
+from maps import corridor_name
+from protocol.clock import SteppedClock
+from protocol.parts import Leg, Part, Purpose, Stop, StopAction
+from protocol.to_robot import Grant, Mission, Verifier, Verifiers
+from protocol.to_server import Claim, Clear, Event, Fault, HandoverReceipt
+from robot.assembly import Simulation, assemble
+from robot.config import load_settings
+from robot.duties import Duties
+from robot.memory import Incoming
+from robot.runners import LockstepRunner
+from robot.scenarios.campus import campus_of
+from robot.scenarios.drawing import WORLDS
+from robot.scenarios.places import POST_ROOM_M, corridor_at
+from robot.simulated import World
+
+DEAD_S = 3.0
+SHOWN_FOR_S = 4.0
+AT_DOCK_M = 1.0
+LIMIT_S = 2500.0
+SETTINGS = {"rates.line_hz": 50.0, "battery.simulated_charger_ma": 60_000.0}
+STOPS = {Purpose.LOAD: StopAction.LOAD, Purpose.RECEIVE: StopAction.RECEIVE}
+
+
+@dataclass
+class Service:
+    """Grants every claim at once; `held` are the corridors that it believes to be the robot's."""
+
+    duties: Duties
+    held: list[Leg] = field(default_factory=list)
+    told: list[Part] = field(default_factory=list)
+    online: bool = True
+    heard: int = 0
+    _said: int = 0
+    _waiting: list[Incoming] = field(default_factory=list)
+
+    def incoming(self) -> Sequence[Incoming]:
+        """Called in every tick of the mind: that is when the robot is heard, too."""
+        for kept in self.duties.outbox.pending(after=self.heard, limit=1000):
+            self.heard = kept.seq
+            self.told.append(kept.message)
+            self._hear(kept.message)
+        taken, self._waiting = self._waiting, []
+        return taken
+
+    def _hear(self, message: Part) -> None:
+        match message:
+            case Claim(claim_id=claim_id, legs=legs):
+                self.held += [leg for leg in legs if leg not in self.held]
+                self.duties.memory.grant(legs)
+                self._said += 1
+                self._waiting.append(Incoming(Grant(claim_id=claim_id, legs=legs), "service", self._said))
+            case Clear(leg=leg):
+                self.held.remove(leg)
+
+    def wake(self) -> None:
+        pass
+
+
+class LetterRun:
+    """`run` until `stop` says so, the letter is delivered and the robot at home, or the time is over."""
+
+    def __init__(self, folder: Path, world: str, seed: int) -> None:
+        self.random, self._world, self._seed = Random(f"{world}/{seed}/letter"), world, seed
+        self._folder, self.clock, self.campus = folder, SteppedClock(), campus_of(WORLDS[world])
+        self._home = self.random.choice(self.campus.docks()).name
+        self._codes = {purpose: f"CM1:{self.random.randbytes(16).hex()}" for purpose in STOPS}
+        self.told: list[Part] = []
+        self.problems: list[str] = []
+        self._held: list[Leg] = []
+        self._heard = 0
+        self._wanted: Callable[[], bool] = lambda: False
+        self.start()
+        self._give_letter()
+
+    def start(self) -> None:
+        """For the first time, or on what it left when it was killed."""
+        settings = load_settings(None, {**SETTINGS, "data": self._folder, "home": self._home})
+        world = World(self.campus, seed=self._seed)
+        simulation = Simulation(f"dock:{self._home}", 0.9, self._seed, in_memory=True, world=world)
+        self.parts = assemble(settings, self.clock, simulation)
+        assert self.parts.robot is not None
+        self.robot, self.mind, self.navigator = self.parts.robot, self.parts.mind, self.parts.navigator
+        self._service = Service(self.mind.hands.duties, self._held, self.told, heard=self._heard)
+        self.mind.hands.duties.join(self._service)
+        self._runner = LockstepRunner(self.parts.daemon.loops(), self.clock)
+        self.parts.daemon.watchers = (self._look,)
+
+    def kill(self) -> None:
+        """As SIGKILL does: nothing is tidied up; it stays dead for a moment."""
+        self._heard = self._service.heard
+        self.parts.daemon.close_devices()
+        self.clock.advance(DEAD_S)
+
+    def close(self) -> None:
+        self.parts.daemon.close(self._runner.now_s)
+
+    def run(self, stop: Callable[[], bool] = lambda: False) -> bool:
+        """Whether `stop` ended it."""
+        self._wanted = stop
+        self._runner.run()
+        self._runner.restart()
+        return stop()
+
+    def _look(self, now: float) -> None:
+        self._judge()
+        waited_for = next((one for one in self.mind.actions.under_way if one.startswith("wait_handover(")), None)
+        if waited_for and self.robot.camera.shown is None:
+            purpose = Purpose(waited_for.removeprefix("wait_handover(").split(",")[0])
+            self.robot.show_code(self._codes.get(purpose, self._codes[Purpose.LOAD]), SHOWN_FOR_S)
+        if self._wanted() or self.is_over or now > LIMIT_S:
+            self._runner.stop()
+
+    # The truth.
+
+    def distance_m(self, post: str) -> float:
+        pose = self.robot.pose
+        return math.dist(self.campus.post(post).point, (pose.x_m, pose.y_m))
+
+    def _judge(self) -> None:
+        pose, at = self.robot.pose, self.navigator.at
+        corridor = corridor_at(self.campus, pose.x_m, pose.y_m)
+        granted = {corridor_name(leg.from_post, leg.to_post) for leg in self._held}
+        if corridor and corridor not in granted:
+            self._complain(f"in {corridor} without a grant")
+        if at and self.distance_m(at) > (AT_DOCK_M if self.campus.post(at).dock else POST_ROOM_M):
+            self._complain(f"believes to stand at {at}")
+
+    def _complain(self, problem: str) -> None:
+        if not any(one.startswith(problem) for one in self.problems):
+            self.problems.append(f"{problem} at {self.clock.now():.1f} s")
+
+    @property
+    def delivered(self) -> bool:
+        happened = [message.happened for message in self.told if isinstance(message, Event)]
+        return [one.purpose for one in happened if isinstance(one, HandoverReceipt)] == list(STOPS)
+
+    @property
+    def is_over(self) -> bool:
+        return self.delivered and self.robot.docked and self.mind.is_quiet
+
+    def faults(self, name: str) -> int:
+        """How often people were told that it began."""
+        happened = [message.happened for message in self.told if isinstance(message, Event)]
+        return sum(isinstance(one, Fault) and one.name == name and not one.cleared for one in happened)
+
+    # The letter.
+
+    def _give_letter(self) -> None:
+        duties, places = self.mind.hands.duties, self.random.sample(sorted(self.campus.posts), 2)
+        verifiers = [
+            Verifier(
+                order_id="o1",
+                purpose=purpose,
+                sha256=sha256(code.encode()).hexdigest(),
+                expires_at=self.clock.utc().replace(year=2999),
+            )
+            for purpose, code in self._codes.items()
+        ]
+        duties.memory.keep_verifiers(Verifiers(verifiers=tuple(verifiers)), self.clock.utc())
+        stops = tuple(
+            Stop(id=f"s{purpose}", post=post, action=action, order_id="o1", wait_limit_s=1e6)
+            for (purpose, action), post in zip(STOPS.items(), places, strict=True)
+        )
+        duties.give(Mission(id="m1", update=1, stops=stops))

@@ -1,0 +1,17 @@
+"""Short runs of the benchmark's kills before posts and of its strangers with codes."""
+
+import pytest
+
+from benchmarks.body import foreign_codes, near_posts
+
+
+def test_a_robot_killed_just_before_posts_enters_nothing_ungranted_and_delivers():
+    outcome = near_posts.letter("track", 9001, kills=3)
+    assert (outcome.kills, outcome.delivered, outcome.problems, outcome.asked_person) == (3, True, (), 0)
+
+
+@pytest.mark.parametrize("seed", [9001, 9002])
+def test_no_code_of_a_stranger_is_believed(seed: int) -> None:
+    showing = foreign_codes.showing("track", seed)
+    assert showing.shown != "nothing"
+    assert (showing.delivered, showing.problems) == (True, ())
