@@ -44,6 +44,7 @@ WANTED = tuple(
         Wanted(f"{world}.not_home_share", at_most=NOT_HOME, unit="of missions"),
         Wanted(f"{world}.find_line_share", at_most=0.02, unit="of drive time"),
         Wanted(f"{world}.time_ratio_mean", at_most=1.25),
+        Wanted(f"{world}.cruise_ratio_mean", at_most=1.15),
     )
 )
 
@@ -84,6 +85,7 @@ def summary(results: Sequence[Figures | str], world: str) -> dict[str, Any]:
     letters = len(fates) + len(results) - len(ended)
     plain = [one for one in ended if one.without_faults]
     ratios = [one.time_ratio for one in ended if one.time_ratio is not None]
+    at_cruise = [one.cruise_ratio for one in ended if one.cruise_ratio is not None]
     broken = len(results) - len(ended)
     needless = sum(len(one.unexpected) for one in ended)
     not_home = sum(not one.home for one in ended)
@@ -105,6 +107,8 @@ def summary(results: Sequence[Figures | str], world: str) -> dict[str, Any]:
         "bumps": sum(one.bumps for one in ended),
         "time_ratio_mean": mean(ratios) if ratios else None,
         "time_ratio_worst": max(ratios, default=None),
+        "cruise_ratio_mean": mean(at_cruise) if at_cruise else None,
+        "cruise_ratio_worst": max(at_cruise, default=None),
         "failures": [_failure(world, one) for one in ended if _is_failure(one)]
         + [{"problem": one} for one in results if isinstance(one, str)],
     }
@@ -124,7 +128,7 @@ def _line(world: str, seed: int, result: Figures | str) -> str:
     if isinstance(result, str):
         return f"  {world} {seed}: {result}"
     fates = ", ".join(result.fates.values())
-    ratio = f"{result.time_ratio:.2f}" if result.time_ratio else "–"
+    ratio = f"{result.time_ratio:.2f} (at cruise {result.cruise_ratio:.2f})" if result.cruise_ratio else "–"
     search = result.search_s / max(1.0, result.drive_s)
     problems = [*result.whys.values(), *result.violations[:1], *(() if result.home else ("not home",))]
     spent = f"{result.ran_s:.0f} s, time ratio {ratio}, find_line {search:.1%}"

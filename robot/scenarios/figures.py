@@ -42,6 +42,8 @@ class Figures:
     mission_s: float | None
     way_m: float
     stops_s: float
+    cruise_m_s: float
+    """The robot's own, by its settings."""
     unexpected: list[str]
     """Letters that did not arrive although both people came."""
 
@@ -50,8 +52,13 @@ class Figures:
         """Mission time ÷ (way ÷ 150 mm/s + stops)."""
         return None if self.mission_s is None else self.mission_s / (self.way_m / MISSION_SPEED_M_S + self.stops_s)
 
+    @property
+    def cruise_ratio(self) -> float | None:
+        """Mission time ÷ (way ÷ cruise + stops): what turns, docks and slow stretches cost."""
+        return None if self.mission_s is None else self.mission_s / (self.way_m / self.cruise_m_s + self.stops_s)
+
     def as_json(self) -> dict[str, Any]:
-        return {**asdict(self), "time_ratio": self.time_ratio}
+        return {**asdict(self), "time_ratio": self.time_ratio, "cruise_ratio": self.cruise_ratio}
 
 
 class Stopwatch:
@@ -99,6 +106,7 @@ def figures(stage: Stage, stopwatch: Stopwatch, ending: Ending) -> Figures:
         mission_s=None if done_s is None else done_s - begun_s,
         way_m=0.0 if done_s is None else _way_m(stage, stopwatch, done_s),
         stops_s=_stops_s(stopwatch),
+        cruise_m_s=stage.actors[0].parts.mind.settings.drive.cruise_mm_s / 1000,
         unexpected=_unexpected(scenario, ending),
     )
 
