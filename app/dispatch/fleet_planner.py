@@ -58,7 +58,7 @@ class FleetPlanner:
         if decision is not None and changes and not await self._carry_out(timetable, decision, changes):
             return True
         left = [order for order in waiting if changes is None or order not in changes.given]
-        if left:
+        if left and not _has_not_seen(timetable, work):
             await explain(self._fleet, answers(work, decision, left))
         if changes:
             self._something_new.set()
@@ -141,3 +141,11 @@ class FleetPlanner:
         if len(decision.routes) < 2 or len(decision.robot_of()) < 2:
             return decision
         return await self._process.improved(decision, self._fleet.settings.planning_budget_s) or decision
+
+
+def _has_not_seen(timetable: Timetable | None, work: OpenWork) -> bool:
+    """Whether a robot has come that the timetable knows from its next look on, which wakes dispatch: nothing can be
+    said before of why orders wait."""
+    return timetable is not None and any(
+        robot.is_there for name, robot in work.robots.items() if name not in timetable.known
+    )
