@@ -5,9 +5,9 @@ from collections.abc import AsyncIterator
 from contextlib import suppress
 from typing import Final
 
-REST: Final = 9
+REST: Final = 19
 """A busy service has other things to do than to look again: a rest of so many times as long as a look has taken, so
-that no look takes more than a tenth of the time."""
+that none of the four or five who look round takes more than a twentieth of the time."""
 LONGEST_REST_S: Final = 1.0
 """Real seconds. A look that had to wait for others took long without having done much."""
 

@@ -53,7 +53,7 @@ class FleetPlanner:
         """Give waiting orders to robots; whether to look again at once, since what was decided on has changed."""
         work, timetable = await self._look(), self._desk.timetable
         waiting = [order.id for order in work.waiting]
-        decision = self._decide(work, timetable) if timetable is not None else None
+        decision = self._decide(work, timetable) if timetable is not None and work.connected else None
         changes = changes_of(work, decision) if decision is not None else None
         if decision is not None and changes and not await self._carry_out(timetable, decision, changes):
             return True

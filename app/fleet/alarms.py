@@ -7,6 +7,7 @@ import structlog
 from sqlmodel import col, select, update
 from sqlmodel.ext.asyncio.session import AsyncSession
 
+from app.database import connection_of
 from app.notify.service import tell_dispatchers
 from app.tables import Alarm
 
@@ -33,4 +34,5 @@ async def clear_alarms(session: AsyncSession, robot: str, name: str, now: dateti
     over = update(Alarm).where(col(Alarm.robot) == robot, col(Alarm.name) == name, col(Alarm.cleared_at).is_(None))
     if about:
         over = over.where(col(Alarm.reason).contains(about, autoescape=True))
-    await session.exec(over.values(cleared_at=now))
+    # Past the session: it is asked at each greeting, and nearly always there is none.
+    await (await connection_of(session)).execute(over.values(cleared_at=now))
