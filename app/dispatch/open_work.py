@@ -13,6 +13,7 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.database import connection_of
 from app.dispatch.situation import LOAD_POST, WAITING_AT_A_STOP, is_aboard, is_waiting
+from app.fleet.homes import WITHOUT_A_HOME
 from app.orders.stops import is_own
 from app.orders.transitions import MAIL_ABOARD, ROBOT_COMING
 from app.tables import MissionRow, MissionState, Order, OrderState, Priority, RobotCommand, RobotRow, StopRow
@@ -59,9 +60,9 @@ class HeldUp(StrEnum):
 
 
 class RobotNow(NamedTuple):
-    """`takes_work`: it may be given orders. `gives_away`: others may fetch what it has not loaded (it is paused, or
-    something keeps it where it is). One that does neither is left alone with what it has. `has_stopped`: it says so.
-    `held_up`: until a person has done something about it."""
+    """`takes_work`: it may be given orders. `gives_away`: others may fetch what it has not loaded (it is paused, its
+    home is another's, or something keeps it where it is). One that does neither is left alone with what it has.
+    `has_stopped`: it says so. `held_up`: until a person has done something about it."""
 
     name: str
     post: str | None
@@ -160,7 +161,7 @@ def _held_up(row: Any, stuck: Container[str | None], paused: Container[str]) -> 
 
 
 def _robot(row: Any, *, is_busy: bool, held_up: HeldUp | None) -> RobotNow:
-    is_paused = held_up is HeldUp.PAUSED
+    is_paused = held_up is HeldUp.PAUSED or row.is_without_a_home
     is_there = row.online and row.taken_out_at is None and not is_busy
     has_stopped = row.activity == Activity.STOPPED
     takes_work, gives_away = is_there and not is_paused and not has_stopped, is_there and (is_paused or has_stopped)
@@ -211,6 +212,7 @@ _ROBOTS: Final = select(
     *(col(RobotRow.name), col(RobotRow.post), col(RobotRow.battery_ratio), col(RobotRow.charging)),
     *(col(RobotRow.docked), col(RobotRow.home)),
     *(col(RobotRow.online), col(RobotRow.activity), col(RobotRow.taken_out_at)),
+    col(RobotRow.name).in_(WITHOUT_A_HOME).label("is_without_a_home"),
 )
 _MISSIONS: Final = (
     select(col(MissionRow.id), col(MissionRow.robot))

@@ -26,6 +26,7 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 from app.database import connection_of
 from app.dispatch.choice import ENOUGH_CHARGE, IdleRobot, WaitingOrder, counts_since
 from app.dispatch.insertion import Tour, Visit
+from app.fleet.homes import WITHOUT_A_HOME
 from app.orders.stops import stops_left
 from app.orders.transitions import MAIL_ABOARD
 from app.tables import MissionRow, MissionState, Order, OrderState, Priority, RobotCommand, RobotRow, StopRow
@@ -138,7 +139,7 @@ def _is_idle() -> ColumnElement[bool]:
         col(RobotCommand.kind) == "recall",
     )
     can_drive = and_(col(RobotRow.activity) != Activity.STOPPED, col(RobotRow.taken_out_at).is_(None))
-    is_there = and_(col(RobotRow.online), can_drive)
+    is_there = and_(col(RobotRow.online), can_drive, col(RobotRow.name).not_in(WITHOUT_A_HOME))
     return and_(is_there, ~on_mission, ~carries, ~is_recalled)
 
 
@@ -206,6 +207,7 @@ def _under_way() -> Select[str, str, str]:
         ~col(MissionRow.id).startswith("return-"),
         col(RobotRow.online),
         col(RobotRow.activity) != Activity.STOPPED,
+        col(RobotRow.name).not_in(WITHOUT_A_HOME),
         ~stands,
         ~in_trouble,
         ~commanded,

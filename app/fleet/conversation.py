@@ -13,6 +13,7 @@ from app.fleet import outbox
 from app.fleet.alarms import raise_alarm
 from app.fleet.errors import OutOfTurn, WrongRobot
 from app.fleet.greeting import greet
+from app.fleet.homes import check_home
 from app.fleet.intake import Intake, TokenRevoked
 from app.fleet.outbox import Waiting
 from app.fleet.tokens import note_use
@@ -129,7 +130,11 @@ class Conversation:
             robot = await robot_row(session, self.robot)
             if before is not None:
                 await self._note_second(session, before.journal)
-            greeted = await greet(session, fleet, robot, envelope, hello)
+            refusal = await check_home(session, fleet.campus, robot, hello, fleet.clock.utc())
+            if refusal is None:
+                greeted = await greet(session, fleet, robot, envelope, hello)
+        if refusal is not None:
+            raise refusal  # after the commit: its alarm stays
         self._server_journal = greeted.server_journal
         self._received_seq = greeted.received_seq
         self.acknowledged = self._sent = greeted.acknowledged_seq

@@ -17,6 +17,7 @@ FleetError           a message that was understood and cannot be followed; it is
 ProtocolError        a message that cannot be taken; the connection is closed, the robot keeps what it had to say
 ├── WrongRobot       signed in as one robot, speaking as another
 ├── OutOfTurn        no hello, a second one, or another journal than the one it named
+├── SameHome         its home is another robot's
 └── MessageGap       one before it is missing
 """
 
@@ -112,6 +113,12 @@ class OutOfTurn(ProtocolError):
     """A connection begins with one `hello`, in time, and stays with the journal that it named."""
 
     code = "out_of_turn"
+
+
+class SameHome(ProtocolError):
+    """Both robots would drive into one dock: give this one another home, or take back the other's token."""
+
+    code = "same_home"
 
 
 class MessageGap(ProtocolError):

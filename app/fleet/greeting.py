@@ -4,7 +4,6 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Final
 
-from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.fleet import clocks, inbox, outbox, traffic
@@ -14,7 +13,7 @@ from app.fleet.mission_updates import tell_mission
 from app.fleet.service import Fleet, note_state
 from app.fleet.taken_out import tell_again
 from app.orders.stops import active_mission
-from app.tables import RobotRow, RobotToken
+from app.tables import RobotRow
 from protocol.envelope import Envelope
 from protocol.parts import Received
 from protocol.to_robot import Cancel, Grant, Welcome
@@ -45,7 +44,6 @@ async def greet(session: AsyncSession, fleet: Fleet, robot: RobotRow, envelope: 
         await restate(session, fleet, robot)
     await clocks.compare(session, robot, envelope.at, now)
     await _compare_maps(session, fleet, robot, hello, now)
-    await _compare_homes(session, fleet, robot, hello, now)
     note_state(robot, hello.position, hello.battery)
     robot.software, robot.map_version, robot.online, robot.heard_at = hello.software, hello.map_version, True, now
     robot.takes_confirm, robot.home = "confirm" in hello.understands, hello.home
@@ -98,15 +96,3 @@ async def _compare_maps(session: AsyncSession, fleet: Fleet, robot: RobotRow, he
         await raise_alarm(session, robot.name, "other_map", sentence, now=now)
     else:
         await clear_alarms(session, robot.name, "other_map", now)
-
-
-async def _compare_homes(session: AsyncSession, fleet: Fleet, robot: RobotRow, hello: Hello, now: datetime) -> None:
-    """Robots with one home would drive into each other in its dock: no robot sees that another stands in it."""
-    may_come = select(RobotToken.robot).where(col(RobotToken.revoked_at).is_(None))
-    same = select(RobotRow.name).where(RobotRow.home == hello.home, RobotRow.name != robot.name)
-    others = ", ".join(sorted((await session.exec(same.where(col(RobotRow.name).in_(may_come)))).all()))
-    if hello.home in fleet.campus.posts and others:
-        sentence = f"its home {hello.home} is that of {others}, too: give it another in its settings"
-        await raise_alarm(session, robot.name, "same_home", sentence, now=now)
-    else:
-        await clear_alarms(session, robot.name, "same_home", now)

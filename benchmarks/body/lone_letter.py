@@ -24,7 +24,7 @@ from robot.runners import LockstepRunner
 from robot.scenarios.campus import campus_of
 from robot.scenarios.drawing import WORLDS
 from robot.scenarios.places import POST_ROOM_M, corridor_at
-from robot.simulated import World
+from robot.simulated import Motion, World
 
 DEAD_S = 3.0
 SHOWN_FOR_S = 4.0
@@ -70,10 +70,14 @@ class Service:
 
 
 class LetterRun:
-    """`run` until `stop` says so, the letter is delivered and the robot at home, or the time is over."""
+    """`run` until `stop` says so, the letter is delivered and the robot at home, or the time is over.
 
-    def __init__(self, folder: Path, world: str, seed: int) -> None:
+    `motion`: how well its wheels do what they are told; `slip`: the share of it that is lost on the floor.
+    """
+
+    def __init__(self, folder: Path, world: str, seed: int, motion: Motion | None = None, slip: float = 0.0) -> None:
         self.random, self._world, self._seed = Random(f"{world}/{seed}/letter"), world, seed
+        self._motion, self._slip = motion or Motion(), slip
         self._folder, self.clock, self.campus = folder, SteppedClock(), campus_of(WORLDS[world])
         self._home = self.random.choice(self.campus.docks()).name
         self._codes = {purpose: f"CM1:{self.random.randbytes(16).hex()}" for purpose in STOPS}
@@ -89,10 +93,11 @@ class LetterRun:
         """For the first time, or on what it left when it was killed."""
         settings = load_settings(None, {**SETTINGS, "data": self._folder, "home": self._home})
         world = World(self.campus, seed=self._seed)
-        simulation = Simulation(f"dock:{self._home}", 0.9, self._seed, in_memory=True, world=world)
+        simulation = Simulation(f"dock:{self._home}", 0.9, self._seed, in_memory=True, world=world, motion=self._motion)
         self.parts = assemble(settings, self.clock, simulation)
         assert self.parts.robot is not None
         self.robot, self.mind, self.navigator = self.parts.robot, self.parts.mind, self.parts.navigator
+        self.robot.set_fault("slip", self._slip)
         self._service = Service(self.mind.hands.duties, self._held, self.told, heard=self._heard)
         self.mind.hands.duties.join(self._service)
         self._runner = LockstepRunner(self.parts.daemon.loops(), self.clock)

@@ -111,7 +111,7 @@ class FollowLine:
         if to_go_mm is not None and to_go_mm <= CRAWL_MM_S * WHEEL_LAG_S:
             return self._stop(view, to_go_mm)
         self._standing_since_s = None
-        if to_go_mm is None and self._unread.beyond_mm(view.odometry) > self._unread.doubt_mm:
+        if to_go_mm is None and self._unread.beyond_mm(view.odometry) > self._unread.most_beyond_mm:
             return self._missed(view)
         if self._has_lost(view, to_go_mm):
             missed = self._may_be_at_post(view) and not self._post.supposed

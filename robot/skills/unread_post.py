@@ -15,6 +15,8 @@ from ..drivers.interfaces import BodyShape, LineReading, Odometry
 SHARE, SLACK_MM = 0.03, 40.0
 """No marker so far beyond the length of the corridor: calibrated wheels and tape measures err by less."""
 TAPE_HALF_MM = 12.0
+SLIP_SHARE = 0.5
+"""Wheels that slip by a third count half as much again as they go."""
 ACROSS_LOOKS = 3
 """So often all diodes must be dark to tell where a line crosses or ends at a bar."""
 BRANCH_RAD = (math.radians(60), math.radians(120))
@@ -56,6 +58,12 @@ class UnreadPost:
     def doubt_mm(self) -> float:
         """It lies so far before or beyond that place at most."""
         return SHARE * (self._way_left_mm or 0.0) + SLACK_MM
+
+    @property
+    def most_beyond_mm(self) -> float:
+        """The robot looks for it so far beyond that place. Where the line ends at the post, the end has to come, and no
+        other corridor lies beyond it: if it has not come, the wheels have slipped, and the post lies ahead."""
+        return self.doubt_mm if self.leads_on else self.doubt_mm + SLIP_SHARE * (self._way_left_mm or 0.0)
 
     def may_be_here(self, here: Odometry) -> bool:
         """Whether the diodes may be over it."""

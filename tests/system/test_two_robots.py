@@ -13,12 +13,16 @@ from typing import Any
 
 import pytest
 
+from maps.campus_map import map_path
 from tests.system.rig import ROOT, Rig, wait_for
 
 pytestmark = [pytest.mark.system, pytest.mark.alone, pytest.mark.timeout(280)]
 
 ERRANDS = {"r1": ("post2:post3", "post4"), "r2": ("post4:post3", "post2")}
 """Where each begins, looking along which corridor, and where it is sent."""
+HOMES = {"r1": "post5", "r2": "post1"}
+SECOND_DOCK = "dock = { x_m = 0.0, y_m = 4.5, heading_deg = 90.0 }"
+"""The paper's track has one dock, and each robot needs one of its own: another one at the end of the line at post1."""
 BETWEEN = ("post2-post3", "post3-post4")
 ASIDE = {"post1", "post5"}
 """Beside the line from one end to the other: to which of them somebody goes depends on who asks first."""
@@ -28,12 +32,17 @@ class SharedTrack(Rig):
     """A service that goes by the timetable, and robots that are started by the test."""
 
     def __enter__(self) -> "SharedTrack":
+        at_post1 = 'title = "Post 1"'
+        text = map_path("test_track").read_text()
+        assert text.count(at_post1) == 1
+        self.map_file = self.folder / "two_docks.toml"
+        self.map_file.write_text(text.replace(at_post1, f"{at_post1}\n{SECOND_DOCK}"))
         self.wire.__enter__()
         self.start_service()
         return self
 
     def _service_env(self) -> dict[str, str]:
-        return {**super()._service_env(), "CAMPUS_MAIL_TRAFFIC": "timetable"}
+        return {**super()._service_env(), "CAMPUS_MAIL_TRAFFIC": "timetable", "CAMPUS_MAIL_MAP": str(self.map_file)}
 
     def __exit__(self, *_: object) -> None:
         for person in self.people:
@@ -44,8 +53,10 @@ class SharedTrack(Rig):
 
     def enrol_one(self, name: str) -> None:
         code = self._command(["app", "robots", "enrol", name], self._service_env())
-        ran = self.type_code(name, code, self.folder / f"{name}.toml")
+        settings_file = self.folder / f"{name}.toml"
+        ran = self.type_code(name, code, settings_file)
         assert ran.returncode == 0, ran.stderr
+        settings_file.write_text(f'map = "{self.map_file}"\nhome = "{HOMES[name]}"\n{settings_file.read_text()}')
 
     def send(self, name: str) -> None:
         """Put down where it begins, and sent by hand."""
@@ -96,7 +107,7 @@ def test_two_robots_that_swap_places_pass_each_other_and_come_home(track: Shared
     posts = {name: track.run_of(name) for name in ERRANDS}
     for name, (_, goal) in ERRANDS.items():
         assert goal in posts[name], f"{name} was never there: {posts[name]}"
-        assert posts[name][-1] == "post5", "and then it goes home"
+        assert posts[name][-1] == HOMES[name], "and then it goes home"
     assert any({*posts[name][: posts[name].index(goal)]} & ASIDE for name, (_, goal) in ERRANDS.items()), (
         f"one of them has to step aside: {posts}"
     )

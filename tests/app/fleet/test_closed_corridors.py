@@ -71,7 +71,7 @@ async def test_what_a_robot_finds_closed_is_closed_for_all_until_somebody_looks_
         tokens = {name: await service.enrol(name) for name in ("r1", "r2")}
         async with robot.connected(service.url, tokens["r1"]), other.connected(service.url, tokens["r2"]):
             await robot.greet("post4", home="post5", understands=YOUNGER)  # it has gone another way since
-            await other.greet("post2", home="post5", understands=YOUNGER)
+            await other.greet("post2", understands=YOUNGER)
             told = turned_back(Leg(from_post="post3", to_post="post2"), "blocked")
             fault = Fault(name=WAY_BLOCKED, happened_at=clock.utc(), reason=told)
             await robot.ends(await robot.say(Event(happened=fault)))

@@ -1,8 +1,12 @@
-"""Short runs of the benchmark's kills before posts and of its strangers with codes."""
+"""Short runs of the benchmark's kills before posts and of its strangers with codes, and wheels that err and slip."""
+
+from pathlib import Path
 
 import pytest
 
 from benchmarks.body import foreign_codes, near_posts
+from benchmarks.body.lone_letter import LetterRun
+from robot.simulated import Motion
 
 
 def test_a_robot_killed_just_before_posts_enters_nothing_ungranted_and_delivers():
@@ -15,3 +19,10 @@ def test_no_code_of_a_stranger_is_believed(seed: int) -> None:
     showing = foreign_codes.showing("track", seed)
     assert showing.shown != "nothing"
     assert (showing.delivered, showing.problems) == (True, ())
+
+
+def test_wheels_that_err_and_slip_enter_nothing_ungranted(tmp_path: Path) -> None:
+    run = LetterRun(tmp_path, "track", 1, Motion(wheel_error=0.05), slip=0.1)
+    run.run()
+    run.close()
+    assert (run.delivered, run.problems) == (True, [])

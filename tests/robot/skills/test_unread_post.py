@@ -79,3 +79,16 @@ def test_wheels_that_err_by_three_per_cent_do_not_miss_it(
     began_s = robot.now
     assert robot.do(Turn(turn_at_rad(TRACK, leaving, post, towards), robot.shape)) == Done()
     assert robot.now - began_s < 6
+
+
+@pytest.mark.parametrize("slip", [0.1, 0.25])
+@pytest.mark.parametrize(("leaving", "post"), [("post3", "post4"), ("post1", "post2"), ("post2", "post3")])
+def test_wheels_that_slip_do_not_stop_short_of_a_post_where_the_line_ends(
+    drive: Callable[..., Drive], slip: float, leaving: str, post: str
+):
+    torn = replace(TRACK, posts=TRACK.posts | {post: replace(TRACK.post(post), markers=())})
+    robot = drive(f"{leaving}:{post}", campus=torn)
+    robot.robot.set_fault("slip", slip)
+    follow = FollowLine(torn, leaving, shape=robot.shape, way_left_mm=WAY_MM, ahead=post)
+    assert robot.do(follow, 90) == Done(post, unread=True)
+    assert robot.distance_to_m(post) < 0.1
