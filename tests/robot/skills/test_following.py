@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from statistics import mean
 
 import pytest
 
@@ -28,6 +29,11 @@ def test_with_the_sensor_ahead_it_follows_tight_bends_at_speed(track: str):
     assert one.speed_mm_s > 145
     assert one.lost_share < 0.05
     assert (one.searching, one.slow_commands) == (0, 0)
+
+
+def test_on_a_straight_line_it_loses_little_time_to_corrections():
+    rides = [ride("straight", lead_mm=60.0, seed=seed) for seed in (7, 8)]
+    assert mean(one.speed_mm_s for one in rides) > 188
 
 
 @pytest.mark.parametrize("track", ["straight", "s_600_400"])
