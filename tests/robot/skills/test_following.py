@@ -53,6 +53,12 @@ def test_at_a_t_junction_no_turn_slips_onto_a_branch(came_from: str, towards: st
     assert crossing.turn_s < 5
 
 
+def test_a_half_turn_takes_little_longer_than_the_wheels_need():
+    crossing = cross(TRACK, "post2", "post3", "post2", seed=7)
+    assert crossing.outcome == ON_THE_LINE
+    assert crossing.turn_s < 2.25, "1.85 s at 200 mm/s"
+
+
 @pytest.mark.parametrize(
     "turn", [("canal", "uc", "azrieli"), ("azrieli", "uc", "canal"), ("nicol", "mackenzie", "nicol")]
 )
