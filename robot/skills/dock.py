@@ -21,10 +21,11 @@ IDLE_S = 10.0
 RETRY_BACK_MM, RETRY_BACK_MM_S = 250.0, 100.0
 """Each try begins so much farther off than the one before: from too near the firmware cannot come straight."""
 UNDOCK_MM, UNDOCK_MM_S, UNDOCK_TURN_MM_S = 300.0, 200.0, 200.0
+TO_POST_MM_S = 200.0
 TO_LINE_MM, TO_LINE_MM_S = (280.0, 130.0, 130.0), 150.0
 """A robot that stood aslant in its dock comes out beside the line: after each of these it looks to both sides."""
-ROLLS_ON_MM = 9.5
-"""What 150 mm/s still roll when the wheels are told to stop."""
+ROLLS_ON_MM = 12.7
+"""What 200 mm/s still roll when the wheels are told to stop."""
 MODE_S = 3.0
 ASLANT_RAD = math.radians(3)
 
@@ -127,14 +128,16 @@ class Undock(Scripted):
         along_rad = view.odometry.heading_rad
         if self._way_mm is not None:
             rest_mm = max(0.0, self._way_mm - UNDOCK_MM - ROLLS_ON_MM)
-            view = yield from roll(view, rest_mm, WheelSpeeds(TO_LINE_MM_S, TO_LINE_MM_S))
+            view = yield from roll(view, rest_mm, WheelSpeeds(TO_POST_MM_S, TO_POST_MM_S))
         if not self._line_ahead:
             return Done()
         view = yield from self._to_line(view, along_rad)
         return Done() if over_line(view) else Failed("line_lost")
 
     def _to_line(self, view: View, along_rad: float) -> Part:
-        """The tape ends at the post, some way before the dock."""
+        """The tape ends at the post, some way before the dock; nothing is done by a robot that is over it."""
+        if over_line(view):
+            return view
         for distance_mm in TO_LINE_MM if self._way_mm is None else (0.0, *TO_LINE_MM[1:]):
             view = yield from roll(view, distance_mm, WheelSpeeds(TO_LINE_MM_S, TO_LINE_MM_S), over_line)
             if over_line(view):

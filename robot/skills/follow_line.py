@@ -20,8 +20,10 @@ from .unread_post import TAPE_HALF_MM, UnreadPost
 SLOWEST_MM_S = 70.0
 CLOSE_MM, SLOW_BY_MM = 8.0, 25.0
 """The speed falls towards the slowest as the line ahead is off by more than the first, by so much."""
+STRAIGHT_OFF_MM, STRAIGHT_RADIUS_MM = 12.0, 400.0
+"""It looks farthest ahead on the line; the nearer to the first beside it, or to this radius, the less far."""
 CRAWL_MM_S = 40.0
-BRAKE_MM_S2 = 250.0
+BRAKE_MM_S2 = 400.0
 WHEEL_LAG_S = 0.06
 LOST_AFTER_MM = 70.0
 """Longer than any worn piece of tape; body.md counts the line as lost after 25 to 40 mm, from then on it coasts."""
@@ -71,7 +73,7 @@ class FollowLine:
         which markers may come next; at any other it drives by."""
         self._campus, self._leaving, self._cruise_mm_s = campus, leaving, cruise_mm_s
         self._shape = shape or BodyShape()
-        self._look_ahead_mm = gains(self._shape.sensor_lead_mm).look_ahead_mm
+        self._gains = gains(self._shape.sensor_lead_mm)
         self._way_left_mm, self._ahead, self._is_unread = way_left_mm, ahead, unread
         self._sighted, self._expected = sighted, expected
         self.limit_s = limit_s
@@ -181,12 +183,24 @@ class FollowLine:
         return min(self._cruise_mm_s, LOOKS_MM_S) if due else self._cruise_mm_s
 
     def _speeds(self, to_go_mm: float | None, most_mm_s: float) -> WheelSpeeds:
-        off_mm = self._line.at(self._look_ahead_mm)
+        off_mm = self._line.at(self._gains.look_ahead_mm)
         off_share = min(1.0, max(0.0, abs(off_mm) - CLOSE_MM) / SLOW_BY_MM)
         speed = most_mm_s - (most_mm_s - SLOWEST_MM_S) * off_share
         if to_go_mm is not None:
             speed = min(speed, max(CRAWL_MM_S, math.sqrt(2 * BRAKE_MM_S2 * max(0.0, to_go_mm - 5.0))))
-        return curve(speed, 2 * off_mm / self._look_ahead_mm**2, self._shape)
+        return curve(speed, self._bend(), self._shape)
+
+    def _bend(self) -> float:
+        """Curvature (1/mm, left positive) of the arc that meets the line ahead.
+
+        Each curve costs speed, since the outer wheel is at its pace already. So a line that is near and nearly straight
+        is met farther ahead.
+        """
+        near_mm, far_mm = self._gains.look_ahead_mm, self._gains.straight_look_ahead_mm
+        off_share = min(1.0, abs(self._line.at(near_mm)) / STRAIGHT_OFF_MM)
+        bent_share = min(1.0, abs(self._line.curvature) * STRAIGHT_RADIUS_MM)
+        look_mm = near_mm + (far_mm - near_mm) * (1 - off_share) * (1 - bent_share)
+        return 2 * self._line.at(look_mm) / look_mm**2
 
     def _has_lost(self, view: View, to_go_mm: float | None) -> bool:
         near = to_go_mm is not None and to_go_mm < UNSEEN_BEFORE_POST_MM

@@ -30,11 +30,13 @@ class Gains(NamedTuple):
     lead_mm: float
     look_ahead_mm: float
     """The follower steers for the line so far ahead of the axle."""
+    straight_look_ahead_mm: float
+    """The same on a straight line that it is well on."""
     curvature_noise_per_mm: float
     """How much the line's curvature may change with every mm; less of it misses tight bends, more of it sways."""
 
 
-GAINS = (Gains(0.0, 90.0, 1e-8), Gains(30.0, 80.0, 3e-8), Gains(50.0, 70.0, 7e-8))
+GAINS = (Gains(0.0, 90.0, 90.0, 1e-8), Gains(30.0, 80.0, 80.0, 3e-8), Gains(50.0, 70.0, 210.0, 7e-8))
 """From the lead of each row on. Tuned on bends of 200 to 600 mm radius with 1 % flipped reads and gaps of 20 mm, on
 seeds from 1000 on (benchmarks/body/line.py)."""
 

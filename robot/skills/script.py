@@ -18,9 +18,11 @@ Part = Generator[Running, View, View]
 
 STAND_S = 0.25
 """Four time constants of the wheels (60 ms each): after that they stand."""
+STAND_FROM_SLOW_S = 0.14
+"""After the slow end of a turn: less than half a millimetre is left to roll."""
 SLOW_TURN_MM_S = 35.0
 TURN_LAG_S = 0.07
-SLOW_BELOW_RAD = 0.35
+SLOW_BELOW_RAD = 0.28
 
 
 class Scripted:
@@ -74,9 +76,10 @@ def turn_by(
     """Turn on the spot (left is positive) by the encoders, slower towards the end, then stand."""
     goal_rad = view.odometry.heading_rad + angle_rad
     side = math.copysign(1.0, angle_rad)
+    speed = 0.0
     while (left_rad := side * (goal_rad - view.odometry.heading_rad)) > 0 and not until(view):
         speed = speed_mm_s if left_rad > SLOW_BELOW_RAD else max(SLOW_TURN_MM_S, speed_mm_s * left_rad / SLOW_BELOW_RAD)
         if left_rad < speed * 2 / shape.wheel_base_mm * TURN_LAG_S:
             break
         view = yield Running(WheelSpeeds(-side * speed, side * speed))
-    return (yield from stand(view))
+    return (yield from stand(view, STAND_FROM_SLOW_S if speed <= SLOW_TURN_MM_S else STAND_S))

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from statistics import mean
 
 import pytest
 
@@ -30,6 +31,11 @@ def test_with_the_sensor_ahead_it_follows_tight_bends_at_speed(track: str):
     assert (one.searching, one.slow_commands) == (0, 0)
 
 
+def test_on_a_straight_line_it_loses_little_time_to_corrections():
+    rides = [ride("straight", lead_mm=60.0, seed=seed) for seed in (7, 8)]
+    assert mean(one.speed_mm_s for one in rides) > 188
+
+
 @pytest.mark.parametrize("track", ["straight", "s_600_400"])
 def test_with_the_sensor_on_the_axle_it_follows_slowly(track: str):
     one = ride(track, lead_mm=0.0, seed=7)
@@ -45,6 +51,12 @@ def test_at_a_t_junction_no_turn_slips_onto_a_branch(came_from: str, towards: st
     assert (crossing.outcome, crossing.searches) == (ON_THE_LINE, 0)
     assert crossing.stopped_off_m < 0.03
     assert crossing.turn_s < 5
+
+
+def test_a_half_turn_takes_little_longer_than_the_wheels_need():
+    crossing = cross(TRACK, "post2", "post3", "post2", seed=7)
+    assert crossing.outcome == ON_THE_LINE
+    assert crossing.turn_s < 2.25, "1.85 s at 200 mm/s"
 
 
 @pytest.mark.parametrize(

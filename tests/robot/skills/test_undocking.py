@@ -23,6 +23,13 @@ def test_from_a_dock_at_the_end_of_the_line_it_comes_onto_the_line(drive: Make, 
     assert robot.do(FollowLine(robot.campus, "post5", shape=robot.shape)) == Done("post3")
 
 
+def test_straight_out_of_a_dock_it_is_on_the_line_within_six_seconds(drive: Make):
+    robot = drive("dock", campus=builtin_map("test_track"), seed=3)
+    began = robot.now
+    assert robot.do(Undock(robot.shape, 500.0)) == Done()
+    assert robot.now - began < 5.9
+
+
 @pytest.mark.parametrize(("turn_rad", "towards"), [(-math.pi / 2, "nicol"), (math.pi / 2, "uc")])
 def test_from_a_dock_beside_the_line_it_comes_to_the_post_and_can_turn_there(
     drive: Make, turn_rad: float, towards: str
