@@ -5,6 +5,7 @@ import math
 from dataclasses import replace
 
 from maps import CampusMap, Post
+from maps.geometry import wrapped
 from protocol.parts import Leg
 from robot.drivers.interfaces import Odometry, Sighting
 from robot.duties import Duties
@@ -27,6 +28,8 @@ TURNING = frozenset({"turn", "undock", "find_line"})
 FOLLOWING = "follow_line"
 LIFTED = "wheel_drop"
 """The fault during which a person holds the robot in their hands, perhaps to put it down elsewhere."""
+AWAY_RAD = math.radians(35)
+"""Turned away from its corridor by more, a robot in search of the line sees no marker where it is."""
 SAME_WAY_RAD = math.radians(60)
 """A robot that looks along a corridor to within this is taken to be going there."""
 FOREIGN_MARKER = "foreign_marker"
@@ -104,8 +107,16 @@ class Tracker:
         if post is None or post.at_s <= self._seen_at_s:
             return None
         self._seen_at_s = post.at_s
-        useless = view.motion in TURNING or is_aslant(post) or post.text not in self.campus.posts
-        return None if useless else post
+        turns = view.motion in TURNING or (view.searching and not self._looks_along())
+        return None if turns or is_aslant(post) or post.text not in self.campus.posts else post
+
+    def _looks_along(self) -> bool:
+        """Whether it looks the way of its corridor: a search for the line turns it away, and what it sees then lies
+        elsewhere than it seems."""
+        place, looks_rad = self._place, self._looks_rad(self._odometry)
+        if not isinstance(place, Between) or looks_rad is None:
+            return False
+        return abs(wrapped(looks_rad - place.corridor.heading_leaving(place.behind))) < AWAY_RAD
 
     def _drive(self, view: View, post: Sighting | None) -> None:
         if isinstance(self._place, AtPost) and self._place.docked:

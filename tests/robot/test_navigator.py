@@ -282,6 +282,23 @@ def test_a_marker_seen_from_aslant_does_not_make_a_standing_robot_believe_that_i
     assert walk.navigator.at == "post2"
 
 
+@pytest.mark.parametrize(("turned_rad", "at"), [(0.0, "post2"), (math.radians(-80), None)])
+def test_a_marker_seen_in_a_search_counts_only_for_who_looks_along_its_way(
+    walk: Walk, turned_rad: float, at: str | None
+) -> None:
+    """Turned across, it saw the marker of a post that lay ahead where it sees that of a post under its axle."""
+    walk.navigator.place("post1", "post2")
+    walk.navigator.leave()
+    walk.body.rolls(1750.0)
+    walk.look()
+    walk.body.turns(turned_rad)
+    behind = Sighting("post2", walk.now + 0.1, -290.0, 350.0)
+    seen = {"post": behind, "post_odometry": walk.body.view.odometry}
+    walk.body.view = replace(walk.body.view, motion="follow_line", searching=True, **seen)
+    walk.look()
+    assert walk.navigator.at == at
+
+
 def test_who_has_stopped_short_of_a_post_by_its_marker_drives_on_to_it(walk: Walk) -> None:
     walk.navigator.place("post1", "post2")
     walk.navigator.leave()
