@@ -4,6 +4,7 @@ one differs from itself. Both are processor time, which other work on the machin
 
 import asyncio
 import time
+from pathlib import Path
 from statistics import median
 from typing import Any, Final
 
@@ -14,6 +15,9 @@ from benchmarks.service.servers import bare
 TURNS: Final = 200_000
 REPEATS: Final = 7
 INSERTS_S: Final = 1.5
+
+KEPT: Final = Path(__file__).with_name("kept_ratios.json")
+"""What a short run has given on a machine with nothing else to do, and at which commit."""
 
 Yardsticks = dict[str, float]
 
