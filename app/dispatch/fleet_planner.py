@@ -18,7 +18,7 @@ from app.dispatch.planner_process import PlannerProcess
 from app.dispatch.planning.carrying_out import adopt
 from app.dispatch.planning.deciding import Decision, decide
 from app.dispatch.scene_of_work import SceneOfWork
-from app.dispatch.why_orders_wait import answers
+from app.dispatch.why_orders_wait import NOT_PLANNED_FOR, answers
 from app.fleet.service import Fleet
 from app.fleet.timetable import Timetable
 from app.fleet.traffic_desk import TrafficDesk
@@ -58,8 +58,10 @@ class FleetPlanner:
         if decision is not None and changes and not await self._carry_out(timetable, decision, changes):
             return True
         left = [order for order in waiting if changes is None or order not in changes.given]
-        if left and not _has_not_seen(timetable, work):
-            await explain(self._fleet, answers(work, decision, left))
+        if left:
+            has_news = _has_not_seen(timetable, work)
+            told = answers(work, decision, left)
+            await explain(self._fleet, [one for one in told if not (has_news and one.why == NOT_PLANNED_FOR)])
         if changes:
             self._something_new.set()
         self.left = len(left)
@@ -144,8 +146,8 @@ class FleetPlanner:
 
 
 def _has_not_seen(timetable: Timetable | None, work: OpenWork) -> bool:
-    """Whether a robot has come that the timetable knows from its next look on, which wakes dispatch: nothing can be
-    said before of why orders wait."""
+    """Whether a robot has come that the timetable knows from its next look on, which wakes dispatch: that none can be
+    planned for is not so before."""
     return timetable is not None and any(
         robot.is_there for name, robot in work.robots.items() if name not in timetable.known
     )
