@@ -54,7 +54,7 @@ class Traveller:
     async def greeted(self, service: Service) -> AsyncIterator[None]:
         self.robot.token = self.robot.token or await service.enrol(self.robot.name)
         async with self.robot.connected(service.url, self.robot.token):
-            # The track has one dock. Whoever tells no home is planned for as if it were at home there, too.
+            # The track has one dock. A robot that tells no home is planned for as if it were at home there, too.
             home = "post5" if self.robot.name == "r1" else None
             await self.robot.greet(self.post, home=home, understands=UNDERSTANDS)
             yield
