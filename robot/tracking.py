@@ -176,11 +176,21 @@ class Tracker:
         if isinstance(self._place, Unknown):
             self._find(post.text, view.post_odometry, at_mm)
         elif self.expected().allows(post.text, at_mm, self._disturbed):
-            self._place = marked(self.campus, self._place, post.text, at_mm, view.post_odometry.ahead_mm)
+            before = self._place
+            self._place = marked(self.campus, before, post.text, at_mm, view.post_odometry.ahead_mm)
             if not isinstance(self._place, AtPost):
                 self._forget_foreign()
+            if isinstance(before, Between) and before.meant == post.text:
+                self._was_right()
         elif self._is_strange(post, view.post_odometry, at_mm):
             self._doubt(post.text, view.post_odometry, at_mm)
+
+    def _was_right(self) -> None:
+        """It is in the corridor that it was granted, though the compass had it elsewhere."""
+        if isinstance(self._place, Between):
+            self._look_along(self._place.corridor.heading_leaving(self._place.here))
+            self._compass.set(None, self._odometry)
+            self._head_for(self._place.towards)
 
     def _is_strange(self, post: Sighting, odometry: Odometry, at_mm: float) -> bool:
         own = is_own(self._place, post.text, odometry.ahead_mm, at_mm)

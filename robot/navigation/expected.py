@@ -5,7 +5,7 @@ that it is in. So without a lift a marker counts where the map and the wheels al
 """
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Set
 from dataclasses import dataclass
 
 from maps import CampusMap, Corridor
@@ -69,13 +69,24 @@ def _windows(
             yield place.towards, (_least_mm(place.ahead_mm, 0.0 if place.by_marker else length_mm), math.inf)
             if place.begin_mm is None and not place.by_marker:
                 yield place.behind, (-math.inf, math.inf)
+            if place.meant is not None:
+                yield from _ends(campus, place.here, {place.meant}, place.begin_mm, real_per_counted)
         case Leaving():
-            for post, corridor in campus.neighbours(place.here):
-                length_mm = 1000 * corridor.length_m / real_per_counted
-                at_mm = None if place.begin_mm is None else place.begin_mm + length_mm
-                yield post.name, (_least_mm(at_mm, length_mm), math.inf)
+            posts = {post.name for post, _ in campus.neighbours(place.here)}
+            yield from _ends(campus, place.here, posts, place.begin_mm, real_per_counted)
             if place.begin_mm is None:
                 yield place.here, (-math.inf, math.inf)
+
+
+def _ends(
+    campus: CampusMap, here: str, posts: Set[str], begin_mm: float | None, real_per_counted: float
+) -> Iterator[tuple[str, Window]]:
+    """Of the corridors that lead from here to these posts."""
+    for post, corridor in campus.neighbours(here):
+        if post.name in posts:
+            length_mm = 1000 * corridor.length_m / real_per_counted
+            at_mm = None if begin_mm is None else begin_mm + length_mm
+            yield post.name, (_least_mm(at_mm, length_mm), math.inf)
 
 
 def _least_mm(at_mm: float | None, length_mm: float) -> float:

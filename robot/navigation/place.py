@@ -90,8 +90,8 @@ class Between:
     ahead_mm: float | None = None
     """The reading with the axle on the end ahead, by the map or by its marker."""
     by_marker: bool = False
-    astray: bool = False
-    """It is in here by mistake."""
+    meant: str | None = None
+    """The post that it was going to when it came in here by mistake; None: it is where it was granted."""
     doubted: bool = False
     """It was switched off just before the end ahead, and may have passed it."""
 
@@ -110,6 +110,10 @@ class Between:
     @property
     def turned_round(self) -> bool:
         return self.towards == self.here
+
+    @property
+    def astray(self) -> bool:
+        return self.meant is not None
 
 
 Place: TypeAlias = Unknown | AtPost | Leaving | Coming | Between

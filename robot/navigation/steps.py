@@ -36,6 +36,9 @@ def marked(campus: CampusMap, place: Place, post: str, at_mm: float, here_mm: fl
                 return replace(place, ahead_mm=at_mm, by_marker=True, doubted=False)
             if post == place.behind:
                 return Between(place.corridor, place.here, post, None, at_mm, by_marker=True)
+            corridor = corridor_between(campus, place.here, post) if post == place.meant else None
+            if corridor:  # slipping wheels turn the compass, and it was right
+                return Between(corridor, place.here, post, place.begin_mm, at_mm, by_marker=True)
         case Leaving():
             corridor = corridor_between(campus, place.here, post)
             if corridor:
@@ -85,7 +88,8 @@ def turned_round(place: Between, here_mm: float) -> Between:
 
 
 def gone_astray(place: Between, corridor: Corridor, counted_m: float) -> Between:
-    """It is in another corridor of the same post than the one that was meant."""
-    begin_mm = place.begin_mm
+    """It is in another corridor of the same post than it was taken to be in."""
+    begin_mm, towards = place.begin_mm, corridor.other(place.here)
     ahead_mm = None if begin_mm is None else begin_mm + 1000 * counted_m
-    return Between(corridor, place.here, corridor.other(place.here), begin_mm, ahead_mm, astray=True)
+    meant = place.meant or place.towards
+    return Between(corridor, place.here, towards, begin_mm, ahead_mm, meant=None if meant == towards else meant)

@@ -65,6 +65,23 @@ def test_back_at_the_post_it_knows_which_way_it_looks(walk: Walk) -> None:
     assert walk.navigator.way() == "right", "from post5 it looks south, and post2 lies in the west"
 
 
+def test_the_marker_of_the_granted_corridor_says_that_the_compass_was_wrong(walk: Walk) -> None:
+    test_a_turn_that_met_the_line_ahead_is_noticed_and_the_place_is_known(walk)  # by wheels that slipped in the turn
+    walk.body.rolls(1500.0)
+    walk.body.sees("post2")
+    walk.look()
+    assert (walk.navigator.astray, walk.navigator.towards) == (None, "post2")
+    assert "foreign_marker" not in walk.duties.held.faults
+
+
+def test_no_other_marker_of_the_crossing_is_believed_when_astray(walk: Walk) -> None:
+    test_a_turn_that_met_the_line_ahead_is_noticed_and_the_place_is_known(walk)
+    walk.body.rolls(1500.0)
+    walk.body.sees("post4")
+    walk.look()
+    assert (walk.navigator.astray, walk.navigator.towards) == ("post5", "post5")
+
+
 def test_without_knowing_which_way_it_looked_it_doubts_nothing(store: Store) -> None:
     walk = Walk(store)
     walk.look()
