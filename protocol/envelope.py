@@ -7,11 +7,11 @@ database of its side, and a new one begins if that was put back from an older co
 marks what is sent from the backlog after a reconnect.
 """
 
-import json
 from collections.abc import Mapping
 from typing import Any, Final
 
 from pydantic import Field, SerializeAsAny, ValidationError
+from pydantic_core import from_json
 
 from protocol import both_ways, insight, to_robot, to_server
 from protocol.errors import MalformedMessage, MessageTooLarge, NewerVersion, ProtocolError, UnknownMessage
@@ -118,7 +118,7 @@ def _read_envelope(raw: dict[str, Any], accepted: Mapping[str, type[Part]]) -> E
     if not isinstance(name, str) or name not in accepted:
         raise UnknownMessage(f"message type {name!r} is not known here; known are {', '.join(sorted(accepted))}")
     try:
-        body = accepted[name].model_validate_json(json.dumps(raw.get("body")))
+        body = accepted[name].model_validate(raw.get("body"))
         envelope = Envelope.model_validate({**raw, "body": body})
     except ValidationError as error:
         raise MalformedMessage(f"{name}: {_first_problem(error)}") from None
@@ -132,8 +132,8 @@ def _read_object(text: str | bytes) -> dict[str, Any]:
     if size_bytes > MAX_MESSAGE_BYTES:
         raise MessageTooLarge(f"message of {size_bytes} bytes; at most {MAX_MESSAGE_BYTES} are taken")
     try:
-        raw = json.loads(text)
-    except (ValueError, RecursionError) as error:
+        raw = from_json(text)
+    except ValueError as error:
         raise MalformedMessage(f"not JSON: {error}") from None
     if not isinstance(raw, dict):
         raise MalformedMessage(f"an envelope is a JSON object, this is a {type(raw).__name__}")
