@@ -23,8 +23,8 @@ GRACEFUL_S = 2
 GARBAGE_AT = (50_000, 10, 200)
 """After so many new objects the youngest are looked through for garbage; of how many such looks one goes further back.
 
-A thousand robots have some ten thousand objects in hand that need no look, since they go when their message is done.
-At 2,000 the looks took 6 % of the processor, and each stopped everything for 5 to 40 ms (measured)."""
+What the messages of a thousand robots hold for a moment needs no look: it goes when they are done. At 2,000 the looks
+took 6 % of the processor, and each stopped everything for 5 to 40 ms (measured)."""
 ANOTHER_FOLDER = "Stop that one, or give this one a data folder of its own: CAMPUS_MAIL_DATA."
 
 

@@ -128,11 +128,11 @@ def _read_envelope(raw: dict[str, Any], accepted: Mapping[str, type[Part]]) -> E
 
 
 def _read_object(text: str | bytes) -> dict[str, Any]:
-    size_bytes = len(text) if isinstance(text, bytes) else len(text.encode("utf-8", "surrogatepass"))
-    if size_bytes > MAX_MESSAGE_BYTES:
-        raise MessageTooLarge(f"message of {size_bytes} bytes; at most {MAX_MESSAGE_BYTES} are taken")
+    data = text if isinstance(text, bytes) else text.encode("utf-8", "surrogatepass")
+    if len(data) > MAX_MESSAGE_BYTES:
+        raise MessageTooLarge(f"message of {len(data)} bytes; at most {MAX_MESSAGE_BYTES} are taken")
     try:
-        raw = from_json(text)
+        raw = from_json(data)
     except ValueError as error:
         raise MalformedMessage(f"not JSON: {error}") from None
     if not isinstance(raw, dict):

@@ -81,7 +81,7 @@ def _windows(
 def _ends(
     campus: CampusMap, here: str, posts: Set[str], begin_mm: float | None, real_per_counted: float
 ) -> Iterator[tuple[str, Window]]:
-    """Of the corridors that lead from here to these posts."""
+    """The windows in which these neighbours of `here` may be read, each at the end of its corridor."""
     for post, corridor in campus.neighbours(here):
         if post.name in posts:
             length_mm = 1000 * corridor.length_m / real_per_counted

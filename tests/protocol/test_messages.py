@@ -282,3 +282,9 @@ def test_a_receipt_of_a_robot_that_knows_no_signatures_is_understood() -> None:
     assert (receipt.how, receipt.signature) == ("code", None)
     raw["body"]["happened"]["code_sha256"] = None
     assert parse(json.dumps(raw), TO_SERVER).body.happened.how == "button"  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize("text", ['"\ud800"', '{"v": "\ud800"}', '{"v": "\\ud800"}', "[" * 50_000, b"\xff\xfe{"])
+def test_half_of_a_pair_and_deep_brackets_are_malformed(text: str | bytes) -> None:
+    with pytest.raises(MalformedMessage, match="not JSON"):
+        parse(text, TO_SERVER)
