@@ -34,8 +34,9 @@ from protocol.parts import StopAction
 
 LOOK_AGAIN_S: Final = 5.0
 """Real seconds. Time alone makes a robot late."""
-REST: Final = 20
-"""After each look so many times as long as it has taken: forecasting is the least of what the service has to do."""
+REST: Final = 60
+"""After each look so many times as long as it has taken: forecasting is the least of what the service has to do. At 20
+it took 3 % of the processor with a thousand robots, and half of what an order cost more than in 5eb2b49."""
 LEAST_REST_S: Final = 0.3
 LONGEST_REST_S: Final = 20.0
 AT_ONCE: Final = 10
