@@ -44,8 +44,8 @@ class Waiting:
     place: tuple[Mission, Stop]
     purpose: Purpose
     post: str
-    confirmed: bool = False
-    """Mail has changed hands by a `confirm`: there is nothing more to wait for."""
+    handed_over: bool = False
+    """Mail has changed hands; what is left is the time in which people reach into the box."""
 
 
 class Custody:
@@ -65,6 +65,11 @@ class Custody:
         if self._waiting is waiting:
             self._waiting = None
 
+    @property
+    def handing_over(self) -> bool:
+        """Mail has just changed hands, and the robot stands for those who put it in or take it out."""
+        return self._waiting is not None and self._waiting.handed_over
+
     def confirm(self, wish: Confirm) -> str | None:
         """Hand over as the service says; why not, or None. Call it in the transaction that is done with the message."""
         waiting = self._waiting
@@ -74,7 +79,7 @@ class Custody:
             return "It came too late: the person who asked may have gone."
         if wish.by is not None and wish.by not in self._opening(wish.order_id, waiting.purpose):
             return "That person's code opens nothing here any more."
-        waiting.confirmed = True
+        waiting.handed_over = True
         self.hand_over(waiting.place, waiting.purpose, waiting.post, Proof(wish.by, wish.how, wish.command_id))
         return None
 
@@ -118,7 +123,7 @@ class Custody:
 def _is_meant(wish: Confirm, waiting: Waiting) -> bool:
     stop = waiting.place[1]
     is_there = wish.stop_id in (None, stop.id) and wish.order_id == stop.order_id
-    return is_there and wish.purpose is waiting.purpose and not waiting.confirmed
+    return is_there and wish.purpose is waiting.purpose and not waiting.handed_over
 
 
 def opening(

@@ -164,6 +164,7 @@ class Mind:
             nearest_dock=navigator.nearest_dock(),
             watch=int(now // WATCH_S),
             unsure=self.silence.lasts is True,
+            handing_over=hands.duties.custody.handing_over,
         )
 
     def _tell_faults(self, faults: frozenset[str]) -> None:

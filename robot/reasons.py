@@ -45,7 +45,6 @@ _WAITS: Final[dict[str, Callable[[Navigator], tuple[str, str | None]]]] = {
     "wait_handover(load": lambda n: (f"Waiting for the sender at {n.here}", "the sender's code"),
     "wait_handover(return": lambda n: (f"Waiting at {n.here} for somebody to take mail back", "a code"),
     "wait_handover(receive": lambda n: (f"Waiting for the recipient at {n.here}", "the recipient's code"),
-    "rest(step_back": lambda n: (f"Giving people at {n.here} a moment to step back", None),
     "rest": lambda _: ("Waiting a moment before trying again", None),
     "drive": lambda n: (_driving(n), None),
     "station(dock": lambda n: (f"Docking at {n.here}", None),
@@ -62,6 +61,8 @@ def reason(under_way: Sequence[str], view: View, navigator: Navigator, duties: D
         return Why(sentence=_STAND[fault], goal=goal, waiting_for="a person" if fault != "bump" else "a free way")
     if duties.held.revoked or (navigator.doubted and not under_way):
         return Why(sentence=TAKEN_AWAY, goal=goal, waiting_for="a person")
+    if duties.custody.handing_over:
+        return Why(sentence=f"Giving people at {navigator.here} a moment to step back", goal=goal)
     if under_way:
         sentence, waiting_for = _of_action(under_way[-1], navigator)
         if under_way[-1].startswith("claim(") and not duties.online:

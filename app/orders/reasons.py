@@ -15,7 +15,7 @@ NO_NETWORK: Final = "The robot has no network at the moment. The time is known a
 TAKES_LONGER: Final = "It takes longer than expected. A new time is being worked out."
 WORKED_OUT: Final = "The time is being worked out."
 AT_A_STOP: Final = frozenset({OrderState.AT_SENDER, OrderState.AT_RECIPIENT, OrderState.AT_RETURN})
-OF_A_STOP: Final = frozenset({"why.sender", "why.recipient", "why.to_return", "why.step_back"})
+OF_A_STOP: Final = frozenset({"why.sender", "why.recipient", "why.to_return"})
 """Texts that name the person for whom a robot waits."""
 STANDS: Final = frozenset({Activity.WAITING, Activity.CHARGING, Activity.STOPPED})
 PAUSED: Final = frozenset({"why.paused", "why.paused_at"})

@@ -34,7 +34,7 @@ class Errands:
         if self._duties.held.mission is None and (route := next(self._routes, None)):
             self._give_letter(route)
         waited_for = next((one for one in self._actions.under_way if one.startswith("wait_handover(")), None)
-        if waited_for and self._robot.camera.shown is None:
+        if waited_for and not self._duties.custody.handing_over and self._robot.camera.shown is None:
             purpose = waited_for.removeprefix("wait_handover(").split(",")[0]
             self._robot.show_code(self._codes[purpose], SHOWN_FOR_S)
 

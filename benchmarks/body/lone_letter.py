@@ -122,7 +122,8 @@ class LetterRun:
     def _look(self, now: float) -> None:
         self._judge()
         waited_for = next((one for one in self.mind.actions.under_way if one.startswith("wait_handover(")), None)
-        if waited_for and self.robot.camera.shown is None:
+        handing_over = self.mind.hands.duties.custody.handing_over
+        if waited_for and not handing_over and self.robot.camera.shown is None:
             purpose = Purpose(waited_for.removeprefix("wait_handover(").split(",")[0])
             self.robot.show_code(self._codes.get(purpose, self._codes[Purpose.LOAD]), SHOWN_FOR_S)
         if self._wanted() or self.is_over or now > LIMIT_S:

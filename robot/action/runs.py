@@ -123,19 +123,34 @@ class Skills:
 
 
 class Unless:
-    """A run that ends early, and well, as soon as something else has happened. `over` hears of any end."""
+    """A run that ends early, and well, as soon as something else has happened."""
 
-    def __init__(
-        self, run: Run, happened: Callable[[], bool], then: Callable[[], None], over: Callable[[], None]
-    ) -> None:
-        self._run, self._happened, self._then, self._over = run, happened, then, over
+    def __init__(self, run: Run, happened: Callable[[], bool], then: Callable[[], None]) -> None:
+        self._run, self._happened, self._then = run, happened, then
 
     def poll(self, ends: Ends, now: float) -> Ended | None:
         if self._happened():
             self.cancel()
             self._then()
             return DONE
-        ended = self._run.poll(ends, now)
+        return self._run.poll(ends, now)
+
+    def cancel(self) -> None:
+        self._run.cancel()
+
+
+class ThenRest:
+    """A run whose success is told only after a rest. `over` hears of any end."""
+
+    def __init__(self, run: Run, rest_s: float, over: Callable[[], None]) -> None:
+        self._run, self._rest_s, self._over = run, rest_s, over
+        self._rest: Rest | None = None
+
+    def poll(self, ends: Ends, now: float) -> Ended | None:
+        ended = self._rest.poll(ends, now) if self._rest else self._run.poll(ends, now)
+        if ended == DONE and self._rest is None:
+            self._rest = Rest(now + self._rest_s)
+            return None
         if ended:
             self._over()
         return ended
@@ -143,3 +158,6 @@ class Unless:
     def cancel(self) -> None:
         self._over()
         self._run.cancel()
+        self._rest_s = -math.inf
+        if self._rest:
+            self._rest.cancel()

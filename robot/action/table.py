@@ -30,7 +30,7 @@ from ..skills.tunes import TUNES
 from .arguments import Argument, Kind, Value, word
 from .corridors import CLOSED_BY, claim, mark_blocked, noted_move, release, reopen, set_destination
 from .hands import PLACE_UNKNOWN, Hands
-from .runs import AtOnce, Ended, Rest, Run, SkillMaker, Skills, Unless
+from .runs import AtOnce, Ended, Rest, Run, SkillMaker, Skills, ThenRest, Unless
 
 
 @dataclass(frozen=True)
@@ -153,6 +153,11 @@ def _finish_mission(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
     return AtOnce()
 
 
+REACHES_IN_S = 5.0
+"""So long the robot stands after the tune that says yes, for a person to put mail into its box or to take it out and to
+step back. Assumed: nobody has measured how long people take."""
+
+
 def _wait_handover(hands: Hands, arguments: Sequence[Value], now: float) -> Run:
     purpose, order_id, stop_id, limit_s = Purpose(str(arguments[0])), str(arguments[1]), str(arguments[2]), arguments[3]
     duties, place = hands.duties, hands.duties.at_stop(stop_id)
@@ -164,13 +169,14 @@ def _wait_handover(hands: Hands, arguments: Sequence[Value], now: float) -> Run:
 
     def custody(done: Done) -> None:
         duties.handed_over(place, purpose, waiting.post, done.shown)
+        waiting.handed_over = True
         promise()
 
     # Only loading may be confirmed by the Spot button: it identifies nobody.
     skill = WaitHandover(lambda: duties.codes(order_id, purpose), float(limit_s), spot_counts=purpose is Purpose.LOAD)
     duties.custody.wait(waiting)
-    run = _one(hands, skill, now, custody)
-    return Unless(run, lambda: waiting.confirmed, promise, lambda: duties.custody.leave(waiting))
+    run = Unless(_one(hands, skill, now, custody), lambda: waiting.handed_over, promise)
+    return ThenRest(run, REACHES_IN_S, lambda: duties.custody.leave(waiting))
 
 
 def _report_charge(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
@@ -198,7 +204,7 @@ def _say(hands: Hands, arguments: Sequence[Value], now: float) -> Run:
 
 
 def _rest(_: Hands, arguments: Sequence[Value], now: float) -> Run:
-    return Rest(now + float(arguments[-1]))
+    return Rest(now + float(arguments[0]))
 
 
 _POST = Argument("Post", Kind.POST)
@@ -242,7 +248,8 @@ ACTIONS: Final = (
     Action(
         "wait_handover",
         (word("Purpose", *Purpose), _ORDER, _STOP, Argument("Limit_s", Kind.NUMBER)),
-        "wait for a person's code; done when mail has changed hands, fails with no_one_came",
+        "wait for a person's code; done when mail has changed hands and people have had time to reach into the box; "
+        "fails with no_one_came",
         _wait_handover,
     ),
     Action("report_charge", (word("Step", *get_args(ChargeStep)),), "tell how charging goes", _report_charge),
@@ -250,7 +257,6 @@ ACTIONS: Final = (
     Action("clear_fault", (_NAME,), "it is over", _clear_fault),
     Action("say", (word("Tune", *TUNES),), "a tune and a light", _say),
     Action("rest", (_SECONDS,), "do nothing for a while, before trying again", _rest),
-    Action("rest", (word("For", "step_back"), _SECONDS), "the same, for people who should step back", _rest),
 )
 """What our own program uses."""
 

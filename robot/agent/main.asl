@@ -49,11 +49,14 @@ priority(+astray(_), map).
 +!adopt_anew(Purpose) : half_way(Purpose) <- +put_off(anew).
 +!adopt_anew(Purpose) <- !begin(Purpose).
 
-// In the middle of a turn, or beside its dock, it would be left beside the line: first that ends, within seconds. To stand
-// still it does not wait.
-half_way(Purpose) :- manoeuvring & Purpose \== stand_still.
--manoeuvring : put_off(anew) <- .abolish(put_off(_)); .abolish(put_off); !decide_anew.
--manoeuvring : put_off <- .abolish(put_off); !decide.
+// In the middle of a turn, or beside its dock, it would be left beside the line; and it does not drive off while a hand is
+// in its box: first that ends, within seconds. To stand still it does not wait.
+half_way(Purpose) :- (manoeuvring | handing_over) & Purpose \== stand_still.
+-manoeuvring <- !take_up_what_was_put_off.
+-handing_over <- !take_up_what_was_put_off.
++!take_up_what_was_put_off : put_off(anew) <- .abolish(put_off(_)); .abolish(put_off); !decide_anew.
++!take_up_what_was_put_off : put_off <- .abolish(put_off); !decide.
++!take_up_what_was_put_off.
 
 +!begin(Purpose)
   <- .drop_desire(pursue(_));

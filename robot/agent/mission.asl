@@ -42,11 +42,11 @@ hopeless(no_route).
 +!attend(dock, Stop, _, _) : fill(Stop, _) <- !fill_up(Stop).
 +!attend(dock, _, _, _) <- !dock.
 +!attend(park, _, _, _).
-// Mail changes hands by a code shown to the camera, never by assumption. Then people get a moment to step back.
+// Mail changes hands by a code shown to the camera, never by assumption. With that the next stop is perceived at once, but
+// the robot stands for people who reach into the box: `handing_over`.
 +!attend(Do, Stop, Order, Limit_s)
   <- !come_out;
-     wait_handover(Do, Order, Stop, Limit_s);
-     rest(step_back, 2).
+     wait_handover(Do, Order, Stop, Limit_s).
 
 // In a dock the base is passive, and no tune could say yes or no to anybody.
 +!come_out : docked <- undock.

@@ -154,6 +154,11 @@ PERCEPTS: Final = (
         lambda s: ["manoeuvring"] if s.view.motion in MANOEUVRES else [],
     ),
     Percept(
+        "handing_over",
+        "mail has just changed hands: people put it in or take it out",
+        lambda s: ["handing_over"] if s.handing_over else [],
+    ),
+    Percept(
         "halted",
         "a fault keeps the wheels still until a person has seen to it",
         lambda s: ["halted"] if s.halting else [],

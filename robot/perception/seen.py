@@ -44,4 +44,5 @@ class Seen:
     home: str | None = None
     nearest_dock: str | None = None
     unsure: bool = False
+    handing_over: bool = False
     watch: int = 0

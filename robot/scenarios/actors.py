@@ -28,6 +28,7 @@ class Actor:
     """When it was first seen at which post, in order; the truth, not its own idea."""
     post: str | None = None
     still_since_s: float | None = None
+    rolls_since_s: float | None = None
     heard: list[str] = field(default_factory=list)
     """Tunes since the last look."""
     carried: bool = False
@@ -60,8 +61,10 @@ class Actor:
     def _look_at_wheels(self, now: float) -> None:
         if self.body.body.base.moving:
             self.still_since_s = None
-        elif self.still_since_s is None:
-            self.still_since_s = now
+            self.rolls_since_s = now if self.rolls_since_s is None else self.rolls_since_s
+        else:
+            self.rolls_since_s = None
+            self.still_since_s = now if self.still_since_s is None else self.still_since_s
 
     def _listen(self) -> None:
         self._songs, tunes = self.body.tunes_since(self._songs)
@@ -70,3 +73,7 @@ class Actor:
     def stands_s(self, now: float) -> float:
         """How long its wheels have been still."""
         return 0.0 if self.still_since_s is None else now - self.still_since_s
+
+    def rolls_s(self, now: float) -> float:
+        """How long its wheels have turned without a stand; a tick at least when they turn now."""
+        return 0.0 if self.rolls_since_s is None else max(0.1, now - self.rolls_since_s)

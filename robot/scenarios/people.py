@@ -25,6 +25,10 @@ WALKS_UP_S: Final = (1.0, 4.0)
 SHOWS_S, RESTS_S = 8.0, 4.0
 """Somebody holds a code up for so long, then looks what is the matter; others at the post get their turn."""
 PRESS_EVERY_S = 0.8
+REACHES_IN_S: Final = (1.0, 3.5)
+"""From the tune that says yes until the mail is in the box, or out of it."""
+DRIVES_OFF_S: Final = 3.0
+"""A robot that a person attends to may be pushed and go back a hand's breadth; one that rolls for so long leaves."""
 GOES_ROUND_AFTER_S: Final = 4.0
 """Whoever walks and finds a robot in the way stands so long before going round it."""
 ROBOT_M, ROUND_IT_M = 0.174, 0.2
@@ -49,6 +53,8 @@ class Handing:
     busy_with: str | None = None
     """The robot that the person attends to: one at a time."""
     tried: int = 0
+    reaches_in_s: float | None = None
+    """The robot has said yes: when the mail is in, or out."""
     presses: list[float] = field(default_factory=list)
     _delay_s: float = 0.0
 
@@ -65,8 +71,11 @@ class Handing:
 
     def tick(self, actor: Actor, now: float) -> None:
         """A robot is at the post, or has just left it."""
-        waits = actor.post == self.post and actor.stands_s(now) > NOTICES_AFTER_S
-        if not (waits and self.has_business(actor) and self.person.comes != "never"):
+        meets = self._meets(actor, now)
+        if meets and self.busy_with == actor.name and self.reaches_in_s is not None:
+            self._reach_in(actor, now)
+            return
+        if not (meets and self.has_business(actor) and self.person.comes != "never"):
             self._leave(actor)
             return
         if self.busy_with not in (None, actor.name):
@@ -80,10 +89,18 @@ class Handing:
         elif now >= self.rests_until_s and not _busy(actor):
             self._begin(actor, now)
 
+    def _meets(self, actor: Actor, now: float) -> bool:
+        """It waits at the post, and has not driven off since."""
+        if actor.post != self.post:
+            return False
+        if self.busy_with == actor.name:
+            return actor.rolls_s(now) < DRIVES_OFF_S
+        return actor.stands_s(now) > NOTICES_AFTER_S
+
     def _leave(self, actor: Actor) -> None:
         if self.busy_with != actor.name:
             return
-        self.busy_with = None
+        self.busy_with = self.reaches_in_s = None
         self.came_s.pop(actor.name, None)
         if self.shows_until_s > 0 and actor.body.camera.shown == self.shown:
             actor.body.hide_code()
@@ -111,17 +128,20 @@ class Handing:
             if self.presses:
                 actor.body.press("spot")
         if "accepted" in actor.heard:
-            self._hand_over(actor, now)
+            self.shows_until_s, self.presses = -math.inf, []
+            actor.body.hide_code()
+            self.reaches_in_s = now + self.random.uniform(*REACHES_IN_S)
         elif "refused" in actor.heard:
             self.shows_until_s, self.rests_until_s = -math.inf, now + RESTS_S
             actor.body.hide_code()
 
-    def _hand_over(self, actor: Actor, now: float) -> None:
-        """It said yes: in with it, or out."""
+    def _reach_in(self, actor: Actor, now: float) -> None:
+        """It said yes: in with it, or out. Into a box that rolls away nobody puts anything."""
+        if self.reaches_in_s is None or now < self.reaches_in_s or actor.rolls_s(now):
+            return
+        self.reaches_in_s = None
         taker = WITH_SENDER if self.gives else WITH_RECIPIENT
         self.letter.put(actor.name if self.letter.place == WITH_SENDER else taker, now)
-        self.shows_until_s, self.presses = -math.inf, []
-        actor.body.hide_code()
 
 
 def _busy(actor: Actor) -> bool:

@@ -98,7 +98,7 @@ def test_a_robot_that_waits_there_hands_over_and_its_receipt_says_how_and_why(de
         "c1",
         by,
     )
-    assert (desk.duties.held.cargo, desk.duties.held.stop, waiting.confirmed) == (("o1",), RECEIVE, True)
+    assert (desk.duties.held.cargo, desk.duties.held.stop, waiting.handed_over) == (("o1",), RECEIVE, True)
     assert desk.duties.codes("o1", Purpose.LOAD) == (), "used up, the delegate's too"
     assert desk.duties.codes("o1", Purpose.RECEIVE) == (RECIPIENTS,)
 

@@ -8,8 +8,9 @@ from pathlib import Path
 import pytest
 
 from maps import builtin_map
-from protocol.parts import Stop, StopAction
+from protocol.parts import Purpose, Stop, StopAction
 from protocol.to_robot import Mission
+from robot.custody import Waiting
 from robot.drivers.interfaces import BaseState
 from robot.duties import Duties
 from robot.memory import Incoming, Memory
@@ -50,8 +51,13 @@ def test_what_it_waits_for_is_named(robot: Robot) -> None:
 
 
 def test_a_pause_is_said_to_be_for_what_it_is_for(robot: Robot) -> None:
-    assert robot.why("rest(step_back,2)") == ("Giving people at post3 a moment to step back", None)
     assert robot.why("rest(15)") == ("Waiting a moment before trying again", None)
+
+
+def test_hands_in_its_box_are_named_before_what_it_waited_for(robot: Robot) -> None:
+    robot.duties.custody.wait(Waiting((MISSION, MISSION.stops[0]), Purpose.LOAD, "post3", handed_over=True))
+    action = 'wait_handover(load,"o1","s1",600)'
+    assert robot.why(action) == ("Giving people at post3 a moment to step back", None)
 
 
 def test_out_of_network_it_says_that_it_waits_for_the_network(robot: Robot) -> None:

@@ -16,7 +16,7 @@ from protocol.proofs import ShownCode
 from protocol.to_robot import Detour, Mission
 from robot.action.actions import Actions, table_for
 from robot.action.hands import Hands
-from robot.action.table import ACTIONS, PAPER_ACTIONS
+from robot.action.table import ACTIONS, PAPER_ACTIONS, REACHES_IN_S
 from robot.config import PerceptMode
 from robot.duties import Duties
 from robot.memory import Incoming, Memory
@@ -314,9 +314,24 @@ def test_a_confirmed_handover_is_kept_and_told_in_one_go(bench: Bench) -> None:
     bench.navigator.place("post1", "post2")
     id_ = bench.ask("wait_handover(load,o1,s1,600)")
     bench.body.end("wait_handover", Done(shown=ShownCode("ab" * 32, b"key")))
-    assert bench.actions.finished(1.0) == [(id_, None)]
+    assert bench.actions.finished(1.0) == []
     assert (bench.duties.held.cargo, bench.duties.held.next_stop) == (("o1",), 1)
     assert [text for text in bench.told() if '"handover"' in text and "ab" * 32 in text]
+    assert bench.duties.custody.handing_over
+    assert bench.actions.finished(1.0 + REACHES_IN_S - 0.1) == [], "a hand may be in the box"
+    assert bench.actions.finished(1.0 + REACHES_IN_S) == [(id_, None)]
+    assert not bench.duties.custody.handing_over
+
+
+def test_a_dropped_plan_does_not_wait_for_hands(bench: Bench) -> None:
+    bench.duties.give(MISSION)
+    id_ = bench.ask("wait_handover(load,o1,s1,600)")
+    bench.body.end("wait_handover", Done(shown=ShownCode("ab" * 32, b"key")))
+    bench.actions.finished(1.0)
+    bench.actions.cancel([id_])
+    assert not bench.duties.custody.handing_over
+    assert bench.actions.finished(1.1) == []
+    assert bench.actions.under_way == ()
 
 
 def test_mail_handed_over_in_the_moment_its_plan_is_dropped_is_in_custody_all_the_same(bench: Bench) -> None:

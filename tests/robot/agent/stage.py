@@ -96,6 +96,18 @@ class Stage:
         """These hold from now on, those no longer."""
         self.percepts = (self.percepts - set(without)) | set(added)
 
+    def mail_changes_hands(self, what: str, number: int) -> None:
+        """`what` is purpose, order and stop. As the body does it: the next stop is perceived in the same moment."""
+        purpose, order, _ = what.split(",")
+        carrying = f"carrying({order})"
+        self.perceives("handing_over", f"next_stop({number + 1})", without=(f"next_stop({number})",))
+        self.perceives(carrying) if purpose == "load" else self.perceives(without=(carrying,))
+
+    def people_step_back(self, what: str) -> None:
+        """The robot has stood for them."""
+        self.perceives(without=("handing_over",))
+        self.succeeds(f"wait_handover({what},600)")
+
     def reads(self, performative: str, content: str) -> None:
         self._messages.append(Message("user", performative, content))
 

@@ -62,12 +62,10 @@ def test_loading_is_waited_for_and_then_the_recipient_is_next() -> None:
     stage.expect("wait_handover(load,o1,s1,600)")
     stage.settle()
     assert "wait_handover(load,o1,s1,600)" in stage.waiting, "nothing is assumed"
-    stage.perceives("carrying(o1)")
-    stage.succeeds("wait_handover(load,o1,s1,600)")
-    stage.does("rest(step_back,2)")  # people step back
-    stage.expect("finish_stop(s1)")
-    stage.perceives("next_stop(1)", without=("next_stop(0)",))
-    stage.succeeds("finish_stop(s1)")
+    stage.mail_changes_hands("load,o1,s1", 0)
+    stage.settle()
+    assert list(stage.waiting) == ["wait_handover(load,o1,s1,600)"], "a hand is in its box"
+    stage.people_step_back("load,o1,s1")
     stage.does("report(departed,s2)")
     drive(stage, "post4", "behind", "post2", "post3", "post4")
     stage.does("report(arrived,s2)")

@@ -16,14 +16,10 @@ TWO_ORDERS = (
 
 def hand_over(stage: Stage, number: int, what: str) -> None:
     """The mail changes hands, and the body knows."""
-    purpose, order, stop = what.split(",")
-    action = f"wait_handover({what},600)"
-    stage.expect(action)
-    carried = f"carrying({order})"
-    stage.perceives(carried) if purpose == "load" else stage.perceives(without=(carried,))
-    stage.succeeds(action)
-    stage.does("rest(step_back,2)")
-    done(stage, number, stop)
+    stage.expect(f"wait_handover({what},600)")
+    stage.mail_changes_hands(what, number)
+    stage.settle()
+    stage.people_step_back(what)
 
 
 def done(stage: Stage, number: int, stop: str) -> None:
