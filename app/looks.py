@@ -8,6 +8,8 @@ from typing import Final
 REST: Final = 19
 """A busy service has other things to do than to look again: a rest of so many times as long as a look has taken, so
 that none of the four or five who look round takes more than a twentieth of the time."""
+PIECE_S: Final = 0.005
+"""Real seconds. A piece of a look that took less goes on to the next one."""
 LONGEST_REST_S: Final = 1.0
 """Real seconds. A look that had to wait for others took long without having done much."""
 
@@ -32,10 +34,16 @@ class Looks:
         self._waits_first = waits_first
         self._again_s, self._rest_s, self._rest, self._longest_rest_s = again_s, rest_s, rest, longest_rest_s
         self._woken, self._stopped = asyncio.Event(), asyncio.Event()
+        self._begun_s = 0.0
+        """When the present look began, or its last piece."""
 
     def wake(self, _changed: str = "") -> None:
         """Something has changed: look once more."""
         self._woken.set()
+
+    @property
+    def is_stopped(self) -> bool:
+        return self._stopped.is_set()
 
     def stop(self) -> None:
         """No look begins any more, and no rest holds up the end."""
@@ -44,16 +52,29 @@ class Looks:
 
     async def until_stopped(self) -> AsyncIterator[None]:
         """The first at once, or when woken. What wakes during a look is seen by the next one."""
-        now_s = asyncio.get_running_loop().time
         if self._waits_first:
             await _for(self._woken, self._again_s)
         while not self._stopped.is_set():
             self._woken.clear()
-            begun_s = now_s()
+            self._begun_s = asyncio.get_running_loop().time()
             yield
-            rest_s = min(self._rest * (now_s() - begun_s), self._longest_rest_s)
-            await _for(self._stopped, max(self._rest_s, rest_s))
+            await _for(self._stopped, max(self._rest_s, self._earned_s(self._worked_s())))
             await _for(self._woken, self._again_s)
+
+    async def breathe(self) -> None:
+        """Between two pieces of one look: the rest that the first has earned, so that a long look is spread out."""
+        worked_s = self._worked_s()
+        if worked_s < PIECE_S:
+            await asyncio.sleep(0)
+            return
+        await _for(self._stopped, self._earned_s(worked_s))
+        self._begun_s = asyncio.get_running_loop().time()
+
+    def _worked_s(self) -> float:
+        return asyncio.get_running_loop().time() - self._begun_s
+
+    def _earned_s(self, worked_s: float) -> float:
+        return min(self._rest * worked_s, self._longest_rest_s)
 
 
 async def _for(event: asyncio.Event, at_most_s: float) -> None:

@@ -25,13 +25,14 @@ RENEWED_AFTER_S: Final = 60.0
 LONGEST_SILENCE: Final = timedelta(hours=1)
 """After a longer one than that between the last record and a start, the clock alone does not say whether it is true."""
 
+_SINCE_BOOT: Final[int | None] = getattr(time, "CLOCK_BOOTTIME", None)
+
 log = structlog.get_logger(__name__)
 
 
 def since_boot_s() -> float:
     """Seconds that nobody can set, and that go on while the machine sleeps where the system has such a clock."""
-    clock = getattr(time, "CLOCK_BOOTTIME", None)
-    return time.monotonic() if clock is None else time.clock_gettime(clock)
+    return time.monotonic() if _SINCE_BOOT is None else time.clock_gettime(_SINCE_BOOT)
 
 
 @dataclass(frozen=True)

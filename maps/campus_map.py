@@ -7,6 +7,7 @@ that turns a map file into something to work with; service, robot and simulator 
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, field
+from functools import cached_property
 from hashlib import sha256
 from itertools import pairwise
 from json import dumps, loads
@@ -131,7 +132,14 @@ class CampusMap:
     def neighbours(self, name: str) -> tuple[tuple[Post, Corridor], ...]:
         """The posts one corridor away, in the order of the file."""
         self.post(name)
-        return tuple((self.posts[c.other(name)], c) for c in self.corridors if name in (c.a, c.b))
+        return self._neighbours[name]
+
+    @cached_property
+    def _neighbours(self) -> Mapping[str, tuple[tuple[Post, Corridor], ...]]:
+        return {
+            name: tuple((self.posts[c.other(name)], c) for c in self.corridors if name in (c.a, c.b))
+            for name in self.posts
+        }
 
     def corridor(self, a: str, b: str) -> Corridor:
         """The corridor between two neighbouring posts, whichever way round."""

@@ -7,6 +7,7 @@ Thin: who has waited longest first (priority counts like waiting), the nearest i
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timedelta
+from heapq import heapify, heappop
 from typing import Final
 
 from app.tables import Priority
@@ -75,13 +76,22 @@ def choose_robots(
     for order in waiting:
         if not free:
             break
-        able = [robot for robot in free.values() if order.may_go_with(robot.name)]
-        able.sort(key=lambda robot: (ways.length_m(robot.post, order.from_post), robot.name))
-        nearest = next((robot for robot in able if may_take(robot, order)), None)
+        nearest = _nearest(order, free.values(), ways, may_take)
         if nearest is not None:
             chosen.append(Assignment(order.id, nearest.name))
             del free[nearest.name]
     return chosen
+
+
+def _nearest(order: WaitingOrder, robots: Iterable[IdleRobot], ways: Ways, may_take: MayTake) -> IdleRobot | None:
+    """Of equally near ones the first by name. Mostly the first that is asked may take it, so all are never sorted."""
+    able = [(ways.length_m(one.post, order.from_post), one.name, one) for one in robots if order.may_go_with(one.name)]
+    heapify(able)
+    while able:
+        _, _, robot = heappop(able)
+        if may_take(robot, order):
+            return robot
+    return None
 
 
 def has_enough_charge(robot: IdleRobot) -> bool:

@@ -7,7 +7,7 @@ from typing import Final
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.dispatch.choice import NONE_CONNECTED
-from app.dispatch.open_work import HeldUp, OpenWork, RobotNow, look_at_work
+from app.dispatch.open_work import HeldUp, RobotNow, look_at_held_up
 from app.fleet.service import Fleet
 
 SENTENCES: Final = {
@@ -19,15 +19,13 @@ SENTENCES: Final = {
 
 def why_held_up(robots: Iterable[RobotNow]) -> str | None:
     """The first reason that holds of a connected robot, if each of them has one; None if one could come."""
-    reasons = {robot.held_up for robot in robots if robot.is_there}
+    return _first_of({robot.held_up for robot in robots if robot.is_there})
+
+
+def _first_of(reasons: set[HeldUp | None]) -> str | None:
     if not reasons or None in reasons:
         return None
     return next(sentence for reason, sentence in SENTENCES.items() if reason in reasons)
-
-
-def why_no_robot_comes(work: OpenWork) -> str | None:
-    """The reason for which no robot would come for an order of this moment; None if one would."""
-    return why_held_up(work.robots.values()) if work.connected else NONE_CONNECTED
 
 
 @dataclass(frozen=True)
@@ -37,4 +35,6 @@ class NoRobotComes:
     fleet: Fleet
 
     async def why(self, session: AsyncSession) -> str | None:
-        return why_no_robot_comes(await look_at_work(session, self.fleet.clock.utc()))
+        """The reason for which no robot would come for an order of this moment; None if one would."""
+        reasons = await look_at_held_up(session)
+        return _first_of(reasons) if reasons else NONE_CONNECTED

@@ -108,6 +108,14 @@ async def look_at_work(session: AsyncSession, now: datetime) -> OpenWork:
     return _put_together(rows, robots, stops, missions, commands)
 
 
+async def look_at_held_up(session: AsyncSession) -> set[HeldUp | None]:
+    """Why connected robots wait for a person, None for those that do not; three short questions."""
+    connection = await connection_of(session)
+    stuck = set((await connection.execute(_STUCK)).scalars())
+    paused = _paused((await connection.execute(_COMMANDS)).all())
+    return {_held_up(row, stuck, paused) for row in (await connection.execute(_CONNECTED)).all()}
+
+
 def _put_together(
     rows: Iterable[Any],
     robots: Sequence[Any],
@@ -214,6 +222,10 @@ _ROBOTS: Final = select(
     *(col(RobotRow.online), col(RobotRow.activity), col(RobotRow.taken_out_at)),
     col(RobotRow.name).in_(WITHOUT_A_HOME).label("is_without_a_home"),
 )
+_CONNECTED: Final = select(col(RobotRow.name), col(RobotRow.activity), col(RobotRow.taken_out_at)).where(
+    col(RobotRow.online)
+)
+_STUCK: Final = select(col(Order.robot)).where(col(Order.state) == OrderState.ATTENTION, is_aboard())
 _MISSIONS: Final = (
     select(col(MissionRow.id), col(MissionRow.robot))
     .where(col(MissionRow.state) == MissionState.ACTIVE)

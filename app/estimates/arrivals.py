@@ -4,6 +4,7 @@ How long until it is fetched depends on the orders before it and on the robots t
 corridor by corridor. What a plan is known of is forecast by `app.estimates.forecast` instead.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import datetime, tzinfo
 from functools import cached_property
@@ -13,7 +14,7 @@ from statistics import fmean
 from typing import Final
 
 from app.estimates.calibration import Basis
-from app.estimates.durations import Durations, Kind, Thing
+from app.estimates.durations import SHORTEST_ASSUMED_S, Durations, Kind, Thing
 from app.estimates.intervals import MIDDLE, Interval, interval_of
 from app.estimates.told import Told
 from maps import shortest_route
@@ -74,7 +75,8 @@ class Estimates:
     ahead: Ahead = Ahead()
     _rng: Random = field(default_factory=lambda: Random(0))
     _drawn: dict[tuple[str, ...], Interval] = field(default_factory=dict)
-    _parts_s: dict[Thing, list[float]] = field(default_factory=dict)
+    _ratios: dict[tuple[Kind, str], list[float]] = field(default_factory=dict)
+    _ways_s: dict[tuple[str, str], list[float]] = field(default_factory=dict)
     _drawn_at: int = -1
 
     # What is told.
@@ -102,11 +104,18 @@ class Estimates:
     # The things that take time.
 
     def corridor(self, from_post: str, to_post: str) -> Thing | None:
-        """One corridor in one direction; None if the map has none between these posts."""
-        for post, corridor in self.ways.campus.neighbours(from_post):
-            if post.name == to_post:
-                return Thing(Kind.CORRIDOR, f"{from_post} {to_post}", corridor.length_m / self.speed_m_s)
-        return None
+        """One corridor in one direction; None if the map has none between these posts. Raises the map's UnknownPost."""
+        self.ways.campus.post(from_post)
+        return self._of_corridors.get((from_post, to_post))
+
+    @cached_property
+    def _of_corridors(self) -> Mapping[tuple[str, str], Thing]:
+        campus = self.ways.campus
+        joined = [(here, post.name, way.length_m) for here in campus.posts for post, way in campus.neighbours(here)]
+        return {
+            (here, there): Thing(Kind.CORRIDOR, f"{here} {there}", length_m / self.speed_m_s)
+            for here, there, length_m in joined
+        }
 
     def usual_s(self, from_post: str, to_post: str) -> float | None:
         """How long a corridor takes in the middle; None if too few were driven to say."""
@@ -142,21 +151,31 @@ class Estimates:
     def _draws(self, fetch: Thing, from_post: str, to_post: str, hours: str) -> Interval:
         """Drawn anew when enough was learned to change it; a thousand orders of one minute are told the same."""
         if self.durations.version > self._drawn_at * (1 + WORTH_DRAWING):
-            self._drawn, self._parts_s, self._drawn_at = {}, {}, self.durations.version
+            self._drawn, self._ratios, self._ways_s, self._drawn_at = {}, {}, {}, self.durations.version
         known = (fetch.name, f"{fetch.assumed_s:.0f}", from_post, to_post, hours)
         if known not in self._drawn:
-            parts = [fetch, Thing(Kind.LOAD, hours, self.handover_s), *self._corridors(from_post, to_post)]
-            self._drawn[known] = interval_of([sum(one) for one in zip(*map(self._part_s, parts), strict=True)])
+            fetched_s, loaded_s = map(self._part_s, (fetch, Thing(Kind.LOAD, hours, self.handover_s)))
+            parts_s = zip(fetched_s, loaded_s, self._way_s(from_post, to_post), strict=True)
+            self._drawn[known] = interval_of([fetch_s + load_s + way_s for fetch_s, load_s, way_s in parts_s])
         return self._drawn[known]
 
     def _part_s(self, part: Thing) -> list[float]:
-        """The draws of one part, which many ways have in common: no way has the same part twice."""
-        if part not in self._parts_s:
-            self._parts_s[part] = self.durations.draws_s(part, self._rng, DRAWS)
-        return self._parts_s[part]
+        """The draws of one part, which many ways have in common: no way has the same part twice. They are drawn as
+        ratios, since what is assumed of a fetch changes with the queue."""
+        assumed_s = max(part.assumed_s, SHORTEST_ASSUMED_S)
+        if part[:2] not in self._ratios:
+            self._ratios[part[:2]] = self.durations.draws_s(Thing(part.kind, part.name, 1.0), self._rng, DRAWS)
+        return [ratio * assumed_s for ratio in self._ratios[part[:2]]]
+
+    def _way_s(self, from_post: str, to_post: str) -> list[float]:
+        """The draws of all its corridors together."""
+        if (from_post, to_post) not in self._ways_s:
+            parts_s = zip([0.0] * DRAWS, *map(self._part_s, self._corridors(from_post, to_post)), strict=True)
+            self._ways_s[from_post, to_post] = [sum(one) for one in parts_s]
+        return self._ways_s[from_post, to_post]
 
     def _corridors(self, from_post: str, to_post: str) -> list[Thing]:
-        posts = shortest_route(self.ways.campus, from_post, to_post).posts
+        posts = self.ways.route(from_post, to_post).posts
         found = (self.corridor(here, there) for here, there in pairwise(posts))
         return [thing for thing in found if thing is not None]
 

@@ -8,7 +8,7 @@ from collections.abc import Awaitable, Callable, Iterable
 from dataclasses import dataclass, field
 from datetime import datetime
 from functools import partial
-from typing import Final, Protocol
+from typing import Any, Final, NamedTuple, Protocol
 
 from sqlalchemy import func, or_, select
 from sqlmodel import col
@@ -32,6 +32,8 @@ REST_S: Final = 2.0
 REST: Final = 100
 """Of a thousand robots a look takes a tenth of a second, in which the service answers nobody: times as long."""
 NOT_FETCHED: Final = (OrderState.QUEUED, OrderState.ASSIGNED, OrderState.TO_SENDER)
+OBSERVED: Final = "observed"
+"""Of a session: what was heard in it and is not written down yet."""
 KIND_OF: Final = {Purpose.LOAD: Kind.LOAD, Purpose.RECEIVE: Kind.RECEIVE}
 
 
@@ -41,6 +43,18 @@ WhyNone = Callable[[AsyncSession], Awaitable[str | None]]
 
 async def _not_asked(_session: AsyncSession) -> str | None:
     return None
+
+
+class Observed(NamedTuple):
+    """How long something took, and when it was over."""
+
+    thing: Thing
+    seconds: float
+    at: datetime
+
+    @property
+    def row(self) -> dict[str, Any]:
+        return {**self.thing._asdict(), "seconds": self.seconds, "at": self.at}
 
 
 class Corrected(Protocol):
@@ -109,45 +123,57 @@ class Learning:
     # What robots say, in the transaction that writes it down.
 
     async def hear(self, session: AsyncSession, robot: str, happened: Part, corrected: Corrected) -> None:
-        """One event, after what follows from it. A second time it is not told: each message is taken once."""
+        """One event, after what follows from it; `write_down` comes later.
+
+        A second time it is not told: each message is taken once."""
+        found: list[Observed | None] = []
         if isinstance(happened, HandoverReceipt):
-            await self._handed_over(session, happened, corrected)
+            found.append(await self._handed_over(session, happened, corrected))
         elif isinstance(happened, Progress):
             at = corrected(happened.happened_at)
-            await self._drove(session, robot, happened, at)
+            found.append(self._drove(robot, happened, at))
             if happened.step is Step.ARRIVED and happened.order_id is not None:
                 stop = await session.get(StopRow, happened.stop_id)
-                await self._came(session, happened.order_id, stop, at)
+                found.append(await self._came(session, happened.order_id, stop, at))
+        plausible = [one for one in found if one is not None and Durations.is_plausible(one.seconds)]
+        session.info.setdefault(OBSERVED, []).extend(plausible)
+
+    async def write_down(self, session: AsyncSession) -> None:
+        """What was heard in this transaction, in one statement."""
+        observed: list[Observed] = session.info.pop(OBSERVED, [])
+        await write_all(session, DurationRow, [one.row for one in observed])
+        for one in observed:
+            after_commit(session, partial(self._learn, one.thing, one.seconds))
 
     def let_in(self, robot: str, legs: Iterable[Leg], now: datetime) -> None:
         """These corridors may be entered from now on: what it waited before was no driving."""
         self._let_in.update({(robot, leg.from_post, leg.to_post): now for leg in legs})
 
-    async def _drove(self, session: AsyncSession, robot: str, progress: Progress, at: datetime) -> None:
+    def _drove(self, robot: str, progress: Progress, at: datetime) -> Observed | None:
         before = self._on_way.pop(robot, None)
         if progress.post is None or progress.step not in ON_ITS_WAY:
-            return
+            return None
         if progress.step is not Step.ARRIVED:
             self._on_way[robot] = (progress.post, at)
         if before is None or progress.step is Step.DEPARTED or before[0] not in self.estimates.ways.campus.posts:
-            return
+            return None
         thing = self.estimates.corridor(before[0], progress.post)
         entered_at = max(before[1], self._let_in.pop((robot, before[0], progress.post), before[1]))
-        if thing is not None:
-            await self._observe(session, thing, entered_at, at)
+        return None if thing is None else _observed(thing, entered_at, at)
 
-    async def _came(self, session: AsyncSession, order_id: str, stop: StopRow | None, at: datetime) -> None:
+    async def _came(self, session: AsyncSession, order_id: str, stop: StopRow | None, at: datetime) -> Observed | None:
         placed = await session.get(ForecastRow, order_id)
         if stop is not None and stop.action == StopAction.LOAD and placed is not None and placed.arrived_at is None:
             if stop.post != (await session.get_one(Order, order_id)).from_post:
-                return  # passed on: it was fetched before
+                return None  # passed on: it was fetched before
             fetch = Thing(Kind.FETCH, placed.fetch_name, placed.fetch_assumed_s)
-            await self._observe(session, fetch, placed.begins_at, at)
-        elif stop is not None and stop.action == StopAction.RECEIVE:
+            return _observed(fetch, placed.begins_at, at)
+        if stop is not None and stop.action == StopAction.RECEIVE:
             if placed is not None:
                 self._note_arrival(session, Basis.PLACED, placed, placed.begins_at, at)
             for row in await told_under_way(session, order_id):
                 self._note_arrival(session, Basis.UNDER_WAY, row, row.told_at, at)
+        return None
 
     def _note_arrival(
         self, session: AsyncSession, basis: Basis, row: ForecastRow | ForecastUnderWayRow, since: datetime, at: datetime
@@ -156,27 +182,24 @@ class Learning:
             row.arrived_at = at
             after_commit(session, partial(self._arrived, basis, intervals_of(row), since, at))
 
-    async def _handed_over(self, session: AsyncSession, receipt: HandoverReceipt, corrected: Corrected) -> None:
+    async def _handed_over(
+        self, session: AsyncSession, receipt: HandoverReceipt, corrected: Corrected
+    ) -> Observed | None:
         stop, kind = await session.get(StopRow, receipt.stop_id), KIND_OF.get(receipt.purpose)
-        if stop is not None and stop.arrived_at is not None and kind is not None:
-            arrived_at = corrected(stop.arrived_at)
-            await self._observe(
-                session, self.estimates.stop(kind, arrived_at), arrived_at, corrected(receipt.happened_at)
-            )
-
-    async def _observe(self, session: AsyncSession, thing: Thing, since: datetime, until: datetime) -> None:
-        seconds = (until - since).total_seconds()
-        if not Durations.is_plausible(seconds):
-            return
-        row = {**thing._asdict(), "seconds": seconds, "at": until}
-        await write_all(session, DurationRow, [row])
-        after_commit(session, partial(self._learn, thing, seconds))
+        if stop is None or stop.arrived_at is None or kind is None:
+            return None
+        arrived_at = corrected(stop.arrived_at)
+        return _observed(self.estimates.stop(kind, arrived_at), arrived_at, corrected(receipt.happened_at))
 
     def _learn(self, thing: Thing, seconds: float) -> None:
         self.estimates.durations.observe(thing, seconds)
 
     def _arrived(self, basis: Basis, intervals: Intervals, told_at: datetime, at: datetime) -> None:
         self.estimates.told[basis].arrived(*intervals, (at - told_at).total_seconds())
+
+
+def _observed(thing: Thing, since: datetime, until: datetime) -> Observed:
+    return Observed(thing, (until - since).total_seconds(), until)
 
 
 ON_ITS_WAY: Final = frozenset({Step.DEPARTED, Step.PASSED, Step.ARRIVED})

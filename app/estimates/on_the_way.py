@@ -9,7 +9,7 @@ from typing import Final, NamedTuple
 from app.estimates.arrivals import Estimates
 from app.estimates.durations import Kind, Thing
 from app.estimates.intervals import Interval, interval_of
-from maps import CampusMapError, shortest_route
+from maps import CampusMapError
 
 DRAWS: Final = 60
 
@@ -73,7 +73,7 @@ def _parts(
     first = [] if place.towards is None else part(estimates.corridor(place.post, place.towards), place.since)
     here = place.towards or place.post
     for stop in stops:
-        way = shortest_route(estimates.ways.campus, here, stop.post).posts
+        way = estimates.ways.route(here, stop.post).posts
         corridors = [one for a, b in pairwise(way) for one in part(estimates.corridor(a, b))]
         handling = part(estimates.stop(stop.kind, stop.arrived_at or now), stop.arrived_at) if stop.kind else []
         yield stop.key, first + corridors, handling

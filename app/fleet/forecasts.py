@@ -1,7 +1,7 @@
 """Forecasts of all stops that robots have before them: by the timetable, or, without one, by the way of each robot."""
 
 import asyncio
-from collections.abc import Mapping, Sequence
+from collections.abc import Awaitable, Callable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from random import Random
@@ -81,9 +81,14 @@ async def by_timetable(
 
 
 async def by_their_ways(
-    estimates: Estimates, robots: Mapping[str, RobotRow], stops: Sequence[Stop], now: datetime, rng: Random
+    estimates: Estimates,
+    robots: Mapping[str, RobotRow],
+    stops: Sequence[Stop],
+    now: datetime,
+    rng: Random,
+    breathe: Callable[[], Awaitable[None]],
 ) -> dict[str, Interval]:
-    """The same where every corridor is granted at once."""
+    """The same where every corridor is granted at once. `breathe` is called after each robot."""
     places = {name: Place(one.post, one.towards, one.seen_at) for name, one in robots.items() if one.post is not None}
     ahead: dict[str, list[Ahead]] = {name: [] for name in places}
     for stop in stops:
@@ -94,5 +99,5 @@ async def by_their_ways(
     for name, theirs in ahead.items():
         found |= on_the_way(estimates, places[name], theirs, now, rng)
         # Not in a thread: it would hold the interpreter for 5 ms whenever the service has waited for anything.
-        await asyncio.sleep(0)
+        await breathe()
     return found

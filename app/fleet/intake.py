@@ -170,6 +170,7 @@ class Intake:
                 if isinstance(robot, RobotRow):
                     await compare_again(session, robot, one.envelope.at, now)
                 one.problem = await self._follow(session, robot, one.envelope, careful)
+        await self.fleet.learning.write_down(session)
         await self.fleet.batteries.note(session, rows.values(), now)
         await _heard(session, robots, rows, now)
         for name, row in rows.items():

@@ -107,6 +107,9 @@ def _sending(notice: Notice, channel: str, target: str | None) -> dict[str, Any]
 
 
 def _tell_pages(session: AsyncSession, feed: Feed, new: New) -> None:
+    if not feed.is_heard:
+        after_commit(session, feed.pass_over)
+        return
     try:
         view = NoticeView.of(new.notice, new.person.language)
     except KeyError as gap:  # a notice that lacks a fact of its text holds up no other

@@ -1,6 +1,7 @@
 """Looks of what runs in the background."""
 
 import asyncio
+from itertools import pairwise
 
 from app.looks import REST, Looks
 
@@ -48,6 +49,39 @@ async def test_what_changes_during_a_look_is_seen_by_another() -> None:
             begun += 1
             looks.wake() if begun == 1 else looks.stop()
     assert begun == 2
+
+
+async def test_a_long_look_is_spread_out() -> None:
+    """Of every stretch of time it takes no more than its share, and not only on the whole."""
+    looks, pieces_s = Looks(again_s=60, rest_s=0, rest=9), list[float]()
+    now_s = asyncio.get_running_loop().time
+    async with asyncio.timeout(30):
+        async for _ in looks.until_stopped():
+            for _piece in range(5):
+                pieces_s.append(now_s())
+                await asyncio.sleep(0.01)
+                await looks.breathe()
+            looks.stop()
+    assert min(b - a for a, b in pairwise(pieces_s)) >= 0.01 * (1 + 9)
+
+
+async def test_a_look_of_small_pieces_hardly_rests() -> None:
+    looks = Looks(again_s=60, rest_s=0, rest=1_000_000, longest_rest_s=3600)
+    async with asyncio.timeout(30):
+        async for _ in looks.until_stopped():
+            for _piece in range(3):
+                await looks.breathe()
+            looks.stop()
+
+
+async def test_an_end_waits_for_no_breath() -> None:
+    looks = Looks(again_s=3600, rest_s=0, rest=1_000_000, longest_rest_s=3600)
+    async with asyncio.timeout(30):
+        async for _ in looks.until_stopped():
+            asyncio.get_running_loop().call_later(0.05, looks.stop)
+            await asyncio.sleep(0.01)
+            await looks.breathe()
+            assert looks.is_stopped
 
 
 async def test_an_end_waits_for_no_rest() -> None:
