@@ -17,7 +17,6 @@ from app.estimates.calibration import Basis
 from app.estimates.durations import SHORTEST_ASSUMED_S, Durations, Kind, Thing
 from app.estimates.intervals import MIDDLE, Interval, interval_of
 from app.estimates.told import Told
-from maps import shortest_route
 from maps.ways import Ways
 
 DRAWS: Final = 200
@@ -188,9 +187,7 @@ class Estimates:
         return Interval(earliest_s, (earliest_s + latest_s) / 2, latest_s)
 
     def _length_m(self, from_post: str, to_post: str) -> float:
-        length_m = self.ways.length_m(from_post, to_post)
-        # Asked anew where there is no way: the map says why.
-        return length_m if length_m < float("inf") else shortest_route(self.ways.campus, from_post, to_post).length_m
+        return self.ways.route(from_post, to_post).length_m
 
     def _coming_s(self, from_post: str) -> float:
         docks = [dock.name for dock in self.ways.campus.docks()]

@@ -153,7 +153,7 @@ def _finish_mission(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
     return AtOnce()
 
 
-REACHES_IN_S = 5.0
+STANDS_FOR_HANDS_S = 5.0
 """So long the robot stands after the tune that says yes, for a person to put mail into its box or to take it out and to
 step back. Assumed: nobody has measured how long people take."""
 
@@ -176,7 +176,7 @@ def _wait_handover(hands: Hands, arguments: Sequence[Value], now: float) -> Run:
     skill = WaitHandover(lambda: duties.codes(order_id, purpose), float(limit_s), spot_counts=purpose is Purpose.LOAD)
     duties.custody.wait(waiting)
     run = Unless(_one(hands, skill, now, custody), lambda: waiting.handed_over, promise)
-    return ThenRest(run, REACHES_IN_S, lambda: duties.custody.leave(waiting))
+    return ThenRest(run, STANDS_FOR_HANDS_S, lambda: duties.custody.leave(waiting))
 
 
 def _report_charge(hands: Hands, arguments: Sequence[Value], _: float) -> Run:

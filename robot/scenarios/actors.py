@@ -27,8 +27,10 @@ class Actor:
     posts: list[tuple[float, str]] = field(default_factory=list)
     """When it was first seen at which post, in order; the truth, not its own idea."""
     post: str | None = None
-    still_since_s: float | None = None
-    rolls_since_s: float | None = None
+    rolls: bool = False
+    """Its wheels turn."""
+    _since_s: float | None = None
+    """Since when they turn, or stand; None before the first look."""
     heard: list[str] = field(default_factory=list)
     """Tunes since the last look."""
     carried: bool = False
@@ -59,12 +61,8 @@ class Actor:
         self.carried = self._put_down = True
 
     def _look_at_wheels(self, now: float) -> None:
-        if self.body.body.base.moving:
-            self.still_since_s = None
-            self.rolls_since_s = now if self.rolls_since_s is None else self.rolls_since_s
-        else:
-            self.rolls_since_s = None
-            self.still_since_s = now if self.still_since_s is None else self.still_since_s
+        if self.body.body.base.moving != self.rolls or self._since_s is None:
+            self.rolls, self._since_s = self.body.body.base.moving, now
 
     def _listen(self) -> None:
         self._songs, tunes = self.body.tunes_since(self._songs)
@@ -72,8 +70,8 @@ class Actor:
 
     def stands_s(self, now: float) -> float:
         """How long its wheels have been still."""
-        return 0.0 if self.still_since_s is None else now - self.still_since_s
+        return 0.0 if self.rolls or self._since_s is None else now - self._since_s
 
     def rolls_s(self, now: float) -> float:
-        """How long its wheels have turned without a stand; a tick at least when they turn now."""
-        return 0.0 if self.rolls_since_s is None else max(0.1, now - self.rolls_since_s)
+        """How long its wheels have turned without a stand."""
+        return now - self._since_s if self.rolls and self._since_s is not None else 0.0

@@ -53,6 +53,8 @@ class Handing:
     busy_with: str | None = None
     """The robot that the person attends to: one at a time."""
     tried: int = 0
+    takes_s: tuple[float, float] = REACHES_IN_S
+    """From the robot's yes until the mail is in, or out: at least, at most."""
     reaches_in_s: float | None = None
     """The robot has said yes: when the mail is in, or out."""
     presses: list[float] = field(default_factory=list)
@@ -130,14 +132,14 @@ class Handing:
         if "accepted" in actor.heard:
             self.shows_until_s, self.presses = -math.inf, []
             actor.body.hide_code()
-            self.reaches_in_s = now + self.random.uniform(*REACHES_IN_S)
+            self.reaches_in_s = now + self.random.uniform(*self.takes_s)
         elif "refused" in actor.heard:
             self.shows_until_s, self.rests_until_s = -math.inf, now + RESTS_S
             actor.body.hide_code()
 
     def _reach_in(self, actor: Actor, now: float) -> None:
         """It said yes: in with it, or out. Into a box that rolls away nobody puts anything."""
-        if self.reaches_in_s is None or now < self.reaches_in_s or actor.rolls_s(now):
+        if self.reaches_in_s is None or now < self.reaches_in_s or actor.rolls:
             return
         self.reaches_in_s = None
         taker = WITH_SENDER if self.gives else WITH_RECIPIENT

@@ -16,7 +16,7 @@ from protocol.proofs import ShownCode
 from protocol.to_robot import Detour, Mission
 from robot.action.actions import Actions, table_for
 from robot.action.hands import Hands
-from robot.action.table import ACTIONS, PAPER_ACTIONS, REACHES_IN_S
+from robot.action.table import ACTIONS, PAPER_ACTIONS, STANDS_FOR_HANDS_S
 from robot.config import PerceptMode
 from robot.duties import Duties
 from robot.memory import Incoming, Memory
@@ -318,8 +318,8 @@ def test_a_confirmed_handover_is_kept_and_told_in_one_go(bench: Bench) -> None:
     assert (bench.duties.held.cargo, bench.duties.held.next_stop) == (("o1",), 1)
     assert [text for text in bench.told() if '"handover"' in text and "ab" * 32 in text]
     assert bench.duties.custody.handing_over
-    assert bench.actions.finished(1.0 + REACHES_IN_S - 0.1) == [], "a hand may be in the box"
-    assert bench.actions.finished(1.0 + REACHES_IN_S) == [(id_, None)]
+    assert bench.actions.finished(1.0 + STANDS_FOR_HANDS_S - 0.1) == [], "a hand may be in the box"
+    assert bench.actions.finished(1.0 + STANDS_FOR_HANDS_S) == [(id_, None)]
     assert not bench.duties.custody.handing_over
 
 
