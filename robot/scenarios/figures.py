@@ -23,9 +23,9 @@ class Figures:
     `mission_s` is from the moment in which the mission is ordered to the one in which the last recipient takes their
     mail, `None` unless everything was delivered. `way_m` is the shortest way by the map from the dock through the
     mission's posts in their order, and through every dock at which it charged on the way. `stops_s` is what it stood
-    still for others in that time: waiting at a post for a person to hand over and for their hand to leave the box, standing
-    in a dock, and standing in front of somebody in its way. Turns, docking, searches, and waits for grants or for the
-    network are no stops: they count against the robot.
+    still for others in that time: waiting at a post for a person to hand over and for their hand to leave the box,
+    standing in a dock, and standing in front of somebody in its way. Turns, docking, searches, and waits for grants
+    or for the network are no stops: they count against the robot.
     """
 
     seed: int
