@@ -37,6 +37,12 @@ class Claims:
     def may_enter(self, legs: Sequence[Leg]) -> bool:
         return self.alone or all(leg in self._held().grants for leg in legs)
 
+    def may_be_in(self, leg: Leg) -> bool:
+        """Nobody else is let into a corridor that it was granted, whichever way it goes in there."""
+        return self.alone or any(
+            {leg.from_post, leg.to_post} == {one.from_post, one.to_post} for one in self._held().grants
+        )
+
     def ask(self, legs: Sequence[Leg], goal: str | None = None) -> str | None:
         """Claim those of `legs` that are not granted yet, once; returns the claim's id, or None if none is needed."""
         wanted = tuple(leg for leg in dict.fromkeys(legs) if leg not in self._held().grants)
@@ -83,6 +89,12 @@ class Claims:
         """The robot is out of these corridors, or will not enter them after all. What it waits for it still wants."""
         if self._give_back(legs, self._held().grants):
             self._told()
+
+    def turn_aside(self, leg: Leg) -> None:
+        """It takes this corridor, which it holds, instead of the one that it waits for."""
+        self.withdraw()
+        self._memory.turn_aside(leg)
+        self._told()
 
     def void(self) -> None:
         """All that was granted or denied counts no longer."""

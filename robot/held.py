@@ -34,7 +34,7 @@ class Held:
     moment: str | None = None
     """What it is about that leaves doubt of its place after a power cut."""
     detour: Leg | None = None
-    """The corridor into which the service sends it first, so that others can pass."""
+    """The corridor that it takes first: so that others can pass, or out of a hole in the network."""
 
     @property
     def revoked(self) -> bool:

@@ -276,8 +276,13 @@ class Memory:
             self._write("moment", _WORD, None)
 
     def detour(self) -> Leg | None:
-        """The corridor into which the service sends it first, for as long as it holds the grant."""
+        """The corridor that it takes first, for as long as it holds the grant: the service sends it there, or it goes
+        there out of a hole in the network."""
         return self._read("detour", _LEG, None)
+
+    def turn_aside(self, leg: Leg) -> None:
+        """It takes this corridor first, which it holds."""
+        self._write("detour", _LEG, leg)
 
     def position(self) -> Position:
         """Where the robot was last seen."""
@@ -358,7 +363,7 @@ class Memory:
                 self.grant(message.legs)
             case Detour():
                 self.grant(message.legs)
-                self._write("detour", _LEG, message.legs[0])
+                self.turn_aside(message.legs[0])
             case _:  # commands are for the daemon to carry out
                 pass
 

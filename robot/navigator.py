@@ -110,6 +110,14 @@ class Navigator(Tracker):
         return Leg(from_post=place.here, to_post=place.far) if isinstance(place, Between) else None
 
     @property
+    def goes_deeper(self) -> Leg | None:
+        """The corridor into which it goes on, having come in since it was switched on; None: it goes back, or may."""
+        place = self._place
+        if not isinstance(place, Between) or place.turned_round or place.begin_mm is None:
+            return None
+        return self.corridor
+
+    @property
     def came_from(self) -> str | None:
         """The post that lies behind it; None where it may look either way."""
         match self._place:

@@ -43,7 +43,8 @@ def _why_no_way(hands: Hands, goal: str) -> str | None:
 
 def claim(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
     """Done as soon as the first corridor of the way may be entered: from post to post it is asked again. Done as well
-    when the service sends the robot elsewhere first, which is then perceived."""
+    when the robot has to go elsewhere first, which is then perceived: the service sends it there, or it goes on out of
+    a hole in the network by what it was granted."""
     goal, duties, navigator = str(arguments[0]), hands.duties, hands.navigator
     closed = _why_no_way(hands, goal)
     way = _kept(hands) if closed else _way(hands, goal)
@@ -56,7 +57,7 @@ def claim(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
 
     def ask() -> Ended | None:
         _give_back(hands, first, way)  # it may have been granted what it asked for before it changed its mind
-        if duties.claims.may_enter(first) or detour(hands):
+        if duties.claims.may_enter(first) or detour(hands) or _goes_on_without_network(hands):
             return DONE
         return Ended("denied") if claim_id and duties.claims.denial(claim_id) else None
 
@@ -64,8 +65,9 @@ def claim(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
 
 
 def _give_back(hands: Hands, first: Sequence[Leg], way: Sequence[Leg]) -> None:
-    """What it does not need now, as long as it stands where it is in none of it."""
-    if hands.navigator.at:
+    """What it does not need now, as long as it stands where it is in none of it. Without network it keeps all: no other
+    robot would come to know, and it may be the only way out of there."""
+    if hands.navigator.at and hands.duties.online:
         kept = (*first, *_granted_ahead(hands, way), detour(hands))
         hands.duties.claims.clear(leg for leg in hands.duties.held.grants if leg not in kept)
 
@@ -86,11 +88,26 @@ def _granted_ahead(hands: Hands, way: Sequence[Leg]) -> Iterator[Leg]:
 
 
 def detour(hands: Hands) -> Leg | None:
-    """The corridor from here into which the service sends it, unless the robot knows that to be closed."""
-    leg, navigator = hands.duties.held.detour, hands.navigator
-    if leg is None or leg.from_post != navigator.at:
+    """The corridor from here that it has to take first, unless the robot knows that to be closed."""
+    leg = hands.duties.held.detour
+    if leg is None or leg.from_post != hands.navigator.at:
         return None
-    return None if corridor_name(leg.from_post, leg.to_post) in navigator.closed.names else leg
+    return None if _is_closed(hands, leg) else leg
+
+
+def _goes_on_without_network(hands: Hands) -> bool:
+    """Whether it goes on by a corridor that it holds: where it stands no answer can reach it."""
+    if "link_loss" not in hands.view.faults:
+        return False
+    open_ = (leg for leg in _from_here(hands, hands.duties.held.grants) if not _is_closed(hands, leg))
+    leg = next(open_, None)
+    if leg:
+        hands.duties.claims.turn_aside(leg)
+    return leg is not None
+
+
+def _is_closed(hands: Hands, leg: Leg) -> bool:
+    return corridor_name(leg.from_post, leg.to_post) in hands.navigator.closed.names
 
 
 def _way(hands: Hands, goal: str) -> tuple[Leg, ...]:

@@ -64,6 +64,8 @@ def _follow_line(hands: Hands, _: Sequence[Value], now: float) -> Run:
     navigator = hands.navigator
     if navigator.doubted:
         return AtOnce(Ended(PLACE_UNKNOWN))
+    if (deeper := navigator.goes_deeper) and not hands.duties.claims.may_be_in(deeper):
+        return AtOnce(Ended("not_granted"))
     aslant_rad = navigator.aslant_rad
 
     def straighten() -> Skill | None:
@@ -216,7 +218,12 @@ _SECONDS = Argument("Seconds", Kind.NUMBER)
 _STEP = word("Step", *(step.value for step in Step))
 
 ACTIONS: Final = (
-    Action("follow_line", (), "follow the line to the next marker", _follow_line),
+    Action(
+        "follow_line",
+        (),
+        "follow the line to the next marker; fails with not_granted in a corridor that it came into ungranted",
+        _follow_line,
+    ),
     Action("look_back", (), "back a little, until the marker of the post ahead is read", _look_back),
     Action("turn", (word("Way", "left", "right", "behind"),), "turn on the spot, by the map's angle", _turn),
     Action("find_line", (), "look for the line nearby", _find_line),
@@ -226,8 +233,8 @@ ACTIONS: Final = (
     Action(
         "claim",
         (_POST,),
-        "ask for the corridors to a post, give back all others; done when the first may be entered, or when "
-        "`detour` holds; fails with denied, way_closed, no_route",
+        "ask for the corridors to a post, give back all others that the service can be told of; done when the first "
+        "may be entered, or when `detour` holds; fails with denied, way_closed, no_route",
         claim,
     ),
     Action(

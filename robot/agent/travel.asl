@@ -36,8 +36,8 @@
 -!permission(_, _)[reason(Reason), error_msg(Why)] <- .fail(reason(Reason), error_msg(Why)).
 -!permission(_, _)[error_msg(Why)] <- .fail(error_msg(Why)).
 
-// Others have to pass: the service has granted another corridor than the one asked for. From its end it goes on by its
-// own plan, which may lead back.
+// Others have to pass, and the service has granted another corridor than the one asked for; or there is no network here,
+// and it goes on by what it was granted. From there it goes on by its own plan, which may lead back.
 +!let_pass(Post) : detour(Other) & Other \== Post
   <- !go_to(Other);
      !tell_passed(Post);
@@ -74,6 +74,7 @@
 +!follow(_) <- follow_line; clear_fault(stuck).
 -!follow(_) : docked.   // it was put off docking at the last moment, and is in the dock: a post like any other
 -!follow(_)[reason(Why)] : closes_the_way(Why) <- !go_back(Why).
+-!follow(_)[reason(not_granted)] <- turn(behind); !follow.   // it was pushed, or overran the post
 -!follow(Try) : Try <= 3
   <- rest(3 * Try);
      !search;

@@ -144,7 +144,7 @@ PERCEPTS: Final = (
     ),
     Percept(
         "detour",
-        "detour(Post): others have to pass, the service sends it to this neighbour first; until it has gone",
+        "detour(Post): it goes to this neighbour first, to let others pass or to find the network; until it has gone",
         lambda s: [f"detour({s.where.detour})"] if s.where.detour else [],
     ),
     Percept("fault", "fault(Name): a fault of the reflex table", lambda s: (f"fault({f})" for f in s.view.faults)),

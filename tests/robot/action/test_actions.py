@@ -1,93 +1,16 @@
 """Actions: what a program asks for is begun, refused by name, ended or cancelled; nothing vanishes."""
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass, field
-from datetime import UTC, datetime
 from pathlib import Path
 
 import pytest
 
-from bdi import parse_term
-from maps import builtin_map
-from protocol.envelope import Envelope
-from protocol.parts import Leg, Stop, StopAction
 from protocol.proofs import ShownCode
-from protocol.to_robot import Detour, Mission
-from robot.action.actions import Actions, table_for
-from robot.action.hands import Hands
 from robot.action.table import ACTIONS, PAPER_ACTIONS, STANDS_FOR_HANDS_S
 from robot.config import PerceptMode
-from robot.duties import Duties
-from robot.memory import Incoming, Memory
-from robot.navigator import Navigator
-from robot.outbox import Outbox
 from robot.skills.interfaces import Done, Failed
 from robot.store import Store
-from tests.robot.fake_body import FakeBody
-
-NOW = datetime(2026, 1, 5, 9, tzinfo=UTC)
-MISSION = Mission(
-    id="m1",
-    update=1,
-    stops=(
-        Stop(id="s1", post="post1", action=StopAction.LOAD, order_id="o1"),
-        Stop(id="s2", post="post4", action=StopAction.RECEIVE, order_id="o1"),
-    ),
-)
-
-
-TO_POST1 = Leg(from_post="post2", to_post="post1")
-TO_POST3, TO_POST4 = Leg(from_post="post2", to_post="post3"), Leg(from_post="post3", to_post="post4")
-
-
-class SilentServer:
-    """It grants nothing, and is never asked for anything else here."""
-
-    online = False
-
-    def incoming(self) -> list[Incoming]:
-        return []
-
-    def wake(self) -> None:
-        pass
-
-
-@dataclass
-class Bench:
-    """Actions over a fake body, with real duties in a file."""
-
-    store: Store
-    mode: PerceptMode = PerceptMode.LATEST
-    body: FakeBody = field(default_factory=FakeBody)
-    noted: list[str] = field(default_factory=list)
-
-    def __post_init__(self) -> None:
-        self.duties = Duties(self.store, Memory(self.store), Outbox(self.store), lambda: NOW)
-        self.navigator = Navigator(builtin_map("test_track"), "post5", self.duties, now=0.0)
-        self.hands = Hands(self.body, self.navigator, self.duties, noted=self.noted.append)
-        self.actions = Actions(self.hands, table_for(self.mode))
-        self._next = 0
-
-    def ask(self, text: str, now: float = 0.0) -> int:
-        self._next += 1
-        self.actions.begin(self._next, parse_term(text), now)
-        return self._next
-
-    def result(self, text: str, now: float = 0.0) -> str | None:
-        """Why it failed at once; None for done."""
-        id_ = self.ask(text, now)
-        return dict(self.actions.finished(now))[id_]
-
-    def told(self) -> list[str]:
-        return [kept.message.model_dump_json() for kept in self.duties.outbox.pending()]
-
-
-@pytest.fixture
-def bench(tmp_path: Path) -> Iterator[Bench]:
-    store = Store(tmp_path / "robot.db")
-    yield Bench(store)
-    store.close()
+from tests.robot.action.bench import MISSION, Bench
 
 
 @pytest.mark.parametrize(
@@ -172,119 +95,6 @@ def test_a_dropped_intention_cancels_its_skill_before_the_next_one_starts(bench:
     assert bench.body.cancelled == ["follow_line"]
     bench.body.end("turn")
     assert bench.actions.finished(1.0) == [(second, None)], "nothing more is heard of the first"
-
-
-def test_a_way_that_is_closed_for_now_is_told_from_one_that_is_not_there(bench: Bench) -> None:
-    bench.navigator.place("post1", "post2")
-    bench.duties.claims.avoid = frozenset({TO_POST3})
-    assert bench.result("set_destination(post4)") is None, "it will be open again"
-    assert bench.result("claim(post4)") == "way_closed"
-    assert bench.result("claim(post4)") is None, "what was denied is asked for again"
-    bench.navigator.closed.close(TO_POST3, now=0.0)
-    for _ in range(2):
-        assert bench.result("claim(post4)") == "way_closed", "what stands there does not go away by asking"
-
-
-def test_while_something_stands_in_its_way_it_keeps_what_it_was_granted(bench: Bench) -> None:
-    with_server(bench, TO_POST3, TO_POST4)
-    bench.navigator.closed.close(TO_POST3, now=0.0)
-    assert bench.result("claim(post4)") == "way_closed"
-    assert bench.duties.held.grants == (TO_POST3, TO_POST4)
-    bench.result("reopen")
-    assert bench.result("claim(post4)") is None, "it may go in again with nobody to ask"
-
-
-def test_while_another_robot_is_in_its_way_it_lets_go_of_everything(bench: Bench) -> None:
-    with_server(bench, TO_POST3, TO_POST4)
-    bench.duties.claims.avoid = frozenset({TO_POST3})
-    assert bench.result("claim(post4)") == "way_closed"
-    assert bench.duties.held.grants == ()
-
-
-def test_a_corridor_in_which_it_turned_back_is_told_by_name_and_closed_for_ten_minutes(bench: Bench) -> None:
-    bench.navigator.place("post2", "post3")
-    assert bench.result("mark_blocked(blocked)") == "not_in_a_corridor"
-    bench.navigator.leave()
-    assert bench.result("mark_blocked(blocked)", now=100.0) is None
-    assert "from post2 to post3. Something stands in it." in bench.told()[-1]
-    bench.body.passes_time(699.0)
-    bench.navigator.look(bench.body.view)
-    assert bench.navigator.closed.names == {"post2-post3"}
-    bench.body.passes_time(700.0)
-    bench.navigator.look(bench.body.view)
-    assert not bench.navigator.closed.names
-
-
-def with_server(bench: Bench, *granted: Leg) -> None:
-    bench.duties.join(SilentServer())
-    bench.duties.memory.grant(granted)
-    bench.duties.seen("post2")
-    bench.navigator.place("post2", "post3")
-
-
-def test_the_first_corridor_is_enough_to_go_on_and_the_rest_is_waited_for_at_the_next_post(bench: Bench) -> None:
-    with_server(bench, TO_POST3)
-    id_ = bench.ask("claim(post4)")
-    assert bench.actions.finished(0.0) == [(id_, None)]
-    assert '"post4"' in bench.told()[-1], "it asks for all of it"
-
-
-def test_a_detour_gives_back_what_it_does_not_need_and_keeps_what_it_does(bench: Bench) -> None:
-    with_server(bench, TO_POST3, TO_POST4)
-    assert bench.result("claim(post5)") is None
-    assert bench.duties.held.grants == (TO_POST3,)
-
-
-def test_a_corridor_to_which_it_comes_only_later_is_given_back_though_it_is_on_the_way_home(bench: Bench) -> None:
-    with_server(bench, TO_POST3)
-    bench.ask("claim(post1)")
-    claimed = next(told for told in bench.told() if '"goal":"post1"' in told)
-    assert '{"from_post":"post2","to_post":"post3"}' in claimed, "it asks for the way back to its dock as well"
-    assert bench.duties.held.grants == ()
-
-
-def test_a_corridor_that_it_has_been_through_is_given_back_though_it_comes_there_again(bench: Bench) -> None:
-    with_server(bench, Leg(from_post="post1", to_post="post2"))
-    bench.ask("claim(post1)")
-    assert bench.duties.held.grants == ()
-
-
-def test_a_claim_that_is_answered_by_a_way_aside_ends_and_what_was_granted_with_it_is_kept(bench: Bench) -> None:
-    with_server(bench)
-    waiting = bench.ask("claim(post4)")
-    assert bench.actions.finished(0.0) == [], "it waits at its post"
-    sent(bench, TO_POST1)
-    assert bench.actions.finished(0.1) == [(waiting, None)]
-    assert bench.result("claim(post4)") is None, "asked again it is sent there again, and claims nothing meanwhile"
-    assert bench.duties.held.grants == (TO_POST1,)
-    assert [told for told in bench.told() if '"goal"' in told] == [bench.told()[0]]
-    bench.navigator.place("post1", "post2")
-    bench.ask("claim(post4)")
-    assert bench.duties.held.grants == () and '"goal":"post4"' in bench.told()[-1], "from there it goes its own way"
-
-
-def test_it_is_not_sent_into_a_corridor_in_which_it_has_turned_back(bench: Bench) -> None:
-    with_server(bench)
-    bench.navigator.closed.close(TO_POST1, now=0.0)
-    sent(bench, TO_POST1)
-    bench.ask("claim(post4)")
-    assert bench.actions.finished(0.0) == []
-    assert bench.duties.held.grants == (), "it gives back what was granted with it"
-
-
-def sent(bench: Bench, leg: Leg) -> None:
-    """The service has answered with another corridor than the one asked for."""
-    detour = Detour(claim_id="c", legs=(leg,), reason="Robot r2 has to pass.")
-    bench.duties.memory.resume("j", 1)
-    bench.duties.memory.receive(Envelope(type="detour", robot="r1", journal="j", seq=1, at=NOW, body=detour))
-    bench.duties.seen("post2")
-
-
-def test_the_corridor_that_it_is_in_is_never_given_back(bench: Bench) -> None:
-    with_server(bench, TO_POST3, TO_POST4)
-    bench.navigator.leave()
-    assert bench.result("release") is None
-    assert bench.duties.held.grants == (TO_POST3,)
 
 
 def test_mail_is_written_down_before_the_tune_promises_it(bench: Bench) -> None:

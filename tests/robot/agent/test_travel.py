@@ -42,6 +42,16 @@ def test_from_a_blocked_corridor_it_goes_back_and_plans_another_way(reason: str)
     assert stage.failures == []
 
 
+def test_from_a_corridor_that_it_may_not_be_in_it_goes_back() -> None:
+    stage = on_its_way_with_mail()
+    stage.fails("follow_line", "not_granted")
+    stage.does("turn(behind)")
+    stage.expect("follow_line")
+    stage.reaches("post2")
+    stage.does("report(passed,s2)", "set_destination(post4)", "claim(post4)")
+    assert stage.failures == []
+
+
 def test_shut_in_from_both_sides_it_tells_people_and_tries_again() -> None:
     stage = on_its_way_with_mail()
     for _ in range(2):

@@ -1,4 +1,4 @@
-"""Six of the benchmark's missions, three in each world: no letter lost, none claimed falsely, no corridor ungranted."""
+"""Missions as the benchmark draws them: no letter lost, none claimed falsely, no corridor ungranted."""
 
 import pytest
 
@@ -6,10 +6,17 @@ from benchmarks.body.missions import fly
 from robot.scenarios.figures import Figures
 
 FIRST_SEED = 9001
+WENT_WRONG = (
+    ("tunnels", 20616),  # nobody came where there is no network, and the way back was not granted
+    ("tunnels", 20617),  # searched for the line in a turn, and took itself for one that comes back along it
+    ("tunnels", 20623),  # rolled on beyond a post while its base did not answer, and backed up
+)
 
 
-@pytest.mark.parametrize("world", ["track", "tunnels"])
-@pytest.mark.parametrize("seed", range(FIRST_SEED, FIRST_SEED + 3))
+@pytest.mark.parametrize(
+    ("world", "seed"),
+    [(world, FIRST_SEED + more) for world in ("track", "tunnels") for more in range(3)] + list(WENT_WRONG),
+)
 def test_every_letter_is_delivered_or_honestly_handed_to_a_person(world, seed):
     mission = fly(world, seed)
     assert isinstance(mission, Figures), mission
