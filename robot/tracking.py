@@ -4,7 +4,7 @@ must survive a power cut is written down."""
 import math
 from dataclasses import replace
 
-from maps import CampusMap, Post
+from maps import CampusMap, Corridor, Post
 from maps.geometry import wrapped
 from protocol.parts import Leg
 from robot.drivers.interfaces import Odometry, Sighting
@@ -19,12 +19,14 @@ from robot.navigation.facing import facing_by
 from robot.navigation.granted import behind
 from robot.navigation.place import AtPost, Between, Coming, Looks, Place, Unknown
 from robot.navigation.remembering import Moment, remembered
-from robot.navigation.steps import corridor_between, gone_astray, has_left, has_reached, marked, set_out
+from robot.navigation.steps import corridor_between, gone_astray, has_left, has_reached, marked, searched, set_out
 from robot.navigation.way_scale import WayScale
 from robot.skills.interfaces import View
 
 TURNING = frozenset({"turn", "undock", "find_line"})
 """Skills during which a marker is seen from aslant: it says nothing about the way that is left to its post."""
+AT_THE_POST = frozenset({"turn", "find_line"})
+"""Skills that look for the line around a post, and so leave it by a hand's breadth without being on their way."""
 FOLLOWING = "follow_line"
 LIFTED = "wheel_drop"
 """The fault during which a person holds the robot in their hands, perhaps to put it down elsewhere."""
@@ -124,7 +126,7 @@ class Tracker:
         self._place = near_dock(self.campus, self._place, view.fixes, self.home, view.at_s)
         if post:
             self._see(post, view)
-        self._roll()
+        self._roll(view)
         if view.motion == FOLLOWING and not view.searching:
             self._check_way()
 
@@ -236,9 +238,11 @@ class Tracker:
 
     # Way driven.
 
-    def _roll(self) -> None:
+    def _roll(self, view: View) -> None:
         now_mm = self._odometry.ahead_mm
         match self._place:
+            case AtPost() if view.motion in AT_THE_POST:
+                self._place = searched(self._place, now_mm)
             case AtPost() if has_left(self._place, now_mm):
                 self._set_out()
             case Coming(at_mm=at_mm) | Between(ahead_mm=float() as at_mm) if has_reached(self._place, now_mm):
@@ -281,9 +285,17 @@ class Tracker:
         if place.towards is None:
             return
         arrived = AtPost(place.towards, at_mm, now_mm, corridor, by_marker)
-        if corridor:
+        if corridor and not self._came_back_otherwise(corridor, arrived.here):
             self._looks = Looks.of(corridor.heading_arriving(arrived.here), self._odometry)
         self._arrive(arrived)
+
+    def _came_back_otherwise(self, corridor: Corridor, post: str) -> bool:
+        """Whether it is back at the post that it left, and does not look as along the corridor: it has backed up, or
+        never was on that line."""
+        looks_rad = self._looks_rad(self._odometry)
+        if post != self._place.here or looks_rad is None:
+            return False
+        return abs(wrapped(looks_rad - corridor.heading_arriving(post))) > SAME_WAY_RAD
 
     def _arrive(self, arrived: AtPost) -> None:
         before, self._place, post = self._place, arrived, arrived.here

@@ -77,6 +77,11 @@ def has_left(place: AtPost, here_mm: float) -> bool:
     return abs(place.at_mm - here_mm) > LEFT_MM
 
 
+def searched(place: AtPost, here_mm: float) -> AtPost:
+    """It looks for the line around its post: what its wheels count there leads nowhere."""
+    return replace(place, at_mm=min(max(place.at_mm, here_mm - LEFT_MM), here_mm + LEFT_MM))
+
+
 def turned_round(place: Between, here_mm: float) -> Between:
     """What lay behind lies ahead, as far as it was behind."""
     begin_mm = ahead_mm = None

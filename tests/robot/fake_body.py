@@ -94,6 +94,10 @@ class FakeBody:
         odometry = replace(old, heading_rad=old.heading_rad + bending_rad)
         self.view = replace(self.view, odometry=odometry, motion="follow_line")
 
+    def does(self, motion: str) -> None:
+        """A skill of this name has the wheels."""
+        self.view = replace(self.view, motion=motion)
+
     def searched(self) -> None:
         """It has lost the line and found it again."""
         self.view = replace(self.view, find_line_episodes=self.view.find_line_episodes + 1)

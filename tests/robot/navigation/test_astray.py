@@ -128,3 +128,31 @@ def test_a_marker_where_another_corridor_ends_tells_on_the_way_back_which_line_i
     assert (walk.navigator.at, walk.navigator.towards) == (None, "post2"), "one alone is not believed"
     walk.turns("behind")
     assert (walk.navigator.came_from, walk.navigator.towards) == ("post5", "post3")
+
+
+def test_a_search_beside_the_post_in_a_turn_does_not_leave_it(walk: Walk) -> None:
+    """It would be taken for a way into the corridor that it happens to look along, and for one back from there."""
+    walk.navigator.begin_turn()
+    walk.body.turns(math.radians(130))  # beyond the line that it was to meet
+    walk.body.does("turn")
+    walk.look()
+    walk.body.rolls(150.0)
+    walk.look()
+    assert (walk.navigator.at, walk.navigator.towards) == ("post3", None)
+    walk.body.turns(math.radians(-40))
+    walk.look()
+    walk.navigator.turned()
+    walk.navigator.leave()
+    assert walk.navigator.towards == "post2"
+
+
+def test_rolled_on_beyond_its_post_and_backed_up_it_still_knows_which_way_it_looks(walk: Walk) -> None:
+    way = walk.navigator.way()
+    walk.body.follows_line()
+    walk.body.rolls(250.0)  # its base did not answer
+    walk.look()
+    assert walk.navigator.towards == "post5"
+    walk.body.rolls(-250.0)
+    walk.look()
+    walk.navigator.reached("post3")
+    assert (walk.navigator.at, walk.navigator.way()) == ("post3", way) == ("post3", "left")
