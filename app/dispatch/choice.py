@@ -4,10 +4,11 @@ Thin: who has waited longest first (priority counts like waiting), the nearest i
 (`charge.py`). Timetables come later behind the same function; what is taken along on the way is `insertion.py`.
 """
 
-from collections.abc import Callable, Iterable, Sequence
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timedelta
-from heapq import heapify, heappop
+from heapq import merge
 from typing import Final
 
 from app.tables import Priority
@@ -71,27 +72,33 @@ def choose_robots(
     waiting: Iterable[WaitingOrder], robots: Sequence[IdleRobot], ways: Ways, may_take: MayTake = lambda *_: True
 ) -> list[Assignment]:
     """Who fetches what: the first of `waiting` (longest first) chooses first, the nearest of those who may."""
-    free = {robot.name: robot for robot in robots if has_enough_charge(robot)}
+    free: defaultdict[str | None, list[IdleRobot]] = defaultdict(list)
+    for robot in sorted(filter(has_enough_charge, robots), key=_name):
+        free[robot.post].append(robot)
     chosen = []
     for order in waiting:
-        if not free:
-            break
-        nearest = _nearest(order, free.values(), ways, may_take)
+        nearest = _nearest(order, free, ways, may_take)
         if nearest is not None:
             chosen.append(Assignment(order.id, nearest.name))
-            del free[nearest.name]
+            free[nearest.post].remove(nearest)
     return chosen
 
 
-def _nearest(order: WaitingOrder, robots: Iterable[IdleRobot], ways: Ways, may_take: MayTake) -> IdleRobot | None:
-    """Of equally near ones the first by name. Mostly the first that is asked may take it, so all are never sorted."""
-    able = [(ways.length_m(one.post, order.from_post), one.name, one) for one in robots if order.may_go_with(one.name)]
-    heapify(able)
-    while able:
-        _, _, robot = heappop(able)
-        if may_take(robot, order):
-            return robot
+def _nearest(
+    order: WaitingOrder, free: Mapping[str | None, Sequence[IdleRobot]], ways: Ways, may_take: MayTake
+) -> IdleRobot | None:
+    """Of equally near ones the first by name. `free`: by post, in that order; posts are few where robots are many."""
+    lengths_m = {post: ways.length_m(post, order.from_post) for post, robots in free.items() if robots}
+    for length_m in sorted(set(lengths_m.values())):
+        there = (free[post] for post in lengths_m if lengths_m[post] == length_m)
+        for robot in merge(*there, key=_name):
+            if order.may_go_with(robot.name) and may_take(robot, order):
+                return robot
     return None
+
+
+def _name(robot: IdleRobot) -> str:
+    return robot.name
 
 
 def has_enough_charge(robot: IdleRobot) -> bool:

@@ -7,8 +7,9 @@ corridor by corridor. What a plan is known of is forecast by `app.estimates.fore
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import datetime, tzinfo
-from functools import cached_property
+from functools import cached_property, reduce
 from itertools import pairwise
+from operator import add
 from random import Random
 from statistics import fmean
 from typing import Final
@@ -154,8 +155,7 @@ class Estimates:
         known = (fetch.name, f"{fetch.assumed_s:.0f}", from_post, to_post, hours)
         if known not in self._drawn:
             fetched_s, loaded_s = map(self._part_s, (fetch, Thing(Kind.LOAD, hours, self.handover_s)))
-            parts_s = zip(fetched_s, loaded_s, self._way_s(from_post, to_post), strict=True)
-            self._drawn[known] = interval_of([fetch_s + load_s + way_s for fetch_s, load_s, way_s in parts_s])
+            self._drawn[known] = interval_of(_together(fetched_s, loaded_s, self._way_s(from_post, to_post)))
         return self._drawn[known]
 
     def _part_s(self, part: Thing) -> list[float]:
@@ -169,8 +169,8 @@ class Estimates:
     def _way_s(self, from_post: str, to_post: str) -> list[float]:
         """The draws of all its corridors together."""
         if (from_post, to_post) not in self._ways_s:
-            parts_s = zip([0.0] * DRAWS, *map(self._part_s, self._corridors(from_post, to_post)), strict=True)
-            self._ways_s[from_post, to_post] = [sum(one) for one in parts_s]
+            parts_s = map(self._part_s, self._corridors(from_post, to_post))
+            self._ways_s[from_post, to_post] = _together([0.0] * DRAWS, *parts_s)
         return self._ways_s[from_post, to_post]
 
     def _corridors(self, from_post: str, to_post: str) -> list[Thing]:
@@ -200,3 +200,8 @@ class Estimates:
         lengths = (self.ways.length_m(here, there) for here in posts for there in posts if here != there)
         found = [length_m for length_m in lengths if length_m < float("inf")]
         return fmean(found) / self.speed_m_s if found else 0.0
+
+
+def _together(first_s: list[float], *others_s: list[float]) -> list[float]:
+    """Draw by draw the sums of parts."""
+    return reduce(lambda sums, part: list(map(add, sums, part)), others_s, first_s)

@@ -4,9 +4,10 @@ from typing import Any
 
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 
-LOOKS_AFTER_S = 2.0
-ANSWERS_WITHIN_S = 6.0
-"""A robot out of the network's reach is shown as offline within 10 s: twice the one and the other once."""
+LOOKS_AFTER_S = 3.0
+ANSWERS_WITHIN_S = 5.0
+"""A robot out of the network's reach is shown as offline within 11 s: twice the one and the other once. Our own robots
+ping every 2 s (`robot/connection.py`), so that none of them is asked while its network is there."""
 
 
 class AttentiveSocket(WebSocketsSansIOProtocol):

@@ -1,9 +1,12 @@
 """The missions that robots report on: which it is, how it ends, and those of a robot's own (decision 0017)."""
 
+from collections.abc import Sequence
 from typing import Final
 
+from sqlalchemy import bindparam
 from sqlmodel import col, select
 
+from app.database import connection_of
 from app.fleet.errors import UnknownMission
 from app.fleet.reports import Report
 from app.orders.service import Word
@@ -160,13 +163,19 @@ def end(report: Report, mission: MissionRow, state: MissionState) -> None:
 
 
 async def _end_own(report: Report) -> None:
-    for mission in await _active(report):
-        if is_own(mission.id):
-            for stop in await stops_left(report.session, mission.id):
-                stop.dropped_at = report.now
-            end(report, mission, MissionState.CANCELLED)
+    """Asked with each mission that a robot takes on, and mostly there is none: so past the session, whose own changes
+    need not be written for it. An own mission that it has just ended does not end twice."""
+    connection = await connection_of(report.session)
+    for mission_id in (await connection.execute(_OWN, {"robot": report.robot})).scalars().all():
+        for stop in await stops_left(report.session, mission_id):
+            stop.dropped_at = report.now
+        end(report, await report.session.get_one(MissionRow, mission_id), MissionState.CANCELLED)
 
 
-async def _active(report: Report) -> list[MissionRow]:
-    wanted = select(MissionRow).where(MissionRow.robot == report.robot, MissionRow.state == MissionState.ACTIVE)
-    return list((await report.session.exec(wanted.order_by(col(MissionRow.created_at)))).all())
+async def _active(report: Report) -> Sequence[MissionRow]:
+    return (await report.session.exec(_ACTIVE, params={"robot": report.robot})).all()
+
+
+_IS_ACTIVE: Final = (col(MissionRow.robot) == bindparam("robot"), col(MissionRow.state) == MissionState.ACTIVE)
+_ACTIVE: Final = select(MissionRow).where(*_IS_ACTIVE).order_by(col(MissionRow.created_at))
+_OWN: Final = select(col(MissionRow.id)).where(*_IS_ACTIVE, col(MissionRow.id).startswith(OWN_PREFIX))
