@@ -5,7 +5,8 @@ from dataclasses import asdict, dataclass
 
 import structlog
 
-from ..drivers.interfaces import STOP, BodyShape, Mode, WheelSpeeds
+from ..drivers.dock_infrared import sight_of
+from ..drivers.interfaces import STOP, BodyShape, Mode, Odometry, WheelSpeeds
 from .find_line import align, over_line, sweep
 from .interfaces import Done, Failed, Outcome, Running, SeekDock, SetMode, View
 from .script import Part, Script, Scripted, roll, stand, turn_by
@@ -20,6 +21,10 @@ IDLE_S = 10.0
 """A firmware that has not moved for so long has given up."""
 RETRY_BACK_MM, RETRY_BACK_MM_S = 250.0, 100.0
 """Each try begins so much farther off than the one before: from too near the firmware cannot come straight."""
+ROAMS_MM, UNSEEN_S = 300.0, 2.0
+"""A firmware that has seen no dock for so long roams in search of one: no farther than this, since the corridors around
+are not granted."""
+AWAITS_BEAMS_S = 15.0
 UNDOCK_MM, UNDOCK_MM_S, UNDOCK_TURN_MM_S = 300.0, 200.0, 200.0
 TO_POST_MM_S = 200.0
 TO_LINE_MM, TO_LINE_MM_S = (280.0, 130.0, 130.0), 150.0
@@ -51,16 +56,17 @@ class Dock(Scripted):
         self._tries, self._shape = tries, shape or BodyShape()
         self.limit_s = limit_s
         self.metrics = DockMetrics()
+        self._dock_seen_s = -math.inf
 
     def script(self, view: View) -> Script:
         """Seek; on failure back off, look again the way the line led to the dock, and seek again."""
-        began_s, along_rad = view.at_s, view.odometry.heading_rad
+        began_s, begin = view.at_s, view.odometry
         while self.metrics.tries < self._tries:
             self.metrics.tries += 1
-            view = yield from self._seek(view)
+            view = yield from self._seek(view, begin)
             if _charging(view):
                 return self._over(Done(), view.at_s - began_s)
-            view = yield from self._back_off(view, along_rad)
+            view = yield from self._go_back(view, begin) if self._roams(view, begin) else self._back_off(view, begin)
         return self._over(Failed("no_dock"), view.at_s - began_s)
 
     def _over(self, outcome: Outcome, took_s: float) -> Outcome:
@@ -68,13 +74,13 @@ class Dock(Scripted):
         log.info("docking", **asdict(self.metrics))
         return outcome
 
-    def _seek(self, view: View) -> Part:
+    def _seek(self, view: View, begin: Odometry) -> Part:
         began_s = moved_s = view.at_s
         charging_since_s: float | None = None
         charging_s = view.at_s
         odometry = view.odometry
         view = yield Running(None, () if _charging(view) else (SeekDock(),))
-        while view.at_s - began_s < ATTEMPT_S:
+        while view.at_s - began_s < ATTEMPT_S and not self._roams(view, begin):
             if view.odometry.travelled_mm != odometry.travelled_mm:
                 odometry, moved_s = view.odometry, view.at_s
             if _charging(view):
@@ -90,11 +96,34 @@ class Dock(Scripted):
             view = yield Running(None)
         return view
 
-    def _back_off(self, view: View, along_rad: float) -> Part:
+    def _back_off(self, view: View, begin: Odometry) -> Part:
         view = yield Running(STOP, (SetMode(Mode.SAFE),))
         back_mm = RETRY_BACK_MM * (1 + self.metrics.tries) / 2
         view = yield from roll(view, back_mm, WheelSpeeds(-RETRY_BACK_MM_S, -RETRY_BACK_MM_S))
-        off_rad = math.remainder(along_rad - view.odometry.heading_rad, math.tau)
+        return (yield from self._look_to(view, begin.heading_rad))
+
+    def _go_back(self, view: View, begin: Odometry) -> Part:
+        """To where it began, and wait there for the dock to show itself."""
+        view = yield Running(STOP, (SetMode(Mode.SAFE),))
+        view = yield from _until_mode(view, Mode.SAFE)
+        back_mm, back_y_mm = begin.x_mm - view.odometry.x_mm, begin.y_mm - view.odometry.y_mm
+        view = yield from self._look_to(view, math.atan2(back_y_mm, back_mm))
+        view = yield from roll(view, math.hypot(back_mm, back_y_mm), WheelSpeeds(RETRY_BACK_MM_S, RETRY_BACK_MM_S))
+        view = yield from self._look_to(view, begin.heading_rad)
+        until_s = view.at_s + AWAITS_BEAMS_S
+        while view.at_s < until_s and not _sees_dock(view):
+            view = yield Running(STOP)
+        return view
+
+    def _roams(self, view: View, begin: Odometry) -> bool:
+        """Whether the firmware has gone far from where it was to begin, and not to a dock."""
+        if _sees_dock(view) or _charging(view):
+            self._dock_seen_s = view.at_s
+        far_mm = math.dist((view.odometry.x_mm, view.odometry.y_mm), (begin.x_mm, begin.y_mm))
+        return far_mm > ROAMS_MM and view.at_s - self._dock_seen_s > UNSEEN_S
+
+    def _look_to(self, view: View, heading_rad: float) -> Part:
+        off_rad = math.remainder(heading_rad - view.odometry.heading_rad, math.tau)
         return (yield from turn_by(view, off_rad, UNDOCK_TURN_MM_S, self._shape)) if abs(off_rad) > ASLANT_RAD else view
 
 
@@ -146,6 +175,10 @@ class Undock(Scripted):
             if over_line(view):
                 return (yield from align(view, self._shape, along_rad))
         return view
+
+
+def _sees_dock(view: View) -> bool:
+    return view.base is not None and sight_of(view.base) is not None
 
 
 def _charging(view: View) -> bool:

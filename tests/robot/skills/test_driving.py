@@ -9,6 +9,7 @@ import pytest
 
 from maps import read_map
 from robot.drivers.interfaces import STOP, Mode
+from robot.scenarios.places import POST_ROOM_M
 from robot.simulated import Build, DiodeMount, Options, Person, Pose
 from robot.skills import Dock, Done, Failed, FindLine, FollowLine, Say, Turn, Undock
 from robot.skills.tunes import TUNES
@@ -60,6 +61,18 @@ def test_a_dock_without_power_is_given_up_after_the_last_try(drive: Make):
     assert robot.do(Dock(tries=2), limit_s=310) == Failed("no_dock")
     robot.steps(1)
     assert robot.loop.view.sent == STOP
+
+
+def test_a_firmware_that_sees_no_dock_roams_no_farther_than_the_room_of_the_post(drive: Make):
+    robot = drive("post5:post3")
+    robot.robot.set_fault("dock_beams_off", True)
+    job, far_m = robot.loop.start(Dock(), robot.now), list[float]()
+    for _ in range(400):
+        robot.steps(0.1)
+        far_m.append(robot.distance_to_m("post5"))
+    robot.robot.set_fault("dock_beams_off", False)
+    assert max(far_m) < POST_ROOM_M
+    assert robot.end_of(job) == Done(), "and docks when it is there again"
 
 
 def test_bouncing_contacts_are_not_a_failed_dock(drive: Make):
