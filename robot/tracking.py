@@ -25,8 +25,8 @@ from robot.skills.interfaces import View
 
 TURNING = frozenset({"turn", "undock", "find_line"})
 """Skills during which a marker is seen from aslant: it says nothing about the way that is left to its post."""
-AT_THE_POST = frozenset({"turn", "find_line"})
-"""Skills that look for the line around a post, and so leave it by a hand's breadth without being on their way."""
+AT_THE_POST = frozenset({"turn", "find_line", "dock"})
+"""Skills that look for the line or the dock around a post: they leave it by some steps without being on their way."""
 FOLLOWING = "follow_line"
 LIFTED = "wheel_drop"
 """The fault during which a person holds the robot in their hands, perhaps to put it down elsewhere."""

@@ -78,7 +78,7 @@ def has_left(place: AtPost, here_mm: float) -> bool:
 
 
 def searched(place: AtPost, here_mm: float) -> AtPost:
-    """It looks for the line around its post: what its wheels count there leads nowhere."""
+    """It looks for the line or the dock around its post: what its wheels count there leads nowhere."""
     return replace(place, at_mm=min(max(place.at_mm, here_mm - LEFT_MM), here_mm + LEFT_MM))
 
 

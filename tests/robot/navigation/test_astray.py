@@ -156,3 +156,14 @@ def test_rolled_on_beyond_its_post_and_backed_up_it_still_knows_which_way_it_loo
     walk.look()
     walk.navigator.reached("post3")
     assert (walk.navigator.at, walk.navigator.way()) == ("post3", way) == ("post3", "left")
+
+
+@pytest.mark.parametrize("skill", ["find_line", "dock"])
+def test_whoever_looks_around_a_post_is_still_there(walk: Walk, skill: str) -> None:
+    walk.body.does(skill)
+    walk.body.rolls(250.0)
+    walk.look()
+    assert walk.navigator.at == "post3"
+    walk.body.sees("post3")
+    walk.look()
+    assert "foreign_marker" not in walk.duties.held.faults
