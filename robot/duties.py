@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from datetime import datetime, timedelta
 from typing import Final, Literal
 
-from protocol.parts import Part, Purpose, Stop
+from protocol.parts import Part, Purpose, Stop, StopAction
 from protocol.proofs import ShownCode
 from protocol.to_robot import (
     Cancel,
@@ -296,6 +296,13 @@ class Duties:
     def at_stop(self, stop_id: str) -> tuple[Mission, Stop]:
         """A stop of the mission held, with its mission. Raises NoSuchStop."""
         return self._stop(stop_id)
+
+    def loads_nothing_else(self, order_id: str, post: str) -> bool:
+        """Whether no other order is still to be loaded at this post. Its sender may stand there and press a button that
+        does not say whose mail it means."""
+        stops = self.held.mission.stops[self.held.next_stop :] if self.held.mission else ()
+        loaded = {one.order_id for one in stops if one.action is StopAction.LOAD and one.post == post}
+        return not loaded - {order_id} - self.held.cancelled
 
     def handed_over(self, place: tuple[Mission, Stop], purpose: Purpose, post: str, shown: ShownCode | None) -> None:
         """Mail changed hands at a stop. What is aboard, how far the mission is and the receipt: all or nothing.

@@ -174,8 +174,11 @@ def _wait_handover(hands: Hands, arguments: Sequence[Value], now: float) -> Run:
         waiting.handed_over = True
         promise()
 
-    # Only loading may be confirmed by the Spot button: it identifies nobody.
-    skill = WaitHandover(lambda: duties.codes(order_id, purpose), float(limit_s), spot_counts=purpose is Purpose.LOAD)
+    def spot_counts() -> bool:
+        """Only loading may be confirmed by the Spot button: it identifies nobody."""
+        return purpose is Purpose.LOAD and duties.loads_nothing_else(order_id, waiting.post)
+
+    skill = WaitHandover(lambda: duties.codes(order_id, purpose), float(limit_s), spot_counts)
     duties.custody.wait(waiting)
     run = Unless(_one(hands, skill, now, custody), lambda: waiting.handed_over, promise)
     return ThenRest(run, STANDS_FOR_HANDS_S, lambda: duties.custody.leave(waiting))

@@ -25,10 +25,13 @@ class WaitHandover:
     on_timeout: ClassVar[str] = "no_one_came"
 
     def __init__(
-        self, verifiers: Callable[[], Iterable[str]], limit_s: float = 600.0, spot_counts: bool = True
+        self,
+        verifiers: Callable[[], Iterable[str]],
+        limit_s: float = 600.0,
+        spot_counts: Callable[[], bool] = lambda: True,
     ) -> None:
         """`verifiers` says which texts open at the moment it is asked, each by its SHA-256 (lower-case hex): a code may
-        be replaced or expire while the robot waits. `spot_counts`: whether the button opens too."""
+        be replaced or expire while the robot waits. `spot_counts`: whether the button opens too, at that moment."""
         self._verifiers, self._spot_counts = verifiers, spot_counts
         self.limit_s = limit_s
         self.refused = 0
@@ -49,8 +52,8 @@ class WaitHandover:
             if self._opens(shown.sha256):
                 return Done(shown=shown)
             return self._refuse(code.text, now)
-        if self._spot_counts and self._pressed_twice(view, now):
-            return Done()
+        if self._pressed_twice(view, now):
+            return Done() if self._spot_counts() else self._say_no()
         return Running()
 
     def _opens(self, verifier: str) -> bool:
@@ -61,8 +64,9 @@ class WaitHandover:
         """Told once by sound, however long it is held up."""
         known = self._wrong is not None and self._wrong[0] == text and now - self._wrong[1] < FORGET_WRONG_S
         self._wrong = (text, now)
-        if known:
-            return Running()
+        return Running() if known else self._say_no()
+
+    def _say_no(self) -> Step:
         self.refused += 1
         return Running(requests=(Play(REFUSED),))
 

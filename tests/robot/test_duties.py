@@ -363,3 +363,19 @@ def test_what_was_granted_is_void_once_and_for_all_when_others_have_got_it(desk:
 
 def test_without_a_server_nobody_is_missed(store: Store) -> None:
     assert Duties(store, Memory(store), Outbox(store), lambda: NOW).online
+
+
+def test_the_button_stands_for_an_order_only_where_no_other_is_to_be_loaded(desk: Desk) -> None:
+    other = Stop(id="s3", post="post1", action=StopAction.LOAD, order_id="o2")
+    elsewhere = Stop(id="s4", post="post3", action=StopAction.LOAD, order_id="o3")
+    desk.hears(Mission(id="m1", update=1, stops=(LOAD, elsewhere, other)))
+    assert not desk.duties.loads_nothing_else("o1", "post1")
+    assert desk.duties.loads_nothing_else("o3", "post3")
+    desk.hears(Cancel(command_id="c1", order_id="o2"))
+    assert desk.duties.loads_nothing_else("o1", "post1"), "its sender has taken it back"
+
+
+def test_of_two_senders_at_one_post_the_button_is_the_second_ones(desk: Desk) -> None:
+    desk.hears(Mission(id="m1", update=1, stops=(LOAD, LOAD.model_copy(update={"id": "s3", "order_id": "o2"}))))
+    desk.duties.finish_stop("s1")
+    assert desk.duties.loads_nothing_else("o2", "post1")

@@ -197,9 +197,12 @@ def test_spot_pressed_twice_loads_without_a_name(drive: Make):
 def test_spot_does_not_open_where_it_must_not(drive: Make):
     robot = drive("post1:post2")
     robot.steps(3)
-    job = robot.loop.start(WaitHandover(lambda: {VERIFIER}, 5.0, spot_counts=False), robot.now)
+    waiting = WaitHandover(lambda: {VERIFIER}, 5.0, lambda: False)
+    job = robot.loop.start(waiting, robot.now)
+    robot.tick()
     press_spot(robot)
     press_spot(robot)
+    assert waiting.refused == 1, "and says so"
     assert robot.end_of(job, 6.0) == Failed("no_one_came")
 
 
