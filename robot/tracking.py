@@ -25,7 +25,8 @@ from robot.skills.interfaces import View
 
 TURNING = frozenset({"turn", "undock", "find_line"})
 """Skills during which a marker is seen from aslant: it says nothing about the way that is left to its post."""
-AT_THE_POST = frozenset({"turn", "find_line", "dock"})
+DOCKING = "dock"
+AT_THE_POST = frozenset({"turn", "find_line", DOCKING})
 """Skills that look for the line or the dock around a post: they leave it by some steps without being on their way."""
 FOLLOWING = "follow_line"
 LIFTED = "wheel_drop"
@@ -243,6 +244,8 @@ class Tracker:
         match self._place:
             case AtPost() if view.motion in AT_THE_POST:
                 self._place = searched(self._place, now_mm)
+                if view.motion == DOCKING:  # the base drives curves, which are no turns on the spot
+                    self._looks = Looks.of(self._compass.looks_rad(self._odometry), self._odometry)
             case AtPost() if has_left(self._place, now_mm):
                 self._set_out()
             case Coming(at_mm=at_mm) | Between(ahead_mm=float() as at_mm) if has_reached(self._place, now_mm):

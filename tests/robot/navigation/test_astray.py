@@ -167,3 +167,13 @@ def test_whoever_looks_around_a_post_is_still_there(walk: Walk, skill: str) -> N
     walk.body.sees("post3")
     walk.look()
     assert "foreign_marker" not in walk.duties.held.faults
+
+
+def test_a_base_that_found_no_dock_still_knows_which_way_it_looks(walk: Walk) -> None:
+    assert walk.navigator.way() == "left"
+    walk.body.follows_line(math.radians(120))  # in a curve
+    walk.body.does("dock")
+    walk.look()
+    walk.body.turns(math.radians(-120))
+    walk.look()
+    assert walk.navigator.way() == "left"
