@@ -11,6 +11,8 @@ from .hands import Hands
 from .runs import DONE, AtOnce, Ended, Run, Wait
 
 WAY_BLOCKED: Final = "way_blocked"
+AWAITS_NETWORK_S: Final = 120.0
+"""So long a robot waits for an answer where it stands: a service that is started anew is there again sooner."""
 CLOSED_BY: Final = {
     "blocked": "Something stands in it",
     "virtual_wall": "A virtual wall guards it",
@@ -54,10 +56,11 @@ def claim(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
         duties.claims.avoid = frozenset()  # what was denied may be open by the next time it asks
         return AtOnce(Ended(closed))
     claim_id = None if detour(hands) else duties.claims.ask((*first, *way), goal)
+    asked_s = hands.view.at_s
 
     def ask() -> Ended | None:
         _give_back(hands, first, way)  # it may have been granted what it asked for before it changed its mind
-        if duties.claims.may_enter(first) or detour(hands) or _goes_on_without_network(hands):
+        if duties.claims.may_enter(first) or detour(hands) or _goes_on_without_network(hands, asked_s):
             return DONE
         return Ended("denied") if claim_id and duties.claims.denial(claim_id) else None
 
@@ -95,9 +98,9 @@ def detour(hands: Hands) -> Leg | None:
     return None if _is_closed(hands, leg) else leg
 
 
-def _goes_on_without_network(hands: Hands) -> bool:
+def _goes_on_without_network(hands: Hands, asked_s: float) -> bool:
     """Whether it goes on by a corridor that it holds: where it stands no answer can reach it."""
-    if "link_loss" not in hands.view.faults:
+    if "link_loss" not in hands.view.faults or hands.view.at_s - asked_s < AWAITS_NETWORK_S:
         return False
     open_ = (leg for leg in _from_here(hands, hands.duties.held.grants) if not _is_closed(hands, leg))
     leg = next(open_, None)

@@ -8,7 +8,7 @@ import pytest
 from protocol.envelope import Envelope
 from protocol.parts import Leg
 from protocol.to_robot import Detour
-from robot.action.corridors import detour
+from robot.action.corridors import AWAITS_NETWORK_S, detour
 from tests.robot.action.bench import NOW, TO_POST1, TO_POST3, TO_POST4, Bench, with_server
 
 
@@ -103,16 +103,17 @@ def test_it_is_not_sent_into_a_corridor_in_which_it_has_turned_back(bench: Bench
     assert bench.duties.held.grants == (), "it gives back what was granted with it"
 
 
-def out_of_network(bench: Bench) -> None:
-    bench.hands.view = bench.body.view = replace(bench.body.view, faults=frozenset({"link_loss"}))
+def out_of_network(bench: Bench, at_s: float) -> None:
+    bench.hands.view = bench.body.view = replace(bench.body.view, at_s=at_s, faults=frozenset({"link_loss"}))
 
 
 def test_out_of_network_it_keeps_what_it_was_granted_and_leaves_by_it(bench: Bench) -> None:
     with_server(bench, TO_POST3, TO_POST4, online=False)
     waiting = bench.ask("claim(post1)")
+    out_of_network(bench, AWAITS_NETWORK_S - 1)
     assert bench.actions.finished(0.0) == [], "the network may come back at once"
     assert bench.duties.held.grants == (TO_POST3, TO_POST4)
-    out_of_network(bench)
+    out_of_network(bench, AWAITS_NETWORK_S)
     assert bench.actions.finished(0.1) == [(waiting, None)]
     assert detour(bench.hands) == TO_POST3
     assert bench.told()[-1].startswith('{"claim_id"'), "what it asked for it takes back"
@@ -125,14 +126,14 @@ def test_out_of_network_it_keeps_what_it_was_granted_and_leaves_by_it(bench: Ben
 def test_out_of_network_it_leaves_by_no_corridor_in_which_it_has_turned_back(bench: Bench) -> None:
     with_server(bench, TO_POST3, online=False)
     bench.navigator.closed.close(TO_POST3, now=0.0)
-    out_of_network(bench)
     bench.ask("claim(post1)")
+    out_of_network(bench, AWAITS_NETWORK_S)
     assert bench.actions.finished(0.1) == []
 
 
 def test_out_of_network_it_waits_for_no_other_way_than_it_has(bench: Bench) -> None:
     with_server(bench, TO_POST3, online=False)
-    out_of_network(bench)
+    out_of_network(bench, AWAITS_NETWORK_S)
     assert bench.result("claim(post3)") is None
     assert detour(bench.hands) is None
 

@@ -136,7 +136,9 @@ def test_a_paused_robot_gives_back_the_way_ahead(run: SimulatedRun) -> None:
     run.until(lambda: run.waits_for("wait_handover(receive"))
 
 
-def test_out_of_network_it_goes_as_far_as_it_may_waits_there_and_says_so(run: SimulatedRun) -> None:
+def test_out_of_network_it_goes_as_far_as_it_may_waits_says_so_and_then_leaves_by_what_it_holds(
+    run: SimulatedRun,
+) -> None:
     service = with_service(run)
     run.given_a_letter()
     run.until(lambda: run.waits_for("wait_handover(load"))
@@ -150,8 +152,11 @@ def test_out_of_network_it_goes_as_far_as_it_may_waits_there_and_says_so(run: Si
     assert run.mind.why is not None
     assert (run.mind.why.sentence, run.mind.why.waiting_for) == ("Waiting at post3 for the network", "the network")
     assert "link_loss" in run.mind.hands.view.faults, "told, and no reason to stop"
+    run.passes(60)
+    assert run.is_at("post3"), "a service that is started anew is there again soon"
+    run.until(lambda: run.is_at("post5"), 120)  # by the only corridor that it holds: perhaps there is network there
     service.online = True
-    run.until(lambda: run.waits_for("wait_handover(receive"))
+    run.until(lambda: run.waits_for("wait_handover(receive"), 200)
     service.online = False
     run.shows(Purpose.RECEIVE)
     run.until(lambda: not run.duties.held.cargo, 10)
