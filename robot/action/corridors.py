@@ -60,7 +60,10 @@ def claim(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
 
     def ask() -> Ended | None:
         _give_back(hands, first, way)  # it may have been granted what it asked for before it changed its mind
-        if duties.claims.may_enter(first) or detour(hands) or _goes_on_without_network(hands, asked_s):
+        if duties.claims.may_enter(first) or detour(hands):
+            return DONE
+        if leg := _way_out_of_silence(hands, asked_s):
+            duties.claims.turn_aside(leg)
             return DONE
         return Ended("denied") if claim_id and duties.claims.denial(claim_id) else None
 
@@ -98,15 +101,11 @@ def detour(hands: Hands) -> Leg | None:
     return None if _is_closed(hands, leg) else leg
 
 
-def _goes_on_without_network(hands: Hands, asked_s: float) -> bool:
-    """Whether it goes on by a corridor that it holds: where it stands no answer can reach it."""
+def _way_out_of_silence(hands: Hands, asked_s: float) -> Leg | None:
+    """A corridor from here that it holds, where no answer can reach it; None while one may come."""
     if "link_loss" not in hands.view.faults or hands.view.at_s - asked_s < AWAITS_NETWORK_S:
-        return False
-    open_ = (leg for leg in _from_here(hands, hands.duties.held.grants) if not _is_closed(hands, leg))
-    leg = next(open_, None)
-    if leg:
-        hands.duties.claims.turn_aside(leg)
-    return leg is not None
+        return None
+    return next((leg for leg in _from_here(hands, hands.duties.held.grants) if not _is_closed(hands, leg)), None)
 
 
 def _is_closed(hands: Hands, leg: Leg) -> bool:

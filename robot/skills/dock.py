@@ -106,9 +106,9 @@ class Dock(Scripted):
         """To where it began, and wait there for the dock to show itself."""
         view = yield Running(STOP, (SetMode(Mode.SAFE),))
         view = yield from _until_mode(view, Mode.SAFE)
-        back_mm, back_y_mm = begin.x_mm - view.odometry.x_mm, begin.y_mm - view.odometry.y_mm
-        view = yield from self._look_to(view, math.atan2(back_y_mm, back_mm))
-        view = yield from roll(view, math.hypot(back_mm, back_y_mm), WheelSpeeds(RETRY_BACK_MM_S, RETRY_BACK_MM_S))
+        back_x_mm, back_y_mm = begin.x_mm - view.odometry.x_mm, begin.y_mm - view.odometry.y_mm
+        view = yield from self._look_to(view, math.atan2(back_y_mm, back_x_mm))
+        view = yield from roll(view, math.hypot(back_x_mm, back_y_mm), WheelSpeeds(RETRY_BACK_MM_S, RETRY_BACK_MM_S))
         view = yield from self._look_to(view, begin.heading_rad)
         until_s = view.at_s + AWAITS_BEAMS_S
         while view.at_s < until_s and not _sees_dock(view):

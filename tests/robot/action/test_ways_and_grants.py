@@ -139,7 +139,7 @@ def test_out_of_network_it_waits_for_no_other_way_than_it_has(bench: Bench) -> N
 
 
 def pushed_away(bench: Bench, *granted: Leg) -> None:
-    """From post2, which it had left for nowhere, into the corridor to post3."""
+    """From post2 into the corridor to post3."""
     with_server(bench, *granted)
     bench.body.rolls(150.0)
     bench.navigator.look(bench.body.view)
