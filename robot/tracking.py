@@ -17,7 +17,7 @@ from robot.navigation.docks import dock_post
 from robot.navigation.expected import Expected, Foreign, agree, expected, hangs_beside_this_line, is_own
 from robot.navigation.facing import facing_by
 from robot.navigation.granted import behind
-from robot.navigation.place import AtPost, Between, Coming, Looks, Place, Unknown
+from robot.navigation.place import AtPost, Between, Coming, Leaving, Looks, Place, Unknown
 from robot.navigation.remembering import Moment, remembered
 from robot.navigation.steps import corridor_between, gone_astray, has_left, has_reached, marked, searched, set_out
 from robot.navigation.way_scale import WayScale
@@ -28,6 +28,8 @@ TURNING = frozenset({"turn", "undock", "find_line"})
 DOCKING = "dock"
 AT_THE_POST = frozenset({"turn", "find_line", DOCKING})
 """Skills that look for the line or the dock around a post: they leave it by some steps without being on their way."""
+CURVING = AT_THE_POST | {"undock"}
+"""Skills that drive curves which are no bends of a corridor."""
 FOLLOWING = "follow_line"
 LIFTED = "wheel_drop"
 """The fault during which a person holds the robot in their hands, perhaps to put it down elsewhere."""
@@ -56,6 +58,8 @@ class Tracker:
         """Posts whose marker could not be read when the robot was there last."""
         self.moved: str | None = None
         """Where it found itself after it had been moved, until that is noted."""
+        self.crossed: tuple[Leg, ...] = ()
+        """The corridors that it has come through and not given back, since the service cannot hear of it."""
         self._duties = duties
         self._moment = Moment(duties.held.moment) if duties.held.moment else None
         self._place, self._looks = remembered(campus, duties.held.position, self._moment)
@@ -103,6 +107,8 @@ class Tracker:
             self._lift(view)
         else:
             self._drive(view, post)
+        if self.crossed and self.at:
+            self._give_back_crossed(self.at)
 
     def _new_marker(self, view: View) -> Sighting | None:
         """The marker that it has read since the last look, unless from aslant."""
@@ -235,17 +241,18 @@ class Tracker:
             self._note_moment(Moment.LIFTED)
         if not put_back and not (isinstance(place, Unknown) and not place.lifted):
             self.moved = post
+            self.crossed = ()
             self._duties.claims.clear(self._duties.held.grants)
 
     # Way driven.
 
     def _roll(self, view: View) -> None:
         now_mm = self._odometry.ahead_mm
+        if view.motion in CURVING and isinstance(self._place, AtPost | Leaving):
+            self._looks = Looks.of(self._compass.looks_rad(self._odometry), self._odometry) or self._looks
         match self._place:
             case AtPost() if view.motion in AT_THE_POST:
                 self._place = searched(self._place, now_mm)
-                if view.motion == DOCKING:  # the base drives curves, which are no turns on the spot
-                    self._looks = Looks.of(self._compass.looks_rad(self._odometry), self._odometry)
             case AtPost() if has_left(self._place, now_mm):
                 self._set_out()
             case Coming(at_mm=at_mm) | Between(ahead_mm=float() as at_mm) if has_reached(self._place, now_mm):
@@ -310,12 +317,20 @@ class Tracker:
         self._duties.seen(post)
         # Where it turned back is not given back here: it may want to go in again (decision 0022).
         if before.here is not None and before.here != post:
-            crossed = Leg(from_post=before.here, to_post=post)
-            self._duties.claims.clear(behind(self._duties.held.grants, post, crossed))
+            self.crossed += (Leg(from_post=before.here, to_post=post),)
+            self._give_back_crossed(post)
         if self.visited[-1:] != [post]:
             self.visited.append(post)
             self.arrivals += 1
             del self.visited[:-KEPT_POSTS]
+
+    def _give_back_crossed(self, post: str) -> None:
+        """Let others into the corridors behind it. Without network it keeps them: they may be its only way back."""
+        if not self._duties.online:
+            return
+        held, crossed = self._duties.held.grants, self.crossed
+        self.crossed = ()
+        self._duties.claims.clear((*crossed[:-1], *behind(held, post, crossed[-1])))
 
     def _learn_scale(self, arrived: AtPost, before: Place) -> None:
         straight = isinstance(before, Between) and not before.turned_round and arrived.here not in self.unread

@@ -102,10 +102,14 @@ def detour(hands: Hands) -> Leg | None:
 
 
 def _way_out_of_silence(hands: Hands, asked_s: float) -> Leg | None:
-    """A corridor from here that it holds, where no answer can reach it; None while one may come."""
+    """A corridor from here that it holds, where no answer can reach it; None while one may come. The one by which it
+    came serves as well, once: nobody has heard that it is out of there."""
     if "link_loss" not in hands.view.faults or hands.view.at_s - asked_s < AWAITS_NETWORK_S:
         return None
-    return next((leg for leg in _from_here(hands, hands.duties.held.grants) if not _is_closed(hands, leg)), None)
+    held, crossed = hands.duties.held.grants, hands.navigator.crossed
+    back = (Leg(from_post=leg.to_post, to_post=leg.from_post) for leg in crossed if leg in held)
+    unused = (leg for leg in (*held, *back) if leg not in crossed)
+    return next((leg for leg in _from_here(hands, tuple(unused)) if not _is_closed(hands, leg)), None)
 
 
 def _is_closed(hands: Hands, leg: Leg) -> bool:

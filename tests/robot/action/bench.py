@@ -75,8 +75,10 @@ class Bench:
         return [kept.message.model_dump_json() for kept in self.duties.outbox.pending()]
 
 
-def with_server(bench: Bench, *granted: Leg, online: bool = True) -> None:
-    bench.duties.join(SilentServer(online))
+def with_server(bench: Bench, *granted: Leg, online: bool = True) -> SilentServer:
+    server = SilentServer(online)
+    bench.duties.join(server)
     bench.duties.memory.grant(granted)
     bench.duties.seen("post2")
     bench.navigator.place("post2", "post3")
+    return server

@@ -138,6 +138,50 @@ def test_out_of_network_it_waits_for_no_other_way_than_it_has(bench: Bench) -> N
     assert detour(bench.hands) is None
 
 
+def crosses(bench: Bench, here: str, there: str) -> None:
+    bench.navigator.place(here, there)
+    bench.navigator.leave()
+    bench.body.rolls(1700.0)
+    bench.navigator.look(bench.body.view)
+    bench.navigator.reached(there)
+    assert bench.navigator.at == there
+
+
+def test_out_of_network_it_goes_back_through_the_corridor_that_it_came_by_and_on_from_there(bench: Bench) -> None:
+    came_by = Leg(from_post="post3", to_post="post2")
+    with_server(bench, TO_POST4, came_by, online=False)
+    crosses(bench, "post3", "post2")
+    assert bench.duties.held.grants == (TO_POST4, came_by), "no one would hear of it"
+    waiting = bench.ask("claim(post1)")
+    out_of_network(bench, AWAITS_NETWORK_S)
+    assert bench.actions.finished(0.1) == [(waiting, None)]
+    assert detour(bench.hands) == TO_POST3
+    assert bench.result("claim(post3)") is None
+    crosses(bench, "post2", "post3")
+    assert bench.result("claim(post4)") is None, "granted before"
+
+
+def test_out_of_network_it_does_not_drive_to_and_fro(bench: Bench) -> None:
+    with_server(bench, Leg(from_post="post3", to_post="post2"), online=False)
+    crosses(bench, "post3", "post2")
+    crosses(bench, "post2", "post3")
+    bench.ask("claim(post5)")
+    out_of_network(bench, AWAITS_NETWORK_S)
+    assert bench.actions.finished(0.1) == []
+
+
+def test_what_it_has_crossed_out_of_network_it_gives_back_at_the_next_post_with_network(bench: Bench) -> None:
+    came_by = (Leg(from_post="post4", to_post="post3"), Leg(from_post="post3", to_post="post2"))
+    server = with_server(bench, *came_by, TO_POST1, online=False)
+    crosses(bench, "post4", "post3")
+    crosses(bench, "post3", "post2")
+    assert bench.told() == []
+    server.online = True
+    bench.navigator.look(bench.body.view)
+    assert bench.duties.held.grants == (TO_POST1,)
+    assert len(bench.told()) == 2 and all('"leg"' in told for told in bench.told()), "each once"
+
+
 def pushed_away(bench: Bench, *granted: Leg) -> None:
     """From post2 into the corridor to post3."""
     with_server(bench, *granted)

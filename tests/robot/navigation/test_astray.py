@@ -169,11 +169,33 @@ def test_whoever_looks_around_a_post_is_still_there(walk: Walk, skill: str) -> N
     assert "foreign_marker" not in walk.duties.held.faults
 
 
-def test_a_base_that_found_no_dock_still_knows_which_way_it_looks(walk: Walk) -> None:
+@pytest.mark.parametrize("skill", ["dock", "find_line", "turn"])
+def test_a_search_in_curves_at_a_post_knows_which_way_it_looks(walk: Walk, skill: str) -> None:
     assert walk.navigator.way() == "left"
     walk.body.follows_line(math.radians(120))  # in a curve
-    walk.body.does("dock")
+    walk.body.does(skill)
     walk.look()
     walk.body.turns(math.radians(-120))
     walk.look()
     assert walk.navigator.way() == "left"
+
+
+def test_a_search_in_curves_on_the_way_out_of_its_dock_knows_which_way_it_looks(store: Store) -> None:
+    walk = Walk(store)
+    walk.body.battery(0.5, docked=True)
+    walk.look()
+    walk.navigator.leave()
+    walk.body.battery(0.5)
+    walk.body.does("undock")
+    walk.body.rolls(-300.0)
+    walk.look()
+    walk.body.turns(math.radians(150))  # it was bumped, and meets no line
+    walk.look()
+    walk.body.follows_line(math.radians(210))
+    walk.body.does("undock")
+    walk.look()
+    walk.body.turns(math.radians(-180))
+    walk.look()
+    walk.navigator.undocked()
+    walk.navigator.destination = "post3"
+    assert (walk.navigator.at, walk.navigator.way()) == ("post5", "forward")
