@@ -59,7 +59,7 @@ class Verifiers(Part):
 
 
 class Grant(Part):
-    """Corridors that may be entered, in order; each holds until the robot reports it clear."""
+    """Corridors that may be entered, in order; each holds until the robot reports it clear, or a person revokes it."""
 
     claim_id: Identifier
     legs: tuple[Leg, ...] = Field(min_length=1)
@@ -137,7 +137,7 @@ class EmergencyStop(Part):
 
 
 class Recall(Part):
-    """Bring what is aboard back to where it came from, then go home.
+    """Bring what is aboard back, to the mailroom if the robot has one set, else to where it came from; then go home.
 
     Accepted with mail aboard, too: the robot then gives itself a mission whose stops are of the kind `return`, and
     whose id begins with `return-`; another mission takes its place.

@@ -191,7 +191,7 @@ class Withdraw(Part):
 
 
 class Clear(Part):
-    """I am clear of this corridor: the only thing that ever frees it.
+    """I am clear of this corridor: no time-out frees it, only this, or a person who looked (`revoke`).
 
     `post` is where I was seen last: the corridor's far end when I have driven through it, its near end when I give it
     back.
