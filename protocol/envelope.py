@@ -1,7 +1,7 @@
 """The envelope of every message, and how text becomes one.
 
-`seq` numbers the durable messages of a journal without gaps and never goes back; a journal is born with the outbox
-database of its side, and a new one begins if that was put back from an older copy.
+`seq` numbers the durable messages of a journal without gaps and never goes back. A robot's journal is born with its
+outbox database, the service's with the robot's enrolment; a new one begins if that was put back from an older copy.
 
 `ack` is the highest contiguous `seq` that the sender has handled from the other side. `replay`
 marks what is sent from the backlog after a reconnect.
