@@ -1,6 +1,6 @@
 // The program of a Campus Mail robot: what it does next, and who comes first.
 //
-// The paper's idea stays (Onyedinda, Gavigan, Esfandiari 2020, section 5.7): a mission that can be interrupted, a battery
+// The paper's idea stays (Onyedinma, Gavigan, Esfandiari 2020, section 5.7): a mission that can be interrupted, a battery
 // plan that a percept triggers, a watchdog. What is new: a mission is an ordered list of stops, how far it has come is
 // perceived (the body remembers it through a power cut) instead of noted here, and mail changes hands by confirmation.
 //
