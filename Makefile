@@ -6,7 +6,7 @@ BIN := .venv/bin
 ARGS ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help setup setup-develop setup-robot test check format demo fleet-demo serve robot bench bench-mind bench-body bench-service bench-paper bench-pages bench-service-kills bench-fleet fuzz-mind client pages icons screenshots fuzz-api pin clean
+.PHONY: help setup setup-develop setup-robot test check licences sbom format demo fleet-demo serve robot bench bench-mind bench-body bench-service bench-paper bench-pages bench-service-kills bench-fleet fuzz-mind client pages icons screenshots fuzz-api pin clean
 # A recipe that fails must not leave its stamp behind.
 .DELETE_ON_ERROR:
 
@@ -30,6 +30,12 @@ check: setup-develop .venv/.lint-ready ## Format, lint, types, import contracts,
 	@$(BIN)/python client/make_client.py --document > .venv/openapi.json
 	$(WITH_NODE) $(SPECTRAL) --ruleset .ci/lint/openapi.yaml .venv/openapi.json
 	$(WITH_NODE) $(SPECTRAL) --ruleset .ci/lint/asyncapi.yaml docs/asyncapi.json
+
+licences: setup-develop ## Fail if a package that service, robot or pages install cannot ship with Apache-2.0
+	@$(WITH_NODE) $(BIN)/python .ci/bill_of_materials.py check
+
+sbom: setup-develop ## Write bills of materials (CycloneDX) of what service, robot and pages install into var/sbom
+	@$(WITH_NODE) $(BIN)/python .ci/bill_of_materials.py var/sbom
 
 format: setup-develop ## Put the code into its standard form
 	$(BIN)/ruff format
