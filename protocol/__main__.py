@@ -1,5 +1,4 @@
-"""`python -m protocol` prints the messages as docs/protocol.md shows them, `--asyncapi` as an AsyncAPI document;
-`--write` puts both where they belong."""
+"""`python -m protocol` prints every message with its examples, `--asyncapi` all of them as an AsyncAPI document."""
 
 import inspect
 import sys
@@ -11,8 +10,7 @@ from protocol.envelope import BOTH_WAYS, DURABLE, TO_ROBOT, TO_SERVER, parse
 from protocol.example_files import examples_of
 from protocol.parts import Part
 
-PAGE = Path(__file__).parents[1] / "docs" / "protocol.md"
-BEGIN, END = "<!-- messages: python -m protocol --write -->\n", "<!-- end of messages -->\n"
+CHECKOUT = Path(__file__).parents[1]
 
 DIRECTIONS: Mapping[str, Mapping[str, type[Part]]] = {
     "Robot to server": {name: kind for name, kind in TO_SERVER.items() if name not in BOTH_WAYS},
@@ -34,7 +32,7 @@ def _lines() -> Iterator[str]:
             yield _kept(name)
             for path in examples_of(name):
                 parse(path.read_bytes(), {name: kind})
-                yield f"`{path.relative_to(PAGE.parents[1])}`\n\n```json\n{path.read_text()}```\n\n"
+                yield f"`{path.relative_to(CHECKOUT)}`\n\n```json\n{path.read_text()}```\n\n"
 
 
 def _kept(name: str) -> str:
@@ -43,16 +41,8 @@ def _kept(name: str) -> str:
     return "Not kept: carries no `seq`.\n\n"
 
 
-def _write() -> None:
-    before, _, rest = PAGE.read_text().partition(BEGIN)
-    PAGE.write_text(before + BEGIN + messages_as_markdown() + END + rest.partition(END)[2])
-    asyncapi.FILE.write_text(asyncapi.as_text())
-
-
 if __name__ == "__main__":
-    if sys.argv[1:] == ["--write"]:
-        _write()
-    elif sys.argv[1:] == ["--asyncapi"]:
+    if sys.argv[1:] == ["--asyncapi"]:
         print(asyncapi.as_text(), end="")
     else:
         print(messages_as_markdown(), end="")

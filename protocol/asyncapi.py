@@ -6,16 +6,14 @@ It is seen from the service: what robots say it receives, what it says it sends.
 import inspect
 import json
 from collections.abc import Iterable, Mapping
-from pathlib import Path
 from typing import Any, Final
 
 from pydantic.json_schema import models_json_schema
 
 from protocol.envelope import DURABLE, MAJOR_VERSION, MINOR_VERSION, TO_ROBOT, TO_SERVER, Envelope
-from protocol.example_files import examples_of
+from protocol.example_files import EXAMPLES, examples_of
 from protocol.parts import Part
 
-FILE: Final = Path(__file__).parents[1] / "docs" / "asyncapi.json"
 ADDRESS: Final = "/api/v1/robots/link"
 CHANNEL: Final = "#/channels/link"
 SCHEMAS: Final = "#/components/schemas/"
@@ -56,7 +54,7 @@ def document() -> Json:
 
 
 def as_text() -> str:
-    """The document as it is kept in docs/asyncapi.json."""
+    """The document as it is printed."""
     return json.dumps(document(), indent=2, ensure_ascii=False) + "\n"
 
 
@@ -101,7 +99,7 @@ def _message(name: str, kind: type[Part]) -> Json:
         "examples": [
             {
                 "name": path.stem,
-                "summary": str(path.relative_to(FILE.parents[1])),
+                "summary": str(path.relative_to(EXAMPLES.parents[1])),
                 "payload": json.loads(path.read_text()),
             }
             for path in examples_of(name)

@@ -1,4 +1,4 @@
-"""The example files of the messages, which tests, docs/protocol.md and docs/asyncapi.json share."""
+"""The example files of the messages, which tests and documents share."""
 
 from pathlib import Path
 from typing import Final
