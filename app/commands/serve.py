@@ -9,7 +9,7 @@ import typer
 
 from app.administration import migrate as bring_up_to_date
 from app.commands.speaking import errors_in_words
-from app.errors import Refused, StartError
+from app.errors import StartError
 from app.logs import set_up_logs
 from app.settings import Settings, load_settings
 from app.settings_errors import in_sentences
@@ -20,21 +20,15 @@ def serve(
     port: Annotated[int | None, typer.Option(help="TCP port to listen on; 0 takes a free one.")] = None,
     tls_cert: Annotated[Path | None, typer.Option(help="Certificate chain (PEM): serve https and wss.")] = None,
     tls_key: Annotated[Path | None, typer.Option(help="Private key of the certificate (PEM).")] = None,
-    workers: Annotated[int, typer.Option(help="Processes; 1 is all there can be, see below.")] = 1,
 ) -> None:
     """Serve pages and API until Ctrl-C or SIGTERM. The database is made or brought up to date first.
 
-    Robots' sockets, event streams and rate limits live in the memory of one process, and one dispatcher assigns:
-    `--workers` is there to say so. One process serves a campus; what it was measured to carry is in docs/measured.md.
+    One process serves a campus: robots' sockets, event streams and rate limits live in its memory, and one dispatcher
+    assigns. What it was measured to carry is in docs/measured.md.
     """
     from app.serving import serve as serve_until_stopped
 
     with errors_in_words(), contextlib.suppress(KeyboardInterrupt):
-        if workers != 1:
-            raise Refused(
-                f"--workers {workers}: one process serves. Robots' sockets, event streams and rate limits live in its "
-                "memory, so that a second one would not know of them. Leave the option out."
-            )
         settings = settings_with(host=host, port=port, tls_cert=tls_cert, tls_key=tls_key)
         set_up_logs(settings.log_level)
         serve_until_stopped(settings)

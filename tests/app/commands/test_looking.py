@@ -88,9 +88,3 @@ def test_the_map_is_shown_and_checked(run: Run, ask: Ask) -> None:
     assert "post1" in {post["name"] for post in ask("map", "show")["posts"]}
     assert ask("map", "check")["problems"] == []
     assert "post1" in run("map", "show").stdout
-
-
-def test_more_than_one_process_is_refused_with_the_reason(run: Run) -> None:
-    ran = run("serve", "--workers", "4")
-    assert (ran.exit_code, ran.stdout) == (2, "")
-    assert "one process serves" in ran.stderr
