@@ -276,8 +276,8 @@ class Memory:
             self._write("moment", _WORD, None)
 
     def detour(self) -> Leg | None:
-        """The corridor that it takes first, for as long as it holds the grant: the service sends it there, or it goes
-        there out of a hole in the network."""
+        """The corridor that it takes first, until it has come through or gives it back: the service sends it there, or
+        it goes there out of a hole in the network."""
         return self._read("detour", _LEG, None)
 
     def turn_aside(self, leg: Leg) -> None:
@@ -293,6 +293,8 @@ class Memory:
         with self._store.transaction():
             before = self.position()
             previous = before.previous if before.post == post else before.post
+            if (detour := self.detour()) and detour.to_post == post:
+                self._write("detour", _LEG, None)
             position = Position(post=post, previous=previous, towards=towards, seen_at=at)
             self._write("position", _POSITION, position)
             self._write("moment", _WORD, None)

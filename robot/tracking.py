@@ -99,7 +99,10 @@ class Tracker:
 
     def look(self, view: View) -> None:
         """Take in what the body sees now."""
-        self._odometry, self._disturbed = view.odometry, view.find_line_episodes + view.bumps
+        before, self._odometry = self._odometry, view.odometry
+        self._disturbed = view.find_line_episodes + view.bumps
+        if view.motion in CURVING and isinstance(self._place, AtPost | Leaving) and self._looks:
+            self._looks = self._looks.curved(before, self._odometry)
         post = self._new_marker(view)
         if view.base and view.base.docked:
             self._stand_in_dock()
@@ -107,8 +110,6 @@ class Tracker:
             self._lift(view)
         else:
             self._drive(view, post)
-        if self.crossed and self.at:
-            self._give_back_crossed(self.at)
 
     def _new_marker(self, view: View) -> Sighting | None:
         """The marker that it has read since the last look, unless from aslant."""
@@ -248,8 +249,6 @@ class Tracker:
 
     def _roll(self, view: View) -> None:
         now_mm = self._odometry.ahead_mm
-        if view.motion in CURVING and isinstance(self._place, AtPost | Leaving):
-            self._looks = Looks.of(self._compass.looks_rad(self._odometry), self._odometry) or self._looks
         match self._place:
             case AtPost() if view.motion in AT_THE_POST:
                 self._place = searched(self._place, now_mm)
@@ -318,19 +317,22 @@ class Tracker:
         # Where it turned back is not given back here: it may want to go in again (decision 0022).
         if before.here is not None and before.here != post:
             self.crossed += (Leg(from_post=before.here, to_post=post),)
-            self._give_back_crossed(post)
+            self.give_back_crossed()
         if self.visited[-1:] != [post]:
             self.visited.append(post)
             self.arrivals += 1
             del self.visited[:-KEPT_POSTS]
 
-    def _give_back_crossed(self, post: str) -> None:
-        """Let others into the corridors behind it. Without network it keeps them: they may be its only way back."""
-        if not self._duties.online:
+    def give_back_crossed(self) -> None:
+        """Let others into the corridors behind it, at a post. Without network it keeps them: they may be its only way.
+        Not to be called between a claim and the corridor that it was for: that may be one of them."""
+        if self.at is None or not self._duties.online:
             return
         held, crossed = self._duties.held.grants, self.crossed
+        over = {*crossed, *behind(held, self.at, crossed[-1] if crossed else None)}
         self.crossed = ()
-        self._duties.claims.clear((*crossed[:-1], *behind(held, post, crossed[-1])))
+        if left := [leg for leg in held if leg in over]:
+            self._duties.claims.clear(left)
 
     def _learn_scale(self, arrived: AtPost, before: Place) -> None:
         straight = isinstance(before, Between) and not before.turned_round and arrived.here not in self.unread

@@ -102,14 +102,12 @@ def detour(hands: Hands) -> Leg | None:
 
 
 def _way_out_of_silence(hands: Hands, asked_s: float) -> Leg | None:
-    """A corridor from here that it holds, where no answer can reach it; None while one may come. The one by which it
-    came serves as well, once: nobody has heard that it is out of there."""
+    """A corridor from here that it holds and has not come through yet, where no answer can reach it; None while one may
+    come."""
     if "link_loss" not in hands.view.faults or hands.view.at_s - asked_s < AWAITS_NETWORK_S:
         return None
-    held, crossed = hands.duties.held.grants, hands.navigator.crossed
-    back = (Leg(from_post=leg.to_post, to_post=leg.from_post) for leg in crossed if leg in held)
-    unused = (leg for leg in (*held, *back) if leg not in crossed)
-    return next((leg for leg in _from_here(hands, tuple(unused)) if not _is_closed(hands, leg)), None)
+    unused = tuple(leg for leg in hands.duties.held.grants if leg not in hands.navigator.crossed)
+    return next((leg for leg in _from_here(hands, unused) if not _is_closed(hands, leg)), None)
 
 
 def _is_closed(hands: Hands, leg: Leg) -> bool:
@@ -137,7 +135,9 @@ def _kept(hands: Hands) -> tuple[Leg, ...]:
 
 def release(hands: Hands, _: Sequence[Value], __: float) -> Run:
     hands.duties.claims.withdraw()
-    hands.duties.claims.clear(leg for leg in hands.duties.held.grants if leg != hands.navigator.corridor)
+    here = hands.navigator.corridor
+    inside = {here.from_post, here.to_post} if here else None
+    hands.duties.claims.clear(leg for leg in hands.duties.held.grants if {leg.from_post, leg.to_post} != inside)
     return AtOnce()
 
 

@@ -139,6 +139,20 @@ class Unless:
         self._run.cancel()
 
 
+class Meanwhile:
+    """A run beside which something is done in every tick."""
+
+    def __init__(self, run: Run, again: Callable[[], None]) -> None:
+        self._run, self._again = run, again
+
+    def poll(self, ends: Ends, now: float) -> Ended | None:
+        self._again()
+        return self._run.poll(ends, now)
+
+    def cancel(self) -> None:
+        self._run.cancel()
+
+
 class ThenRest:
     """A run whose success is told only after a rest. `over` hears of any end."""
 

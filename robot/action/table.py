@@ -30,7 +30,7 @@ from ..skills.tunes import TUNES
 from .arguments import Argument, Kind, Value, word
 from .corridors import CLOSED_BY, claim, mark_blocked, noted_move, release, reopen, set_destination
 from .hands import PLACE_UNKNOWN, Hands
-from .runs import AtOnce, Ended, Rest, Run, SkillMaker, Skills, ThenRest, Unless
+from .runs import AtOnce, Ended, Meanwhile, Rest, Run, SkillMaker, Skills, ThenRest, Unless
 
 
 @dataclass(frozen=True)
@@ -180,7 +180,9 @@ def _wait_handover(hands: Hands, arguments: Sequence[Value], now: float) -> Run:
 
     skill = WaitHandover(lambda: duties.codes(order_id, purpose), float(limit_s), spot_counts)
     duties.custody.wait(waiting)
-    run = Unless(_one(hands, skill, now, custody), lambda: waiting.handed_over, promise)
+    run: Run = Unless(_one(hands, skill, now, custody), lambda: waiting.handed_over, promise)
+    # The network may come back while it stands here, and others wait for what lies behind it.
+    run = Meanwhile(run, hands.navigator.give_back_crossed)
     return ThenRest(run, STANDS_FOR_HANDS_S, lambda: duties.custody.leave(waiting))
 
 

@@ -132,6 +132,11 @@ class Looks:
         """None: not known."""
         return None if facing_rad is None else cls(facing_rad, odometry.spot_turn_rad)
 
+    def curved(self, before: Odometry, now: Odometry) -> "Looks":
+        """After a curve that was no bend of a corridor."""
+        curves_rad = (now.heading_rad - now.spot_turn_rad) - (before.heading_rad - before.spot_turn_rad)
+        return Looks(self.facing_rad + curves_rad, self.spot_turn_rad)
+
     def now_rad(self, odometry: Odometry) -> float:
         """At posts and on straight corridors."""
         return wrapped(self.facing_rad + odometry.spot_turn_rad - self.spot_turn_rad)

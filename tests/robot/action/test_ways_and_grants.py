@@ -9,7 +9,7 @@ from protocol.envelope import Envelope
 from protocol.parts import Leg
 from protocol.to_robot import Detour
 from robot.action.corridors import AWAITS_NETWORK_S, detour
-from tests.robot.action.bench import NOW, TO_POST1, TO_POST3, TO_POST4, Bench, with_server
+from tests.robot.action.bench import MISSION, NOW, TO_POST1, TO_POST3, TO_POST4, Bench, with_server
 
 
 def test_a_way_that_is_closed_for_now_is_told_from_one_that_is_not_there(bench: Bench) -> None:
@@ -147,39 +147,88 @@ def crosses(bench: Bench, here: str, there: str) -> None:
     assert bench.navigator.at == there
 
 
-def test_out_of_network_it_goes_back_through_the_corridor_that_it_came_by_and_on_from_there(bench: Bench) -> None:
-    came_by = Leg(from_post="post3", to_post="post2")
-    with_server(bench, TO_POST4, came_by, online=False)
+TO_POST2 = Leg(from_post="post3", to_post="post2")
+
+
+def test_out_of_network_it_may_go_again_where_it_has_been(bench: Bench) -> None:
+    with_server(bench, TO_POST2, TO_POST3, TO_POST4, online=False)
     crosses(bench, "post3", "post2")
-    assert bench.duties.held.grants == (TO_POST4, came_by), "no one would hear of it"
-    waiting = bench.ask("claim(post1)")
-    out_of_network(bench, AWAITS_NETWORK_S)
-    assert bench.actions.finished(0.1) == [(waiting, None)]
-    assert detour(bench.hands) == TO_POST3
-    assert bench.result("claim(post3)") is None
     crosses(bench, "post2", "post3")
-    assert bench.result("claim(post4)") is None, "granted before"
+    assert bench.duties.held.grants == (TO_POST2, TO_POST3, TO_POST4), "no one would hear of it"
+    assert bench.result("claim(post2)") is None
+    assert bench.result("claim(post4)") is None
 
 
 def test_out_of_network_it_does_not_drive_to_and_fro(bench: Bench) -> None:
-    with_server(bench, Leg(from_post="post3", to_post="post2"), online=False)
+    with_server(bench, TO_POST2, TO_POST3, online=False)
     crosses(bench, "post3", "post2")
-    crosses(bench, "post2", "post3")
-    bench.ask("claim(post5)")
+    for_post1 = bench.ask("claim(post1)")
     out_of_network(bench, AWAITS_NETWORK_S)
-    assert bench.actions.finished(0.1) == []
+    assert bench.actions.finished(0.1) == [(for_post1, None)] and detour(bench.hands) == TO_POST3
+    crosses(bench, "post2", "post3")
+    crosses(bench, "post3", "post2")
+    assert detour(bench.hands) is None, "it has been there"
+    bench.ask("claim(post1)")
+    out_of_network(bench, 3 * AWAITS_NETWORK_S)
+    assert bench.actions.finished(0.1) == [], "it would only come back"
+
+
+def test_what_it_was_to_take_first_is_forgotten_once_it_has_come_through(bench: Bench) -> None:
+    server = with_server(bench, TO_POST3, online=False)
+    bench.duties.memory.turn_aside(TO_POST3)
+    crosses(bench, "post2", "post3")
+    server.online = True
+    bench.navigator.give_back_crossed()
+    assert (bench.duties.held.grants, bench.duties.held.detour) == ((), None)
+    bench.navigator.place("post2", "post1")
+    bench.ask("claim(post1)")
+    assert bench.actions.finished(0.0) == [], "it has to be granted"
 
 
 def test_what_it_has_crossed_out_of_network_it_gives_back_at_the_next_post_with_network(bench: Bench) -> None:
-    came_by = (Leg(from_post="post4", to_post="post3"), Leg(from_post="post3", to_post="post2"))
+    came_by = (Leg(from_post="post4", to_post="post3"), TO_POST2)
     server = with_server(bench, *came_by, TO_POST1, online=False)
     crosses(bench, "post4", "post3")
-    crosses(bench, "post3", "post2")
-    assert bench.told() == []
     server.online = True
-    bench.navigator.look(bench.body.view)
+    crosses(bench, "post3", "post2")
     assert bench.duties.held.grants == (TO_POST1,)
     assert len(bench.told()) == 2 and all('"leg"' in told for told in bench.told()), "each once"
+
+
+def test_network_that_comes_back_after_a_claim_takes_nothing_from_under_its_wheels(bench: Bench) -> None:
+    server = with_server(bench, TO_POST2, TO_POST3, online=False)
+    crosses(bench, "post3", "post2")
+    crosses(bench, "post2", "post3")
+    assert bench.result("claim(post2)") is None
+    server.online = True
+    bench.navigator.look(bench.body.view)
+    assert TO_POST2 in bench.duties.held.grants
+    crosses(bench, "post3", "post2")
+    assert bench.duties.held.grants == ()
+
+
+@pytest.mark.parametrize("started_anew", [False, True])
+def test_network_that_comes_back_while_it_waits_for_a_person_lets_others_in_behind_it(
+    bench: Bench, started_anew: bool
+) -> None:
+    server = with_server(bench, TO_POST2, online=False)
+    bench.duties.give(MISSION)
+    crosses(bench, "post3", "post2")
+    bench.navigator.crossed = () if started_anew else bench.navigator.crossed
+    bench.ask("wait_handover(load, o1, s1, 90)")
+    assert bench.actions.finished(0.0) == []
+    assert bench.duties.held.grants == (TO_POST2,)
+    server.online = True
+    assert bench.actions.finished(0.1) == []
+    assert bench.duties.held.grants == ()
+
+
+def test_on_its_way_back_it_does_not_release_the_corridor_that_it_is_in(bench: Bench) -> None:
+    with_server(bench, TO_POST3, TO_POST4)
+    bench.navigator.place("post3", "post2")
+    bench.navigator.leave()
+    bench.result("release")
+    assert bench.duties.held.grants == (TO_POST3,)
 
 
 def pushed_away(bench: Bench, *granted: Leg) -> None:

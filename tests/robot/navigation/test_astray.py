@@ -199,3 +199,21 @@ def test_a_search_in_curves_on_the_way_out_of_its_dock_knows_which_way_it_looks(
     walk.navigator.undocked()
     walk.navigator.destination = "post3"
     assert (walk.navigator.at, walk.navigator.way()) == ("post5", "forward")
+
+
+def test_started_anew_it_knows_which_way_it_looks_after_a_search_in_curves(store: Store) -> None:
+    before = Walk(store)
+    before.look()
+    before.navigator.place("post4", "post3")
+    before.drives_to("post3")
+    walk = Walk(store)
+    walk.navigator.destination = "post2"
+    walk.look()
+    assert walk.navigator.way() == "left"
+    walk.body.follows_line(math.radians(120))
+    walk.body.does("dock")
+    walk.look()
+    assert walk.navigator.way() != "left"
+    walk.body.turns(math.radians(-120))
+    walk.look()
+    assert walk.navigator.way() == "left"
