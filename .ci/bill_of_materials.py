@@ -38,10 +38,10 @@ def asked_for() -> list[str]:
     return [*project["dependencies"], *(one for extra in SHIPPED_EXTRAS for one in extras[extra])]
 
 
-def shipped(lines: list[str], extra: str = "") -> dict[str, None]:
+def shipped(lines: list[str]) -> dict[str, None]:
     """Canonical names of all that these requirements bring on this machine, each once, in the order found."""
     found: dict[str, None] = {}
-    todo = [(line, extra) for line in lines]
+    todo = [(line, "") for line in lines]
     seen = set()
     while todo:
         line, of_extra = todo.pop()

@@ -103,7 +103,7 @@ class Claims:
 
     def _give_back(self, legs: Iterable[Leg], grants: Sequence[Leg]) -> bool:
         """Whether any of them was held."""
-        granted = [leg for leg in dict.fromkeys(legs) if leg in grants]
+        granted = [leg for leg in legs if leg in grants]
         with self._store.transaction():
             for leg in granted:
                 self._memory.clear(leg)

@@ -25,8 +25,7 @@ from robot.skills.interfaces import View
 
 TURNING = frozenset({"turn", "undock", "find_line"})
 """Skills during which a marker is seen from aslant: it says nothing about the way that is left to its post."""
-DOCKING = "dock"
-AT_THE_POST = frozenset({"turn", "find_line", DOCKING})
+AT_THE_POST = frozenset({"turn", "find_line", "dock"})
 """Skills that look for the line or the dock around a post: they leave it by some steps without being on their way."""
 CURVING = AT_THE_POST | {"undock"}
 """Skills that drive curves which are no bends of a corridor."""
