@@ -43,10 +43,10 @@ format: setup-develop ## Put the code into its standard form
 	$(BIN)/ruff check --fix
 
 demo: setup ## See the first letter: service, robot and one order, on this machine
-	$(BIN)/python -m app demo $(ARGS)
+	$(BIN)/python -m demo letter $(ARGS)
 
 fleet-demo: setup ## See a fleet at work: service, simulated robots in the Carleton tunnels, a stream of orders
-	$(BIN)/python -m app fleet-demo $(ARGS)
+	$(BIN)/python -m demo fleet $(ARGS)
 
 serve: setup ## Start the service alone
 	$(BIN)/python -m app serve $(ARGS)
@@ -126,7 +126,7 @@ LIST = $(BIN)/python -c 'import sys, tomllib; p = tomllib.load(open("pyproject.t
 define FETCH
 @$(LIST) $(1) > .venv/requirements.txt
 @{ $(PIP) --retries 0 --timeout 5 lark && $(PIP) -r .venv/requirements.txt; } >$(LOG) 2>&1 || $(NOT_FETCHED)
-@$(BIN)/python -m compileall -q protocol maps bdi robot app
+@$(BIN)/python -m compileall -q protocol maps bdi fleet robot app demo
 @touch $@
 endef
 
@@ -197,7 +197,7 @@ SPECTRAL = .ci/lint/node_modules/.bin/spectral lint --fail-severity=warn --quiet
 	@touch $@
 
 # What follows from the API document is made, not kept: the Python client and the types of the pages.
-API_DOCUMENT_FROM = $(shell find app protocol maps client -name '*.py' 2>/dev/null) web/make_pages.py
+API_DOCUMENT_FROM = $(shell find app fleet protocol maps client -name '*.py' 2>/dev/null) web/make_pages.py
 MADE = $(patsubst %,client/campus_mail_client/%.py,async_operations client models operations problems)
 .venv/.made-ready: $(filter-out $(MADE),$(API_DOCUMENT_FROM)) | .venv/.pages-develop-ready
 	@$(BIN)/python client/make_client.py

@@ -23,11 +23,6 @@ COMMANDS: Final = {
     "export": ("personal:export", "Everything the service knows of one person, as JSON files to hand to them"),
     "erase": ("personal:erase", "Replace a person's name and address and delete what leads to them"),
     "retain": ("retain:retain", "Take names out of old orders, delete old telemetry, codes and sessions."),
-    "demo": ("demo:demo", "See the first letter: service, simulated robot and one order, on this machine."),
-    "fleet-demo": (
-        "fleet_demo:fleet_demo",
-        "See a fleet at work: the service, simulated robots in the Carleton tunnels, and people",
-    ),
 }
 """Where each command is, and how it is listed: as its own help begins."""
 
@@ -43,7 +38,7 @@ class LateCommands(TyperGroup):
 def loaded(name: str) -> Any:
     """The command itself, or the group of commands."""
     module, _, attribute = COMMANDS[name][0].partition(":")
-    found = getattr(import_module(f"app.commands.{module}"), attribute)
+    found = getattr(import_module(f"app.cli.{module}"), attribute)
     if not isinstance(found, typer.Typer):
         command, found = found, typer.Typer(add_completion=False)
         found.command(name)(command)

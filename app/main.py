@@ -10,99 +10,106 @@ import structlog
 from fastapi import APIRouter, FastAPI
 from starlette.datastructures import State
 
-from app import about, asset_links, demo_camera, demo_links, marker_sheets, metrics, one_order, order_export
-from app.api_document import DocumentedApi, operation_id
-from app.body_limit import BodyLimit
-from app.database import Database
-from app.deadline import RequestDeadline
-from app.dispatch.charge_desk import ChargeDesk
-from app.dispatch.charge_first import ChargeFirst
+from app.accounts import demo_links, directory_routes, my_routes
+from app.accounts.last_seen import LastSeen
+from app.accounts.links import Links
+from app.accounts.rate_limits import RateLimits
+from app.accounts.sign_in import oidc_routes
+from app.accounts.sign_in import routes as sign_in_routes
+from app.accounts.sign_in.oidc import Provider
+from app.accounts.sign_in.service import SignInDesk
+from app.charging.charge_first import ChargeFirst
+from app.charging.service import ChargeDesk
+from app.core.database.database import Database
+from app.core.database.deadline import RequestDeadline
+from app.core.database.schema_version import bring_to_head
+from app.core.errors import DATABASE_AWAY, add_error_answers
+from app.core.http_client import TIMEOUT_S, Outside, trusted_here
+from app.core.mail import open_mailer
+from app.core.server_key import ServerKey, open_server_key
+from app.core.settings import Settings, make_data_folder, open_map
+from app.core.trusted_clock import TrustedClock
+from app.dispatch.at_once.nearest import NearestRobots
+from app.dispatch.eta_updates import Foreseen
 from app.dispatch.fleet_planner import FleetPlanner
 from app.dispatch.held_up import NoRobotComes
-from app.dispatch.nearest import NearestRobots
 from app.dispatch.service import Dispatcher
-from app.enrolment import routes as enrolment_routes
-from app.enrolment.service import EnrolmentDesk
-from app.errors import DATABASE_AWAY, add_error_answers
-from app.estimates import routes as estimates_routes
-from app.etags import ETags
-from app.fleet import corridor_routes, dispatcher_routes, watching_routes
-from app.fleet import routes as fleet_routes
-from app.fleet.foreseen import Foreseen
-from app.fleet.intake import Intake
-from app.fleet.service import Fleet
-from app.fleet.traffic_desk import TrafficDesk
+from app.eta import routes as eta_routes
+from app.handover import demo_camera, one_order_routes
 from app.handover import routes as handover_routes
 from app.handover.delegates import Delegating
 from app.handover.service import HandOvers
-from app.handshakes import RefusedHandshakes
-from app.keeping.housekeeper import Housekeeper
-from app.keeping.last_record import last_record
-from app.live import routes as live_routes
-from app.live.feed import LocalFeed
-from app.live.position import FeedPosition
-from app.mail import open_mailer
-from app.notify import outbox_routes, wish_routes
-from app.notify import routes as notify_routes
-from app.notify.channels.mail import CodePicture, Drawing, LinkFor, MailChannel
-from app.notify.channels.push import PushChannel
-from app.notify.channels.webhook import Address, WebhookChannel, secret_bytes
-from app.notify.lag import outbox_lag
-from app.notify.push_key import open_push_key
-from app.notify.worker import FINISH_WITHIN_S, OutboxWorker
-from app.orders import changing_routes, standing_routes
-from app.orders import routes as orders_routes
-from app.orders.codes import code_in_mail, code_png
-from app.orders.desk import OrderDesk
+from app.http import about, asset_links, marker_sheets, metrics
+from app.http.api_document import DocumentedApi, operation_id
+from app.http.body_limit import BodyLimit
+from app.http.etags import ETags
+from app.http.pages import CompressedPages, SafeHeaders, add_pages, content_security_policy
+from app.http.refused_handshakes import RefusedHandshakes
+from app.http.request_log import RequestLog
+from app.http.request_metrics import RequestFigures
+from app.models import Notice, Person
+from app.notifications import routes as notification_routes
+from app.notifications.channels.mail import CodePicture, Drawing, LinkFor, MailChannel
+from app.notifications.channels.push import PushChannel
+from app.notifications.channels.webhook import Address, WebhookChannel, secret_bytes
+from app.notifications.delivery import routes as delivery_routes
+from app.notifications.delivery.worker import FINISH_WITHIN_S, OutboxWorker
+from app.notifications.lag import outbox_lag
+from app.notifications.preference_api import routes as preference_routes
+from app.notifications.push_key import open_push_key
+from app.orders.batcher import OrderDesk
+from app.orders.custody.codes import code_in_mail, code_png
+from app.orders.routes import changes as change_routes
+from app.orders.routes import orders as order_routes
+from app.orders.routes import standing as standing_order_routes
 from app.orders.service import Orders
-from app.orders.standing import StandingOrders
+from app.orders.standing.standing import StandingOrders
 from app.orders.timer import Timer
-from app.outside import TIMEOUT_S, Outside, trusted_here
-from app.pages import CompressedPages, SafeHeaders, add_pages, content_security_policy
-from app.people import everybody_routes, my_routes, oidc_routes
-from app.people import routes as people_routes
-from app.people.last_seen import LastSeen
-from app.people.links import Links
-from app.people.oidc import Provider
-from app.people.rate_limits import RateLimits
-from app.people.service import SignInDesk
-from app.request_figures import RequestFigures
-from app.request_log import RequestLog
-from app.schema_version import bring_to_head
-from app.server_key import ServerKey, open_server_key
-from app.settings import Settings, make_data_folder, open_map
-from app.tables import Notice, Person
-from app.trusted_clock import TrustedClock
+from app.realtime import routes as realtime_routes
+from app.realtime.feed import LocalFeed
+from app.realtime.feed_position import FeedPosition
+from app.retention import order_export
+from app.retention.last_record import last_record
+from app.retention.retention_job import Housekeeper
+from app.robots.conversation.intake import Intake
+from app.robots.enrolment import routes as enrolment_routes
+from app.robots.enrolment.service import EnrolmentDesk
+from app.robots.routes import diagnostics as diagnostics_routes
+from app.robots.routes import dispatcher as dispatcher_routes
+from app.robots.routes import robots as robot_routes
+from app.robots.service import Fleet
+from app.traffic import routes as traffic_routes
+from app.traffic.service import TrafficDesk
 from protocol.clock import Clock
 
 log = structlog.get_logger(__name__)
 
 API = "/api/v1"
 ROUTERS = (
-    orders_routes.router,  # first: routes are looked through in this order, and these are asked for most
+    order_routes.router,  # first: routes are looked through in this order, and these are asked for most
     about.api_router,
-    people_routes.router,
+    sign_in_routes.router,
     oidc_routes.router,
     my_routes.me_router,
     my_routes.address_router,
     my_routes.router,
-    everybody_routes.address_router,
-    everybody_routes.router,
-    changing_routes.router,
-    changing_routes.dispatch_router,
-    standing_routes.router,
-    one_order.router,
-    notify_routes.router,
-    wish_routes.router,
-    outbox_routes.router,
-    live_routes.router,
-    fleet_routes.router,
+    directory_routes.address_router,
+    directory_routes.router,
+    change_routes.router,
+    change_routes.dispatch_router,
+    standing_order_routes.router,
+    one_order_routes.router,
+    notification_routes.router,
+    preference_routes.router,
+    delivery_routes.router,
+    realtime_routes.router,
+    robot_routes.router,
     dispatcher_routes.router,
-    corridor_routes.router,
-    corridor_routes.reading_router,
-    watching_routes.router,
-    watching_routes.upkeep_router,
-    estimates_routes.router,
+    traffic_routes.router,
+    traffic_routes.reading_router,
+    diagnostics_routes.router,
+    diagnostics_routes.upkeep_router,
+    eta_routes.router,
     enrolment_routes.router,
     handover_routes.router,
     handover_routes.dispatch_router,

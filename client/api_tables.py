@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Any, Final
 
-from app.api_document import all_codes, operations
+from app.http.api_document import all_codes, operations
 
 HEAD: Final = "| request | name | | opened by |\n|---|---|---|---|\n"
 PAGE: Final = Path(__file__).parents[1] / "docs" / "api.md"

@@ -7,10 +7,10 @@ from alembic import context
 from sqlalchemy import Connection
 from sqlmodel import AutoString
 
-from app.database import Database
-from app.settings import load_settings, make_data_folder
-from app.tables import metadata
-from app.tables.columns import UtcTime, WordOf
+from app.core.database.database import Database
+from app.core.settings import load_settings, make_data_folder
+from app.models import metadata
+from app.models.columns import UtcTime, WordOf
 
 
 def plain_type(kind: str, item: Any, autogen_context: Any) -> str | Literal[False]:

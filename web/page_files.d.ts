@@ -1,4 +1,4 @@
-// The service makes this module: what its pages are made of (app/page_files.py).
+// The service makes this module: what its pages are made of (app/http/page_files.py).
 
 /** Changes with any of the files. */
 export const VERSION: string;

@@ -1,6 +1,6 @@
 /**
  * Reasons in this page's language: sentences and codes that the service has recognised, with what fills their gaps
- * (app/texts/reasons.py says the same in mails).
+ * (app/core/texts/reasons.py says the same in mails).
  * @import { CampusMap, Words } from "./api_types.ts"
  */
 import { titleOf } from "./posts.js";

@@ -25,7 +25,7 @@ export function fetchTexts(wanted) {
   return texts;
 }
 
-/** Which pages fetch more than the everyday ones need: some a part (app/page_files.py says which), some all texts.
+/** Which pages fetch more than the everyday ones need: some a part (app/http/page_files.py says which), some all texts.
  *  @type {Record<string, string>} */
 const TEXTS_OF = { "/mailroom.html": ".mailroom", "/robots.html": "", "/print.html": "", "/settings.html": "" };
 
@@ -43,7 +43,7 @@ export async function loadTexts(wanted) {
   document.documentElement.lang = wanted;
 }
 
-/** The locale of times and numbers: the catalogue's, by which mails are written too (app/texts/times.py). */
+/** The locale of times and numbers: the catalogue's, by which mails are written too (app/core/texts/times.py). */
 export const locale = () => catalogue["time.locale"] ?? language;
 
 /** @param {string} key */

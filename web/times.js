@@ -1,4 +1,4 @@
-/** Times as people read them, and as mails say them (app/texts/times.py). Times go in as the service writes them. */
+/** Times as people read them, and as mails say them (app/core/texts/times.py). Times go in as the service writes them. */
 import { locale, t } from "./texts.js";
 
 const HOUR_MS = 3_600_000;

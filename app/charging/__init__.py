@@ -1,4 +1,5 @@
-"""How charge bounds what robots can do: what work costs them, who may take it on, and when they charge.
+"""Charging: sends idle robots to docks, and calls them away for work.
 
-Pure: charges, ways and times are handed to it. All charges are shares of what a pack holds when it is full.
+May use dispatch, robots and `fleet.charging`.
+Start at `service.py`.
 """

@@ -1,1 +1,5 @@
-"""Which robot carries what: a pure choice, and the loop that acts on it."""
+"""Dispatch: which robot carries which order, and when it is expected.
+
+May use robots, traffic, orders and `fleet.assignment`.
+Start at `service.py`.
+"""

@@ -11,7 +11,7 @@ from datetime import datetime, timedelta
 from heapq import merge
 from typing import Final
 
-from app.tables import Priority
+from app.models import Priority
 from maps.ways import Ways
 
 ENOUGH_CHARGE: Final = 0.30

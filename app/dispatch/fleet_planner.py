@@ -10,18 +10,18 @@ from typing import Final
 
 import structlog
 
-from app.dispatch.charge import Charges
-from app.dispatch.explained import explain
+from app.dispatch.charge_limits import Charges
 from app.dispatch.given_out import Changes, changes_of, give_out
 from app.dispatch.open_work import OpenWork, look_at_work
 from app.dispatch.planner_process import PlannerProcess
-from app.dispatch.planning.carrying_out import adopt
-from app.dispatch.planning.deciding import Decision, decide
 from app.dispatch.scene_of_work import SceneOfWork
 from app.dispatch.why_orders_wait import NOT_PLANNED_FOR, answers
-from app.fleet.service import Fleet
-from app.fleet.timetable import Timetable
-from app.fleet.traffic_desk import TrafficDesk
+from app.dispatch.why_recorded import explain
+from app.robots.service import Fleet
+from app.traffic.schedule import Timetable
+from app.traffic.service import TrafficDesk
+from fleet.assignment.adopting import adopt
+from fleet.assignment.deciding import Decision, decide
 
 IMPROVE_EVERY_S: Final = 30.0
 """Real seconds. Also when nothing was given: robots have moved since."""

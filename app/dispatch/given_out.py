@@ -11,14 +11,14 @@ import structlog
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.dispatch.open_work import OpenWork, OrderNow, StopNow, look_at_work
-from app.dispatch.planning.deciding import Decision
-from app.fleet.mission_updates import tell_mission
-from app.fleet.service import Fleet, known_robot
-from app.orders.intervening import REASSIGNED
+from app.models import MissionRow, OrderState, RobotRow, StopRow
+from app.orders.changes.intervening import REASSIGNED
 from app.orders.service import Word
 from app.orders.stops import stops_left
 from app.orders.transitions import By
-from app.tables import MissionRow, OrderState, RobotRow, StopRow
+from app.robots.mission_updates import tell_mission
+from app.robots.service import Fleet, known_robot
+from fleet.assignment.deciding import Decision
 from protocol.ids import new_id
 from protocol.parts import StopAction
 

@@ -8,7 +8,7 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.dispatch.choice import NONE_CONNECTED
 from app.dispatch.open_work import HeldUp, RobotNow, look_at_held_up
-from app.fleet.service import Fleet
+from app.robots.service import Fleet
 
 SENTENCES: Final = {
     HeldUp.STUCK_MAIL: "No robot is free: somebody has to see to mail that is stuck first.",

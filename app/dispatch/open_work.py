@@ -11,12 +11,12 @@ from sqlalchemy import func, or_, select
 from sqlmodel import col
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.database import connection_of
+from app.core.database.database import connection_of
 from app.dispatch.situation import LOAD_POST, WAITING_AT_A_STOP, is_aboard, is_waiting
-from app.fleet.homes import WITHOUT_A_HOME
+from app.models import MissionRow, MissionState, Order, OrderState, Priority, RobotCommand, RobotRow, StopRow
 from app.orders.stops import is_own
 from app.orders.transitions import MAIL_ABOARD, ROBOT_COMING
-from app.tables import MissionRow, MissionState, Order, OrderState, Priority, RobotCommand, RobotRow, StopRow
+from app.robots.homes import WITHOUT_A_HOME
 from protocol.parts import Activity
 
 LOOKED_AT: Final = 200

@@ -17,8 +17,8 @@ from typing import BinaryIO, Final
 
 import structlog
 
-from app.dispatch.planning.deciding import Decision
-from app.dispatch.planning.improving import improved, within
+from fleet.assignment.deciding import Decision
+from fleet.assignment.improving import improved, within
 
 GRACE_S: Final = 2.0
 """So much longer than its budget an answer may take."""

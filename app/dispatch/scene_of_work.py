@@ -8,16 +8,16 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Final
 
-from app.dispatch.charge import Charges
+from app.core.settings import Settings
+from app.dispatch.charge_limits import Charges
 from app.dispatch.choice import counts_since
 from app.dispatch.open_work import OpenWork, OrderNow, StopNow
-from app.dispatch.planning.carrying_out import Able, scene_of
-from app.dispatch.planning.scene import OpenOrder, Rules, Scene
+from app.models import OrderState, Priority
 from app.orders.transitions import MAIL_ABOARD
-from app.settings import Settings
-from app.tables import OrderState, Priority
-from app.traffic.controller import TrafficController
-from app.traffic.journey import Goal
+from fleet.assignment.adopting import Able, scene_of
+from fleet.assignment.scene import OpenOrder, Rules, Scene
+from fleet.schedule.controller import TrafficController
+from fleet.schedule.journey import Goal
 from protocol.ids import new_id
 from protocol.parts import StopAction
 

@@ -9,12 +9,12 @@ import asyncio
 from contextlib import suppress
 from typing import Final, Protocol
 
+from app.core.polling import LONGEST_REST_S, REST
 from app.dispatch.situation import Todo, look_for_work
-from app.fleet.commands import ask, new_command_id, unanswered
-from app.fleet.mission_updates import tell_mission
-from app.fleet.service import Fleet
-from app.looks import LONGEST_REST_S, REST
-from app.tables import MissionRow, RobotRow
+from app.models import MissionRow, RobotRow
+from app.robots.commands import ask, new_command_id, unanswered
+from app.robots.mission_updates import tell_mission
+from app.robots.service import Fleet
 from protocol.to_robot import Cancel
 
 LOOK_AGAIN_S: Final = 30.0

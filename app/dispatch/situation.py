@@ -23,13 +23,13 @@ from sqlalchemy.ext.asyncio import AsyncConnection
 from sqlmodel import col
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.database import connection_of
+from app.core.database.database import connection_of
 from app.dispatch.choice import ENOUGH_CHARGE, IdleRobot, WaitingOrder, counts_since
 from app.dispatch.insertion import Tour, Visit
-from app.fleet.homes import WITHOUT_A_HOME
+from app.models import MissionRow, MissionState, Order, OrderState, Priority, RobotCommand, RobotRow, StopRow
 from app.orders.stops import stops_left
 from app.orders.transitions import MAIL_ABOARD
-from app.tables import MissionRow, MissionState, Order, OrderState, Priority, RobotCommand, RobotRow, StopRow
+from app.robots.homes import WITHOUT_A_HOME
 from protocol.parts import Activity, StopAction
 
 LOOKED_AT: Final = 50

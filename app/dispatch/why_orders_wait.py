@@ -7,9 +7,9 @@ from typing import Final, NamedTuple
 from app.dispatch.choice import BUSY, NONE_CONNECTED
 from app.dispatch.held_up import why_held_up
 from app.dispatch.open_work import OpenWork
-from app.dispatch.planning.comes_next import given_at_s
-from app.dispatch.planning.deciding import Decision
-from app.dispatch.planning.why import Why, why_orders_wait
+from fleet.assignment.comes_next import given_at_s
+from fleet.assignment.deciding import Decision
+from fleet.assignment.why import Why, why_orders_wait
 
 ONE_AHEAD: Final = "Every robot is busy, and one order is ahead of this one."
 SOME_AHEAD: Final = "Every robot is busy, and {orders} orders are ahead of this one."

@@ -1,1 +1,5 @@
-"""Hand-overs as people see them: codes, taps and digits in the app, delegates. Custody is the robot's to write."""
+"""Hand-overs as people see them: codes, taps, digits, delegates.
+
+May use orders and robots; custody is written by robots' receipts alone.
+Start at `service.py`.
+"""

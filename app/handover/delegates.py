@@ -6,20 +6,20 @@ from typing import Final
 from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.fleet.service import Fleet
+from app.core.paging import Paging, Sorting
 from app.handover import errors
-from app.handover.looking import find_order, theirs
+from app.handover.notifications import tell_delegate, tell_that_it_is_over
 from app.handover.people import code_for, may_see, purpose_to_delegate
+from app.handover.reading import find_order, theirs
 from app.handover.schemas import NewDelegate
-from app.handover.telling import tell_delegate, tell_that_it_is_over
-from app.orders.codes import HandoverCode, Holder, delegates_of
-from app.orders.schemas import OrderView
+from app.models import Delegate, Order, OrderState, Person, RobotRow
+from app.models.orders.order_events import DELEGATE_NAMED, DELEGATE_REVOKED
+from app.orders.custody.codes import HandoverCode, Holder, delegates_of
 from app.orders.service import Word
 from app.orders.transitions import ENDED, By
-from app.orders.views import THEIRS, MyRole, delegates_view, load_facts
-from app.paging import Paging, Sorting
-from app.tables import Delegate, Order, OrderState, Person, RobotRow
-from app.tables.order_events import DELEGATE_NAMED, DELEGATE_REVOKED
+from app.orders.views.schemas import OrderView
+from app.orders.views.views import THEIRS, MyRole, delegates_view, load_facts
+from app.robots.service import Fleet
 from protocol.ids import new_id
 from protocol.parts import Purpose
 from protocol.to_robot import Verifiers

@@ -13,7 +13,7 @@ Conflict      ├── NotYourTurn
               └── TooManyDelegates
 """
 
-from app.errors import Conflict, Forbidden, NotFound, Unprocessable
+from app.core.errors import Conflict, Forbidden, NotFound, Unprocessable
 
 
 class UnknownDelegate(NotFound):

@@ -4,10 +4,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Final
 
 from app.handover import errors
-from app.orders.codes import TURNS, HandoverCode, Holder, codes_of, mailrooms_turn, turn_of
+from app.models import Delegate, Order, OrderState, Person, Role
+from app.orders.custody.codes import TURNS, HandoverCode, Holder, codes_of, mailrooms_turn, turn_of
 from app.orders.transitions import ENDED, NOTHING_ABOARD
-from app.orders.views import THEIRS, MyRole
-from app.tables import Delegate, Order, OrderState, Person, Role
+from app.orders.views.views import THEIRS, MyRole
 from protocol.parts import Purpose
 
 WAITS: Final[Mapping[OrderState, Purpose]] = {

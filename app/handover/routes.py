@@ -4,11 +4,15 @@ from typing import Annotated, Final
 
 from fastapi import APIRouter, Depends, Path, Request, Response
 
-from app.database import DatabaseDep, ReadingDep, SessionDep
-from app.errors import ServiceError, problems
+from app.accounts.current_user import CurrentUser, Dispatcher
+from app.accounts.errors import AddressNotAllowed, RoleNeeded
+from app.accounts.rate_limits import Door, per_host, per_person
+from app.core.database.database import DatabaseDep, ReadingDep, SessionDep
+from app.core.errors import ServiceError, problems
+from app.core.paging import PAGED, PageDep
 from app.handover import errors
 from app.handover.delegates import Delegating
-from app.handover.mine import named_by
+from app.handover.my_delegations import named_by
 from app.handover.schemas import (
     CodeView,
     Delegates,
@@ -20,14 +24,10 @@ from app.handover.schemas import (
     NewDelegate,
 )
 from app.handover.service import HandOvers
-from app.orders.codes import HandoverCode, code_svg
+from app.orders.custody.codes import HandoverCode, code_svg
 from app.orders.errors import NoCodeForYou, UnknownOrder
-from app.orders.routes import PICTURE, OrderId, OrdersDep
-from app.orders.schemas import OrderView
-from app.paging import PAGED, PageDep
-from app.people.current_user import CurrentUser, Dispatcher
-from app.people.errors import AddressNotAllowed, RoleNeeded
-from app.people.rate_limits import Door, per_host, per_person
+from app.orders.routes.orders import PICTURE, OrderId, OrdersDep
+from app.orders.views.schemas import OrderView
 
 router = APIRouter(tags=["orders"])
 dispatch_router = APIRouter(tags=["dispatch"])

@@ -5,16 +5,16 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from app.handover.mine import Named
-from app.handover.telling import post_of
-from app.lines import Name
-from app.orders.codes import HandoverCode
-from app.orders.schemas import Somebody
-from app.orders.views import MyRole, somebody
-from app.paging import PageOf
-from app.people.schemas import Email
-from app.server_key import ServerKey
-from app.tables import Delegate, OrderState
+from app.accounts.schemas import Email
+from app.core.paging import PageOf
+from app.core.server_key import ServerKey
+from app.core.text_lines import Name
+from app.handover.my_delegations import Named
+from app.handover.notifications import post_of
+from app.models import Delegate, OrderState
+from app.orders.custody.codes import HandoverCode
+from app.orders.views.schemas import Somebody
+from app.orders.views.views import MyRole, somebody
 from protocol.parts import Purpose
 
 PurposeName = Literal["load", "receive", "return"]

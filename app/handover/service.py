@@ -7,22 +7,22 @@ from typing import Final, Literal
 
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.fleet.alarms import clear_alarms, raise_alarm
-from app.fleet.clocks import by_its_clock
-from app.fleet.commands import ask, new_command_id, unanswered
-from app.fleet.service import Fleet
+from app.core.server_key import ServerKey
 from app.handover import errors
-from app.handover.looking import find_order
 from app.handover.people import WAITS, check_waits, code_for, codes_by_digits
+from app.handover.reading import find_order
 from app.handover.schemas import HandoverAsked
-from app.orders.codes import HandoverCode, delegates_of
+from app.models import DigitLock, Order, Person, RobotRow
+from app.orders.custody.codes import HandoverCode, delegates_of
 from app.orders.errors import NoCodeForYou
 from app.orders.ledger import unknown
 from app.orders.service import Word
 from app.orders.transitions import By
-from app.orders.views import CONFIRM_REQUESTED, role_in
-from app.server_key import ServerKey
-from app.tables import DigitLock, Order, Person, RobotRow
+from app.orders.views.views import CONFIRM_REQUESTED, role_in
+from app.robots.alarms import clear_alarms, raise_alarm
+from app.robots.commands import ask, new_command_id, unanswered
+from app.robots.link.clocks import by_its_clock
+from app.robots.service import Fleet
 from protocol.parts import Purpose
 from protocol.to_robot import Confirm
 

@@ -25,7 +25,7 @@ Conflict           ├── StillRunning
 PreconditionFailed └── OrderChanged
 """
 
-from app.errors import Conflict, Forbidden, NotFound, PreconditionFailed, Unprocessable
+from app.core.errors import Conflict, Forbidden, NotFound, PreconditionFailed, Unprocessable
 
 
 class UnknownPost(Unprocessable):

@@ -14,10 +14,10 @@ from sqlalchemy import bindparam, delete, select
 from sqlmodel import col
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.database import connection_of
+from app.core.database.database import connection_of
+from app.models import IdempotencyKey
 from app.orders.errors import KeyReused, StillRunning
-from app.orders.schemas import NewOrder
-from app.tables import IdempotencyKey
+from app.orders.views.schemas import NewOrder
 
 Key = tuple[str, str]
 """Of a person (by id), and what they have called their request."""

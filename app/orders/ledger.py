@@ -13,22 +13,22 @@ from typing import Any, Final
 from sqlalchemy import insert
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.database import after_commit, connection_of
-from app.estimates.arrivals import Estimates
-from app.live.feed import Feed, Happening
-from app.notify.service import tell_all
+from app.accounts.sign_in.service import SignInDesk
+from app.core.database.database import after_commit, connection_of
+from app.core.server_key import ServerKey
+from app.core.settings import Settings
+from app.models import Order, OrderEvent, OrderState, Person, Role
+from app.models.orders.order_events import MOVED
+from app.notifications.service import tell_all
 from app.orders import errors
 from app.orders.idempotency import Running
 from app.orders.nearness import is_near
-from app.orders.schemas import OrderView
-from app.orders.telling import TOLD, facts_of, notices_about
+from app.orders.notifications import TOLD, facts_of, notices_about
 from app.orders.transitions import NEVER_LEFT_ITS_SENDER, By, is_allowed, is_old_news
-from app.orders.views import MyRole, OrderFacts, load_facts, order_view, role_in
-from app.people.service import SignInDesk
-from app.server_key import ServerKey
-from app.settings import Settings
-from app.tables import Order, OrderEvent, OrderState, Person, Role
-from app.tables.order_events import MOVED
+from app.orders.views.schemas import OrderView
+from app.orders.views.views import MyRole, OrderFacts, load_facts, order_view, role_in
+from app.realtime.feed import Feed, Happening
+from fleet.eta.arrivals import Estimates
 from maps import CampusMap
 from maps.ways import Ways
 from protocol.clock import Clock
@@ -259,6 +259,6 @@ def unknown(order_id: str) -> errors.UnknownOrder:
 
 
 def _matches(if_match: str, version: int) -> bool:
-    """The version is all that counts of a tag such as `"7-…"` (see `app.etags`)."""
+    """The version is all that counts of a tag such as `"7-…"` (see `app.http.etags`)."""
     tags = [tag.strip() for tag in if_match.split(",")]
     return any(tag in {"*", f'"{version}"'} or tag.startswith(f'"{version}-') for tag in tags)

@@ -2,7 +2,7 @@
 
 import math
 
-from app.settings import Settings
+from app.core.settings import Settings
 from maps.ways import Ways
 
 

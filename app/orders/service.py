@@ -4,15 +4,15 @@ from dataclasses import dataclass
 
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.orders.cancelling import Cancelling
-from app.orders.codes import verifiers
+from app.models import Order, Person
+from app.orders.changes.cancelling import Cancelling
+from app.orders.changes.passing_on import PassingOn
+from app.orders.changes.placing import Placing
+from app.orders.changes.waiting import Waiting
+from app.orders.custody.codes import verifiers
 from app.orders.ledger import Word, unknown
-from app.orders.passing_on import PassingOn
-from app.orders.placing import Placing
-from app.orders.schemas import OrderView
-from app.orders.views import load_facts, view_for
-from app.orders.waiting import Waiting
-from app.tables import Order, Person
+from app.orders.views.schemas import OrderView
+from app.orders.views.views import load_facts, view_for
 from protocol.to_robot import Verifier
 
 __all__ = ["Orders", "Word"]

@@ -13,8 +13,8 @@ from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 from sqlmodel.sql.expression import SelectOfScalar
 
-from app.database import connection_of
-from app.tables import MissionRow, MissionState, Order, StopRow
+from app.core.database.database import connection_of
+from app.models import MissionRow, MissionState, Order, StopRow
 from protocol.ids import new_id
 from protocol.parts import StopAction
 

@@ -12,19 +12,19 @@ from typing import Final
 from sqlalchemy import ColumnElement, and_, or_
 from sqlmodel import col, select
 
-from app.database import Database
-from app.errors import ServiceError
-from app.notify.service import tell_all
-from app.orders.estimate import expected_of
+from app.core.database.database import Database
+from app.core.errors import ServiceError
+from app.core.trusted_clock import holds_on
+from app.models import Order, OrderState
+from app.notifications.service import tell_all
 from app.orders.ledger import Word
+from app.orders.notifications import facts_of, notices_of_delay
 from app.orders.service import Orders
-from app.orders.standing import StandingOrders
-from app.orders.telling import facts_of, notices_of_delay
+from app.orders.standing.standing import StandingOrders
 from app.orders.transitions import ENDED, By
-from app.orders.views import load_facts
+from app.orders.views.estimate import expected_of
+from app.orders.views.views import load_facts
 from app.orders.window import promise
-from app.tables import Order, OrderState
-from app.trusted_clock import holds_on
 
 LOOK_EVERY_S: Final = 1.0
 """Real seconds."""

@@ -16,7 +16,7 @@ from collections.abc import Mapping
 from enum import StrEnum
 from typing import Final
 
-from app.tables import OrderState
+from app.models import OrderState
 
 
 class By(StrEnum):

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 
-from app.estimates.arrivals import Estimates, Promise
-from app.tables import Order
+from app.models import Order
+from fleet.eta.arrivals import Estimates, Promise
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,5 @@
-"""Who goes where when: timetables in which every robot comes home, and carrying them out (decision 0048).
+"""Traffic: answers reservation requests, closes corridors, takes robots out of service.
 
-Pure: no database, no connection, no clock. Times are arguments, in seconds of whatever clock the caller uses.
+Between the robots' links, the database and `fleet.schedule`.
+Start at `service.py`.
 """

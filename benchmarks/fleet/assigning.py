@@ -6,10 +6,10 @@ from math import inf
 from random import Random
 from typing import Final, Literal
 
-from app.traffic.journey import Goal, Journey, Task
-from app.traffic.planning import Timetable, first_plan, improve, insert, plan
 from benchmarks.fleet.demand import HANDLING_S, Demand, Order
 from benchmarks.fleet.world import World
+from fleet.schedule.journey import Goal, Journey, Task
+from fleet.schedule.planning import Timetable, first_plan, improve, insert, plan
 
 Choice = Literal["first come", "nearest robot", "optimiser", "optimiser of all", "quickest", "least delay"]
 AGE_LIMIT_S: Final = 6 * 3600.0

@@ -14,9 +14,6 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any, Final
 
-from app.estimates.calibration import Basis
-from app.estimates.intervals import quantile
-from app.estimates.score import Truth, score_of
 from benchmarks.body.report import Wanted, say
 from benchmarks.fleet.campus_core import CustodyError
 from benchmarks.fleet.campus_dispatch import AGE_LIMIT_S
@@ -25,6 +22,9 @@ from benchmarks.fleet.campus_link import LostMessageError
 from benchmarks.fleet.campus_run import CampusRun, Fleet
 from benchmarks.fleet.samples import Samples
 from benchmarks.fleet.world import CollisionError
+from fleet.eta.calibration import Basis
+from fleet.eta.intervals import quantile
+from fleet.eta.score import Truth, score_of
 
 DAYS_OF_ONE: Final = 4.0
 """So many times `days` each run lasts: estimates learn before they are judged."""

@@ -1,4 +1,4 @@
-"""What the simulated service knows of its robots' charge, and what it decides by it: all with `app.charging`.
+"""What the simulated service knows of its robots' charge, and what it decides by it: all with `fleet.charging`.
 
 It knows what robots tell: how full they are, whether they charge, which corridors they have left. Packs, draws and
 noise are not known here.
@@ -11,18 +11,18 @@ from datetime import datetime
 from math import inf
 from typing import Final, Protocol
 
-from app.charging.acceptance import Answer, Charge, Verdict, accepts, goes_on, passes_dock
-from app.charging.curve import ChargeCurve
-from app.charging.demand import Demand
-from app.charging.docks import DockPlan, Need, plan_docks
-from app.charging.energy import Rates, Use, assumed_rates
-from app.charging.history import Driven, Sample, learned_from
-from app.charging.levels import Thresholds
-from app.charging.top_ups import NEEDS_IT_MORE, Move, Wish, top_ups
-from app.traffic.journey import Goal
-from app.traffic.network import Lane, Network
 from benchmarks.fleet.campus_ground import ASSUMED_HANDOVER_S, ASSUMED_M_S, Ground
 from benchmarks.fleet.charging_world import OWN_BEGIN
+from fleet.charging.acceptance import Answer, Charge, Verdict, accepts, goes_on, passes_dock
+from fleet.charging.curve import ChargeCurve
+from fleet.charging.demand import Demand
+from fleet.charging.docks import DockPlan, Need, plan_docks
+from fleet.charging.energy import Rates, Use, assumed_rates
+from fleet.charging.history import Driven, Sample, learned_from
+from fleet.charging.levels import Thresholds
+from fleet.charging.top_ups import NEEDS_IT_MORE, Move, Wish, top_ups
+from fleet.schedule.journey import Goal
+from fleet.schedule.network import Lane, Network
 
 SLOW: Final = 1.05
 """Ways are expected to take so many times longer than assumed, with all waits: rather too long."""

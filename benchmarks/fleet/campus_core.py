@@ -1,8 +1,8 @@
 """The service of a simulated campus, without its database: messages in, messages out, and between them what it decides
 with.
 
-Claims go to the traffic controller, orders to the planner, charge to `app.charging`, what people are told to
-`app.estimates`. Nothing here decides who may enter a corridor, who carries what, or who has charge for it.
+Claims go to the traffic controller, orders to the planner, charge to `fleet.charging`, what people are told to
+`fleet.eta`. Nothing here decides who may enter a corridor, who carries what, or who has charge for it.
 """
 
 from collections import Counter
@@ -11,18 +11,18 @@ from functools import partial
 from random import Random
 from typing import Final
 
-from app.charging.curve import FULL
-from app.estimates.durations import Kind
-from app.fleet.whereabouts import OF_ITS_OWN
-from app.traffic.controller import CLAIMED, Denied, Granted, TrafficController, Waits
-from app.traffic.journey import Goal
-from app.traffic.network import Lane
+from app.traffic.robot_locations import OF_ITS_OWN
 from benchmarks.fleet.campus_charge import Charges
 from benchmarks.fleet.campus_dispatch import Dispatch
 from benchmarks.fleet.campus_ground import Ground
 from benchmarks.fleet.campus_known import Known
 from benchmarks.fleet.campus_told import Told
 from benchmarks.fleet.world import CollisionError
+from fleet.charging.curve import FULL
+from fleet.eta.durations import Kind
+from fleet.schedule.controller import CLAIMED, Denied, Granted, TrafficController, Waits
+from fleet.schedule.journey import Goal
+from fleet.schedule.network import Lane
 from protocol.parts import Leg, Part, Purpose
 from protocol.to_robot import Deny, Detour, Grant
 from protocol.to_server import Charge, Claim, Clear, Event, HandoverReceipt, Hello, Progress, Snapshot, Step

@@ -6,19 +6,19 @@ from dataclasses import dataclass, field, replace
 from random import Random
 from typing import Final
 
-from app.charging.acceptance import Answer
-from app.dispatch.planning.carrying_out import Able, adopt, scene_of
-from app.dispatch.planning.deciding import decide
-from app.dispatch.planning.improving import improved
-from app.dispatch.planning.scene import OpenOrder, Rules, Scene
-from app.estimates.arrivals import Ahead
-from app.traffic.controller import TrafficController
-from app.traffic.journey import Goal
 from benchmarks.fleet.campus_charge import Charges
 from benchmarks.fleet.campus_ground import ASSUMED_HANDOVER_S, Ground
 from benchmarks.fleet.campus_known import Known
 from benchmarks.fleet.campus_told import Told
 from benchmarks.fleet.planned import so_many
+from fleet.assignment.adopting import Able, adopt, scene_of
+from fleet.assignment.deciding import decide
+from fleet.assignment.improving import improved
+from fleet.assignment.scene import OpenOrder, Rules, Scene
+from fleet.charging.acceptance import Answer
+from fleet.eta.arrivals import Ahead
+from fleet.schedule.controller import TrafficController
+from fleet.schedule.journey import Goal
 from protocol.parts import Stop, StopAction
 
 AGE_LIMIT_S: Final = 6 * 3600.0

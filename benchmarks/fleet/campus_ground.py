@@ -8,9 +8,9 @@ from dataclasses import dataclass, field, replace
 from random import Random
 from typing import Final
 
-from app.traffic.network import Network, network_of
 from benchmarks.fleet.charging_world import BEGINS, DAY_S, Clockwork
 from benchmarks.fleet.world import CollisionError
+from fleet.schedule.network import Network, network_of
 from maps import CampusMap, builtin_map, corridor_name
 from protocol.parts import Leg, Purpose
 

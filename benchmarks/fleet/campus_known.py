@@ -1,10 +1,10 @@
-"""What the simulated service knows of each robot, from its messages: as `app/fleet` has it in the database."""
+"""What the simulated service knows of each robot, from its messages: as `app/robots` has it in the database."""
 
 from dataclasses import dataclass, field
 from datetime import datetime
 
-from app.traffic.network import Lane
 from benchmarks.fleet.campus_link import Link
+from fleet.schedule.network import Lane
 from protocol.parts import Activity, Battery, Leg, Position, Stop
 from protocol.to_robot import Mission
 from protocol.to_server import Claim

@@ -7,16 +7,16 @@ from datetime import UTC
 from random import Random
 from typing import Protocol
 
-from app.estimates.arrivals import Ahead, Estimates
-from app.estimates.durations import Kind
-from app.estimates.forecast import forecast
-from app.fleet.forecasts import Stop
-from app.traffic.controller import TrafficController
-from app.traffic.network import Lane
+from app.dispatch.forecasts import Stop
 from benchmarks.fleet.campus_ground import ASSUMED_HANDOVER_S, ASSUMED_M_S, OFFICE_H, Ground
 from benchmarks.fleet.campus_known import Known
 from benchmarks.fleet.charging_world import BEGINS
 from benchmarks.fleet.promises import Promises
+from fleet.eta.arrivals import Ahead, Estimates
+from fleet.eta.durations import Kind
+from fleet.eta.forecast import forecast
+from fleet.schedule.controller import TrafficController
+from fleet.schedule.network import Lane
 from maps.ways import Ways
 
 

@@ -2,10 +2,10 @@
 
     python -m benchmarks.fleet charging
 
-Everything is simulated, with `app.charging` deciding. Six robots with packs that are worn more or less, four docks, the
-Carleton tunnels at 0.2 m/s, days with rush hours, corridors that are closed for up to an hour. Beside it what there was
-before: work from 30 % on, home to a dock when there is none. Left out: other robots are in the way as random waits (the
-traffic has parts of its own), and a robot carries one item. A robot that strands is carried to where it can go on.
+Everything is simulated, with `fleet.charging` deciding. Six robots with packs that are worn more or less, four docks,
+the Carleton tunnels at 0.2 m/s, days with rush hours, corridors that are closed for up to an hour. Beside it what there
+was before: work from 30 % on, home to a dock when there is none. Left out: other robots are in the way as random waits
+(the traffic has parts of its own), and a robot carries one item. A robot that strands is carried to where it can go on.
 """
 
 from dataclasses import dataclass

@@ -5,8 +5,6 @@ from math import inf
 from random import Random
 from typing import Final
 
-from app.charging.acceptance import Answer, Verdict
-from app.charging.energy import Use
 from benchmarks.fleet.charging_policies import Policy
 from benchmarks.fleet.charging_world import (
     CLOSED_EVERY_S,
@@ -26,6 +24,8 @@ from benchmarks.fleet.charging_world import (
     orders_an_hour,
     some_robots,
 )
+from fleet.charging.acceptance import Answer, Verdict
+from fleet.charging.energy import Use
 
 LOOKS_EVERY_S: Final = 300.0
 POLL_S: Final = 60.0

@@ -1,17 +1,17 @@
-"""What decides who works and who charges: `app.charging`, and what there was before, to compare it with."""
+"""What decides who works and who charges: `fleet.charging`, and what there was before, to compare it with."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Final, Protocol
 
-from app.charging.acceptance import Answer, Charge, Verdict, accepts, goes_on
-from app.charging.curve import ChargeCurve
-from app.charging.demand import Demand
-from app.charging.docks import DockPlan, Need, plan_docks
-from app.charging.energy import Rates, Use, assumed_rates
-from app.charging.levels import Thresholds
-from app.charging.top_ups import Move, Wish, top_ups
 from benchmarks.fleet.charging_world import HANDLING_S, OWN_BEGIN, SPEED_M_S, Campus, Clockwork, Job, Robot
+from fleet.charging.acceptance import Answer, Charge, Verdict, accepts, goes_on
+from fleet.charging.curve import ChargeCurve
+from fleet.charging.demand import Demand
+from fleet.charging.docks import DockPlan, Need, plan_docks
+from fleet.charging.energy import Rates, Use, assumed_rates
+from fleet.charging.levels import Thresholds
+from fleet.charging.top_ups import Move, Wish, top_ups
 
 SLOW: Final = 1.4
 """Ways are expected to take so many times longer than on the map, with all waits: rather too long."""
@@ -46,7 +46,7 @@ class Policy(Protocol):
 
 
 class Predicting:
-    """`app.charging`. It knows what robots tell, the map, and which corridors are closed; no more."""
+    """`fleet.charging`. It knows what robots tell, the map, and which corridors are closed; no more."""
 
     def __init__(self, campus: Campus, clock: Clockwork, robots: Mapping[str, Robot]) -> None:
         self.campus, self.clock, self.robots = campus, clock, robots

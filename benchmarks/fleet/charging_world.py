@@ -11,9 +11,9 @@ from math import inf
 from random import Random
 from typing import Final
 
-from app.charging.energy import Use
-from app.traffic.network import Lane, Network, network_of
 from benchmarks.fleet.packs import Pack, some_pack
+from fleet.charging.energy import Use
+from fleet.schedule.network import Lane, Network, network_of
 from maps import CampusMap, builtin_map
 from maps.ways import Ways
 

@@ -13,13 +13,13 @@ from itertools import count
 from random import Random
 from typing import Final
 
-from app.traffic.controller import Denied, Granted, TrafficController
-from app.traffic.journey import Goal
-from app.traffic.network import Lane
 from benchmarks.fleet.claimants_dispatch import Dispatch, nearest, number_of
 from benchmarks.fleet.demand import HANDLING_S, Saturated
 from benchmarks.fleet.grounds import Ground
 from benchmarks.fleet.world import CollisionError
+from fleet.schedule.controller import Denied, Granted, TrafficController
+from fleet.schedule.journey import Goal
+from fleet.schedule.network import Lane
 
 VANISHED_S: Final = 600.0
 """After so much silence the service freezes what a robot holds."""

@@ -9,13 +9,13 @@ from random import Random
 from statistics import mean
 from typing import TYPE_CHECKING
 
-from app.dispatch.planning.carrying_out import Able, adopt, scene_of
-from app.dispatch.planning.deciding import decide
-from app.dispatch.planning.improving import improved
-from app.dispatch.planning.scene import OpenOrder, Rules
-from app.traffic.journey import Goal
 from benchmarks.fleet.demand import HANDLING_S, Order
 from benchmarks.fleet.planned import so_many
+from fleet.assignment.adopting import Able, adopt, scene_of
+from fleet.assignment.deciding import decide
+from fleet.assignment.improving import improved
+from fleet.assignment.scene import OpenOrder, Rules
+from fleet.schedule.journey import Goal
 
 if TYPE_CHECKING:
     from benchmarks.fleet.claimants import Campus, Robot

@@ -11,16 +11,16 @@ from statistics import mean, median, quantiles
 from time import perf_counter
 from typing import Any
 
-from app.dispatch.planning.deciding import Decision, decide
-from app.dispatch.planning.improving import improved, within
-from app.dispatch.planning.scene import Scene
-from app.serving import settle_memory
+from app.cli.serving import settle_memory
 from benchmarks.body.report import Wanted, say
 from benchmarks.fleet.demand import Saturated
 from benchmarks.fleet.grounds import tunnels
 from benchmarks.fleet.planned import Planning, so_many
 from benchmarks.fleet.samples import Samples
 from benchmarks.fleet.world import World
+from fleet.assignment.deciding import Decision, decide
+from fleet.assignment.improving import improved, within
+from fleet.assignment.scene import Scene
 
 ROBOTS, ORDERS, BAYS = 20, 200, 3
 CAPACITIES = (1, 2, 4)

@@ -2,7 +2,7 @@
 
 Everything is simulated: robots on the Carleton tunnels, demand with two rush hours a day, each corridor with a pace of
 its own that the map does not tell, a robot that stands still in every two hundredth corridor, charges in between.
-Orders are given, first come first served, to whoever will be there first; `app.traffic.planning` puts them in.
+Orders are given, first come first served, to whoever will be there first; `fleet.schedule.planning` puts them in.
 """
 
 from collections.abc import Iterator
@@ -12,15 +12,7 @@ from math import inf
 from random import Random
 from typing import Any, Final
 
-from app.estimates.arrivals import Ahead, Estimates
-from app.estimates.durations import Kind, Thing
-from app.estimates.forecast import forecast
-from app.estimates.intervals import Interval
-from app.fleet.forecasts import Stop as Foreseen
-from app.traffic.execution import retimed
-from app.traffic.journey import Start
-from app.traffic.network import Network, network_of
-from app.traffic.planning import Timetable, first_plan, improve, insert, plan
+from app.dispatch.forecasts import Stop as Foreseen
 from benchmarks.fleet.estimated_world import (
     CHARGE_AFTER_S,
     CHARGE_S,
@@ -37,6 +29,14 @@ from benchmarks.fleet.estimated_world import (
     hour_of,
 )
 from benchmarks.fleet.promises import Promises
+from fleet.eta.arrivals import Ahead, Estimates
+from fleet.eta.durations import Kind, Thing
+from fleet.eta.forecast import forecast
+from fleet.eta.intervals import Interval
+from fleet.schedule.execution import retimed
+from fleet.schedule.journey import Start
+from fleet.schedule.network import Network, network_of
+from fleet.schedule.planning import Timetable, first_plan, improve, insert, plan
 from maps import builtin_map
 from maps.ways import Ways
 from protocol.parts import StopAction

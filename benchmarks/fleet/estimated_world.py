@@ -10,10 +10,10 @@ from math import inf
 from random import Random
 from typing import Final
 
-from app.estimates.durations import Kind
-from app.traffic.execution import retimed
-from app.traffic.journey import Goal, Journey, Leg, Start, Task, without_first
-from app.traffic.network import Lane, Network
+from fleet.eta.durations import Kind
+from fleet.schedule.execution import retimed
+from fleet.schedule.journey import Goal, Journey, Leg, Start, Task, without_first
+from fleet.schedule.network import Lane, Network
 
 HOUR_S: Final = 3600.0
 DAY_S: Final = 24 * HOUR_S

@@ -2,7 +2,7 @@
 those by lengths alone: `placed` with each order, `under_way` once a robot has it, which it has at once here.
 
 The orders of a first time teach and are not scored (`WARM_UP`). "Not corrected" is the simulated plan alone: it does
-not know of orders to come, for which the timetable is changed; `app.estimates.calibration` has to make up for it.
+not know of orders to come, for which the timetable is changed; `fleet.eta.calibration` has to make up for it.
 """
 
 from collections.abc import Sequence
@@ -10,12 +10,12 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any, Final
 
-from app.estimates.calibration import Basis
-from app.estimates.intervals import quantile
-from app.estimates.score import Truth, score_of
 from benchmarks.body.report import Wanted, say
 from benchmarks.fleet.estimated_study import study
 from benchmarks.fleet.samples import Samples
+from fleet.eta.calibration import Basis
+from fleet.eta.intervals import quantile
+from fleet.eta.score import Truth, score_of
 
 DAYS: Final = 40.0
 WARM_UP: Final = 100

@@ -7,14 +7,14 @@ from math import inf
 from random import Random
 from typing import Any
 
-from app.traffic.execution import may_enter
-from app.traffic.journey import Goal, Journey, Start, Task, without_first
-from app.traffic.network import Network
-from app.traffic.planning import first_plan, insert
-from app.traffic.validation import problems
 from benchmarks.body.report import Wanted, say
 from benchmarks.fleet.samples import Samples
 from benchmarks.fleet.small_maps import AT_HOME, Edges, Fleet, Places, connected_maps, network_on
+from fleet.schedule.execution import may_enter
+from fleet.schedule.journey import Goal, Journey, Start, Task, without_first
+from fleet.schedule.network import Network
+from fleet.schedule.planning import first_plan, insert
+from fleet.schedule.validation import problems
 
 MOST_ROBOTS = 4
 HANDLING_S = 5.0

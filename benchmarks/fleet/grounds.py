@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from random import Random
 from typing import Final
 
-from app.traffic.network import Lane, Network, network_of
+from fleet.schedule.network import Lane, Network, network_of
 from maps import builtin_map
 
 TRAVEL_S: Final = 300.0

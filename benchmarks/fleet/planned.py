@@ -1,4 +1,4 @@
-"""The planner of the fleet (`app.dispatch.planning`) in the simulated world: a decision whenever a robot is free."""
+"""The planner of the fleet (`fleet.assignment`) in the simulated world: a decision whenever a robot is free."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
@@ -6,13 +6,13 @@ from math import inf
 from random import Random
 from time import perf_counter
 
-from app.dispatch.planning.deciding import Decision, decide
-from app.dispatch.planning.improving import improved
-from app.dispatch.planning.scene import Kept, OpenOrder, RobotAtWork, Route, Routes, Rules, Scene
-from app.traffic.journey import Goal, Task
-from app.traffic.planning import Timetable
 from benchmarks.fleet.demand import HANDLING_S, Demand, Order, Saturated
 from benchmarks.fleet.world import World
+from fleet.assignment.deciding import Decision, decide
+from fleet.assignment.improving import improved
+from fleet.assignment.scene import Kept, OpenOrder, RobotAtWork, Route, Routes, Rules, Scene
+from fleet.schedule.journey import Goal, Task
+from fleet.schedule.planning import Timetable
 
 Budget = Callable[[], Callable[[], bool]]
 """Of one improvement: makes what says whether it goes on."""

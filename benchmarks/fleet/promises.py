@@ -1,5 +1,5 @@
-"""What people are told in a simulation, and what came of it: by the service's own estimates (`app.estimates`), fed and
-asked as `app/estimates/learning.py` and `app/fleet/foreseen.py` do it."""
+"""What people are told in a simulation, and what came of it: by the service's own estimates (`fleet.eta`), fed and
+asked as `app/eta/learning.py` and `app/dispatch/eta_updates.py` do it."""
 
 from collections import defaultdict
 from collections.abc import Mapping
@@ -8,13 +8,13 @@ from datetime import datetime, timedelta
 from random import Random
 from typing import NamedTuple
 
-from app.estimates.arrivals import Estimates
-from app.estimates.calibration import Basis
-from app.estimates.durations import Kind, Thing
-from app.estimates.intervals import Interval
-from app.estimates.score import Truth
-from app.fleet.forecasts import Foresight, Stop
-from app.traffic.network import Lane, Network
+from app.dispatch.forecasts import Foresight, Stop
+from fleet.eta.arrivals import Estimates
+from fleet.eta.calibration import Basis
+from fleet.eta.durations import Kind, Thing
+from fleet.eta.intervals import Interval
+from fleet.eta.score import Truth
+from fleet.schedule.network import Lane, Network
 
 
 class Promise(NamedTuple):

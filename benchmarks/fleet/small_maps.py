@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import combinations, permutations, product
 
-from app.traffic.network import Lane, Network
+from fleet.schedule.network import Lane, Network
 
 TRAVEL_S = 10.0
 AT_HOME = -1

@@ -1,7 +1,7 @@
 """Robots that carry a timetable out, event by event: ways take as long as they take, the order of entry holds.
 
-Who may enter a corridor is decided by the product's own rule (`app.traffic.execution`). What happens is looked at here
-with nothing of it: whoever meets another or finds no bay ends the run.
+Who may enter a corridor is decided by the product's own rule (`fleet.schedule.execution`). What happens is looked at
+here with nothing of it: whoever meets another or finds no bay ends the run.
 """
 
 import heapq
@@ -11,11 +11,11 @@ from math import inf
 from random import Random
 from typing import Final
 
-from app.traffic.execution import may_enter, one_behind_the_other, retimed
-from app.traffic.journey import Goal, Journey, Leg, Start, Task, ready_after, without_first
-from app.traffic.network import Network
-from app.traffic.planning import Timetable, first_plan
-from app.traffic.validation import problems
+from fleet.schedule.execution import may_enter, one_behind_the_other, retimed
+from fleet.schedule.journey import Goal, Journey, Leg, Start, Task, ready_after, without_first
+from fleet.schedule.network import Network
+from fleet.schedule.planning import Timetable, first_plan
+from fleet.schedule.validation import problems
 
 LATE_S: Final = 5.0
 """Whoever should have arrived is expected so much later."""

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from app.orders.schemas import NewOrder
-from app.tables import Role
+from app.models import Role
+from app.orders.views.schemas import NewOrder
 from benchmarks.service.filling import Account, Filling, campus, fill
 from benchmarks.service.servers import Server
 from benchmarks.service.web_client import Visitor

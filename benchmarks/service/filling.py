@@ -14,12 +14,11 @@ from typing import Any, Final
 from sqlalchemy import insert
 from sqlmodel import SQLModel
 
-from app.database import Database
-from app.fleet.tokens import make_token
-from app.people.service import make_person, set_roles
-from app.schema_version import bring_to_head
-from app.settings import Settings, make_data_folder
-from app.tables import (
+from app.accounts.sign_in.service import make_person, set_roles
+from app.core.database.database import Database
+from app.core.database.schema_version import bring_to_head
+from app.core.settings import Settings, make_data_folder
+from app.models import (
     MissionRow,
     Order,
     OrderEvent,
@@ -31,7 +30,8 @@ from app.tables import (
     Role,
     StopRow,
 )
-from app.tables.order_events import MOVED
+from app.models.orders.order_events import MOVED
+from app.robots.link.tokens import make_token
 from benchmarks.service.servers import MAP
 from maps import CampusMap, find_map
 

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, Final
 
+from app.models import Evidence, OrderState
 from app.orders.transitions import ENDED, By, is_allowed
-from app.tables import Evidence, OrderState
 
 Row = Mapping[str, Any]
 ALWAYS_TOLD: Final = {

@@ -14,10 +14,10 @@ from typing import Any, Final
 import httpx
 from sqlalchemy import create_engine
 
-from app.administration import enrol
-from app.keeping.checks import problems_of
-from app.settings import Settings
-from app.tables import metadata
+from app.cli.administration import enrol
+from app.core.settings import Settings
+from app.models import metadata
+from app.retention.database_checks import problems_of
 from benchmarks.service_kills.judge import Facts, judged, mails_repeated
 from benchmarks.service_kills.mail_server import Mailbox, SpoolFolder, is_sign_in, mail_server
 from benchmarks.service_kills.people import Everybody, Somebody

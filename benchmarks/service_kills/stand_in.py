@@ -16,7 +16,7 @@ from typing import Any, Final
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import InvalidHandshake, InvalidMessage, WebSocketException
 
-from app.fleet.evidence import FASTEST_M_S
+from app.robots.progress.evidence import FASTEST_M_S
 from maps.ways import Ways
 from protocol.both_ways import Ack, Error
 from protocol.envelope import DURABLE, TO_ROBOT, Envelope, parse, type_of

@@ -15,13 +15,13 @@ import pytest
 from fastapi import FastAPI
 from fastapi.testclient import TestClient
 
-from app.administration import migrate
+from app.cli.administration import migrate
+from app.cli.serving import Server, config_of, listen
+from app.core.settings import Settings
 from app.main import create_app
+from app.models import MissionRow, OrderState, RobotRow
 from app.orders.service import Word
 from app.orders.transitions import By
-from app.serving import Server, config_of, listen
-from app.settings import Settings
-from app.tables import MissionRow, OrderState, RobotRow
 from protocol.clock import SteppedClock
 from tests.app.compiled_once import compile_once
 from tests.app.postgresql import TEMPLATE, PostgreSQL

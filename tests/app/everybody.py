@@ -10,18 +10,18 @@ from sqlmodel import select
 from sqlmodel.ext.asyncio.session import AsyncSession
 from starlette.routing import BaseRoute, Mount
 
-from app.fleet.service import new_token
+from app.accounts.scopes import Scope
+from app.accounts.sessions.sessions import new_session
+from app.accounts.sign_in.service import set_roles
+from app.accounts.tokens import issue_token
 from app.handover.schemas import NewDelegate
-from app.notify.devices import add_device, set_webhook
-from app.notify.wish_schemas import NewDevice, SubscriptionKeys
-from app.orders.schemas import NewOrder, NewStandingOrder
+from app.models import Alarm, Notice, OrderState, OutgoingNotice, Person, PersonSession, Role
+from app.notifications.preference_api.devices import add_device, set_webhook
+from app.notifications.preference_api.schemas import NewDevice, SubscriptionKeys
 from app.orders.service import Word
 from app.orders.transitions import By
-from app.people.scopes import Scope
-from app.people.service import set_roles
-from app.people.sessions import new_session
-from app.people.tokens import issue_token
-from app.tables import Alarm, Notice, OrderState, OutgoingNotice, Person, PersonSession, Role
+from app.orders.views.schemas import NewOrder, NewStandingOrder
+from app.robots.service import new_token
 from tests.app.conftest import Mailroom
 from tests.app.placed import placed
 

@@ -1,11 +1,11 @@
-"""An order in the middle of a test's own transaction; people's own go over the desk (`app.orders.desk`)."""
+"""An order in the middle of a test's own transaction; people's own go over the desk (`app.orders.batcher`)."""
 
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.orders.schemas import NewOrder
+from app.accounts.sign_in.service import look_up_people
+from app.models import Person
 from app.orders.service import Orders
-from app.people.service import look_up_people
-from app.tables import Person
+from app.orders.views.schemas import NewOrder
 
 
 async def placed(orders: Orders, session: AsyncSession, person: Person, wish: NewOrder) -> str:

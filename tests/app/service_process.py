@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from app.settings import ROOT
+from app.core.settings import ROOT
 
 
 @contextmanager

@@ -7,12 +7,12 @@ from typing import Any
 import jsonschema_rs
 import pytest
 
-from app.api_document import HEADERS, TAGS, all_codes, operations
-from app.api_examples import EXAMPLES
-from app.errors import PROBLEM_JSON
-from app.lines import LONGEST_TEXT
+from app.core.errors import PROBLEM_JSON
+from app.core.settings import Settings
+from app.core.text_lines import LONGEST_TEXT
+from app.http.api_document import HEADERS, TAGS, all_codes, operations
+from app.http.api_examples import EXAMPLES
 from app.main import create_app
-from app.settings import Settings
 from protocol.clock import SteppedClock
 
 NAME = re.compile(r"[a-z]+(_[a-z]+)*")
@@ -49,7 +49,9 @@ def test_every_operation_says_what_it_does_in_a_sentence(every: list[Operation])
 def test_every_parameter_says_what_it_is(every: list[Operation]) -> None:
     for _, path, operation in every:
         for parameter in operation.get("parameters", ()):
-            assert parameter.get("description"), f"{path} {parameter['name']}: add it to PARAMETERS of app/api_document"
+            assert parameter.get("description"), (
+                f"{path} {parameter['name']}: add it to PARAMETERS of app/http/api_document"
+            )
 
 
 def test_whatever_people_write_as_a_description_or_a_reason_may_be_equally_long(document: dict[str, Any]) -> None:
@@ -133,7 +135,7 @@ def test_whatever_somebody_writes_first_has_an_example(every: list[Operation]) -
         for _, _, operation in every
         if "requestBody" in operation
     }
-    assert bodies <= set(EXAMPLES), f"app/api_examples.py lacks {sorted(bodies - set(EXAMPLES))}"
+    assert bodies <= set(EXAMPLES), f"app/http/api_examples.py lacks {sorted(bodies - set(EXAMPLES))}"
 
 
 def test_the_document_describes_the_event_stream(document: dict[str, Any]) -> None:

@@ -18,8 +18,8 @@ from hypothesis import HealthCheck, Phase, given
 from hypothesis import settings as hypothesis_settings
 from schemathesis.specs.openapi.checks import positive_data_acceptance
 
-from app.people.scopes import Scope
-from app.settings import Settings
+from app.accounts.scopes import Scope
+from app.core.settings import Settings
 from tests.app import schemathesis_checks
 from tests.app.conftest import Mailroom, Served
 from tests.app.everybody import Everybody

@@ -19,9 +19,9 @@ import httpx
 import pytest
 from websockets.sync.client import connect
 
-from app.settings import ROOT
+from app.core.settings import ROOT
 from tests.app.conftest import sqlite_alone
-from tests.app.notify.receivers import certificate
+from tests.app.notifications.receivers import certificate
 from tests.system.rig import free_port, wait_for
 from tests.web.service import Service
 

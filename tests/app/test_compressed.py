@@ -7,7 +7,7 @@ import pytest
 from starlette.staticfiles import StaticFiles
 from starlette.types import Message
 
-from app.compressed import Compressed
+from app.http.compressed_pages import Compressed
 
 FILE = "export const letters = 1;\n" * 100
 SPELLINGS = ["/parts/file.js", "/parts/./file.js", "//parts//file.js", "/x/../parts/file.js", "/parts/file.js/"]

@@ -7,10 +7,10 @@ import pytest
 from sqlalchemy import event
 from sqlalchemy.exc import IntegrityError
 
-from app.administration import migrate
-from app.database import Database, after_commit, savepoint, write_all, write_once
-from app.settings import Settings
-from app.tables import Person, PersonSession
+from app.cli.administration import migrate
+from app.core.database.database import Database, after_commit, savepoint, write_all, write_once
+from app.core.settings import Settings
+from app.models import Person, PersonSession
 from protocol.clock import SteppedClock
 from tests.app.conftest import sqlite_alone
 

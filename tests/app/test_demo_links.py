@@ -7,10 +7,10 @@ import pytest
 from fastapi.testclient import TestClient
 from httpx import Response
 
-from app.demo_links import link_path
+from app.accounts.demo_links import link_path
+from app.core.server_key import ServerKey, open_server_key
+from app.core.settings import Settings
 from app.main import create_app
-from app.server_key import ServerKey, open_server_key
-from app.settings import Settings
 from protocol.clock import SteppedClock
 from tests.app.conftest import HERE
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from app.settings import ROOT
+from app.core.settings import ROOT
 
 DEPLOY = ROOT / "deploy"
 UNITS = ("campus-mail.service", "campus-mail-backup.service", "campus-mail-backup.timer")

@@ -12,7 +12,7 @@ import pytest
 from websockets.asyncio.client import connect
 from websockets.exceptions import InvalidStatus
 
-from app.body_limit import MAX_BODY_BYTES
+from app.http.body_limit import MAX_BODY_BYTES
 from tests.app.conftest import RECIPIENT, Browser, Served
 
 CODES = "/api/v1/sign-in/codes"

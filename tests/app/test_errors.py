@@ -6,9 +6,9 @@ import pytest
 from fastapi import FastAPI
 from fastapi.testclient import TestClient
 
-from app.api_document import operations
-from app.errors import PROBLEM_JSON
-from app.settings import Settings
+from app.core.errors import PROBLEM_JSON
+from app.core.settings import Settings
+from app.http.api_document import operations
 from tests.app.conftest import Browser, sqlite_alone
 
 

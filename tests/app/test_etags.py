@@ -6,7 +6,7 @@ import pytest
 from fastapi import FastAPI
 from fastapi.testclient import TestClient
 
-from app.tables import RobotRow
+from app.models import RobotRow
 from tests.app.conftest import RECIPIENT, Browser, Mailroom, SignedIn
 
 

@@ -6,8 +6,8 @@ import pytest
 from fastapi import FastAPI
 from fastapi.testclient import TestClient
 
-from app.errors import add_error_answers
-from app.pages import add_pages
+from app.core.errors import add_error_answers
+from app.http.pages import add_pages
 
 WEB = Path(__file__).parents[2] / "web"
 

@@ -14,12 +14,12 @@ from sqlalchemy import event
 from sqlalchemy.exc import OperationalError
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.database import Database, after_commit
+from app.core.database.database import Database, after_commit
 
 CHECKOUT = Path(__file__).parents[2]
 WRITES_AND_SAYS = """
 import asyncio, sys
-from app.database import Database
+from app.core.database.database import Database
 
 async def main():
     database = Database(sys.argv[1])

@@ -10,9 +10,9 @@ from fastapi import FastAPI
 from sqlalchemy import event
 from sqlmodel import col, select, update
 
-from app.fleet import outbox
+from app.models import Alarm, GrantRow, MissionRow, MissionState, Order, Person
 from app.orders.idempotency import earlier_answers
-from app.tables import Alarm, GrantRow, MissionRow, MissionState, Order, Person
+from app.robots.link import outbox
 from tests.app.conftest import ON_POSTGRESQL, SENDER, Browser, Mailroom
 
 pytestmark = pytest.mark.skipif(ON_POSTGRESQL, reason="the plans that are read here are SQLite's")

@@ -13,12 +13,12 @@ from sqlalchemy import Connection, MetaData, insert, select
 from sqlmodel import SQLModel
 from sqlmodel import select as select_rows
 
-from app.database import Database
-from app.keeping.checks import problems_of
+from app.core.database.database import Database
+from app.core.database.schema_version import INI, bring_to_head, is_at_head
+from app.core.settings import Settings
 from app.main import create_app
-from app.schema_version import INI, bring_to_head, is_at_head
-from app.settings import Settings
-from app.tables import Notice, Order, OrderState, OutgoingNotice, metadata
+from app.models import Notice, Order, OrderState, OutgoingNotice, metadata
+from app.retention.database_checks import problems_of
 from protocol.clock import SteppedClock
 from tests.app.conftest import ON_POSTGRESQL
 from tests.app.first_letter import ROWS

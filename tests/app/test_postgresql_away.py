@@ -11,8 +11,8 @@ import asyncpg
 import httpx
 import pytest
 
-from app.administration import migrate
-from app.settings import Settings
+from app.cli.administration import migrate
+from app.core.settings import Settings
 from tests.app.conftest import ON_POSTGRESQL, Browser
 from tests.app.postgresql import PostgreSQL
 

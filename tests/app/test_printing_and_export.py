@@ -7,10 +7,10 @@ from datetime import timedelta
 import pytest
 from fastapi import FastAPI
 
-from app.database import Database
-from app.order_export import LONG_AGO, pieces
-from app.people.service import find_person, set_roles
-from app.tables import Role
+from app.accounts.sign_in.service import find_person, set_roles
+from app.core.database.database import Database
+from app.models import Role
+from app.retention.order_export import LONG_AGO, pieces
 from protocol.clock import SteppedClock
 from tests.app.conftest import RECIPIENT, SENDER, Browser, Mailroom, SignedIn
 

@@ -15,11 +15,11 @@ from fastapi import FastAPI
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
-from app.api_document import operations
-from app.errors import PROBLEM_JSON
-from app.fleet.conversation import TOKEN_REFUSED
-from app.people.same_origin import SAFE_METHODS
-from app.people.scopes import Scope
+from app.accounts.scopes import Scope
+from app.accounts.sessions.same_origin import SAFE_METHODS
+from app.core.errors import PROBLEM_JSON
+from app.http.api_document import operations
+from app.robots.conversation.conversation import TOKEN_REFUSED
 from tests.app.conftest import RECIPIENT, Mailroom, Served
 from tests.app.everybody import PEOPLE, Everybody, routes_of
 

@@ -6,8 +6,8 @@ import pytest
 from typer.testing import CliRunner
 
 from app.__main__ import app as commands
-from app.errors import StartError
-from app.settings import Settings, load_settings
+from app.core.errors import StartError
+from app.core.settings import Settings, load_settings
 
 
 def test_settings_come_from_the_environment_and_secrets_from_files(

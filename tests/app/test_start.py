@@ -21,18 +21,19 @@ from sqlalchemy.exc import StatementError
 from typer.testing import CliRunner
 
 from app.__main__ import app as commands
-from app.administration import migrate
-from app.database import Database
-from app.errors import StartError
-from app.logs import redact
-from app.schema_version import INI, DatabaseUnusable, NewerDatabase, bring_to_head, is_at_head
-from app.server_key import open_server_key
-from app.serving import PortTaken, listen, serve
-from app.settings import Settings, open_clock, open_map
-from app.tables import Person
-from app.tables.columns import NaiveTime
+from app.cli.administration import migrate
+from app.cli.serving import PortTaken, listen, serve
+from app.core.database.database import Database
+from app.core.database.schema_version import INI, DatabaseUnusable, NewerDatabase, bring_to_head, is_at_head
+from app.core.errors import StartError
+from app.core.logs import redact
+from app.core.server_key import open_server_key
+from app.core.settings import Settings, open_clock, open_map
+from app.models import Person
+from app.models.columns import NaiveTime
+from demo.__main__ import app as demonstrations
 from tests.app.conftest import sqlite_alone
-from tests.app.notify.receivers import certificate
+from tests.app.notifications.receivers import certificate
 
 ROOT = INI.parent
 
@@ -153,8 +154,8 @@ def test_a_taken_port_is_named_with_a_way_out_and_nothing_is_made(
             listen("127.0.0.1", port)
         monkeypatch.setenv("CAMPUS_MAIL_DATA", str(tmp_path / "data"))
         served = CliRunner().invoke(commands, ["serve", "--port", str(port)])
-        shown = CliRunner().invoke(commands, ["demo", "--once", "--json", "--port", str(port)])
-        driven = CliRunner().invoke(commands, ["fleet-demo", "--json", "--port", str(port)])
+        shown = CliRunner().invoke(demonstrations, ["letter", "--once", "--json", "--port", str(port)])
+        driven = CliRunner().invoke(demonstrations, ["fleet", "--json", "--port", str(port)])
     for verb, ran in {"serve": served, "demo": shown, "fleet-demo": driven}.items():
         assert (ran.exit_code, ran.stdout) == (2, "")
         assert f"Port {port} on 127.0.0.1 is taken" in ran.stderr
@@ -287,7 +288,7 @@ def _with_files_no_larger_than(bytes_: int, command_line: list[str]) -> subproce
 
 def test_a_key_for_which_there_is_no_room_leaves_no_file_behind(tmp_path: Path) -> None:
     script = f"import sys; sys.path.insert(0, {str(ROOT)!r})\n" + (
-        "from pathlib import Path\nfrom app.server_key import open_server_key\n"
+        "from pathlib import Path\nfrom app.core.server_key import open_server_key\n"
         f"open_server_key(Path({str(tmp_path / 'server.key')!r}))"
     )
     ran = _with_files_no_larger_than(10, [sys.executable, "-B", "-c", script])

@@ -12,13 +12,13 @@ from sqlmodel import select
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
-from app.database import Database
+from app.cli.serving import GRACEFUL_S
+from app.core.database.database import Database
+from app.core.settings import Settings
 from app.dispatch.service import LONGEST_REST_S
-from app.fleet.service import new_token
 from app.main import create_app
-from app.serving import GRACEFUL_S
-from app.settings import Settings
-from app.tables import Order, OrderState, RobotRow
+from app.models import Order, OrderState, RobotRow
+from app.robots.service import new_token
 from protocol.clock import SteppedClock
 from protocol.envelope import Envelope
 from protocol.parts import Battery, Position

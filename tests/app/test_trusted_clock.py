@@ -7,7 +7,7 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 
-from app.trusted_clock import TrustedClock, holds_on
+from app.core.trusted_clock import TrustedClock, holds_on
 from protocol.clock import RealClock, SteppedClock
 
 DAY_S = 86400.0

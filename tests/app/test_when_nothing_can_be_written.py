@@ -9,8 +9,8 @@ from threading import Thread
 import pytest
 from fastapi.testclient import TestClient
 
-from app.people.sessions import SEEN_EVERY
-from app.settings import Settings
+from app.accounts.sessions.sessions import SEEN_EVERY
+from app.core.settings import Settings
 from protocol.clock import SteppedClock
 from tests.app.conftest import Browser, sqlite_alone
 from tests.app.full_disk import no_room, small_disk

@@ -16,12 +16,12 @@ from fastapi.testclient import TestClient
 from prometheus_client.parser import text_string_to_metric_families
 from sqlmodel import col, select
 
+from app.core.settings import Settings
 from app.main import create_app
-from app.settings import Settings
-from app.tables import Order, OutgoingNotice, PersonSession, StandingOrder
+from app.models import Order, OutgoingNotice, PersonSession, StandingOrder
 from protocol.clock import SteppedClock
 from tests.app.conftest import HERE, RECIPIENT, SENDER, Browser, Mailroom, sqlite_alone
-from tests.app.notify.test_killed_while_sending import free_port
+from tests.app.notifications.test_killed_while_sending import free_port
 from tests.app.service_process import said, serving
 from tests.app.test_trusted_clock import DAY_S, NINE, Machine
 

@@ -6,25 +6,15 @@ from datetime import timedelta
 
 import pytest
 
+from app.accounts.scopes import Scope
+from app.accounts.tokens import issue_token
+from app.core.settings import Settings
+from app.models import OrderState, RobotRow
 from app.orders.service import Word
 from app.orders.transitions import By
-from app.people.scopes import Scope
-from app.people.tokens import issue_token
-from app.settings import Settings
-from app.tables import OrderState, RobotRow
 from campus_mail_client import AsyncCampusMail
 from protocol.clock import SteppedClock
-from tests.app.conftest import (  # noqa: F401  # fixtures
-    clock,
-    database_url,
-    mails,
-    nobody,
-    pages,
-    postgresql,
-    settings,
-    sqlite_at_head,
-)
-from tests.app.fleet.playing import Service, serving
+from tests.app.robots.playing import Service, serving
 
 SENDER, RECIPIENT = "sender@campus.example", "recipient@campus.example"
 
@@ -71,7 +61,7 @@ class Campus:
 
 
 @pytest.fixture
-async def campus(settings: Settings, clock: SteppedClock) -> AsyncIterator[Campus]:  # noqa: F811
+async def campus(settings: Settings, clock: SteppedClock) -> AsyncIterator[Campus]:
     async with serving(settings, clock) as service:
         yield Campus(service)
 

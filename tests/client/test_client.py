@@ -7,7 +7,7 @@ from collections.abc import Awaitable, Callable
 import httpx
 import pytest
 
-from app.people.scopes import Scope
+from app.accounts.scopes import Scope
 from campus_mail_client import AsyncCampusMail, CampusMail, NoAnswer, Retrying, UnexpectedAnswer
 from campus_mail_client.models import NewDelegate, NewOrder, NoticesRead
 from campus_mail_client.problems import (

@@ -5,11 +5,11 @@ from collections.abc import AsyncIterator
 
 import pytest
 
-from app.settings import Settings
+from app.core.settings import Settings
 from campus_mail_client import AsyncCampusMail, Change, NoAnswer, Retrying
 from campus_mail_client.problems import NotSignedIn
 from protocol.clock import SteppedClock
-from tests.app.fleet.playing import serving
+from tests.app.robots.playing import serving
 from tests.client.conftest import RECIPIENT, Campus
 from tests.client.wire import BreakingWire
 

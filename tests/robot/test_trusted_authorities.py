@@ -10,7 +10,7 @@ import pytest
 
 from robot.config import ConfigError
 from robot.enrolment import token_for
-from tests.app.notify.receivers import certificate
+from tests.app.notifications.receivers import certificate
 
 
 class Enrols(BaseHTTPRequestHandler):

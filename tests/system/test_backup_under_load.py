@@ -14,8 +14,8 @@ from typing import Any
 import httpx
 import pytest
 
-from app.administration import enrol
-from app.settings import Settings
+from app.cli.administration import enrol
+from app.core.settings import Settings
 from benchmarks.service_kills.mail_server import SpoolFolder
 from benchmarks.service_kills.people import Everybody, Somebody
 from benchmarks.service_kills.senders import Sender

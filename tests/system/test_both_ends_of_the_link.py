@@ -15,11 +15,11 @@ import uvicorn
 from fastapi import FastAPI
 from sqlmodel import select
 
-from app.database import Database
-from app.fleet.service import enrol
+from app.core.database.database import Database
+from app.core.settings import Settings
 from app.main import create_app
-from app.settings import Settings
-from app.tables import ClaimRow, MessageToRobot, RobotMessage, RobotRow
+from app.models import ClaimRow, MessageToRobot, RobotMessage, RobotRow
+from app.robots.service import enrol
 from maps import builtin_map
 from protocol.clock import RealClock
 from protocol.parts import Battery, Leg, Received

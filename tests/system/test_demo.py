@@ -22,7 +22,7 @@ PAPERS_AGENT = ROOT.parent / "shared" / "cases" / "paper" / "mail.asl"
 
 
 def demo(*options: str) -> dict[str, Any]:
-    command = [sys.executable, "-m", "app", "demo", "--once", "--json", "--port", str(free_port()), *options]
+    command = [sys.executable, "-m", "demo", "letter", "--once", "--json", "--port", str(free_port()), *options]
     ran = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False, timeout=180)
     assert ran.returncode == 0, ran.stdout + ran.stderr
     summary: dict[str, Any] = json.loads(ran.stdout)
@@ -47,7 +47,7 @@ class ServingDemo:
     def __init__(self, folder: Path) -> None:
         self.port = free_port()
         self._said = folder / "said"
-        command = [sys.executable, "-m", "app", "demo", "--port", str(self.port), "--speed", "10"]
+        command = [sys.executable, "-m", "demo", "letter", "--port", str(self.port), "--speed", "10"]
         with self._said.open("wb") as said:
             self.process = subprocess.Popen(command, cwd=ROOT, stdout=said, stderr=said)
 

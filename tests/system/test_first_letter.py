@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from app.fleet.attentive import ANSWERS_WITHIN_S, LOOKS_AFTER_S
+from app.robots.link.keepalive import ANSWERS_WITHIN_S, LOOKS_AFTER_S
 from tests.system.rig import RECIPIENT, SENDER, Rig, wait_for
 
 pytestmark = [pytest.mark.system, pytest.mark.timeout(280)]

@@ -19,7 +19,7 @@ from tests.system.rig import ROOT
 
 pytestmark = [pytest.mark.system, pytest.mark.timeout(500)]
 
-COMMAND = [sys.executable, "-m", "app", "fleet-demo", "--port", "0", "--robots", "2", "--scale", "0.05"]
+COMMAND = [sys.executable, "-m", "demo", "fleet", "--port", "0", "--robots", "2", "--scale", "0.05"]
 
 
 def test_two_robots_of_the_fleet_deliver_an_order_each_and_never_meet() -> None:

@@ -15,7 +15,7 @@ import pytest_asyncio
 from playwright.async_api import Browser, Playwright, async_playwright, expect
 
 from benchmarks.pages.chromium import find_chromium
-from tests.app.fleet.playing import PlayedRobot
+from tests.app.robots.playing import PlayedRobot
 from tests.web.mailroom_scene import Campus
 from tests.web.service import Service
 from tests.web.visitor import Visit, Visitor

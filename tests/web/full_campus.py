@@ -5,8 +5,8 @@ from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any
 
-from app.people.service import find_person, set_roles
-from app.tables import Role
+from app.accounts.sign_in.service import find_person, set_roles
+from app.models import Role
 from tests.web.mailroom_scene import Scene
 from tests.web.service import Service
 from tests.web.visitor import Visit, Visitor

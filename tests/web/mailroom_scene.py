@@ -6,13 +6,13 @@ from typing import Any, Final
 
 from sqlmodel import col, select
 
+from app.accounts.sign_in.service import set_roles
+from app.core.settings import Settings
 from app.main import create_app
-from app.orders.schemas import NewOrder
+from app.models import Alarm, DigitLock, Notice, Order, OrderState, OutgoingNotice, Priority, RobotRow, Role
 from app.orders.service import Word
 from app.orders.transitions import By
-from app.people.service import set_roles
-from app.settings import Settings
-from app.tables import Alarm, DigitLock, Notice, Order, OrderState, OutgoingNotice, Priority, RobotRow, Role
+from app.orders.views.schemas import NewOrder
 from protocol.clock import Clock, RealClock
 from tests.web.service import Service
 from tests.web.visitor import Visit, Visitor

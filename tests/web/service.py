@@ -17,13 +17,13 @@ from typing import Any
 
 import httpx
 
-from app.database import Database
-from app.fleet.service import enrol
-from app.settings import Settings
+from app.core.database.database import Database
+from app.core.settings import Settings
+from app.robots.service import enrol
 from maps import find_map
 from protocol.clock import RealClock
 from protocol.envelope import YOUNGER
-from tests.app.fleet.playing import PlayedRobot
+from tests.app.robots.playing import PlayedRobot
 
 ROOT = Path(__file__).parents[2]
 START_LIMIT_S = 90.0

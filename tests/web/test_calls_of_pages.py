@@ -10,8 +10,8 @@ import pytest
 import pytest_asyncio
 from playwright.async_api import Page, Request, expect
 
-from app.people.service import set_roles
-from app.tables import Role
+from app.accounts.sign_in.service import set_roles
+from app.models import Role
 from tests.web.mailroom_scene import Campus
 from tests.web.service import Service
 from tests.web.visitor import Visitor

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from playwright.async_api import Page, expect
 
-from tests.app.people.campus_provider import campus_provider, tell_of
+from tests.app.accounts.campus_provider import campus_provider, tell_of
 from tests.web.service import Service
 from tests.web.visitor import Visitor
 

@@ -8,7 +8,7 @@ from playwright.async_api import Locator, Page, expect
 from protocol.envelope import YOUNGER
 from protocol.parts import StopAction
 from protocol.to_server import Step
-from tests.app.fleet.playing import PlayedRobot
+from tests.app.robots.playing import PlayedRobot
 from tests.web.mailroom_scene import Campus
 from tests.web.visitor import Visitor
 

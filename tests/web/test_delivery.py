@@ -11,7 +11,7 @@ from playwright.async_api import Page, Route, expect
 from protocol.parts import Activity, Battery, Position, StopAction
 from protocol.to_robot import Cancel, Confirm, Mission, Verifiers
 from protocol.to_server import CommandAnswer, Event, Snapshot, Step, Why
-from tests.app.fleet.playing import PlayedRobot
+from tests.app.robots.playing import PlayedRobot
 from tests.web.camera import Camera
 from tests.web.drawn import expect_drawn
 from tests.web.service import Service

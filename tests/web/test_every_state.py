@@ -16,7 +16,7 @@ from protocol.example_files import EXAMPLES
 from protocol.insight import Insight
 from protocol.parts import Activity, Battery, Position
 from protocol.to_server import Snapshot, Why
-from tests.app.fleet.playing import PlayedRobot
+from tests.app.robots.playing import PlayedRobot
 from tests.web import states, states_of_staff
 from tests.web.full_campus import Campus, full_campus
 from tests.web.keyboard import Keyboard

@@ -10,9 +10,9 @@ from typing import Any
 import pytest
 from playwright.async_api import Locator, Page, expect
 
-from app.tables import Role
-from tests.app.fleet.playing import until
-from tests.app.people.campus_provider import campus_provider, tell_of
+from app.models import Role
+from tests.app.accounts.campus_provider import campus_provider, tell_of
+from tests.app.robots.playing import until
 from tests.web.keyboard import press
 from tests.web.service import Service
 from tests.web.test_offline import KEPT, sign_out

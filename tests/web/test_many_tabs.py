@@ -8,9 +8,9 @@ from collections.abc import Awaitable, Callable
 import pytest
 from playwright.async_api import BrowserContext, Page, Request, Route, expect
 
-from app.tables import Role
+from app.models import Role
 from protocol.insight import Insight
-from tests.app.fleet.playing import until
+from tests.app.robots.playing import until
 from tests.web.keyboard import press
 from tests.web.service import ROOT
 from tests.web.test_offline import HIDE

@@ -10,7 +10,7 @@ from playwright.async_api import CDPSession, Page, expect
 
 from protocol.parts import Activity, Battery, Leg, Position
 from protocol.to_server import Claim, Clear, Snapshot, Step, Why
-from tests.app.fleet.playing import PlayedRobot
+from tests.app.robots.playing import PlayedRobot
 from tests.web.service import Service
 
 pytestmark = pytest.mark.browser

@@ -5,7 +5,7 @@ from datetime import timedelta
 import pytest
 from playwright.async_api import Locator, expect
 
-from app.tables import Order, Priority
+from app.models import Order, Priority
 from tests.web.mailroom_scene import Scene
 
 pytestmark = pytest.mark.browser

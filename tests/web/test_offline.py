@@ -13,10 +13,10 @@ from typing import Any
 import pytest
 from playwright.async_api import Browser, CDPSession, Page, Route, expect
 
-from app.page_files import PageFiles
+from app.http.page_files import PageFiles
 from protocol.parts import StopAction
 from protocol.to_server import Step
-from tests.app.fleet.playing import until
+from tests.app.robots.playing import until
 from tests.web.drawn import expect_drawn
 from tests.web.service import ROOT, Service
 from tests.web.test_order import fill, send

@@ -9,11 +9,11 @@ from typing import Any
 import pytest
 from playwright.async_api import Page, expect
 
-from app.tables import Role
+from app.models import Role
 from protocol.parts import StopAction
 from protocol.to_robot import Mission
 from protocol.to_server import Step
-from tests.app.fleet.playing import PlayedRobot, until
+from tests.app.robots.playing import PlayedRobot, until
 from tests.web.drawn import expect_drawn
 from tests.web.service import Service
 from tests.web.states import stands

@@ -14,7 +14,7 @@ from maps import builtin_map, shortest_route
 from protocol.parts import Activity, Battery, Position, Stop, StopAction
 from protocol.to_robot import Mission
 from protocol.to_server import Snapshot, Step, Why
-from tests.app.fleet.playing import PlayedRobot
+from tests.app.robots.playing import PlayedRobot
 from tests.web.mailroom_scene import Scene
 from tests.web.service import Service
 from tests.web.visitor import Visitor

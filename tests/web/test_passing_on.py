@@ -11,7 +11,7 @@ from maps import find_map
 from protocol.clock import RealClock
 from protocol.parts import StopAction
 from protocol.to_server import Step
-from tests.app.fleet.playing import PlayedRobot
+from tests.app.robots.playing import PlayedRobot
 from tests.web.mailroom_scene import Campus
 from tests.web.service import ALL_BUT_PROOFS, Service
 

@@ -12,7 +12,7 @@ import pytest_asyncio
 from playwright.async_api import Browser, Playwright, expect
 
 from benchmarks.pages.chromium import find_chromium
-from tests.app.fleet.playing import until
+from tests.app.robots.playing import until
 from tests.web.service import Service
 from tests.web.test_offline import WORKER_IS_THERE, worker_of
 from tests.web.visitor import Visitor

@@ -5,11 +5,11 @@ import re
 import pytest
 from playwright.async_api import Page, expect
 
+from app.core.texts.reasons import in_language, words_of
+from app.models import Alarm, Order, OrderEvent, OrderState, RobotCommand, RobotRow
 from app.orders.service import Word
 from app.orders.transitions import By
-from app.tables import Alarm, Order, OrderEvent, OrderState, RobotCommand, RobotRow
-from app.texts.reasons import in_language, words_of
-from tests.app.notify.every_reason import RAW, every_reason, refusals_of_robots
+from tests.app.notifications.every_reason import RAW, every_reason, refusals_of_robots
 from tests.web.mailroom_scene import Campus, Scene
 
 pytestmark = pytest.mark.browser

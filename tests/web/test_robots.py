@@ -11,10 +11,10 @@ import pytest
 import pytest_asyncio
 from playwright.async_api import Page, expect
 
-from app.database import Database
-from app.people.service import find_person, set_roles
-from app.settings import Settings
-from app.tables import Role
+from app.accounts.sign_in.service import find_person, set_roles
+from app.core.database.database import Database
+from app.core.settings import Settings
+from app.models import Role
 from tests.web.service import ROOT, Service
 from tests.web.test_everywhere import NO_OVERFLOW, SMALL_TARGETS
 

@@ -8,13 +8,13 @@ import pytest
 import pytest_asyncio
 from playwright.async_api import expect
 
-from app.notify.channels.webhook import secret_bytes
-from app.outside import Outside
-from app.settings import Settings
+from app.core.http_client import Outside
+from app.core.settings import Settings
+from app.notifications.channels.webhook import secret_bytes
 from protocol.clock import RealClock
-from tests.app.fleet.playing import serving
-from tests.app.notify.receivers import receiving
-from tests.app.notify.test_webhooks import is_signed
+from tests.app.notifications.receivers import receiving
+from tests.app.notifications.test_webhooks import is_signed
+from tests.app.robots.playing import serving
 from tests.web.keyboard import Keyboard
 from tests.web.service import Service
 from tests.web.visitor import Visitor

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from app.page_files import LEFT_OUT
+from app.http.page_files import LEFT_OUT
 from web import make_pages
 
 WEB = Path(__file__).parents[2] / "web"

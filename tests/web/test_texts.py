@@ -5,7 +5,7 @@ import json
 import re
 from pathlib import Path
 
-from app.lines import LONGEST_TEXT
+from app.core.text_lines import LONGEST_TEXT
 
 WEB = Path(__file__).parents[2] / "web"
 CATALOGUES = {
@@ -19,7 +19,7 @@ PREFIXES_BY_NAME = {
     "state.": "sentence",
     "next.": "sentence",
     "nav.unread.": "counted",
-    # the same catalogues serve what is mailed and told (tests/app/notify)
+    # the same catalogues serve what is mailed and told (tests/app/notifications)
     "email.": "the service",
     "notice.": "the service",
     "why.": "reasonText",

@@ -8,12 +8,12 @@ import pytest
 import pytest_asyncio
 from playwright.async_api import expect
 
-from app.tables import Role
+from app.models import Role
 from protocol.clock import RealClock
 from protocol.parts import Activity, Battery, Leg, Position
 from protocol.to_robot import Cancel
 from protocol.to_server import Claim, Clear, CommandAnswer, Event, Snapshot, Step
-from tests.app.fleet.playing import PlayedRobot
+from tests.app.robots.playing import PlayedRobot
 from tests.web.service import Service
 from tests.web.test_robots import give_roles
 

@@ -12,7 +12,7 @@ import pytest
 import pytest_asyncio
 from playwright.async_api import Browser, Locator, Playwright, expect
 
-from app.tables import BatterySample, RobotRow, Role
+from app.models import BatterySample, RobotRow, Role
 from tests.web.looking import DESK, NARROW
 from tests.web.mailroom_scene import Campus
 from tests.web.test_robots import give_roles

@@ -5,7 +5,7 @@ from zoneinfo import ZoneInfo
 
 import pytest
 
-from app.texts.times import clock_time, day_and_time
+from app.core.texts.times import clock_time, day_and_time
 
 pytestmark = pytest.mark.browser
 

@@ -95,7 +95,7 @@ export class PageShell extends PageElement {
       </main>
       ${this.person && this.page !== "notices" ? html`<notice-toast .inbox=${this.inbox} .since=${this.about?.now}></notice-toast>` : nothing}
       ${this.person ? html`<sign-in-again .about=${this.about} .email=${this.person.email}></sign-in-again>` : nothing}
-      ${this.about?.simulated ? html`<footer class="foot">${t("app.demo")}</footer>` : nothing}
+      ${this.about?.simulated ? html`<footer class="foot">${t("demo")}</footer>` : nothing}
     `;
   }
 

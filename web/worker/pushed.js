@@ -3,7 +3,7 @@ import * as api from "../api.js";
 import { pageOf, PAGES } from "../links.js";
 import { keepOrder } from "./kept_answers.js";
 /** @import { Notice } from "../api_types.ts" */
-/** @typedef {Pick<Notice, "kind" | "order_id" | "title" | "body" | "at"> & {tag: string, language: string}} Pushed what app/notify sends */
+/** @typedef {Pick<Notice, "kind" | "order_id" | "title" | "body" | "at"> & {tag: string, language: string}} Pushed what app/notifications sends */
 
 const NAME = "Campus Mail";
 /** Somebody stands before a robot, or is about to. */

@@ -4,15 +4,15 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from random import Random
 
-from app.dispatch.planning.deciding import Decision, decide
-from app.dispatch.planning.improving import improved
-from app.dispatch.planning.scene import Kept, OpenOrder, RobotAtWork, Route, Rules, Scene
-from app.traffic.execution import retimed
-from app.traffic.journey import Goal, Start, Task
-from app.traffic.network import Network
-from app.traffic.planning import Timetable, first_plan
-from app.traffic.validation import problems
-from tests.app.traffic.carried_out import World
+from fleet.assignment.deciding import Decision, decide
+from fleet.assignment.improving import improved
+from fleet.assignment.scene import Kept, OpenOrder, RobotAtWork, Route, Rules, Scene
+from fleet.schedule.execution import retimed
+from fleet.schedule.journey import Goal, Start, Task
+from fleet.schedule.network import Network
+from fleet.schedule.planning import Timetable, first_plan
+from fleet.schedule.validation import problems
+from tests.fleet.schedule.carried_out import World
 
 
 def order(number: int, start: int, end: int, since_s: float = 0.0, handling_s: float = 10.0) -> OpenOrder:

@@ -5,16 +5,16 @@ from datetime import timedelta
 
 import pytest
 
-from app.fleet.closed_corridors import close
-from app.settings import Settings
-from app.tables import MissionRow, Order
+from app.core.settings import Settings
+from app.models import MissionRow, Order
+from app.traffic.closing import close
 from maps import shortest_route
 from protocol.clock import SteppedClock
 from protocol.parts import Leg
 from protocol.to_robot import Deny, Grant
 from protocol.to_server import Claim
-from tests.app.fleet.playing import PlayedRobot, Service, serving, until
-from tests.app.fleet.test_foreseen import CORRIDOR_S, HANDOVER_S, teach
+from tests.app.dispatch.test_eta_updates import CORRIDOR_S, HANDOVER_S, teach
+from tests.app.robots.playing import PlayedRobot, Service, serving, until
 
 WAYS = ("post5", "post1"), ("post1", "post4")
 LEG, ON = Leg(from_post="post1", to_post="post2"), Leg(from_post="post2", to_post="post3")

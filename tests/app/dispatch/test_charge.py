@@ -3,9 +3,9 @@
 from dataclasses import replace
 from typing import Any
 
-from app.dispatch.charge import Charges
+from app.core.settings import Settings
+from app.dispatch.charge_limits import Charges
 from app.dispatch.choice import Assignment, IdleRobot, WaitingOrder, choose_robots, lacks_charge
-from app.settings import Settings
 from maps import builtin_map
 from maps.ways import Ways
 

@@ -6,12 +6,12 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 
-from app.settings import Settings
-from app.tables import MissionRow, StopRow
+from app.core.settings import Settings
+from app.models import MissionRow, StopRow
 from protocol.clock import SteppedClock
 from protocol.envelope import YOUNGER
 from protocol.parts import Battery, StopAction
-from tests.app.fleet.playing import PlayedRobot, Service, serving
+from tests.app.robots.playing import PlayedRobot, Service, serving
 
 
 @pytest.fixture

@@ -5,16 +5,16 @@ from itertools import pairwise
 
 import pytest
 
-from app.dispatch.charge_first import REASON
-from app.settings import Settings
-from app.tables import ClaimRow, StopRow
+from app.charging.charge_first import REASON
+from app.core.settings import Settings
+from app.models import ClaimRow, StopRow
 from maps import builtin_map, shortest_route
 from protocol.clock import SteppedClock
 from protocol.envelope import YOUNGER
 from protocol.parts import Activity, Battery, Leg, Position, Stop, StopAction
 from protocol.to_robot import Grant, Mission
 from protocol.to_server import Claim, Clear, Snapshot, Step
-from tests.app.fleet.playing import PlayedRobot, Service, serving
+from tests.app.robots.playing import PlayedRobot, Service, serving
 
 TRACK = builtin_map("test_track")
 

@@ -17,7 +17,7 @@ from app.dispatch.choice import (
     has_enough_charge,
     why_nobody_comes,
 )
-from app.tables import Priority
+from app.models import Priority
 from maps import builtin_map, shortest_route
 from maps.ways import Ways
 

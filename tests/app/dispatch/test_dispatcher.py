@@ -5,14 +5,14 @@ from typing import Any
 
 import pytest
 
-from app.orders.schemas import NewOrder
-from app.settings import Settings
-from app.tables import MessageToRobot, MissionRow, Order, Person, RobotRow, Role
+from app.core.settings import Settings
+from app.models import MessageToRobot, MissionRow, Order, Person, RobotRow, Role
+from app.orders.views.schemas import NewOrder
 from protocol.clock import SteppedClock
 from protocol.parts import Activity, Battery
 from protocol.to_server import Event, Snapshot, Step
-from tests.app.fleet.playing import PlayedRobot, Service, at_post, serving, until
 from tests.app.placed import placed
+from tests.app.robots.playing import PlayedRobot, Service, at_post, serving, until
 
 
 @pytest.fixture

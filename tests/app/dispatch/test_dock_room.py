@@ -5,13 +5,13 @@ from contextlib import asynccontextmanager
 
 import pytest
 
-from app.settings import Settings
-from app.tables import MissionRow, StopRow
+from app.core.settings import Settings
+from app.models import MissionRow, StopRow
 from protocol.clock import SteppedClock
 from protocol.envelope import YOUNGER
 from protocol.parts import Activity, Battery, StopAction
 from protocol.to_server import Snapshot, Step
-from tests.app.fleet.playing import PlayedRobot, Service, at_post, serving, until
+from tests.app.robots.playing import PlayedRobot, Service, at_post, serving, until
 
 DOCK = "post5"
 

@@ -6,15 +6,15 @@ from random import Random
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.dispatch.planning.deciding import Decision, decide
-from app.dispatch.planning.improving import improved, within
-from app.dispatch.planning.scene import Kept, OpenOrder, RobotAtWork, Rules, Scene, Stop
-from app.traffic.journey import Goal, Start
-from app.traffic.network import Lane, Network
-from app.traffic.planning import first_plan
-from app.traffic.validation import problems
+from fleet.assignment.deciding import Decision, decide
+from fleet.assignment.improving import improved, within
+from fleet.assignment.scene import Kept, OpenOrder, RobotAtWork, Rules, Scene, Stop
+from fleet.schedule.journey import Goal, Start
+from fleet.schedule.network import Lane, Network
+from fleet.schedule.planning import first_plan
+from fleet.schedule.validation import problems
 from tests.app.dispatch.fleet_life import Life, order, rounds
-from tests.app.traffic.test_timetables import random_network
+from tests.fleet.schedule.test_timetables import random_network
 
 
 def street(posts: int, travel_s: float = 100.0, bays: int = 2) -> Network:

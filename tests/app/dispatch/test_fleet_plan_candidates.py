@@ -2,8 +2,8 @@
 
 from dataclasses import replace
 
-from app.dispatch.planning.candidates import LONGEST, candidates, waiting_orders
-from app.dispatch.planning.scene import OpenOrder, RobotAtWork
+from fleet.assignment.candidates import LONGEST, candidates, waiting_orders
+from fleet.assignment.scene import OpenOrder, RobotAtWork
 from tests.app.dispatch.fleet_life import order
 from tests.app.dispatch.test_fleet_plan import decided, robot, scene_of, street
 

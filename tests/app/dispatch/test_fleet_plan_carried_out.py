@@ -3,12 +3,12 @@
 from dataclasses import replace
 from random import Random
 
-from app.dispatch.planning.carrying_out import Able, adopt, scene_of
-from app.dispatch.planning.scene import OpenOrder
-from app.traffic.controller import Denied, Granted, TrafficController
-from app.traffic.journey import Goal
-from app.traffic.planning import Timetable, first_plan
-from app.traffic.validation import problems
+from fleet.assignment.adopting import Able, adopt, scene_of
+from fleet.assignment.scene import OpenOrder
+from fleet.schedule.controller import Denied, Granted, TrafficController
+from fleet.schedule.journey import Goal
+from fleet.schedule.planning import Timetable, first_plan
+from fleet.schedule.validation import problems
 from tests.app.dispatch.fleet_life import order
 from tests.app.dispatch.test_fleet_plan import decided, street
 

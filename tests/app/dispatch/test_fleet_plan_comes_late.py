@@ -6,13 +6,13 @@ from random import Random
 
 import pytest
 
-from app.dispatch.planning.carrying_out import Able, adopt, scene_of
-from app.dispatch.planning.deciding import decide
-from app.dispatch.planning.scene import OpenOrder
-from app.traffic.controller import TrafficController
-from app.traffic.validation import problems
+from fleet.assignment.adopting import Able, adopt, scene_of
+from fleet.assignment.deciding import decide
+from fleet.assignment.scene import OpenOrder
+from fleet.schedule.controller import TrafficController
+from fleet.schedule.validation import problems
 from tests.app.dispatch.fleet_life import order
-from tests.app.traffic.test_timetables import random_network
+from tests.fleet.schedule.test_timetables import random_network
 
 
 @dataclass

@@ -6,14 +6,14 @@ from random import Random
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.dispatch.planning.improving import improved
-from app.dispatch.planning.scene import Kept, Rules, Scene
-from app.dispatch.planning.timing import overdue_s
-from app.traffic.network import Lane, Network
-from app.traffic.validation import problems
+from fleet.assignment.improving import improved
+from fleet.assignment.scene import Kept, Rules, Scene
+from fleet.assignment.timing import overdue_s
+from fleet.schedule.network import Lane, Network
+from fleet.schedule.validation import problems
 from tests.app.dispatch.fleet_life import order, rounds
 from tests.app.dispatch.test_fleet_plan import decided, robot, scene_of, street
-from tests.app.traffic.test_timetables import random_network
+from tests.fleet.schedule.test_timetables import random_network
 
 
 def ring(posts: int) -> Network:

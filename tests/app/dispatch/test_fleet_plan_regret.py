@@ -9,12 +9,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.dispatch.planning.cost import order_worth_s, route_s
-from app.dispatch.planning.routes import NO_FIT, Fit, leaves_s, line, orders_of, with_order
-from app.dispatch.planning.scene import OpenOrder, Route, Scene, Stop
+from fleet.assignment.cost import order_worth_s, route_s
+from fleet.assignment.routes import NO_FIT, Fit, leaves_s, line, orders_of, with_order
+from fleet.assignment.scene import OpenOrder, Route, Scene, Stop
 from tests.app.dispatch.fleet_life import order
 from tests.app.dispatch.test_fleet_plan import decided, robot, scene_of, street
-from tests.app.traffic.test_timetables import random_network
+from tests.fleet.schedule.test_timetables import random_network
 
 
 def test_the_order_that_would_lose_most_is_given_first() -> None:

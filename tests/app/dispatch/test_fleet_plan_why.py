@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from app.dispatch.planning.scene import OpenOrder, RobotAtWork
-from app.dispatch.planning.why import why_orders_wait
+from fleet.assignment.scene import OpenOrder, RobotAtWork
+from fleet.assignment.why import why_orders_wait
 from tests.app.dispatch.fleet_life import order
 from tests.app.dispatch.test_fleet_plan import decided, robot, scene_of, street
 

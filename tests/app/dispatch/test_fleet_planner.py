@@ -8,19 +8,19 @@ from datetime import timedelta
 
 import pytest
 
+from app.core.settings import Settings
 from app.dispatch.given_out import changes_of, give_out
-from app.dispatch.planning.deciding import Decision
-from app.dispatch.planning.routes import room
-from app.dispatch.planning.scene import Routes
-from app.orders.schemas import NewOrder
-from app.settings import Settings
-from app.tables import MissionRow, Order, Priority, RobotRow
+from app.models import MissionRow, Order, Priority, RobotRow
+from app.orders.views.schemas import NewOrder
+from fleet.assignment.deciding import Decision
+from fleet.assignment.routes import room
+from fleet.assignment.scene import Routes
 from protocol.clock import SteppedClock
 from protocol.parts import Activity, Battery
 from protocol.to_robot import Cancel
 from protocol.to_server import CommandAnswer, Event, Snapshot, Step
-from tests.app.fleet.playing import PlayedRobot, Service, at_post, serving, until
 from tests.app.placed import placed
+from tests.app.robots.playing import PlayedRobot, Service, at_post, serving, until
 
 
 @pytest.fixture

@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from app.dispatch.at_once.missions import best_tour
 from app.dispatch.choice import WaitingOrder
 from app.dispatch.insertion import Tour, Visit, cheapest_insertion
-from app.dispatch.missions import best_tour
 from maps import builtin_map
 from maps.ways import Ways
 

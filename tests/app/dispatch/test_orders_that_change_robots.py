@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from app.tables import Order, OrderState
+from app.models import Order, OrderState
 from tests.app.orders.lives import World
 
 

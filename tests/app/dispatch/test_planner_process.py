@@ -7,7 +7,7 @@ from collections.abc import AsyncIterator
 import pytest
 
 from app.dispatch.planner_process import PlannerProcess
-from app.dispatch.planning.deciding import Decision
+from fleet.assignment.deciding import Decision
 from tests.app.dispatch.fleet_life import order
 from tests.app.dispatch.test_fleet_plan import decided, robot, scene_of, street
 

@@ -7,15 +7,15 @@ from typing import Any
 import httpx
 import pytest
 
-from app.people.service import set_roles
-from app.people.sessions import new_session
-from app.settings import Settings
-from app.tables import OrderEvent, Role
+from app.accounts.sessions.sessions import new_session
+from app.accounts.sign_in.service import set_roles
+from app.core.settings import Settings
+from app.models import OrderEvent, Role
 from protocol.clock import SteppedClock
 from protocol.parts import Stop
 from protocol.to_robot import Mission
 from protocol.to_server import Step
-from tests.app.fleet.playing import PlayedRobot, Service, serving
+from tests.app.robots.playing import PlayedRobot, Service, serving
 
 
 class Campus:

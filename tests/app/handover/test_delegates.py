@@ -6,10 +6,10 @@ from typing import Any
 import httpx
 import pytest
 
-from app.keeping.order_records import one_order
-from app.keeping.personal import everything_of, person_of
-from app.people.service import set_roles
-from app.tables import Handover, Role
+from app.accounts.sign_in.service import set_roles
+from app.models import Handover, Role
+from app.retention.order_records import one_order
+from app.retention.personal import everything_of, person_of
 from protocol.parts import Stop
 from protocol.to_robot import Verifiers
 from protocol.to_server import Step

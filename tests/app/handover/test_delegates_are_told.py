@@ -7,9 +7,9 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
-from app.orders.codes import code_png
-from app.settings import Settings
-from app.tables import Notice, NoticeKind, RobotRow
+from app.core.settings import Settings
+from app.models import Notice, NoticeKind, RobotRow
+from app.orders.custody.codes import code_png
 from tests.app.conftest import RECIPIENT, SENDER, Browser, Mailroom, Mails, SignedIn
 
 PORTER = "porter@campus.example"

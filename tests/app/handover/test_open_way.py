@@ -1,6 +1,6 @@
 """A dispatcher who has looked tells a robot that a corridor is open again; its own word ends the alarm."""
 
-from app.tables import Role
+from app.models import Role
 from protocol.envelope import YOUNGER
 from protocol.parts import Leg
 from protocol.to_robot import OpenWay

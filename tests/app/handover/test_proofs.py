@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
-from app.fleet.service import new_token
-from app.tables import Alarm, Handover, Notice, RefusedReceipt, RobotRow, Role
+from app.models import Alarm, Handover, Notice, RefusedReceipt, RobotRow, Role
+from app.robots.service import new_token
 from protocol.clock import SteppedClock
 from protocol.envelope import YOUNGER
 from protocol.parts import Activity, Battery, Position, Stop

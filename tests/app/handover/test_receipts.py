@@ -6,7 +6,7 @@ from collections.abc import Callable
 import pytest
 from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
 
-from app.tables import Alarm, Handover, Order, RefusedReceipt, RobotRow
+from app.models import Alarm, Handover, Order, RefusedReceipt, RobotRow
 from protocol.to_server import Event, HandoverReceipt
 from tests.app.handover.conftest import Campus
 

@@ -4,8 +4,8 @@ from datetime import datetime, timedelta
 
 import pytest
 
-from app.fleet.clocks import has_been_set
-from app.tables import RobotCommand, Role
+from app.models import RobotCommand, Role
+from app.robots.link.clocks import has_been_set
 from protocol.clock import SteppedClock
 from protocol.to_robot import Confirm
 from protocol.to_server import CommandAnswer, Event, Fault, Step

@@ -2,13 +2,13 @@
 
 import pytest
 
-from app.settings import Settings
-from app.tables import Alarm, Handover, RobotCommand, Role
+from app.core.settings import Settings
+from app.models import Alarm, Handover, RobotCommand, Role
 from protocol.clock import SteppedClock
 from protocol.to_robot import Confirm
 from protocol.to_server import CommandAnswer, Event, Step
-from tests.app.fleet.playing import until
 from tests.app.handover.conftest import Campus
+from tests.app.robots.playing import until
 
 
 async def asked(campus: Campus) -> Confirm:

@@ -14,29 +14,29 @@ from typing import Any
 
 from sqlmodel import SQLModel, col, select
 
-from app.database import Database
+from app.accounts.sign_in.service import SignInDesk, set_roles
+from app.core.database.database import Database
+from app.core.mail import open_mailer
+from app.core.server_key import ServerKey
+from app.core.settings import Settings
+from app.dispatch.at_once.nearest import NearestRobots
 from app.dispatch.fleet_planner import FleetPlanner
-from app.dispatch.nearest import NearestRobots
 from app.dispatch.planner_process import PlannerProcess
-from app.dispatch.planning.deciding import Decision
-from app.dispatch.planning.improving import improved
 from app.dispatch.service import Dispatcher
-from app.fleet import inbox, outbox
-from app.fleet.commands import ask, new_command_id
-from app.fleet.intake import Intake
-from app.fleet.service import Fleet, enrol
-from app.fleet.traffic_desk import TrafficDesk
-from app.live.feed import LocalFeed
-from app.mail import open_mailer
-from app.orders.codes import Holder, codes_of
-from app.orders.schemas import NewOrder
+from app.models import MessageToRobot, Order, OrderState, Person, RobotRow, Role
+from app.orders.custody.codes import Holder, codes_of
 from app.orders.service import Orders
-from app.orders.standing import StandingOrders
+from app.orders.standing.standing import StandingOrders
 from app.orders.timer import Timer
-from app.people.service import SignInDesk, set_roles
-from app.server_key import ServerKey
-from app.settings import Settings
-from app.tables import MessageToRobot, Order, OrderState, Person, RobotRow, Role
+from app.orders.views.schemas import NewOrder
+from app.realtime.feed import LocalFeed
+from app.robots.commands import ask, new_command_id
+from app.robots.conversation.intake import Intake
+from app.robots.link import inbox, outbox
+from app.robots.service import Fleet, enrol
+from app.traffic.service import TrafficDesk
+from fleet.assignment.deciding import Decision
+from fleet.assignment.improving import improved
 from maps import builtin_map
 from maps.ways import Ways
 from protocol.both_ways import Error

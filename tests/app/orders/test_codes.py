@@ -8,9 +8,9 @@ import pytest
 import zxingcpp
 from fastapi import FastAPI
 
-from app.orders.codes import code_png, code_text
-from app.server_key import ServerKey, open_server_key
-from app.tables import Order
+from app.core.server_key import ServerKey, open_server_key
+from app.models import Order
+from app.orders.custody.codes import code_png, code_text
 from protocol.parts import Purpose
 from tests.app.conftest import SENDER, Browser, Mailroom, Mails
 

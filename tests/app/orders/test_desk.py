@@ -8,12 +8,12 @@ from fastapi import FastAPI
 from sqlalchemy import event
 from sqlmodel import select
 
-from app.errors import ServiceError
-from app.orders.desk import AT_ONCE, OrderDesk, Placed
+from app.accounts.sign_in.service import set_roles
+from app.core.errors import ServiceError
+from app.models import Person, Role
+from app.orders.batcher import AT_ONCE, OrderDesk, Placed
 from app.orders.errors import KeyReused, StillRunning, UnknownPost, UnknownRecipient, UnknownSender
-from app.orders.schemas import NewOrder
-from app.people.service import set_roles
-from app.tables import Person, Role
+from app.orders.views.schemas import NewOrder
 from tests.app.conftest import RECIPIENT, SENDER, Browser, Mailroom, sqlite_alone
 
 NEWCOMER = "new.comer@campus.example"

@@ -5,7 +5,7 @@ from datetime import timedelta
 import pytest
 from fastapi import FastAPI
 
-from app.tables import RobotRow
+from app.models import RobotRow
 from protocol.clock import SteppedClock
 from tests.app.conftest import Browser, Mailroom
 

@@ -7,9 +7,9 @@ import pytest
 from fastapi import FastAPI
 from sqlmodel import select
 
+from app.models import Handover, MissionRow, OrderState, StopRow
 from app.orders.service import Word
 from app.orders.transitions import By
-from app.tables import Handover, MissionRow, OrderState, StopRow
 from tests.app.conftest import STRANGER, Browser, Mailroom, SignedIn
 from tests.app.orders.test_life_of_an_order import WAY, kinds, make_dispatcher, seen
 

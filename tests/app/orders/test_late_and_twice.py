@@ -4,9 +4,9 @@ from contextlib import suppress
 
 import pytest
 
-from app.errors import ServiceError
-from app.tables import Alarm, Handover, MissionRow, Notice, Order, OrderEvent, RobotCommand, StopRow
-from app.tables import OrderState as S
+from app.core.errors import ServiceError
+from app.models import Alarm, Handover, MissionRow, Notice, Order, OrderEvent, RobotCommand, StopRow
+from app.models import OrderState as S
 from protocol.parts import Purpose
 from protocol.proofs import ShownCode
 from protocol.to_server import CommandAnswer, Event

@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 from fastapi import FastAPI
 
-from app.tables import RobotRow
+from app.models import RobotRow
 from protocol.clock import SteppedClock
 from tests.app.conftest import SENDER, STRANGER, Browser, Mailroom, SignedIn
 from tests.app.orders.test_life_of_an_order import kinds, make_dispatcher, seen

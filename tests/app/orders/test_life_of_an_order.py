@@ -5,11 +5,11 @@ from typing import Any
 import pytest
 from fastapi import FastAPI
 
+from app.accounts.sign_in.service import find_person, set_roles
+from app.models import OrderEvent, OrderState, Role
+from app.models.orders.order_events import EventsAreAppendOnly
 from app.orders.errors import TransitionRefused
 from app.orders.transitions import By
-from app.people.service import find_person, set_roles
-from app.tables import OrderEvent, OrderState, Role
-from app.tables.order_events import EventsAreAppendOnly
 from tests.app.conftest import RECIPIENT, SENDER, STRANGER, Browser, Mailroom, Mails, SignedIn
 
 WAY = ("assigned", "to_sender", "at_sender", "carrying", "at_recipient", "delivered")

@@ -1,6 +1,6 @@
 """What makes lives at random worth their time: one that failed can be lived again, and looked into."""
 
-from app.tables import MessageToRobot, Order, OrderState, RobotMessage
+from app.models import MessageToRobot, Order, OrderState, RobotMessage
 from tests.app.orders.test_lives_at_random import LivesOfOrders
 
 

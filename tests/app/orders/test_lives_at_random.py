@@ -15,22 +15,12 @@ from hypothesis import HealthCheck, Phase, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
 
-from app.administration import migrate
-from app.errors import ServiceError
+from app.cli.administration import migrate
+from app.core.errors import ServiceError
+from app.core.settings import Settings
+from app.models import Alarm, Handover, MissionRow, Notice, Order, OrderEvent, Person, Priority, StopRow
+from app.models import OrderState as S
 from app.orders.transitions import MAIL_ABOARD
-from app.settings import Settings
-from app.tables import (
-    Alarm,
-    Handover,
-    MissionRow,
-    Notice,
-    Order,
-    OrderEvent,
-    Person,
-    Priority,
-    StopRow,
-)
-from app.tables import OrderState as S
 from protocol.ids import ids_from
 from tests.app.orders.lives import World
 from tests.app.orders.what_holds import ENDED, Record, how_it_ended

@@ -4,9 +4,9 @@ import pytest
 
 from app.dispatch.held_up import SENTENCES, NoRobotComes
 from app.dispatch.open_work import HeldUp
-from app.fleet.alarms import raise_alarm
+from app.models import Alarm, MissionRow, Order, OrderEvent, OrderState
 from app.orders.errors import TransitionRefused
-from app.tables import Alarm, MissionRow, Order, OrderEvent, OrderState
+from app.robots.alarms import raise_alarm
 from tests.app.orders.lives import World
 from tests.app.orders.what_holds import Record
 

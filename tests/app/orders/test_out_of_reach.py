@@ -1,6 +1,6 @@
 """A robot goes on without network while people at the service wish for things."""
 
-from app.tables import Order, OrderState
+from app.models import Order, OrderState
 from tests.app.orders.lives import World
 from tests.app.orders.what_holds import Record
 

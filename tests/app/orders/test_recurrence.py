@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.orders.recurrence import Recurrence, day_of, next_after
+from app.orders.standing.recurrence import Recurrence, day_of, next_after
 
 TORONTO = ZoneInfo("America/Toronto")
 EVERY_DAY = frozenset(range(7))

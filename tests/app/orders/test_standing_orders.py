@@ -6,9 +6,9 @@ from typing import Any
 import pytest
 from fastapi import FastAPI
 
-from app.orders.standing import StandingOrders
+from app.models import StandingOrder
+from app.orders.standing.standing import StandingOrders
 from app.orders.timer import Timer
-from app.tables import StandingOrder
 from protocol.clock import SteppedClock
 from tests.app.conftest import RECIPIENT, STRANGER, Browser, Mailroom, SignedIn
 

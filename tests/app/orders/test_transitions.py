@@ -5,8 +5,17 @@ from pathlib import Path
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, rule
 
-from app.orders.transitions import CARRIED, ENDED, MAIL_ABOARD, NOTHING_ABOARD, TRANSITIONS, By, is_allowed, is_old_news
-from app.tables import OrderState as S
+from app.models import OrderState as S
+from app.orders.transitions import (
+    CARRIED,
+    ENDED,
+    MAIL_ABOARD,
+    NOTHING_ABOARD,
+    TRANSITIONS,
+    By,
+    is_allowed,
+    is_old_news,
+)
 
 WORDS = st.sampled_from(By)
 STATES = st.sampled_from(S)

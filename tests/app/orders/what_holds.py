@@ -4,11 +4,11 @@ from collections import Counter
 from itertools import pairwise
 from typing import Any
 
-from app.orders.custody import custody_of
-from app.orders.telling import ONCE, TOLD
+from app.models import Handover, MissionRow, Notice, Order, OrderEvent, StopRow
+from app.models import OrderState as S
+from app.orders.custody.custody import custody_of
+from app.orders.notifications import ONCE, TOLD
 from app.orders.transitions import MAIL_ABOARD, NOTHING_ABOARD, ROBOT_COMING, By, is_allowed
-from app.tables import Handover, MissionRow, Notice, Order, OrderEvent, StopRow
-from app.tables import OrderState as S
 from protocol.parts import Purpose
 from tests.app.orders.lives import World
 

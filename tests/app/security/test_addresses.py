@@ -11,8 +11,8 @@ from hypothesis import given
 from hypothesis import settings as hypothesis_settings
 from hypothesis.strategies import from_regex
 
-from app.mail.message import Mail, message_of
-from app.people.schemas import EMAIL, MAX_EMAIL
+from app.accounts.schemas import EMAIL, MAX_EMAIL
+from app.core.mail.message import Mail, message_of
 from tests.app.conftest import Browser, Mails
 
 HIDDEN = [

@@ -6,7 +6,7 @@ import pytest
 from fastapi import FastAPI
 from fastapi.testclient import TestClient
 
-from app.settings import Settings
+from app.core.settings import Settings
 from tests.app.conftest import HERE, SENDER, Mails
 
 SECURE = "https://mail.campus.example"

@@ -7,7 +7,7 @@ import httpx
 import pytest
 from fastapi import FastAPI
 
-from app.people.same_origin import SAFE_METHODS
+from app.accounts.sessions.same_origin import SAFE_METHODS
 from tests.app.conftest import Mailroom, Served
 from tests.app.everybody import Everybody, routes_of
 

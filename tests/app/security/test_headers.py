@@ -8,8 +8,8 @@ from fastapi import FastAPI
 from fastapi.testclient import TestClient
 from httpx import Headers
 
-from app.pages import content_security_policy
-from app.settings import ROOT
+from app.core.settings import ROOT
+from app.http.pages import content_security_policy
 from tests.app.conftest import Browser
 
 ANSWERS = {

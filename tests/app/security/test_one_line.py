@@ -10,7 +10,7 @@ from fastapi import FastAPI
 from fastapi.testclient import TestClient
 from sqlmodel import col, update
 
-from app.tables import Person
+from app.models import Person
 from protocol.to_server import Fault
 from tests.app.conftest import RECIPIENT, SENDER, Browser, Mailroom, Mails
 
@@ -159,7 +159,7 @@ def test_a_robots_sentence_is_one_line_wherever_it_goes(mark: str) -> None:
 
 def test_a_line_of_the_log_at_a_terminal_stays_one_line() -> None:
     says = "import structlog; structlog.get_logger().warning('answered', path='/a\\r\\x1b[2K\\u2028b\\u202ec')"
-    program = f"from app.logs import set_up_logs; set_up_logs('INFO', as_json=False); {says}"
+    program = f"from app.core.logs import set_up_logs; set_up_logs('INFO', as_json=False); {says}"
     said = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stderr
     assert r"path=/a\r\x1b[2K\u2028b\u202ec" in said
     assert said.strip().isprintable()

@@ -13,11 +13,11 @@ from typing import ClassVar
 import httpx
 import pytest
 
-from app.errors import StartError
+from app.core.errors import StartError
+from app.core.http_client import Outside, Resolve, TargetRefused
+from app.core.settings import load_settings
+from app.core.special_networks import SPECIAL_IPV4, SPECIAL_IPV6, Network, is_public
 from app.main import create_app
-from app.outside import Outside, Resolve, TargetRefused
-from app.settings import load_settings
-from app.special_networks import SPECIAL_IPV4, SPECIAL_IPV6, Network, is_public
 from protocol.clock import SteppedClock
 
 NETWORKS_OF_PYTHON = [

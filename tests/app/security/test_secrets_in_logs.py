@@ -16,14 +16,14 @@ import pytest
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
-from app.administration import change_roles, enrol
-from app.serving import listen
-from app.settings import ROOT, Settings
+from app.cli.administration import change_roles, enrol
+from app.cli.serving import listen
+from app.core.settings import ROOT, Settings
 from protocol.clock import RealClock
 from protocol.to_robot import Verifiers
 from protocol.to_server import Step
 from tests.app.conftest import SENDER, Mails, sqlite_alone
-from tests.app.fleet.playing import PlayedRobot
+from tests.app.robots.playing import PlayedRobot
 
 GUEST = "guest@elsewhere.example"
 ORDER = {"from_post": "post1", "to_post": "post4", "recipient": GUEST}

@@ -18,15 +18,15 @@ import pytest
 from websockets.sync.client import ClientConnection
 from websockets.sync.client import connect as connect_websocket
 
-from app.database import Database
-from app.fleet.service import enrol
-from app.people.service import make_person
-from app.people.sessions import new_session
-from app.settings import Settings
+from app.accounts.sessions.sessions import new_session
+from app.accounts.sign_in.service import make_person
+from app.core.database.database import Database
+from app.core.settings import Settings
+from app.robots.service import enrol
 from protocol.clock import RealClock
 from tests.app.conftest import SENDER, sqlite_alone
-from tests.app.notify.receivers import certificate
-from tests.app.notify.test_killed_while_sending import free_port
+from tests.app.notifications.receivers import certificate
+from tests.app.notifications.test_killed_while_sending import free_port
 from tests.app.service_process import said, serving
 from tests.app.test_stop import HELLO
 

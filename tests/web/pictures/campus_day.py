@@ -8,12 +8,12 @@ from typing import Any, Final
 from sqlalchemy import update
 from sqlmodel import col
 
-from app.fleet.service import enrol
-from app.orders.schemas import NewOrder
+from app.accounts.sign_in.service import find_person, set_roles
+from app.models import BatterySample, GrantRow, Notice, OrderState, RobotRow, Role
 from app.orders.service import Word
 from app.orders.transitions import By
-from app.people.service import find_person, set_roles
-from app.tables import BatterySample, GrantRow, Notice, OrderState, RobotRow, Role
+from app.orders.views.schemas import NewOrder
+from app.robots.service import enrol
 from protocol.clock import SteppedClock
 from tests.web.mailroom_scene import Scene
 from tests.web.pictures.stage import CAMPUS, MOMENT, ZONE

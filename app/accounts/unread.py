@@ -1,0 +1,13 @@
+"""How many notices a person has not read."""
+
+from sqlalchemy import func
+from sqlmodel import col, select
+from sqlmodel.ext.asyncio.session import AsyncSession
+
+from app.models import Notice
+
+
+async def unread_notices(session: AsyncSession, person_id: str) -> int:
+    """All of them, whatever page of the inbox they are on."""
+    unread = select(func.count()).where(Notice.person_id == person_id, col(Notice.read_at).is_(None))
+    return (await session.exec(unread)).one()

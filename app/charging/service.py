@@ -1,0 +1,189 @@
+"""Sends robots that have nothing to do and no dock of their own to a dock, and calls them away again for work.
+
+Who goes where is decided in `fleet.charging`. Here is one look at the database, and one transaction for each robot that
+is sent. Nobody is sent to a dock that is taken: somebody stands in it or is on his way to it, or it is a robot's own.
+Whoever could leave one is sent to park (`dock_room`).
+"""
+
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from datetime import datetime, timedelta
+from typing import Final
+
+import structlog
+from sqlmodel import col, select
+from sqlmodel.ext.asyncio.session import AsyncSession
+
+from app.charging.dock_room import driving_there, leaving, parking
+from app.charging.free_docks import UNTIL_RATIO, docks_of, taken_docks
+from app.core.polling import Looks
+from app.dispatch.charge_limits import THRESHOLDS, Charges
+from app.dispatch.open_work import OpenWork, RobotNow, StopNow, look_at_work
+from app.models import MissionRow, Order, RobotRow, StopRow
+from app.robots.energy_use import usual_rates
+from app.robots.mission_updates import tell_mission
+from app.robots.service import Fleet, known_robot
+from fleet.charging.acceptance import Charge
+from fleet.charging.curve import ASSUMED
+from fleet.charging.demand import Demand
+from fleet.charging.docks import Need, plan_docks
+from fleet.charging.energy import Use
+from fleet.charging.top_ups import Move, Wish, top_ups
+from protocol.ids import new_id
+from protocol.parts import StopAction
+
+LOOK_EVERY_S: Final = 5.0
+"""Real seconds: charges change slowly."""
+REST_S: Final = 0.5
+"""Real seconds, between two looks: whoever is called away has a way to drive."""
+LEARNED_FROM: Final = timedelta(days=28)
+_HOUR: Final = timedelta(hours=1)
+
+log = structlog.get_logger(__name__)
+
+
+@dataclass
+class ChargeDesk:
+    """Runs in the background of the service, if traffic goes by the timetable."""
+
+    fleet: Fleet
+    _demand: Demand = field(default_factory=Demand)
+    _learned_at: datetime | None = None
+    _looks: Looks = field(default_factory=lambda: Looks(LOOK_EVERY_S, REST_S))
+
+    def __post_init__(self) -> None:
+        # When an order has changed somebody may be wanted elsewhere.
+        self.fleet.orders.on_change.append(self._looks.wake)
+
+    def stop(self) -> None:
+        """End `run` after what it is doing."""
+        self._looks.stop()
+
+    async def run(self) -> None:
+        """Until stopped or cancelled."""
+        async for _ in self._looks.until_stopped():
+            await self.look_round()
+
+    async def look_round(self) -> None:
+        """Call away who is wanted, and send who has nothing to do."""
+        now = self.fleet.clock.utc()
+        async with self.fleet.database.reading() as session:
+            await self._learn(session, now)
+            work = await look_at_work(session, now)
+        for stop in self._in_the_way(work):
+            await self._call_away(stop)
+        moves, leave = self._moves(work, now)
+        for move in moves:
+            await self._send(move, now)
+        for robot in leave:
+            await self._park(robot, now)
+
+    async def _learn(self, session: AsyncSession, now: datetime) -> None:
+        """Once an hour, when orders come."""
+        hour = now.replace(minute=0, second=0, microsecond=0)
+        if self._learned_at == hour:
+            return
+        self._demand, self._learned_at = Demand(), hour
+        recent = select(Order.created_at).where(col(Order.created_at) >= hour - LEARNED_FROM)
+        came = Counter(
+            at.replace(minute=0, second=0, microsecond=0) for at in (await session.exec(recent)).all() if at < hour
+        )
+        at = min(came, default=hour)
+        while at < hour:
+            self._demand.learn(self._local(at), came[at])
+            at += _HOUR
+
+    # What is decided.
+
+    def _moves(self, work: OpenWork, now: datetime) -> tuple[list[Move], set[str]]:
+        """To docks that are free; and who leaves one."""
+        own = {robot.home for robot in work.robots.values()}
+        docks = [post.name for post in self.fleet.campus.docks() if post.name not in own]
+        needs = {robot.name: self._need(robot, work, docks) for robot in work.robots.values() if _needs_one(robot)}
+        resting = [need for name, need in needs.items() if self._may_be_sent(work.robots[name], work)]
+        plan = plan_docks(list(needs.values()), docks, ASSUMED, THRESHOLDS, self.fleet.clock.now())
+        here = self._local(now)
+        wish = Wish(self._demand.is_quiet(here), round(self._demand.expected(here)))
+        in_docks = {need.dock: need.robot for need in resting if need.dock is not None}
+        awaited = {dock for name, dock in driving_there(needs.values()).items() if needs[name] not in resting}
+        taken = {dock: in_docks.get(dock) for dock in (*taken_docks(work), *awaited)}
+        found = top_ups(resting, plan, taken, THRESHOLDS, wish, self.fleet.clock.now())
+        leave = leaving([move for move in found if move.dock in taken], needs, in_docks)
+        return [move for move in found if move.dock not in taken], set(leave)
+
+    def _local(self, moment: datetime) -> datetime:
+        """Hours of the week are those of the people who send mail."""
+        return moment.astimezone(self.fleet.settings.zone)
+
+    def _need(self, robot: RobotNow, work: OpenWork, docks: list[str]) -> Need:
+        settings, length_m = self.fleet.settings, self.fleet.orders.ways.length_m
+        rates = self.fleet.spending.rates.get(robot.name, usual_rates(settings))
+        way_m = {dock: length_m(robot.post, dock) for dock in docks if length_m(robot.post, dock) < float("inf")}
+        ways = {dock: Use(way, way / settings.assumed_speed_m_s) for dock, way in way_m.items()}
+        dock = next((one for one in docks_of(robot, work) if one in docks), None)
+        charge = Charge(robot.battery_ratio or 0.0, rates, docked=bool(robot.docked))
+        return Need(robot.name, charge, self.fleet.clock.now(), ways, dock, THRESHOLDS.begin + THRESHOLDS.hysteresis)
+
+    def _may_be_sent(self, robot: RobotNow, work: OpenWork) -> bool:
+        is_free = robot.takes_work and robot.name not in work.missions
+        return is_free and self.fleet.connections.understands(robot.name, UNTIL_RATIO)
+
+    def _in_the_way(self, work: OpenWork) -> Iterator[StopNow]:
+        """Stops to charge or to park at, of robots that have got work meanwhile and have enough for it."""
+        charges = Charges(self.fleet.orders.ways, self.fleet.settings, self.fleet.spending.rates)
+        for name, stops in work.stops.items():
+            posts, robot = [stop.post for stop in stops if stop.order_id], work.robots[name]
+            if posts and (robot.battery_ratio or 0.0) >= charges.needed(robot, posts):
+                yield from (stop for stop in stops if stop.order_id is None)
+
+    # How it is written.
+
+    async def _send(self, move: Move, now: datetime) -> None:
+        until = THRESHOLDS.full if self._demand.is_quiet(self._local(now)) else THRESHOLDS.sufficient
+        async with self.fleet.database.transaction() as session:
+            robot = await known_robot(session, move.robot, to_change=True)
+            work = await look_at_work(session, now)
+            if self._may_be_sent(work.robots[move.robot], work) and move.dock not in taken_docks(work):
+                stop = StopRow(id=new_id(), mission_id=new_id(), position=0, post=move.dock, action=StopAction.DOCK)
+                stop.until_ratio = until
+                await self._tell(session, robot, stop)
+                log.info("sent_to_charge", robot=move.robot, dock=move.dock, until_ratio=until)
+
+    async def _park(self, name: str, now: datetime) -> None:
+        async with self.fleet.database.transaction() as session:
+            robot = await known_robot(session, name, to_change=True)
+            work = await look_at_work(session, now)
+            post = parking(self.fleet.campus, work, work.robots[name], self.fleet.orders.ways)
+            if post is not None and self._may_be_sent(work.robots[name], work) and robot.docked:
+                stop = StopRow(id=new_id(), mission_id=new_id(), position=0, post=post, action=StopAction.PARK)
+                await self._tell(session, robot, stop)
+                log.info("makes_room_in_dock", robot=name, dock=robot.post, post=post)
+
+    async def _tell(self, session: AsyncSession, robot: RobotRow, stop: StopRow) -> None:
+        """A mission of this one stop."""
+        mission = MissionRow(id=stop.mission_id, robot=robot.name, created_at=self.fleet.clock.utc())
+        session.add(mission)
+        await session.flush()
+        session.add(stop)
+        await session.flush()
+        await tell_mission(session, self.fleet, robot, mission)
+
+    async def _call_away(self, stop: StopNow) -> None:
+        """Work was given only where there is the charge for it: it does not wait for more."""
+        async with self.fleet.database.transaction() as session:
+            robot = await known_robot(session, stop.robot, to_change=True)
+            row = await session.get_one(StopRow, stop.id, with_for_update=True)
+            mission = await session.get_one(MissionRow, stop.mission_id, with_for_update=True)
+            still = list(self._in_the_way(await look_at_work(session, self.fleet.clock.utc())))
+            if all(one.id != stop.id for one in still):
+                return
+            row.dropped_at = self.fleet.clock.utc()
+            mission.update_number += 1
+            await session.flush()
+            await tell_mission(session, self.fleet, robot, mission)
+            log.info("called_away", robot=stop.robot, post=stop.post)
+
+
+def _needs_one(robot: RobotNow) -> bool:
+    return robot.is_there and robot.home is None and robot.post is not None and robot.battery_ratio is not None

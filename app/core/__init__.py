@@ -1,0 +1,5 @@
+"""What every feature rests on: settings, errors, database, logs, clock, texts and mail.
+
+Imports no other package of the service.
+Start at `settings.py` and `database/database.py`.
+"""

@@ -1,0 +1,103 @@
+"""Forecasts of all stops that robots have before them: by the timetable, or, without one, by the way of each robot."""
+
+import asyncio
+from collections.abc import Awaitable, Callable, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from random import Random
+from typing import Final, NamedTuple
+
+from app.models import RobotRow
+from fleet.eta.arrivals import Estimates
+from fleet.eta.durations import Kind
+from fleet.eta.forecast import Chance, forecast
+from fleet.eta.intervals import Interval
+from fleet.eta.on_the_way import Ahead, Place, on_the_way
+from fleet.schedule.controller import TrafficController
+from fleet.schedule.journey import Goal
+from fleet.schedule.network import Lane, Network
+from protocol.parts import StopAction
+
+KIND_OF: Final[Mapping[str, Kind]] = {
+    StopAction.LOAD: Kind.LOAD,
+    StopAction.RECEIVE: Kind.RECEIVE,
+    StopAction.RETURN: Kind.RECEIVE,
+}
+
+
+class Stop(NamedTuple):
+    """A stop that is not over, of a mission that is not over; a robot's in their order."""
+
+    id: str
+    action: str
+    post: str
+    order_id: str | None
+    robot: str
+    arrived_at: datetime | None
+
+
+@dataclass(frozen=True)
+class Foresight:
+    """What is drawn of each goal and corridor of the timetable, as it stands at one moment."""
+
+    estimates: Estimates
+    network: Network
+    stops: Mapping[str, Stop]
+    now: datetime
+    now_s: float
+    rng: Random
+
+    def chance(self) -> Chance:
+        return Chance(self._travel_s, self._handling_s, self._arrives_s)
+
+    def _travel_s(self, _robot: str, lane: Lane) -> float:
+        return self._draw_s(lane, 0.0)
+
+    def _arrives_s(self, _robot: str, lane: Lane, entered_s: float) -> float:
+        return entered_s + self._draw_s(lane, max(0.0, self.now_s - entered_s))
+
+    def _draw_s(self, lane: Lane, over_s: float) -> float:
+        posts = self.network.posts
+        thing = self.estimates.corridor(posts[lane.start], posts[lane.end])
+        return lane.travel_s if thing is None else self.estimates.durations.draw_s(thing, self.rng, over_s)
+
+    def _handling_s(self, goal: Goal) -> float:
+        stop = self.stops.get(goal.key)
+        kind = KIND_OF.get(stop.action) if stop is not None else None
+        if stop is None or kind is None:
+            return goal.handling_s
+        thing = self.estimates.stop(kind, stop.arrived_at or self.now)
+        over_s = max(0.0, (self.now - stop.arrived_at).total_seconds()) if stop.arrived_at else 0.0
+        return self.estimates.durations.draw_s(thing, self.rng, over_s) - over_s
+
+
+async def by_timetable(
+    estimates: Estimates, controller: TrafficController, stops: Sequence[Stop], now: datetime, now_s: float, rng: Random
+) -> dict[str, Interval]:
+    """In how many seconds each stop is reached, by its id; without those that are in no timetable yet."""
+    network, tasks, journeys = controller.network, controller.tasks(now_s), controller.journeys(now_s)
+    sees = Foresight(estimates, network, {stop.id: stop for stop in stops}, now, now_s, rng)
+    return await asyncio.to_thread(forecast, network, tasks, journeys, now_s, sees.chance())
+
+
+async def by_their_ways(
+    estimates: Estimates,
+    robots: Mapping[str, RobotRow],
+    stops: Sequence[Stop],
+    now: datetime,
+    rng: Random,
+    breathe: Callable[[], Awaitable[None]],
+) -> dict[str, Interval]:
+    """The same where every corridor is granted at once. `breathe` is called after each robot."""
+    places = {name: Place(one.post, one.towards, one.seen_at) for name, one in robots.items() if one.post is not None}
+    ahead: dict[str, list[Ahead]] = {name: [] for name in places}
+    for stop in stops:
+        if stop.robot in places:
+            ahead[stop.robot].append(Ahead(stop.id, stop.post, KIND_OF.get(stop.action), stop.arrived_at))
+
+    found = dict[str, Interval]()
+    for name, theirs in ahead.items():
+        found |= on_the_way(estimates, places[name], theirs, now, rng)
+        # Not in a thread: it would hold the interpreter for 5 ms whenever the service has waited for anything.
+        await breathe()
+    return found

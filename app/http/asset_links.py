@@ -1,0 +1,26 @@
+"""Which Android app may open these pages as its own (Digital Asset Links)."""
+
+from typing import Any
+
+from fastapi import APIRouter
+from fastapi.responses import JSONResponse
+
+from app.core.errors import problem_answer
+from app.core.settings import SettingsDep
+
+router = APIRouter(tags=["about"])
+
+OPENS_ALL_ADDRESSES = "delegate_permission/common.handle_all_urls"
+
+
+@router.get("/.well-known/assetlinks.json", include_in_schema=False, response_model=None)
+async def asset_links(settings: SettingsDep) -> JSONResponse:
+    """What Android asks before it shows the pages without an address bar; 404 as long as there is no app."""
+    if not (settings.android_package and settings.android_fingerprints):
+        return problem_answer(404, "not_found", "No Android app belongs to this service.")
+    target: dict[str, Any] = {
+        "namespace": "android_app",
+        "package_name": settings.android_package,
+        "sha256_cert_fingerprints": list(settings.android_fingerprints),
+    }
+    return JSONResponse([{"relation": [OPENS_ALL_ADDRESSES], "target": target}])

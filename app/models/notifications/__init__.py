@@ -1,0 +1,5 @@
+"""Tables of notifications, preferences and delivery attempts.
+
+Imported through `app.models`.
+Start at `notifications.py`.
+"""

@@ -1,0 +1,5 @@
+"""Tables of robots: missions, messages, reservations, commands, samples.
+
+Imported through `app.models`.
+Start at `robots.py`.
+"""

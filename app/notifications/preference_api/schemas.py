@@ -1,0 +1,92 @@
+"""What people want to be told, over HTTP."""
+
+from datetime import datetime
+from typing import Annotated
+
+import httpx
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+
+from app.models import NoticeKind, PushSubscription, Webhook
+from app.notifications.preferences import ChannelName
+
+Url = Annotated[str, StringConstraints(max_length=1000, pattern=r"^[!-~]+$")]
+KeyText = Annotated[str, StringConstraints(max_length=128, pattern=r"^[A-Za-z0-9_=-]+$")]
+
+
+class DeviceView(BaseModel):
+    """A browser that shows notices, and whose push service carries them."""
+
+    id: str
+    push_service: str
+    created_at: datetime
+
+    @classmethod
+    def of(cls, row: PushSubscription) -> "DeviceView":
+        return cls(id=row.id, push_service=httpx.URL(row.endpoint).host, created_at=row.created_at)
+
+
+class WebhookView(BaseModel):
+    """An address that is told of one's notices."""
+
+    url: str
+    created_at: datetime
+
+    @classmethod
+    def of(cls, row: Webhook) -> "WebhookView":
+        return cls(url=row.url, created_at=row.created_at)
+
+
+class NewWebhookView(WebhookView):
+    """With the secret that signs what it is sent."""
+
+    secret: str
+
+
+class TrialView(BaseModel):
+    """What became of a delivery for trial."""
+
+    is_good: bool = Field(description="Whether the receiver took it: its answer was 2xx.")
+    status: int | None = Field(description="What it answered; null: nothing.")
+    problem: str | None = Field(description="Why there was no answer.")
+
+
+class WishesView(BaseModel):
+    """What somebody is told, and where. The inbox has everything; `muted` says what a channel does not carry."""
+
+    language: str
+    kinds: list[NoticeKind]
+    must_reach: list[NoticeKind] = Field(description="Kinds that cannot be muted on every channel.")
+    muted: dict[ChannelName, list[NoticeKind]]
+    push_key: str = Field(description="`applicationServerKey` for a browser that subscribes.")
+    devices: list[DeviceView]
+    webhook: WebhookView | None
+
+
+class Wishes(BaseModel):
+    """What is not to come on a channel. A channel that is not named stays as it is."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    muted: dict[ChannelName, Annotated[list[NoticeKind], Field(max_length=100)]]
+
+
+class SubscriptionKeys(BaseModel):
+    """The browser's own keys (RFC 8291), URL-safe base64."""
+
+    p256dh: KeyText
+    auth: KeyText
+
+
+class NewDevice(BaseModel):
+    """What `PushSubscription.toJSON()` of a browser gives."""
+
+    endpoint: Url
+    keys: SubscriptionKeys
+
+
+class NewWebhook(BaseModel):
+    """Where to."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    url: Url

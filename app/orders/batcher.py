@@ -1,0 +1,140 @@
+"""Places orders: those that are asked for at the same time together, in one transaction with few statements for all.
+
+A statement for many takes hardly longer than for one. Nobody waits for company: what comes while one round is written
+is the next round. Each is refused alone; if a round fails as a whole, each of its orders is tried by itself.
+"""
+
+import asyncio
+from collections.abc import Mapping, Sequence
+from contextvars import Context
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+from sqlmodel.ext.asyncio.session import AsyncSession
+
+from app.accounts.sign_in.service import look_up_people
+from app.core.database.database import Database, write_all
+from app.core.errors import ServiceError
+from app.models import IdempotencyKey, Person
+from app.orders.changes.placing import Draft
+from app.orders.idempotency import Answer, Earlier, earlier_answers, key_row
+from app.orders.service import Orders
+from app.orders.views.schemas import NewOrder, OrderView, etag_of
+
+AT_ONCE: Final = 20
+
+
+@dataclass(frozen=True)
+class Placed:
+    """What is answered; `again`: to a request that was answered before."""
+
+    view: OrderView
+    headers: Mapping[str, str]
+    again: bool = False
+
+
+@dataclass(frozen=True)
+class _New:
+    """What is to be written of one order, and what is answered then."""
+
+    draft: Draft
+    key: Mapping[str, Any]
+    placed: Placed
+
+
+@dataclass(frozen=True)
+class _Asked:
+    """One request, and who waits for its outcome."""
+
+    person: Person
+    key: str
+    wish: NewOrder
+    outcome: asyncio.Future[Placed]
+
+    @property
+    def whose(self) -> tuple[str, str]:
+        return self.person.id, self.key
+
+    def end(self, outcome: Placed | Exception) -> None:
+        if self.outcome.done():  # whoever asked waits no longer
+            return
+        if isinstance(outcome, Exception):
+            self.outcome.set_exception(outcome)
+        else:
+            self.outcome.set_result(outcome)
+
+
+@dataclass
+class OrderDesk:
+    """Where people's requests for orders come in."""
+
+    database: Database
+    orders: Orders
+    _waiting: list[_Asked] = field(default_factory=list)
+    _at_work: asyncio.Task[None] | None = None
+
+    async def place(self, person: Person, key: str, wish: NewOrder) -> Placed:
+        """Once for each key. It is done even if whoever asked is cancelled meanwhile: their key tells what came of it.
+
+        Raises StillRunning, KeyReused, and what `Placing.draft` raises.
+        """
+        with self.orders.running.only_once(person.id, key):
+            asked = _Asked(person, key, wish, asyncio.get_running_loop().create_future())
+            self._waiting.append(asked)
+            if self._at_work is None:
+                # Without the first one's context: the request's number in the log would be wrong for the others.
+                self._at_work = asyncio.create_task(self._work(), context=Context())
+            return await asked.outcome
+
+    async def _work(self) -> None:
+        asked: Sequence[_Asked] = ()
+        try:
+            while self._waiting:
+                asked, self._waiting = self._waiting[:AT_ONCE], self._waiting[AT_ONCE:]
+                await self._place(asked)
+        finally:
+            self._at_work = None
+            for one in (*asked, *self._waiting):  # cut off: nobody shall wait for ever
+                one.outcome.cancel()
+            self._waiting = []
+
+    async def _place(self, asked: Sequence[_Asked]) -> None:
+        try:
+            outcomes = await self._in_one_transaction(asked)
+        except Exception as error:
+            if len(asked) == 1:
+                asked[0].end(error)
+                return
+            for one in asked:
+                await self._place([one])
+        else:
+            for one, outcome in zip(asked, outcomes, strict=True):
+                one.end(outcome)
+
+    async def _in_one_transaction(self, asked: Sequence[_Asked]) -> list[Placed | ServiceError]:
+        async with self.database.transaction() as session:
+            earlier = await earlier_answers(session, [one.whose for one in asked], self.orders.clock.utc())
+            known = await look_up_people(session, {address for one in asked for address in one.wish.addresses})
+            outcomes = [await self._outcome(session, one, earlier.get(one.whose), known) for one in asked]
+            new = [one for one in outcomes if isinstance(one, _New)]
+            await self.orders.write(session, [one.draft for one in new])
+            await write_all(session, IdempotencyKey, [one.key for one in new])
+        return [one.placed if isinstance(one, _New) else one for one in outcomes]
+
+    async def _outcome(
+        self, session: AsyncSession, asked: _Asked, earlier: Earlier | None, known: dict[str, Person]
+    ) -> Placed | _New | ServiceError:
+        try:
+            if earlier is not None:
+                answer = earlier.answer_to(asked.wish)
+                return Placed(OrderView.model_validate(answer.body), answer.headers, again=True)
+            return self._new(asked, await self.orders.draft(session, asked.person, asked.wish, known))
+        except ServiceError as refusal:
+            return refusal
+
+    def _new(self, asked: _Asked, draft: Draft) -> _New:
+        view = self.orders.first_view(draft, asked.person)
+        headers = {"Location": f"/api/v1/orders/{view.id}", "ETag": etag_of(view)}
+        answer = Answer(headers, view.model_dump(mode="json"))
+        key = key_row(*asked.whose, asked.wish, answer, draft.facts.order.created_at)
+        return _New(draft, key, Placed(view, headers))

@@ -1,0 +1,204 @@
+"""What a dispatcher does when something is stuck, or is wanted otherwise than the rules would have it."""
+
+from typing import Final, Literal
+
+from sqlmodel.ext.asyncio.session import AsyncSession
+
+from app.models import Evidence, Handover, Order, OrderState, Person, Priority, RobotRow
+from app.orders import errors, stops
+from app.orders.changes.returning import Returning
+from app.orders.custody.codes import Holder
+from app.orders.custody.unproven import claim_of_handing_out, is_true, last_handover, was_aboard, was_never_aboard
+from app.orders.ledger import Word
+from app.orders.transitions import ENDED, MAIL_ABOARD, ROBOT_COMING, By
+from app.orders.views.schemas import OrderView
+from app.orders.views.views import load_facts
+from protocol.parts import Purpose, StopAction
+
+WayOut = Literal["resume", "returning", "held", "queued", "cancelled", "handed_over"]
+PRIORITY_CHANGED: Final = "priority_changed"
+REASSIGNED: Final = "reassigned"
+BY_HAND: Final = "dispatcher"
+TAKEN_OUT: Final = "taken_out"
+"""By hand, of mail whose order had ended already: the order stays as it ended."""
+DESTINATION: Final = {
+    OrderState.CARRYING: StopAction.RECEIVE,
+    OrderState.AT_RECIPIENT: StopAction.RECEIVE,
+    OrderState.RETURNING: StopAction.RETURN,
+    OrderState.AT_RETURN: StopAction.RETURN,
+}
+
+
+class Intervening(Returning):
+    """On a dispatcher's word. The routes let nobody else in."""
+
+    async def stop_for_attention(
+        self, session: AsyncSession, person: Person, order_id: str, reason: str, if_match: str = ""
+    ) -> OrderView:
+        """A person has to see to it: what its robot does not say any more is decided by hand."""
+        order = await self._theirs(session, person, order_id, if_match)
+        await self.move(session, order.id, OrderState.ATTENTION, _word(person, reason))
+        return await self._shown(session, order, person)
+
+    async def resolve(
+        self, session: AsyncSession, person: Person, order_id: str, to: WayOut, reason: str | None, if_match: str = ""
+    ) -> OrderView:
+        """Out of attention: on as before, back, into the mailroom's hands, into the queue again, or not at all; or its
+        mail is out as its robot says.
+
+        Raises UnknownOrder, OrderChanged, TransitionRefused, NothingToResume, NothingClaimed.
+        """
+        order = await self._theirs(session, person, order_id, if_match)
+        before = order.state_before_attention
+        if before is None:
+            raise errors.TransitionRefused(f"Order {order.id} is {order.state}: it needs no attention.")
+        word = _word(person, reason)
+        await _WAYS_OUT[to](self, session, order, before, word)
+        return await self._shown(session, order, person)
+
+    async def _resume(self, session: AsyncSession, order: Order, before: OrderState, word: Word) -> None:
+        left = await stops.stops_of_order(session, order.id, order.robot or "")
+        if not left and before in ROBOT_COMING:
+            raise errors.NothingToResume("Its robot does not come for it any more. Queue the order again.")
+        if not left:  # the robot has given up; with the mail aboard it can be sent once more
+            action = DESTINATION[before]
+            post = order.to_post if action is StopAction.RECEIVE else self.return_post(order)
+            await self.send(session, order, action, post)
+        await self._found_aboard(session, order, before)
+        await self.move(session, order.id, before, word)
+
+    async def _found_aboard(self, session: AsyncSession, order: Order, before: OrderState) -> None:
+        """On the word of whoever decides what becomes of it."""
+        if before in MAIL_ABOARD:
+            await was_aboard(session, order.id, self.clock.utc())
+
+    async def _handed_over(self, session: AsyncSession, order: Order, before: OrderState, word: Word) -> None:
+        """Whoever should have it was asked, and has it."""
+        claim = await claim_of_handing_out(session, order.id)
+        if claim is None:
+            raise errors.NothingClaimed("Its robot does not say that the mail is out.")
+        await is_true(session, claim, self.clock.utc())
+        await self.move(session, order.id, _where_it_went(order, claim), word)
+
+    async def _return(self, session: AsyncSession, order: Order, before: OrderState, word: Word) -> None:
+        await self._found_aboard(session, order, before)
+        await self.bring_back(session, order)
+        await self.move(session, order.id, OrderState.RETURNING, word)
+
+    async def _hold(self, session: AsyncSession, order: Order, before: OrderState, word: Word) -> None:
+        if before in MAIL_ABOARD:
+            await self.take_into_hands(session, order, word)
+        else:  # of what was passed on: the mailroom has it already
+            order.let_go_by = order.robot
+            await self.move(session, order.id, OrderState.HELD, word)
+
+    async def _queue(self, session: AsyncSession, order: Order, before: OrderState, word: Word) -> None:
+        was_a_claim = await was_never_aboard(session, order.id, self.clock.utc())
+        if before in MAIL_ABOARD and not was_a_claim:
+            raise errors.TransitionRefused(f"Robot {order.robot} has the mail of order {order.id}: pass it on.")
+        order.let_go_by, order.avoided_robot = order.robot, order.robot
+        await self.move(session, order.id, OrderState.QUEUED, word)
+
+    async def _cancel_by_hand(self, session: AsyncSession, order: Order, before: OrderState, word: Word) -> None:
+        order.let_go_by = order.robot
+        await self.move(session, order.id, OrderState.CANCELLED, word)
+
+    async def hold(
+        self, session: AsyncSession, person: Person, order_id: str, reason: str | None, if_match: str = ""
+    ) -> OrderView:
+        """Somebody of the mailroom has taken the mail out of the robot by hand. Raises TransitionRefused."""
+        order = await self._theirs(session, person, order_id, if_match)
+        await self.take_into_hands(session, order, _word(person, reason))
+        return await self._shown(session, order, person)
+
+    async def take_into_hands(self, session: AsyncSession, order: Order, word: Word) -> None:
+        """Custody by a dispatcher's word, the only one that no robot has written; the robot is told to forget it."""
+        if order.state is OrderState.HELD:
+            return  # the mailroom has it already
+        if order.state in ENDED and await self.robot_with_mail(session, order) is None:
+            raise errors.TransitionRefused(f"Order {order.id} is {order.state}, and no robot has its mail.")
+        await was_aboard(session, order.id, self.clock.utc())
+        if order.robot is not None:
+            order.let_go_by = order.robot
+            session.add(self._taken_by_hand(order, word))
+        if order.state in ENDED:
+            await self.note(session, order.id, TAKEN_OUT, word)
+        else:
+            await self.move(session, order.id, OrderState.HELD, word)
+
+    async def is_taken_by_hand(self, session: AsyncSession, order: Order) -> bool:
+        """Whether the mail is out on a dispatcher's word: the robot that had it does not know."""
+        last = await last_handover(session, order.id)
+        return last is not None and last.how == BY_HAND
+
+    def _taken_by_hand(self, order: Order, word: Word) -> Handover:
+        return Handover(
+            order_id=order.id,
+            stop_id=f"held-{order.id}"[:64],
+            purpose=Purpose.RETURN,
+            robot=order.robot or "",
+            post=self.return_post(order),
+            how=BY_HAND,
+            evidence=Evidence.DISPATCHER,
+            holder="mailroom",
+            person_id=word.person_id,
+            robot_at=self.clock.utc(),
+            at=self.clock.utc(),
+        )
+
+    async def reassign(
+        self, session: AsyncSession, person: Person, order_id: str, robot: str | None, if_match: str = ""
+    ) -> OrderView:
+        """Another robot fetches it: this one if named, else any other. Raises NotReassignable, UnknownRobotWanted."""
+        order = await self._theirs(session, person, order_id, if_match)
+        if order.state is not OrderState.QUEUED and order.state not in ROBOT_COMING:
+            raise errors.NotReassignable(f"The order is {order.state}: only mail that is not aboard can change robots.")
+        if robot is not None and await session.get(RobotRow, robot) is None:
+            raise errors.UnknownRobotWanted(f"No robot named {robot!r} is enrolled.")
+        order.wanted_robot = robot
+        order.avoided_robot = order.robot if robot is None else None
+        if order.state in ROBOT_COMING and order.robot != robot:
+            order.reassign_requested_at, order.let_go_by = self.clock.utc(), order.robot
+        await self.note(session, order.id, REASSIGNED, _word(person, f"to {robot}" if robot else None))
+        return await self._shown(session, order, person)
+
+    async def prioritise(
+        self, session: AsyncSession, person: Person, order_id: str, priority: Priority, if_match: str = ""
+    ) -> OrderView:
+        """Fetch it sooner, or later, than others. Raises TransitionRefused for an order that has ended."""
+        order = await self._theirs(session, person, order_id, if_match)
+        if order.state in ENDED:
+            raise errors.TransitionRefused(f"Order {order.id} is {order.state}: its priority means nothing any more.")
+        if order.priority is not priority:
+            order.priority = priority
+            await self.note(session, order.id, PRIORITY_CHANGED, _word(person, priority))
+        return await self._shown(session, order, person)
+
+    async def _theirs(self, session: AsyncSession, person: Person, order_id: str, if_match: str) -> Order:
+        return (await self.theirs(session, person, order_id, if_match))[0]
+
+    async def _shown(self, session: AsyncSession, order: Order, person: Person) -> OrderView:
+        facts = (await load_facts(session, [order]))[0]
+        return self.view_of(facts, "dispatcher", person.id)
+
+
+_WAYS_OUT: Final = {
+    "resume": Intervening._resume,
+    "returning": Intervening._return,
+    "held": Intervening._hold,
+    "queued": Intervening._queue,
+    "cancelled": Intervening._cancel_by_hand,
+    "handed_over": Intervening._handed_over,
+}
+
+
+def _where_it_went(order: Order, claim: Handover) -> OrderState:
+    """As who took it says, and for want of that the place."""
+    if claim.purpose == Purpose.RECEIVE or claim.holder == Holder.RECIPIENT:
+        return OrderState.DELIVERED
+    is_senders = claim.holder == Holder.SENDER or (claim.holder != Holder.MAILROOM and claim.post == order.from_post)
+    return OrderState.RETURNED if is_senders else OrderState.HELD
+
+
+def _word(person: Person, reason: str | None) -> Word:
+    return Word(By.DISPATCHER, person_id=person.id, reason=reason)

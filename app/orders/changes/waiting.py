@@ -1,0 +1,61 @@
+"""How long the robot waits: whom it waits for may ask for a little more, a dispatcher for as much as is needed."""
+
+from datetime import timedelta
+from typing import Final
+
+from sqlmodel import col, func, select
+from sqlmodel.ext.asyncio.session import AsyncSession
+
+from app.models import Order, OrderEvent, OrderState, Person
+from app.orders import errors
+from app.orders.ledger import Ledger, Word
+from app.orders.stops import stops_of_order, wait_anew
+from app.orders.transitions import By
+from app.orders.views.schemas import OrderView
+from app.orders.views.views import MyRole, load_facts
+
+WAIT_EXTENDED: Final = "wait_extended"
+WAITS_FOR: Final = {
+    OrderState.AT_SENDER: "sender",
+    OrderState.AT_RECIPIENT: "recipient",
+    OrderState.AT_RETURN: "sender",
+}
+
+
+class Waiting(Ledger):
+    """What prolongs a wait."""
+
+    async def extend_wait(
+        self, session: AsyncSession, person: Person, order_id: str, extend_s: float | None, if_match: str = ""
+    ) -> OrderView:
+        """The robot waits longer where it is. Raises UnknownOrder, OrderChanged, NotWaiting, WaitedLongEnough."""
+        order, role = await self.theirs(session, person, order_id, if_match)
+        if WAITS_FOR.get(order.state) != role and role != "dispatcher":
+            raise errors.NotWaiting(f"The order is {order.state}: the robot is not waiting for you.")
+        await self._check_share(session, order, role, extend_s)
+        await self._extend(session, order, extend_s or self.settings.wait_extension_s)
+        await self.note(session, order.id, WAIT_EXTENDED, Word(By(role), person_id=person.id))
+        return self.view_of((await load_facts(session, [order]))[0], role, person.id)
+
+    async def _check_share(self, session: AsyncSession, order: Order, role: MyRole, extend_s: float | None) -> None:
+        if role == "dispatcher":
+            return
+        if extend_s is not None and extend_s > self.settings.wait_extension_s:
+            limit_min = self.settings.wait_extension_s / 60
+            raise errors.WaitedLongEnough(f"You can ask for at most {limit_min:.0f} minutes at a time.")
+        asked = select(func.count()).where(
+            col(OrderEvent.order_id) == order.id,
+            col(OrderEvent.kind) == WAIT_EXTENDED,
+            col(OrderEvent.state) == order.state,
+            col(OrderEvent.by) == role,
+        )
+        if (await session.exec(asked)).one() >= self.settings.wait_extensions:
+            raise errors.WaitedLongEnough("You have asked for more time as often as is possible. Ask the dispatcher.")
+
+    async def _extend(self, session: AsyncSession, order: Order, extend_s: float) -> None:
+        waiting = await stops_of_order(session, order.id, order.robot or "")
+        if order.wait_until is None or not waiting or waiting[0].arrived_at is None:
+            raise errors.NotWaiting(f"The order is {order.state}: no robot is waiting.")
+        now = self.clock.utc()
+        order.wait_until = max(order.wait_until, now) + timedelta(seconds=extend_s)
+        await wait_anew(session, waiting[0], (order.wait_until - now).total_seconds())

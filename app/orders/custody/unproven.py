@@ -1,0 +1,92 @@
+"""Hand-overs that a robot claims and does not prove, and what is found of them.
+
+Mail that is said to have come aboard is the robot's from then on: whoever says so answers for it. Mail that is said to
+be out is the robot's still, until a person or what follows has settled it.
+"""
+
+from datetime import datetime
+from typing import Final
+
+from sqlalchemy import ColumnElement
+from sqlmodel import and_, col, or_, select, update
+from sqlmodel.ext.asyncio.session import AsyncSession
+
+from app.models import Alarm, Evidence, Handover, Settled
+from protocol.parts import Purpose
+
+CLAIMED: Final = "handover_claimed"
+"""The alarm; its sentence has the order's id."""
+
+
+def counts(one: Handover) -> bool:
+    """Whether the mail is where this hand-over says."""
+    return one.evidence != Evidence.CLAIMED or one.settled == Settled.TRUE or (_is_open(one) and _is_load(one))
+
+
+def is_open_claim_of_handing_out(one: Handover) -> bool:
+    """Whether a person still has to find out if the mail is out."""
+    return one.evidence == Evidence.CLAIMED and _is_open(one) and not _is_load(one)
+
+
+def _is_open(one: Handover) -> bool:
+    return one.settled is None
+
+
+def _is_load(one: Handover) -> bool:
+    return one.purpose == Purpose.LOAD
+
+
+async def last_handover(session: AsyncSession, order_id: str) -> Handover | None:
+    """The newest link of the chain of custody: it tells who has the mail now."""
+    newest = select(Handover).where(Handover.order_id == order_id, _COUNTS).order_by(col(Handover.id).desc()).limit(1)
+    return (await session.exec(newest)).first()
+
+
+async def claim_of_handing_out(session: AsyncSession, order_id: str) -> Handover | None:
+    """The newest word of a robot that it does not have this mail any more, as long as nothing has settled it."""
+    claims = await _open_claims(session, order_id)
+    return next((one for one in reversed(claims) if not _is_load(one)), None)
+
+
+async def was_aboard(session: AsyncSession, order_id: str, now: datetime) -> None:
+    """The mail was in its robot until now: who said that it came aboard was right, who said that it went was not."""
+    claims = await _open_claims(session, order_id)
+    for one in claims:
+        one.settled = Settled.TRUE if _is_load(one) else Settled.FALSE
+    if claims:
+        await _silence(session, order_id, now)
+
+
+async def was_never_aboard(session: AsyncSession, order_id: str, now: datetime) -> bool:
+    """It did not come aboard after all, so nor did it come out; False if that it came aboard was not a claim."""
+    claims = await _open_claims(session, order_id)
+    if not any(_is_load(one) for one in claims):
+        return False
+    for one in claims:
+        one.settled = Settled.FALSE
+    await _silence(session, order_id, now)
+    return True
+
+
+async def is_true(session: AsyncSession, claim: Handover, now: datetime) -> None:
+    """Somebody has asked, and the mail is out."""
+    await was_aboard(session, claim.order_id, now)
+    claim.settled = Settled.TRUE
+
+
+async def _open_claims(session: AsyncSession, order_id: str) -> list[Handover]:
+    wanted = select(Handover).where(Handover.order_id == order_id, Handover.evidence == Evidence.CLAIMED)
+    wanted = wanted.where(col(Handover.settled).is_(None)).order_by(col(Handover.id))
+    return list((await session.exec(wanted)).all())
+
+
+async def _silence(session: AsyncSession, order_id: str, now: datetime) -> None:
+    ringing = update(Alarm).where(col(Alarm.name) == CLAIMED, col(Alarm.cleared_at).is_(None))
+    await session.exec(ringing.where(col(Alarm.reason).contains(order_id, autoescape=True)).values(cleared_at=now))
+
+
+_COUNTS: Final[ColumnElement[bool]] = or_(
+    col(Handover.evidence) != Evidence.CLAIMED,
+    col(Handover.settled) == Settled.TRUE,
+    and_(col(Handover.settled).is_(None), col(Handover.purpose) == Purpose.LOAD),
+)

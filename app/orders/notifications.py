@@ -1,0 +1,154 @@
+"""Who is told what, at which state of an order."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from typing import Any, Final
+
+from app.core.settings import Settings
+from app.core.texts.times import as_fact
+from app.models import NoticeKind, Order, OrderEvent, OrderState, Person
+from app.models.orders.order_events import MOVED
+from app.notifications.service import notice_row
+from app.notifications.wording import TIMES
+from app.orders.transitions import MAIL_ABOARD, By
+from app.orders.views.estimate import expected_of
+from maps import CampusMap
+
+SENDER: Final = By.SENDER
+RECIPIENT: Final = By.RECIPIENT
+
+
+@dataclass(frozen=True)
+class Telling:
+    """One person is told one thing, if it concerns them as things stand; `when_near`: not before the robot is."""
+
+    who: By
+    kind: NoticeKind
+    concerns: Callable[[Order], bool] = lambda order: True
+    when_near: bool = False
+
+
+def _both(kind: NoticeKind, concerns: Callable[[Order], bool] = lambda order: True) -> tuple[Telling, Telling]:
+    return Telling(SENDER, kind, concerns), Telling(RECIPIENT, kind, concerns)
+
+
+def _is_with_its_sender(order: Order) -> bool:
+    return not order.is_passed_on
+
+
+def _was_called_back(order: Order) -> bool:
+    return order.cancel_requested_at is not None
+
+
+def _was_not_taken(order: Order) -> bool:
+    return not _was_called_back(order)
+
+
+def _comes_to_the_sender(order: Order) -> bool:
+    return return_post_of(order) == order.from_post
+
+
+def _was_aboard(order: Order) -> bool:
+    """Before that a recipient has not been told of anything that could be late or go wrong."""
+    return (order.state_before_attention or order.state) in MAIL_ABOARD
+
+
+TOLD: Final[Mapping[OrderState, tuple[Telling, ...]]] = {
+    OrderState.QUEUED: (Telling(SENDER, NoticeKind.ACCEPTED),),
+    OrderState.TO_SENDER: (Telling(SENDER, NoticeKind.ROBOT_NEAR, _is_with_its_sender, when_near=True),),
+    OrderState.AT_SENDER: (Telling(SENDER, NoticeKind.ROBOT_HERE, _is_with_its_sender),),
+    OrderState.CARRYING: (Telling(RECIPIENT, NoticeKind.ON_ITS_WAY),),
+    OrderState.AT_RECIPIENT: (Telling(RECIPIENT, NoticeKind.ROBOT_HERE_FOR_YOU),),
+    OrderState.DELIVERED: _both(NoticeKind.DELIVERED),
+    OrderState.RETURNING: (
+        *_both(NoticeKind.NOT_TAKEN, _was_not_taken),
+        *_both(NoticeKind.CALLED_BACK, _was_called_back),
+    ),
+    # In the mailroom somebody of the mailroom takes it out.
+    OrderState.AT_RETURN: (Telling(SENDER, NoticeKind.AT_RETURN, _comes_to_the_sender),),
+    OrderState.RETURNED: _both(NoticeKind.RETURNED),
+    OrderState.HELD: _both(NoticeKind.HELD),
+    OrderState.CANCELLED: (Telling(SENDER, NoticeKind.CANCELLED),),
+    OrderState.EXPIRED: (Telling(SENDER, NoticeKind.EXPIRED),),
+    OrderState.ATTENTION: (
+        Telling(SENDER, NoticeKind.ATTENTION),
+        Telling(RECIPIENT, NoticeKind.ATTENTION, _was_aboard),
+    ),
+}
+LATE: Final = (Telling(SENDER, NoticeKind.DELAYED), Telling(RECIPIENT, NoticeKind.DELAYED, _was_aboard))
+
+ONCE: Final = frozenset(
+    {
+        NoticeKind.ACCEPTED,
+        NoticeKind.DELIVERED,
+        NoticeKind.RETURNED,
+        NoticeKind.HELD,
+        NoticeKind.CANCELLED,
+        NoticeKind.EXPIRED,
+    }
+)
+"""What an order goes through once at most; everything else may happen again in a later round."""
+
+
+def round_of(events: Sequence[OrderEvent]) -> int:
+    """How often the order has begun, or stopped for somebody to see to it: after that, people are told anew."""
+    again = (OrderState.QUEUED, OrderState.ATTENTION)
+    return sum(event.state in again and event.kind == MOVED for event in events)
+
+
+def notices_about(
+    order: Order,
+    facts: Mapping[str, str],
+    events: Sequence[OrderEvent],
+    is_near: bool = False,
+    now: datetime | None = None,
+) -> list[dict[str, Any]]:
+    """What is to be told of the state that `order` is in now; `events` are all it has been through, `is_near`: its
+    robot is near the sender. `now`: if that is not when the order changed."""
+    tellings = [one for one in TOLD.get(order.state, ()) if is_near or not one.when_near]
+    return _notices(tellings, order, facts, round_of(events), now or order.updated_at)
+
+
+def notices_of_delay(order: Order, facts: Mapping[str, str], events: Sequence[OrderEvent]) -> list[dict[str, Any]]:
+    """Its window is later than what people were told; once in each round."""
+    return _notices(LATE, order, facts, round_of(events), order.updated_at)
+
+
+def _notices(
+    tellings: Sequence[Telling], order: Order, facts: Mapping[str, str], round_: int, now: datetime
+) -> list[dict[str, Any]]:
+    ids = {SENDER: order.sender_id, RECIPIENT: order.recipient_id}
+    notices = []
+    for one in tellings:
+        if one.concerns(order):
+            occasion = f".{round_}" if round_ > 1 and one.kind not in ONCE else ""
+            key = f"{order.id}.{one.kind}{occasion}"
+            notices.append(notice_row(ids[one.who], key, order.id, one.kind, facts, now))
+    return notices
+
+
+def facts_of(
+    order: Order, people: Mapping[str, Person], campus: CampusMap, settings: Settings, now: datetime
+) -> dict[str, str]:
+    """What fills the gaps of a notice's text; never a code, and no times while none are known."""
+    expected = expected_of(order, now)
+    times = dict(zip(TIMES, expected, strict=True)) if expected else {}
+    return {
+        "sender": people[order.sender_id].name,
+        "recipient": people[order.recipient_id].name,
+        "from_post": title_of(order.from_post, campus),
+        "to_post": title_of(order.to_post, campus),
+        "return_post": title_of(return_post_of(order), campus),
+        **{name: as_fact(at, settings.zone) for name, at in times.items()},
+    }
+
+
+def return_post_of(order: Order) -> str:
+    """Where mail goes that was not taken."""
+    return order.return_post or order.from_post
+
+
+def title_of(post: str, campus: CampusMap) -> str:
+    """The post as people call it; its plain name if the map has changed since."""
+    return campus.posts[post].title if post in campus.posts else post

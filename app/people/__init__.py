@@ -1,1 +1,0 @@
-"""Who somebody is: sign-in by a mailed code, sessions, roles."""

@@ -1,0 +1,106 @@
+"""Taking names out of records that stay: orders whose time is over, and people of whom nothing is left.
+
+Old orders all refer to one row that is nobody: not even that two of them were the same person's can be told.
+"""
+
+from datetime import UTC, datetime
+from typing import Any, Final
+
+from sqlalchemy import ColumnElement, delete, exists, update
+from sqlmodel import col, or_, select
+from sqlmodel.ext.asyncio.session import AsyncSession
+
+from app.models import (
+    Delegate,
+    Handover,
+    Notice,
+    Order,
+    OrderEvent,
+    OrderLink,
+    OutgoingNotice,
+    Person,
+    PersonSession,
+    PersonToken,
+    RobotCommand,
+    StandingOrder,
+)
+from app.orders.transitions import ENDED
+from app.retention.erasure import ERASED_DOMAIN, ERASED_NAME, delete_rows, forget_delegates
+
+NOBODY: Final = "nobody"
+
+
+async def forget_orders(session: AsyncSession, before: datetime, at_most: int) -> int:
+    """Take the names out of orders that ended before, with whatever was told of them."""
+    old = select(Order.id).where(
+        col(Order.updated_at) < before, col(Order.state).in_(ENDED), col(Order.sender_id) != NOBODY
+    )
+    ids = list((await session.exec(old.order_by(col(Order.updated_at)).limit(at_most))).all())
+    if not ids:
+        return 0
+    await _make_nobody(session)
+    people = {"sender_id": NOBODY, "recipient_id": NOBODY, "placed_by_id": None, "description": None}
+    await session.exec(update(Order).where(col(Order.id).in_(ids)).values(**people))
+    for row in (OrderEvent, Handover):
+        await session.exec(update(row).where(col(row.order_id).in_(ids)).values(person_id=None))
+    await session.exec(update(RobotCommand).where(col(RobotCommand.order_id).in_(ids)).values(asked_by_id=None))
+    await forget_delegates(session, col(Delegate.order_id).in_(ids), named_by_id=NOBODY)
+    await session.exec(delete(OrderLink).where(col(OrderLink.order_id).in_(ids)))
+    await _forget_notices(session, col(Notice.order_id).in_(ids))
+    return len(ids)
+
+
+async def forget_alarm_notices(session: AsyncSession, before: datetime, at_most: int) -> int:
+    """Delete what was told before of alarms: no order takes it along."""
+    old = select(Notice.id).where(col(Notice.order_id).is_(None), col(Notice.at) < before)
+    ids = list((await session.exec(old.limit(at_most))).all())
+    if ids:
+        await _forget_notices(session, col(Notice.id).in_(ids))
+    return len(ids)
+
+
+async def _forget_notices(session: AsyncSession, which: ColumnElement[bool]) -> None:
+    """Their sendings first, which refer to them."""
+    sent = col(OutgoingNotice.notice_id).in_(select(Notice.id).where(which))
+    await session.exec(delete(OutgoingNotice).where(sent))
+    await session.exec(delete(Notice).where(which))
+
+
+async def forget_standing_orders(session: AsyncSession, before: datetime, at_most: int) -> int:
+    """The same for standing orders that ended before."""
+    old = select(StandingOrder.id).where(col(StandingOrder.ended_at) < before, col(StandingOrder.sender_id) != NOBODY)
+    ids = list((await session.exec(old.limit(at_most))).all())
+    if ids:
+        await _make_nobody(session)
+        people = {"sender_id": NOBODY, "recipient_id": NOBODY, "placed_by_id": None, "description": None}
+        await session.exec(update(StandingOrder).where(col(StandingOrder.id).in_(ids)).values(**people))
+    return len(ids)
+
+
+async def forget_people(session: AsyncSession, before: datetime, at_most: int) -> int:
+    """Members who came before, of whom no order is left and who are signed in nowhere; perhaps they never were."""
+    old = select(Person).where(
+        col(Person.created_at) < before,
+        col(Person.email).not_like(f"%@{ERASED_DOMAIN}"),
+        ~_any(Order, col(Order.sender_id), col(Order.recipient_id), col(Order.placed_by_id)),
+        ~_any(StandingOrder, col(StandingOrder.sender_id), col(StandingOrder.recipient_id)),
+        ~_any(PersonSession, col(PersonSession.person_id)),
+        ~_any(PersonToken, col(PersonToken.person_id)),
+    )
+    people = [one for one in (await session.exec(old.limit(at_most))).all() if one.roles == ["member"]]
+    for person in people:
+        await delete_rows(session, person)
+        person.email, person.name, person.usual_post = f"{person.id}@{ERASED_DOMAIN}", ERASED_NAME, None
+    return len(people)
+
+
+def _any(row: Any, *columns: Any) -> Any:
+    return exists().where(or_(*(column == col(Person.id) for column in columns))).select_from(row)
+
+
+async def _make_nobody(session: AsyncSession) -> None:
+    if await session.get(Person, NOBODY) is None:
+        since = datetime(1970, 1, 1, tzinfo=UTC)
+        row = Person(id=NOBODY, email=f"{NOBODY}@{ERASED_DOMAIN}", name=ERASED_NAME, roles=[], created_at=since)
+        session.add(row)
+        await session.flush()

@@ -1,0 +1,206 @@
+"""Where every robot is and what it wishes, as the database has it: all that the timetable is made from."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from datetime import datetime
+from itertools import takewhile
+from typing import Final
+
+from sqlmodel import col, func, select, tuple_
+from sqlmodel.ext.asyncio.session import AsyncSession
+
+from app.models import ClaimRow, GrantRow, MissionRow, MissionState, RobotRow, StopRow
+from app.robots.corridors.closures import closed_names
+from maps import CampusMap, corridor_name
+from protocol.parts import Activity
+
+OF_ITS_OWN: Final = "own"
+"""The key of a place that a robot goes to for reasons of its own, to a dock for instance."""
+
+
+@dataclass(frozen=True)
+class Wish:
+    """A claim that waits. `first`: the corridors that the robot may enter first; several if it does not know which way
+    it looks. `goal`: where it is going to now. `then`: the corridors after the first, as far as there."""
+
+    claim_id: str
+    first: tuple[tuple[str, str], ...]
+    goal: str
+    then: tuple[tuple[str, str], ...] = ()
+
+    @property
+    def is_for_later(self) -> bool:
+        """It asks on its way for what comes after the place where it is going to now."""
+        return self.goal == self.first[0][0]
+
+
+@dataclass(frozen=True)
+class Hold:
+    """A corridor that a robot may be in."""
+
+    from_post: str
+    to_post: str
+    grant_id: int = field(default=0, compare=False)
+
+    @property
+    def corridor(self) -> str:
+        return corridor_name(self.from_post, self.to_post)
+
+
+@dataclass(frozen=True)
+class Whereabouts:
+    """One robot. `goals`: key and post of all that it has before it, in order. `stopped`: somebody or something
+    keeps it where it is, and it has said so."""
+
+    robot: str
+    post: str
+    seen_at: datetime | None
+    home: str | None
+    at_home: bool
+    online: bool
+    holds: tuple[Hold, ...]
+    goals: tuple[tuple[str, str], ...]
+    wish: Wish | None
+    stopped: bool
+    heard_at: datetime | None
+
+    @property
+    def way(self) -> tuple[Hold, ...]:
+        """Those of its corridors that it goes through one after the other. What it holds besides is the other way out
+        of where it stood, if it did not know which way it looks."""
+        ends = [hold.to_post for hold in self.holds]
+        further = takewhile(lambda pair: pair[0] == pair[1].from_post, zip(ends, self.holds[1:], strict=False))
+        return (*self.holds[:1], *(hold for _, hold in further))
+
+
+@dataclass(frozen=True)
+class Picture:
+    """All robots whose place is known, by name, and the corridors that are closed."""
+
+    robots: Mapping[str, Whereabouts]
+    closed: frozenset[str]
+
+
+async def look_at_all(session: AsyncSession, campus: CampusMap) -> Picture:
+    """Four questions, whatever the number of robots."""
+    placed = select(RobotRow).where(col(RobotRow.post).is_not(None), col(RobotRow.taken_out_at).is_(None))
+    rows = (await session.exec(placed.order_by(RobotRow.name))).all()
+    holds, wishes, goals = await _holds(session), await _wishes(session), await _goals(session)
+    closed = await closed_names(session)
+    robots = {
+        row.name: _whereabouts(
+            campus, row, tuple(holds.get(row.name, ())), wishes.get(row.name), tuple(goals.get(row.name, ()))
+        )
+        for row in rows
+        if row.post in campus.posts
+    }
+    return Picture(robots, closed)
+
+
+async def where_they_left(session: AsyncSession, picture: Picture) -> Picture:
+    """Robots that have left a corridor since they were last seen stand where they left it. For a timetable that is made
+    anew: one that was there at the time has heard of it."""
+    left = {row.robot: row for row in (await session.exec(_LAST_LEFT)).all()}
+    robots = {name: _where_it_left(one, left.get(name)) for name, one in picture.robots.items()}
+    return replace(picture, robots=robots)
+
+
+def _where_it_left(one: Whereabouts, last: GrantRow | None) -> Whereabouts:
+    if last is None or last.left_at is None or last.cleared_at is None:
+        return one
+    is_news = one.seen_at is None or one.seen_at < last.cleared_at
+    return replace(one, post=last.left_at) if is_news else one
+
+
+async def left_at(session: AsyncSession, grant_ids: Sequence[int]) -> dict[int, str]:
+    """Where robots stood when they were clear of these."""
+    rows = (await session.exec(select(GrantRow).where(col(GrantRow.id).in_(grant_ids)))).all() if grant_ids else ()
+    return {row.id or 0: row.left_at or row.to_post for row in rows}
+
+
+def _whereabouts(
+    campus: CampusMap, row: RobotRow, holds: tuple[Hold, ...], wish: Wish | None, goals: tuple[tuple[str, str], ...]
+) -> Whereabouts:
+    post = row.post or ""
+    home = row.home if row.home in campus.posts else next((dock.name for dock in campus.docks()), None)
+    rests = row.activity in (Activity.IDLE, Activity.CHARGING)
+    docked = rests if row.docked is None else row.docked
+    return Whereabouts(
+        robot=row.name,
+        post=post,
+        seen_at=row.seen_at,
+        home=home,
+        at_home=docked and post == home,
+        online=row.online,
+        holds=holds,
+        goals=_with_its_own(wish, goals),
+        wish=wish,
+        stopped=row.activity == Activity.STOPPED,
+        heard_at=row.heard_at,
+    )
+
+
+def _with_its_own(wish: Wish | None, goals: tuple[tuple[str, str], ...]) -> tuple[tuple[str, str], ...]:
+    """What it goes to now comes first, whatever its mission says: nobody knows better when it has to charge."""
+    if wish is None or wish.is_for_later or (goals and goals[0][1] == wish.goal):
+        return goals
+    return ((OF_ITS_OWN, wish.goal), *goals)
+
+
+async def _holds(session: AsyncSession) -> dict[str, list[Hold]]:
+    held: dict[str, list[Hold]] = {}
+    rows = (
+        await session.exec(select(GrantRow).where(col(GrantRow.cleared_at).is_(None)).order_by(col(GrantRow.id)))
+    ).all()
+    for row in rows:
+        known = held.setdefault(row.robot, [])
+        if all((one.from_post, one.to_post) != (row.from_post, row.to_post) for one in known):
+            known.append(Hold(row.from_post, row.to_post, row.id or 0))
+    return held
+
+
+async def _wishes(session: AsyncSession) -> dict[str, Wish]:
+    rows = (
+        await session.exec(select(ClaimRow).where(col(ClaimRow.granted).is_(None)).order_by(col(ClaimRow.at)))
+    ).all()
+    return {row.robot: _wish(row) for row in rows}
+
+
+def _wish(row: ClaimRow) -> Wish:
+    legs = [(str(leg["from_post"]), str(leg["to_post"])) for leg in row.legs]
+    here = legs[0][0]
+    first = legs[:1]
+    for leg in legs[1:]:
+        if leg[0] != here or leg in first:
+            break
+        first.append(leg)
+    goal = row.goal or legs[-1][1]
+    to_goal = next((number for number, leg in enumerate(legs, start=1) if leg[1] == goal), len(legs))
+    return Wish(row.claim_id, tuple(first), goal, tuple(legs[1:to_goal]) if len(first) == 1 else ())
+
+
+_LAST_LEFT: Final = (
+    select(GrantRow)
+    .where(
+        tuple_(col(GrantRow.robot), col(GrantRow.cleared_at)).in_(
+            select(GrantRow.robot, func.max(GrantRow.cleared_at)).group_by(col(GrantRow.robot))
+        )
+    )
+    .order_by(col(GrantRow.id))
+)
+"""Not the one that was granted last: what a robot may enter besides its way is cleared first."""
+
+
+async def _goals(session: AsyncSession) -> dict[str, list[tuple[str, str]]]:
+    over = (StopRow.done_at, StopRow.gave_up_at, StopRow.dropped_at)
+    left = (
+        select(MissionRow.robot, StopRow.id, StopRow.post)
+        .where(col(StopRow.mission_id) == col(MissionRow.id), col(MissionRow.state) == MissionState.ACTIVE)
+        .where(*(col(at).is_(None) for at in over))
+        .order_by(col(MissionRow.created_at), col(StopRow.position))
+    )
+    goals: dict[str, list[tuple[str, str]]] = {}
+    for robot, stop, post in (await session.exec(left)).all():
+        if post:
+            goals.setdefault(robot, []).append((stop, post))
+    return goals

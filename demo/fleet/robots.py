@@ -1,0 +1,59 @@
+"""The robots' processes in a demonstration of the fleet. One that dies is told of, and started again after a while."""
+
+import asyncio
+from collections import Counter
+from collections.abc import Callable
+
+from demo.children import Child, Children
+from demo.fleet.settings import FleetDemo
+from protocol.clock import Clock, sleep
+
+
+class RobotProcesses:
+    """`say` is told in a line when one ends or begins anew; `down` are those that do not run now."""
+
+    def __init__(self, demo: FleetDemo, clock: Clock, children: Children, say: Callable[[str], None]) -> None:
+        self._demo, self._clock, self._start_child, self._say = demo, clock, children.start, say
+        self._running: dict[str, Child] = {}
+        self.died: Counter[str] = Counter()
+        self.down: set[str] = set()
+
+    async def start(self) -> None:
+        for robot in self._demo.homes:
+            self._running[robot] = await self._start(robot)
+
+    async def _start(self, robot: str) -> Child:
+        command, log = self._demo.robot_command(robot), self._demo.folder / f"{robot}.log"
+        return await self._start_child(f"robot {robot}", command, log)
+
+    @property
+    def ids(self) -> dict[str, int]:
+        return {robot: child.process.pid for robot, child in self._running.items()}
+
+    async def must_live(self) -> None:
+        """Until one ends, which none may before there is something to see. Raises DemoFailed."""
+        await asyncio.gather(*(child.watch() for child in self._running.values()))
+
+    async def look_after(self) -> None:
+        """Whichever dies."""
+        await asyncio.gather(*(self._look_after(robot) for robot in self._running))
+
+    async def _look_after(self, robot: str) -> None:
+        while True:
+            child = self._running[robot]
+            how = _how_it_ended(await child.process.wait(), child)
+            self.died[robot] += 1
+            self.down.add(robot)
+            again_s = self._demo.restart_after_s
+            self._say(f"{robot}: its process {how}; it is started again in {again_s / 60:g} min, where it stands")
+            await sleep(self._clock, again_s)
+            self._running[robot] = await self._start(robot)
+            self.down.remove(robot)
+            self._say(f"{robot}: started again, process {self._running[robot].process.pid}")
+
+
+def _how_it_ended(code: int, child: Child) -> str:
+    """Whoever is killed has no last words."""
+    if code < 0:
+        return f"was killed by signal {-code}"
+    return f"ended with exit code {code}: {child.last_words().splitlines()[-1].strip()}"

@@ -1,0 +1,105 @@
+"""What a person at the terminal sees of a demonstration of the fleet: a line for each robot, and what happened last."""
+
+from collections import deque
+from collections.abc import Mapping, Set
+from datetime import datetime
+from typing import Any
+
+from rich.console import Group
+from rich.live import Live
+from rich.markup import escape
+from rich.table import Table
+from rich.text import Text
+
+from demo.fleet.campus_life import CampusLife
+from demo.fleet.errands import address
+from demo.fleet.places import TruePlaces
+from demo.fleet.settings import FleetDemo
+from demo.people import Spool
+from demo.terminal import Terminal
+from protocol.clock import SharedClock
+
+LAST_EVENTS = 12
+TO_FETCH = {"assigned", "to_sender", "at_sender"}
+
+
+class FleetScreen(Terminal):
+    """A table that stays and changes on a terminal, lines anywhere else."""
+
+    def __init__(self, demo: FleetDemo, clock: SharedClock, spool: Spool) -> None:
+        super().__init__(demo, spool)
+        self._demo, self._clock = demo, clock
+        self._events: deque[str] = deque(maxlen=LAST_EVENTS)
+        self._live = Live(console=self._console, auto_refresh=False, transient=False)
+
+    def welcome(self) -> None:
+        demo = self._demo
+        for line in (
+            f"[bold]Campus Mail, the fleet[/], at [link]{demo.url}[/]: {len(demo.homes)} robots on the map "
+            f"{escape(demo.campus.map.title)}, its corridors 1 : {1 / demo.scale:.3g} of their length",
+            "The bodies are simulated, each in a world of its own. That no two are ever in one corridor is looked at "
+            "by their true places; if two were, this would end with an error.",
+        ):
+            self._console.print(line, soft_wrap=True)
+        sender, recipient, *_ = map(address, demo.campus.offices)
+        self.show_links(demo, sender, recipient)
+
+    def name_processes(self, ids: Mapping[str, int]) -> None:
+        named = ", ".join(f"{robot} {number}" for robot, number in ids.items())
+        self.step(f"Their processes: {named}. Kill one (kill -9 NUMBER), and see what the service does.")
+
+    def begin(self) -> None:
+        if self._console.is_terminal:
+            self._live.start()
+
+    def say(self, line: str) -> None:
+        told = f"{self._clock.utc().astimezone():%H:%M:%S}  {line}"
+        self._events.append(told)
+        if not self._live.is_started:
+            self._console.print(escape(told), soft_wrap=True)
+
+    def see_mails(self) -> None:
+        """Say sign-in codes as they are mailed."""
+        for sentence in self.new_codes():
+            self.say(sentence)
+
+    def show(self, life: CampusLife, places: TruePlaces, down: Set[str]) -> None:
+        """`down`: robots whose process has died."""
+        if self._live.is_started:
+            self._live.update(self._picture(life, places, down), refresh=True)
+
+    def _picture(self, life: CampusLife, places: TruePlaces, down: Set[str]) -> Group:
+        table = Table(expand=True, box=None, padding=(0, 1))
+        for heading in ("robot", "where", "mail", "battery", "what"):
+            table.add_column(heading, overflow="fold", ratio=3 if heading == "what" else None)
+        for robot in sorted(life.robots, key=lambda one: str(one["name"])):
+            table.add_row(*row_of(robot, life.orders), style="red" if robot["name"] in down else None)
+        ended = ", ".join(f"{count} {state}" for state, count in sorted(life.ended.items())) or "none ended"
+        figures = (
+            f"{self._clock.utc().astimezone():%H:%M:%S}, {self._clock.speed:.1f} times as fast   "
+            f"orders: {len(life.orders)} open, {ended}   in corridors now: {places.inside}, never two in one"
+        )
+        return Group(Text(figures, style="bold"), table, *(Text(line, style="dim") for line in self._events))
+
+    def end(self, sentence: str) -> None:
+        self._clear()
+        self._console.print(sentence, soft_wrap=True)
+
+    def _clear(self) -> None:
+        self._live.stop()
+
+
+def row_of(robot: Mapping[str, Any], orders: Mapping[str, Any]) -> tuple[str, str, str, str, str]:
+    """A robot's line: name, where it was seen, its orders, its charge, what it does and why it waits."""
+    seen, battery = robot["last_seen"], robot["battery"]
+    where = seen["post"] if seen else "not seen yet"
+    where += f" → {robot['towards']}" if robot["towards"] else ""
+    mine = [order for order in orders.values() if order["robot"] and order["robot"]["name"] == robot["name"]]
+    fetching = sum(order["state"] in TO_FETCH for order in mine)
+    mail = f"{len(mine) - fetching} aboard" + (f", {fetching} to fetch" if fetching else "")
+    charge = f"{battery['ratio']:.0%}{' charging' if battery['charging'] else ''}" if battery else "unknown"
+    what = robot["why"] or robot["activity"]
+    waits = robot["waits_for"]
+    if waits and waits["until"]:
+        what += f", until about {datetime.fromisoformat(waits['until']).astimezone():%H:%M:%S}"
+    return robot["name"], where, mail, charge, what if robot["online"] else f"offline; {what}"

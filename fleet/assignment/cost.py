@@ -1,0 +1,46 @@
+"""What a plan costs, in seconds of one robot: the time that the timetable takes, driving, and mail on its way; less
+what it is worth to have these orders under way rather than waiting."""
+
+from fleet.assignment.routes import leaves_s, weight_of
+from fleet.assignment.scene import OpenOrder, Route, Routes, Scene
+from fleet.schedule.planning import Tasks, Timetable
+
+
+def plan_cost_s(scene: Scene, routes: Routes, tasks: Tasks, timetable: Timetable) -> float:
+    return busy_s(scene, tasks, timetable) + beside_s(scene, routes)
+
+
+def busy_s(scene: Scene, tasks: Tasks, timetable: Timetable) -> float:
+    """How long the robots will work from now on, added up: waiting for each other included."""
+    return timetable.cost_s - scene.now_s * at_work(tasks)
+
+
+def at_work(tasks: Tasks) -> int:
+    return sum(1 for task in tasks.values() if task.goals)
+
+
+def beside_s(scene: Scene, routes: Routes) -> float:
+    """Everything in the cost of a plan that does not depend on the timetable."""
+    return sum(route_s(scene, name, route) for name, route in routes.items() if route)
+
+
+def route_s(scene: Scene, name: str, route: Route) -> float:
+    rules = scene.rules
+    driving_s = scene.drive_s(scene.robots[name].start.post, route)
+    flow_s, worth_s = 0.0, 0.0
+    for stop, at_s in zip(route, leaves_s(scene, name, route)[1:], strict=True):
+        if stop.change < 0:
+            flow_s += weight_of(scene, stop.order) * at_s
+            order = scene.orders.get(stop.order)
+            worth_s += 0.0 if order is None else order_worth_s(scene, order)
+    return rules.driving * driving_s + rules.flow * flow_s - worth_s
+
+
+def order_worth_s(scene: Scene, order: OpenOrder) -> float:
+    """What an order costs at the least, wherever a robot comes from, so that long ones are no worse than short ones;
+    and what it has waited, so that none waits for ever."""
+    rules = scene.rules
+    carrying_s = scene.network.shortest_s[order.load.post][order.give.post]
+    least_s = carrying_s + order.load.handling_s + order.give.handling_s
+    waited_s = max(0.0, scene.now_s - order.since_s)
+    return least_s + rules.driving * carrying_s + order.weight * (rules.flow * least_s + rules.waiting * waited_s)

@@ -1,0 +1,164 @@
+"""Better decisions, while there is time: other orders for other robots, each tried with the robots favoured in several
+orders, and judged by what the timetable costs everybody.
+
+Only what has not begun is moved. What is overdue is never given later than it was to be.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
+from dataclasses import replace
+from random import Random
+from typing import Final
+
+from fleet.assignment.candidates import candidates, waiting_orders
+from fleet.assignment.cost import at_work, beside_s, plan_cost_s
+from fleet.assignment.deciding import Decision
+from fleet.assignment.regret import Choice, choices_left, give_orders
+from fleet.assignment.routes import movable, without
+from fleet.assignment.scene import Route, Scene
+from fleet.assignment.timing import SLACK_S, Timed, in_order, keeps_promises, overdue_s, sound, tasks_of
+from fleet.schedule.planning import Timetable, improve, plan
+
+RESHUFFLES: Final = 6
+"""So many orders of robots are tried for each choice of orders."""
+MOST_TAKEN_BACK: Final = 3
+PATIENCE: Final = 60
+"""After so many rounds without anything better there is hardly anything to find."""
+LAST_STEP_S: Final = 0.003
+"""Between two looks at the time: one robot planned, or one timetable looked at."""
+
+GoOn = Callable[[], bool]
+
+
+class _NoTimeLeftError(Exception):
+    """In the middle of something that is not needed any more."""
+
+
+def within(budget_s: float, now_s: Callable[[], float]) -> GoOn:
+    """For so long by this clock, the last step included."""
+    end_s = now_s() + budget_s - LAST_STEP_S
+    return lambda: now_s() < end_s
+
+
+def improved(decision: Decision, rng: Random, go_on: GoOn, in_time: GoOn = lambda: True) -> Decision:
+    """The best decision found while it goes on, which is asked before each attempt; the same one if there is none
+    better. `in_time` is asked in the middle of attempts, too: one that is not is left."""
+    if not any(decision.routes.values()) or decision.timed.refused:
+        return decision
+    search = _Search(decision, rng, go_on, in_time)
+    return search.run()
+
+
+class _Search:
+    def __init__(self, decision: Decision, rng: Random, go_on: GoOn, in_time: GoOn) -> None:
+        self._best, self._rng, self._go_on, self._in_time = decision, rng, go_on, in_time
+        self._scene = decision.scene
+        self._had = {order: name for name, robot in self._scene.robots.items() for order in movable(robot, robot.route)}
+        self._tried: set[tuple[Route, ...]] = set()
+
+    def run(self) -> Decision:
+        with suppress(_NoTimeLeftError):
+            self._search()
+        return self._best
+
+    def _search(self) -> None:
+        fruitless = 0
+        while fruitless < PATIENCE and self._go_on():
+            before_s = self._best.cost_s
+            self._reshuffle()
+            self._try_other_orders()
+            fruitless = 0 if self._best.cost_s < before_s - SLACK_S else fruitless + 1
+
+    def _look_at_the_time(self) -> None:
+        if not self._in_time():
+            raise _NoTimeLeftError
+
+    def _reshuffle(self) -> None:
+        """The same stops with another timetable."""
+        timed, pause = self._best.timed, self._look_at_the_time
+        network, rounds = self._scene.network, self._some_rounds()
+        better = improve(network, timed.tasks, timed.timetable, self._rng, rounds, pause=pause)
+        if better is not timed.timetable:
+            self._take_if_better(replace(timed, timetable=better), self._best.choices, 0.0)
+
+    def _some_rounds(self) -> GoOn:
+        left = iter(range(RESHUFFLES))
+        return lambda: next(left, None) is not None and self._go_on()
+
+    def _try_other_orders(self) -> None:
+        """Some orders are taken back, and given anew with costs that are not quite right."""
+        self._look_at_the_time()
+        routes = self._with_some_taken_back()
+        waiting = waiting_orders(self._scene, routes)
+        given = give_orders(self._scene, routes, candidates(self._scene, routes, waiting), self._rng)
+        key = tuple(given.routes[name] for name in sorted(given.routes))
+        if key in self._tried or given.routes == self._best.routes:
+            return
+        self._tried.add(key)
+        choices = choices_left((*self._best.choices, *given.choices), given.routes)
+        worth_s = self._scene.rules.worth_s if self._moves(given.routes) else 0.0
+        found = self._timed(given.routes, worth_s)
+        if found is not None:
+            self._take_if_better(found, _latest(choices), worth_s)
+
+    def _with_some_taken_back(self) -> dict[str, Route]:
+        """Routes without some orders that could go elsewhere."""
+        routes = dict(self._best.routes)
+        free = [
+            (order, name)
+            for name, route in routes.items()
+            for order in movable(self._scene.robots[name], route)
+            if not self._scene.is_overdue(order)
+        ]
+        for order, name in self._rng.sample(free, min(len(free), self._rng.randint(1, MOST_TAKEN_BACK))):
+            routes[name] = without(routes[name], (order,))
+        return routes
+
+    def _moves(self, routes: dict[str, Route]) -> bool:
+        """Whether an order is taken from the robot that had it before this decision, and still had so far."""
+        now = {stop.order: name for name, route in routes.items() for stop in route}
+        had = self._best.robot_of()
+        return any(now.get(order) != name and had.get(order) == name for order, name in self._had.items())
+
+    def _timed(self, routes: dict[str, Route], worth_s: float) -> Timed | None:
+        """The best timetable for these routes, if it makes the whole cheaper."""
+        scene, tasks, kept = self._scene, tasks_of(self._scene, routes), self._best.timed
+        within_s = self._best.cost_s - worth_s - SLACK_S - beside_s(scene, routes) + scene.now_s * at_work(tasks)
+        found: Timetable | None = None
+        for order in self._orders([name for name in sorted(tasks) if tasks[name].goals != kept.tasks[name].goals]):
+            if not self._go_on():
+                break
+            timetable = plan(scene.network, tasks, order, kept.timetable.journeys, within_s, self._look_at_the_time)
+            if timetable is not None:
+                within_s = timetable.cost_s - SLACK_S
+                names = in_order(kept.timetable.order, tasks, order)
+                found = Timetable(timetable.journeys, timetable.cost_s, names)
+        return None if found is None else Timed(routes, tasks, found)
+
+    def _orders(self, new: Sequence[str]) -> Iterator[Sequence[str]]:
+        """First only those with other stops round all others; then more and more are planned again."""
+        others = [name for name in self._best.timed.timetable.order if name not in new]
+        yield new
+        for more in range(1, RESHUFFLES):
+            together = [*new, *self._rng.sample(others, min(len(others), more))]
+            self._rng.shuffle(together)
+            yield together
+
+    def _take_if_better(self, timed: Timed, choices: tuple[Choice, ...], worth_s: float) -> None:
+        best, scene = self._best, self._scene
+        cost_s = plan_cost_s(scene, timed.routes, timed.tasks, timed.timetable)
+        if cost_s > best.cost_s - worth_s - SLACK_S or not _keeps_promises(scene, best.timed, timed):
+            return
+        if sound(scene, timed.tasks, timed.timetable) is not None:
+            self._best = replace(best, timed=timed, cost_s=cost_s, choices=choices)
+
+
+def _keeps_promises(scene: Scene, before: Timed, after: Timed) -> bool:
+    promised_s = overdue_s(scene, before.tasks, before.timetable)
+    now_s = overdue_s(scene, after.tasks, after.timetable)
+    return promised_s.keys() <= now_s.keys() and keeps_promises(promised_s, now_s)
+
+
+def _latest(choices: Sequence[Choice]) -> tuple[Choice, ...]:
+    """One of each order: the last."""
+    return tuple({choice.order: choice for choice in choices}.values())

@@ -1,0 +1,145 @@
+"""What is taken: for how long each corridor and each bay is some robot's, and when they are free for another.
+
+All times are seconds of one clock.
+"""
+
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
+from math import inf
+from typing import Final, NamedTuple
+
+from fleet.schedule.journey import Leg, Start, stays
+from fleet.schedule.network import Lane, Network
+
+Span = tuple[float, float]
+ROUNDING_S: Final = 1e-6
+"""Behind others a robot keeps the whole clearance, before others so much less is enough: what fitted exactly must still
+fit when the same sum is taken in another way."""
+
+
+class Passage(NamedTuple):
+    """One robot's way through a corridor."""
+
+    robot: str
+    backwards: int
+    enter_s: float
+    leave_s: float
+
+
+class Taken:
+    """Mutable: legs are put in and taken out again, and what is free between them is worked out when it is asked."""
+
+    def __init__(self, network: Network) -> None:
+        self._network = network
+        self._passages: list[list[Passage]] = [[] for _ in network.corridors]
+        self._bays: list[list[tuple[str, float, float]]] = [[] for _ in network.posts]
+        self._corridors_of: defaultdict[str, set[int]] = defaultdict(set)
+        self._posts_of: defaultdict[str, set[int]] = defaultdict(set)
+        self._entries: dict[tuple[int, int], list[Span]] = {}
+        self._free: dict[int, list[Span]] = {}
+
+    def put(self, robot: str, legs: Sequence[Leg], until_s: float = inf) -> None:
+        """All that a robot takes on these legs; the last stay ends at `until_s`."""
+        for leg, leaves_s in stays(legs):
+            if leg.lane is not None:
+                self._pass(robot, leg.lane, leg.enter_s, leg.arrive_s)
+            if not leg.at_home:
+                self._stand(robot, leg.post, leg.enter_s, min(leaves_s, until_s))
+
+    def hold(self, robot: str, start: Start, until_s: float) -> None:
+        """What a robot has for certain: the corridor that it is in, and its bay, here until `until_s`."""
+        if start.lane is not None:
+            self._pass(robot, start.lane, start.entered_s, start.arrives_s)
+        if not start.at_home:
+            self._stand(robot, start.post, start.entered_s, until_s)
+
+    def free_last(self, robot: str, leg: Leg) -> None:
+        """The stay that does not end, after this leg: the bay is given back, and all before it stays as it is."""
+        if not leg.at_home:
+            self._bays[leg.post].remove((robot, leg.enter_s, inf))
+            self._free.pop(leg.post, None)
+
+    def go_on(self, robot: str, leg: Leg, further: Sequence[Leg]) -> None:
+        """The stay after this leg, which was given back, and the legs behind it."""
+        self.put(robot, (leg._replace(lane=None), *further))
+
+    def remove(self, robot: str) -> None:
+        """All that this robot has."""
+        for corridor in self._corridors_of.pop(robot, ()):
+            self._passages[corridor] = [passage for passage in self._passages[corridor] if passage.robot != robot]
+            self._forget(corridor)
+        for post in self._posts_of.pop(robot, ()):
+            self._bays[post] = [bay for bay in self._bays[post] if bay[0] != robot]
+            self._free.pop(post, None)
+
+    def entries(self, lane: Lane) -> list[Span]:
+        """When a lane may be entered, in order. Both ends belong to it."""
+        key = (lane.corridor, lane.backwards)
+        found = self._entries.get(key)
+        if found is None:
+            found = self._entries[key] = _gaps(self._shut(lane))
+        return found
+
+    def free(self, post: int) -> list[Span]:
+        """When a bay of this post is free, in order, for whoever enters the corridor before it and is gone within."""
+        found = self._free.get(post)
+        if found is None:
+            found = self._free[post] = _spare(self._bays[post], self._network.bays[post], self._network.clearance_s)
+        return found
+
+    def _pass(self, robot: str, lane: Lane, enter_s: float, leave_s: float) -> None:
+        self._passages[lane.corridor].append(Passage(robot, lane.backwards, enter_s, leave_s))
+        self._corridors_of[robot].add(lane.corridor)
+        self._forget(lane.corridor)
+
+    def _stand(self, robot: str, post: int, since_s: float, until_s: float) -> None:
+        self._bays[post].append((robot, since_s, until_s))
+        self._posts_of[robot].add(post)
+        self._free.pop(post, None)
+
+    def _shut(self, lane: Lane) -> list[Span]:
+        clear_s, travel_s, after_s = self._network.clearance_s, lane.travel_s, lane.following_s
+        shut = []
+        for _, backwards, enter_s, leave_s in self._passages[lane.corridor]:
+            if after_s is not None and backwards == lane.backwards:
+                # Behind one that is late nobody may arrive too early either.
+                late_s = max(enter_s, leave_s - travel_s)
+                shut.append((enter_s - after_s + ROUNDING_S, late_s + after_s))
+            else:
+                shut.append((enter_s - travel_s - clear_s + ROUNDING_S, leave_s + clear_s))
+        shut.sort()
+        return shut
+
+    def _forget(self, corridor: int) -> None:
+        self._entries.pop((corridor, 0), None)
+        self._entries.pop((corridor, 1), None)
+
+
+def _gaps(shut: Iterable[Span]) -> list[Span]:
+    gaps, since_s = [], -inf
+    for begin_s, end_s in shut:
+        if begin_s >= since_s:
+            gaps.append((since_s, begin_s))
+        since_s = max(since_s, end_s)
+    if since_s < inf:
+        gaps.append((since_s, inf))
+    return gaps
+
+
+def _spare(bays: Iterable[tuple[str, float, float]], capacity: int, clearance_s: float) -> list[Span]:
+    changes = sorted(
+        change for _, since_s, until_s in bays for change in ((since_s, 1), (until_s + clearance_s - ROUNDING_S, -1))
+    )
+    spare, standing, room_since_s = [], 0, -inf
+    for at_s, change in changes:
+        had_room = standing < capacity
+        standing += change
+        has_room = standing < capacity
+        gone_by_s = at_s - clearance_s + ROUNDING_S
+        if had_room and not has_room and gone_by_s > room_since_s:
+            spare.append((room_since_s, gone_by_s))
+        elif has_room and not had_room:
+            room_since_s = at_s + ROUNDING_S
+    if standing < capacity and room_since_s < inf:
+        spare.append((room_since_s, inf))
+    return spare

@@ -1,0 +1,220 @@
+"""Timetables for all robots: one after the other, each round those before it; and better ones, by doing some again.
+
+A timetable is whole: every journey ends at home. Whoever keeps the one he has until there is a better one always has
+one that can be carried out. First everybody's work is planned, with robots left standing where their work ends, and
+then everybody's way home: it is needed only to be sure that there is one, and must not be in the way of work.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from math import inf
+from random import Random
+from typing import Final
+
+from fleet.schedule.evacuation import evacuate
+from fleet.schedule.journey import Journey, Task, standing
+from fleet.schedule.network import Network
+from fleet.schedule.occupied import Taken
+from fleet.schedule.search import find_work
+from fleet.schedule.ways_home import WaysHome
+
+Tasks = Mapping[str, Task]
+Journeys = Mapping[str, Journey]
+SOME_OF: Final = 4
+WORTH_S: Final = 1e-3
+"""What is better by less is not better: sums of times are not exact."""
+
+Pause = Callable[[], None]
+"""Called between one robot and the next; what it raises ends the planning."""
+
+
+def no_pause() -> None:
+    pass
+
+
+@dataclass(frozen=True)
+class Timetable:
+    """A journey for every robot. `cost_s`: the times at which robots with goals have done them, added up. `order`: in
+    which order they were planned, most favoured first; what is better is looked for near it."""
+
+    journeys: Journeys
+    cost_s: float
+    order: tuple[str, ...] = ()
+
+
+@dataclass
+class _Attempt:
+    network: Network
+    tasks: Tasks
+    taken: Taken
+    work: dict[str, Journey] = field(default_factory=dict)
+    cost_s: float = 0.0
+
+    def keep(self, robot: str, journey: Journey) -> None:
+        self.taken.put(robot, journey.work)
+        self._add(robot, Journey(journey.work, (), journey.done_s))
+
+    def plan_work(self, robot: str, within_s: float) -> bool:
+        """Its work round all that is taken, if that costs less than this."""
+        task = self.tasks[robot]
+        self.taken.remove(robot)
+        by_s = within_s - self.cost_s if task.goals else inf
+        found = find_work(self.network, self.taken, task.start, task.goals, task.home, by_s)
+        if found is None:
+            return False
+        self.taken.put(robot, found.legs)
+        self._add(robot, Journey(found.legs, (), found.done_s))
+        return True
+
+    def _add(self, robot: str, journey: Journey) -> None:
+        self.work[robot] = journey
+        if self.tasks[robot].goals:
+            self.cost_s += journey.done_s
+
+
+def plan(
+    network: Network,
+    tasks: Tasks,
+    order: Sequence[str],
+    kept: Journeys | None = None,
+    within_s: float = inf,
+    pause: Pause = no_pause,
+) -> Timetable | None:
+    """The first robot of `order` goes where it likes, each further one round those before it; those that are not in it
+    work as they do in `kept`. None if one finds no way, or if it costs `within_s` or more.
+    """
+    attempt = _Attempt(network, tasks, _taken_on_the_way(network, tasks))
+    for robot in sorted(tasks.keys() - set(order)):  # a set has no order that is the same in every process
+        attempt.keep(robot, (kept or {})[robot])
+    for robot in order:
+        attempt.taken.hold(robot, tasks[robot].start, tasks[robot].start.ready_s)
+    for robot in order:
+        pause()
+        if not attempt.plan_work(robot, within_s):
+            return None
+    if attempt.cost_s >= within_s:
+        return None
+    as_before = {robot: kept[robot] for robot in tasks.keys() - set(order)} if kept else {}
+    journeys = WaysHome(network, tasks, attempt.taken, attempt.work, pause).plan(as_before)
+    return None if journeys is None else Timetable(journeys, attempt.cost_s, tuple(order))
+
+
+def insert(network: Network, tasks: Tasks, kept: Journeys, robot: str) -> Timetable | None:
+    """One robot's task planned anew round all that the others do, their ways home included.
+
+    Found whenever `kept` is whole and a way leads to each goal: when all others are at home nothing is in the way, so
+    any order can be taken on at any time, if only late.
+    """
+    task, taken = tasks[robot], _taken_on_the_way(network, tasks)
+    for other in sorted(tasks.keys() - {robot}):
+        taken.put(other, kept[other].legs)
+    work = find_work(network, taken, task.start, task.goals, task.home)
+    if work is None:
+        return None
+    taken.put(robot, work.legs)
+    journeys = {**kept, robot: Journey(work.legs, (), work.done_s)}
+    ways_home = WaysHome(network, tasks, taken, journeys, no_pause)
+    if ways_home.must_go_home(robot):
+        home = ways_home.way_home(robot)
+        if home is None:
+            return None
+        journeys[robot] = home
+    cost_s = sum(journey.done_s for name, journey in journeys.items() if tasks[name].goals)
+    return Timetable(journeys, cost_s, tuple(sorted(tasks)))
+
+
+def first_plan(network: Network, tasks: Tasks, rng: Random, tries: int = 20) -> Timetable | None:
+    """Some timetable, with nothing to go by; None if not everybody can come home, or some goal cannot be reached."""
+    order = sorted(tasks)
+    for _ in range(tries):
+        found = plan(network, tasks, order)
+        if found is not None:
+            return found
+        rng.shuffle(order)
+    return _one_after_the_other(network, tasks)
+
+
+def plan_what_can_be(network: Network, tasks: Tasks, rng: Random) -> tuple[Timetable, dict[str, Task]]:
+    """A timetable in any case, and the tasks that it is of: where not all can be done some robots are without goals for
+    now, and if not everybody comes home some stay where they are."""
+    found = first_plan(network, tasks, rng)
+    if found is not None:
+        return found, dict(tasks)
+    timetable, planned = _home_who_can(network, tasks, rng)
+    for robot in sorted(tasks):
+        more = {**planned, robot: replace(planned[robot], goals=tasks[robot].goals)}
+        with_it = insert(network, more, timetable.journeys, robot) if tasks[robot].goals else None
+        if with_it is not None:
+            timetable, planned = with_it, more
+    return timetable, planned
+
+
+def _home_who_can(network: Network, tasks: Tasks, rng: Random) -> tuple[Timetable, dict[str, Task]]:
+    """Everybody; if not, all but one; if not, nobody."""
+    ways_home = {robot: replace(task, goals=()) for robot, task in tasks.items()}
+    all_but_one = ({**ways_home, robot: replace(task, home=None)} for robot, task in ways_home.items())
+    for planned in (ways_home, *all_but_one):
+        found = first_plan(network, planned, rng)
+        if found is not None:
+            return found, planned
+    still = {robot: replace(task, home=None) for robot, task in ways_home.items()}
+    stays = {robot: Journey((standing(task.start),), (), task.start.ready_s) for robot, task in still.items()}
+    return Timetable(stays, 0.0, tuple(sorted(tasks))), still
+
+
+def _one_after_the_other(network: Network, tasks: Tasks) -> Timetable | None:
+    """First everybody home; then each robot's work is put in."""
+    ways_home = evacuate(network, tasks)
+    if ways_home is None:
+        return None
+    so_far = {robot: Task(task.start, (), task.home) for robot, task in tasks.items()}
+    timetable = Timetable(ways_home, 0.0, tuple(sorted(tasks)))
+    for robot in sorted(tasks):
+        if tasks[robot].goals:
+            so_far[robot] = tasks[robot]
+            found = insert(network, so_far, timetable.journeys, robot)
+            if found is None:
+                return None
+            timetable = found
+    return timetable
+
+
+def improve(
+    network: Network,
+    tasks: Tasks,
+    best: Timetable,
+    rng: Random,
+    go_on: Callable[[], bool],
+    worth_s: float = WORTH_S,
+    pause: Pause = no_pause,
+) -> Timetable:
+    """The best timetable found while it goes on: some robots or all are planned again in another order."""
+    while best.order and go_on():
+        order = _another_order(best.order, rng)
+        found = plan(network, tasks, order, best.journeys, best.cost_s - worth_s, pause)
+        if found is not None:
+            left = [robot for robot in best.order if robot not in found.order]
+            best = Timetable(found.journeys, found.cost_s, (*left, *found.order))
+    return best
+
+
+def _taken_on_the_way(network: Network, tasks: Tasks) -> Taken:
+    """What robots hold of the ways to where their journeys begin; it is not planned, and nobody's to take out again."""
+    taken = Taken(network)
+    for robot, task in tasks.items():
+        for start in task.start.on_the_way():
+            taken.hold(f"{robot} on its way", start, start.ready_s)
+    return taken
+
+
+def _another_order(order: Sequence[str], rng: Random) -> list[str]:
+    """All of them with one robot elsewhere in the order, or shuffled; of many also some few."""
+    chosen = list(order)
+    if len(chosen) > SOME_OF and rng.random() < 0.5:
+        return rng.sample(chosen, rng.randint(2, SOME_OF))
+    if rng.random() < 0.6:
+        moved = chosen.pop(rng.randrange(len(chosen)))
+        chosen.insert(rng.randrange(len(chosen) + 1), moved)
+    else:
+        rng.shuffle(chosen)
+    return chosen

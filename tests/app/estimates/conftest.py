@@ -1,5 +1,0 @@
-"""The real service on a real port, and a robot that the test plays."""
-
-from tests.app.fleet.conftest import robot, service
-
-__all__ = ["robot", "service"]

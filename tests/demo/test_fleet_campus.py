@@ -1,0 +1,81 @@
+"""A fleet has as many robots as its map has homes for; letters begin beside each of them."""
+
+from itertools import islice
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from demo.__main__ import app as commands
+from demo.fleet.campus import NAMES, campus_of
+from demo.fleet.errands import errands, first_errands
+from demo.fleet.settings import FleetDemo
+from maps import builtin_map, read_map
+from maps.campus_map import builtin_path
+
+SIX_DOCKS = ("uc", "canal", "mackenzie", "commons", "richcraft", "robertson")
+
+
+@pytest.fixture
+def wide_map(tmp_path: Path) -> Path:
+    """The tunnels of Carleton with two docks more, at its dead ends."""
+    text = builtin_path("carleton").read_text(encoding="utf-8")
+    for title, dock in (
+        ('"Richcraft"\nx_m = 125.0\ny_m = -190.0', "x_m = 125.0, y_m = -190.6, heading_deg = -90.0"),
+        ('"Robertson (Pigiarvik)"\nx_m = 185.0\ny_m = 180.0', "x_m = 185.6, y_m = 180.0, heading_deg = 0.0"),
+    ):
+        assert title in text
+        text = text.replace(title, f"{title}\ndock = {{ {dock} }}")
+    file = tmp_path / "wide.toml"
+    file.write_text(text, encoding="utf-8")
+    assert {post.name for post in read_map(file).docks()} == set(SIX_DOCKS)
+    return file
+
+
+def test_without_a_number_there_is_a_robot_for_every_dock_of_the_map(wide_map: Path) -> None:
+    assert set(campus_of(str(wide_map)).homes.values()) == set(SIX_DOCKS)
+    assert list(campus_of("carleton").homes.values()) == [post.name for post in builtin_map("carleton").docks()]
+    assert campus_of(str(wide_map), 5).homes.keys() == {"r1", "r2", "r3", "r4", "r5"}
+
+
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        (("--robots", "5"), "The map carleton has homes for 4 robots, a dock each (uc, canal, mackenzie, commons); 5"),
+        (("--map", "atlantis"), "The map cannot be used. atlantis"),
+    ],
+)
+def test_more_robots_than_homes_or_no_such_map_are_one_sentence(options: tuple[str, str], sentence: str) -> None:
+    ran = CliRunner().invoke(commands, ["fleet", "--json", "--port", "0", *options])
+    said = ran.stderr.splitlines()
+    assert (ran.exit_code, len(said), ran.stdout) == (2, 2, "")
+    assert said[1].startswith(f"campus-mail: {sentence}")
+
+
+def test_a_letter_begins_beside_every_dock_and_each_goes_to_somebody_else(wide_map: Path) -> None:
+    campus = campus_of(str(wide_map))
+    first = list(first_errands(campus))
+    assert [campus.offices[errand.sender] for errand in first] == list(campus.homes.values())
+    assert len({errand.recipient for errand in first}) == len(first)
+    assert not {campus.offices[errand.recipient] for errand in first} & set(SIX_DOCKS)
+
+
+def test_there_is_somebody_at_every_post_and_a_seed_says_who_sends() -> None:
+    campus = campus_of("carleton")
+    assert sorted(campus.offices.values()) == sorted(campus.map.posts)
+    assert list(campus.offices) == list(NAMES[: len(campus.offices)])
+    stream = [list(islice(errands(7, campus.offices), 20)) for _ in range(2)]
+    assert stream[0] == stream[1]
+    assert all(errand.sender != errand.recipient for errand in stream[0])
+
+
+def test_every_robot_is_started_at_home(wide_map: Path, tmp_path: Path) -> None:
+    demo = FleetDemo(
+        tmp_path, tmp_path / "door", port=0, speed=8.0, once=True, as_json=True, campus=campus_of(str(wide_map))
+    )
+    demo.lay_out()
+    for robot, home in demo.homes.items():
+        command = demo.robot_command(robot)
+        assert command[command.index("--start") + 1] == f"dock:{home}"
+        config = Path(command[command.index("--config") + 1])
+        assert f'home = "{home}"' in config.read_text()

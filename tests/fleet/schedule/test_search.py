@@ -1,0 +1,156 @@
+"""The search for one robot finds the quickest way there is: it is compared with trying everything, half second by half
+second."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from random import Random
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from fleet.schedule.journey import Goal, Leg, Start, Task, stays
+from fleet.schedule.network import Lane, Network
+from fleet.schedule.occupied import Taken
+from fleet.schedule.planning import first_plan
+from fleet.schedule.search import find_home, find_work
+
+SLOT_S = 0.5
+LATEST = 400
+
+
+def slots(seconds: float) -> int:
+    return round(seconds / SLOT_S)
+
+
+def whole_seconds(rng: Random) -> Network:
+    """A connected map of 2 to 5 posts with 1 or 2 bays; everything lasts whole seconds, the clearance half a one."""
+    posts = rng.randint(2, 5)
+    edges = {(rng.randrange(post), post) for post in range(1, posts)}
+    if posts > 2:
+        edges.add(tuple(sorted(rng.sample(range(posts), 2))))  # type: ignore[arg-type]
+    lanes: list[list[Lane]] = [[] for _ in range(posts)]
+    for number, (a, b) in enumerate(sorted(edges)):
+        travel_s = float(rng.randint(1, 5))
+        lanes[a].append(Lane(number, 0, a, b, travel_s))
+        lanes[b].append(Lane(number, 1, b, a, travel_s))
+    names = tuple(f"p{post}" for post in range(posts))
+    bays = tuple(rng.randint(1, 2) for _ in names)
+    return Network(names, bays, tuple(f"{a}-{b}" for a, b in sorted(edges)), tuple(map(tuple, lanes)), SLOT_S)
+
+
+def some_goals(rng: Random, network: Network, most: int) -> tuple[Goal, ...]:
+    posts = range(len(network.posts))
+    return tuple(Goal(rng.choice(posts), float(rng.randint(1, 4)), rng.randint(0, 8)) for _ in range(most))
+
+
+_State = tuple[int, bool, int]
+"""Post, at home, goals done."""
+
+
+@dataclass
+class EveryWay:
+    """Where a robot could be, slot by slot, if it tried everything."""
+
+    network: Network
+    others: Sequence[Sequence[Leg]]
+    goals: Sequence[Goal]
+    home: int
+    done: dict[int, dict[_State, int]] = field(default_factory=dict)
+    """Of each slot: each state that can be reached in it, with the earliest slot by which its goals can be done."""
+
+    def __post_init__(self) -> None:
+        self._shut: dict[int, list[tuple[int, int]]] = {}
+        standing: dict[int, list[int]] = {post: [0] * (LATEST + 2) for post in range(len(self.network.posts))}
+        for legs in self.others:
+            for leg, until_s in stays(legs):
+                if leg.lane is not None:
+                    passages = self._shut.setdefault(leg.lane.corridor, [])
+                    passages.append((slots(leg.enter_s), slots(leg.arrive_s)))
+                if not leg.at_home:
+                    last = LATEST if until_s > LATEST * SLOT_S else slots(until_s)
+                    for slot in range(slots(leg.enter_s), last + 1):  # and the clearance
+                        standing[leg.post][slot] += 1
+        self._full = {post: [count >= self.network.bays[post] for count in counts] for post, counts in standing.items()}
+
+    def end_first(self, start: Start, *, at_home_only: bool) -> int | None:
+        """Home: when. Work: when it is done, if the robot may stay where it is then, or comes to where it may."""
+        first = slots(start.ready_s)
+        self._note(first, (start.post, start.at_home, 0), first)
+        ends = []
+        for slot in range(first, LATEST):
+            self._dock(slot)
+            for state, done in self.done.get(slot, {}).items():
+                if state[2] == len(self.goals) and self._may_end(slot, state, at_home_only=at_home_only):
+                    ends.append(slot if at_home_only else done)
+                for at, after, done_then in self._moves(slot, state, done):
+                    self._note(at, after, done_then)
+        return min(ends, default=None)
+
+    def _dock(self, slot: int) -> None:
+        """From the bay to the place beside it, in no time."""
+        for (post, _, served), done in list(self.done.get(slot, {}).items()):
+            if post == self.home and not self._full[post][slot]:
+                self._note(slot, (post, True, served), done)
+
+    def _note(self, slot: int, state: _State, done: int) -> None:
+        known = self.done.setdefault(slot, {})
+        known[state] = min(done, known.get(state, LATEST))
+
+    def _may_end(self, slot: int, state: _State, *, at_home_only: bool) -> bool:
+        post, at_home, _ = state
+        return at_home or (not at_home_only and not any(self._full[post][slot:LATEST]))
+
+    def _moves(self, slot: int, state: _State, done: int) -> Iterator[tuple[int, _State, int]]:
+        post, at_home, served = state
+        if served < len(self.goals) and self.goals[served].post == post:
+            ends = max(slot, slots(self.goals[served].not_before_s)) + slots(self.goals[served].handling_s)
+            if at_home or not any(self._full[post][slot:ends]):
+                yield ends, (post, at_home, served + 1), ends
+        if at_home or not self._full[post][slot]:
+            yield slot + 1, state, done
+            for lane in self.network.lanes[post]:
+                yield from self._drives(slot, lane, served, done)
+
+    def _drives(self, slot: int, lane: Lane, served: int, done: int) -> Iterator[tuple[int, _State, int]]:
+        arrives = slot + slots(lane.travel_s)
+        if all(slot > out or arrives < into for into, out in self._shut.get(lane.corridor, ())):
+            if lane.end == self.home:
+                yield arrives, (lane.end, True, served), done
+            if not any(self._full[lane.end][slot:arrives]):
+                yield arrives, (lane.end, False, served), done
+
+
+def others_at_work(rng: Random, network: Network) -> list[tuple[Leg, ...]]:
+    posts = range(len(network.posts))
+    tasks = {}
+    for number in range(rng.randint(0, 3)):
+        home = rng.choice(posts)
+        tasks[f"r{number}"] = Task(Start(home, True, 0.0, 0.0), some_goals(rng, network, rng.randint(1, 3)), home)
+    found = first_plan(network, tasks, rng)
+    assert found is not None
+    return [found.journeys[robot].legs for robot in sorted(tasks)]
+
+
+@settings(max_examples=40)
+@given(st.randoms(use_true_random=False), st.integers(1, 3))
+def test_no_way_is_quicker_than_the_one_that_is_found(rng: Random, most: int) -> None:
+    network = whole_seconds(rng)
+    others, goals = others_at_work(rng, network), some_goals(rng, network, most)
+    home = rng.randrange(len(network.posts))
+    taken, start = Taken(network), Start(home, True, 0.0, 0.0)
+    for number, legs in enumerate(others):
+        taken.put(f"r{number}", legs)
+    work = find_work(network, taken, start, goals, home)
+    assert work is not None
+    best = EveryWay(network, others, goals, home).end_first(start, at_home_only=False)
+    assert best is not None
+    assert work.done_s == pytest.approx(best * SLOT_S, abs=1e-4)
+    last = work.legs[-1]
+    if not last.at_home:
+        back = Start(last.post, False, last.ready_s, last.enter_s)
+        way_home = find_home(network, taken, back, home)
+        soonest = EveryWay(network, others, (), home).end_first(back, at_home_only=True)
+        assert way_home is not None
+        assert soonest is not None
+        assert way_home.legs[-1].arrive_s == pytest.approx(soonest * SLOT_S, abs=1e-4)
