@@ -23,9 +23,9 @@ import structlog
 
 sys.path[:0] = [str(Path(__file__).parents[1])]
 
+from app.composition import create_app  # noqa: E402
 from app.core.settings import Settings  # noqa: E402
 from app.http.api_document import all_codes, operations  # noqa: E402  # the checkout is on the path only now
-from app.main import create_app  # noqa: E402
 from client import api_tables  # noqa: E402  # the checkout is on the path only now
 from protocol.clock import RealClock  # noqa: E402
 

@@ -21,6 +21,7 @@ from app.accounts.tokens import find_script
 from app.core.bearer_tokens import is_bearer
 from app.core.database.database import Database, DatabaseDep
 from app.core.errors import NotSignedIn
+from app.core.parts import find_part
 from app.core.settings import ClockDep
 from app.models import Person, Role
 from protocol.clock import Clock
@@ -51,7 +52,7 @@ class Caller:
 async def _caller(request: Request, cookie: Annotated[object, Security(_cookie_documented)]) -> Caller:
     require_https_or_loopback(request)
     # Not as dependencies of their own: this one is solved for every request.
-    caller = await _find_caller(request, request.app.state.database, request.app.state.clock)
+    caller = await _find_caller(request, find_part(request, Database), find_part(request, Clock))
     if caller.session_id is not None:  # a token travels only where a program of ours puts it
         require_same_origin(request)
     return caller
@@ -59,7 +60,7 @@ async def _caller(request: Request, cookie: Annotated[object, Security(_cookie_d
 
 async def _find_caller(request: Request, database: Database, clock: Clock) -> Caller:
     """Raises NotSignedIn."""
-    last_seen: LastSeen = request.app.state.last_seen
+    last_seen = find_part(request, LastSeen)
     authorization = request.headers.get("Authorization", "")
     if is_bearer(authorization):
         return await _script(authorization, database, last_seen, clock)

@@ -1,7 +1,7 @@
 """Demonstrations only: links, printed in their terminal, that open a page as one of their people.
 
-No other service has this route (`app.main` adds it where there is a demonstration's door, and the settings bind that to
-this machine), and only who can read the demonstration's server key can make a link.
+No other service has this route (`app.composition` adds it where there is a demonstration's door, and the settings
+bind that to this machine), and only who can read the demonstration's server key can make a link.
 """
 
 import hmac

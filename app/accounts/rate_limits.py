@@ -20,6 +20,7 @@ from limits.aio.strategies import SlidingWindowCounterRateLimiter
 
 from app.accounts.current_user import AtBrowser, CurrentUser
 from app.core.errors import TooManyRequests
+from app.core.parts import find_part, part
 from app.core.settings import Settings
 from app.models import Person
 
@@ -85,12 +86,7 @@ def host_of(request: Request) -> str:
     return str(IPv6Network((ip, HOME_BITS), strict=False)) if isinstance(ip, IPv6Address) else host
 
 
-async def _limits_of(request: Request) -> RateLimits:
-    limits: RateLimits = request.app.state.rate_limits
-    return limits
-
-
-LimitsDep = Annotated[RateLimits, Depends(_limits_of)]
+LimitsDep = Annotated[RateLimits, part(RateLimits)]
 
 
 def per_person(door: Door) -> Any:
@@ -100,7 +96,7 @@ def per_person(door: Door) -> Any:
     """
 
     async def counted(request: Request, user: CurrentUser) -> Person:
-        await (await _limits_of(request)).count(door, user.id)
+        await find_part(request, RateLimits).count(door, user.id)
         return user
 
     return Depends(counted)
@@ -110,7 +106,7 @@ def per_person_at_browser(door: Door) -> Any:
     """The same for what no script may do: a script is refused as such, and not counted."""
 
     async def counted(request: Request, user: AtBrowser) -> Person:
-        await (await _limits_of(request)).count(door, user.id)
+        await find_part(request, RateLimits).count(door, user.id)
         return user
 
     return Depends(counted)
@@ -120,7 +116,7 @@ def per_host(door: Door) -> Any:
     """For `dependencies=`: counts the address at this door, whoever it is."""
 
     async def counted(request: Request) -> None:
-        await (await _limits_of(request)).count(door, host_of(request))
+        await find_part(request, RateLimits).count(door, host_of(request))
 
     return Depends(counted)
 

@@ -52,9 +52,9 @@ class ChargeDesk:
     _learned_at: datetime | None = None
     _looks: Looks = field(default_factory=lambda: Looks(LOOK_EVERY_S, REST_S))
 
-    def __post_init__(self) -> None:
-        # When an order has changed somebody may be wanted elsewhere.
-        self.fleet.orders.on_change.append(self._looks.wake)
+    def wake(self, _changed: str = "") -> None:
+        """Poll soon: an order has changed, so that a robot may be needed elsewhere."""
+        self._looks.wake()
 
     def stop(self) -> None:
         """End `run` after what it is doing."""

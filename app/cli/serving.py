@@ -1,5 +1,5 @@
 """Listens and serves until told to stop; then lets go of open event streams at once, and of the rest in order:
-requests, what runs in the background, the outbox (`app.main`)."""
+requests, what runs in the background, the outbox (`app.composition`)."""
 
 import asyncio
 import errno
@@ -11,10 +11,11 @@ import uvicorn
 from fastapi import FastAPI
 
 from app.cli.administration import migrate
+from app.composition import create_app
+from app.composition.parts import parts_of
 from app.core.errors import StartError
 from app.core.settings import Settings, open_clock
 from app.http.connection_timeouts import PunctualConfig
-from app.main import create_app
 from app.retention.data_folder_lock import the_only_one
 from app.robots.link.keepalive import ANSWERS_WITHIN_S, LOOKS_AFTER_S, AttentiveSocket
 
@@ -47,7 +48,7 @@ class Server(uvicorn.Server):
         self._app = app
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
-        self._app.state.feed.close()
+        parts_of(self._app).feed.close()
         await super().shutdown(sockets)
 
 
@@ -104,7 +105,7 @@ def check_tls(settings: Settings) -> None:
 
 def config_of(app: FastAPI) -> uvicorn.Config:
     """How uvicorn serves the application."""
-    settings: Settings = app.state.settings
+    settings = parts_of(app).settings
     return PunctualConfig(
         app,
         within_s=settings.request_within_s,

@@ -25,6 +25,7 @@ from sqlmodel.sql.expression import SelectOfScalar
 from starlette.datastructures import URL
 
 from app.core.errors import BadRequest, answering
+from app.core.parts import find_part
 from app.core.server_key import ServerKey
 
 SEAL_BYTES: Final = 9
@@ -144,7 +145,7 @@ async def _asked(
     limit: Annotated[int, Query(ge=1, le=100, description="At most this many items.")] = 20,
     cursor: Annotated[str, Query(max_length=400, description="`next` of the page before; empty for the first.")] = "",
 ) -> Paging:
-    return Paging(limit, cursor, request.app.state.server_key, request.url, response)
+    return Paging(limit, cursor, find_part(request, ServerKey), request.url, response)
 
 
 PageDep = Annotated[Paging, Depends(_asked)]

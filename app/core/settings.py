@@ -10,12 +10,11 @@ from pathlib import Path
 from typing import Annotated, Final, Literal, Self
 from zoneinfo import ZoneInfo
 
-from fastapi import Depends
 from pydantic import Field, SecretStr, model_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict
-from starlette.requests import HTTPConnection
 
 from app.core.errors import StartError
+from app.core.parts import part
 from app.core.setting_kinds import (
     THIS_MACHINE,
     Authorities,
@@ -348,21 +347,6 @@ def make_data_folder(settings: Settings) -> None:
         ) from error
 
 
-async def _settings_of(connection: HTTPConnection) -> Settings:
-    settings: Settings = connection.app.state.settings
-    return settings
-
-
-async def _clock_of(connection: HTTPConnection) -> Clock:
-    clock: Clock = connection.app.state.clock
-    return clock
-
-
-async def _campus_of(connection: HTTPConnection) -> CampusMap:
-    campus: CampusMap = connection.app.state.campus
-    return campus
-
-
-SettingsDep = Annotated[Settings, Depends(_settings_of)]
-ClockDep = Annotated[Clock, Depends(_clock_of)]
-CampusDep = Annotated[CampusMap, Depends(_campus_of)]
+SettingsDep = Annotated[Settings, part(Settings)]
+ClockDep = Annotated[Clock, part(Clock)]
+CampusDep = Annotated[CampusMap, part(CampusMap)]

@@ -41,7 +41,6 @@ class FleetPlanner:
         self._scenes = SceneOfWork(fleet.settings, Charges(fleet.orders.ways, fleet.settings, fleet.spending.rates))
         self._process = process or PlannerProcess()
         self._planned: frozenset[str] = frozenset()
-        desk.on_look.append(self._notice)
         self._something_new = asyncio.Event()
         self._stopped = asyncio.Event()
         self.left = 0
@@ -91,7 +90,7 @@ class FleetPlanner:
 
     # And better.
 
-    def _notice(self) -> None:
+    def notice(self) -> None:
         """A robot that cannot be planned for any more: what it has not loaded is for others."""
         timetable = self._desk.timetable
         planned = frozenset(timetable.controller.tasks(self._fleet.clock.now())) if timetable else self._planned

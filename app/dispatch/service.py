@@ -42,8 +42,6 @@ class Dispatcher:
         self._woken = asyncio.Event()
         self._stopped = asyncio.Event()
         self._needs_robots = True
-        fleet.on_change.append(self.wake_for_robot)
-        fleet.orders.on_change.append(self.wake)
 
     def wake(self, changed: str = "") -> None:
         """An order has changed: look again, unless that is what was just decided here."""

@@ -16,6 +16,7 @@ from app.accounts.rate_limits import Door, per_host
 from app.accounts.sessions.same_origin import refuse_other_sites, require_https_or_loopback
 from app.core.database.database import DatabaseDep, ReadingDep, SessionDep
 from app.core.errors import problems
+from app.core.parts import part
 from app.handover.routes import ASKED, NAMED, NOT_KEPT, DelegatingDep, HandOversDep, hand_over
 from app.handover.schemas import CodeView, DelegateView, HandoverAsked, HandOverWish, NewDelegate, PurposeName
 from app.handover.service import HandOvers
@@ -70,12 +71,7 @@ async def _door(request: Request) -> None:
     refuse_other_sites(request)
 
 
-async def _links(request: Request) -> Links:
-    links: Links = request.app.state.links
-    return links
-
-
-LinksDep = Annotated[Links, Depends(_links)]
+LinksDep = Annotated[Links, part(Links)]
 
 router = APIRouter(
     prefix="/link",

@@ -2,7 +2,7 @@
 
 from typing import Annotated, Final
 
-from fastapi import APIRouter, Depends, Path, Request, Response
+from fastapi import APIRouter, Path, Response
 
 from app.accounts.current_user import CurrentUser, Dispatcher
 from app.accounts.errors import AddressNotAllowed, RoleNeeded
@@ -10,6 +10,7 @@ from app.accounts.rate_limits import Door, per_host, per_person
 from app.core.database.database import DatabaseDep, ReadingDep, SessionDep
 from app.core.errors import ServiceError, problems
 from app.core.paging import PAGED, PageDep
+from app.core.parts import part
 from app.handover import errors
 from app.handover.delegates import Delegating
 from app.handover.my_delegations import named_by
@@ -55,18 +56,8 @@ NAMED = problems(
 )
 
 
-async def _hand_overs(request: Request) -> HandOvers:
-    hand_overs: HandOvers = request.app.state.hand_overs
-    return hand_overs
-
-
-async def _delegating(request: Request) -> Delegating:
-    delegating: Delegating = request.app.state.delegating
-    return delegating
-
-
-HandOversDep = Annotated[HandOvers, Depends(_hand_overs)]
-DelegatingDep = Annotated[Delegating, Depends(_delegating)]
+HandOversDep = Annotated[HandOvers, part(HandOvers)]
+DelegatingDep = Annotated[Delegating, part(Delegating)]
 
 
 @router.get("/orders/{order_id}/code", responses=problems(UnknownOrder, NoCodeForYou))

@@ -19,6 +19,7 @@ from starlette.requests import HTTPConnection
 
 from app.core.database.database import ReadingDep
 from app.core.errors import Forbidden, problems
+from app.core.parts import find_part
 from app.core.settings import ClockDep, Settings, SettingsDep
 from app.core.trusted_clock import TrustedClock, holds_on
 from app.models import Alarm, Order, OrderState, RobotRow
@@ -166,8 +167,8 @@ async def _door(
 )
 async def metrics(connection: HTTPConnection, session: ReadingDep, clock: ClockDep) -> Response:
     """Figures for Prometheus, in its text format; for this machine alone, or by the operator's token."""
-    gathered: Metrics = connection.app.state.metrics
+    gathered = find_part(connection, Metrics)
     gathered.look_at(clock)
-    gathered.judge(connection.app.state.orders.estimates)
+    gathered.judge(find_part(connection, Estimates))
     content = await gathered.gather(session, clock.utc())
     return Response(content, headers={"Content-Type": CONTENT_TYPE_PLAIN_0_0_4})

@@ -4,14 +4,14 @@ import asyncio
 from collections.abc import AsyncIterator, Awaitable, Callable
 from typing import Annotated
 
-from fastapi import APIRouter, Depends, Header, Query
+from fastapi import APIRouter, Header, Query
 from fastapi.sse import KEEPALIVE_COMMENT, format_sse_event
-from starlette.requests import HTTPConnection
 from starlette.responses import StreamingResponse
 
 from app.accounts.current_user import CurrentUser, StillSignedInDep
 from app.accounts.rate_limits import one_stream
 from app.core.errors import TooManyRequests, problems
+from app.core.parts import part
 from app.core.settings import SettingsDep
 from app.models import Person
 from app.realtime.feed import LocalFeed, Numbered
@@ -57,12 +57,7 @@ class EventStream(StreamingResponse):
     media_type = "text/event-stream"
 
 
-async def _feed_of(connection: HTTPConnection) -> LocalFeed:
-    feed: LocalFeed = connection.app.state.feed
-    return feed
-
-
-FeedDep = Annotated[LocalFeed, Depends(_feed_of)]
+FeedDep = Annotated[LocalFeed, part(LocalFeed)]
 
 
 @router.get(

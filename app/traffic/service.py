@@ -43,16 +43,13 @@ async def _never(_session: AsyncSession, _robot: RobotRow, _claim: ClaimRow, _le
 class TrafficDesk:
     """Runs in the background of the service, if traffic goes by the timetable."""
 
-    def __init__(self, fleet: Fleet) -> None:
+    def __init__(self, fleet: Fleet, charges_first: ChargesFirst = _never) -> None:
         self._fleet = fleet
         self._looks = Looks(LOOK_AGAIN_S, REST_S)
         self._timetable: Timetable | None = None
         self.on_look: list[Callable[[], None]] = []
         """Called after each look: what has changed is in the timetable."""
-        self.charges_first: ChargesFirst = _never
-        """Asked before a robot is let in; dispatch sets it."""
-        fleet.on_change.append(self.wake)
-        fleet.orders.on_change.append(self.wake)
+        self._charges_first = charges_first
 
     @property
     def timetable(self) -> Timetable | None:
@@ -143,7 +140,7 @@ class TrafficDesk:
                 self._let_wait(session, robot, verdict, now)
             case MayEnter():
                 legs = tuple(Leg(from_post=a, to_post=b) for a, b in verdict.legs)
-                if await self.charges_first(session, robot, claim, legs):
+                if await self._charges_first(session, robot, claim, legs):
                     return False
                 await self._grant(session, robot, claim, verdict, now)
             case Elsewhere():

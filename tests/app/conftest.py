@@ -17,8 +17,8 @@ from fastapi.testclient import TestClient
 
 from app.cli.administration import migrate
 from app.cli.serving import Server, config_of, listen
+from app.composition import create_app
 from app.core.settings import Settings
-from app.main import create_app
 from app.models import MissionRow, OrderState, RobotRow
 from app.orders.service import Word
 from app.orders.transitions import By
@@ -200,7 +200,7 @@ class Mailroom:
         self._portal.call(self._enrol)
 
     async def _enrol(self) -> None:
-        state = self.app.state
+        state = self.app.state.parts
         async with state.database.transaction() as session:
             session.add(RobotRow(name="r1", enrolled_at=state.clock.utc(), server_journal="j1", post="post5"))
 
@@ -209,7 +209,7 @@ class Mailroom:
         self._portal.call(self._connect, online)
 
     async def _connect(self, online: bool) -> None:
-        state = self.app.state
+        state = self.app.state.parts
         async with state.database.transaction() as session:
             (await session.get_one(RobotRow, "r1")).online = online
             if await session.get(MissionRow, "m1") is None:
@@ -221,8 +221,8 @@ class Mailroom:
 
     async def _move(self, order_id: str, to: OrderState, by: By, known: dict[str, Any]) -> bool:
         by = By.DISPATCHER if to is OrderState.ASSIGNED else by
-        async with self.app.state.database.transaction() as session:
-            moved: bool = await self.app.state.orders.move(session, order_id, to, Word(by, robot="r1", **known))
+        async with self.app.state.parts.database.transaction() as session:
+            moved: bool = await self.app.state.parts.orders.move(session, order_id, to, Word(by, robot="r1", **known))
             return moved
 
     def send_mails(self) -> None:
@@ -230,9 +230,9 @@ class Mailroom:
         self._portal.call(self._send_mails)
 
     async def _send_mails(self) -> None:
-        self.app.state.outbox_worker.wake()
+        self.app.state.parts.outbox_worker.wake()
         async with asyncio.timeout(10):
-            while await self.app.state.outbox_worker.has_work():  # noqa: ASYNC110  # the worker rings no bell of ours
+            while await self.app.state.parts.outbox_worker.has_work():  # noqa: ASYNC110  # the worker rings no bell of ours
                 await asyncio.sleep(0.01)
 
     def call(self, function: Callable[..., Any], *arguments: Any) -> Any:

@@ -88,7 +88,7 @@ class Everybody:
         return self.scene(who, (), anew=True)
 
     async def _set(self, who: str, gaps: list[str], anew: bool) -> None:
-        async with self.app.state.database.transaction() as session:
+        async with self.app.state.parts.database.transaction() as session:
             people = {name: await self._person(session, *known) for name, known in PEOPLE.items()}
             self._places["person_id"] = people["member"].id
             for gap in gaps:
@@ -101,10 +101,10 @@ class Everybody:
 
     async def _mailed_link(self) -> str:
         """What stands behind the # of the link to an order, in the mail to its recipient without account."""
-        async with self.app.state.database.transaction() as session:
+        async with self.app.state.parts.database.transaction() as session:
             sender, guest = [await self._person(session, email, set()) for email in (PEOPLE["sender"][0], GUEST)]
             order_id = await self._order(session, sender, GUEST)
-        url = await self.app.state.links.url_for(guest, order_id)
+        url = await self.app.state.parts.links.url_for(guest, order_id)
         assert url
         return str(url.partition("#")[2])
 
@@ -112,7 +112,7 @@ class Everybody:
         if who == "stranger":
             return {}
         if who == "robot":
-            return {"Authorization": f"Bearer {await new_token(session, self.app.state.clock, 'r1')}"}
+            return {"Authorization": f"Bearer {await new_token(session, self.app.state.parts.clock, 'r1')}"}
         if who == "delegate":
             people = {**people, who: await self._person(session, DELEGATE, set())}
         if who in people:
@@ -128,18 +128,18 @@ class Everybody:
         return (await self._token(session, sender, [Scope.ORDERS_READ]))[0]
 
     async def a_robots_token(self, session: AsyncSession, sender: Person) -> str:
-        return (await new_token(session, self.app.state.clock, "r1")).split("_")[1]
+        return (await new_token(session, self.app.state.parts.clock, "r1")).split("_")[1]
 
     async def a_device(self, session: AsyncSession, sender: Person) -> str:
         """A browser of the sender's, and a webhook."""
-        now = self.app.state.clock.utc()
+        now = self.app.state.parts.clock.utc()
         await set_webhook(session, sender, "https://hook.example/sender", now)
         keys = NewDevice(endpoint="https://push.example/sender", keys=SubscriptionKeys(p256dh="AA", auth="AA"))
         return (await add_device(session, sender, keys, now)).id
 
     async def a_sending(self, session: AsyncSession, sender: Person) -> str:
         """A sending that no channel takes."""
-        now, order_id = self.app.state.clock.utc(), await self._order(session, sender, PEOPLE["recipient"][0])
+        now, order_id = self.app.state.parts.clock.utc(), await self._order(session, sender, PEOPLE["recipient"][0])
         notice = (await session.exec(select(Notice.id).where(Notice.order_id == order_id))).one()
         sending = OutgoingNotice(key=order_id, channel="none", notice_id=notice, created_at=now)
         session.add(sending)
@@ -147,43 +147,44 @@ class Everybody:
         return str(sending.id)
 
     async def an_alarm(self, session: AsyncSession, sender: Person) -> str:
-        alarm = Alarm(robot="r1", name="blocked", reason="A box.", at=self.app.state.clock.utc())
+        alarm = Alarm(robot="r1", name="blocked", reason="A box.", at=self.app.state.parts.clock.utc())
         session.add(alarm)
         await session.flush()
         return str(alarm.id)
 
     async def a_delegate(self, session: AsyncSession, sender: Person) -> str:
-        delegating, wish = self.app.state.delegating, NewDelegate(name="The porter")
+        delegating, wish = self.app.state.parts.delegating, NewDelegate(name="The porter")
         return str((await delegating.name(session, sender, self._places["order_id"], wish)).id)
 
     async def a_standing_order(self, session: AsyncSession, sender: Person) -> str:
         order = {"from_post": "post1", "to_post": "post4", "recipient": PEOPLE["recipient"][0]}
         wish = NewStandingOrder(**order, weekdays=[0], at="09:30", zone="America/Toronto")
-        return str((await self.app.state.standing_orders.create(session, sender, wish)).id)
+        return str((await self.app.state.parts.standing_orders.create(session, sender, wish)).id)
 
     async def an_order(self, session: AsyncSession, sender: Person) -> str:
         order_id = await self._order(session, sender, PEOPLE["recipient"][0])
-        await self.app.state.delegating.name(session, sender, order_id, NewDelegate(name="Dee", email=DELEGATE))
+        await self.app.state.parts.delegating.name(session, sender, order_id, NewDelegate(name="Dee", email=DELEGATE))
         return order_id
 
     async def _person(self, session: AsyncSession, email: str, roles: set[Role]) -> Person:
-        person: Person = await self.app.state.sign_in_desk.person(session, email, self.app.state.clock.utc())
+        parts = self.app.state.parts
+        person: Person = await parts.sign_in_desk.person(session, email, parts.clock.utc())
         set_roles(person, roles, set(Role) - roles)
         return person
 
     async def _signed_in(self, session: AsyncSession, person: Person) -> tuple[PersonSession, str]:
-        row, cookie = new_session(person, "", 3600, self.app.state.clock.utc())
+        row, cookie = new_session(person, "", 3600, self.app.state.parts.clock.utc())
         session.add(row)
         await session.flush()
         return row, cookie
 
     async def _token(self, session: AsyncSession, person: Person, scopes: Any) -> tuple[str, str]:
-        now = self.app.state.clock.utc()
+        now = self.app.state.parts.clock.utc()
         row, text = await issue_token(session, person, "script", scopes, timedelta(days=1), now)
         return row.prefix, text
 
     async def _order(self, session: AsyncSession, sender: Person, recipient: str) -> str:
-        orders = self.app.state.orders
+        orders = self.app.state.parts.orders
         wish = NewOrder(from_post="post1", to_post="post4", recipient=recipient)
         order_id = await placed(orders, session, sender, wish)
         await orders.move(session, order_id, OrderState.ASSIGNED, Word(By.DISPATCHER, robot="r1"))

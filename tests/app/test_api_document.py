@@ -7,12 +7,12 @@ from typing import Any
 import jsonschema_rs
 import pytest
 
+from app.composition import create_app
 from app.core.errors import PROBLEM_JSON
 from app.core.settings import Settings
 from app.core.text_lines import LONGEST_TEXT
 from app.http.api_document import HEADERS, TAGS, all_codes, operations
 from app.http.api_examples import EXAMPLES
-from app.main import create_app
 from protocol.clock import SteppedClock
 
 NAME = re.compile(r"[a-z]+(_[a-z]+)*")

@@ -8,9 +8,9 @@ from fastapi.testclient import TestClient
 from httpx import Response
 
 from app.accounts.demo_links import link_path
+from app.composition import create_app
 from app.core.server_key import ServerKey, open_server_key
 from app.core.settings import Settings
-from app.main import create_app
 from protocol.clock import SteppedClock
 from tests.app.conftest import HERE
 

@@ -39,7 +39,7 @@ def test_an_order_whose_robot_has_moved_is_sent_again_and_can_still_be_changed(
     app: FastAPI, sender: Browser, mailroom: Mailroom
 ) -> None:
     async def robot_says_why() -> None:
-        async with app.state.database.transaction() as session:
+        async with app.state.parts.database.transaction() as session:
             robot = await session.get_one(RobotRow, "r1")
             robot.why = "I am on my way."
 

@@ -26,7 +26,7 @@ def asked(app: FastAPI) -> Iterator[list[tuple[str, Any]]]:
     def note(_connection: Any, _cursor: Any, statement: str, values: Any, *_: Any) -> None:
         questions.append((statement, values))
 
-    engine = app.state.database.engine.sync_engine
+    engine = app.state.parts.database.engine.sync_engine
     event.listen(engine, "before_cursor_execute", note)
     try:
         yield questions
@@ -35,7 +35,7 @@ def asked(app: FastAPI) -> Iterator[list[tuple[str, Any]]]:
 
 
 async def plan_of(app: FastAPI, statement: str, values: Any) -> str:
-    async with app.state.database.reading() as session:
+    async with app.state.parts.database.reading() as session:
         connection = await session.connection()
         rows = (await connection.exec_driver_sql(f"EXPLAIN QUERY PLAN {statement}", values)).all()
     return "; ".join(row[-1] for row in rows)
@@ -115,8 +115,8 @@ def test_what_is_not_over_is_found_without_what_is(app: FastAPI, mailroom: Mailr
 
 
 async def ask(app: FastAPI, what: str) -> None:
-    now = app.state.clock.utc()
-    async with app.state.database.transaction() as session:
+    now = app.state.parts.clock.utc()
+    async with app.state.parts.database.transaction() as session:
         match what:
             case "what a robot is to be told":
                 await outbox.acknowledged_by(session, {"r1": (0, 500)}, now)
@@ -136,7 +136,7 @@ async def ask(app: FastAPI, what: str) -> None:
 def test_every_person_is_found_by_address_without_reading_all(app: FastAPI, mailroom: Mailroom) -> None:
     async def find() -> str:
         statement = select(Person).where(Person.email == SENDER)
-        compiled = statement.compile(app.state.database.engine.sync_engine)
+        compiled = statement.compile(app.state.parts.database.engine.sync_engine)
         return await plan_of(app, str(compiled), (SENDER,))
 
     assert "USING INDEX" in mailroom.call(find)
@@ -149,8 +149,8 @@ def test_whether_requests_were_answered_before_is_found_by_their_keys_without_re
 
     async def look_up() -> list[str]:
         with asked(app) as questions:
-            async with app.state.database.transaction() as session:
-                assert await earlier_answers(session, keys, app.state.clock.utc()) == {}
+            async with app.state.parts.database.transaction() as session:
+                assert await earlier_answers(session, keys, app.state.parts.clock.utc()) == {}
         return [await plan_of(app, *one) for one in questions if "FROM idempotency_keys" in one[0]]
 
     (plan,) = mailroom.call(look_up)

@@ -10,9 +10,9 @@ from fastapi.testclient import TestClient
 from prometheus_client.parser import text_string_to_metric_families
 from pydantic import SecretStr
 
+from app.composition import create_app
 from app.core.logs import set_up_logs
 from app.core.settings import Settings
-from app.main import create_app
 from protocol.clock import SteppedClock
 from tests.app.conftest import HERE, Browser, Mailroom
 

@@ -13,10 +13,10 @@ from sqlalchemy import Connection, MetaData, insert, select
 from sqlmodel import SQLModel
 from sqlmodel import select as select_rows
 
+from app.composition import create_app
 from app.core.database.database import Database
 from app.core.database.schema_version import INI, bring_to_head, is_at_head
 from app.core.settings import Settings
-from app.main import create_app
 from app.models import Notice, Order, OrderState, OutgoingNotice, metadata
 from app.retention.database_checks import problems_of
 from protocol.clock import SteppedClock
@@ -151,7 +151,7 @@ async def _prepare(settings: Settings) -> None:
 
 
 async def _look(app: Any) -> tuple[dict[str, OrderState], int, list[tuple[str, str]]]:
-    async with app.state.database.reading() as session:
+    async with app.state.parts.database.reading() as session:
         orders = {order.id: order.state for order in (await session.exec(select_rows(Order))).all()}
         outbox = (await session.exec(select_rows(OutgoingNotice))).all()
         notices = (await session.exec(select_rows(Notice))).all()

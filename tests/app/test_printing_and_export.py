@@ -25,7 +25,7 @@ def dispatcher(app: FastAPI, signed_in: SignedIn, mailroom: Mailroom) -> Browser
     browser = signed_in("dispatcher@campus.example")
 
     async def promote() -> None:
-        async with app.state.database.transaction() as session:
+        async with app.state.parts.database.transaction() as session:
             person = await find_person(session, "dispatcher@campus.example")
             assert person
             set_roles(person, {Role.DISPATCHER}, set())
@@ -87,7 +87,7 @@ def test_a_long_table_comes_in_pieces_and_holds_no_connection_while_its_reader_w
 
     async def read_slowly() -> tuple[list[str], list[int]]:
         # One of its own: the service's other parts use their connections meanwhile.
-        database, texts, in_use = Database(app.state.settings.url_of_database), [], []
+        database, texts, in_use = Database(app.state.parts.settings.url_of_database), [], []
         async for piece in pieces(database, LONG_AGO, clock.utc() + timedelta(seconds=1), at_once=2):
             texts.append(piece)
             in_use.append(database.engine.pool.checkedout())

@@ -13,10 +13,10 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
 from app.cli.serving import GRACEFUL_S
+from app.composition import create_app
 from app.core.database.database import Database
 from app.core.settings import Settings
 from app.dispatch.service import LONGEST_REST_S
-from app.main import create_app
 from app.models import Order, OrderState, RobotRow
 from app.robots.service import new_token
 from protocol.clock import SteppedClock
@@ -66,15 +66,15 @@ async def _states(settings: Settings) -> Sequence[OrderState]:
 async def _let_dispatch_wait_for_the_lock(app: FastAPI) -> "asyncio.Task[None]":
     """A robot is there at last, and somebody else is writing just when dispatch wants to."""
     await _put(app, online=False)
-    while not (timetable := app.state.traffic_desk.timetable) or not timetable.known:
-        app.state.traffic_desk.wake()
+    while not (timetable := app.state.parts.traffic_desk.timetable) or not timetable.known:
+        app.state.parts.traffic_desk.wake()
         await asyncio.sleep(0.02)
     await _put(app, online=True)
     has_begun = asyncio.Event()
 
     async def hold() -> None:
-        async with app.state.database.transaction():
-            app.state.dispatcher.wake()
+        async with app.state.parts.database.transaction():
+            app.state.parts.dispatcher.wake()
             has_begun.set()
             await asyncio.sleep(LONGEST_REST_S + 1.0)
 
@@ -86,8 +86,8 @@ async def _let_dispatch_wait_for_the_lock(app: FastAPI) -> "asyncio.Task[None]":
 
 
 async def _put(app: FastAPI, *, online: bool) -> None:
-    async with app.state.database.transaction() as session:
-        row = RobotRow(name="r1", enrolled_at=app.state.clock.utc(), server_journal="j1", post="post5")
+    async with app.state.parts.database.transaction() as session:
+        row = RobotRow(name="r1", enrolled_at=app.state.parts.clock.utc(), server_journal="j1", post="post5")
         row.battery_ratio, row.online = 1.0, online
         await session.merge(row)
 
@@ -121,5 +121,5 @@ def test_who_is_connected_is_told_at_once_and_nothing_is_cut_off(
 
 
 async def _new_token(app: FastAPI) -> str:
-    async with app.state.database.transaction() as session:
-        return await new_token(session, app.state.clock, "r1")
+    async with app.state.parts.database.transaction() as session:
+        return await new_token(session, app.state.parts.clock, "r1")

@@ -16,8 +16,8 @@ from fastapi.testclient import TestClient
 from prometheus_client.parser import text_string_to_metric_families
 from sqlmodel import col, select
 
+from app.composition import create_app
 from app.core.settings import Settings
-from app.main import create_app
 from app.models import Order, OutgoingNotice, PersonSession, StandingOrder
 from protocol.clock import SteppedClock
 from tests.app.conftest import HERE, RECIPIENT, SENDER, Browser, Mailroom, sqlite_alone
@@ -52,7 +52,7 @@ def sender(app: FastAPI, nobody: TestClient, mailroom: Mailroom) -> Browser:
 
 
 async def _session_of(app: FastAPI, email: str) -> str:
-    state = app.state
+    state = app.state.parts
     async with state.database.transaction() as session:
         person = await state.sign_in_desk.person(session, email, state.clock.utc())
         return str(state.sign_in_desk.open_session(session, person, "", state.clock.utc()))
@@ -63,7 +63,7 @@ def column(mailroom: Mailroom) -> Callable[[Any], list[Any]]:
     """All values of a column, from the database."""
 
     async def read(which: Any) -> list[Any]:
-        async with mailroom.app.state.database.reading() as session:
+        async with mailroom.app.state.parts.database.reading() as session:
             return list((await session.exec(select(which))).all())
 
     return lambda which: list(mailroom.call(read, which))
@@ -74,7 +74,7 @@ Column = Callable[[Any], list[Any]]
 
 def time_acts(mailroom: Mailroom) -> None:
     """Everything that time alone decides looks once more than it does by itself."""
-    state = mailroom.app.state
+    state = mailroom.app.state.parts
     mailroom.call(state.timer.tick)
     mailroom.call(state.housekeeper.keep_house)
 
@@ -141,15 +141,15 @@ def test_nothing_is_let_go_of_given_up_or_begun_in_a_leap(
 
 async def _try_again(app: FastAPI) -> None:
     """As a dispatcher does who taps: else it would be minutes until it is tried again."""
-    async with app.state.database.transaction() as session:
+    async with app.state.parts.database.transaction() as session:
         for row in (await session.exec(select(OutgoingNotice))).all():
-            row.next_try_at = app.state.clock.utc()
-    app.state.outbox_worker.wake()
+            row.next_try_at = app.state.parts.clock.utc()
+    app.state.parts.outbox_worker.wake()
 
 
 async def _wait_for_tries(app: FastAPI, tries: int) -> None:
     for _ in range(200):
-        async with app.state.database.reading() as session:
+        async with app.state.parts.database.reading() as session:
             wanted = select(OutgoingNotice.id).where(col(OutgoingNotice.tries) >= tries)
             if (await session.exec(wanted)).all():
                 return
@@ -193,7 +193,7 @@ def test_after_a_start_far_from_the_newest_record_it_is_waited_and_seen(settings
 
 async def _found(app: FastAPI) -> tuple[str, bool, int]:
     """The state of the order, whether the first notice of it was given up, and how many sessions are kept."""
-    async with app.state.database.reading() as session:
+    async with app.state.parts.database.reading() as session:
         gave_up = (await session.exec(select(OutgoingNotice.gave_up_at).order_by(col(OutgoingNotice.id)))).first()
         sessions = (await session.exec(select(PersonSession.id))).all()
         return str((await session.exec(select(Order.state))).one()), gave_up is not None, len(sessions)

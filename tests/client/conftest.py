@@ -14,6 +14,16 @@ from app.orders.service import Word
 from app.orders.transitions import By
 from campus_mail_client import AsyncCampusMail
 from protocol.clock import SteppedClock
+from tests.app.conftest import (  # noqa: F401  # fixtures
+    clock,
+    database_url,
+    mails,
+    nobody,
+    pages,
+    postgresql,
+    settings,
+    sqlite_at_head,
+)
 from tests.app.robots.playing import Service, serving
 
 SENDER, RECIPIENT = "sender@campus.example", "recipient@campus.example"
@@ -31,7 +41,7 @@ class Campus:
 
     async def token(self, email: str = SENDER, scopes: set[Scope] | None = None) -> str:
         """As somebody makes one at a browser: `POST /tokens`."""
-        state = self.service.app.state
+        state = self.service.app.state.parts
         async with state.database.transaction() as session:
             person = await state.sign_in_desk.person(session, email, state.clock.utc())
             _, text = await issue_token(
@@ -40,20 +50,20 @@ class Campus:
         return str(text)
 
     async def enrol(self, name: str = "r1") -> None:
-        state = self.service.app.state
+        state = self.service.app.state.parts
         async with state.database.transaction() as session:
             session.add(RobotRow(name=name, enrolled_at=state.clock.utc(), server_journal="j1"))
 
     async def announce(self, name: str, online: bool) -> None:
         """As when its socket opens or closes."""
-        state = self.service.app.state
+        state = self.service.app.state.parts
         async with state.database.transaction() as session:
             robot = await session.get_one(RobotRow, name)
             robot.online = online
             state.fleet.announce(session, robot)
 
     async def move(self, order_id: str, *states: str) -> None:
-        state = self.service.app.state
+        state = self.service.app.state.parts
         for one in states:
             word = Word(By.DISPATCHER if one == "assigned" else By.ROBOT, robot="r1")
             async with state.database.transaction() as session:

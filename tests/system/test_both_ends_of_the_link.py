@@ -15,9 +15,9 @@ import uvicorn
 from fastapi import FastAPI
 from sqlmodel import select
 
+from app.composition import create_app
 from app.core.database.database import Database
 from app.core.settings import Settings
-from app.main import create_app
 from app.models import ClaimRow, MessageToRobot, RobotMessage, RobotRow
 from app.robots.service import enrol
 from maps import builtin_map
@@ -149,7 +149,7 @@ async def linked(store: Store, outbox: Outbox, memory: Memory, port: int, token:
 
 
 async def enrolled(app: FastAPI) -> str:
-    async with app.state.database.transaction() as session:
+    async with app.state.parts.database.transaction() as session:
         return await enrol(session, RealClock(), "r1")
 
 
@@ -183,11 +183,11 @@ async def test_over_a_wire_that_breaks_again_and_again_every_message_arrives_onc
             await until(everything_is_refused)
         assert wire.connections > 3, "it did break"
         assert refused == [f"c{number}" for number in range(count)]
-        said = await rows(app.state.database, RobotMessage)
+        said = await rows(app.state.parts.database, RobotMessage)
         assert [(row.seq, row.body["claim_id"]) for row in said] == [(n + 1, f"c{n}") for n in range(count)]
-        assert len(await rows(app.state.database, ClaimRow)) == count
+        assert len(await rows(app.state.parts.database, ClaimRow)) == count
         assert memory.received() == Received(
-            journal=(await rows(app.state.database, RobotRow))[0].server_journal, seq=count
+            journal=(await rows(app.state.parts.database, RobotRow))[0].server_journal, seq=count
         )
 
 
@@ -213,7 +213,7 @@ async def test_a_service_that_is_stopped_and_started_again_goes_on_where_it_was(
         assert (link.state, outbox.waiting()) == (LinkState.OFFLINE, 1)
         async with serving(settings, wire_port) as (app, _):
             await until(is_acknowledged)
-            assert [row.seq for row in await rows(app.state.database, RobotMessage)] == [1, 2]
+            assert [row.seq for row in await rows(app.state.parts.database, RobotMessage)] == [1, 2]
 
 
 async def test_two_machines_with_one_token_do_not_fight_for_ever(settings: Settings, tmp_path: Path) -> None:
@@ -228,7 +228,7 @@ async def test_two_machines_with_one_token_do_not_fight_for_ever(settings: Setti
                     assert "is its token in use on a second machine?" in (first.problem or "")
                     await asyncio.sleep(0.5)
                     assert second.state is LinkState.ONLINE
-        assert await rows(app.state.database, MessageToRobot) == []
+        assert await rows(app.state.parts.database, MessageToRobot) == []
 
 
 async def is_in(link: Link, state: LinkState) -> bool:

@@ -7,8 +7,8 @@ from typing import Any, Final
 from sqlmodel import col, select
 
 from app.accounts.sign_in.service import set_roles
+from app.composition import create_app
 from app.core.settings import Settings
-from app.main import create_app
 from app.models import Alarm, DigitLock, Notice, Order, OrderState, OutgoingNotice, Priority, RobotRow, Role
 from app.orders.service import Word
 from app.orders.transitions import By

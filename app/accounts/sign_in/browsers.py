@@ -19,6 +19,7 @@ from sqlmodel import col, select
 from app.accounts.rate_limits import Door, LimitsDep, host_of
 from app.accounts.sessions.cookies import read_cookie, set_cookie
 from app.accounts.sessions.sessions import hash_of
+from app.core.parts import find_part
 from app.core.server_key import ServerKey
 from app.models import Person, PersonSession
 
@@ -62,7 +63,7 @@ def remember(request: Request, response: Response, browser: Browser, *, has_sign
 
 
 def _seal(request: Request, secret: str) -> str:
-    key: ServerKey = request.app.state.server_key
+    key = find_part(request, ServerKey)
     return urlsafe_b64encode(key.derive("browser", secret)).decode().rstrip("=")
 
 

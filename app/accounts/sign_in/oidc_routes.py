@@ -18,6 +18,7 @@ from app.accounts.sign_in.routes import DeskDep, Language, UserAgent
 from app.accounts.sign_in.service import language_from
 from app.core.database.database import DatabaseDep
 from app.core.errors import ServiceError, problems
+from app.core.parts import find_part
 from app.core.settings import ClockDep, Settings, SettingsDep
 
 ATTEMPT_COOKIE = "oidc"
@@ -32,7 +33,7 @@ router = APIRouter(
 
 
 async def _provider(request: Request) -> Provider:
-    provider: Provider = request.app.state.provider
+    provider = find_part(request, Provider)
     if not provider.is_configured:
         raise NoCampusSignIn("Sign in by a mailed code: the campus's own sign-in is not set up here.")
     return provider

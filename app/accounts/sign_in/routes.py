@@ -15,6 +15,7 @@ from app.accounts.sign_in.browsers import AskingBrowser, Browser, has_signed_in,
 from app.accounts.sign_in.service import SignInDesk, language_from
 from app.core.database.database import Database, DatabaseDep, SessionDep
 from app.core.errors import problems
+from app.core.parts import part
 from app.core.settings import ClockDep, SettingsDep
 
 router = APIRouter(tags=["people"])
@@ -23,17 +24,12 @@ Language = Annotated[str, Header(alias="Accept-Language", max_length=200)]
 UserAgent = Annotated[str, Header(max_length=1000)]
 
 
-async def _desk(request: Request) -> SignInDesk:
-    desk: SignInDesk = request.app.state.sign_in_desk
-    return desk
-
-
 async def _door(request: Request) -> None:
     require_https_or_loopback(request)
     refuse_other_sites(request)
 
 
-DeskDep = Annotated[SignInDesk, Depends(_desk)]
+DeskDep = Annotated[SignInDesk, part(SignInDesk)]
 DOOR = [Depends(_door), per_browser(Door.SIGN_IN)]
 
 

@@ -23,8 +23,9 @@ from starlette.requests import HTTPConnection
 from app.core.database import postgresql_driver, sqlite_driver
 from app.core.database.deadline import WAIT_S
 from app.core.database.group_commit import AFTER_COMMIT, CONNECTION, Writers
+from app.core.database.shielded import uncancelled
 from app.core.errors import StartError
-from app.core.shielded import uncancelled
+from app.core.parts import find_part, part
 
 Row = TypeVar("Row", bound=SQLModel)
 
@@ -272,22 +273,17 @@ def _begin_postgresql(connection: Connection) -> None:
         connection.exec_driver_sql(statement)
 
 
-async def _database_of(connection: HTTPConnection) -> Database:
-    database: Database = connection.app.state.database
-    return database
-
-
-DatabaseDep = Annotated[Database, Depends(_database_of)]
+DatabaseDep = Annotated[Database, part(Database)]
 
 
 # Not by way of DatabaseDep: each dependency is solved anew for every request.
 async def _transaction(request: HTTPConnection) -> AsyncIterator[AsyncSession]:
-    async with (await _database_of(request)).transaction() as session:
+    async with find_part(request, Database).transaction() as session:
         yield session
 
 
 async def _reading(request: HTTPConnection) -> AsyncIterator[AsyncSession]:
-    async with (await _database_of(request)).reading() as session:
+    async with find_part(request, Database).reading() as session:
         yield session
 
 

@@ -23,7 +23,7 @@ from sqlalchemy.ext.asyncio import AsyncConnection, AsyncEngine
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.core.database.deadline import left_s
-from app.core.shielded import uncancelled
+from app.core.database.shielded import uncancelled
 
 log = structlog.get_logger(__name__)
 

@@ -18,7 +18,7 @@ from typing import Any, Final, Self, TypeVar
 import aiosqlite
 
 from app.core.database.deadline import left_s
-from app.core.shielded import uncancelled
+from app.core.database.shielded import uncancelled
 
 T = TypeVar("T")
 

@@ -12,9 +12,11 @@ from app.accounts.current_user import Dispatcher
 from app.core.database.database import ReadingDep, SessionDep, after_commit
 from app.core.errors import problems
 from app.core.paging import PAGED, PageDep, PageOf, Sorting
+from app.core.parts import find_part
 from app.core.settings import ClockDep, SettingsDep
 from app.models import Notice, OutgoingNotice, Person
 from app.notifications import spooled
+from app.notifications.delivery.worker import OutboxWorker
 from app.notifications.errors import NotInSpool, SentAlready, UnknownSending
 from app.notifications.spooled import SpooledMail
 
@@ -86,7 +88,7 @@ async def send_again(
     if row.sent_at is not None:
         raise SentAlready("It has gone out already.")
     row.next_try_at, row.gave_up_at = clock.utc(), None
-    after_commit(session, request.app.state.outbox_worker.wake)
+    after_commit(session, find_part(request, OutboxWorker).wake)
     notice = await session.get_one(Notice, row.notice_id)
     return SendingView.of(row, notice, await session.get_one(Person, notice.person_id))
 

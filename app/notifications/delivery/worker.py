@@ -49,7 +49,7 @@ class OutboxWorker:
     _under_way: dict["asyncio.Task[NotSent | None]", Due] = field(default_factory=dict)
     _stopping: bool = False
 
-    def wake(self) -> None:
+    def wake(self, _changed: str = "") -> None:
         self._bell.set()
 
     def stop(self) -> None:

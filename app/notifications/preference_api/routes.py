@@ -2,7 +2,7 @@
 
 from typing import Annotated, Final
 
-from fastapi import APIRouter, Depends, Path, Request
+from fastapi import APIRouter, Path
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.accounts.current_user import AtBrowser, CurrentUser
@@ -10,6 +10,7 @@ from app.accounts.rate_limits import Door, per_person_at_browser
 from app.core.database.database import DatabaseDep, ReadingDep, SessionDep
 from app.core.errors import problems
 from app.core.http_client import Outside, TargetRefused
+from app.core.parts import part
 from app.core.server_key import ServerKey
 from app.core.settings import ClockDep
 from app.models import NoticeKind, NoticeWishes, Person
@@ -38,24 +39,9 @@ CHANGES: Final = [per_person_at_browser(Door.CHANGES)]
 DeviceId = Annotated[str, Path(pattern=r"^[0-9a-f]+$", max_length=64)]
 
 
-async def _push_key(request: Request) -> PushKey:
-    key: PushKey = request.app.state.push_key
-    return key
-
-
-async def _outside(request: Request) -> Outside:
-    outside: Outside = request.app.state.outside
-    return outside
-
-
-async def _server_key(request: Request) -> ServerKey:
-    key: ServerKey = request.app.state.server_key
-    return key
-
-
-PushKeyDep = Annotated[PushKey, Depends(_push_key)]
-OutsideDep = Annotated[Outside, Depends(_outside)]
-ServerKeyDep = Annotated[ServerKey, Depends(_server_key)]
+PushKeyDep = Annotated[PushKey, part(PushKey)]
+OutsideDep = Annotated[Outside, part(Outside)]
+ServerKeyDep = Annotated[ServerKey, part(ServerKey)]
 
 
 @router.get("/me/notices", responses=problems(401, 403))

@@ -2,7 +2,7 @@
 
 from typing import Annotated, Any, Final
 
-from fastapi import APIRouter, Depends, Header, Path, Query, Request, Response
+from fastapi import APIRouter, Header, Path, Query, Request, Response
 from sqlmodel import col
 
 from app.accounts.current_user import CurrentUser
@@ -11,6 +11,7 @@ from app.accounts.search import SearchText
 from app.core.database.database import ReadingDep, SessionDep
 from app.core.errors import TooManyRequests, answering, problems
 from app.core.paging import PAGED, PageDep, Sorting
+from app.core.parts import part
 from app.core.settings import CampusDep, SettingsDep
 from app.core.texts.reasons import words_of
 from app.models import Order, Person
@@ -47,18 +48,8 @@ PLACED = {
 CHANGED = {**answering(200, "ETag"), **problems(errors.UnknownOrder, errors.NotCancellable, errors.OrderChanged)}
 
 
-async def _orders(request: Request) -> Orders:
-    orders: Orders = request.app.state.orders
-    return orders
-
-
-async def _order_desk(request: Request) -> OrderDesk:
-    desk: OrderDesk = request.app.state.order_desk
-    return desk
-
-
-OrdersDep = Annotated[Orders, Depends(_orders)]
-OrderDeskDep = Annotated[OrderDesk, Depends(_order_desk)]
+OrdersDep = Annotated[Orders, part(Orders)]
+OrderDeskDep = Annotated[OrderDesk, part(OrderDesk)]
 
 
 @router.get("/estimate", responses=problems(errors.UnknownPost, errors.SamePost, errors.NoWay))

@@ -2,7 +2,7 @@
 
 from typing import Annotated, Final
 
-from fastapi import APIRouter, Depends, Path, Request, Response
+from fastapi import APIRouter, Path, Response
 from sqlmodel import col
 
 from app.accounts.current_user import CurrentUser
@@ -10,6 +10,7 @@ from app.accounts.rate_limits import Door, per_person
 from app.core.database.database import ReadingDep, SessionDep
 from app.core.errors import TooManyRequests, answering, problems
 from app.core.paging import PAGED, PageDep, Sorting
+from app.core.parts import part
 from app.models import StandingOrder
 from app.orders import errors
 from app.orders.standing.standing import StandingOrders
@@ -31,12 +32,7 @@ REFUSED: Final = (
 CHANGED: Final = problems(errors.UnknownStandingOrder, errors.StandingOrderEnded)
 
 
-async def _standing_orders(request: Request) -> StandingOrders:
-    standing: StandingOrders = request.app.state.standing_orders
-    return standing
-
-
-StandingOrdersDep = Annotated[StandingOrders, Depends(_standing_orders)]
+StandingOrdersDep = Annotated[StandingOrders, part(StandingOrders)]
 
 
 @router.post(

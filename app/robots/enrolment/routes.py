@@ -12,6 +12,7 @@ from app.accounts.sessions.same_origin import refuse_other_sites, require_https_
 from app.core.database.database import DatabaseDep, ReadingDep, SessionDep, after_commit
 from app.core.errors import problems
 from app.core.paging import PAGED, PageDep, PageOf, Sorting
+from app.core.parts import part
 from app.core.settings import ClockDep
 from app.models import RobotToken
 from app.robots.enrolment.errors import NoEnrolmentCode, UnknownRobotToken, WrongEnrolmentCode
@@ -27,17 +28,12 @@ NEWEST_FIRST = Sorting("robot_tokens", col(RobotToken.created_at), col(RobotToke
 Prefix = Annotated[str, Path(pattern=r"^[0-9a-f]{8}$")]
 
 
-async def _desk(request: Request) -> EnrolmentDesk:
-    desk: EnrolmentDesk = request.app.state.enrolment_desk
-    return desk
-
-
 async def _door(request: Request) -> None:
     require_https_or_loopback(request)
     refuse_other_sites(request)
 
 
-DeskDep = Annotated[EnrolmentDesk, Depends(_desk)]
+DeskDep = Annotated[EnrolmentDesk, part(EnrolmentDesk)]
 
 
 class RobotTokenPage(PageOf[RobotTokenView]):

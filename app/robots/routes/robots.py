@@ -2,14 +2,14 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, Depends, Path, WebSocket
+from fastapi import APIRouter, Path, WebSocket
 from sqlmodel import col, select
-from starlette.requests import HTTPConnection
 
 from app.accounts.current_user import CurrentUser
 from app.accounts.sessions.same_origin import travels_safely
 from app.core.database.database import ReadingDep
 from app.core.paging import PAGED, PageDep, PageOf, Sorting
+from app.core.parts import part
 from app.models import RobotRow
 from app.orders.views.robot_view import RobotView
 from app.robots.conversation.conversation import TOKEN_REFUSED, Conversation
@@ -23,18 +23,8 @@ router = APIRouter(tags=["robots"])
 BY_NAME = Sorting("robots", col(RobotRow.name))
 
 
-async def _fleet_of(connection: HTTPConnection) -> Fleet:
-    fleet: Fleet = connection.app.state.fleet
-    return fleet
-
-
-async def _intake_of(connection: HTTPConnection) -> Intake:
-    intake: Intake = connection.app.state.intake
-    return intake
-
-
-FleetDep = Annotated[Fleet, Depends(_fleet_of)]
-IntakeDep = Annotated[Intake, Depends(_intake_of)]
+FleetDep = Annotated[Fleet, part(Fleet)]
+IntakeDep = Annotated[Intake, part(Intake)]
 RobotName = Annotated[str, Path(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]*$", max_length=64)]
 
 

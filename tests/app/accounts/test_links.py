@@ -161,18 +161,18 @@ def test_whether_somebody_needs_a_link_is_one_question(
         email = emails.get(who, f"{who.replace(' ', '-')}@elsewhere.example")
         person = mailroom.call(_person, app, email)
         about = to_a_member if who == "signed in" else order_id
-        first = mailroom.call(app.state.links.url_for, person, about)
+        first = mailroom.call(app.state.parts.links.url_for, person, about)
         with questions() as asked:
-            again = mailroom.call(app.state.links.url_for, person, about)
+            again = mailroom.call(app.state.parts.links.url_for, person, about)
         assert again == first
         got[who] = (again is not None, len(asked))
     assert got == {who: (is_linked, 1) for who, is_linked in LINKED.items()}
-    assert mailroom.call(app.state.links.url_for, person, "no such order") is None
+    assert mailroom.call(app.state.parts.links.url_for, person, "no such order") is None
 
 
 async def _person(app: FastAPI, email: str) -> Person:
-    async with app.state.database.transaction() as session:
-        person: Person = await app.state.sign_in_desk.person(session, email, app.state.clock.utc())
+    async with app.state.parts.database.transaction() as session:
+        person: Person = await app.state.parts.sign_in_desk.person(session, email, app.state.parts.clock.utc())
         return person
 
 

@@ -190,11 +190,13 @@ def test_only_verified_addresses_of_our_domains_get_in(
 def test_a_provider_that_is_not_there_is_a_problem_and_no_crash(nobody: TestClient, app: FastAPI) -> None:
     with listen("127.0.0.1", 0) as gone:
         port = gone.getsockname()[1]
-    app.state.provider.settings = app.state.settings.model_copy(update={"oidc_issuer": f"http://127.0.0.1:{port}"})
+    app.state.parts.provider.settings = app.state.parts.settings.model_copy(
+        update={"oidc_issuer": f"http://127.0.0.1:{port}"}
+    )
     assert start(nobody) == problem("provider_failed")
 
 
 def test_where_none_is_set_up_there_is_no_campus_sign_in(nobody: TestClient, app: FastAPI) -> None:
-    app.state.provider.settings = app.state.settings.model_copy(update={"oidc_issuer": ""})
+    app.state.parts.provider.settings = app.state.parts.settings.model_copy(update={"oidc_issuer": ""})
     refused = nobody.get(START)
     assert (refused.status_code, refused.json()["code"]) == (404, "no_campus_sign_in")

@@ -20,7 +20,7 @@ def maintainer(app: FastAPI, signed_in: SignedIn, mailroom: Mailroom) -> Browser
 
 
 async def _make_maintainer(app: FastAPI) -> None:
-    async with app.state.database.transaction() as session:
+    async with app.state.parts.database.transaction() as session:
         person = await find_person(session, "maintainer@campus.example")
         assert person
         set_roles(person, {Role.MAINTAINER}, set())

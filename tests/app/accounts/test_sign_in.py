@@ -227,7 +227,7 @@ def test_codes_cookies_tokens_and_links_are_not_stored_in_the_clear(
     token = sender.post("/api/v1/tokens", json={"name": "script", "scopes": ["orders:read"]}).json()["token"]
     order_id = sender.order(recipient="ann@campus.example").json()["id"]
     ann = mailroom.call(_person, app, "ann@campus.example")
-    link = mailroom.call(app.state.links.url_for, ann, order_id).partition("#")[2]
+    link = mailroom.call(app.state.parts.links.url_for, ann, order_id).partition("#")[2]
     stored = b"".join(file.read_bytes() for file in settings.data.glob("campus-mail.sqlite*"))
     assert SENDER.encode() in stored
     secrets = (mails.newest_code(SENDER), sender.cookies["session"], token.rpartition("_")[2], link)
@@ -235,7 +235,7 @@ def test_codes_cookies_tokens_and_links_are_not_stored_in_the_clear(
 
 
 async def _person(app: FastAPI, email: str) -> Person | None:
-    async with app.state.database.reading() as session:
+    async with app.state.parts.database.reading() as session:
         return await find_person(session, email)
 
 

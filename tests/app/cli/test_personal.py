@@ -61,7 +61,7 @@ def test_who_is_erased_is_found_nowhere_and_the_order_stays(
 
 
 async def _whole_database(mailroom: Mailroom) -> str:
-    async with mailroom.app.state.database.reading() as session:
+    async with mailroom.app.state.parts.database.reading() as session:
         connection = await session.connection()
         return "\n".join([str((await connection.execute(table.select())).all()) for table in metadata.sorted_tables])
 

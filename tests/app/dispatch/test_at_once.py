@@ -45,7 +45,7 @@ async def test_the_nearest_robot_gets_the_first_order_and_the_next_one_the_secon
 async def test_a_corridor_is_granted_as_it_is_asked_for_unless_it_is_closed(
     service: Service, clock: SteppedClock
 ) -> None:
-    robot, state = PlayedRobot(clock), service.app.state
+    robot, state = PlayedRobot(clock), service.app.state.parts
     async with state.database.transaction() as session:
         person = await state.sign_in_desk.person(session, "dan@campus.example", state.clock.utc())
         await close(session, state.fleet, "post2-post3", "The floor is wet.", person)
@@ -64,13 +64,13 @@ async def test_a_corridor_is_granted_as_it_is_asked_for_unless_it_is_closed(
 async def test_an_order_that_a_robot_has_is_expected_when_its_shortest_way_ends(
     service: Service, clock: SteppedClock
 ) -> None:
-    robot, estimates = PlayedRobot(clock), service.app.state.orders.estimates
+    robot, estimates = PlayedRobot(clock), service.app.state.parts.orders.estimates
     teach(estimates, clock.utc())
     async with robot.connected(service.url, await service.enrol("r1")):
         await robot.greet("post5", home="post5")
         order_id = await service.order("post1", "post4")
         await robot.mission()
-        corridors = sum(len(shortest_route(service.app.state.campus, *way).posts) - 1 for way in WAYS)
+        corridors = sum(len(shortest_route(service.app.state.parts.campus, *way).posts) - 1 for way in WAYS)
         comes_at = clock.utc() + timedelta(seconds=corridors * CORRIDOR_S + HANDOVER_S)
 
         async def is_foreseen() -> bool:

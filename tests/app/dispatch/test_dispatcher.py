@@ -63,7 +63,7 @@ async def test_verifiers_come_before_the_mission_that_needs_them(service: Servic
 async def test_many_orders_of_one_moment_all_get_a_robot_and_nobody_is_told_that_there_is_none(
     service: Service, clock: SteppedClock
 ) -> None:
-    state, number = service.app.state, 25
+    state, number = service.app.state.parts, 25
     dispatcher = Person(id="dan", email="dan@campus.example", name="Dan", roles=[Role.DISPATCHER])
     with state.feed.listening(dispatcher) as heard:
         async with state.database.transaction() as session:

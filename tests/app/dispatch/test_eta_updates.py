@@ -58,8 +58,8 @@ async def robot(service: Service, clock: SteppedClock) -> AsyncIterator[PlayedRo
 
 async def can_come(service: Service) -> bool:
     """What was learned of it is known to those who promise."""
-    await service.app.state.fleet.learning.look()
-    return service.app.state.orders.estimates.ahead.reason is None
+    await service.app.state.parts.fleet.learning.look()
+    return service.app.state.parts.orders.estimates.ahead.reason is None
 
 
 async def given(service: Service, robot: PlayedRobot) -> tuple[str, Mission]:
@@ -68,7 +68,7 @@ async def given(service: Service, robot: PlayedRobot) -> tuple[str, Mission]:
     await service.reaches(order_id, "assigned")
 
     async def is_planned() -> bool:
-        desk = service.app.state.traffic_desk
+        desk = service.app.state.parts.traffic_desk
         return desk.timetable is not None and len(desk.timetable.controller.goals("r1")) == 2
 
     await until(is_planned)
@@ -79,9 +79,9 @@ async def given(service: Service, robot: PlayedRobot) -> tuple[str, Mission]:
 async def test_an_order_that_a_robot_has_is_expected_when_its_way_ends(
     service: Service, robot: PlayedRobot, clock: SteppedClock
 ) -> None:
-    teach(service.app.state.orders.estimates, clock.utc())
+    teach(service.app.state.parts.orders.estimates, clock.utc())
     order_id, _ = await given(service, robot)
-    campus = service.app.state.campus
+    campus = service.app.state.parts.campus
     ways = shortest_route(campus, "post5", "post1").posts[1:], shortest_route(campus, "post1", "post4").posts[1:]
     comes_at = clock.utc() + timedelta(seconds=sum(map(len, ways)) * CORRIDOR_S + HANDOVER_S)
 
@@ -166,7 +166,7 @@ async def test_why_it_waits_is_never_another_orders_stop(service: Service, robot
 
 async def view(service: Service, order_id: str) -> dict[str, Any]:
     """As its sender sees it."""
-    state = service.app.state
+    state = service.app.state.parts
     async with state.database.reading() as session:
         order = await session.get(Order, order_id)
         sender = await session.get_one(Person, order.sender_id)

@@ -43,7 +43,7 @@ async def robots(service: Service, clock: SteppedClock) -> AsyncIterator[tuple[P
 
 
 async def _are_known(service: Service, number: int) -> bool:
-    timetable = service.app.state.traffic_desk.timetable
+    timetable = service.app.state.parts.traffic_desk.timetable
     return timetable is not None and len(timetable.known) == number
 
 
@@ -63,7 +63,7 @@ async def waits_because(service: Service, order_id: str, sentence: str) -> None:
 
 
 async def change(service: Service, order_id: str, **values: object) -> None:
-    state = service.app.state
+    state = service.app.state.parts
     async with state.database.transaction() as session:
         order = await state.orders.order(session, order_id)
         for name, value in values.items():
@@ -72,7 +72,7 @@ async def change(service: Service, order_id: str, **values: object) -> None:
 
 
 async def goals(service: Service, robot: str) -> list[str]:
-    timetable = service.app.state.traffic_desk.timetable
+    timetable = service.app.state.parts.traffic_desk.timetable
     return [] if timetable is None else [goal.key for goal in timetable.controller.goals(robot)]
 
 
@@ -121,7 +121,7 @@ async def test_more_than_they_can_carry_waits_and_the_important_goes_first(
 async def test_what_is_given_and_not_in_the_timetable_yet_takes_a_place(
     service: Service, robots: tuple[PlayedRobot, PlayedRobot]
 ) -> None:
-    state = service.app.state
+    state = service.app.state.parts
     given = await service.order("post1", "post2")
     await robots[0].mission()
     assert len(await until(lambda: goals(service, "r1"))) == 2
@@ -143,7 +143,7 @@ async def lets_go(robot: PlayedRobot) -> None:
 async def test_an_order_left_for_later_is_not_fetched_before(
     service: Service, robots: tuple[PlayedRobot, PlayedRobot], clock: SteppedClock
 ) -> None:
-    state = service.app.state
+    state = service.app.state.parts
     async with state.database.transaction() as session:
         sender = await state.sign_in_desk.person(session, "sender@campus.example", clock.utc())
         in_an_hour = clock.utc() + timedelta(hours=1)
@@ -195,7 +195,7 @@ async def test_mail_that_is_aboard_stays_where_it_is_whatever_happens_to_its_rob
 async def test_what_was_decided_on_a_world_that_has_changed_is_not_written(
     service: Service, robots: tuple[PlayedRobot, PlayedRobot], clock: SteppedClock
 ) -> None:
-    state = service.app.state
+    state = service.app.state.parts
     order_id = await service.order("post1", "post2")
     await robots[0].mission()
     await service.order("post1", "post3")
@@ -216,7 +216,7 @@ async def test_what_was_decided_on_a_world_that_has_changed_is_not_written(
 async def test_no_mail_is_given_before_it_is_loaded_when_no_way_leads_to_where_it_is_loaded(
     service: Service, robots: tuple[PlayedRobot, PlayedRobot], clock: SteppedClock
 ) -> None:
-    state = service.app.state
+    state = service.app.state.parts
     order_id = await service.order("post1", "post2")
     await robots[0].mission()
     other_id = await service.order("post3", "post4")
@@ -257,7 +257,7 @@ async def test_who_waits_reads_how_many_are_ahead_and_is_expected_after_them(
         return found if [row.why for row in found] == ["Every robot is busy.", one_ahead] else None
 
     rows = await until(in_sequence)
-    now = service.app.state.clock.utc()
+    now = service.app.state.parts.clock.utc()
     assert now < rows[0].expected_from <= rows[1].expected_from
     assert rows[0].expected_to <= rows[1].expected_to
 

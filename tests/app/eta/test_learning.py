@@ -32,7 +32,7 @@ CORRIDOR_S, HANDED_OVER_S = 40.0, 25.0
 
 
 def estimates_of(service: Service) -> Estimates:
-    estimates: Estimates = service.app.state.orders.estimates
+    estimates: Estimates = service.app.state.parts.orders.estimates
     return estimates
 
 
@@ -44,7 +44,7 @@ class Carrier:
 
     async def deliver(self, service: Service) -> str:
         # The service looks now and then how many orders wait: by chance it would still count the one just delivered.
-        await service.app.state.fleet.learning.look()
+        await service.app.state.parts.fleet.learning.look()
         order_id = await service.order(FROM, TO)
         mission = await self.robot.mission()
         for stop in mission.stops:
@@ -109,7 +109,7 @@ async def test_what_a_robot_waited_before_it_was_let_in_or_stood_at_a_stop_is_no
         stop = mission.stops[0]
         await robot.ends(await robot.report(mission, Step.DEPARTED, stop, post=TO))
         clock.advance(200.0)
-        learning = service.app.state.fleet.learning
+        learning = service.app.state.parts.fleet.learning
         learning.let_in("r1", [Leg(from_post=here, to_post=passed)], clock.utc())
         clock.advance(CORRIDOR_S)
         await robot.ends(await robot.report(mission, Step.PASSED, stop, post=passed))
@@ -118,8 +118,8 @@ async def test_what_a_robot_waited_before_it_was_let_in_or_stood_at_a_stop_is_no
 
 
 def test_the_more_wait_the_later_it_is_said_to_come(mailroom: Mailroom, sender: Browser) -> None:
-    estimates: Estimates = mailroom.app.state.orders.estimates
-    now = mailroom.app.state.clock.utc()
+    estimates: Estimates = mailroom.app.state.parts.orders.estimates
+    now = mailroom.app.state.parts.clock.utc()
     comes_s = []
     for orders in (0, 3, 12):
         estimates.ahead = Ahead(orders, 2)
@@ -142,7 +142,7 @@ def test_office_hours_are_the_campuss_own() -> None:
 def test_those_who_look_after_robots_see_how_good_it_is_and_so_does_prometheus(
     sender: Browser, mailroom: Mailroom, nobody: TestClient
 ) -> None:
-    estimates: Estimates = mailroom.app.state.orders.estimates
+    estimates: Estimates = mailroom.app.state.parts.orders.estimates
     mailroom.call(make_dispatcher, mailroom.app)
     seen = sender.get("/api/v1/estimates").json()
     assert (seen["assumed"], seen["inside_meant"]) == (True, 0.8)
@@ -168,6 +168,6 @@ def test_those_who_look_after_robots_see_how_good_it_is_and_so_does_prometheus(
 
 
 async def make_dispatcher(app: FastAPI) -> None:
-    async with app.state.database.transaction() as session:
-        person = await app.state.sign_in_desk.person(session, SENDER, app.state.clock.utc())
+    async with app.state.parts.database.transaction() as session:
+        person = await app.state.parts.sign_in_desk.person(session, SENDER, app.state.parts.clock.utc())
         set_roles(person, {Role.DISPATCHER}, set())

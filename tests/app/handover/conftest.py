@@ -39,7 +39,7 @@ class Campus:
 
     async def browser(self, name: str, *roles: Role) -> httpx.AsyncClient:
         """Somebody of the campus, signed in."""
-        state = self.service.app.state
+        state = self.service.app.state.parts
         async with state.database.transaction() as session:
             person = await state.sign_in_desk.person(session, f"{name}@campus.example", state.clock.utc())
             set_roles(person, set(roles), set())

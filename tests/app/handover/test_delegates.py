@@ -81,7 +81,7 @@ async def test_a_delegates_name_is_for_the_side_that_named_them_and_for_dispatch
         (listed,) = (await people[who].get("/orders")).json()["items"]
         for name in ("The porter", "A neighbour"):
             assert (name in answer.text, name in str(listed)) == (name in names, name in names), (who, name)
-    async with campus.service.app.state.database.reading() as session:
+    async with campus.service.app.state.parts.database.reading() as session:
         assert (await one_order(session, campus.order_id))["custody"][-1]["delegate"] == "A neighbour"
         for who in ("sender", "recipient"):  # nor in what they are given of all that is known of them
             exported = str(await everything_of(session, await person_of(session, f"{who}@campus.example")))
@@ -203,7 +203,7 @@ async def test_whom_a_dispatcher_has_named_is_no_longer_theirs_to_see_without_th
     rest = (await desk.get(f"/me/delegates?limit=1&cursor={first['next']}")).json()
     assert {one["items"][0]["name"] for one in (first, rest)} == {"A neighbour", "Another"}
     assert rest["next"] is None
-    async with campus.service.app.state.database.transaction() as session:
+    async with campus.service.app.state.parts.database.transaction() as session:
         set_roles(await person_of(session, "desk@campus.example"), set(), {Role.DISPATCHER})
     assert await mine(desk) == []
 

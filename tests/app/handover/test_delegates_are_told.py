@@ -97,7 +97,7 @@ def test_why_it_waits_is_not_for_a_delegate_who_is_shown_what_is_listed_and_no_m
 
 
 async def _says_why(mailroom: Mailroom) -> None:
-    async with mailroom.app.state.database.transaction() as session:
+    async with mailroom.app.state.parts.database.transaction() as session:
         (await session.get_one(RobotRow, "r1")).why = "Somebody took its wheel."
 
 
@@ -126,16 +126,16 @@ def test_a_link_is_good_when_the_robot_comes_however_long_before_somebody_was_na
     name(sender, later_id)
     mailroom.send_mails()
     (mail,) = about_mail(mails)
-    mailroom.app.state.clock.advance(26.5 * 86400)
+    mailroom.app.state.parts.clock.advance(26.5 * 86400)
     assert nobody.post("/api/v1/link/order", json=link_in(mail)).json()["my_role"] == "delegate"
-    mailroom.app.state.clock.advance(30 * 86400)
+    mailroom.app.state.parts.clock.advance(30 * 86400)
     assert nobody.post("/api/v1/link/order", json=link_in(mail)).status_code == 401, "for ever it is not"
 
 
 def test_a_code_that_is_taken_back_before_its_mail_is_out_is_mailed_to_nobody(
     sender: Browser, mailroom: Mailroom, mails: Mails, order_id: str
 ) -> None:
-    mail = next(channel for channel in mailroom.app.state.outbox_worker.channels if channel.name == "mail")
+    mail = next(channel for channel in mailroom.app.state.parts.outbox_worker.channels if channel.name == "mail")
     whole = mail.code_picture
 
     def fails_at_first(notice: Notice) -> Any:
@@ -149,7 +149,7 @@ def test_a_code_that_is_taken_back_before_its_mail_is_out_is_mailed_to_nobody(
     mailroom.send_mails()
     assert about_mail(mails) == []
     sender.delete(f"/api/v1/orders/{order_id}/delegates/{named.json()['id']}")
-    mailroom.app.state.clock.advance(3600)
+    mailroom.app.state.parts.clock.advance(3600)
     mailroom.send_mails()
     assert [one["Subject"] for one in about_mail(mails)] == ["You are not needed any more for mail from Sender"]
 

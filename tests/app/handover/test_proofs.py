@@ -205,7 +205,7 @@ async def test_a_stolen_robot_cannot_pass_for_an_older_one(campus: Campus) -> No
 async def test_a_robot_that_is_enrolled_again_may_be_an_older_one(campus: Campus) -> None:
     await begin(campus)
     assert (await campus.service.row(RobotRow, name="r1")).proves_since
-    async with campus.service.app.state.database.transaction() as session:
+    async with campus.service.app.state.parts.database.transaction() as session:
         await new_token(session, campus.robot.clock, "r1")
     assert (await campus.service.row(RobotRow, name="r1")).proves_since is None
 

@@ -22,7 +22,7 @@ def signed(event: Event, key: Ed25519PrivateKey = KEY, robot: str = "r1") -> Eve
 
 
 async def give_key(campus: Campus) -> None:
-    async with campus.service.app.state.database.transaction() as session:
+    async with campus.service.app.state.parts.database.transaction() as session:
         robot = await session.get(RobotRow, "r1")
         robot.public_key = base64.b64encode(KEY.public_key().public_bytes_raw()).decode()
 

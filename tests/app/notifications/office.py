@@ -9,9 +9,9 @@ from typing import Any
 from fastapi import FastAPI
 from sqlmodel import col, select
 
+from app.composition import create_app
 from app.core.http_client import Outside
 from app.core.settings import Settings
-from app.main import create_app
 from app.models import OrderState, OutgoingNotice, Person, RobotRow
 from app.orders.service import Word
 from app.orders.transitions import By
@@ -30,7 +30,7 @@ class Office:
 
     @property
     def state(self) -> Any:
-        return self.app.state
+        return self.app.state.parts
 
     async def person(self, email: str, **known: Any) -> Person:
         async with self.state.database.transaction() as session:

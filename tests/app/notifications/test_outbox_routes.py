@@ -16,7 +16,7 @@ def dispatcher(app: FastAPI, signed_in: SignedIn, mailroom: Mailroom) -> Browser
     browser = signed_in("dispatcher@campus.example")
 
     async def promote() -> None:
-        async with app.state.database.transaction() as session:
+        async with app.state.parts.database.transaction() as session:
             person = await find_person(session, "dispatcher@campus.example")
             assert person
             set_roles(person, {Role.DISPATCHER}, set())
@@ -28,7 +28,7 @@ def dispatcher(app: FastAPI, signed_in: SignedIn, mailroom: Mailroom) -> Browser
 def test_what_does_not_go_out_is_seen_and_sent_again_by_hand(
     app: FastAPI, sender: Browser, dispatcher: Browser, mailroom: Mailroom, clock: SteppedClock
 ) -> None:
-    folder = app.state.settings.spool_folder
+    folder = app.state.parts.settings.spool_folder
     folder.rename(folder.with_name("aside"))
     folder.write_text("a file where the folder should be")
     order_id = sender.order().json()["id"]
@@ -60,7 +60,7 @@ def test_the_spool_shows_who_was_written_to_and_no_code(
     assert {mail["to"] for mail in mails} == {SENDER, "dispatcher@campus.example"}
     for mail in mails:
         shown = dispatcher.get(f"/api/v1/spool/{mail['name']}").json()
-        written = (app.state.settings.spool_folder / mail["name"]).read_text()
+        written = (app.state.parts.settings.spool_folder / mail["name"]).read_text()
         if mail["name"].startswith("sign-in"):
             before, after = shown["text"].split("[redacted]")
             assert re.search(rf"{re.escape(before)}\d{{8}}{re.escape(after)}", written)
@@ -72,5 +72,5 @@ def test_the_spool_shows_who_was_written_to_and_no_code(
     assert (longest.status_code, longest.json()["code"]) == (404, "not_in_spool")
     assert dispatcher.get(f"/api/v1/spool/{'0' * 252}.eml").status_code == 422, "no file can have such a name"
     # As one is that retention takes away between the list of names and the look at it.
-    (app.state.settings.spool_folder / "gone.eml").symlink_to("nowhere")
+    (app.state.parts.settings.spool_folder / "gone.eml").symlink_to("nowhere")
     assert dispatcher.get("/api/v1/spool").json()["items"] == mails

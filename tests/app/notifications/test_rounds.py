@@ -8,9 +8,9 @@ from datetime import datetime, timedelta
 import pytest
 from sqlmodel import delete
 
+from app.composition import create_app
 from app.core.database.schema_version import bring_to_head
 from app.core.settings import Settings
-from app.main import create_app
 from app.models import Notice, OutgoingNotice, Webhook
 from app.notifications.channels.interface import NotSent, Sending
 from app.notifications.delivery.worker import GATHER_S, LONGEST_REST_S, OutboxWorker, rest_s
@@ -45,11 +45,11 @@ class Channel:
 async def office(settings: Settings, clock: SteppedClock) -> AsyncIterator[Office]:
     """Without anything that runs by itself."""
     app = create_app(settings, clock)
-    await bring_to_head(app.state.database)
+    await bring_to_head(app.state.parts.database)
     yield Office(app, clock)
-    for client in (app.state.http, app.state.service_http):
+    for client in (app.state.parts.public_http, app.state.parts.operator_http):
         await client.aclose()
-    await app.state.database.close()
+    await app.state.parts.database.close()
 
 
 def worker_of(office: Office, *channels: Channel) -> OutboxWorker:

@@ -11,10 +11,10 @@ from pathlib import Path
 import pytest
 from fastapi.testclient import TestClient
 
+from app.composition import create_app
 from app.core.mail import Mail, NotMailed, Spool, SpoolMailer
 from app.core.mail.message import message_of
 from app.core.settings import Settings
-from app.main import create_app
 from protocol.clock import SteppedClock
 
 FROM = "Campus Mail <mail@campus.example>"

@@ -18,8 +18,8 @@ from pathlib import Path
 import httpx
 
 from app.cli.serving import GRACEFUL_S
+from app.composition.background import STOP_WITHIN_S
 from app.core.settings import ROOT
-from app.main import STOP_WITHIN_S
 from app.notifications.delivery.worker import FINISH_WITHIN_S
 from tests.app.notifications.receivers import receiving
 from tests.app.notifications.test_killed_while_sending import ORDERS, ask, free_port, orders, sign_in, unsent

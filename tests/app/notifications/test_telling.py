@@ -30,7 +30,7 @@ def test_a_crash_between_sending_and_noting_it_down_sends_nothing_twice(
     first = about_the_order(mails)
 
     async def forget_that_it_was_sent() -> None:
-        async with app.state.database.transaction() as session:
+        async with app.state.parts.database.transaction() as session:
             await session.exec(update(OutgoingNotice).values(sent_at=None, next_try_at=OutgoingNotice.created_at))
 
     mailroom.call(forget_that_it_was_sent)
@@ -44,7 +44,7 @@ def test_what_cannot_be_spooled_is_tried_again_later_and_arrives(
 
     def stuck() -> OutgoingNotice:
         async def look() -> OutgoingNotice:
-            async with app.state.database.reading() as session:
+            async with app.state.parts.database.reading() as session:
                 rows = (await session.exec(select(OutgoingNotice).where(col(OutgoingNotice.tries) > 0))).all()
                 return list(rows)[-1]
 
@@ -70,7 +70,7 @@ def test_what_cannot_be_spooled_is_tried_again_later_and_arrives(
 def test_a_mail_that_cannot_be_made_holds_up_nobody_elses(
     app: FastAPI, sender: Browser, mailroom: Mailroom, mails: Mails
 ) -> None:
-    mail = next(channel for channel in app.state.outbox_worker.channels if channel.name == "mail")
+    mail = next(channel for channel in app.state.parts.outbox_worker.channels if channel.name == "mail")
     broken: list[str | None] = []
 
     def picture(notice: Notice) -> None:

@@ -11,9 +11,9 @@ from fastapi import FastAPI
 from hypothesis import given
 from hypothesis import strategies as st
 
+from app.composition import create_app
 from app.core.http_client import Outside
 from app.core.settings import Settings
-from app.main import create_app
 from app.models import NoticeKind, NoticeWishes
 from app.notifications.preferences import CHANNELS, MUST_REACH, channels_for
 from protocol.clock import SteppedClock

@@ -16,7 +16,7 @@ def test_it_ends_when_it_is_cancelled_just_after_it_was_woken(
     """A service that stops right after an order must stop: there the two come within a few steps of the event loop."""
     portal = nobody.portal
     assert portal is not None
-    state = app.state
+    state = app.state.parts
     worker = OutboxWorker(state.database, state.feed, state.clock, state.outbox_worker.channels)
     assert portal.call(_wake_and_cancel, worker, steps_between)
 

@@ -189,6 +189,12 @@ class World:
         self.planner = FleetPlanner(self.fleet, self.desk, PlansHere()) if self.desk is not None else None
         self.dispatcher = Dispatcher(self.fleet, self.planner or NearestRobots(self.fleet))
         self.timer = Timer(self.database, self.orders, StandingOrders(self.orders))
+        self.orders.on_change.append(self.dispatcher.wake)
+        self.fleet.on_change.append(self.dispatcher.wake_for_robot)
+        if self.desk is not None and self.planner is not None:
+            self.orders.on_change.append(self.desk.wake)
+            self.fleet.on_change.append(self.desk.wake)
+            self.desk.on_look.append(self.planner.notice)
 
     async def restart(self) -> None:
         await self.database.close()

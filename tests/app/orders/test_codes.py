@@ -53,9 +53,9 @@ def test_the_robot_can_check_a_code_by_its_hash_alone(
     assert len(bytes.fromhex(text[4:])) == 16
 
     async def verifiers() -> dict[str, str]:
-        async with app.state.database.reading() as session:
+        async with app.state.parts.database.reading() as session:
             order = await session.get_one(Order, order_id)
-            return {one.purpose: one.sha256 for one in await app.state.orders.verifiers(session, order)}
+            return {one.purpose: one.sha256 for one in await app.state.parts.orders.verifiers(session, order)}
 
     known = mailroom.call(verifiers)
     assert known["load"] == sha256(text.encode()).hexdigest()

@@ -24,7 +24,7 @@ class Crowd:
 
     def __init__(self, app: FastAPI, mailroom: Mailroom) -> None:
         self._app, self._mailroom = app, mailroom
-        self.desk: OrderDesk = app.state.order_desk
+        self.desk: OrderDesk = app.state.parts.order_desk
         self.begun = 0
 
     def people(self) -> dict[str, Person]:
@@ -179,7 +179,7 @@ class Disk:
     """It is full when the database has grown to so many pages."""
 
     def __init__(self, app: FastAPI) -> None:
-        self._engine = app.state.database.engine
+        self._engine = app.state.parts.database.engine
         self.pages = 1_000_000
         event.listen(self._engine.sync_engine, "begin", self._limit)
 

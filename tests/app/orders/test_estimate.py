@@ -64,6 +64,6 @@ def test_a_robot_is_not_expected_at_a_time_that_is_over(
 
 
 async def _drives(app: FastAPI) -> None:
-    async with app.state.database.transaction() as session:
+    async with app.state.parts.database.transaction() as session:
         robot = await session.get_one(RobotRow, "r1")
-        robot.post, robot.towards, robot.seen_at = "post1", "post2", app.state.clock.utc()
+        robot.post, robot.towards, robot.seen_at = "post1", "post2", app.state.parts.clock.utc()

@@ -35,8 +35,8 @@ def loaded(app: FastAPI, mailroom: Mailroom, order_id: str, *, is_waiting: bool 
     """Its mail is in robot r1, which has a mission to bring it."""
 
     async def write_it_down() -> None:
-        async with app.state.database.transaction() as session:
-            now = app.state.clock.utc()
+        async with app.state.parts.database.transaction() as session:
+            now = app.state.parts.clock.utc()
             session.add(MissionRow(id="m1", robot="r1", told_update=1, created_at=now, accepted_at=now))
             await session.flush()
             stop = {"mission_id": "m1", "order_id": order_id, "position": 1}
@@ -90,7 +90,7 @@ def test_mail_in_trouble_is_sent_back_by_a_mission_that_says_so(
     assert seen(sender, order_id)["return_post"] == "post1"
 
     async def stops() -> list[tuple[str, bool, str]]:
-        async with app.state.database.reading() as session:
+        async with app.state.parts.database.reading() as session:
             rows = (await session.exec(select(StopRow).order_by(StopRow.since_update))).all()
             return [(row.action, row.dropped_at is None, row.post) for row in rows]
 
@@ -133,9 +133,9 @@ def test_the_person_that_the_robot_waits_for_may_ask_for_more_time_but_not_for_e
 
 async def arrive(app: FastAPI, order_id: str) -> None:
 
-    async with app.state.database.transaction() as session:
-        word, until = Word(By.ROBOT, robot="r1"), app.state.clock.utc() + timedelta(seconds=600)
-        await app.state.orders.move(session, order_id, OrderState.AT_RECIPIENT, word, until)
+    async with app.state.parts.database.transaction() as session:
+        word, until = Word(By.ROBOT, robot="r1"), app.state.parts.clock.utc() + timedelta(seconds=600)
+        await app.state.parts.orders.move(session, order_id, OrderState.AT_RECIPIENT, word, until)
 
 
 def test_another_robot_fetches_what_a_dispatcher_gives_to_it(

@@ -22,18 +22,18 @@ def dispatcher(app: FastAPI, signed_in: SignedIn, mailroom: Mailroom) -> Browser
 
 @pytest.fixture
 def tick(app: FastAPI, mailroom: Mailroom) -> Any:
-    return lambda: mailroom.call(app.state.timer.tick)
+    return lambda: mailroom.call(app.state.parts.timer.tick)
 
 
 def look_round(app: FastAPI, mailroom: Mailroom) -> None:
     """There is a robot, but nobody has told dispatch."""
     mailroom.call(_put_online, app)
-    mailroom.call(app.state.traffic_desk.look_round)
-    mailroom.call(app.state.dispatcher.look_round)
+    mailroom.call(app.state.parts.traffic_desk.look_round)
+    mailroom.call(app.state.parts.dispatcher.look_round)
 
 
 async def _put_online(app: FastAPI) -> None:
-    async with app.state.database.transaction() as session:
+    async with app.state.parts.database.transaction() as session:
         robot = await session.get_one(RobotRow, "r1")
         robot.online, robot.battery_ratio = True, 0.9
 
@@ -120,7 +120,7 @@ def test_what_is_late_while_no_robot_can_come_is_told_without_a_time(
     promised_to = order["window"]["to"]
     assert order["estimate"]["promised_to"] == promised_to
     mailroom.robot_connects(online=False)
-    mailroom.call(app.state.dispatcher.look_round)
+    mailroom.call(app.state.parts.dispatcher.look_round)
     clock.advance(HOUR_S)
     late = seen(sender, order["id"])
     assert (late["estimate"]["late"], late["estimate"]["promised_to"]) == (True, promised_to)
@@ -145,7 +145,7 @@ def test_nothing_is_promised_while_no_robot_can_come_and_the_first_time_that_is_
     assert "between" not in accepted["body"]
     assert "not known yet" in accepted["body"]
     mailroom.robot_connects()
-    mailroom.call(app.state.dispatcher.look_round)
+    mailroom.call(app.state.parts.dispatcher.look_round)
     known = seen(sender, order["id"])
     assert known["estimate"]["reason"] == "Every robot is busy."
     assert known["estimate"]["promised_to"] == known["estimate"]["to"] == known["window"]["to"]

@@ -76,7 +76,7 @@ def test_after_a_fault_a_dispatcher_puts_the_order_back_where_it_was(
 
 def test_events_are_never_changed_or_deleted(app: FastAPI, mailroom: Mailroom, order_id: str) -> None:
     async def rewrite_history() -> None:
-        async with app.state.database.transaction() as session:
+        async with app.state.parts.database.transaction() as session:
             event = await session.get_one(OrderEvent, (order_id, 1))
             event.state = OrderState.DELIVERED
 
@@ -176,7 +176,7 @@ def test_nobody_sees_an_order_that_is_not_theirs_unless_dispatcher(
 
 async def make_dispatcher(app: FastAPI, email: str) -> None:
 
-    async with app.state.database.transaction() as session:
+    async with app.state.parts.database.transaction() as session:
         person = await find_person(session, email)
         assert person
         set_roles(person, {Role.DISPATCHER}, set())

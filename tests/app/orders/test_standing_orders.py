@@ -23,7 +23,7 @@ def placed(browser: Browser, **changes: Any) -> Any:
 @pytest.fixture
 def tick(app: FastAPI, mailroom: Mailroom) -> Any:
     """What the timer does with each second."""
-    return lambda: mailroom.call(app.state.timer.tick)
+    return lambda: mailroom.call(app.state.parts.timer.tick)
 
 
 def orders_of(browser: Browser) -> list[Any]:
@@ -58,14 +58,14 @@ def test_two_that_look_at_once_and_a_restart_make_no_order_twice(
     tick()
 
     async def as_if_it_had_not_been_planned_on() -> None:
-        async with app.state.database.transaction() as session:
+        async with app.state.parts.database.transaction() as session:
             row = await session.get_one(StandingOrder, standing_id)
             row.next_at = datetime(2026, 1, 5, 10, 30, tzinfo=UTC)
 
     made = [order["id"] for order in orders_of(sender)]
     assert len(made) == 1
     mailroom.call(as_if_it_had_not_been_planned_on)
-    state = app.state
+    state = app.state.parts
     anew = Timer(state.database, state.orders, StandingOrders(state.orders))
     mailroom.call(anew.tick)
     assert [order["id"] for order in orders_of(sender)] == made
@@ -136,7 +136,7 @@ def test_one_whose_post_is_gone_is_paused_and_says_why(
     standing_id = placed(sender).json()["id"]
 
     async def rename() -> None:
-        async with app.state.database.transaction() as session:
+        async with app.state.parts.database.transaction() as session:
             (await session.get_one(StandingOrder, standing_id)).to_post = "post9"
 
     mailroom.call(rename)

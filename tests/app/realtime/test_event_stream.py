@@ -126,7 +126,7 @@ def test_a_stream_ends_when_what_its_person_may_see_has_changed(
     app: FastAPI, served: Served, sender: Browser, mailroom: Mailroom
 ) -> None:
     async def make_dispatcher() -> None:
-        async with app.state.database.transaction() as session:
+        async with app.state.parts.database.transaction() as session:
             person = await find_person(session, SENDER)
             assert person
             set_roles(person, {Role.DISPATCHER}, set())
@@ -206,7 +206,7 @@ def test_a_listener_that_is_too_slow_is_let_go_and_the_others_hear_on() -> None:
 def test_after_the_commit_and_not_before_a_change_is_told(
     app: FastAPI, sender: Browser, mailroom: Mailroom, nobody: object
 ) -> None:
-    feed: LocalFeed = app.state.feed
+    feed: LocalFeed = app.state.parts.feed
     before = feed.last_id
     answer = sender.order(recipient="eve@elsewhere.example")
     assert answer.status_code == 422

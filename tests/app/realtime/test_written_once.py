@@ -52,7 +52,7 @@ def test_what_cannot_be_put_into_words_any_more_is_fetched_anew(
 
 
 async def _told_of_a_row_that_was_undone(app: FastAPI, order_id: str) -> list[bytes]:
-    state = app.state
+    state = app.state.parts
     async with state.database.transaction() as session:
         person = await state.sign_in_desk.person(session, SENDER, state.clock.utc())
     with state.feed.listening(person) as queue:

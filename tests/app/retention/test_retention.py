@@ -53,7 +53,7 @@ class Kept:
 
     def __init__(self, mailroom: Mailroom, clock: SteppedClock) -> None:
         self._mailroom, self._clock = mailroom, clock
-        self._state = mailroom.app.state
+        self._state = mailroom.app.state.parts
 
     def retain_after(self, days: float) -> Mapping[str, int]:
         self._clock.advance(days * DAY_S)
@@ -235,7 +235,7 @@ def test_what_a_robot_still_has_to_hear_or_to_clear_stays_however_old(kept: Kept
 def test_much_goes_in_portions_and_somebody_who_writes_comes_in_between(
     kept: Kept, mailroom: Mailroom, clock: SteppedClock, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    now, state = clock.utc(), mailroom.app.state
+    now, state = clock.utc(), mailroom.app.state.parts
     message = {"robot": "r1", "journal": "j", "type": "event", "body": {}, "sent_at": now, "received_at": now}
     kept.add(*(RobotMessage(seq=seq, **message) for seq in range(1, 2 * retention.PORTION + 51)))
 
@@ -254,7 +254,7 @@ def test_much_goes_in_portions_and_somebody_who_writes_comes_in_between(
 
 
 def test_mails_in_the_spool_go_by_the_files_age(kept: Kept, sender: Browser, mailroom: Mailroom) -> None:
-    folder = mailroom.app.state.settings.spool_folder
+    folder = mailroom.app.state.parts.settings.spool_folder
     (old, *_) = folder.glob("*.eml")
     new = folder / "new.eml"
     new.write_text("To: somebody\n\n")
@@ -264,7 +264,7 @@ def test_mails_in_the_spool_go_by_the_files_age(kept: Kept, sender: Browser, mai
 
 
 async def test_the_housekeeper_ends_at_once_when_told_to(mailroom: Mailroom, clock: SteppedClock) -> None:
-    state = mailroom.app.state
+    state = mailroom.app.state.parts
     housekeeper = Housekeeper(state.database, state.settings, clock)
     running = asyncio.create_task(housekeeper.run())
     await asyncio.sleep(0)

@@ -17,9 +17,9 @@ from sqlmodel import SQLModel, select
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed
 
+from app.composition import create_app
 from app.core.http_client import Outside
 from app.core.settings import Settings
-from app.main import create_app
 from app.models import Order, OrderEvent
 from app.orders.views.schemas import NewOrder
 from app.robots.link.keepalive import AttentiveSocket
@@ -62,25 +62,25 @@ class Service:
         return f"ws://127.0.0.1:{self.port}/api/v1/robots/link"
 
     async def enrol(self, name: str) -> str:
-        async with self.app.state.database.transaction() as session:
-            return await enrol(session, self.app.state.clock, name)
+        async with self.app.state.parts.database.transaction() as session:
+            return await enrol(session, self.app.state.parts.clock, name)
 
     async def order(self, from_post: str = "post1", to_post: str = "post4") -> str:
         """An order of somebody to somebody."""
-        state = self.app.state
+        state = self.app.state.parts
         async with state.database.transaction() as session:
             sender = await state.sign_in_desk.person(session, "sender@campus.example", state.clock.utc())
             wish = NewOrder(from_post=from_post, to_post=to_post, recipient="recipient@campus.example")
             return await placed(state.orders, session, sender, wish)
 
     async def cancel(self, order_id: str) -> None:
-        state = self.app.state
+        state = self.app.state.parts
         async with state.database.transaction() as session:
             sender = await state.sign_in_desk.person(session, "sender@campus.example", state.clock.utc())
             await state.orders.cancel(session, sender, order_id, "")
 
     async def rows(self, table: type[SQLModel], **wanted: object) -> list[Any]:
-        async with self.app.state.database.reading() as session:
+        async with self.app.state.parts.database.reading() as session:
             return list((await session.exec(select(table).filter_by(**wanted))).all())
 
     async def row(self, table: type[SQLModel], **wanted: object) -> Any:

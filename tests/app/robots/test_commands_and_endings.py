@@ -64,7 +64,7 @@ async def test_mail_that_nobody_took_is_brought_back_by_the_robots_own_mission(
         await robot.report(own, Step.DEPARTED, back)
         await robot.report(own, Step.ARRIVED, back)
         await service.reaches(order_id, "at_return")
-        await service.app.state.dispatcher.look_round()
+        await service.app.state.parts.dispatcher.look_round()
         assert await service.states(another) == ["queued"], "its mail comes first"
         await robot.say(robot.receipt(back))
         await robot.ends(await robot.report(own, Step.DONE))
@@ -85,7 +85,7 @@ async def test_mail_that_nobody_takes_back_either_waits_for_a_person(service: Se
         await robot.ends(await robot.report(own, Step.DONE))
         await service.reaches(order_id, "attention")
         another = await service.order("post2", "post3")
-        await service.app.state.dispatcher.look_round()
+        await service.app.state.parts.dispatcher.look_round()
         assert await service.states(another) == ["queued"], "the mail is still aboard"
     assert "still in robot r1" in (await service.row(Order, id=order_id)).why
 
@@ -300,8 +300,8 @@ async def test_a_token_that_is_revoked_closes_the_connection_it_had_opened(
     token = await service.enrol("r1")
     async with robot.connected(service.url, token):
         await robot.greet()
-        async with service.app.state.database.transaction() as session:
-            await new_token(session, service.app.state.clock, "r1")
+        async with service.app.state.parts.database.transaction() as session:
+            await new_token(session, service.app.state.parts.clock, "r1")
         await service.order()
         assert await robot.close_code() == 4401
     assert "mission" not in [envelope.type for envelope in robot.heard], "it hears nothing more"

@@ -29,7 +29,7 @@ DAN = Person(id="dan", email="dan@campus.example", name="Dan", roles=["dispatche
 
 
 async def test_a_robot_is_asked_to_tell_and_only_who_watches_hears_it(service: Service, robot: PlayedRobot) -> None:
-    fleet, feed = service.app.state.fleet, service.app.state.feed
+    fleet, feed = service.app.state.parts.fleet, service.app.state.parts.feed
     token = await service.enrol("r1")
     other = Person(id="otto", email="otto@campus.example", name="Otto", roles=["maintainer"])
     with feed.listening(MIRA) as mira, feed.listening(other) as otto, feed.listening(DAN) as dan:
@@ -54,9 +54,9 @@ async def test_a_robot_is_asked_to_tell_and_only_who_watches_hears_it(service: S
 
 
 async def test_a_robot_that_was_away_is_asked_again_and_an_older_one_never(service: Service) -> None:
-    watching = service.app.state.fleet.watching
+    watching = service.app.state.parts.fleet.watching
     for name, understands in (("r1", ("confirm", "watch")), ("r2", ("confirm",))):
-        robot = PlayedRobot(service.app.state.clock, name, journal=f"journal-of-{name}")
+        robot = PlayedRobot(service.app.state.parts.clock, name, journal=f"journal-of-{name}")
         token = await service.enrol(name)
         assert not watching.watch(name, "mira"), "it is not there"
         async with robot.connected(service.url, token):
@@ -134,13 +134,13 @@ async def test_a_robots_charge_is_noted_once_a_minute_and_when_charging_begins(
 
 async def test_a_long_history_is_thinned_and_keeps_its_ends_and_every_change(service: Service) -> None:
     await service.enrol("r1")
-    begin = service.app.state.clock.utc()
-    async with service.app.state.database.transaction() as session:
+    begin = service.app.state.parts.clock.utc()
+    async with service.app.state.parts.database.transaction() as session:
         session.add_all(
             BatterySample(robot="r1", at=begin + timedelta(minutes=n), ratio=n / 2000, charging=700 <= n < 705)
             for n in range(1500)
         )
-    async with service.app.state.database.reading() as session:
+    async with service.app.state.parts.database.reading() as session:
         shown = await samples_since(session, "r1", begin)
         later = await samples_since(session, "r1", begin + timedelta(minutes=1400))
     assert SHOWN <= len(shown) <= SHOWN + 4
@@ -156,8 +156,8 @@ def test_maintainers_see_one_robots_faults_and_charge_and_are_told_whether_it_te
     now = clock.utc()
 
     async def begin() -> None:
-        async with app.state.database.transaction() as session:
-            set_roles(await app.state.sign_in_desk.person(session, SENDER, now), {Role.MAINTAINER}, set())
+        async with app.state.parts.database.transaction() as session:
+            set_roles(await app.state.parts.sign_in_desk.person(session, SENDER, now), {Role.MAINTAINER}, set())
             for name in ("r1", "r2"):
                 if name == "r2":
                     await enrol(session, clock, name)

@@ -52,15 +52,15 @@ async def test_after_a_restart_a_robot_that_spends_more_than_others_is_known_and
     async with serving(settings, clock) as service:
         await service.enrol("thirsty")
         await service.enrol("new")
-        campus = service.app.state.campus
+        campus = service.app.state.parts.campus
         length_m = campus.corridor("post1", "post2").length_m
-        async with service.app.state.database.transaction() as session:
+        async with service.app.state.parts.database.transaction() as session:
             session.add_all(lived("thirsty", clock.utc() - timedelta(days=2), settings, length_m))
             # Neither was driven to its end: turned back, and taken back by a person.
             session.add(driven("thirsty", clock.utc() - timedelta(days=1), left_at="post1"))
             session.add(driven("thirsty", clock.utc() - timedelta(days=1), freed_by="command"))
     async with serving(settings, clock) as service:
-        fleet = service.app.state.fleet
+        fleet = service.app.state.parts.fleet
         learned = fleet.spending.rates["thirsty"]
         assert learned.stretches > 10
         assert abs(learned.standing - THIRSTY) < 0.2

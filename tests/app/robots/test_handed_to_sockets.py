@@ -25,7 +25,7 @@ async def test_what_is_handed_over_and_what_is_looked_for_go_out_in_the_order_of
     service: Service, robot: PlayedRobot
 ) -> None:
     token = await service.enrol("r1")
-    fleet: Fleet = service.app.state.fleet
+    fleet: Fleet = service.app.state.parts.fleet
     async with robot.connected(service.url, token):
         await robot.greet()
         for number in range(0, 40, 4):
@@ -41,7 +41,7 @@ async def test_a_robot_that_acknowledges_late_is_told_the_rest_when_it_has(
     service: Service, robot: PlayedRobot
 ) -> None:
     token = await service.enrol("r1")
-    fleet: Fleet = service.app.state.fleet
+    fleet: Fleet = service.app.state.parts.fleet
     async with robot.connected(service.url, token):
         await robot.greet()
         for number in range(MAX_UNACKNOWLEDGED + 7):
@@ -53,8 +53,8 @@ async def test_a_robot_that_acknowledges_late_is_told_the_rest_when_it_has(
 
 async def test_who_is_not_there_finds_it_all_in_the_outbox(service: Service, robot: PlayedRobot) -> None:
     token = await service.enrol("r1")
-    await tell(service.app.state.fleet, deny(1), deny(2))
+    await tell(service.app.state.parts.fleet, deny(1), deny(2))
     async with robot.connected(service.url, token):
         await robot.greet()
-        await tell(service.app.state.fleet, deny(3))
+        await tell(service.app.state.parts.fleet, deny(3))
         assert await numbers(robot, 3) == [1, 2, 3]

@@ -22,7 +22,7 @@ async def test_what_waits_is_taken_in_order_and_acknowledged_together(service: S
     async with robots[0].connected(service.url, tokens[0]), robots[1].connected(service.url, tokens[1]):
         for robot in robots:
             await robot.greet()
-        async with service.app.state.database.transaction():  # meanwhile nothing can be committed
+        async with service.app.state.parts.database.transaction():  # meanwhile nothing can be committed
             for _ in range(20):
                 for robot in robots:
                     await robot.say(Clear(leg=LEG))
@@ -46,7 +46,7 @@ async def test_a_robot_that_fails_holds_up_nobody(service: Service, clock: Stepp
         async with stranger.connected(service.url, tokens[1]), gap.connected(service.url, tokens[2]):
             await stranger.greet()
             await gap.greet()
-            async with service.app.state.database.transaction():
+            async with service.app.state.parts.database.transaction():
                 await good.report(mission, Step.DEPARTED, mission.stops[0])
                 await stranger.report(mission, Step.ARRIVED, mission.stops[0])
                 await gap.say(Clear(leg=LEG), seq=7)
@@ -85,7 +85,7 @@ async def test_what_a_robot_complains_of_rings_an_alarm_that_survives_a_power_cu
     service: Service, robot: PlayedRobot
 ) -> None:
     """An error has no number and is not said again; a snapshot is, and waits for no disk."""
-    durably = service.app.state.database.writing.get_execution_options()["begin"]
+    durably = service.app.state.parts.database.writing.get_execution_options()["begin"]
     async with robot.connected(service.url, await service.enrol("r1")):
         await robot.greet()
         with transactions_of("INSERT INTO alarms") as begun:

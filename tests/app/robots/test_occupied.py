@@ -35,7 +35,7 @@ async def party(service: Service, email: str) -> Person:
 
 
 async def seen_by(service: Service, person: Person) -> list[tuple[str, str, str]]:
-    async with service.app.state.database.reading() as session:
+    async with service.app.state.parts.database.reading() as session:
         taken = (await traffic_for(session, person)).taken
     return [(one.robot, one.from_post, one.to_post) for one in taken]
 
@@ -57,7 +57,7 @@ async def test_members_see_the_corridors_of_the_robot_on_their_order_and_no_othe
 async def test_pages_hear_of_it_as_soon_as_a_corridor_is_taken_or_left(
     service: Service, with_an_order: PlayedRobot
 ) -> None:
-    feed = service.app.state.feed
+    feed = service.app.state.parts.feed
     people = [await party(service, "sender@campus.example"), STRANGER, DISPATCHER, MAINTAINER]
     heard: dict[str, list[Happening]] = {}
     for person in people:

@@ -33,7 +33,7 @@ class Mailroom:
 
     async def does(self, what: str, order_id: str, *words: object) -> str:
         """The order's state then, or the code of the refusal."""
-        state = self.service.app.state
+        state = self.service.app.state.parts
         try:
             async with state.database.transaction() as session:
                 return str(
@@ -43,14 +43,14 @@ class Mailroom:
             return refused.code
 
     async def person(self, session: object) -> Person:
-        state = self.service.app.state
+        state = self.service.app.state.parts
         person: Person = await state.sign_in_desk.person(session, "mailroom@campus.example", state.clock.utc())
         set_roles(person, {Role.DISPATCHER}, set())
         return person
 
     async def links(self, order_id: str) -> list[tuple[str, str | None]]:
         """Who has had the mail."""
-        state = self.service.app.state
+        state = self.service.app.state.parts
         async with state.database.transaction() as session:
             (facts,) = await load_facts(session, [await session.get_one(Order, order_id)])
             view = view_for(await self.person(session), facts, state.orders.campus, state.settings, state.clock.utc())
@@ -58,7 +58,7 @@ class Mailroom:
 
     async def code(self, order_id: str) -> str:
         """As a dispatcher may show it, to load."""
-        state = self.service.app.state
+        state = self.service.app.state.parts
         order = await self.service.row(Order, id=order_id)
         async with state.database.transaction() as session:
             shown = await state.hand_overs.my_code(session, await self.person(session), order_id)
@@ -132,7 +132,7 @@ async def test_mail_that_waits_for_its_second_leg_ends_in_the_mailrooms_hands(
         assert await mailroom.does("resolve", order_id, "queued", None) == "transition_refused", "its mail is aboard"
         assert await mailroom.does("pass_on", order_id, POST, None) == "queued"
         assert await mailroom.does("pass_on", order_id, POST, None) == "nothing_to_pass_on"
-    state = service.app.state
+    state = service.app.state.parts
     if ends == "its sender cancels":
         await service.cancel(order_id)
     async with state.database.transaction() as session:

@@ -284,7 +284,7 @@ async def test_a_service_that_fails_says_so_and_the_robot_keeps_what_it_had_to_s
 ) -> None:
     """The table is away for a while, as after a mistake of a person."""
     token = await service.enrol("r1")
-    engine = service.app.state.database.writing
+    engine = service.app.state.parts.database.writing
     async with engine.begin() as connection:
         await connection.exec_driver_sql("ALTER TABLE robot_messages RENAME TO away")
     with capture_logs() as logs:
@@ -304,10 +304,10 @@ async def test_a_service_that_fails_says_so_and_the_robot_keeps_what_it_had_to_s
 async def test_a_slow_robot_gets_no_more_than_it_acknowledges(service: Service, robot: PlayedRobot) -> None:
     token = await service.enrol("r1")
     many = MAX_UNACKNOWLEDGED + 10
-    async with service.app.state.database.transaction() as session:
+    async with service.app.state.parts.database.transaction() as session:
         row = await session.get(RobotRow, "r1")
         for number in range(many):
-            await service.app.state.fleet.tell(session, row, Resume(command_id=f"c{number}"))
+            await service.app.state.parts.fleet.tell(session, row, Resume(command_id=f"c{number}"))
     async with robot.connected(service.url, token):
         await robot.greet()
         with pytest.raises(TimeoutError):
@@ -343,8 +343,8 @@ async def test_the_page_sees_what_snapshots_and_reasons_say(service: Service, ro
         await robot.say(Why(sentence="Drives to post4 with mail", waiting_for=None))
 
         async def view() -> dict[str, object] | None:
-            async with service.app.state.database.reading() as session:
-                (one,) = await service.app.state.fleet.views(session)
+            async with service.app.state.parts.database.reading() as session:
+                (one,) = await service.app.state.parts.fleet.views(session)
             return one.model_dump(mode="json") if one.why else None
 
         seen = await until(view)
@@ -390,5 +390,5 @@ async def test_a_clock_far_off_and_another_map_are_reported(
     assert (await service.row(Alarm, name="clock_off")).reason.endswith("-3600 s")
     assert "give it the same file" in (await service.row(Alarm, name="other_map")).reason
     async with PlayedRobot(clock).connected(service.url, token) as right:
-        await right.greet(map_version=service.app.state.campus.version)
+        await right.greet(map_version=service.app.state.parts.campus.version)
     assert all(row.cleared_at for row in await service.rows(Alarm)), "both are over"

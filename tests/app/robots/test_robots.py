@@ -30,7 +30,7 @@ def test_robots_are_for_people_who_are_signed_in(nobody: TestClient) -> None:
 
 def test_everybody_who_is_signed_in_sees_all_robots(app: FastAPI, sender: TestClient, clock: SteppedClock) -> None:
     async def enrol_two() -> None:
-        async with app.state.database.transaction() as session:
+        async with app.state.parts.database.transaction() as session:
             for name in ("r2", "r1"):
                 await enrol(session, clock, name)
 
@@ -50,13 +50,13 @@ async def test_a_robot_is_seen_at_posts_and_expected_in_an_interval(
     token = await service.enrol("r1")
     async with robot.connected(service.url, token):
         await robot.greet(position=Position(post="post2", previous="post1", towards="post3", seen_at=clock.utc()))
-        async with service.app.state.database.reading() as session:
-            (view,) = [one.model_dump(mode="json") for one in await service.app.state.fleet.views(session)]
+        async with service.app.state.parts.database.reading() as session:
+            (view,) = [one.model_dump(mode="json") for one in await service.app.state.parts.fleet.views(session)]
     assert view["last_seen"]["post"] == "post2"
     assert view["last_seen"]["previous"] == "post1"
     assert view["expected"]["post"] == "post3"
     first, last = (datetime.fromisoformat(view["expected"][end]) for end in ("from", "to"))
-    drive_s = 2.0 / service.app.state.settings.assumed_speed_m_s
+    drive_s = 2.0 / service.app.state.parts.settings.assumed_speed_m_s
     assert clock.utc() + timedelta(seconds=drive_s) == first < last
     assert view["battery"] == {"ratio": 0.9, "charging": False, "charges_to": None}
 
@@ -67,8 +67,8 @@ async def test_of_a_robot_that_charges_it_is_said_when_it_will_have_enough(
     token = await service.enrol("r1")
     async with robot.connected(service.url, token):
         await robot.greet("post5", battery=Battery(ratio=0.5, charging=True))
-        async with service.app.state.database.reading() as session:
-            (view,) = await service.app.state.fleet.views(session)
+        async with service.app.state.parts.database.reading() as session:
+            (view,) = await service.app.state.parts.fleet.views(session)
     assert view.battery is not None and view.battery.charges_to is not None
     assert view.battery.charges_to.ratio == 0.8
     # Of three hours: 0.85 at full current and the rest ever slower, which takes as long as 0.41 would, are 1.26.
@@ -86,7 +86,7 @@ async def test_enrolling_twice_or_under_an_impossible_name_is_refused_by_name(se
 
 
 async def test_a_new_token_makes_the_older_ones_worthless(service: Service, clock: SteppedClock) -> None:
-    database = service.app.state.database
+    database = service.app.state.parts.database
     old = await service.enrol("r1")
     async with database.transaction() as session:
         new = await new_token(session, clock, "r1")
@@ -102,7 +102,7 @@ async def test_a_new_token_makes_the_older_ones_worthless(service: Service, cloc
 async def test_the_token_of_one_robot_opens_no_other(service: Service, clock: SteppedClock) -> None:
     tokens = [await service.enrol(name) for name in ("r1", "r2")]
     mixed = "_".join([*tokens[0].split("_", 2)[:2], tokens[1].split("_", 2)[2]])
-    async with service.app.state.database.transaction() as session:
+    async with service.app.state.parts.database.transaction() as session:
         known = [await token_of(session, f"Bearer {token}") for token in tokens]
         assert [row and row.robot for row in known] == ["r1", "r2"]
         assert await token_of(session, f"Bearer {mixed}") is None
@@ -128,7 +128,7 @@ async def test_the_command_prints_the_token_once_and_says_what_is_wrong_in_words
 
 
 async def test_two_tokens_are_never_alike(service: Service, clock: SteppedClock) -> None:
-    async with service.app.state.database.transaction() as session:
+    async with service.app.state.parts.database.transaction() as session:
         tokens = [await enrol(session, clock, f"r{number}") for number in range(20)]
     assert len({token.split("_", 2)[2] for token in tokens}) == 20
 
@@ -136,5 +136,5 @@ async def test_two_tokens_are_never_alike(service: Service, clock: SteppedClock)
 async def test_a_wrong_token_is_refused_while_somebody_writes(service: Service, robot: PlayedRobot) -> None:
     """Whoever knocks for long must not hold up those who write, nor wait for them."""
     wrong = f"cmr_00000000_{'x' * 43}"
-    async with service.app.state.database.transaction(), asyncio.timeout(5), robot.connected(service.url, wrong):
+    async with service.app.state.parts.database.transaction(), asyncio.timeout(5), robot.connected(service.url, wrong):
         assert await robot.close_code() == 4401

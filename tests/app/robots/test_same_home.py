@@ -87,7 +87,7 @@ async def test_a_home_is_free_when_its_robot_comes_no_more_or_has_another(
     async with second.connected(service.url, second.token):
         await second.greet("uc", home="uc")
         assert not await rings(service, "r2")
-    async with service.app.state.database.transaction() as session:
+    async with service.app.state.parts.database.transaction() as session:
         await revoke_tokens(session, clock, "r1")
     async with third.connected(service.url, third.token):
         await third.greet("canal", home="canal")

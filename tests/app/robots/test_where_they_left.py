@@ -21,7 +21,7 @@ async def test_a_robot_stands_where_it_cleared_last_and_not_what_it_was_granted_
     cleared = {WAY: (timedelta(seconds=20), "post3"), BESIDES: (timedelta(seconds=8), "post2")}
     async with serving(settings, clock) as service:
         await service.enrol("r1")
-        async with service.app.state.database.transaction() as session:
+        async with service.app.state.parts.database.transaction() as session:
             row = await session.get(RobotRow, "r1")
             row.post, row.seen_at = "post2", granted_at
             for (from_post, to_post), (after, left_at) in cleared.items():
@@ -37,7 +37,7 @@ async def test_a_robot_stands_where_it_cleared_last_and_not_what_it_was_granted_
                 )
                 session.add(grant)
                 await session.flush()
-        async with service.app.state.database.reading() as session:
-            seen = await look_at_all(session, service.app.state.campus)
+        async with service.app.state.parts.database.reading() as session:
+            seen = await look_at_all(session, service.app.state.parts.campus)
             left = await where_they_left(session, seen)
     assert left.robots["r1"] == replace(seen.robots["r1"], post="post3")

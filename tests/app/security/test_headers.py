@@ -68,7 +68,7 @@ def test_every_answer_says_what_browsers_must_not_do(secure: TestClient, path: s
 def test_a_part_of_a_page_is_short_of_words_but_never_taken_for_something_else(
     app: FastAPI, secure: TestClient, name: str
 ) -> None:
-    (app.state.settings.pages / name).write_text("", encoding="utf-8")
+    (app.state.parts.settings.pages / name).write_text("", encoding="utf-8")
     answer = secure.get(f"/{name}")
     assert answer.status_code == 200
     headers = answer.headers

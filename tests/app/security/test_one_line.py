@@ -143,7 +143,7 @@ def test_a_name_hides_no_line_in_the_letters_of_a_mails_header(
 
 
 async def _rename(mailroom: Mailroom, name: str) -> None:
-    async with mailroom.app.state.database.transaction() as session:
+    async with mailroom.app.state.parts.database.transaction() as session:
         await session.exec(update(Person).where(col(Person.email) == SENDER).values(name=name))
 
 

@@ -13,11 +13,11 @@ from typing import ClassVar
 import httpx
 import pytest
 
+from app.composition import create_app
 from app.core.errors import StartError
 from app.core.http_client import Outside, Resolve, TargetRefused
 from app.core.settings import load_settings
 from app.core.special_networks import SPECIAL_IPV4, SPECIAL_IPV6, Network, is_public
-from app.main import create_app
 from protocol.clock import SteppedClock
 
 NETWORKS_OF_PYTHON = [
@@ -133,7 +133,7 @@ async def test_the_settings_open_ports_and_refuse_networks(
     monkeypatch.setenv("CAMPUS_MAIL_DATA", str(tmp_path))
     monkeypatch.setenv("CAMPUS_MAIL_OUTSIDE_PORTS", "[443, 8443]")
     monkeypatch.setenv("CAMPUS_MAIL_OUTSIDE_REFUSED_NETWORKS", '["93.184.0.0/16"]')
-    outside: Outside = create_app(load_settings(), clock).state.outside
+    outside: Outside = create_app(load_settings(), clock).state.parts.outside
     assert (await outside.checked_target("https://9.9.9.9:8443/")).address == "9.9.9.9"
     with pytest.raises(TargetRefused, match="not on the public network"):
         await outside.checked_target("https://93.184.216.34/")

@@ -20,7 +20,7 @@ NAME = "post2-post3"
 
 
 async def somebody(service: Service) -> Person:
-    state = service.app.state
+    state = service.app.state.parts
     async with state.database.transaction() as session:
         person: Person = await state.sign_in_desk.person(session, "dan@campus.example", state.clock.utc())
     return person
@@ -28,14 +28,14 @@ async def somebody(service: Service) -> Person:
 
 async def close_it(service: Service, name: str = NAME) -> None:
     by = await somebody(service)
-    async with service.app.state.database.transaction() as session:
-        await close(session, service.app.state.fleet, name, "The floor is wet.", by)
+    async with service.app.state.parts.database.transaction() as session:
+        await close(session, service.app.state.parts.fleet, name, "The floor is wet.", by)
 
 
 async def open_it(service: Service) -> None:
     by = await somebody(service)
-    async with service.app.state.database.transaction() as session:
-        await open_again(session, service.app.state.fleet, NAME, by)
+    async with service.app.state.parts.database.transaction() as session:
+        await open_again(session, service.app.state.parts.fleet, NAME, by)
 
 
 async def test_robots_wait_before_it_are_seen_to_and_go_on_when_it_is_open(
@@ -59,7 +59,7 @@ async def test_robots_wait_before_it_are_seen_to_and_go_on_when_it_is_open(
 
 
 async def found(service: Service) -> list[tuple[str, bool, list[str]]]:
-    async with service.app.state.database.reading() as session:
+    async with service.app.state.parts.database.reading() as session:
         return [(one.corridor, one.by_person, one.robots) for one in (await all_closed(session)).closed]
 
 
@@ -102,7 +102,7 @@ async def test_what_a_robot_finds_closed_is_closed_for_all_until_somebody_looks_
 
 
 async def test_everybody_hears_of_it_and_a_corridor_that_is_not_there_is_named(service: Service) -> None:
-    with service.app.state.feed.listening(await somebody(service)) as queue:
+    with service.app.state.parts.feed.listening(await somebody(service)) as queue:
         await close_it(service)
         await close_it(service)
         await open_it(service)

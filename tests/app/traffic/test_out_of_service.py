@@ -29,7 +29,7 @@ async def service(settings: Settings, clock: SteppedClock) -> AsyncIterator[Serv
 
 async def taken_out(service: Service, name: str = "r1") -> str:
     """By somebody who dispatches; the command's id."""
-    state = service.app.state
+    state = service.app.state.parts
     async with state.database.transaction() as session:
         by = await state.sign_in_desk.person(session, "dan@campus.example", state.clock.utc())
         robot = await known_robot(session, name, to_change=True)
@@ -129,6 +129,6 @@ async def test_a_robot_that_is_there_is_stopped_first_and_an_old_one_stays_out(
         answer = CommandAnswer(command_id=stop.command_id, accepted=True, happened_at=robot.clock.utc())  # type: ignore[attr-defined]
         await robot.ends(await robot.say(Event(happened=answer)))
         assert (await service.row(RobotRow, name="r1")).taken_out_at is not None
-    async with service.app.state.database.reading() as session:
-        (view,) = await service.app.state.fleet.views(session)
+    async with service.app.state.parts.database.reading() as session:
+        (view,) = await service.app.state.parts.fleet.views(session)
     assert view.why_words.key == "why.taken_out"

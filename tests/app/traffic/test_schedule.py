@@ -57,8 +57,8 @@ async def test_who_waits_is_told_for_whom_and_people_see_it(
     row = await until(waits)
     waits_for = row.waits_for
     assert (leg.to_post, waits_for["robots"]) == ("post2", ["r1"])
-    async with service.app.state.database.reading() as session:
-        views = {view.name: view for view in await service.app.state.fleet.views(session)}
+    async with service.app.state.parts.database.reading() as session:
+        views = {view.name: view for view in await service.app.state.parts.fleet.views(session)}
     assert views["r2"].why == "Waiting at post4 for the corridor to post3, after r1"
     assert views["r2"].why_words.key == "why.others_first"
     assert (row.activity, views["r2"].activity) == ("idle", "waiting"), "who has somewhere to go is not free"
@@ -93,7 +93,7 @@ async def test_who_takes_back_what_it_waits_for_is_in_nobodys_way(
 
     async def goes_somewhere() -> bool | None:
         """None for a moment, where what was taken back had just been decided: all is planned anew then."""
-        timetable = service.app.state.traffic_desk.timetable
+        timetable = service.app.state.parts.traffic_desk.timetable
         return None if timetable is None else bool(timetable.controller.goals("r2"))
 
     async def goes_nowhere() -> bool:
@@ -138,7 +138,7 @@ async def test_after_a_restart_of_the_service_a_robot_stands_where_it_left_its_l
     async with serving(settings, clock) as service:
 
         async def stands_at() -> str | None:
-            timetable = service.app.state.traffic_desk.timetable
+            timetable = service.app.state.parts.traffic_desk.timetable
             return timetable.known["r2"].post if timetable else None
 
         assert await until(stands_at) == "post3"

@@ -28,7 +28,7 @@ MAINTAINER = "maintainer@campus.example"
 @pytest.fixture
 def maintainer(app: FastAPI, signed_in: SignedIn, mailroom: Mailroom) -> Browser:
     async def make() -> None:
-        async with app.state.database.transaction() as session:
+        async with app.state.parts.database.transaction() as session:
             person = await find_person(session, MAINTAINER)
             assert person
             set_roles(person, {Role.MAINTAINER}, set())
@@ -50,7 +50,7 @@ def enrol(nobody: TestClient, code: str, name: str = "r7", key: str = KEY) -> ht
 
 def whose(app: FastAPI, mailroom: Mailroom, token: str) -> str | None:
     async def look() -> str | None:
-        async with app.state.database.transaction() as session:
+        async with app.state.parts.database.transaction() as session:
             row = await token_of(session, f"Bearer {token}")
             return row.robot if row else None
 
@@ -72,7 +72,7 @@ def test_a_code_brings_a_token_once_and_the_robots_key_is_known(
     assert problem(enrol(nobody, code)) == (401, "no_enrolment_code"), "it is used"
 
     async def look() -> tuple[Any, Any]:
-        async with app.state.database.reading() as session:
+        async with app.state.parts.database.reading() as session:
             return await session.get(RobotRow, "r7"), (await session.exec(select(EnrolmentCode))).one()
 
     robot, row = mailroom.call(look)
