@@ -71,7 +71,7 @@ class Campus:
 
 
 @pytest.fixture
-async def campus(settings: Settings, clock: SteppedClock) -> AsyncIterator[Campus]:
+async def campus(settings: Settings, clock: SteppedClock) -> AsyncIterator[Campus]:  # noqa: F811
     async with serving(settings, clock) as service:
         yield Campus(service)
 
