@@ -92,8 +92,7 @@ class Demonstration:
             demo_door=self.door,
             # People read codes in real time, whatever the clock of the demonstration does.
             sign_in_code_lifetime_s=600 * self.speed,
-            sign_in_codes_per_address="1000 per minute",
-            sign_in_codes_per_host="1000 per minute",
+            rate_limits=dict.fromkeys(("sign_in_codes_per_address", "sign_in_codes_per_host"), "1000 per minute"),
             **self.more,
         )
 

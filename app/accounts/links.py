@@ -23,6 +23,8 @@ from app.models import Delegate, Identity, Order, OrderLink, Person, PersonSessi
 from protocol.clock import Clock
 
 PAGE: Final = "one-order.html"
+LINK_LIFETIME_S: Final = 14 * 86400.0
+"""Links to one order, in mails to people without an account."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +61,7 @@ class Links:
         now = self.clock.utc()
         if nonce is None or expires_at <= now:
             # Like the codes: whoever is named for an order that was left for later comes then.
-            ends_at = max(now, not_before or now) + timedelta(seconds=self.settings.link_lifetime_s)
+            ends_at = max(now, not_before or now) + timedelta(seconds=LINK_LIFETIME_S)
             nonce = await self._make_good(person, order_id, ends_at)
         return f"{self.settings.public_url.rstrip('/')}/{PAGE}#{self._token(nonce, order_id, person.id)}"
 

@@ -30,7 +30,7 @@ STREAM_PAUSE_S: Final = 10
 
 
 class Door(StrEnum):
-    """What is counted by itself; the setting of this name says how much is too much."""
+    """What is counted by itself; `rate_limits` in the settings says how much is too much."""
 
     CODES = "sign_in_codes_per_address"
     CODES_OF_HOST = "sign_in_codes_per_host"
@@ -48,7 +48,7 @@ class RateLimits:
 
     def __init__(self, settings: Settings) -> None:
         self._limiter = SlidingWindowCounterRateLimiter(MemoryStorage())
-        self._limits = {door: parse(getattr(settings, door)) for door in Door}
+        self._limits = {door: parse(settings.rate_limits[door]) for door in Door}
         self._streams = settings.streams_per_person
         self._open_streams = Counter[str]()
 

@@ -117,10 +117,10 @@ class ChargeDesk:
         return moment.astimezone(self.fleet.settings.zone)
 
     def _need(self, robot: RobotNow, work: OpenWork, docks: list[str]) -> Need:
-        settings, length_m = self.fleet.settings, self.fleet.orders.ways.length_m
-        rates = self.fleet.spending.rates.get(robot.name, usual_rates(settings))
+        speed_m_s, length_m = self.fleet.settings.assumed_speed_m_s, self.fleet.orders.ways.length_m
+        rates = self.fleet.spending.rates.get(robot.name, usual_rates())
         way_m = {dock: length_m(robot.post, dock) for dock in docks if length_m(robot.post, dock) < float("inf")}
-        ways = {dock: Use(way, way / settings.assumed_speed_m_s) for dock, way in way_m.items()}
+        ways = {dock: Use(way, way / speed_m_s) for dock, way in way_m.items()}
         dock = next((one for one in docks_of(robot, work) if one in docks), None)
         charge = Charge(robot.battery_ratio or 0.0, rates, docked=bool(robot.docked))
         return Need(robot.name, charge, self.fleet.clock.now(), ways, dock, THRESHOLDS.begin + THRESHOLDS.hysteresis)

@@ -10,6 +10,18 @@ from zoneinfo import available_timezones
 from limits import parse
 from pydantic import AfterValidator, BeforeValidator, Field, IPvAnyNetwork
 
+RATE_LIMITS: Final = {
+    "sign_in_codes_per_address": "10 per 15 minutes",  # codes that one browser has mailed to one mail address
+    "sign_in_codes_per_host": "60 per 15 minutes",  # codes for one mail address to new browsers at one network address
+    "new_browser_codes_per_address": "600 per hour",  # codes for one mail address to all new browsers: bounds guessing
+    "sign_in_tries_per_host": "200 per 15 minutes",  # sign-in requests; a browser that has signed in has its own
+    "orders_per_person": "600 per hour",
+    "changes_per_person": "600 per hour",  # contacts, tokens and the like
+    "digits_tries_per_host": "60 per 15 minutes",  # six digits typed from one network address
+    "enrolment_tries_per_host": "30 per 15 minutes",  # enrolment codes of robots
+    "link_tries_per_host": "300 per 15 minutes",  # links of mails
+}
+"""The usual rate limits. A host is one network address; `rate_limits` in the settings changes them."""
 THIS_MACHINE: Final = frozenset({"localhost", "127.0.0.1", "::1"})
 
 
@@ -23,6 +35,14 @@ def _readable_limit(limit: str) -> str:
     except ValueError:
         raise ValueError(f"{limit!r} is no limit; one is written like 10 per 15 minutes") from None
     return limit
+
+
+def _with_usual_limits(limits: dict[str, str]) -> dict[str, str]:
+    for door, limit in limits.items():
+        if door not in RATE_LIMITS:
+            raise ValueError(f"there is no rate limit {door!r}; there are {', '.join(RATE_LIMITS)}")
+        _readable_limit(limit)
+    return RATE_LIMITS | limits
 
 
 def _known_zone(name: str) -> str:
@@ -95,7 +115,7 @@ Networks = tuple[IPvAnyNetwork, ...]
 SmtpTls = Literal["starttls", "tls", "none"]
 Language = Literal["en", "fr"]
 LogLevel = Annotated[Literal["DEBUG", "INFO", "WARNING", "ERROR"], BeforeValidator(_capitals)]
-Limit = Annotated[str, AfterValidator(_readable_limit)]
+RateLimitsByDoor = Annotated[dict[str, str], AfterValidator(_with_usual_limits)]
 Zone = Annotated[str, AfterValidator(_known_zone)]
 OfficeHours = Annotated[str, AfterValidator(_office_hours)]
 Domains = Annotated[tuple[str, ...], AfterValidator(_lower_case)]

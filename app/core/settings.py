@@ -23,18 +23,18 @@ from app.core.setting_kinds import (
     Fingerprints,
     Issuer,
     Language,
-    Limit,
     LogLevel,
     MailAddress,
     Networks,
     OfficeHours,
     Ports,
+    RateLimitsByDoor,
     SmtpTls,
     WholeAddress,
     Zone,
     hours_between,
 )
-from app.core.settings_errors import in_sentences, slips
+from app.core.settings_errors import in_sentences, removed, slips
 from app.core.trusted_clock import TrustedClock
 from maps import CampusMap, CampusMapError, find_map
 from protocol.clock import Clock, SharedClock
@@ -119,67 +119,28 @@ class Settings(BaseSettings):
         30, gt=0, description="How often an open event stream asks whether its person is still signed in; real time."
     )
     handover_code_lifetime_s: float = Field(7 * 86400, gt=0, description="How long the codes of an order are good for.")
-    confirm_lifetime_s: float = Field(
-        60, gt=0, description="How long a tap or digits at a hand-over are good for on their way to the robot."
-    )
-    enrolment_code_lifetime_s: float = Field(900, gt=0, description="How long a robot's enrolment code is good for.")
     oidc_issuer: Issuer = Field(
         "", description="Issuer of the campus's OpenID Connect sign-in, such as https://login.campus.example."
     )
     oidc_client_id: str = Field("", description="What this service is called there.")
     oidc_client_secret: SecretStr = Field(SecretStr(""), description="Its secret there; give it as a file.")
-    link_lifetime_s: float = Field(
-        14 * 86400, gt=0, description="How long the link to one order, in mails to people without account, is good for."
-    )
-    sign_in_codes_per_address: Limit = Field(
-        "10 per 15 minutes", description="Sign-in codes that one browser has mailed to one mail address."
-    )
-    sign_in_codes_per_host: Limit = Field(
-        "60 per 15 minutes",
-        description="The same of all browsers at one network address that have not signed in with it before.",
-    )
-    new_browser_codes_per_address: Limit = Field(
-        "600 per hour", description="The same of all such browsers, wherever they are: guessing is bounded by it."
-    )
-    sign_in_tries_per_host: Limit = Field(
-        "200 per 15 minutes",
-        description="Sign-in requests from one network address; of a browser where somebody has signed in, its own.",
-    )
-    orders_per_person: Limit = Field("600 per hour", description="Orders that one person may place.")
-    changes_per_person: Limit = Field(
-        "600 per hour", description="Changes that one person may make to contacts, tokens and the like."
+    rate_limits: RateLimitsByDoor = Field(
+        {},
+        description="Rate limits that differ from the usual ones (JSON object), such as "
+        '{"orders_per_person": "60 per hour"}; `app/core/setting_kinds.py` lists them.',
     )
     streams_per_person: int = Field(20, gt=0, description="Event streams that one person may have open at a time.")
-    digits_tries_per_host: Limit = Field("60 per 15 minutes", description="Six digits typed from one network address.")
-    enrolment_tries_per_host: Limit = Field(
-        "30 per 15 minutes", description="Robots' enrolment codes tried from one network address."
-    )
-    link_tries_per_host: Limit = Field(
-        "300 per 15 minutes", description="Links of mails used from one network address."
-    )
     assumed_speed_m_s: float = Field(0.15, gt=0, description="Assumed mean speed of a robot, for arrival windows.")
     assumed_handover_s: float = Field(120, ge=0, description="Assumed time of one hand-over, for arrival windows.")
     office_hours: OfficeHours = Field(
         "8-18", description="When people are in their offices from Monday to Friday and come sooner, such as 8-18."
     )
-    assumed_drive_s: float = Field(
-        7200, gt=0, description="How long a full battery is assumed to last a robot that drives all the time."
-    )
-    assumed_stand_s: float = Field(
-        19000, gt=0, description="How long it is assumed to last a robot that stands; longer than assumed_drive_s."
-    )
-    near_s: float = Field(
-        180, ge=0, description="The sender is told that the robot is near when it is one post away, or so long at most."
-    )
     wait_limit_s: float = Field(600, gt=0, description="How long a robot waits for a person at a stop.")
-    wait_extension_s: float = Field(300, gt=0, description="How much more the person it waits for may ask for at once.")
-    wait_extensions: int = Field(2, ge=0, description="How often the person it waits for may ask for more.")
     undelivered_to: Literal["sender", "mailroom"] = Field(
         "sender",
         description="Where mail goes that nobody took: sender, or the mailroom of the map. Robots are set alike.",
     )
     queue_limit_s: float = Field(86400, gt=0, description="An order that no robot has fetched for so long expires.")
-    delayed_after_s: float = Field(600, gt=0, description="So long after its window an order counts as delayed.")
     traffic: Literal["timetable", "at_once"] = Field(
         "timetable", description="How corridors are granted: by the timetable of all, or at once, to measure with."
     )
@@ -187,25 +148,6 @@ class Settings(BaseSettings):
         900, gt=0, description="A robot that was not heard of for so long is gone round, and people are told."
     )
     robot_capacity: int = Field(2, ge=1, description="How many items a robot carries at once.")
-    detour_ratio: float = Field(
-        0.5,
-        ge=0,
-        description="A robot takes an order along if it lengthens its way by at most this share of the order's.",
-    )
-    planning_budget_s: float = Field(
-        0.25, gt=0, le=10, description="So long a better plan for all robots is looked for at a time, beside all else."
-    )
-    age_limit_s: float = Field(
-        6 * 3600, gt=0, description="An order that has waited for so long is fetched next, before all others."
-    )
-    priority_head_start_s: float = Field(
-        1800, ge=0, description="High priority counts like so much longer waiting, low like so much less."
-    )
-    standing_order_grace_s: float = Field(
-        21600,
-        gt=0,
-        description="An order of a standing order that could not be made in time is still made so much later.",
-    )
     metrics_token: SecretStr = Field(
         SecretStr(""), description="Whoever brings it may read /metrics; empty: this machine alone. Give it as a file."
     )
@@ -233,12 +175,6 @@ class Settings(BaseSettings):
             raise ValueError(f"smtp_tls is none, but {self.smtp_host} is another machine: set it to starttls or tls")
         if self.webhook_url and len(self.webhook_secret.get_secret_value()) < 24:
             raise ValueError("webhook_url needs a webhook_secret of at least 24 characters")
-        return self
-
-    @model_validator(mode="after")
-    def _driving_costs_more_than_standing(self) -> Self:
-        if self.assumed_drive_s >= self.assumed_stand_s:
-            raise ValueError("assumed_drive_s must be below assumed_stand_s: driving costs more than standing")
         return self
 
     @model_validator(mode="after")
@@ -313,6 +249,9 @@ def load_settings() -> Settings:
 
 def _refuse_slips(given: Iterable[str]) -> None:
     """What somebody has set and nobody reads is worse than an error: they rely on it."""
+    given = tuple(given)
+    for name in removed(given):
+        raise StartError(f"There is no setting {name} any more: unset it, and see CHANGELOG.md.")
     for name, meant in slips(given, Settings.model_fields).items():
         raise StartError(f"There is no setting {name}. Did you mean {meant}?")
 

@@ -12,6 +12,17 @@ PREFIX: Final = "CAMPUS_MAIL_"
 AS_LIKE: Final = 0.75
 """How alike two names are (difflib's ratio) if one of them is taken for a slip of the pen."""
 NOT_SETTINGS: Final = frozenset({"SECRETS_DIR", "ROBOT_CONFIG"})
+REMOVED: Final = frozenset(
+    {
+        *("AGE_LIMIT_S", "ASSUMED_DRIVE_S", "ASSUMED_STAND_S", "CHANGES_PER_PERSON", "CONFIRM_LIFETIME_S"),
+        *("DELAYED_AFTER_S", "DETOUR_RATIO", "DIGITS_TRIES_PER_HOST", "ENROLMENT_CODE_LIFETIME_S"),
+        *("ENROLMENT_TRIES_PER_HOST", "LINK_LIFETIME_S", "LINK_TRIES_PER_HOST", "NEAR_S"),
+        *("NEW_BROWSER_CODES_PER_ADDRESS", "ORDERS_PER_PERSON", "PLANNING_BUDGET_S", "PRIORITY_HEAD_START_S"),
+        *("SIGN_IN_CODES_PER_ADDRESS", "SIGN_IN_CODES_PER_HOST", "SIGN_IN_TRIES_PER_HOST"),
+        *("STANDING_ORDER_GRACE_S", "WAIT_EXTENSIONS", "WAIT_EXTENSION_S"),
+    }
+)
+"""Settings that were removed (CHANGELOG.md). A value that is set and no longer read is an error: its operator relies on it."""
 
 
 def in_sentences(error: ValueError, fields: Mapping[str, FieldInfo]) -> str:
@@ -33,6 +44,12 @@ def _sentence(error: ErrorDetails, fields: Mapping[str, FieldInfo]) -> str:
 def _meant(name: str, fields: Mapping[str, FieldInfo]) -> str:
     described = fields[name].description if name in fields else None
     return f"{PREFIX}{name.upper()} ({(described or 'unknown').rstrip('.')}):"
+
+
+def removed(given: Iterable[str]) -> list[str]:
+    """Return the names that were set and are settings no longer."""
+    names = (name.upper() for name in given)
+    return sorted(name for name in names if name.startswith(PREFIX) and name.removeprefix(PREFIX) in REMOVED)
 
 
 def slips(given: Iterable[str], fields: Iterable[str]) -> dict[str, str]:

@@ -54,7 +54,7 @@ class Charges:
     rates: Mapping[str, Rates] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        self._assumed = usual_rates(self.settings)
+        self._assumed = usual_rates()
         self._docks = frozenset(post.name for post in self.ways.campus.docks())
 
     def may_take(self, robot: IdleRobot, order: WaitingOrder) -> bool:

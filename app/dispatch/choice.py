@@ -17,6 +17,8 @@ from maps.ways import Ways
 ENOUGH_CHARGE: Final = 0.30
 """Not for any order: above the ratio at which a robot's own battery plan would take it back to the dock at once (0.25
 and hysteresis). What an order needs beyond that: `charge.py`."""
+HEAD_START_S: Final = 1800.0
+"""High priority counts like so much longer waiting, low like so much less."""
 HEAD_STARTS: Final = {Priority.LOW: -1, Priority.NORMAL: 0, Priority.HIGH: 1}
 
 
@@ -59,9 +61,9 @@ class Assignment:
     robot: str
 
 
-def counts_since(created_at: datetime, priority: Priority, head_start_s: float) -> datetime:
+def counts_since(created_at: datetime, priority: Priority) -> datetime:
     """Since when an order counts as waiting: so the important go first, and nobody waits for ever."""
-    return created_at - timedelta(seconds=HEAD_STARTS[priority] * head_start_s)
+    return created_at - timedelta(seconds=HEAD_STARTS[priority] * HEAD_START_S)
 
 
 MayTake = Callable[[IdleRobot, WaitingOrder], bool]

@@ -25,6 +25,8 @@ from fleet.assignment.deciding import Decision, decide
 
 IMPROVE_EVERY_S: Final = 30.0
 """Real seconds. Also when nothing was given: robots have moved since."""
+PLANNING_BUDGET_S: Final = 0.25
+"""Real seconds: so long a better plan is searched for at a time, in the planner's process."""
 REST_S: Final = 1.0
 """Real seconds, after each improvement: there is other work for this machine."""
 
@@ -141,7 +143,7 @@ class FleetPlanner:
         """The same, if there is nothing to choose from."""
         if len(decision.routes) < 2 or len(decision.robot_of()) < 2:
             return decision
-        return await self._process.improved(decision, self._fleet.settings.planning_budget_s) or decision
+        return await self._process.improved(decision, PLANNING_BUDGET_S) or decision
 
 
 def _has_not_seen(timetable: Timetable | None, work: OpenWork) -> bool:

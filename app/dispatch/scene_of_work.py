@@ -25,6 +25,8 @@ WEIGHTS: Final = {Priority.LOW: 0.5, Priority.NORMAL: 1.0, Priority.HIGH: 2.0}
 WORTH_S: Final = 60.0
 """An order that has a robot goes to another only if that saves so much: people may have been told of the first."""
 NOT_BEGUN: Final = (OrderState.ASSIGNED, OrderState.TO_SENDER)
+AGE_LIMIT_S: Final = 6 * 3600.0
+"""An order that has waited for so long is fetched next, before all others."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +42,7 @@ class SceneOfWork:
         orders = {one.id: one for one in placed.orders()}
         robots = {name: self._able(work, orders, name, keys[name]) for name in keys if name in work.robots}
         # What waits for its time is not in `work` yet, so that nobody comes too early.
-        rules = Rules(age_limit_s=self.settings.age_limit_s, worth_s=WORTH_S, early_s=0.0)
+        rules = Rules(age_limit_s=AGE_LIMIT_S, worth_s=WORTH_S, early_s=0.0)
         return scene_of(traffic, robots, orders, now_s, rules)
 
     def _able(self, work: OpenWork, orders: Mapping[str, OpenOrder], name: str, keys: Sequence[str]) -> Able:
@@ -104,7 +106,7 @@ class _Placed:
 
     def _order(self, order: OrderNow, load: str, give: str, give_post: str = "") -> OpenOrder:
         number, handling_s = self.traffic.network.number_of, self.settings.assumed_handover_s
-        since = counts_since(order.created_at, order.priority, self.settings.priority_head_start_s)
+        since = counts_since(order.created_at, order.priority)
         avoided = {order.avoided} if order.avoided and not order.wanted else set[str]()
         return OpenOrder(
             order.id,

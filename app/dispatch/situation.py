@@ -65,19 +65,19 @@ async def look_for_work(connection: AsyncConnection, now: datetime) -> Todo:
     )
 
 
-async def look(session: AsyncSession, now: datetime, head_start_s: float) -> Situation:
+async def look(session: AsyncSession, now: datetime) -> Situation:
     """Everything that the choice needs, as columns."""
-    waiting = await _waiting(session, now, head_start_s)
+    waiting = await _waiting(session, now)
     return Situation(waiting, await _nearby(session, waiting))
 
 
-async def _waiting(session: AsyncSession, now: datetime, head_start_s: float) -> list[WaitingOrder]:
+async def _waiting(session: AsyncSession, now: datetime) -> list[WaitingOrder]:
     # As columns, not as orders: nothing of them is changed here, and there may be many.
     connection = await connection_of(session)
     rows = {row.id: row for row in (await connection.execute(_WAITING, {"now": now})).all()}
     if len(rows) == LOOKED_AT:  # the important ones behind these must not be overlooked
         rows |= {row.id: row for row in (await connection.execute(_IMPORTANT, {"now": now})).all()}
-    longest = sorted(rows.values(), key=lambda row: (counts_since(row.created_at, row.priority, head_start_s), row.id))
+    longest = sorted(rows.values(), key=lambda row: (counts_since(row.created_at, row.priority), row.id))
     dropping = await _dropping(session, [row.id for row in rows.values() if row.is_dropped])
     return [WaitingOrder(*row[:5], frozenset(dropping.get(row.id, ()))) for row in longest]
 

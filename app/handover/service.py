@@ -13,7 +13,7 @@ from app.handover.people import WAITS, check_waits, code_for, codes_by_digits
 from app.handover.reading import find_order
 from app.handover.schemas import HandoverAsked
 from app.models import DigitLock, Order, Person, RobotRow
-from app.orders.custody.codes import HandoverCode, delegates_of
+from app.orders.custody.codes import CONFIRM_LIFETIME_S, HandoverCode, delegates_of
 from app.orders.errors import NoCodeForYou
 from app.orders.ledger import unknown
 from app.orders.service import Word
@@ -126,7 +126,7 @@ class HandOvers:
         if order.codes_expire_at <= now:
             raise errors.CodesExpired("The codes of this order are too old. Ask a dispatcher.")
         robot = await self._robot(session, order)
-        lifetime = timedelta(seconds=self.fleet.settings.confirm_lifetime_s)
+        lifetime = timedelta(seconds=CONFIRM_LIFETIME_S)
         earlier = await unanswered(session, robot=robot.name, kind="confirm", order_id=order.id)
         asked = next((one for one in earlier if one.asked_at + lifetime > now), None)
         if asked is None:

@@ -191,7 +191,9 @@ class Ledger:
         return notices_about(order, gaps, facts.events, nearby, self.clock.utc())
 
     def _is_near(self, order: Order, robot_at: str | None) -> bool:
-        return order.state is OrderState.TO_SENDER and is_near(self.ways, robot_at, order.load_post, self.settings)
+        return order.state is OrderState.TO_SENDER and is_near(
+            self.ways, robot_at, order.load_post, self.settings.assumed_speed_m_s
+        )
 
     def publish(self, session: AsyncSession, facts: OrderFacts) -> None:
         """To sender, recipient and dispatchers, each as they may see it, and to whoever waits for changes."""

@@ -33,6 +33,8 @@ NOBODY_CAME: Final = "No robot has fetched it in time."
 DELAYED: Final = "delayed"
 NOT_ON_ITS_WAY: Final = ENDED | {OrderState.ATTENTION}
 """What waits for a dispatcher is late for a reason that its people have been told."""
+DELAYED_AFTER: Final = timedelta(minutes=10)
+"""An order counts as delayed so long after its window."""
 
 
 @dataclass
@@ -89,7 +91,7 @@ class Timer:
         return and_(col(Order.window_to) < self._late_since(now), col(Order.state).not_in(NOT_ON_ITS_WAY))
 
     def _late_since(self, now: datetime) -> datetime:
-        return now - timedelta(seconds=self.orders.settings.delayed_after_s)
+        return now - DELAYED_AFTER
 
     def _begins(self, now: datetime) -> ColumnElement[bool]:
         """Left for later, and this is later: dispatch has to look."""

@@ -13,7 +13,6 @@ from sqlalchemy import bindparam, select
 from sqlmodel import col
 
 from app.core.database.database import Database
-from app.core.settings import Settings
 from app.models import BatterySample, GrantRow, RobotRow
 from fleet.charging.energy import Rates, assumed_rates
 from fleet.charging.history import Driven, Sample, learned_from
@@ -27,9 +26,9 @@ LEARN_EVERY_S: Final = 600.0
 """Real seconds."""
 
 
-def usual_rates(settings: Settings) -> Rates:
-    """Of a robot that nothing is known of."""
-    return assumed_rates(settings.assumed_drive_s, settings.assumed_stand_s, DRIVES_M_S)
+def usual_rates() -> Rates:
+    """Return the rates of a robot that nothing is known of: assumed, a full battery drives 2 h and stands 5.3 h."""
+    return assumed_rates(7200.0, 19_000.0, DRIVES_M_S)
 
 
 @dataclass
@@ -38,7 +37,6 @@ class Spending:
 
     database: Database
     campus: CampusMap
-    settings: Settings
     rates: dict[str, Rates] = field(default_factory=dict)
     _stopped: asyncio.Event = field(default_factory=asyncio.Event)
 
@@ -68,7 +66,7 @@ class Spending:
             names = (await connection.execute(_ROBOTS)).scalars().all()
         for name in names:
             samples, driven = await self._told_by(name)
-            self.rates[name] = await asyncio.to_thread(learned_from, usual_rates(self.settings), samples, driven)
+            self.rates[name] = await asyncio.to_thread(learned_from, usual_rates(), samples, driven)
 
     async def _told_by(self, robot: str) -> tuple[Sequence[Sample], Sequence[Driven]]:
         async with self.database.asking() as connection:

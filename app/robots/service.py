@@ -104,7 +104,7 @@ class Fleet:
     @cached_property
     def spending(self) -> Spending:
         """What is learned from robots of how much charge they need."""
-        return Spending(self.database, self.campus, self.settings)
+        return Spending(self.database, self.campus)
 
     @cached_property
     def watching(self) -> Watching:

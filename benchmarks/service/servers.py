@@ -55,7 +55,13 @@ class Server:
 def service(data: Path, **more: str) -> Iterator[Server]:
     """The service as people run it, with its data in this folder, and with these settings besides."""
     port = free_port()
-    names = {"DATA": str(data), "MAP": MAP, "LOG_LEVEL": "WARNING", "ORDERS_PER_PERSON": "1000000 per hour", **more}
+    names = {
+        "DATA": str(data),
+        "MAP": MAP,
+        "LOG_LEVEL": "WARNING",
+        "RATE_LIMITS": '{"orders_per_person": "1000000 per hour"}',
+        **more,
+    }
     environment = {f"CAMPUS_MAIL_{name}": value for name, value in names.items()}
     with _running(["app", "serve", "--port", str(port)], port, data / "service.log", environment) as server:
         yield server

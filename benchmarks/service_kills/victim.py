@@ -1,6 +1,7 @@
 """The real service as a process of its own, killed and started again on the same port and the same data."""
 
 import asyncio
+import json
 import os
 import signal
 import socket
@@ -64,8 +65,9 @@ class Victim:
             "CAMPUS_MAIL_DATA": str(self.folder / "data"),
             "CAMPUS_MAIL_MAP": str(self.map_file),
             "CAMPUS_MAIL_PUBLIC_URL": "https://mail.campus.example",
-            "CAMPUS_MAIL_SIGN_IN_CODES_PER_ADDRESS": "1000 per minute",
-            "CAMPUS_MAIL_ORDERS_PER_PERSON": "1000000 per hour",
+            "CAMPUS_MAIL_RATE_LIMITS": json.dumps(
+                {"sign_in_codes_per_address": "1000 per minute", "orders_per_person": "1000000 per hour"}
+            ),
             "CAMPUS_MAIL_LOG_LEVEL": "WARNING",
         }
         if self.smtp_port is not None:

@@ -28,7 +28,7 @@ from tests.web.service import Service
 PERSON = "ada@campus.example"
 # Debian keeps servers where only root's PATH looks.
 PATH = f"{os.environ['PATH']}:/usr/sbin:/usr/local/sbin"
-TIGHT = {"CAMPUS_MAIL_ENROLMENT_TRIES_PER_HOST": "3 per 15 minutes"}
+TIGHT = {"CAMPUS_MAIL_RATE_LIMITS": '{"enrolment_tries_per_host": "3 per 15 minutes"}'}
 NGINX = """daemon off; pid {folder}/pid; error_log {folder}/error.log; worker_processes 1;
 events {{ }}
 http {{ access_log off; gzip on; client_body_temp_path {folder}/body; proxy_temp_path {folder}/proxied;

@@ -36,7 +36,8 @@ def test_settings_come_from_the_environment_and_secrets_from_files(
         ("PUSH_CONTACT", "me", "mailto:"),
         ("SMTP_CA_FILE", "/nowhere/ca.pem", "No such file"),
         ("OIDC_ISSUER", "https://login.campus.example", "oidc_client_id"),
-        ("ORDERS_PER_PERSON", "lots", "10 per 15 minutes"),
+        ("RATE_LIMITS", '{"orders_per_person": "lots"}', "10 per 15 minutes"),
+        ("RATE_LIMITS", '{"orders_per_hour": "1 per hour"}', "there is no rate limit 'orders_per_hour'"),
         ("WEBHOOK_SECRET", "short", ""),
     ],
 )
@@ -66,6 +67,14 @@ def test_a_setting_under_a_name_that_there_is_not_is_not_passed_over(
     (tmp_path / f"campus_mail_{slip.lower()}").write_text("1")
     monkeypatch.setenv("CAMPUS_MAIL_SECRETS_DIR", str(tmp_path))
     with pytest.raises(StartError, match=f"Did you mean CAMPUS_MAIL_{meant}"):
+        load_settings()
+
+
+def test_a_setting_of_an_older_version_is_refused_with_a_way_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("CAMPUS_MAIL_ORDERS_PER_PERSON", "10 per hour")
+    with pytest.raises(
+        StartError, match=r"no setting CAMPUS_MAIL_ORDERS_PER_PERSON any more: unset it, and see CHANGELOG"
+    ):
         load_settings()
 
 

@@ -22,6 +22,8 @@ _NEW_MISSION: Final = insert(MissionRow)
 _NEW_STOP: Final = insert(StopRow)
 Values = dict[str, Any]
 """A new row, by its columns."""
+DETOUR_RATIO: Final = 0.5
+"""A robot takes an order along if it lengthens its way by at most this share of the order's."""
 
 
 async def begin_missions(
@@ -89,7 +91,7 @@ async def take_along(
     session: AsyncSession, fleet: Fleet, order: WaitingOrder, under_way: Sequence[Tour], ways: Ways
 ) -> MissionRow | None:
     """The mission that this order goes with from now on, if one comes by; its robot is told by its next update."""
-    best = best_tour(order, under_way, ways, fleet.settings.robot_capacity, fleet.settings.detour_ratio)
+    best = best_tour(order, under_way, ways, fleet.settings.robot_capacity, DETOUR_RATIO)
     if best is None:
         return None
     tour, insertion = best

@@ -54,7 +54,7 @@ class NearestRobots:
         now = self._fleet.clock.utc()
         try:
             async with self._fleet.database.transaction() as session:
-                situation = await look(session, now, self._fleet.settings.priority_head_start_s)
+                situation = await look(session, now)
                 chosen = choose_robots(situation.waiting, situation.idle, self._ways, self._charges.may_take)
                 assignments = chosen[:AT_ONCE]
                 given = {one.order_id for one in assignments}

@@ -20,6 +20,10 @@ WAITS_FOR: Final = {
     OrderState.AT_RECIPIENT: "recipient",
     OrderState.AT_RETURN: "sender",
 }
+EXTENSION_S: Final = 300.0
+"""The person that the robot waits for may ask for so much more at once."""
+EXTENSIONS: Final = 2
+"""And so often."""
 
 
 class Waiting(Ledger):
@@ -33,15 +37,15 @@ class Waiting(Ledger):
         if WAITS_FOR.get(order.state) != role and role != "dispatcher":
             raise errors.NotWaiting(f"The order is {order.state}: the robot is not waiting for you.")
         await self._check_share(session, order, role, extend_s)
-        await self._extend(session, order, extend_s or self.settings.wait_extension_s)
+        await self._extend(session, order, extend_s or EXTENSION_S)
         await self.note(session, order.id, WAIT_EXTENDED, Word(By(role), person_id=person.id))
         return self.view_of((await load_facts(session, [order]))[0], role, person.id)
 
     async def _check_share(self, session: AsyncSession, order: Order, role: MyRole, extend_s: float | None) -> None:
         if role == "dispatcher":
             return
-        if extend_s is not None and extend_s > self.settings.wait_extension_s:
-            limit_min = self.settings.wait_extension_s / 60
+        if extend_s is not None and extend_s > EXTENSION_S:
+            limit_min = EXTENSION_S / 60
             raise errors.WaitedLongEnough(f"You can ask for at most {limit_min:.0f} minutes at a time.")
         asked = select(func.count()).where(
             col(OrderEvent.order_id) == order.id,
@@ -49,7 +53,7 @@ class Waiting(Ledger):
             col(OrderEvent.state) == order.state,
             col(OrderEvent.by) == role,
         )
-        if (await session.exec(asked)).one() >= self.settings.wait_extensions:
+        if (await session.exec(asked)).one() >= EXTENSIONS:
             raise errors.WaitedLongEnough("You have asked for more time as often as is possible. Ask the dispatcher.")
 
     async def _extend(self, session: AsyncSession, order: Order, extend_s: float) -> None:

@@ -42,6 +42,8 @@ PURPOSE_OF_NOTICE: Final = {
     NoticeKind.ROBOT_HERE_FOR_YOU: Purpose.RECEIVE,
     NoticeKind.AT_RETURN: Purpose.RETURN,
 }
+CONFIRM_LIFETIME_S: Final = 60.0
+"""A tap or digits at a hand-over are good for so long on their way to the robot."""
 
 
 class Holder(StrEnum):

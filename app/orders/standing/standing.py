@@ -6,6 +6,7 @@ moment are written in one transaction.
 
 from dataclasses import dataclass
 from datetime import UTC, date, datetime, time, timedelta
+from typing import Final
 from zoneinfo import ZoneInfo
 
 import structlog
@@ -23,6 +24,8 @@ from app.orders.views.schemas import NewStandingOrder, Somebody, StandingOrderVi
 from protocol.ids import new_id
 
 log = structlog.get_logger(__name__)
+GRACE: Final = timedelta(hours=6)
+"""An order that could not be made in time is still made so much later."""
 
 
 @dataclass(frozen=True)
@@ -103,8 +106,7 @@ class StandingOrders:
             return None
         day, moment = day_of(_recurrence(row), row.next_at), row.next_at
         _plan(row, moment)
-        grace = timedelta(seconds=self.orders.settings.standing_order_grace_s)
-        if now - moment > grace:
+        if now - moment > GRACE:
             log.warning("standing order missed", standing_order=row.id, day=day.isoformat())
             return None
         return await self._make(session, row, day)

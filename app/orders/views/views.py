@@ -15,7 +15,7 @@ from app.core.settings import Settings
 from app.core.texts.reasons import words_of
 from app.models import Delegate, Handover, Order, OrderEvent, OrderState, Person, RobotRow, Role
 from app.models.orders.order_events import DELEGATE_NAMED, DELEGATE_REVOKED, MOVED
-from app.orders.custody.codes import mailrooms_turn, turn_of
+from app.orders.custody.codes import CONFIRM_LIFETIME_S, mailrooms_turn, turn_of
 from app.orders.custody.custody import custody_of
 from app.orders.transitions import CARRIED, ENDED, LOADED, ROBOT_COMING, By
 from app.orders.views.estimate import estimate_view
@@ -255,7 +255,7 @@ def _handover_requested(events: Sequence[OrderEvent], settings: Settings) -> Han
     last = events[-1] if events else None
     if last is None or last.kind != CONFIRM_REQUESTED:
         return None
-    expires_at = last.at + timedelta(seconds=settings.confirm_lifetime_s)
+    expires_at = last.at + timedelta(seconds=CONFIRM_LIFETIME_S)
     return HandoverRequested(how=last.reason or "tap", at=last.at, expires_at=expires_at)
 
 

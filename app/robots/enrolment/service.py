@@ -19,6 +19,7 @@ from protocol.clock import Clock
 LETTERS: Final = "23456789ABCDEFGHJKMNPQRSTUVWXYZ"
 """None that is taken for another when it is read out or typed."""
 GROUPS, GROUP_LENGTH = 2, 4
+CODE_LIFETIME_S: Final = 900.0
 
 
 @dataclass(frozen=True)
@@ -44,7 +45,7 @@ class EnrolmentDesk:
             code_hash=self._hash(name, code),
             made_by_id=made_by_id,
             created_at=now,
-            expires_at=now + timedelta(seconds=self.settings.enrolment_code_lifetime_s),
+            expires_at=now + timedelta(seconds=CODE_LIFETIME_S),
         )
         session.add(row)
         await session.flush()

@@ -111,7 +111,9 @@ def test_a_name_from_the_campus_is_one_printable_line(nobody: TestClient, campus
 class TestAHostThatIsFlooded:
     @pytest.fixture
     def settings(self, settings: Settings) -> Settings:
-        return settings.model_copy(update={"sign_in_tries_per_host": "4 per 15 minutes"})
+        return settings.model_copy(
+            update={"rate_limits": settings.rate_limits | {"sign_in_tries_per_host": "4 per 15 minutes"}}
+        )
 
     def test_keeps_nobody_out_of_a_browser_where_they_have_signed_in(
         self, app: FastAPI, nobody: TestClient, campus: Campus

@@ -16,9 +16,10 @@ CODES = "/api/v1/sign-in/codes"
 
 @pytest.fixture
 def settings(settings: Settings) -> Settings:
-    few = {"orders_per_person": "3 per hour", "changes_per_person": "2 per hour", "streams_per_person": 2}
+    few = {"orders_per_person": "3 per hour", "changes_per_person": "2 per hour"}
     few |= {f"{door}_tries_per_host": "2 per hour" for door in ("digits", "enrolment", "link")}
-    return settings.model_copy(update={**few, "sign_in_tries_per_host": "8 per hour"})
+    few |= {"sign_in_tries_per_host": "8 per hour"}
+    return settings.model_copy(update={"rate_limits": settings.rate_limits | few, "streams_per_person": 2})
 
 
 def assert_slowed(answer: httpx.Response) -> None:

@@ -135,7 +135,7 @@ def test_a_code_is_good_in_the_browser_that_asked_for_it_and_no_other_one_uses_i
 class TestManyNewBrowsers:
     @pytest.fixture
     def settings(self, settings: Settings, request: pytest.FixtureRequest) -> Settings:
-        return settings.model_copy(update={request.param: "3 per 15 minutes"})
+        return settings.model_copy(update={"rate_limits": settings.rate_limits | {request.param: "3 per 15 minutes"}})
 
     @pytest.mark.parametrize("settings", ["sign_in_codes_per_host", "new_browser_codes_per_address"], indirect=True)
     def test_are_slowed_down_together_but_not_who_has_signed_in_before(
@@ -152,7 +152,9 @@ class TestManyNewBrowsers:
 class TestAHostThatIsFlooded:
     @pytest.fixture
     def settings(self, settings: Settings) -> Settings:
-        return settings.model_copy(update={"sign_in_tries_per_host": "6 per 15 minutes"})
+        return settings.model_copy(
+            update={"rate_limits": settings.rate_limits | {"sign_in_tries_per_host": "6 per 15 minutes"}}
+        )
 
     def test_keeps_nobody_out_of_a_browser_where_they_have_signed_in(
         self, app: FastAPI, nobody: TestClient, mails: Mails

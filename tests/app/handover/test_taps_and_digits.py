@@ -4,6 +4,7 @@ import pytest
 
 from app.core.settings import Settings
 from app.models import Alarm, Handover, RobotCommand, Role
+from app.orders.custody.codes import CONFIRM_LIFETIME_S
 from protocol.clock import SteppedClock
 from protocol.to_robot import Confirm
 from protocol.to_server import CommandAnswer, Event, Step
@@ -62,7 +63,7 @@ async def test_a_tap_that_nobody_answered_is_asked_again_when_it_is_too_old(
     sender = await campus.browser("sender")
     await sender.post(f"{campus.path}/handover", json={})
     first = await asked(campus)
-    clock.advance(settings.confirm_lifetime_s)
+    clock.advance(CONFIRM_LIFETIME_S)
     await sender.post(f"{campus.path}/handover", json={})
     assert (await asked(campus)).expires_at > first.expires_at
 

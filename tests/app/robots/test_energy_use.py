@@ -18,7 +18,7 @@ THIRSTY = 1.8
 
 def lived(robot: str, begin: datetime, settings: Settings, length_m: float) -> list[BatterySample | GrantRow]:
     """Days of one corridor after the other, each with a rest in a dock when it is low: a sample each minute."""
-    rates = usual_rates(settings)
+    rates = usual_rates()
     per_minute = THIRSTY * (rates.per_m * length_m / LEG_S + rates.per_s) * 60
     rows: list[BatterySample | GrantRow] = []
     ratio, charging, at = 1.0, False, begin
@@ -64,7 +64,7 @@ async def test_after_a_restart_a_robot_that_spends_more_than_others_is_known_and
         learned = fleet.spending.rates["thirsty"]
         assert learned.stretches > 10
         assert abs(learned.standing - THIRSTY) < 0.2
-        assert fleet.spending.rates["new"] == usual_rates(settings)
+        assert fleet.spending.rates["new"] == usual_rates()
         charges = Charges(fleet.orders.ways, settings, fleet.spending.rates)
         order = WaitingOrder("o", "post1", "post4")
         needed = {

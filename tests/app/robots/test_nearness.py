@@ -68,16 +68,18 @@ async def test_a_robot_that_sets_out_next_door_is_near_at_once(service: Service,
 
 
 @pytest.mark.parametrize(
-    ("post", "near_s", "near"),
+    ("post", "speed_m_s", "near"),
     [
-        (NEXT_TO_IT, 0, True),  # 70 m, but nothing is heard of it before it is there
-        ("mackenzie", 899, False),  # 135 m at 0.15 m/s
-        ("mackenzie", 901, True),
+        (NEXT_TO_IT, 0.0, True),  # 70 m, but nothing is heard of it before it is there
+        ("mackenzie", 0.749, False),  # 135 m in 180 s are 0.75 m/s
+        ("mackenzie", 0.751, True),
         (SENDERS, 0, True),
         (None, 0, True),  # rather too early than not at all
         ("a post of another map", 0, True),
     ],
 )
-def test_near_is_one_corridor_or_a_few_minutes(settings: Settings, post: str | None, near_s: float, near: bool) -> None:
+def test_near_is_one_corridor_or_a_few_minutes(
+    settings: Settings, post: str | None, speed_m_s: float, near: bool
+) -> None:
     ways = Ways(open_map(settings))
-    assert is_near(ways, post, SENDERS, settings.model_copy(update={"near_s": near_s})) is near
+    assert is_near(ways, post, SENDERS, speed_m_s) is near

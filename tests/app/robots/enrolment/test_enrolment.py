@@ -17,6 +17,7 @@ from app.__main__ import app as commands
 from app.accounts.sign_in.service import find_person, set_roles
 from app.core.settings import Settings
 from app.models import EnrolmentCode, RobotRow, Role
+from app.robots.enrolment.service import CODE_LIFETIME_S
 from app.robots.link.tokens import token_of
 from protocol.clock import SteppedClock
 from tests.app.conftest import Browser, Mailroom, SignedIn
@@ -96,7 +97,7 @@ def test_a_code_is_good_for_its_own_robot_for_a_while_and_until_the_next_is_made
     assert problem(enrol(nobody, code, name="r8")) == (401, "no_enrolment_code")
     newer = new_code(maintainer)
     assert problem(enrol(nobody, code)) == (401, "wrong_enrolment_code")
-    clock.advance(settings.enrolment_code_lifetime_s)
+    clock.advance(CODE_LIFETIME_S)
     assert problem(enrol(nobody, newer)) == (401, "no_enrolment_code")
 
 
@@ -105,7 +106,9 @@ class TestOfTheDoor:
 
     @pytest.fixture
     def settings(self, settings: Settings) -> Settings:
-        return settings.model_copy(update={"enrolment_tries_per_host": "3 per 15 minutes"})
+        return settings.model_copy(
+            update={"rate_limits": settings.rate_limits | {"enrolment_tries_per_host": "3 per 15 minutes"}}
+        )
 
     def test_too_many_tries_from_one_address_are_refused(self, maintainer: Browser, nobody: TestClient) -> None:
         code = new_code(maintainer)
