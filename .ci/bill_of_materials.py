@@ -75,7 +75,7 @@ def python_bill() -> dict[str, Any]:
 
 
 def pages_bill() -> dict[str, Any]:
-    """What npm installs for the pages, by their lock file."""
+    """Return what npm installs for the pages, by their lock file."""
     made = ["npm", "sbom", "--sbom-format", "cyclonedx", "--omit", "dev", "--package-lock-only"]
     bill: dict[str, Any] = json.loads(subprocess.run(made, check=True, capture_output=True, cwd=ROOT / "web").stdout)
     return bill

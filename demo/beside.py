@@ -1,4 +1,4 @@
-"""What every demonstration does beside its story: waits for the service, watches what may die, ends when told to."""
+"""The surroundings of every demonstration: waits for the service, watches its processes, ends when told to."""
 
 import asyncio
 import json
@@ -48,7 +48,7 @@ def _stop_signal(stopping: Callable[[], None]) -> asyncio.Event:
 
 
 async def _until(stop: asyncio.Event, play: Coroutine[Any, Any, int], interrupted: int) -> int:
-    """Let it play until it ends or somebody stops it."""
+    """Let it play until it ends or is stopped."""
     playing, stopping = asyncio.ensure_future(play), asyncio.ensure_future(stop.wait())
     try:
         await asyncio.wait([playing, stopping], return_when=asyncio.FIRST_COMPLETED)
@@ -62,7 +62,7 @@ async def _until(stop: asyncio.Event, play: Coroutine[Any, Any, int], interrupte
 
 @asynccontextmanager
 async def beside(watchers: list[Coroutine[Any, Any, None]]) -> AsyncIterator[None]:
-    """What goes on beside the story; a watcher that fails ends the story with its own error."""
+    """Run what goes on beside the story; a watcher that fails ends the story with its own error."""
     try:
         async with asyncio.TaskGroup() as group:
             tasks = [group.create_task(watcher) for watcher in watchers]
@@ -74,7 +74,7 @@ async def beside(watchers: list[Coroutine[Any, Any, None]]) -> AsyncIterator[Non
 
 
 def _cause(group: BaseExceptionGroup[BaseException]) -> BaseException:
-    """What failed, out of the group that asyncio wraps it in."""
+    """Return the failure, out of the group that asyncio wraps it in."""
     failed = group.subgroup(DemoFailed) or group
     first = failed.exceptions[0]
     return _cause(first) if isinstance(first, BaseExceptionGroup) else first
@@ -91,7 +91,7 @@ async def write_tokens(settings: Settings, files: Mapping[str, Path]) -> None:
 
 
 async def give_roles(settings: Settings) -> None:
-    """Make the people who look after orders and robots, for whoever opens the pages as one of them."""
+    """Make the dispatcher and the maintainer, for a visitor who opens the pages as one of them."""
     await change_roles(settings, MAILROOM, [Role.DISPATCHER], [])
     await change_roles(settings, TECHNICIAN, [Role.MAINTAINER], [])
 

@@ -65,7 +65,7 @@ class Children:
 
 
 def _end_with_us() -> None:
-    """If we are killed and can stop nobody any more, the kernel does (`prctl`, PR_SET_PDEATHSIG)."""
+    """End children with their parent (`prctl`, PR_SET_PDEATHSIG), even if the parent is killed."""
     ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
 
 

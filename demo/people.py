@@ -28,7 +28,7 @@ class Spool:
                 yield file.name, message_from_bytes(file.read_bytes(), policy=policy.default)
 
     def notices(self, order_id: str) -> Counter[tuple[str, str]]:
-        """How many mails about an order each person got of each kind, as (address, kind)."""
+        """Count the mails about an order that each person got, as (address, kind)."""
         kinds = {name: mail for name, mail in self.new_mails(set()) if name.startswith(f"mail.{order_id}.")}
         return Counter((str(mail["To"]), name.split(".")[2]) for name, mail in kinds.items())
 
@@ -45,7 +45,7 @@ class NobodyLooks(DemoFailed):
 
 
 class SimulatedPerson:
-    """Somebody with a browser."""
+    """A person with a browser."""
 
     def __init__(self, email: str, demo: Demonstration) -> None:
         self.email = email
@@ -89,7 +89,7 @@ class SimulatedPerson:
         return robots
 
     async def notices(self, order_id: str) -> Counter[str]:
-        """How often this person was told each kind of thing about an order."""
+        """Count the notifications of each kind that this person got about an order."""
         items = (await self._ask("GET", "/notices?limit=100"))["items"]
         return Counter(str(notice["kind"]) for notice in items if notice["order_id"] == order_id)
 

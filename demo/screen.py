@@ -1,4 +1,4 @@
-"""What a person at the terminal sees of a demonstration."""
+"""The terminal of a demonstration."""
 
 from datetime import datetime
 from typing import Any

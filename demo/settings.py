@@ -1,4 +1,4 @@
-"""What a demonstration is run with, and what goes wrong with one."""
+"""Settings of a demonstration, and its errors."""
 
 import json
 import os
@@ -23,7 +23,7 @@ HANDS_ON_SPEED = 2.0
 LIMIT_S = 180.0
 """Real time: an order that is not delivered by then has failed."""
 LOW_RATIO = 0.2
-# Nobody watches a Create 2 charge for two hours: with --low-battery the pack is small and the charger strong (assumed).
+# Charging a Create 2 takes two hours: with --low-battery the pack is small and the charger strong (assumed).
 ROBOT_CONFIG = """
 [battery]
 simulated_capacity_mah = 600
@@ -32,19 +32,19 @@ simulated_charger_ma = 15000
 
 
 def default_speed(once: bool, hands_on: bool) -> float:
-    """As fast as it keeps up where nobody waits to see the end; slower for eyes, slowest for hands."""
+    """As fast as it keeps up where no person waits for the end; slower for eyes, slowest for hands."""
     if once:
         return ONCE_SPEED
     return HANDS_ON_SPEED if hands_on else WATCHED_SPEED
 
 
 class DemoFailed(Exception):
-    """Something did not happen, or somebody died; the sentence says what."""
+    """Something did not happen, or a process died; the sentence says what."""
 
 
 @dataclass(frozen=True)
 class Demonstration:
-    """What one with one robot and one with several have in common. Everything lies in `folder`; the door is apart,
+    """A demonstration with one robot or several. Everything lies in `folder`; the door is apart,
     since socket paths must be short."""
 
     folder: Path
@@ -63,7 +63,7 @@ class Demonstration:
         return self.folder / "clock"
 
     def link(self, email: str, page: Page) -> str:
-        """What opens a page as somebody, in this demonstration alone."""
+        """Return a link that opens a page as this person, in this demonstration alone."""
         return self.url + link_path(open_server_key(self.service.server_key_path), email, page)
 
     def token_file(self, robot: str) -> Path:
@@ -107,7 +107,7 @@ class Demonstration:
         return {**inherited, **{name: _as_text(value) for name, value in ours.items()}}
 
     def command_of(self, robot: str, data: Path, door: Path, more: Mapping[str, str]) -> list[str]:
-        """What starts a robot with a simulated body."""
+        """Return the command that starts a robot with a simulated body."""
         options = {
             "--map": self.map,
             "--name": robot,

@@ -1,4 +1,4 @@
-"""What happens in a demonstration: a letter is ordered, loaded, carried, received, and everybody is told once."""
+"""The story of a demonstration: a letter is ordered, loaded, carried, received, and each person is notified once."""
 
 import asyncio
 import time
@@ -98,7 +98,7 @@ class Story:
         }
 
     async def _robot_figures(self) -> dict[str, Any]:
-        """What the robot's process says of its run; it was docked before the order came."""
+        """Read the figures that the robot's process gives of its run; it was docked before the order came."""
         figures: dict[str, Any] = (await self._knock({"do": "state"})).get("robot", {})
         return figures
 

@@ -1,4 +1,4 @@
-"""What the terminal says of every demonstration: what is being started, links to open it by, codes, that it stops."""
+"""Lines that every demonstration prints: what it starts, links, codes, the end."""
 
 from collections.abc import Iterator
 
@@ -18,7 +18,7 @@ class Terminal:
         self._mails_seen: set[str] = set()
 
     def step(self, sentence: str) -> None:
-        """What is being done now, and takes a moment."""
+        """Print the step that begins now and takes a moment."""
         self._console.print(f"[dim]{escape(sentence)}[/]", soft_wrap=True)
 
     def show_links(self, demo: Demonstration, sender: str, recipient: str) -> None:
@@ -35,7 +35,7 @@ class Terminal:
             self._console.print(f"  {part:<10}  [cyan]{link}[/]", soft_wrap=True)
 
     def new_codes(self) -> Iterator[str]:
-        """A sentence for each sign-in code that somebody has asked for at the pages."""
+        """Print a sentence for each sign-in code that was requested at the pages."""
         for _, mail in self._spool.new_mails(self._mails_seen):
             if code := sign_in_code(mail):
                 yield f"Sign-in code for {mail['To']}: {code}"

@@ -20,7 +20,7 @@ from maps.map_file import CorridorRow, MapFile, PoseRow, PostRow, load_map_file
 from maps.structure import structure_problems
 
 MARKER_SIZE_M = 0.08
-# Where a marker stands unless the file says otherwise, as somebody arriving at the post sees it: on the left, where
+# Where a marker stands unless the file says otherwise, as seen on arrival at the post: on the left, where
 # the camera looks; before the post, so that the robot knows the distance left to roll; and clear of the line by more
 # than the robot's radius (174 mm), so that a branch to the left stays free.
 MARKER_BEFORE_POST_M = 0.30

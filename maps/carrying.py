@@ -1,4 +1,4 @@
-"""How many robots a map can carry, and what bounds them: home places, bays, and corridors that everybody needs."""
+"""The number of robots that a map can carry, and its limits: home places, bays, and corridors that all robots need."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -63,11 +63,12 @@ def places_problems(campus: CampusMap) -> Iterator[Problem]:
 
 def _no_bay(campus: CampusMap, post: Post) -> str:
     ways = len(campus.neighbours(post.name))
-    return f"{post.name} has no bay: nobody can stop there{', and nobody can pass' if ways > 1 else ''}"
+    return f"{post.name} has no bay: no robot can stop there{', and none can pass' if ways > 1 else ''}"
 
 
 def _bound(campus: CampusMap, corridor: Corridor, speed_m_s: float) -> Bottleneck | None:
-    """What a corridor without a way round it lets through; None if there is one, or if robots may follow each other."""
+    """Return the throughput of a corridor without a way round it; None if there is one, or if robots may follow each
+    other."""
     here = _side(campus, corridor)
     there = len(campus.posts) - len(here)
     if corridor.b in here or corridor.following_s is not None:

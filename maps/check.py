@@ -1,4 +1,4 @@
-"""What somebody should mend before robots drive by this map: the check that `python -m maps check` runs."""
+"""Findings to mend before robots drive by this map: the check that `python -m maps check` runs."""
 
 import math
 from collections.abc import Iterator
@@ -11,7 +11,7 @@ from maps.map_file import MapFile, PostRow, load_map_file
 from maps.problem import Problem, error, warning
 from maps.structure import structure_problems
 
-# Where the left-hand camera can make out a marker of 80 mm, for somebody who rolls towards a post, and for somebody
+# Where the left-hand camera can make out a marker of 80 mm, for a robot that rolls towards a post, and for one
 # who stands in a dock and sees only what is abreast. 0.8 m leave 2.5 pixels per module at 640 × 480 and 60°.
 SEEN_ROLLING_M = (-1.0, 0.2)
 SEEN_STANDING_M = (-0.2, 0.2)
@@ -54,7 +54,7 @@ def _of_map(file: MapFile, campus: CampusMap) -> Iterator[Problem]:
 
 
 def _sides_and_corridors(file: MapFile) -> Iterator[Problem]:
-    """A corridor runs both ways: whoever lists neighbours must list all of them, and be listed by them."""
+    """A corridor runs both ways: a post that lists neighbours must list all of them, and be listed by them."""
     joined = {frozenset(corridor.ends) for corridor in file.corridor}
     listed = {post.name: set(post.sides.values()) for post in file.post if post.sides is not None}
     for post, neighbours in listed.items():

@@ -1,4 +1,4 @@
-"""What can be wrong with a map or with a question asked of it.
+"""Errors of a map or of a question asked of it.
 
 CampusMapError
 ├── MapError         a file that cannot be used
@@ -24,7 +24,7 @@ class MapError(CampusMapError):
 
 
 class UnknownPost(CampusMapError):
-    """Somebody named a post that the map does not have; `nearest` is the spelling they probably meant."""
+    """The map has no post of this name; `nearest` is the spelling that was probably meant."""
 
     def __init__(self, name: str, map_name: str, known: Iterable[str]) -> None:
         known = sorted(known)
@@ -35,7 +35,7 @@ class UnknownPost(CampusMapError):
 
 
 class UnknownCorridor(CampusMapError):
-    """Somebody named a corridor that the map does not have."""
+    """The map has no corridor of this name."""
 
     def __init__(self, name: str, map_name: str) -> None:
         self.name = name

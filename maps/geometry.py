@@ -31,7 +31,7 @@ def moved(start: Point, heading_rad: float, ahead_m: float, left_m: float = 0.0)
 
 
 def seen_from(origin: Point, heading_rad: float, point: Point) -> tuple[float, float]:
-    """(ahead_m, left_m) of a point for somebody at `origin` who looks along `heading_rad`."""
+    """(ahead_m, left_m) of a point as seen from `origin` along `heading_rad`."""
     dx, dy = point.x_m - origin.x_m, point.y_m - origin.y_m
     along, across = math.cos(heading_rad), math.sin(heading_rad)
     return dx * along + dy * across, dy * along - dx * across

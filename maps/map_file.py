@@ -42,7 +42,7 @@ class PostRow(Row):
     # Places where a robot can rest clear of line and bays, the dock among them. Left out: one where there is a dock.
     homes: int | None = Field(default=None, ge=0)
     mailroom: bool = False
-    # False: a robot that stands here is heard of by nobody until it is back where there is network.
+    # False: a robot that stands here is not heard of until it is back where there is network.
     network: bool = True
     # The number of the AprilTag on its sheets; left out: the post's place in this file, counted from 0.
     tag: int | None = Field(default=None, ge=0, le=LAST_TAG)

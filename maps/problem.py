@@ -1,4 +1,4 @@
-"""One thing that is wrong with a map, said so that whoever keeps the map can mend it."""
+"""One problem of a map, in a sentence by which its keeper can mend it."""
 
 from dataclasses import dataclass
 from typing import Literal

@@ -97,7 +97,7 @@ def marker_page(post: Post, number: int | None = None, april_tag: bool = False) 
 
 
 def explaining_page(campus: CampusMap, posts: tuple[Post, ...], april_tags: bool) -> Page:
-    """What to do with the pages that follow, for whoever holds them in hand."""
+    """Instructions for the pages that follow, on paper."""
     sheets = sum(len(post.markers) for post in posts)
     sentences = (
         f"{sheets} sheets for {len(posts)} posts of the map {campus.name}.",
@@ -176,7 +176,7 @@ def _svg_words(words: Words) -> str:
 
 
 def as_pdf(pages: tuple[Page, ...], title: str) -> bytes:
-    """All pages in one file. The same pages give the same bytes."""
+    """Return all pages in one file. The same pages give the same bytes."""
     from reportlab.lib.units import mm
     from reportlab.pdfbase import pdfmetrics
     from reportlab.pdfbase.ttfonts import TTFont

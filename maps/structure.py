@@ -1,4 +1,4 @@
-"""What must hold before a file can be a map at all: names that are names, ends that exist, lengths that can be."""
+"""Conditions of a map file: names that are names, ends that exist, lengths that can be."""
 
 import re
 from collections import Counter

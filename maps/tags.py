@@ -1,7 +1,8 @@
 """Which AprilTag 36h11 stands for which post: the one table that sheets, robot and simulator use.
 
 A post's number is its key `tag` in the map file, or else its place there, counted from 0. Posts that are added at the
-end of a file leave the printed sheets of all others as they are; whoever sorts a file pins the numbers with `tag`.
+end of a file leave the printed sheets of all others as they are; an editor who sorts a file pins the numbers with
+`tag`.
 """
 
 from maps.campus_map import CampusMap

@@ -1,4 +1,4 @@
-"""How far it is from post to post by corridor, worked out once: the map does not change while the service runs."""
+"""Distances from post to post by corridor, worked out once: the map does not change while the service runs."""
 
 import math
 

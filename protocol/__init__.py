@@ -1,1 +1,1 @@
-"""What server and robot say to each other: one frozen class per message, and the clock they agree on."""
+"""Messages between service and robot: one frozen class per message, and the clock they agree on."""

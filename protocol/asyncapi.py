@@ -108,7 +108,7 @@ def _message(name: str, kind: type[Part]) -> Json:
 
 
 def _narrowed(name: str, kind: type[Part]) -> Json:
-    """What the envelope of this message must say."""
+    """Return the constraints that the envelope of this message must meet."""
     seq = {"type": "integer"} if name in DURABLE else {"type": "null"}
     body = {"$ref": f"{SCHEMAS}{kind.__name__}"}
     required = ["body", "seq"] if name in DURABLE else ["body"]

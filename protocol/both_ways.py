@@ -1,4 +1,4 @@
-"""What either side says: that it has handled something, or that it could not."""
+"""Messages of either side: one was handled, or could not be."""
 
 from protocol.parts import Part, Sentence, Seq
 

@@ -1,8 +1,8 @@
 """The time that server and robot agree on. Time is an argument everywhere else; here is where it comes from.
 
 A `RealClock` is the machine's. A `SharedClock` lives in a small file that several processes map into memory: one scaled
-time for a simulated demonstration, faster than the machine's and slowed down by whoever cannot keep up. It never jumps
-and never runs backwards: only its speed changes.
+time for a simulated demonstration, faster than the machine's and slowed down by a process that cannot keep up. It
+never jumps and never runs backwards: only its speed changes.
 """
 
 import asyncio
@@ -32,7 +32,7 @@ class Clock(Protocol):
         ...
 
     def real_s(self, duration_s: float) -> float:
-        """How long `duration_s` of this clock takes on the machine's clock, at the present speed."""
+        """Return the duration on the machine's clock of `duration_s` on this one, at the present speed."""
         ...
 
 
@@ -74,7 +74,7 @@ class SharedClock:
     """One scaled time for several processes, kept in a file of 40 bytes."""
 
     def __init__(self, path: Path) -> None:
-        """Join the clock in `path`; FileNotFoundError if nobody has made it."""
+        """Join the clock in `path`; FileNotFoundError if it was not made."""
         self._path = path
         with path.open("r+b") as file:
             self._memory = mmap.mmap(file.fileno(), _LAYOUT.size)
@@ -88,8 +88,8 @@ class SharedClock:
         return cls(path)
 
     def _read(self) -> tuple[float, float, float, float]:
-        """The machine's time, ours, our speed, and what ours is since the epoch: all of one moment. Whoever is held up
-        between two of them looks again, else it would go on at a speed that is not ours any more."""
+        """The machine's time, ours, our speed, and what ours is since the epoch: all of one moment. A reader that is
+        held up between two of them looks again, else it would go on at a speed that is not ours any more."""
         while True:
             before, real, scaled, speed, epoch = _LAYOUT.unpack(self._memory[: _LAYOUT.size])
             present = time.monotonic()
@@ -108,7 +108,7 @@ class SharedClock:
 
     @property
     def speed(self) -> float:
-        """How many seconds pass in one second of the machine's time."""
+        """Return the seconds that pass in one second of the machine's time."""
         return self._read()[2]
 
     def set_speed(self, speed: float) -> None:
@@ -120,7 +120,7 @@ class SharedClock:
     def _change_speed(self, speed: float) -> None:
         writes, real, scaled, old_speed, epoch = _LAYOUT.unpack(self._memory[: _LAYOUT.size])
         struct.pack_into("<Q", self._memory, 0, writes + 1)
-        present = time.monotonic()  # after that: nobody reads a later moment at the old speed
+        present = time.monotonic()  # after that: no reader has a later moment at the old speed
         scaled += (present - real) * old_speed
         self._memory[: _LAYOUT.size] = _LAYOUT.pack(writes + 1, present, scaled, speed, epoch)
         struct.pack_into("<Q", self._memory, 0, writes + 2)

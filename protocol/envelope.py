@@ -66,7 +66,7 @@ _TYPE_OF: Final = {message: name for name, message in {**TO_SERVER, **TO_ROBOT}.
 
 
 class Head(Part):
-    """What stands around the body of a message."""
+    """The head of a message: everything around its body."""
 
     v: int = MAJOR_VERSION
     type: str

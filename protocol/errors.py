@@ -1,4 +1,4 @@
-"""What can be wrong with a message.
+"""Errors of a message.
 
 ProtocolError
 ├── MalformedMessage   not JSON, not an envelope, or a body that does not fit its type

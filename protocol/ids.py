@@ -1,4 +1,4 @@
-"""Names of new things: orders, missions, stops, commands, journals. Random, unless whoever begins gives a source that
+"""Names of new things: orders, missions, stops, commands, journals. Random, unless the caller gives a source that
 repeats itself. Secrets are not made here: what opens something comes from `secrets` alone.
 """
 
@@ -26,7 +26,7 @@ def new_uuid() -> str:
 
 @contextmanager
 def ids_from(source: RandomBytes) -> Iterator[None]:
-    """All ids that are made meanwhile, here and in tasks that are begun here, come from this source: a life that was
+    """Draw all ids that are made meanwhile, here and in tasks that are begun here, from this source: a life that was
     lived once can be lived again."""
     token = _source.set(source)
     try:

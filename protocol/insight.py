@@ -1,4 +1,4 @@
-"""What a robot tells of its senses and its mind while somebody watches. Nothing of it is kept."""
+"""Live diagnostics of a robot: its senses and its mind, while a technician watches. Nothing of it is kept."""
 
 from typing import Annotated, Final, Literal
 
@@ -18,7 +18,7 @@ Light = Literal["left", "front_left", "centre_left", "centre_right", "front_righ
 
 
 class Sensors(Part):
-    """What the body feels now. `line`: left, centre, right diode over the line; `line_word` what that is taken for.
+    """The sensors now. `line`: left, centre, right diode over the line; `line_word` what that is taken for.
 
     `light_bumpers` see something near; `wheels_mm_s` are the speeds really sent last, `skill` is what has the wheels.
     `base_age_s` is how old the base's newest frame is, `camera_age_s` the camera's.
@@ -43,7 +43,7 @@ class Sensors(Part):
 
 
 class LoopTiming(Part):
-    """How late the ticks of one loop began, since the robot started."""
+    """The delays of the ticks of one loop since the robot started."""
 
     name: Text
     ticks: Count
@@ -77,7 +77,7 @@ class Means(Part):
 
     `place` is where the plan is written: `mission.asl:33`.
     `relevant` is how many plans there were for it, `passed_over` those that would have come first; both are known only
-    of what was chosen while somebody watched.
+    of what was chosen while the robot was watched.
     """
 
     goal: Text
@@ -102,7 +102,7 @@ class IntentionTold(Part):
 
 
 class TraceLine(Part):
-    """What the agent chose, did, came to believe, or gave up, in cycle `cycle`.
+    """One line of the agent's trace: what it chose, did, came to believe, or gave up, in cycle `cycle`.
 
     `chose`: a plan for an event, or none (`plan` None); `passed_over` were looked at before. `did`: a step of an
     intention. `believed` and `forgot`: a belief. `gave_up`: a goal.
@@ -118,7 +118,7 @@ class TraceLine(Part):
 
 
 class LeftOut(Part):
-    """How much had no room: of beliefs (`came` and `went`), of lines of the trace, of intentions."""
+    """Counts of what had no room: of beliefs (`came` and `went`), of lines of the trace, of intentions."""
 
     beliefs: Count = 0
     trace: Count = 0
@@ -126,7 +126,7 @@ class LeftOut(Part):
 
 
 class Insight(Part):
-    """What the robot senses and thinks, while somebody watches: at most twice a second, dropped first, never kept.
+    """Live diagnostics, while a technician watches: at most twice a second, dropped first, never kept.
 
     `number` counts from 1, which has all beliefs in `came` (`whole`); those after it say what `came` and `went` since
     the one before. `events` wait until a plan is chosen for them, `loops` are in every tenth. `at` is the robot's time.

@@ -8,7 +8,7 @@ BREAKS: Final = r"\t-\r\x1c-\x1f\x85\u2028\u2029"
 
 CONTROLS: Final = r"\x00-\x08\x0e-\x1b\x7f-\x84\x86-\x9f"
 MARKS: Final = r"\xad\u061c\u180e\u200b\u200e\u200f\u202a-\u202e\u2060-\u206f\ufeff\ufff9-\ufffb"
-"""Format characters (Cf), which nobody sees. Not the two joiners: Persian and the scripts of India need them."""
+"""Format characters (Cf), which are invisible. Not the two joiners: Persian and the scripts of India need them."""
 
 ONE_LINE: Final = rf"^[^{BREAKS}{CONTROLS}{MARKS}]*$"
 """For Python's, Rust's (pydantic) and ECMA's (JSON Schema) regular expressions alike."""
@@ -19,7 +19,7 @@ _NOTHING: Final = re.compile(f"[{CONTROLS}{MARKS}]+")
 
 
 def one_line(text: str) -> str:
-    """The text as one printable line: a break becomes a space, what else nobody sees nothing."""
+    """The text as one printable line: a break becomes a space, other invisible characters nothing."""
     return _NOTHING.sub("", _BREAKS.sub(" ", text))
 
 

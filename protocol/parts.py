@@ -45,13 +45,13 @@ def sentence(text: object) -> str:
 
 
 class Part(BaseModel):
-    """Frozen and exact: a field that nobody declared is an error, never ignored; numbers are finite."""
+    """Frozen and exact: an undeclared field is an error, never ignored; numbers are finite."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
 
 class StopAction(StrEnum):
-    """What is done at a stop. `return`: mail that nobody took is given to its sender again, or to the mailroom."""
+    """Actions at a stop. `return`: undelivered mail is given to its sender again, or to the mailroom."""
 
     LOAD = "load"
     RECEIVE = "receive"
@@ -61,7 +61,7 @@ class StopAction(StrEnum):
 
 
 class Purpose(StrEnum):
-    """What a hand-over code is good for: putting mail in, taking it out, or taking back what was not delivered."""
+    """Purposes of a hand-over code: putting mail in, taking it out, or taking back what was not delivered."""
 
     LOAD = "load"
     RECEIVE = "receive"
@@ -130,7 +130,7 @@ class Received(Part):
 
 
 class Activity(StrEnum):
-    """What the robot is doing, in one word."""
+    """The robot's activity, in one word."""
 
     IDLE = "idle"
     DRIVING = "driving"

@@ -1,4 +1,4 @@
-"""What only a code that was shown gives: the proof that a robot puts into its receipt.
+"""The proof that a robot puts into its receipt: only a code that was shown gives it.
 
 The robot knows codes by their SHA-256 alone, so that it can check one and cannot make one up. What it reads in a code
 gives a key, the key gives the proof of this one hand-over, and then both are forgotten. The service derives the same
@@ -30,7 +30,7 @@ class ShownCode:
 
 
 def proof_of(key: bytes, values: Iterable[str]) -> str:
-    """What the holder of `key` says of these values, in hex."""
+    """Return the proof by the holder of `key` over these values, in hex."""
     return hmac.digest(key, b"".join(_framed(value) for value in values), "sha256").hex()
 
 

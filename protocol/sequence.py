@@ -12,7 +12,7 @@ from protocol.parts import Received
 
 
 class Reception(StrEnum):
-    """What a durable message is to its receiver."""
+    """The meaning of a durable message to its receiver."""
 
     NEW = "new"
     """The next one: handle it, then acknowledge it."""

@@ -1,4 +1,4 @@
-"""What the server says to a robot: one frozen class per message."""
+"""Messages from the service to a robot: one frozen class per message."""
 
 from typing import Literal
 
@@ -32,7 +32,7 @@ class Welcome(Part):
 
 
 class Mission(Part):
-    """What to do now. The same update again is a no-op; different stops under the same number are an error."""
+    """The stops to serve now. The same update again is a no-op; different stops under the same number are an error."""
 
     id: Identifier
     update: Seq
@@ -49,7 +49,7 @@ class Verifier(Part):
 
 
 class Verifiers(Part):
-    """What is needed to check the hand-over codes of some orders with no network.
+    """Verifiers: they check the hand-over codes of some orders without network.
 
     Replaces all codes of every order that it names: a code that is not among them opens nothing any more. An order may
     have several codes for one purpose, one for each person who may hand over.
@@ -120,14 +120,14 @@ class Pause(Part):
 
 
 class Resume(Part):
-    """Go on after a pause, and after an emergency stop: whoever says so has looked."""
+    """Go on after a pause, and after an emergency stop: the dispatcher who sends it has looked."""
 
     command_id: Identifier
 
 
 class EmergencyStop(Part):
     """Stand still at once, wherever the robot is, and stay so, through a restart as well, until a `resume`, or until
-    somebody lets it go at the robot itself.
+    a person lets it go at the robot itself.
 
     A best effort: it takes effect when it arrives. The answer says that it has; a robot without network has not heard.
     """
@@ -148,7 +148,7 @@ class Recall(Part):
 
 
 class OpenWay(Part):
-    """A corridor in which the robot turned back is free again: whoever says so has looked.
+    """A corridor in which the robot turned back is free again: the dispatcher who sends it has looked.
 
     `ends` are its two posts, in either order; it is open in both directions. A robot that has turned back in there
     after `looked_at` by its own clock knows better and refuses; so it does if its map has no such corridor. Where it
@@ -163,7 +163,7 @@ class OpenWay(Part):
 class Revoke(Part):
     """Everything that was granted until now is void: a person has looked where the robot was, and others may go there.
 
-    The robot stands still at once, as after an `emergency_stop`, and forgets where it is. When somebody has let it go
+    The robot stands still at once, as after an `emergency_stop`, and forgets where it is. When a person has let it go
     again it stands on until it sees a marker or is in a dock; then it says where it is, and claims anew.
     """
 
@@ -172,9 +172,9 @@ class Revoke(Part):
 
 
 class Watch(Part):
-    """Somebody watches: tell what you sense and think in `insight` messages, for so many seconds of the machine's time.
+    """Send what you sense and think in `insight` messages, for so many seconds of the machine's time.
 
-    Said again as long as they look. `whole`: somebody new is looking, so the next insight has all beliefs. A best
+    Sent again as long as a technician watches. `whole`: a new one does, so the next insight has all beliefs. A best
     effort like the insights themselves: not kept, and nothing else depends on it.
     """
 

@@ -1,4 +1,4 @@
-"""What a robot says to the server: one frozen class per message."""
+"""Messages from a robot to the service: one frozen class per message."""
 
 from datetime import UTC
 from enum import StrEnum
@@ -58,7 +58,7 @@ class Snapshot(Part):
 
 
 class Step(StrEnum):
-    """How far a mission has come."""
+    """Steps of a mission."""
 
     ACCEPTED = "accepted"
     DEPARTED = "departed"
@@ -96,8 +96,9 @@ def _how_before_it_was_told(known: dict[str, Any]) -> How:
 class HandoverReceipt(Part):
     """Mail changed hands. Only the robot writes custody.
 
-    `code_sha256` is the verifier that matched (or the `by` of the `confirm`), None if nobody was identified (the Spot
-    button). `proof` is what only the shown code gives, over this one hand-over: None if none was shown. `number` counts
+    `code_sha256` is the verifier that matched (or the `by` of the `confirm`), None if no person was identified (the
+    Spot button). `proof` is what only the shown code gives, over this one hand-over: None if none was shown. `number`
+    counts
     its receipts, `mission_id` is the mission as it held it: None from a robot that is older than proofs. `command_id`
     names the `confirm`, if one led to it. `signature` is Ed25519 over `signed_by(robot)`, base64; None from a robot
     that was enrolled without a key.
@@ -118,7 +119,8 @@ class HandoverReceipt(Part):
     signature: Signature | None = None
 
     def signed_by(self, robot: str) -> bytes:
-        """What this robot's signature is over: one value a line, `-` for none, no line end after the last."""
+        """Return the bytes that this robot's signature is over: one value a line, `-` for none, no line end after the
+        last."""
         values = (robot, self.purpose, self.order_id, self.stop_id, self.post, self._moment)
         how = (self.code_sha256 or "-", self.how, self.command_id or "-")
         if self.number is None:
@@ -127,7 +129,7 @@ class HandoverReceipt(Part):
         return "\n".join(("campus-mail receipt 2", *values, *how, *later)).encode("ascii")
 
     def proved_with(self, key: bytes) -> str:
-        """The proof of this hand-over, for whoever has read the code with this key."""
+        """The proof of this hand-over, made by a holder who has read the code with this key."""
         place = (self.order_id, self.mission_id or "-", self.stop_id, self.purpose, self.post)
         return proof_of(key, (*place, str(self.number or "-"), self._moment))
 
@@ -158,7 +160,7 @@ class Fault(Part):
 
 
 class CommandAnswer(Part):
-    """What became of a command (`cancel`, `pause`, `open_way` …): `command_id` is the one it carried."""
+    """The result of a command (`cancel`, `pause`, `open_way` …): `command_id` is the one it carried."""
 
     kind: Literal["answer"] = "answer"
     command_id: Identifier
@@ -202,7 +204,7 @@ class Clear(Part):
 
 
 class Why(Part):
-    """What the robot is doing and waiting for, in words, from its agent's intentions."""
+    """The robot's present activity and what it waits for, in words, from its agent's intentions."""
 
     sentence: Sentence
     goal: Sentence | None = None

@@ -22,7 +22,8 @@ REMOVED: Final = frozenset(
         *("STANDING_ORDER_GRACE_S", "WAIT_EXTENSIONS", "WAIT_EXTENSION_S"),
     }
 )
-"""Settings that were removed (CHANGELOG.md). A value that is set and no longer read is an error: its operator relies on it."""
+"""Settings that were removed (CHANGELOG.md). A value that is set and no longer read is an error: its operator relies
+on it."""
 
 
 def in_sentences(error: ValueError, fields: Mapping[str, FieldInfo]) -> str:

@@ -13,7 +13,7 @@ from campus_mail_client.retrying import Retrying, may_repeat_after_answer, may_r
 def pause_after(
     retrying: Retrying, request: httpx.Request, outcome: httpx.Response | httpx.TransportError, tries: int
 ) -> float | None:
-    """How long to wait before the request is sent again; None: it is not."""
+    """Return the pause before the request is sent again; None: it is not."""
     if isinstance(outcome, httpx.TransportError):
         may_repeat, retry_after = may_repeat_after_failure(request.method, request.headers, outcome), ""
     else:
@@ -23,7 +23,7 @@ def pause_after(
 
 
 def settled(outcome: httpx.Response | httpx.TransportError, request: httpx.Request, tries: int, kind: Any) -> Any:
-    """What the last try has come to. Raises Problem, NoAnswer, UnexpectedAnswer."""
+    """Return the outcome of the last try. Raises Problem, NoAnswer, UnexpectedAnswer."""
     if isinstance(outcome, httpx.Response):
         return value_of(outcome, kind)
     said = f"{request.method} {request.url.path} got no answer in {tries} tries: {outcome!r}"

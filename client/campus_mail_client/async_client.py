@@ -31,7 +31,7 @@ SILENCE_S = 60.0
 
 
 class Page(Protocol[Item_co]):
-    """What a list answers, one page of it."""
+    """One page of a list."""
 
     @property
     def items(self) -> Sequence[Item_co]: ...

@@ -1,4 +1,4 @@
-"""What can go wrong between a program and Campus Mail.
+"""Errors between a program and Campus Mail.
 
 CampusMailError
 ├── NoAnswer          nothing came back, also after all tries; whether a change was made is not known

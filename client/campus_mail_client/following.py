@@ -1,4 +1,4 @@
-"""What is news of an order that somebody follows."""
+"""Changes of an order that a program follows."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -25,7 +25,7 @@ class OrderWatch:
         self._shown: OrderView | None = None
 
     def must_ask(self, change: Change) -> bool:
-        """Whether the order may have changed without this stream saying how."""
+        """Tell if the order may have changed without this stream saying how."""
         return change.event in ASK
 
     def order_in(self, change: Change) -> OrderView | None:
@@ -34,7 +34,7 @@ class OrderWatch:
         return OrderView.model_validate(change.data) if is_it else None
 
     def is_news(self, order: OrderView) -> bool:
-        """Whether it says what was not shown before; an older version says nothing."""
+        """Tell if it says what was not shown before; an older version says nothing."""
         shown = self._shown
         if shown is not None and (order.version < shown.version or order == shown):
             return False

@@ -23,7 +23,8 @@ class Retrying:
     longest_pause_s: float = 30.0
 
     def pause_s(self, tries_made: int, retry_after: str = "") -> float | None:
-        """How long to wait before the next try; None: no more tries, or longer than anybody should wait unasked."""
+        """Return the pause before the next try; None: no more tries, or the pause is longer than a program may wait
+        unasked."""
         if tries_made >= self.tries:
             return None
         if retry_after.isdecimal():
@@ -33,7 +34,7 @@ class Retrying:
 
 
 def may_repeat_after_answer(method: str, headers: Mapping[str, str], status: int, code: str) -> bool:
-    """Whether an answer invites to the same request again."""
+    """Tell if an answer invites to the same request again."""
     if code == DATABASE_AWAY:  # its last word may have been lost on the way
         return is_repeatable(method, headers)
     if status in NOT_DONE or code == STILL_RUNNING:
@@ -42,7 +43,7 @@ def may_repeat_after_answer(method: str, headers: Mapping[str, str], status: int
 
 
 def may_repeat_after_failure(method: str, headers: Mapping[str, str], failure: httpx.TransportError) -> bool:
-    """Whether a request that got no answer may be sent again: what never left may, what changes nothing twice may."""
+    """Tell if a request that got no answer may be sent again: it never left, or it changes nothing twice."""
     never_left = isinstance(failure, httpx.ConnectError | httpx.ConnectTimeout | httpx.PoolTimeout)
     return never_left or is_repeatable(method, headers)
 

@@ -1,4 +1,4 @@
-"""What people do in a demonstration of the fleet: they order, come to the robot with their code, or do not come."""
+"""Simulated people of a fleet: they order, come to the robot with their code, or do not come."""
 
 import asyncio
 import time
@@ -29,7 +29,7 @@ WHOSE_TURN = {"at_sender": "sender", "at_recipient": "recipient", "at_return": "
 
 @dataclass
 class CampusLife:
-    """All simulated people of one demonstration. `say` is told in a line whatever happens."""
+    """Simulated people of one demonstration. `say` gets a line for whatever happens."""
 
     demo: FleetDemo
     clock: Clock
@@ -86,7 +86,7 @@ class CampusLife:
 
     @property
     def alarms(self) -> int:
-        """How many rang."""
+        """Return the number of alarms."""
         return len(self._alarms)
 
     async def watch_alarms(self) -> None:
@@ -113,7 +113,7 @@ class CampusLife:
         self.say(f"{errand.sender} at {from_post} sends to {errand.recipient} at {to_post}{kind}{later}")
 
     async def _look(self) -> None:
-        """What has become of the orders; people come where a robot waits for them."""
+        """Read the state of the orders; people come where a robot waits for them."""
         now = {order["id"]: order for order in await self._mailroom.open_orders() if order["id"] in self._errands}
         self.robots = await self._mailroom.robots()
         for order_id in self.orders.keys() - now.keys():
@@ -163,7 +163,7 @@ class CampusLife:
                 raise
 
     def is_there_work(self) -> bool:
-        """Whether there is an order that may be fetched or carried now."""
+        """Tell if there is an order that may be fetched or carried now."""
         later = (order["not_before"] for order in self.orders.values())
         return any(moment is None or datetime.fromisoformat(moment) <= self.clock.utc() for moment in later)
 

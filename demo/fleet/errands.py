@@ -1,4 +1,4 @@
-"""Who sends what to whom in a demonstration of the fleet: drawn from a seed, so that it can be had again."""
+"""Errands: sender, post and recipient, drawn from a seed."""
 
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
@@ -29,7 +29,7 @@ def address(name: str) -> str:
 
 
 def first_errands(campus: Campus) -> Iterator[Errand]:
-    """A letter beside every robot's dock, so that all of them set out; to somebody near, each to another if there are
+    """A letter beside every robot's dock, so that all of them set out; to a person near, each to another if there are
     enough people."""
     homes, told = set(campus.homes.values()), set[str]()
     for home in campus.homes.values():

@@ -1,4 +1,4 @@
-"""Where robots truly are, by their simulated worlds and by nobody's word: no two may ever be in one corridor.
+"""True places of robots, by their simulated worlds: no two may ever be in one corridor.
 
 The bodies are simulated apart from each other: they would drive through each other and feel nothing. So it is looked
 at here, without the service and without what robots believe.
@@ -46,7 +46,7 @@ class TruePlaces:
 
     @property
     def inside(self) -> int:
-        """How many robots are in a corridor now."""
+        """Return the number of robots that are in a corridor now."""
         return sum(here.corridor is not None for here in self.seen.values())
 
     def look(self) -> None:

@@ -53,7 +53,7 @@ class RobotProcesses:
 
 
 def _how_it_ended(code: int, child: Child) -> str:
-    """Whoever is killed has no last words."""
+    """Say how a process ended: one that was killed has written no reason."""
     if code < 0:
         return f"was killed by signal {-code}"
     return f"ended with exit code {code}: {child.last_words().splitlines()[-1].strip()}"

@@ -24,7 +24,7 @@ from protocol.clock import SharedClock
 A_MOMENT_S = 0.5
 PLACES_EVERY_S = 0.05
 LONG_S = 600.0
-"""Of the demonstration's clock: if nobody has moved for so long while there is work, that is said."""
+"""Of the demonstration's clock: if no robot has moved for so long while there is work, that is said."""
 
 
 def run(demo: FleetDemo) -> int:
@@ -84,7 +84,7 @@ async def _perform(demo: FleetDemo, clock: SharedClock, children: Children, scre
 
 
 class Course:
-    """How one demonstration goes, and its figures."""
+    """The course of one demonstration, and its figures."""
 
     def __init__(
         self, demo: FleetDemo, clock: SharedClock, life: CampusLife, places: TruePlaces, robots: RobotProcesses
@@ -120,7 +120,7 @@ class Course:
         return "; ".join(f"{order['state']}, {order['why']}" for order in self._life.orders.values())
 
     async def look_at_places(self) -> None:
-        """All the time, faster than a robot can be through a corridor."""
+        """Check the true places, more often than a robot can be through a corridor."""
         while True:
             self._places.look()
             await asyncio.sleep(PLACES_EVERY_S)
@@ -166,7 +166,7 @@ class Course:
 
 
 def sentence_of(figures: dict[str, Any]) -> str:
-    """What came of it, for a person."""
+    """Return the result in a sentence."""
     ended = ", ".join(f"{count} {state}" for state, count in sorted(figures["ended"].items())) or "none ended"
     return (
         f"Of {figures['placed']} orders in {figures['simulated_s'] / 60:.0f} simulated minutes "

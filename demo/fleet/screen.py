@@ -1,4 +1,4 @@
-"""What a person at the terminal sees of a demonstration of the fleet: a line for each robot, and what happened last."""
+"""The terminal of a fleet demonstration: a line for each robot, and the latest events."""
 
 from collections import deque
 from collections.abc import Mapping, Set

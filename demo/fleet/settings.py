@@ -1,4 +1,4 @@
-"""What a demonstration of the fleet is run with."""
+"""Settings of a fleet demonstration."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from maps.scaling import scaled
 WATCHED_SPEED, ONCE_SPEED = 8.0, 30.0
 """Simulated seconds per second at most; the robots' processes lower it to what they keep up with."""
 SCALE = 0.1
-"""The tunnels are assumed to be 60 to 165 m long: nobody watches a robot for twenty minutes in one of them."""
+"""The tunnels are assumed to be 60 to 165 m long: twenty minutes in one of them are too long to watch."""
 ONCE_LIMIT_S, FOR_EACH_ROBOT_S = 60.0, 30.0
 """Real time: orders that are not delivered by then have failed."""
 RESTART_AFTER_S = 600.0

@@ -13,7 +13,7 @@ from fleet.schedule.planning import Timetable
 
 @dataclass(frozen=True, slots=True)
 class Able:
-    """What a robot can take on, as in `RobotAtWork`; the traffic knows all else."""
+    """The work that a robot can take on, as in `RobotAtWork`; the schedule knows all else."""
 
     capacity: int = 1
     begun: int = 0

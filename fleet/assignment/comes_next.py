@@ -1,7 +1,7 @@
 """When orders that have no robot yet are likely to be given, one after the other: for estimates alone.
 
 Each order of the queue, in its order there, goes to the robot that could give it first once it has done what it has.
-Nobody is told to do any of it.
+No robot is told to do any of it.
 """
 
 from collections.abc import Iterable

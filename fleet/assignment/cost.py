@@ -1,4 +1,4 @@
-"""What a plan costs, in seconds of one robot: the time that the timetable takes, driving, and mail on its way; less
+"""Cost of a plan, in seconds of one robot: the time that the schedule takes, driving, and mail on its way; less
 what it is worth to have these orders under way rather than waiting."""
 
 from fleet.assignment.routes import leaves_s, weight_of
@@ -11,7 +11,7 @@ def plan_cost_s(scene: Scene, routes: Routes, tasks: Tasks, timetable: Timetable
 
 
 def busy_s(scene: Scene, tasks: Tasks, timetable: Timetable) -> float:
-    """How long the robots will work from now on, added up: waiting for each other included."""
+    """Return the time that the robots work from now on, added up: waiting for each other included."""
     return timetable.cost_s - scene.now_s * at_work(tasks)
 
 
@@ -37,7 +37,7 @@ def route_s(scene: Scene, name: str, route: Route) -> float:
 
 
 def order_worth_s(scene: Scene, order: OpenOrder) -> float:
-    """What an order costs at the least, wherever a robot comes from, so that long ones are no worse than short ones;
+    """Return the least cost of an order, wherever a robot comes from, so that long ones are no worse than short ones;
     and what it has waited, so that none waits for ever."""
     rules = scene.rules
     carrying_s = scene.network.shortest_s[order.load.post][order.give.post]

@@ -15,7 +15,7 @@ from fleet.assignment.timing import Timed, time_first
 
 @dataclass(frozen=True, slots=True)
 class Decision:
-    """What everybody does from now on, in the `scene` without what is no longer right in it.
+    """An assignment for all robots, in the `scene` without what is no longer right in it.
 
     `choices`: why orders that are new to their robots went to them. `cut_off`: stops that no way leads to, by robot;
     they are in no route and in no timetable.

@@ -115,7 +115,7 @@ class _Search:
         return routes
 
     def _moves(self, routes: dict[str, Route]) -> bool:
-        """Whether an order is taken from the robot that had it before this decision, and still had so far."""
+        """Tell if an order is taken from the robot that had it before this decision, and still had so far."""
         now = {stop.order: name for name, route in routes.items() for stop in route}
         had = self._best.robot_of()
         return any(now.get(order) != name and had.get(order) == name for order, name in self._had.items())

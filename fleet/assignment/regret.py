@@ -41,7 +41,7 @@ def give_orders(scene: Scene, routes: Routes, orders: Sequence[OpenOrder], noise
 
 
 class _Table:
-    """What each order costs with each robot that has room."""
+    """The cost of each order with each robot that has room."""
 
     def __init__(
         self, scene: Scene, routes: dict[str, Route], orders: Sequence[OpenOrder], noise: Random | None

@@ -1,6 +1,6 @@
 """The stops of one robot: what may be taken from them, and where one more order fits in and what that costs.
 
-Costs here are estimates with nobody in the way; what counts in the end is the timetable.
+Costs here are estimates on empty corridors; the schedule decides in the end.
 """
 
 from collections.abc import Collection
@@ -44,7 +44,7 @@ def orders_of(route: Route) -> set[str]:
 
 
 def room(scene: Scene, name: str, route: Route) -> int:
-    """How many orders more a robot may be given."""
+    """Return the number of orders that a robot may still be given."""
     robot = scene.robots[name]
     return robot.capacity + scene.rules.ahead - len(orders_of(route)) if robot.accepts else 0
 
@@ -104,7 +104,7 @@ class Line:
         return best if best.cost_s < inf else NO_FIT
 
     def _on_s(self, post: int, at: int) -> float:
-        """How much longer the way is behind a stop that is put in at `at`; the way to that stop is not counted."""
+        """Return the extra way behind a stop that is put in at `at`; the way to that stop is not counted."""
         if at + 1 == len(self.posts):
             return 0.0
         following = self.posts[at + 1]
@@ -144,7 +144,7 @@ def line(scene: Scene, name: str, route: Route) -> Line:
 
 
 def leaves_s(scene: Scene, name: str, route: Route) -> list[float]:
-    """When the robot has done with where it is, and with each stop, from now and with nobody in the way."""
+    """Return the seconds until the robot has done with its place, and with each stop, on empty corridors."""
     start = scene.robots[name].start
     at_s, post = max(0.0, start.ready_s - scene.now_s), start.post
     leaves = [at_s]

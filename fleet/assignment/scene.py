@@ -1,4 +1,4 @@
-"""What a decision is about: orders, robots with what they have before them, the network, and the timetable so far."""
+"""The problem of one decision: orders, robots with what they have before them, the network, and the schedule so far."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -57,7 +57,7 @@ class RobotAtWork:
     `accepts`: whether it may be given work (one that is paused or recalled may not, and loses what it has not loaded).
     `drives_s`: for how many seconds of driving its charge lasts, the way home included. `goes_beyond`: with nothing
     else to do it may be given one order that is more than that, and charges on the way; no second one, which would be
-    late for a charge that nobody has foreseen.
+    late for a charge that no forecast had.
     """
 
     start: Start
@@ -83,7 +83,7 @@ class Kept:
 
 @dataclass(frozen=True, slots=True)
 class Rules:
-    """What counts how much, beside one second of one robot. Assumed, except where a figure says otherwise.
+    """Weights, beside one second of one robot. Assumed, except where a figure says otherwise.
 
     `waiting`: one second that an order has waited; `flow`: one second until it is given; `driving`: one second of
     driving, for the battery. An order older than `age_limit_s` is served next. Robots have up to their capacity and
@@ -120,7 +120,7 @@ class Scene:
         return order.load.not_before_s <= self.now_s + self.rules.early_s
 
     def drive_s(self, start: int, route: Route) -> float:
-        """How long a robot drives for these stops, with nobody in the way."""
+        """Return the driving time for these stops, on empty corridors."""
         shortest_s, total_s = self.network.shortest_s, 0.0
         for stop in route:
             total_s += shortest_s[start][stop.goal.post]

@@ -66,14 +66,14 @@ def _round_what_is_kept(scene: Scene, tasks: Tasks, kept: Kept) -> Timetable | N
 
 
 def _promised_s(scene: Scene, tasks: Tasks, kept: Kept) -> Mapping[str, float]:
-    """What the kept timetable says of orders that are overdue."""
+    """Return the times that the kept schedule promises to overdue orders."""
     there = tasks.keys() & kept.timetable.journeys.keys()
     served = {name: Task(tasks[name].start, kept.goals.get(name, ()), tasks[name].home) for name in there}
     return overdue_s(scene, served, kept.timetable)
 
 
 def keeps_promises(promised_s: Mapping[str, float], now_s: Mapping[str, float]) -> bool:
-    """Whether nothing that is overdue, and is still to be given, is given later than it was to be."""
+    """Tell if no overdue order that is still to be delivered is delivered later than before."""
     return all(now_s[order] <= at_s + SLACK_S for order, at_s in promised_s.items() if order in now_s)
 
 

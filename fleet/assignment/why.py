@@ -52,7 +52,7 @@ SENTENCES: Final[Mapping[str, str]] = {
 
 @dataclass
 class _Looked:
-    """What is asked for each order, worked out once."""
+    """The facts that each order is asked for, worked out once."""
 
     scene: Scene
     decision: Decision

@@ -1,8 +1,8 @@
-"""Whether a robot has the charge for work: before it is given any, and again before each leg of it.
+"""Acceptance: the charge that a robot needs for work, before it gets any and again before each leg.
 
 When it comes to a dock after its work its own battery plan must have had no reason to take over, as good as certain
 (`Rates.at_most`). So the robot has the last word and need not say it: its plan would take it to the nearest dock,
-whoever stands there, and keep it there until it is full.
+the robot that stands there, and keep it there until it is full.
 """
 
 from collections.abc import Sequence
@@ -15,7 +15,7 @@ from fleet.charging.levels import Thresholds
 
 HELD_UP_S: Final = 1800.0
 """So long a robot may have to stand on its way to a dock, by something on the line or before a closed corridor, and
-must still come there. Assumed: whoever works in the tunnels is there within half an hour."""
+must still come there. Assumed: the staff of the tunnels is there within half an hour."""
 
 
 class Answer(StrEnum):
@@ -31,7 +31,7 @@ class Answer(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Charge:
-    """What is known of a robot's. `docked`: it stands in a dock, where it begins nothing below `Thresholds.begin`;
+    """The charge of a robot. `docked`: it stands in a dock, where it begins nothing below `Thresholds.begin`;
     `until_full`: its own battery plan has taken it there, and lets it go again when it is full."""
 
     ratio: float
@@ -54,8 +54,8 @@ class Verdict:
 
 
 def accepts(charge: Charge, work: Use, to_dock: Use, thresholds: Thresholds, parts: Sequence[Use] = ()) -> Verdict:
-    """Whether a robot may take on work. `work` is all that it has then; `to_dock` leads from its end to a dock. `parts`
-    are for what is more than one charge: for each stop the way there from a dock, and on to a dock."""
+    """Decide if a robot may take on work. `work` is all that it has then; `to_dock` leads from its end to a dock.
+    `parts` are for what is more than one charge: for each stop the way there from a dock, and on to a dock."""
     rates = charge.rates
     needed = thresholds.low + rates.at_most(work + to_dock)
     if charge.docked:
@@ -69,7 +69,7 @@ def accepts(charge: Charge, work: Use, to_dock: Use, thresholds: Thresholds, par
 
 
 def goes_on(charge: Charge, leg: Use, to_dock: Use, thresholds: Thresholds) -> bool:
-    """Whether a robot may enter one more corridor: at its end its own battery plan must not have taken over, and it
+    """Tell if a robot may enter one more corridor: at its end its own battery plan must not have taken over, and it
     must still come to a dock with a reserve. Else it goes to a dock now, from where it is sure to come to one."""
     rates = charge.rates
     there = leg + to_dock + Use(0.0, HELD_UP_S)
@@ -78,7 +78,7 @@ def goes_on(charge: Charge, leg: Use, to_dock: Use, thresholds: Thresholds) -> b
 
 
 def passes_dock(charge: Charge, to_next: Use, thresholds: Thresholds) -> bool:
-    """Whether a robot whose work is more than one charge may pass a dock that is free. `to_next`: its next stop, and
+    """Tell if a robot whose work is more than one charge may pass a dock that is free. `to_next`: its next stop, and
     from there to a dock. Else it charges here: later it would break off with little left, and the dock that it comes
     to then may be another's."""
     return charge.ratio >= min(thresholds.full - thresholds.hysteresis, thresholds.low + charge.rates.at_most(to_next))

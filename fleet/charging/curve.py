@@ -1,4 +1,4 @@
-"""How long charging takes: as fast as the charger can, and ever slower near full."""
+"""The charging curve: as fast as the charger can, and ever slower near full."""
 
 from dataclasses import dataclass, replace
 from math import exp, log

@@ -32,7 +32,7 @@ class Demand:
         return sum(self._expected_at(now + ahead * _HOUR) for ahead in range(hours))
 
     def is_quiet(self, now: datetime, hours: int = 2) -> bool:
-        """Whether clearly less is to be done in these hours than usual. Nothing is known at first: then no hour is."""
+        """Tell if clearly less is to be done in these hours than usual. Nothing is known at first: then no hour is."""
         return self.expected(now, hours) < _QUIET_SHARE * hours * self._mean()
 
     def _expected_at(self, hour: datetime) -> float:

@@ -1,8 +1,8 @@
-"""Who charges where and when: docks are fewer than robots, so that charge can be there and still not be had.
+"""The plan of docks: which robot charges where and when, with fewer docks than robots.
 
 **Every robot always has a dock that it comes to in time**, the one at work too. Work is accepted only together with
-another such plan for all of them. A plan is made by who must charge first (earliest due first); nobody has to keep to
-its times: who can charge earlier does.
+another such plan for all of them. A plan is ordered by who must charge first (earliest due first); no robot has to
+keep to its times: who can charge earlier does.
 
 Times are seconds of one clock.
 """
@@ -21,7 +21,7 @@ _HOUR_S: Final = 3600.0
 
 @dataclass(frozen=True, slots=True)
 class Need:
-    """What a robot brings: `charge` at the least, at `ready_s` (now, or when its work is done), and the ways from there
+    """A robot's need: `charge` at the least, at `ready_s` (now, or when its work is done), and the ways from there
     to the docks that it can get to. `dock` is the one that it stands in or is bound for, and `until` the charge with
     which it can be asked to leave again."""
 
@@ -34,7 +34,7 @@ class Need:
 
 
 class Stay(NamedTuple):
-    """From when a robot has a dock, and until when nobody can ask it to leave; `due_s`: when it must have come."""
+    """From when a robot has a dock, and until when it cannot be asked to leave; `due_s`: when it must have come."""
 
     robot: str
     dock: str
@@ -114,12 +114,12 @@ def due_s(need: Need, way: Use, thresholds: Thresholds) -> float:
 
 
 def standing_per_s(rates: Rates) -> float:
-    """What a second of standing costs at most."""
+    """Return the highest cost of a second of standing."""
     return rates.at_most(Use(0.0, _HOUR_S)) / _HOUR_S
 
 
 def robots_carried(docks: int, rates: Rates, curve: ChargeCurve) -> int:
-    """How many robots so many docks keep charged if all of them only stand: more than that cannot last."""
+    """Return the number of robots that so many docks keep charged if all of them only stand."""
     return int(docks * (1 + curve.per_s / standing_per_s(rates)))
 
 

@@ -1,4 +1,4 @@
-"""What driving and standing cost one robot, learned from what it has spent.
+"""The energy that driving and standing cost one robot, learned from what it has spent.
 
 Two figures, per metre and per second, found by a Kalman filter: it weighs what is assumed against what was seen, knows
 how sure it is of each, and follows a pack that wears. What is accepted goes by a quantile, never by the mean: its
@@ -39,8 +39,8 @@ class Use:
 
 @dataclass(frozen=True, slots=True)
 class Rates:
-    """What one robot spends. `per_m` is for driving alone, `per_s` for every second, driven or stood; both are what was
-    assumed, and `driving` and `standing` are what has turned out to be the factors of them."""
+    """The rates of one robot. `per_m` is for driving alone, `per_s` for every second, driven or stood; both are what
+    was assumed, and `driving` and `standing` are what has turned out to be the factors of them."""
 
     per_m: float
     per_s: float
@@ -59,7 +59,7 @@ class Rates:
         return self.driving * driven + self.standing * stood
 
     def at_most(self, use: Use) -> float:
-        """What this costs, but for one time in fifty."""
+        """Return the cost that is exceeded one time in fifty."""
         return self.expected(use) + self.margin * sqrt(self._unsure_var(use) + self.spread * self.expected(use))
 
     def learned(self, use: Use, spent: float) -> "Rates":

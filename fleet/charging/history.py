@@ -1,4 +1,4 @@
-"""What a robot's battery samples and ways tell of what it spends: stretches that begin and end as it leaves a corridor,
+"""A robot's spending, read from its battery samples and ways: stretches that begin and end as it leaves a corridor,
 since only then it is known how far it has driven."""
 
 from collections.abc import Iterator, Sequence

@@ -1,4 +1,4 @@
-"""How full is full enough: four thresholds, and no flickering between what lies below and above them."""
+"""Levels of charge: four thresholds, with hysteresis."""
 
 from dataclasses import dataclass
 from enum import IntEnum

@@ -1,4 +1,4 @@
-"""Who charges without having to: whoever has nothing to do, lowest first, wherever a dock is free.
+"""Top-ups: idle robots charge, lowest first, wherever a dock is free.
 
 Charge that is taken in quiet hours is not missing in busy ones, and a dock that stands empty is lost for ever. A robot
 in a dock can be called any time; so only two things speak against it: the way there, and others who need it more.
@@ -23,7 +23,7 @@ TURN_S: Final = 300.0
 
 @dataclass(frozen=True, slots=True)
 class Move:
-    """To a dock, which whoever stands in it leaves when this robot comes."""
+    """To a dock, which the robot that stands in it leaves when this one comes."""
 
     robot: str
     dock: str
@@ -47,7 +47,7 @@ def top_ups(
     wish: Wish,
     now_s: float,
 ) -> list[Move]:
-    """Which of those with nothing to do goes to which dock. `taken`: docks that somebody stands in or is on his way to,
+    """Assign idle robots to docks. `taken`: docks that a robot stands in or is on its way to,
     with the name of the robot that would make room."""
     docked = {need.dock: need for need in resting if need.dock is not None}
     coming = sorted((need for need in resting if need.dock is None), key=lambda one: (one.charge.ratio, one.robot))

@@ -1,4 +1,4 @@
-"""When an order will arrive that nobody has planned yet: drawn from how long its parts have lately taken.
+"""Arrivals of orders that are not planned yet: drawn from how long their parts have lately taken.
 
 How long until it is fetched depends on the orders before it and on the robots there; then it is handed over and driven,
 corridor by corridor. What a plan is known of is forecast by `fleet.eta.forecast` instead.
@@ -49,7 +49,8 @@ class Ahead:
 
 @dataclass(frozen=True)
 class Promise:
-    """What was worked out (`raw`), what people are told, what the lengths on the map say; seconds from the beginning.
+    """A promise: what was worked out (`raw`), what people are told, what the lengths on the map say; seconds from the
+    beginning.
 
     `assumed`: nothing was learned yet, so that people are told what the map says.
     """
@@ -63,7 +64,8 @@ class Promise:
 
 @dataclass
 class Estimates:
-    """All that was learned on one campus. In memory: what was seen is kept in the database (`learning.py`)."""
+    """The durations that were learned on one campus. In memory: the observations are in the database
+    (`app.eta.learning`)."""
 
     ways: Ways
     speed_m_s: float
@@ -91,11 +93,12 @@ class Estimates:
 
     @property
     def is_assumed(self) -> bool:
-        """Whether too little was seen, so that people are told what the lengths on the map say."""
+        """Tell if too little was seen, so that people are told what the lengths on the map say."""
         return min(self.durations.seen(Kind.FETCH), self.durations.seen(Kind.CORRIDOR)) < ENOUGH
 
     def by_map_under_way(self, from_post: str, to_post: str, *, is_aboard: bool) -> Interval:
-        """What the lengths on the map alone say of mail that a robot has. Raises the map's UnknownPost and NoRoute."""
+        """Return the interval by the lengths on the map for mail that a robot has. Raises the map's UnknownPost and
+        NoRoute."""
         if not is_aboard:
             return self._by_map(from_post, to_post)
         way_s = self._length_m(from_post, to_post) / self.speed_m_s
@@ -118,7 +121,7 @@ class Estimates:
         }
 
     def usual_s(self, from_post: str, to_post: str) -> float | None:
-        """How long a corridor takes in the middle; None if too few were driven to say."""
+        """Return the median time of a corridor; None if too few were driven to say."""
         thing = self.corridor(from_post, to_post)
         if thing is None or self.durations.seen(Kind.CORRIDOR) < ENOUGH:
             return None
@@ -179,7 +182,7 @@ class Estimates:
         return [thing for thing in found if thing is not None]
 
     def _by_map(self, from_post: str, to_post: str) -> Interval:
-        """The robot is assumed to come from the farthest dock: too late an estimate disappoints nobody."""
+        """The robot is assumed to come from the farthest dock: a late estimate disappoints less than an early one."""
         way_m = self._length_m(from_post, to_post)
         coming_m = max((self._length_m(dock.name, from_post) for dock in self.ways.campus.docks()), default=0.0)
         earliest_s = way_m / self.speed_m_s + self.handover_s

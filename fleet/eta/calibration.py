@@ -34,7 +34,7 @@ def _assumed_errors() -> list[float]:
 
 
 class Basis(StrEnum):
-    """What an estimate was worked out from."""
+    """The basis of an estimate."""
 
     PLACED = "placed"
     """How long the parts of an order have lately taken: told when it is placed."""
@@ -52,7 +52,7 @@ class Calibration:
     _learned: int = 0
 
     def corrected(self, raw: Interval) -> Interval:
-        """What is told when this was worked out: p10, p50 and p90 where the latest errors put them."""
+        """Return the interval to tell for this one: p10, p50 and p90 where the latest errors put them."""
         ordered = sorted(self._errors)
         low, middle, high = (_at(raw, _bound(ordered, share)) for share in (self.low, MIDDLE, self.high))
         return Interval(max(0.0, low), max(0.0, middle), max(0.0, high))

@@ -1,7 +1,7 @@
-"""How long corridors, stops and waits take, as they have lately, each beside what is assumed from map and settings.
+"""Durations of corridors, stops and waits, as they have lately been, each beside what is assumed from map and settings.
 
 Learned are *ratios*: seen seconds over assumed ones. So what one corridor teaches (the robots are slower than the map
-says) holds for another that nobody has driven yet.
+says) holds for another that no robot has driven yet.
 
 Of each thing the latest ratios are kept as they are. Of the usual small algorithms P² never forgets, and a running mean
 of quantiles cannot be drawn from; a plan is simulated by draws, and fifty numbers are little.
@@ -27,7 +27,7 @@ SHORTEST_ASSUMED_S: Final = 1.0
 
 
 class Kind(StrEnum):
-    """What takes time."""
+    """Kinds of durations."""
 
     CORRIDOR = "corridor"
     LOAD = "load"
@@ -55,7 +55,7 @@ class Thing(NamedTuple):
 
 @dataclass
 class Durations:
-    """What was seen lately. `version` grows with each observation."""
+    """The latest observations. `version` grows with each one."""
 
     version: int = 0
     _of_thing: dict[tuple[Kind, str], deque[float]] = field(default_factory=dict)
@@ -80,11 +80,11 @@ class Durations:
 
     @staticmethod
     def is_plausible(seconds: float) -> bool:
-        """Whether it says how long things take: no clock was set, nothing lay there over night."""
+        """Tell if it can be a duration: no clock was set, nothing lay there over night."""
         return 0.0 <= seconds <= LONGEST_S
 
     def seen(self, kind: Kind, name: str | None = None) -> int:
-        """How often a thing was seen, as far as it is remembered; or anything of its kind."""
+        """Count the observations of a thing, as far as they are remembered; or of anything of its kind."""
         return self._seen[kind] if name is None else len(self._of_thing.get((kind, name), ()))
 
     def draw_s(self, thing: Thing, rng: Random, over_s: float = 0.0) -> float:

@@ -22,7 +22,7 @@ Arriving = Callable[[str, Lane, float], float]
 
 
 class Chance(NamedTuple):
-    """What is drawn anew each time."""
+    """The part that is drawn anew each time."""
 
     travel_s: Travel
     handling_s: Handling

@@ -1,4 +1,4 @@
-"""What an estimate is: three quantiles in seconds."""
+"""Intervals: three quantiles in seconds."""
 
 from collections.abc import Sequence
 from typing import Final, NamedTuple
@@ -15,7 +15,7 @@ class Interval(NamedTuple):
     p90_s: float
 
     def holds(self, truth_s: float) -> bool:
-        """Whether this came about as people were told."""
+        """Tell if the truth came about as people were told."""
         return self.p10_s <= truth_s <= self.p90_s
 
 
@@ -40,6 +40,6 @@ def around(middle_s: float) -> Interval:
 
 
 def pinball_s(told: Interval, truth_s: float) -> float:
-    """The usual loss of quantiles, mean of the three: least, in the long run, for whoever tells the right ones."""
+    """The usual loss of quantiles, mean of the three: least, in the long run, for the right ones."""
     losses = (max(share * (truth_s - at), (share - 1) * (truth_s - at)) for share, at in zip(SHARES, told, strict=True))
     return sum(losses) / len(SHARES)

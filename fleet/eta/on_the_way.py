@@ -1,4 +1,4 @@
-"""When a robot comes to each of its stops where no timetable says so: by the shortest way, with nobody in it."""
+"""Arrivals of a robot at its stops without a schedule: by the shortest way, on empty corridors."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from datetime import datetime
@@ -48,7 +48,7 @@ def on_the_way(
 
 
 class Part(NamedTuple):
-    """What takes time on the way. `over_s`: it has taken so long already."""
+    """A part of the way that takes time. `over_s`: it has taken so long already."""
 
     thing: Thing
     over_s: float = 0.0

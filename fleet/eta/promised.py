@@ -1,4 +1,4 @@
-"""What people were told of arrivals on one basis: put right by what came of it, and scored."""
+"""Promised arrivals on one basis: corrected by what came, and scored."""
 
 from dataclasses import dataclass, field
 
@@ -17,7 +17,7 @@ class Told:
     board: ScoreBoard = field(default_factory=ScoreBoard)
 
     def corrected(self, raw: Interval) -> Interval:
-        """What is told when this was worked out."""
+        """Return the interval to tell for this one."""
         return self.calibration.corrected(raw)
 
     def arrived(self, raw: Interval, told: Interval, by_map: Interval, took_s: float) -> None:
@@ -26,5 +26,5 @@ class Told:
         self.board.add(Truth(told, by_map, took_s))
 
     def score(self) -> Score | None:
-        """How good what was told has lately been; None as long as nothing has come."""
+        """Return the latest score; None as long as nothing has come."""
         return self.board.score()

@@ -1,4 +1,4 @@
-"""How good the estimates are, by the truths that came."""
+"""Scores of estimates, by the truths that came."""
 
 from collections import deque
 from collections.abc import Sequence
@@ -13,7 +13,7 @@ SCORED: Final = 500
 
 
 class Truth(NamedTuple):
-    """What was told, what the lengths on the map alone would have told, and what came."""
+    """One truth: what was told, what the lengths on the map alone would have told, and what came."""
 
     told: Interval
     by_map: Interval

@@ -28,7 +28,7 @@ from fleet.schedule.validation import problems
 ROUNDS: Final = 10
 """So often something better is looked for after each change, unless the caller does that himself."""
 CLAIMED: Final = "claimed"
-"""The key of a goal that nobody gave: a robot goes somewhere for reasons of its own, to a dock for instance."""
+"""The key of a goal that no order gave: a robot goes somewhere for reasons of its own, to a dock for instance."""
 
 
 @dataclass(frozen=True)
@@ -59,8 +59,8 @@ Answer = Granted | Waits | Denied
 
 
 class UnsoundTimetable(RuntimeError):
-    """The search has made what the independent check refuses: a mistake of ours. Nobody is let in by it; whoever keeps
-    the controller builds it anew."""
+    """The search has made what the independent check refuses: a mistake of ours. No robot is let in by it; a caller
+    that keeps the controller builds it anew."""
 
 
 class TrafficController:
@@ -105,7 +105,8 @@ class TrafficController:
         self, robot: str, *, post: str, home: str | None, at_home: bool, now_s: float, towards: Sequence[str] = ()
     ) -> None:
         """A robot is there that was not: switched on, or carried there. Where every bay is taken it stands beside them,
-        as whoever carried it there must have put it. `towards`: it may be on its way from its post over these."""
+        as the person who carried it there must have put it. `towards`: it may be on its way from its post over
+        these."""
         before = self._robots.pop(robot, None)
         stops = [self._whole.number_of(one) for one in (post, *towards)]
         lanes = [self._whole.lane(*leg) for leg in pairwise(stops)]
@@ -138,7 +139,7 @@ class TrafficController:
         return True
 
     def adopt(self, goals: Mapping[str, Sequence[Goal]], timetable: Timetable, now_s: float) -> bool:
-        """The same for several robots with a timetable that somebody has worked out, if it can still be carried out:
+        """The same for several robots with a schedule that was worked out elsewhere, if it can still be carried out:
         since then robots may have entered corridors, but no others than it says."""
         before = {name: replace(robot) for name, robot in self._robots.items()}
         for name, theirs in goals.items():
@@ -151,7 +152,7 @@ class TrafficController:
         return False
 
     def close(self, corridor: str, now_s: float) -> None:
-        """Nobody is let into it any more; whoever is in it drives on."""
+        """Let no robot into it any more; one that is in it drives on."""
         self._closed |= {corridor}
         self._plan_all(now_s)
 
@@ -184,7 +185,7 @@ class TrafficController:
 
     def goes_on(self, robot: str, way: Sequence[tuple[str, str]], now_s: float) -> list[Lane]:
         """It was let into a corridor, and means to take this way from there without a stop: as much of it is granted,
-        too, as nobody enters before it. All of that is its own until it is cleared, one after the other."""
+        too, as no robot enters before it. All of that is its own until it is cleared, one after the other."""
         granted = []
         for start, end in way:
             lane = self._whole.lane(self._whole.number_of(start), self._whole.number_of(end))
@@ -302,7 +303,7 @@ class TrafficController:
         return journey is not None and len(journey.legs) > 1 and journey.legs[1].lane is None
 
     def _serves_now(self, robot: str) -> int:
-        """How many of its goals are to be served where it is."""
+        """Count its goals that are to be served where it is."""
         journey = self._journeys.get(robot)
         later = 0 if journey is None else sum(leg.goals for leg in journey.legs[1:])
         return len(self._robots[robot].goals) - later
@@ -312,7 +313,7 @@ class TrafficController:
         return journey is not None and any(leg.lane == lane for leg in journey.legs[1:])
 
     def _plan_all(self, now_s: float) -> None:
-        """What is open has changed, or who is there: all is planned anew, as far as it can be."""
+        """Plan all anew, as far as it can be: closures or robots have changed."""
         self._network = open_network(self._whole, self._closed, self._robots.values())
         for robot in self._robots.values():
             robot.goals_wait = robot.stays = False
@@ -325,7 +326,7 @@ class TrafficController:
             raise UnsoundTimetable("; ".join(problems(self._network, planned, found.journeys)))
 
     def _try_again(self, now_s: float) -> None:
-        """Somebody has moved: perhaps what could not be planned for can be now."""
+        """A robot has moved: one that could not be planned for may have a way now."""
         if any(robot.stays for robot in self._robots.values()):
             self._plan_all(now_s)
         for name, robot in self._robots.items():

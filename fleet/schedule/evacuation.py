@@ -1,4 +1,4 @@
-"""Everybody home, from wherever they stand: one robot moves at a time, and whoever must steps aside.
+"""Every robot home, from wherever it stands: one robot moves at a time, and others step aside.
 
 Slow but complete: where this finds nothing there is nothing. It is asked when planning one robot after the other has
 found no timetable, as may be after a fault in which no older one is left; while one is kept it is never needed.
@@ -72,7 +72,7 @@ def _moves(
 ) -> Iterator[tuple[_Places, _Move]]:
     for robot, (task, place) in enumerate(zip(tasks, places, strict=True)):
         if place == AT_HOME:
-            continue  # nobody has to come out for another to get home
+            continue  # no robot has to come out for another to get home
         if place == task.home:
             yield _moved(places, robot, AT_HOME), _Move(robot, None, place, True, last)
         for lane in network.lanes[place]:
@@ -87,7 +87,7 @@ def _moved(places: _Places, robot: int, to: int) -> _Places:
 
 
 def _left_s(network: Network, tasks: Sequence[Task], places: _Places) -> float:
-    """How long the ways home are, and something for each robot that stands in a bay at its own home."""
+    """Return the length of the ways home, and something for each robot that stands in a bay at its own home."""
     return sum(
         max(network.shortest_s[place][task.home], 1.0)
         for task, place in zip(tasks, places, strict=True)

@@ -17,13 +17,13 @@ Travel = Callable[[str, Lane], float]
 
 
 class OutOfOrderError(ValueError):
-    """In this order somebody enters a post before anybody has left a bay there."""
+    """In this order a robot enters a post before another has left a bay there."""
 
 
 def may_enter(
     network: Network, starts: Mapping[str, Start], journeys: Mapping[str, Journey], robot: str, now_s: float
 ) -> bool:
-    """Whether a robot that is ready may enter the next corridor of its journey now.
+    """Tell if a robot that is ready may enter the next corridor of its journey now.
 
     `starts`: where every robot is, those included that have no journey (they are dead where they are).
     """
@@ -34,7 +34,7 @@ def may_enter(
 def waits_for(
     network: Network, starts: Mapping[str, Start], journeys: Mapping[str, Journey], robot: str, now_s: float
 ) -> Iterator[str]:
-    """Which robots must go on before this one may enter its next corridor: nobody, if it may."""
+    """Return the robots that must go on before this one may enter its next corridor: none, if it may."""
     mine = journeys[robot].legs[1]
     for other, start in starts.items():
         if other == robot:
@@ -74,7 +74,7 @@ def retimed(
 def caught_up(
     network: Network, tasks: Mapping[str, Task], journeys: Mapping[str, Journey]
 ) -> dict[str, Journey] | None:
-    """Without the legs that have begun since, and as late as it is now; None if somebody is where his journey does not
+    """Without the legs that have begun since, and as late as it is now; None if a robot is where its journey does not
     lead, or in the way of it."""
     if journeys.keys() != tasks.keys():
         return None
@@ -97,7 +97,7 @@ def _from_start(start: Start, journey: Journey) -> Journey | None:
 
 
 def one_behind_the_other(tasks: Mapping[str, Task]) -> dict[str, Task]:
-    """Robots that follow each other in a corridor arrive in that order, however late the first is: nobody overtakes."""
+    """Robots that follow each other in a corridor arrive in that order, however late the first is: none overtakes."""
     expected, last_s = dict(tasks), dict[tuple[int, int], float]()
     for robot, task in sorted(tasks.items(), key=lambda one: (one[1].start.entered_s, one[1].start.arrives_s)):
         start, lane = task.start, task.start.lane
@@ -111,7 +111,7 @@ def one_behind_the_other(tasks: Mapping[str, Task]) -> dict[str, Task]:
 
 
 class _Course:
-    """What has happened so far, entry by entry."""
+    """The course so far, entry by entry."""
 
     def __init__(
         self, network: Network, tasks: Mapping[str, Task], journeys: Mapping[str, Journey], travel_s: Travel
@@ -163,7 +163,8 @@ class _Course:
             self._passages.setdefault(start.lane.corridor, []).append(leg)
 
     def _take_bay(self, post: int) -> float:
-        """From when on a bay is free: one that somebody has left before in the order of the timetable."""
+        """Return the time from which a bay is free: one that another robot has left before in the order of the
+        schedule."""
         free = self._bays_from_s[post]
         if not free:
             raise OutOfOrderError(f"no bay at {self._network.posts[post]}")
@@ -196,7 +197,7 @@ def _first(task: Task, journey: Journey) -> Leg:
 
 
 def _goes_before(theirs: tuple[Leg, str], mine: tuple[Leg, str]) -> bool:
-    """Whether another's entry to come is before mine, at the same corridor or at the same post. Entries of one moment
+    """Tell if another's entry to come is before mine, at the same corridor or at the same post. Entries of one moment
     do not need each other; they go by name, so that the order is one."""
     (leg, other), (my_leg, me) = theirs, mine
     if (leg.enter_s, other) > (my_leg.enter_s, me):

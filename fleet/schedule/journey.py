@@ -1,4 +1,4 @@
-"""What a robot is to do and how it does it: goals, where it starts, and the journey that serves them and leads home."""
+"""Goals of a robot, its start, and the journey that serves them and leads home."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -112,7 +112,7 @@ def ready_after(arrive_s: float, goals: Sequence[Goal]) -> float:
 
 
 def without_first(journey: Journey) -> Journey:
-    """What is left when the robot has entered the next corridor."""
+    """Return the rest of the journey when the robot has entered the next corridor."""
     work = journey.work[1:]
     return (
         Journey(work, journey.way_home, journey.done_s)

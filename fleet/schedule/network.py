@@ -57,7 +57,7 @@ class Network:
 
     @cached_property
     def shortest_s(self) -> tuple[tuple[float, ...], ...]:
-        """Seconds from post to post with nobody in the way, row by start; infinite where no way leads. No way leads
+        """Seconds from post to post on empty corridors, row by start; infinite where no way leads. No way leads
         through a post without a bay."""
         return tuple(_shortest_from(start, self.lanes, self.bays) for start in range(len(self.posts)))
 

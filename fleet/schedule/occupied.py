@@ -1,4 +1,4 @@
-"""What is taken: for how long each corridor and each bay is some robot's, and when they are free for another.
+"""Occupied resources: for how long each corridor and each bay is a robot's, and when they are free for another.
 
 All times are seconds of one clock.
 """
@@ -39,7 +39,7 @@ class Taken:
         self._free: dict[int, list[Span]] = {}
 
     def put(self, robot: str, legs: Sequence[Leg], until_s: float = inf) -> None:
-        """All that a robot takes on these legs; the last stay ends at `until_s`."""
+        """Put in everything that a robot takes on these legs; the last stay ends at `until_s`."""
         for leg, leaves_s in stays(legs):
             if leg.lane is not None:
                 self._pass(robot, leg.lane, leg.enter_s, leg.arrive_s)
@@ -47,7 +47,7 @@ class Taken:
                 self._stand(robot, leg.post, leg.enter_s, min(leaves_s, until_s))
 
     def hold(self, robot: str, start: Start, until_s: float) -> None:
-        """What a robot has for certain: the corridor that it is in, and its bay, here until `until_s`."""
+        """Put in what a robot has for certain: the corridor that it is in, and its bay, here until `until_s`."""
         if start.lane is not None:
             self._pass(robot, start.lane, start.entered_s, start.arrives_s)
         if not start.at_home:
@@ -64,7 +64,7 @@ class Taken:
         self.put(robot, (leg._replace(lane=None), *further))
 
     def remove(self, robot: str) -> None:
-        """All that this robot has."""
+        """Remove everything that this robot has."""
         for corridor in self._corridors_of.pop(robot, ()):
             self._passages[corridor] = [passage for passage in self._passages[corridor] if passage.robot != robot]
             self._forget(corridor)
@@ -81,7 +81,8 @@ class Taken:
         return found
 
     def free(self, post: int) -> list[Span]:
-        """When a bay of this post is free, in order, for whoever enters the corridor before it and is gone within."""
+        """Return the intervals in which a bay of this post is free, in order, for a robot that enters the corridor
+        before it and is gone within."""
         found = self._free.get(post)
         if found is None:
             found = self._free[post] = _spare(self._bays[post], self._network.bays[post], self._network.clearance_s)
@@ -102,7 +103,7 @@ class Taken:
         shut = []
         for _, backwards, enter_s, leave_s in self._passages[lane.corridor]:
             if after_s is not None and backwards == lane.backwards:
-                # Behind one that is late nobody may arrive too early either.
+                # Behind one that is late no other may arrive too early either.
                 late_s = max(enter_s, leave_s - travel_s)
                 shut.append((enter_s - after_s + ROUNDING_S, late_s + after_s))
             else:

@@ -51,7 +51,8 @@ class Participant:
         return tuple(told.get(goal.key, goal) for goal in goals)
 
     def _left(self, now_s: float) -> tuple[Goal, ...]:
-        """What it has begun takes only the rest of its time; what should be done by now, a moment more."""
+        """Return its goals: one that it has begun takes only the rest of its time; one that should be done by now, a
+        moment more."""
         start = self.start
         if start.lane is not None or not self.goals or self.goals[0].post != start.post:
             return self.goals
@@ -61,7 +62,7 @@ class Participant:
         return (first._replace(handling_s=left_s), *self.goals[1:])
 
     def lacks(self, network: Network) -> bool:
-        """Whether some goal, or home, is not in its task."""
+        """Tell if some goal, or home, is not in its task."""
         task = self.task(network, self.start.ready_s)
         return len(task.goals) < len(self.goals) or task.home != self.home
 
@@ -82,6 +83,6 @@ def open_network(whole: Network, closed: Collection[str], robots: Collection[Par
 
 
 def is_full(whole: Network, post: int, robots: Collection[Participant]) -> bool:
-    """Whether every bay of a post is somebody's."""
+    """Tell if every bay of a post is a robot's."""
     held = [start for robot in robots for start in all_held(robot.start)]
     return sum(1 for start in held if start.post == post and not start.at_home) >= whole.bays[post]

@@ -1,7 +1,7 @@
 """Timetables for all robots: one after the other, each round those before it; and better ones, by doing some again.
 
-A timetable is whole: every journey ends at home. Whoever keeps the one he has until there is a better one always has
-one that can be carried out. First everybody's work is planned, with robots left standing where their work ends, and
+A schedule is whole: every journey ends at home. A caller that keeps the one it has until there is a better one always
+has one that can be carried out. First everybody's work is planned, with robots left standing where their work ends, and
 then everybody's way home: it is needed only to be sure that there is one, and must not be in the way of work.
 """
 
@@ -150,7 +150,7 @@ def plan_what_can_be(network: Network, tasks: Tasks, rng: Random) -> tuple[Timet
 
 
 def _home_who_can(network: Network, tasks: Tasks, rng: Random) -> tuple[Timetable, dict[str, Task]]:
-    """Everybody; if not, all but one; if not, nobody."""
+    """Plan for all robots; if that fails, for all but one; if that fails, for none."""
     ways_home = {robot: replace(task, goals=()) for robot, task in tasks.items()}
     all_but_one = ({**ways_home, robot: replace(task, home=None)} for robot, task in ways_home.items())
     for planned in (ways_home, *all_but_one):
@@ -199,7 +199,8 @@ def improve(
 
 
 def _taken_on_the_way(network: Network, tasks: Tasks) -> Taken:
-    """What robots hold of the ways to where their journeys begin; it is not planned, and nobody's to take out again."""
+    """Return what robots hold of the ways to where their journeys begin; it is not planned, and no plan may take it
+    out again."""
     taken = Taken(network)
     for robot, task in tasks.items():
         for start in task.start.on_the_way():
@@ -208,7 +209,7 @@ def _taken_on_the_way(network: Network, tasks: Tasks) -> Taken:
 
 
 def _another_order(order: Sequence[str], rng: Random) -> list[str]:
-    """All of them with one robot elsewhere in the order, or shuffled; of many also some few."""
+    """Return the robots with one of them elsewhere in the order, or shuffled; of many also some few."""
     chosen = list(order)
     if len(chosen) > SOME_OF and rng.random() < 0.5:
         return rng.sample(chosen, rng.randint(2, SOME_OF))

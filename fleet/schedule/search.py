@@ -35,8 +35,8 @@ class _Node(NamedTuple):
 def find_work(
     network: Network, taken: Taken, start: Start, goals: Sequence[Goal], home: int | None, within_s: float = inf
 ) -> Found | None:
-    """The way that has the last goal done first, and ends where the robot may stay for ever: in a bay that nobody else
-    has asked for, or at home. None if there is none, or none that is done within `within_s`.
+    """Find the way that has the last goal done first, and ends where the robot may stay for ever: in a bay that no
+    other has asked for, or at home. None if there is none, or none that is done within `within_s`.
 
     `taken` is what others have; what this robot holds now must not be in it.
     """
@@ -141,7 +141,7 @@ class _Search:
         until_s: float,
         before: _Node | None = None,
     ) -> None:
-        """Served is what can be, or less: who serves all may then be in somebody's way."""
+        """Serve what can be served, or less: a robot that serves all of it may then be in another's way."""
         served, done_s = (0, ready_s) if before is None else (before.goals, before.done_s)
         goals, done = self._goals, served
         while ready_s <= until_s:
@@ -167,7 +167,7 @@ class _Search:
 
 
 def _left(network: Network, goals: Sequence[Goal]) -> list[float]:
-    """Of each goal: how long it and all after it take from its post on, with nobody in the way."""
+    """Of each goal: how long it and all after it take from its post on, on empty corridors."""
     left_s = [0.0] * len(goals)
     following_s, post = 0.0, None
     for at in range(len(goals) - 1, -1, -1):

@@ -1,4 +1,4 @@
-"""Whether a timetable can be carried out: looked at rule by rule, with nothing of what made it.
+"""Validation of a schedule: rule by rule, with nothing of what made it.
 
 Every timetable is looked at before it counts, so a mistake of the search costs a plan and not a deadlock.
 """
@@ -85,7 +85,7 @@ def _in_corridors(network: Network, tasks: Mapping[str, Task], journeys: Mapping
         through.sort(key=lambda passage: passage[1].enter_s)
         follows = any(leg.lane is not None and leg.lane.following_s is not None for _, leg, _ in through)
         follows |= sum(begun for _, _, begun in through) > 1
-        # Where nobody may follow each must be out before the next enters, so that looking at neighbours is enough.
+        # Where robots may not follow, each must be out before the next enters, so that comparing neighbours is enough.
         # How those came there who are in it now is no plan any more.
         for (robot, one, begun), (other, two, too) in combinations(through, 2) if follows else pairwise(through):
             if robot != other and not (begun and too) and not _apart(network, one, two):
@@ -93,7 +93,7 @@ def _in_corridors(network: Network, tasks: Mapping[str, Task], journeys: Mapping
 
 
 def _apart(network: Network, first: Leg, second: Leg) -> bool:
-    """Whether two passages of one corridor, in the order of their entries, are far enough from each other."""
+    """Tell if two passages of one corridor, in the order of their entries, are far enough from each other."""
     if first.lane is None or second.lane is None:
         return True
     after_s = first.lane.following_s

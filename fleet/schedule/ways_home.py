@@ -32,7 +32,7 @@ class WaysHome:
     pause: Callable[[], None]
 
     def plan(self, kept: Journeys) -> dict[str, Journey] | None:
-        """`kept`: what robots whose work is as it was did so far, ways home included. None if somebody finds no way."""
+        """`kept`: what robots whose work is as it was did so far, ways home included. None if a robot finds no way."""
         away = [robot for robot in self.work if self.must_go_home(robot)]
         away.sort(key=lambda robot: self.work[robot].work[-1].ready_s)
         known = {robot: kept[robot] for robot in away if robot in kept and self._leads_home(robot, kept[robot])}
@@ -66,7 +66,7 @@ class WaysHome:
         return {**self.work, **as_they_were, **found}
 
     def _anew(self, away: list[str]) -> dict[str, Journey] | None:
-        """Whoever has done first goes first; if one finds no way home then, others go before."""
+        """Plan anew: the robot that is done first goes first; if one finds no way home then, others go before."""
         rng = Random(len(away))
         for _ in range(TRIES):
             found = self._one_by_one(away)

@@ -1,4 +1,4 @@
-"""What robots told of their batteries.
+"""Battery samples of robots.
 
 Revises: 0007
 """

@@ -1,4 +1,4 @@
-"""How long things took, and what people were told of it.
+"""Durations, and promised arrivals.
 
 Revises: 0009
 """

@@ -1,4 +1,4 @@
-"""What people were told of orders that a robot has, and what came of it.
+"""Promised arrivals of orders that a robot has, and what came of them.
 
 Revises: 0016
 """

@@ -76,7 +76,7 @@ def test_the_tunnels_are_bound_by_a_bridge() -> None:
 def test_a_post_without_a_bay_and_a_dock_without_a_home_are_named(tmp_path: Path) -> None:
     problems = list(places_problems(find_map(written(tmp_path, bays=0))))
     assert [(problem.severity, problem.place) for problem in problems] == [("warning", "b")]
-    assert "nobody can pass" in str(problems[0])
+    assert "none can pass" in str(problems[0])
 
 
 def test_the_check_says_it_to_people_and_to_programs(tmp_path: Path) -> None:

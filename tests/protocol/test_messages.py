@@ -207,7 +207,7 @@ def test_the_documentation_names_every_error_code_of_the_link() -> None:
 def test_the_documentation_names_every_alarm() -> None:
     calls = [
         node
-        for path in (ROOT / "app/robots").glob("*.py")
+        for path in (ROOT / "app").rglob("*.py")
         for node in ast.walk(ast.parse(path.read_text()))
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "raise_alarm"
     ]

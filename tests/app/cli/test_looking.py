@@ -18,7 +18,7 @@ Ask = Callable[..., Any]
 
 def test_help_names_every_command_and_says_what_it_is_for() -> None:
     said = CliRunner().invoke(commands, ["--help"]).output
-    for word in ("serve", "migrate", "people", "robots", "orders", "map", "export", "erase", "demo"):
+    for word in ("serve", "migrate", "people", "robots", "orders", "map", "export", "erase", "retain"):
         assert word in said
     assert "Exit status" in said
 

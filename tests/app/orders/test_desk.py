@@ -31,12 +31,12 @@ class Crowd:
         return {one.email: one for one in self._mailroom.call(self._people)}
 
     async def _people(self) -> list[Person]:
-        async with self._app.state.database.reading() as session:
+        async with self._app.state.parts.database.reading() as session:
             return list((await session.exec(select(Person))).all())
 
     def dispatches(self, email: str) -> None:
         async def promote() -> None:
-            async with self._app.state.database.transaction() as session:
+            async with self._app.state.parts.database.transaction() as session:
                 person = (await session.exec(select(Person).where(Person.email == email))).one()
                 set_roles(person, {Role.DISPATCHER}, set())
 
@@ -49,7 +49,7 @@ class Crowd:
 
     async def _ask(self, wishes: list[NewOrder], key: str) -> list[Placed | BaseException]:
         person = next(one for one in await self._people() if one.email == SENDER)
-        engine = self._app.state.database.writing.sync_engine
+        engine = self._app.state.parts.database.writing.sync_engine
         event.listen(engine, "begin", self._count)
         try:
             places = [self.desk.place(person, f"{key}{number}", wish) for number, wish in enumerate(wishes)]
