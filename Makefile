@@ -144,12 +144,12 @@ endef
 .venv/.python-ready: pyproject.toml constraints.txt | .venv/bin/pip
 	@$(WRITABLE)
 	@echo "Fetching the Python packages that run, some 120 MB …"
-	$(call FETCH,service)
+	$(call FETCH,service robot)
 
 .venv/.develop-ready: .venv/.python-ready
 	@$(WRITABLE)
 	@echo "Fetching the Python packages of tests and tools, some 180 MB more …"
-	$(call FETCH,service develop)
+	$(call FETCH,service robot develop)
 
 # lgpio, which reads the pins of a Raspberry Pi, is a robot's alone; it needs no pages and nothing of the service.
 CAN_HAVE_LGPIO = $(BIN)/python -c 'import sys; sys.exit(sys.version_info >= (3, 13))' || command -v swig >/dev/null || { \
@@ -158,7 +158,7 @@ CAN_HAVE_LGPIO = $(BIN)/python -c 'import sys; sys.exit(sys.version_info >= (3, 
 	@$(WRITABLE)
 	@$(CAN_HAVE_LGPIO)
 	@echo "Fetching the robot's Python packages, some 100 MB …"
-	$(call FETCH,pi)
+	$(call FETCH,robot pi)
 
 # npm is the system's if that is recent, else the one that comes with a Python package.
 WITH_NODE = PATH="$(CURDIR)/$(BIN):$$PATH"

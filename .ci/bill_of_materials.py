@@ -18,7 +18,7 @@ from packaging.utils import canonicalize_name
 
 ROOT = Path(__file__).parent.parent
 LICENSING = Licensing()
-SHIPPED_EXTRAS = ("service", "postgres", "pi")
+SHIPPED_EXTRAS = ("service", "robot", "postgres", "pi")
 
 ALLOWED = {
     "0BSD", "Apache-2.0", "BSD-2-Clause", "BSD-3-Clause", "CC0-1.0", "HPND", "ISC", "MIT", "MIT-0", "MIT-CMU",

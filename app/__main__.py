@@ -45,7 +45,7 @@ def loaded(name: str) -> Any:
     return typer.main.get_command(found)
 
 
-app = typer.Typer(cls=LateCommands, no_args_is_help=True, add_completion=False, help=HELP)
+app = typer.Typer(cls=LateCommands, no_args_is_help=True, help=HELP)
 for listed, (_, summary) in COMMANDS.items():
     app.command(listed, help=summary)(lambda: None)
 

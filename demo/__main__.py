@@ -7,7 +7,7 @@ from demo.letter_command import letter
 
 HELP = """Campus Mail: demonstrations on this machine. Robots, people and time are simulated."""
 
-app = typer.Typer(no_args_is_help=True, add_completion=False, help=HELP)
+app = typer.Typer(no_args_is_help=True, help=HELP)
 app.command()(letter)
 app.command()(fleet)
 

@@ -117,7 +117,7 @@ def test_what_runs_is_set_up_without_what_tests_need(tmp_path: Path, verb: str) 
 @pytest.mark.parametrize("verb", ["setup-develop", "test", "check", "bench", "pages"])
 def test_tests_and_tools_are_set_up_with_all_of_it(tmp_path: Path, verb: str) -> None:
     plan = planned(tmp_path, verb)
-    assert re.search(r"\bservice develop > \.venv/requirements\.txt", plan)
+    assert re.search(r"\bservice robot develop > \.venv/requirements\.txt", plan)
     assert "npm ci" in plan
     assert "--omit=dev" not in plan
 
@@ -170,20 +170,27 @@ def not_among(names: set[str], modules: set[tuple[str, str]]) -> set[tuple[str, 
     return {one for one in modules if names.isdisjoint(map(canonicalize_name, distributions[one[0]]))}
 
 
+def test_a_server_gets_what_the_service_imports_and_nothing_of_a_robots_hardware() -> None:
+    foreign = imported("app", "fleet", "maps", "protocol")
+    there = closure(PROJECT["dependencies"] + EXTRAS["service"])
+    assert not_among(there, foreign) == {("cv2", "maps/sheets.py")}, "for sheets with AprilTags alone"
+    assert not there & {"opencv-python-headless", "pyserial", "gpiozero", "zxing-cpp"}
+
+
 def test_what_runs_imports_nothing_that_only_tests_are_set_up_with() -> None:
     foreign = imported("app", *ROBOTS)
     assert {"fastapi", "cv2", "lark"} <= {name for name, _ in foreign}
-    assert not_among(closure(PROJECT["dependencies"] + EXTRAS["service"]), foreign) == set()
+    assert not_among(closure(PROJECT["dependencies"] + EXTRAS["service"] + EXTRAS["robot"]), foreign) == set()
 
 
 def test_a_robots_computer_gets_what_its_programs_import_and_nothing_of_the_service(tmp_path: Path) -> None:
     plan = planned(tmp_path, "setup-robot")
-    assert re.search(r"\bpi > \.venv/requirements\.txt", plan)
+    assert re.search(r"\brobot pi > \.venv/requirements\.txt", plan)
     assert "service" not in plan
     foreign = imported(*ROBOTS)
-    assert not_among(closure(PROJECT["dependencies"]), foreign) == set()
+    assert not_among(closure(PROJECT["dependencies"] + EXTRAS["robot"]), foreign) == set()
     needed = {canonicalize_name(one) for name, _ in foreign for one in distributions_of()[name]}
-    assert {canonicalize_name(Requirement(text).name) for text in PROJECT["dependencies"]} <= needed
+    assert {canonicalize_name(Requirement(text).name) for text in EXTRAS["robot"]} <= needed
 
 
 START_WITHOUT = """
@@ -202,7 +209,7 @@ for name in ("robot.__main__", "robot.scenarios.__main__", "robot.simulated.__ma
 
 
 def test_robots_programs_start_where_no_package_of_the_service_is() -> None:
-    there = closure(PROJECT["dependencies"])
+    there = closure(PROJECT["dependencies"] + EXTRAS["robot"])
     absent = [name for name, homes in distributions_of().items() if there.isdisjoint(map(canonicalize_name, homes))]
     assert {"fastapi", "sqlalchemy", "uvicorn"} <= set(absent)
     command = [sys.executable, "-c", START_WITHOUT, " ".join(absent)]
@@ -224,6 +231,6 @@ def test_every_package_that_is_named_is_pinned_to_a_version_that_is_allowed() ->
 
 
 def test_pins_are_renewed_for_every_extra(tmp_path: Path) -> None:
-    assert {"service", "pi", "postgres", "yardstick", "node", "develop"} == EXTRAS.keys()
+    assert {"service", "robot", "pi", "postgres", "yardstick", "node", "develop"} == EXTRAS.keys()
     command = planned(tmp_path, "pin").replace("\\\n", "")
     assert re.search(r"uv pip compile .*--all-extras .*--output-file constraints\.txt", command)

@@ -39,7 +39,9 @@ from app.core.trusted_clock import TrustedClock
 from maps import CampusMap, CampusMapError, find_map
 from protocol.clock import Clock, SharedClock
 
-ROOT = Path(__file__).parents[2]
+_INSTALLED = Path(__file__).parents[1] / "data"
+ROOT = _INSTALLED if _INSTALLED.is_dir() else Path(__file__).parents[2]
+"""Where pages and migrations lie: `app/data` where a wheel was installed, else the checkout (`.ci/wheel.py`)."""
 SMTP_PORTS: Final = {"starttls": 587, "tls": 465, "none": 25}
 
 

@@ -3,6 +3,7 @@
 import tomllib
 from datetime import datetime
 from functools import cache
+from importlib import metadata
 
 from fastapi import APIRouter
 from fastapi.responses import JSONResponse
@@ -29,9 +30,11 @@ WRITE_WITHIN_S = 2.0
 
 @cache
 def version() -> str:
-    """The version in pyproject.toml: everything runs from the checkout."""
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-    return str(project["version"])
+    """Return the version in pyproject.toml, or of the wheel that was installed."""
+    project = ROOT / "pyproject.toml"
+    if not project.is_file():
+        return metadata.version("campus-mail")
+    return str(tomllib.loads(project.read_text())["project"]["version"])
 
 
 class About(BaseModel):

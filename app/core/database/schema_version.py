@@ -3,7 +3,6 @@
 import asyncio
 import sqlite3
 from functools import cache
-from pathlib import Path
 
 from alembic import command
 from alembic.config import Config
@@ -15,8 +14,9 @@ from sqlalchemy.exc import DBAPIError
 
 from app.core.database.database import Database
 from app.core.errors import StartError
+from app.core.settings import ROOT
 
-INI = Path(__file__).parents[3] / "alembic.ini"
+INI = ROOT / "alembic.ini"
 
 
 class NewerDatabase(StartError):
