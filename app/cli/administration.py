@@ -1,4 +1,4 @@
-"""What is done from the command line: each one transaction on the database, running service or not."""
+"""Work of the command line: each function is one transaction on the database, running service or not."""
 
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
@@ -19,11 +19,11 @@ from app.robots.enrolment.service import EnrolmentDesk
 
 
 class UnknownRole(StartError):
-    """Somebody asked for a role that there is not."""
+    """There is no role of this name."""
 
 
 class CannotSignIn(StartError):
-    """Somebody new was to have a role, by an address with which nobody can sign in."""
+    """A new person was to have a role, with an address that cannot sign in."""
 
     def __init__(self, email: str, domains: tuple[str, ...]) -> None:
         super().__init__(
@@ -52,7 +52,7 @@ async def migrate(settings: Settings) -> None:
 
 
 async def change_roles(settings: Settings, email: str, add: list[str], remove: list[str]) -> list[str]:
-    """Give and take roles; the roles afterwards. Somebody new is made. Raises UnknownRole, CannotSignIn."""
+    """Give and take roles; return the roles afterwards. A new person is made. Raises UnknownRole, CannotSignIn."""
     given, taken = _roles(add), _roles(remove)
     async with database_at_head(settings) as session:
         person = await find_person(session, email.lower()) or _newcomer(settings, email.lower())

@@ -36,7 +36,7 @@ def show(as_json: AsJson = False) -> None:
 
 @cli.command()
 def check(as_json: AsJson = False) -> None:
-    """Whether robots can use it: unreachable posts, one-way corridors, missing docks. Exit code 1 if they cannot."""
+    """Check if robots can use it: unreachable posts, one-way corridors, missing docks. Exit code 1 if they cannot."""
     with errors_in_words():
         settings = load_settings()
         open_map(settings)

@@ -1,4 +1,4 @@
-"""How every command speaks: errors in sentences, tables for people, JSON for programs.
+"""Output of every command: errors in sentences, tables for people, JSON for programs.
 
 Exit status of every command: 0 done, 1 looked and found something wrong, 2 could not be done, and why is on stderr.
 """
@@ -27,7 +27,7 @@ Email = Annotated[str, typer.Argument(help="Mail address of the person.")]
 def demonstrating(what: str, *, as_json: bool, goes_on: bool) -> Iterator[None]:
     """Say what a demonstration starts before it is loaded, and, if Ctrl-C comes as early as that, that it stops.
 
-    Where it `goes_on` until somebody stops it, that is how it should end.
+    Where it `goes_on` until it is stopped, that is how it should end.
     """
     try:
         typer.echo(f"Campus Mail: starting {what} on this machine. Ctrl-C ends all of it.", err=as_json)
@@ -40,7 +40,7 @@ def demonstrating(what: str, *, as_json: bool, goes_on: bool) -> Iterator[None]:
 
 @contextlib.contextmanager
 def errors_in_words() -> Iterator[None]:
-    """What keeps a command from its work is a sentence on stderr and exit code 2, never a traceback.
+    """Print the error that keeps a command from its work as a sentence on stderr, never a traceback; exit code 2.
 
     Of its own accord a command speaks of what it knows; a disk that is full or gone may show anywhere.
     """
@@ -55,7 +55,7 @@ def errors_in_words() -> Iterator[None]:
 
 
 def _sentence_of(error: Exception) -> str | None:
-    """None for what nobody foresaw. Imports late: a demonstration speaks before it has loaded any of this."""
+    """None for an unforeseen error. Imports late: a demonstration speaks before it has loaded any of this."""
     from sqlalchemy.exc import DBAPIError
 
     from app.core.errors import ServiceError, StartError
@@ -76,12 +76,12 @@ def console() -> Console:
 
 
 def say_json(document: object) -> None:
-    """What a program reads."""
+    """Print for a program."""
     print(json.dumps(document, indent=2, ensure_ascii=False, default=str))
 
 
 def say_table(columns: Sequence[str], rows: Iterable[Sequence[Any]], nothing: str) -> None:
-    """What a person reads; `nothing` is the sentence for no rows."""
+    """Print for a person; `nothing` is the sentence for no rows."""
     table = Table(*columns, box=None, pad_edge=False)
     for row in rows:
         table.add_row(*(_in_words(value) for value in row))

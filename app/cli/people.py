@@ -26,7 +26,7 @@ def list_people(
         say_json([person.model_dump(mode="json") for person in people])
     else:
         rows = [(p.email, p.name, ", ".join(p.roles), p.language, f"{p.created_at:%Y-%m-%d}") for p in people]
-        say_table(("address", "name", "roles", "language", "since"), rows, "Nobody yet.")
+        say_table(("address", "name", "roles", "language", "since"), rows, "No people yet.")
 
 
 @cli.command()
@@ -46,7 +46,7 @@ def role(
     add: Annotated[list[str] | None, typer.Option(help="Role to give: dispatcher or maintainer.")] = None,
     remove: Annotated[list[str] | None, typer.Option(help="Role to take.")] = None,
 ) -> None:
-    """Give or take roles; somebody new is made. This is how the first maintainer comes to be."""
+    """Give or take roles; a new person is made. This is how the first maintainer comes to be."""
     with errors_in_words():
         roles = asyncio.run(change_roles(load_settings(), email, add or [], remove or []))
         typer.echo(f"{email}: {', '.join(roles)}")

@@ -51,7 +51,7 @@ def erase(
 
 
 def _is_sure(email: str) -> bool:
-    """Asked at a terminal; whoever is not there has not said yes."""
+    """Asked at a terminal; without one there is no yes."""
     try:
         return typer.confirm(f"Erase {email}? There is no way back.", err=True)
     except typer.Abort:

@@ -82,7 +82,7 @@ def serve(settings: Settings) -> None:
 
 
 def settle_memory() -> None:
-    """What was made so far stays for good: looking through it for garbage would stop everything for 0.1 s each time."""
+    """Exempt what was made so far from garbage collection: looking through it stops everything for 0.1 s each time."""
     gc.collect()
     gc.freeze()
     gc.set_threshold(*GARBAGE_AT)
@@ -104,7 +104,7 @@ def check_tls(settings: Settings) -> None:
 
 
 def config_of(app: FastAPI) -> uvicorn.Config:
-    """How uvicorn serves the application."""
+    """Return the configuration with which uvicorn serves the application."""
     settings = parts_of(app).settings
     return PunctualConfig(
         app,
@@ -117,7 +117,7 @@ def config_of(app: FastAPI) -> uvicorn.Config:
         ws_ping_interval=LOOKS_AFTER_S,
         ws_ping_timeout=ANSWERS_WITHIN_S,
         server_header=False,
-        # A proxy on this machine ends TLS and says so in X-Forwarded-Proto; nobody else is believed.
+        # A proxy on this machine ends TLS and says so in X-Forwarded-Proto; no other sender of it is believed.
         proxy_headers=True,
         forwarded_allow_ips="127.0.0.1",
         ssl_certfile=settings.tls_cert,

@@ -22,7 +22,7 @@ class NewToken:
 
 @dataclass(frozen=True)
 class ShownToken:
-    """What somebody came with."""
+    """A token as a request shows it."""
 
     prefix: str
     secret: str
@@ -38,7 +38,7 @@ def make_token(kind: str) -> NewToken:
 
 
 def is_bearer(authorization: str) -> bool:
-    """Whether an Authorization header carries a token, of whichever kind."""
+    """Tell if an Authorization header carries a token, of whichever kind."""
     return authorization[: len(SCHEME)].lower() == SCHEME
 
 

@@ -1,8 +1,8 @@
-"""What can go wrong, by name, and how it is said: RFC 9457 problem documents with a stable `code`.
+"""Errors by name, and their answers: RFC 9457 problem documents with a stable `code`.
 
 ServiceError                 a request that cannot be met: status, code, a sentence
 ├── BadRequest (400)         the request contradicts itself
-├── NotSignedIn (401)        nobody is signed in, or the session has ended
+├── NotSignedIn (401)        the request is not signed in, or the session has ended
 ├── Forbidden (403)          signed in, but not allowed to
 ├── NotFound (404)           not there, or not for this person to see
 ├── Conflict (409)           the state does not allow it now
@@ -73,7 +73,7 @@ class Forbidden(ServiceError):
 
 
 class NotFound(ServiceError):
-    """Not there; also what is there but not for this person to see, so that nobody can probe for it."""
+    """Not there; also what is there but not for this person to see, so that it cannot be probed for."""
 
     status = 404
     code = "not_found"
@@ -152,7 +152,7 @@ GENERAL: Final[Mapping[str, tuple[int, str]]] = {
     "unforeseen": (500, "A mistake of the service; it is in its log."),
     "not_ready": (503, "The service should get no requests now; `detail` says why."),
 }
-"""The codes that no error class has, because nobody raises them by name."""
+"""The codes that no error class has, because they are not raised by name."""
 
 
 def problems(*what: int | type[ServiceError]) -> dict[int | str, dict[str, Any]]:
@@ -219,7 +219,7 @@ def add_error_answers(app: FastAPI) -> None:
 
 async def _answer_service_error(request: Request, error: Exception) -> JSONResponse:
     assert isinstance(error, ServiceError)  # noqa: S101  # registered for this class alone
-    # RFC 9110 wants to be told how one can prove who one is; browsers ask nobody for a bearer's token.
+    # RFC 9110 wants to be told how a caller can prove who it is; browsers do not ask for a bearer's token.
     how = {"WWW-Authenticate": "Bearer"} if error.status == HTTPStatus.UNAUTHORIZED else {}
     return problem_answer(error.status, error.code, error.sentence, {**how, **error.headers})
 
@@ -251,7 +251,7 @@ def _what_is_unreadable(error: RequestValidationError) -> JSONResponse | None:
 
 
 def _message(error: Any) -> str:
-    """Our own words where a person could not read pydantic's: a pattern of what nobody sees."""
+    """Our own words where a person could not read pydantic's: a pattern of invisible characters."""
     is_a_line = error["type"] == "string_pattern_mismatch" and error["ctx"]["pattern"] == ONE_LINE
     return "Must be one line without invisible characters" if is_a_line else str(error["msg"])
 

@@ -38,7 +38,7 @@ class Target:
 
 
 async def resolve(host: str, port: int) -> list[str]:
-    """All addresses of a name. Raises OSError."""
+    """Return all addresses of a name. Raises OSError."""
     found = await asyncio.get_running_loop().getaddrinfo(host, port, type=socket.SOCK_STREAM)
     return [str(address[0]) for *_, address in found]
 
@@ -61,7 +61,7 @@ class Outside:
         # As it travels: in letters of another script a name may be read as two different ones.
         host = asked.raw_host.decode("ascii")
         if not host or asked.userinfo:
-            raise TargetRefused("The address must name a host, and nobody who signs in there.")
+            raise TargetRefused("The address must name a host, without a user name or password.")
         port = {"https": 443, "http": 80}[asked.scheme] if asked.port is None else asked.port
         if not self.allow_private and port not in self.ports:
             raise TargetRefused(f"Port {port} is not among those that may be asked: {_listed(self.ports)}.")

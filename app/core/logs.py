@@ -47,7 +47,7 @@ def set_up_logs(level: str, as_json: bool | None = None) -> None:
         structlog.contextvars.merge_contextvars,
         structlog.stdlib.add_log_level,
         structlog.stdlib.add_logger_name,
-        # The log's own times are the machine's: they are for whoever reads it, not part of any record.
+        # The log's own times are the machine's: they are for its reader, not part of any record.
         structlog.processors.TimeStamper(fmt="iso", utc=True),
         structlog.processors.format_exc_info,
     ]

@@ -50,7 +50,7 @@ class PageOf(BaseModel, Generic[Item]):
 
 
 class Sorting:
-    """How a list is sorted: by columns that are never null and together tell every row apart; all in one direction."""
+    """The order of a list: by columns that are never null and together tell every row apart; all in one direction."""
 
     def __init__(self, name: str, *columns: Any, descending: bool = False) -> None:
         self.name, self._columns, self.descending = name, columns, descending

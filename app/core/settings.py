@@ -101,7 +101,7 @@ class Settings(BaseSettings):
         None, description="File with the key of Web Push (VAPID); default: `push.key` in the data folder."
     )
     push_contact: Contact = Field("", description="Whom a push service may write to, as mailto:…; default: mail_from.")
-    webhook_url: WholeAddress = Field("", description="Address that is told of every notice, whoever it is for.")
+    webhook_url: WholeAddress = Field("", description="Address that gets every notice, for whichever person it is.")
     webhook_secret: SecretStr = Field(
         SecretStr(""), description="What signs them: at least 24 characters; give it as a file."
     )
@@ -140,7 +140,7 @@ class Settings(BaseSettings):
     wait_limit_s: float = Field(600, gt=0, description="How long a robot waits for a person at a stop.")
     undelivered_to: Literal["sender", "mailroom"] = Field(
         "sender",
-        description="Where mail goes that nobody took: sender, or the mailroom of the map. Robots are set alike.",
+        description="Where undelivered mail goes: sender, or the mailroom of the map. Robots are set alike.",
     )
     queue_limit_s: float = Field(86400, gt=0, description="An order that no robot has fetched for so long expires.")
     traffic: Literal["timetable", "at_once"] = Field(
@@ -151,10 +151,10 @@ class Settings(BaseSettings):
     )
     robot_capacity: int = Field(2, ge=1, description="How many items a robot carries at once.")
     metrics_token: SecretStr = Field(
-        SecretStr(""), description="Whoever brings it may read /metrics; empty: this machine alone. Give it as a file."
+        SecretStr(""), description="Token that opens /metrics to other machines; empty: this machine alone. A file."
     )
     keep_orders_days: float = Field(
-        400, ge=1, description="How long ended orders keep names and addresses; afterwards they are records of nobody."
+        400, ge=1, description="How long ended orders keep names and addresses; afterwards they are anonymous records."
     )
     keep_telemetry_days: float = Field(
         30, ge=1, description="How long messages of and to robots, sendings and mails in the spool are kept."
@@ -183,7 +183,7 @@ class Settings(BaseSettings):
     def _a_demonstration_stays_on_this_machine(self) -> Self:
         if self.demo_door is not None and self.host not in THIS_MACHINE:
             raise ValueError(
-                f"demo_door is for demonstrations, whose links sign in whoever opens them: host must be 127.0.0.1, "
+                f"demo_door is for demonstrations, whose links sign in without a code: host must be 127.0.0.1, "
                 f"not {self.host}"
             )
         return self
@@ -250,7 +250,7 @@ def load_settings() -> Settings:
 
 
 def _refuse_slips(given: Iterable[str]) -> None:
-    """What somebody has set and nobody reads is worse than an error: they rely on it."""
+    """Refuse a setting that is not read: its operator relies on it."""
     given = tuple(given)
     for name in removed(given):
         raise StartError(f"There is no setting {name} any more: unset it, and see CHANGELOG.md.")
@@ -277,7 +277,7 @@ def open_map(settings: Settings) -> CampusMap:
 
 
 def make_data_folder(settings: Settings) -> None:
-    """The data folder holds keys and names: nobody else on the machine may look in. Raises StartError."""
+    """The data folder holds keys and names: other users of the machine may not read it. Raises StartError."""
     try:
         settings.data.mkdir(parents=True, exist_ok=True)
         settings.data.chmod(0o700)

@@ -1,4 +1,4 @@
-"""What is wrong with a setting, said with the name that it has in the environment and what it is for."""
+"""Errors of settings, with the name in the environment and the purpose of each."""
 
 import difflib
 from collections.abc import Iterable, Mapping
@@ -54,7 +54,7 @@ def removed(given: Iterable[str]) -> list[str]:
 
 
 def slips(given: Iterable[str], fields: Iterable[str]) -> dict[str, str]:
-    """What was set under a name that there is not, though it looks like one that there is: name → the one meant.
+    """Return settings under a wrong name that looks like a right one: name → the one that was meant.
 
     Other names are left alone: programs beside the service have variables with this prefix too.
     """

@@ -61,7 +61,7 @@ TRANSLATED: Final = (IPv6Network("::ffff:0:0/96"), IPv6Network("64:ff9b::/96"))
 
 
 def is_public(address: str, refused: Iterable[Network] = ()) -> bool:
-    """Whether an address belongs to the public network, and to none of the `refused` ones, through a translator too.
+    """Tell if an address belongs to the public network, and to none of the `refused` ones, through a translator too.
 
     With a zone (`%eth0`) it names a way out of this machine, and no public address needs one.
     """

@@ -1,4 +1,4 @@
-"""What people write, as the API takes it: one printable line, because it stands in mails, on pages and in logs."""
+"""Lines that people write, as the API takes them: printable, because they stand in mails, on pages and in logs."""
 
 from typing import Annotated, Final
 
@@ -14,13 +14,13 @@ Line = Annotated[str, StringConstraints(strip_whitespace=True, pattern=ONE_LINE)
 """The field says how long it may be."""
 
 Text = Annotated[Line, StringConstraints(max_length=LONGEST_TEXT)]
-"""What somebody says of something: a description, a reason; or nothing."""
+"""A description or a reason; or nothing."""
 
 Reason = Annotated[Text, StringConstraints(min_length=1)]
-"""Why somebody does something."""
+"""A person's reason."""
 
 Label = Annotated[Line, StringConstraints(max_length=LONGEST_NAME)]
-"""What somebody or something is called, or nothing."""
+"""The name of a person or a thing, or nothing."""
 
 Name = Annotated[Label, StringConstraints(min_length=1)]
-"""What somebody or something is called."""
+"""The name of a person or a thing."""

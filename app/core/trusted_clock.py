@@ -31,7 +31,7 @@ log = structlog.get_logger(__name__)
 
 
 def since_boot_s() -> float:
-    """Seconds that nobody can set, and that go on while the machine sleeps where the system has such a clock."""
+    """Seconds that cannot be set, and that go on while the machine sleeps where the system has such a clock."""
     return time.monotonic() if _SINCE_BOOT is None else time.clock_gettime(_SINCE_BOOT)
 
 
@@ -72,13 +72,14 @@ class TrustedClock:
 
     @property
     def is_settled(self) -> bool:
-        """Whether the clock goes on as it went, and has for long enough after a start that it may be wrong from."""
+        """Tell if the clock goes on as it went, and has for long enough after a start that it may be wrong from."""
         steady_s, _, leapt_s = self._look()
         return not leapt_s and steady_s >= self._settled_from_s
 
     @property
     def leapt_s(self) -> float:
-        """How far the machine's clock is ahead of this one (or behind: below 0) by a leap that is not believed yet."""
+        """Return how far the machine's clock is ahead of this one (or behind: below 0) by a leap that is not believed
+        yet."""
         return self._look()[2]
 
     def compare_with_records(self, last: datetime | None) -> None:
@@ -114,5 +115,5 @@ class TrustedClock:
 
 
 def holds_on(clock: Clock) -> bool:
-    """Whether nothing may be done now by this clock that cannot be undone."""
+    """Tell if nothing irrevocable may be done by this clock now."""
     return isinstance(clock, TrustedClock) and not clock.is_settled

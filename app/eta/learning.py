@@ -30,7 +30,7 @@ LOOK_EVERY_S: Final = 30.0
 """Real seconds; sooner when an order has changed."""
 REST_S: Final = 2.0
 REST: Final = 100
-"""Of a thousand robots a look takes a tenth of a second, in which the service answers nobody: times as long."""
+"""Of a thousand robots a poll takes a tenth of a second, in which the service gives no answers: times as long."""
 NOT_FETCHED: Final = (OrderState.QUEUED, OrderState.ASSIGNED, OrderState.TO_SENDER)
 OBSERVED: Final = "observed"
 """Of a session: what was heard in it and is not written down yet."""
@@ -46,7 +46,7 @@ async def _not_asked(_session: AsyncSession) -> str | None:
 
 
 class Observed(NamedTuple):
-    """How long something took, and when it was over."""
+    """One observed duration, and when it was over."""
 
     thing: Thing
     seconds: float
@@ -82,7 +82,7 @@ class Learning:
     # At the start, and now and then.
 
     async def begin(self) -> None:
-        """All that is remembered of earlier days, oldest first."""
+        """Load what is remembered of earlier days, oldest first."""
         async with self.database.asking() as connection:
             durations = (await connection.execute(_LATEST_DURATIONS)).all()
             placed = (await connection.execute(LATEST_PLACED)).all()
@@ -109,7 +109,7 @@ class Learning:
             await self.look()
 
     async def look(self) -> None:
-        """How many orders wait for how many robots, and whether one of these could come."""
+        """Count the orders that wait and the robots they wait for, and find out if one of these could come."""
         async with self.database.reading() as session:
             connection = await connection_of(session)
             now = self.clock.utc()
@@ -139,7 +139,7 @@ class Learning:
         session.info.setdefault(OBSERVED, []).extend(plausible)
 
     async def write_down(self, session: AsyncSession) -> None:
-        """What was heard in this transaction, in one statement."""
+        """Write down what was heard in this transaction, in one statement."""
         observed: list[Observed] = session.info.pop(OBSERVED, [])
         await write_all(session, DurationRow, [one.row for one in observed])
         for one in observed:

@@ -1,4 +1,4 @@
-"""What is kept of what people were told, until its truth has come and for as long as it is learned from."""
+"""Records of promised arrivals, until their truth has come and for as long as it is learned from."""
 
 from datetime import datetime
 from typing import Any, Final
@@ -28,14 +28,14 @@ def promise_row(order_id: str, begins_at: datetime, promise: Promise) -> dict[st
 async def keep_under_way(
     session: AsyncSession, order_id: str, told_at: datetime, intervals: Intervals, *, is_aboard: bool
 ) -> None:
-    """What is told of an order that a robot has: the first of it, and the first after its mail was loaded."""
+    """Keep the promise for an order that a robot has: the first of it, and the first after its mail was loaded."""
     if await session.get(ForecastUnderWayRow, (order_id, is_aboard)) is None:
         key = {"order_id": order_id, "is_aboard": is_aboard, "told_at": told_at}
         await write_all(session, ForecastUnderWayRow, [{**key, **_columns(intervals), "arrived_at": None}])
 
 
 async def told_under_way(session: AsyncSession, order_id: str) -> list[ForecastUnderWayRow]:
-    """All that was told of this order since a robot has it."""
+    """Return all promises for this order since a robot has it."""
     rows = [await session.get(ForecastUnderWayRow, (order_id, is_aboard)) for is_aboard in (False, True)]
     return [row for row in rows if row is not None]
 

@@ -1,4 +1,4 @@
-"""How good estimates are, over HTTP."""
+"""Accuracy of estimates, over HTTP."""
 
 from typing import Literal, cast
 
@@ -22,7 +22,7 @@ class EstimateError(BaseModel):
 
 
 class DurationView(BaseModel):
-    """How long one thing takes: quantiles in seconds, of which `seen` were seen; `assumed_s` by map and settings."""
+    """The duration of one thing: quantiles in seconds, of which `seen` were seen; `assumed_s` by map and settings."""
 
     kind: Seen
     name: str
@@ -36,7 +36,7 @@ class DurationView(BaseModel):
 
 
 class ToldQuality(BaseModel):
-    """How good arrivals were estimated of the latest orders, `scored` in number.
+    """The accuracy of the arrivals of the latest orders, `scored` in number.
 
     `inside_ratio` is how often the robot came between the times that were told, `earlier_ratio` and `later_ratio` how
     often before and after them. `by_map`: what the lengths on the map alone would have told of the same orders. All of
@@ -66,7 +66,7 @@ class ToldQuality(BaseModel):
 
 
 class EstimateQuality(BaseModel):
-    """How good estimated arrivals were: `placed`, as told when an order was placed; `under_way`, as told first when a
+    """The accuracy of estimated arrivals: `placed`, as told when an order was placed; `under_way`, as told first when a
     robot had it and first after its mail was loaded, so up to twice for each order.
 
     `assumed`: people are still told what the lengths on the map say, since too little was seen. `inside_meant` is aimed

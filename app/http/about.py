@@ -1,4 +1,4 @@
-"""What the service says of itself: to pages, to people, to whoever watches over it."""
+"""The service about itself: to pages, to people, to monitoring."""
 
 import tomllib
 from datetime import datetime
@@ -25,7 +25,7 @@ root_router = APIRouter(tags=["health"])
 
 OUTBOX_LAG_LIMIT_S = 600.0
 WRITE_WITHIN_S = 2.0
-"""Real seconds: whoever asks whether the service is ready does not wait much longer for the answer."""
+"""Real seconds: monitoring that asks if the service is ready does not wait much longer for the answer."""
 
 
 @cache
@@ -38,7 +38,7 @@ def version() -> str:
 
 
 class About(BaseModel):
-    """What pages need to know before anybody is signed in."""
+    """Facts that pages need before sign-in."""
 
     name: str
     version: str

@@ -57,7 +57,7 @@ TAGS: Final[Mapping[str, str]] = {
     "upkeep": "For maintainers: watching what a robot senses and thinks.",
     "enrolment": "How a robot becomes known: one-time codes, its key, its tokens.",
     "demo": "Only while a demonstration runs: the simulated robot's camera.",
-    "health": "For whoever watches over the service.",
+    "health": "For monitoring.",
 }
 
 HEADERS: Final[Mapping[str, str]] = {
@@ -68,7 +68,7 @@ HEADERS: Final[Mapping[str, str]] = {
     "Retry-After": "How many seconds to wait before asking again.",
 }
 NEVER_KEPT: Final = frozenset({"my_code"})
-"""What is secret carries no ETag: nobody should have a copy to compare."""
+"""A secret carries no ETag: no client should have a copy to compare."""
 
 HEADERS_OF_STATUS: Final[Mapping[str, tuple[str, ...]]] = {"304": ("ETag",), "429": ("Retry-After",)}
 
@@ -154,7 +154,7 @@ def _ways_in(operation: Document, method: str) -> list[Document]:
 
 
 def _general_problems(operation: Document) -> dict[int, dict[str, str]]:
-    """What any operation of its kind can answer, by status and code."""
+    """Return the answers that any operation of its kind can give, by status and code."""
     found: dict[int, dict[str, str]] = {}
     for applies, what in GENERAL_PROBLEMS:
         if applies(operation):

@@ -1,11 +1,11 @@
-"""What parameters mean that many routes share, for the API document. A route may say more of its own."""
+"""Descriptions of parameters that many routes share, for the API document. A route may have its own."""
 
 from collections.abc import Mapping
 from typing import Final
 
 PARAMETERS: Final[Mapping[str, str]] = {
     # headers
-    "Accept-Language": "Languages that the caller reads, best first: for somebody who has not chosen one.",
+    "Accept-Language": "Languages that the caller reads, best first: for a person who has not chosen one.",
     "Authorization": "`Bearer` and a token.",
     "Idempotency-Key": "Chosen by the caller, new for each thing to be done: the same key and body are done once.",
     "If-Match": "An ETag: the change is made only if the order is still at that version.",
@@ -30,7 +30,7 @@ PARAMETERS: Final[Mapping[str, str]] = {
     "token_prefix": "A robot token's readable beginning, without `cmr_`.",
     # questions
     "code": "What the campus's sign-in sends back with the browser.",
-    "error": "What the campus's sign-in says instead, if somebody was refused there.",
+    "error": "What the campus's sign-in says instead, if it refused the person.",
     "from_post": "Where the mail is fetched: a post's name on the map.",
     "given_up": "Only what is tried no more.",
     "limit": "At most this many items.",

@@ -15,7 +15,7 @@ OPENS_ALL_ADDRESSES = "delegate_permission/common.handle_all_urls"
 
 @router.get("/.well-known/assetlinks.json", include_in_schema=False, response_model=None)
 async def asset_links(settings: SettingsDep) -> JSONResponse:
-    """What Android asks before it shows the pages without an address bar; 404 as long as there is no app."""
+    """Answer Android before it shows the pages without an address bar; 404 as long as there is no app."""
     if not (settings.android_package and settings.android_fingerprints):
         return problem_answer(404, "not_found", "No Android app belongs to this service.")
     target: dict[str, Any] = {

@@ -1,4 +1,4 @@
-"""Nobody's request may fill the memory: bodies are refused beyond what any of ours needs."""
+"""A limit to bodies: larger ones than any of ours needs are refused before they fill the memory."""
 
 from typing import Final
 

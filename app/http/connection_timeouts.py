@@ -1,4 +1,4 @@
-"""Who connects and says nothing, or half of something, is not waited for longer than anybody needs.
+"""Time limits of connections that send nothing, or half of something.
 
 uvicorn waits for ever for the rest of a request, and asyncio for a minute for a TLS handshake: each such connection
 costs a place among those that a process may have open. What has been said whole (a stream, a robot's socket) is not

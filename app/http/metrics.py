@@ -1,6 +1,6 @@
-"""`/metrics` for Prometheus: how orders, robots, notices and requests are doing. Gathered when somebody looks.
+"""`/metrics` for Prometheus: figures of orders, robots, notices and requests. Gathered on request.
 
-Never open: it answers programs on this machine, or, once a token is set, whoever brings that token.
+Never open: it answers programs on this machine, or, once a token is set, those that bring that token.
 """
 
 import hmac
@@ -37,7 +37,7 @@ THIS_MACHINE: Final = ("127.0.0.1", "::1")
 
 
 class NotForYou(Forbidden):
-    """Metrics are for programs on this machine, or for whoever brings the token that the operator has set."""
+    """Metrics are for programs on this machine, or for those that bring the token that the operator has set."""
 
     code = "metrics_not_for_you"
 
@@ -91,7 +91,8 @@ class Metrics:
         return generate_latest(self.registry)
 
     def judge(self, estimates: Estimates) -> None:
-        """How good estimates have lately been on each basis, beside what lengths on the map alone would have told."""
+        """Record the accuracy of the latest estimates on each basis, beside what lengths on the map alone would have
+        told."""
         for basis, told in estimates.told.items():
             if (score := told.score()) is not None:
                 self._scored.labels(basis).set(score.count)
@@ -102,7 +103,7 @@ class Metrics:
                 self._loss.labels(basis, "map").set(score.pinball_by_map_s)
 
     def look_at(self, clock: Clock) -> None:
-        """Whether the machine's clock goes on as it went."""
+        """Record if the machine's clock goes on as it went."""
         self._leapt.set(clock.leapt_s if isinstance(clock, TrustedClock) else 0.0)
         self._holds.set(holds_on(clock))
 
@@ -140,7 +141,7 @@ ENDED: Final = frozenset(
 
 
 def _set_all(gauge: Gauge, values: Mapping[Any, float | int | None]) -> None:
-    """What is no longer there disappears, instead of staying at its last value for ever."""
+    """Set all values; what is no longer there disappears, instead of staying at its last value for ever."""
     gauge.clear()
     for label, value in values.items():
         gauge.labels(str(label)).set(value or 0)
@@ -159,7 +160,7 @@ async def _door(
     connection: HTTPConnection, settings: SettingsDep, authorization: Annotated[str, Header(max_length=300)] = ""
 ) -> None:
     if not _is_let_in(connection, settings, authorization):
-        raise NotForYou("Metrics are for this machine, or for whoever brings CAMPUS_MAIL_METRICS_TOKEN.")
+        raise NotForYou("Metrics are for this machine, or for programs that bring CAMPUS_MAIL_METRICS_TOKEN.")
 
 
 @router.get(

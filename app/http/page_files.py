@@ -1,4 +1,4 @@
-"""What the pages are made of, and a version that changes with any of it: the service worker keeps these files.
+"""Files of the pages, and a version that changes with any of them: the service worker keeps these files.
 
 Some are put together here, so that a first page asks for less: the styles of every page in one file, and the texts
 without those that only some pages or only mails have.

@@ -84,7 +84,7 @@ class Pages(Mount):
 
 
 def is_hidden(path: str) -> bool:
-    """Whether a path leads to what is no page, by whichever way round."""
+    """Tell if a path leads to what is no page, by whichever way round."""
     return posixpath.normpath(path).strip("/").split("/")[0] in NOT_PAGES
 
 
@@ -95,7 +95,7 @@ def import_map_hashes(pages: Iterable[Path]) -> list[str]:
 
 
 def content_security_policy(folder: Path) -> str:
-    """Everything from here, nothing inline but the import maps, framed by nobody."""
+    """Everything from here, nothing inline but the import maps, framed by no other page."""
     hashes = " ".join(import_map_hashes(folder.glob("*.html")))
     return (
         f"default-src 'self'; script-src 'self' {hashes}; img-src 'self' data:; object-src 'none'; "

@@ -1,4 +1,4 @@
-"""The feed: whoever changes something publishes it after the commit; every open page hears what concerns it.
+"""The feed: features publish to it after the commit; every open page hears what concerns it.
 
 One process with everything in memory (thin: a broker behind the same `Feed` when there are several processes).
 """
@@ -27,7 +27,7 @@ QUEUED: Final = 200
 WHISPERED: Final = 20
 """So much may wait for a listener before what is only of the moment is left out for them."""
 COMES_BACK_S: Final = 60.0
-"""Real seconds for which somebody who has left may come back and be given what was missed."""
+"""Real seconds for which a listener who has left may come back and be given what was missed."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ class Numbered:
 
     @cached_property
     def wire(self) -> bytes:
-        """As it goes out: written once, however many listen, and never if nobody does.
+        """As it goes out: written once, however many listen, and never if none does.
 
         That late it may be beyond words: a row whose change was undone cannot be read any more once its session is
         closed. Then everybody fetches anew; a stream that broke there would break there again when it is resumed.
@@ -80,19 +80,19 @@ class Numbered:
 
 
 class Feed(Protocol):
-    """What features see of the feed."""
+    """The feed, as features see it."""
 
     @property
     def is_heard(self) -> bool:
-        """Whether anybody listens, or did so just now: if not, nothing need be put together to be published."""
+        """Tell if there is a listener, or was just now: if not, nothing need be put together to be published."""
         ...
 
     def pass_over(self) -> None:
-        """Instead of `publish`, for what was not put together since nobody listened."""
+        """Instead of `publish`, for what was not put together since there was no listener."""
         ...
 
     def publish(self, happening: Happening) -> None:
-        """Tell whoever listens; never waits. Call it after the commit (`app.core.database.database.after_commit`)."""
+        """Tell the listeners; never waits. Call it after the commit (`app.core.database.database.after_commit`)."""
         ...
 
     def whisper(self, happening: Happening, to: Container[str]) -> None:
@@ -121,7 +121,7 @@ class LocalFeed:
         self._left_at_s = time.monotonic()
 
     def pass_over(self) -> None:
-        """Nobody can be given it later, and whoever has begun to listen meanwhile has to fetch anew."""
+        """It cannot be given to a later listener, and one that has begun to listen meanwhile has to fetch anew."""
         self._recent.clear()
         self._count += 1
         if self._listeners:
@@ -153,7 +153,7 @@ class LocalFeed:
         return f"{self._run}-{self._count}"
 
     def missed(self, person: Person, last_id: str) -> list[Numbered] | None:
-        """What `person` has not had since `last_id`; None if that cannot be told any more."""
+        """Return what `person` has not had since `last_id`; None if that cannot be told any more."""
         run, _, number = last_id.partition("-")
         if run != self._run or not number.isdecimal() or int(number) > self._count:
             return None

@@ -101,7 +101,7 @@ async def _pieces(
 async def _from_now_on(
     queue: asyncio.Queue[Numbered | None], check_every_s: float, may_listen: MayListen
 ) -> AsyncIterator[bytes]:
-    """Until the feed ends, or whoever listens may do so no longer: a stream outlives many a session."""
+    """Until the feed ends, or the listener may do so no longer: a stream outlives many a session."""
     now_s = asyncio.get_running_loop().time
     check_at_s = now_s() + check_every_s
     while True:
@@ -124,7 +124,7 @@ async def _from_now_on(
 
 
 def _all_there_is(queue: asyncio.Queue[Numbered | None], first: Numbered | None) -> tuple[bytes, bool]:
-    """What waits, in one piece; whether the stream goes on after it."""
+    """Return what waits, in one piece; and if the stream goes on after it."""
     pieces = []
     numbered = first
     while numbered is not None:

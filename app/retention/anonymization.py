@@ -1,6 +1,6 @@
 """Taking names out of records that stay: orders whose time is over, and people of whom nothing is left.
 
-Old orders all refer to one row that is nobody: not even that two of them were the same person's can be told.
+Old orders all refer to one anonymous row: not even that two of them were the same person's can be told.
 """
 
 from datetime import UTC, datetime
@@ -27,24 +27,24 @@ from app.models import (
 from app.orders.transitions import ENDED
 from app.retention.erasure import ERASED_DOMAIN, ERASED_NAME, delete_rows, forget_delegates
 
-NOBODY: Final = "nobody"
+ANONYMOUS: Final = "nobody"
 
 
 async def forget_orders(session: AsyncSession, before: datetime, at_most: int) -> int:
     """Take the names out of orders that ended before, with whatever was told of them."""
     old = select(Order.id).where(
-        col(Order.updated_at) < before, col(Order.state).in_(ENDED), col(Order.sender_id) != NOBODY
+        col(Order.updated_at) < before, col(Order.state).in_(ENDED), col(Order.sender_id) != ANONYMOUS
     )
     ids = list((await session.exec(old.order_by(col(Order.updated_at)).limit(at_most))).all())
     if not ids:
         return 0
-    await _make_nobody(session)
-    people = {"sender_id": NOBODY, "recipient_id": NOBODY, "placed_by_id": None, "description": None}
+    await _make_anonymous(session)
+    people = {"sender_id": ANONYMOUS, "recipient_id": ANONYMOUS, "placed_by_id": None, "description": None}
     await session.exec(update(Order).where(col(Order.id).in_(ids)).values(**people))
     for row in (OrderEvent, Handover):
         await session.exec(update(row).where(col(row.order_id).in_(ids)).values(person_id=None))
     await session.exec(update(RobotCommand).where(col(RobotCommand.order_id).in_(ids)).values(asked_by_id=None))
-    await forget_delegates(session, col(Delegate.order_id).in_(ids), named_by_id=NOBODY)
+    await forget_delegates(session, col(Delegate.order_id).in_(ids), named_by_id=ANONYMOUS)
     await session.exec(delete(OrderLink).where(col(OrderLink.order_id).in_(ids)))
     await _forget_notices(session, col(Notice.order_id).in_(ids))
     return len(ids)
@@ -68,11 +68,12 @@ async def _forget_notices(session: AsyncSession, which: ColumnElement[bool]) -> 
 
 async def forget_standing_orders(session: AsyncSession, before: datetime, at_most: int) -> int:
     """The same for standing orders that ended before."""
-    old = select(StandingOrder.id).where(col(StandingOrder.ended_at) < before, col(StandingOrder.sender_id) != NOBODY)
+    ended = col(StandingOrder.ended_at) < before
+    old = select(StandingOrder.id).where(ended, col(StandingOrder.sender_id) != ANONYMOUS)
     ids = list((await session.exec(old.limit(at_most))).all())
     if ids:
-        await _make_nobody(session)
-        people = {"sender_id": NOBODY, "recipient_id": NOBODY, "placed_by_id": None, "description": None}
+        await _make_anonymous(session)
+        people = {"sender_id": ANONYMOUS, "recipient_id": ANONYMOUS, "placed_by_id": None, "description": None}
         await session.exec(update(StandingOrder).where(col(StandingOrder.id).in_(ids)).values(**people))
     return len(ids)
 
@@ -98,9 +99,9 @@ def _any(row: Any, *columns: Any) -> Any:
     return exists().where(or_(*(column == col(Person.id) for column in columns))).select_from(row)
 
 
-async def _make_nobody(session: AsyncSession) -> None:
-    if await session.get(Person, NOBODY) is None:
+async def _make_anonymous(session: AsyncSession) -> None:
+    if await session.get(Person, ANONYMOUS) is None:
         since = datetime(1970, 1, 1, tzinfo=UTC)
-        row = Person(id=NOBODY, email=f"{NOBODY}@{ERASED_DOMAIN}", name=ERASED_NAME, roles=[], created_at=since)
+        row = Person(id=ANONYMOUS, email=f"{ANONYMOUS}@{ERASED_DOMAIN}", name=ERASED_NAME, roles=[], created_at=since)
         session.add(row)
         await session.flush()

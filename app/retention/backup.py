@@ -46,7 +46,7 @@ class Entry(BaseModel):
 
 
 class Manifest(BaseModel):
-    """What an archive holds; `left_out` says what it does not and why."""
+    """The contents of an archive; `left_out` says what it does not hold and why."""
 
     format: int
     version: str
@@ -60,7 +60,7 @@ class Manifest(BaseModel):
 
 @dataclass(frozen=True)
 class Wish:
-    """What is to be backed up, by which version, when."""
+    """A request for a backup: of what, by which version, when."""
 
     settings: Settings
     version: str

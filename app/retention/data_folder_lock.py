@@ -1,4 +1,4 @@
-"""One service to a data folder: whoever has it locked may serve from it, or put another database in its place."""
+"""One service to a data folder: the holder of its lock may serve from it, or put another database in its place."""
 
 import fcntl
 import os

@@ -1,4 +1,4 @@
-"""Whether a database is one that can be relied on: whole, at a known schema, and telling one story of each order."""
+"""Checks of a database: whole, at a known schema, and telling one story of each order."""
 
 from collections.abc import Iterator
 from typing import Any, Final
@@ -11,7 +11,7 @@ MOST: Final = 20
 """Problems of one kind that are named; the rest would say no more."""
 
 CONTRADICTIONS: Final = {
-    "order {0} has no event: nobody knows how it came to be": """
+    "order {0} has no event: its origin is unknown": """
         SELECT id FROM orders WHERE NOT EXISTS (SELECT 1 FROM order_events e WHERE e.order_id = orders.id)""",
     "order {0} is at version {1}, and its events go from {2} to {3}": """
         SELECT o.id, max(o.version), min(e.seq), max(e.seq) FROM orders o JOIN order_events e ON e.order_id = o.id

@@ -26,7 +26,7 @@ LOOK_EVERY_S: Final = 0.2
 
 
 class CopyUnsound(StartError):
-    """What was copied is not a database to rely on."""
+    """The copy is not a database to rely on."""
 
 
 def copy_database(
@@ -72,7 +72,7 @@ def _counts(connection: Connection) -> dict[str, int]:
 
 
 def _copy_sqlite(source: Path, copy: Path, progress: Callable[[float], None]) -> None:
-    """In one step: a copy in many steps begins anew whenever somebody writes in between, and under load never ends."""
+    """In one step: a copy in many steps begins anew whenever a writer comes in between, and under load never ends."""
     if not source.is_file():
         raise DatabaseUnusable(f"There is no database at {source}. Which data folder is meant? CAMPUS_MAIL_DATA.")
     copy.touch(mode=0o600)

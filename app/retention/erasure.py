@@ -38,7 +38,7 @@ ERASED_DOMAIN: Final = "erased.invalid"
 
 
 class Fate(StrEnum):
-    """What becomes of a row that refers to somebody who is erased."""
+    """The fate of a row that refers to an erased person."""
 
     GOES = "goes"
     STAYS = "stays"
@@ -69,11 +69,11 @@ FATES: Final[Mapping[str, Fate]] = {
 
 
 class OrderUnderWay(StartError):
-    """Somebody would stand at a post with mail for nobody."""
+    """A robot would stand at a post with mail for an erased person."""
 
 
 class LastMaintainerStays(StartError):
-    """Without a maintainer nobody could let anybody in."""
+    """Without a maintainer no role could be given any more."""
 
 
 async def erase(session: AsyncSession, person: Person, now: datetime) -> int:
@@ -101,7 +101,7 @@ async def erase(session: AsyncSession, person: Person, now: datetime) -> int:
 async def _refuse_the_last_maintainer(session: AsyncSession, person: Person) -> None:
     everybody = (await session.exec(select(Person))).all() if person.has_role(Role.MAINTAINER) else []
     if [one.id for one in everybody if one.has_role(Role.MAINTAINER)] == [person.id]:
-        raise LastMaintainerStays(f"{person.email} is the last maintainer. Give somebody else the role first.")
+        raise LastMaintainerStays(f"{person.email} is the last maintainer. Give another person the role first.")
 
 
 def _takes_part(person: Person) -> Any:

@@ -57,7 +57,7 @@ async def export_orders(
 
 
 async def pieces(database: Database, begin: datetime, end: datetime, *, at_once: int = AT_ONCE) -> AsyncIterator[str]:
-    """The table, piece by piece. No session is open while whoever reads takes their time over one."""
+    """The table, piece by piece. No session is open while the reader takes its time over one."""
     emails: dict[str, str] = {}
     after: Place | None = None
     yield BYTE_ORDER_MARK + csv_head()

@@ -1,4 +1,4 @@
-"""Orders as records: plain values with names and addresses, for whoever may see everything."""
+"""Orders as records: plain values with names and addresses, for those who may see everything."""
 
 import csv
 import io
@@ -37,7 +37,8 @@ class NoSuchOrder(StartError):
 async def orders_of(
     session: AsyncSession, states: Sequence[OrderState] = (), newest: int | None = None
 ) -> AsyncIterator[dict[str, Any]]:
-    """All orders from the oldest on, or the newest ones first; fetched in portions, so that there may be many."""
+    """Return all orders from the oldest on, or the newest ones first; fetched in portions, so that there may be
+    many."""
     emails: dict[str, str] = {}
     wanted = select(Order).order_by(col(Order.created_at), col(Order.id))
     if states:
@@ -108,7 +109,7 @@ async def one_order(session: AsyncSession, order_id: str) -> dict[str, Any]:
 
 
 async def write_csv(orders: AsyncIterator[dict[str, Any]], to: Path | None) -> int:
-    """Write orders as CSV to a new file that nobody else may read, or to stdout; how many. Raises StartError."""
+    """Write orders as CSV to a new file that other users may not read, or to stdout; how many. Raises StartError."""
     with ExitStack() as closing:
         file = closing.enter_context(_new_file(to)) if to else sys.stdout
         file.write(csv_head())

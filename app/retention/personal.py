@@ -1,4 +1,4 @@
-"""What the service knows of one person, in their own hands: every row that refers to them, as JSON."""
+"""Data about one person, in their own hands: every row that refers to them, as JSON."""
 
 import json
 import zipfile
@@ -22,14 +22,14 @@ BY_ADDRESS: Final = (("sign_in_codes", "email"),)
 
 
 class NoSuchPerson(StartError):
-    """Nobody has this mail address."""
+    """No person has this mail address."""
 
 
 async def person_of(session: AsyncSession, email: str) -> Person:
     """The person with this address. Raises NoSuchPerson."""
     person = (await session.exec(select(Person).where(Person.email == email.lower()))).first()
     if person is None:
-        raise NoSuchPerson(f"Nobody here has the address {email}. Who there is: people list.")
+        raise NoSuchPerson(f"No person here has the address {email}. List them with: people list.")
     return person
 
 
@@ -67,7 +67,7 @@ async def _orders_of(session: AsyncSession, person: Person) -> Sequence[Order]:
 
 
 def _as_seen_by(person: Person, order: Order, record: dict[str, Any]) -> dict[str, Any]:
-    """Without those who are somebody else's concern: delegates of the other side, whoever helped."""
+    """Without the data of others: delegates of the other side, helpers."""
     role = role_in(order, person)
     sees = whose_delegates(role, order)
     known = {record["sender"], record["recipient"], person.email}

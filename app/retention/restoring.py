@@ -15,7 +15,7 @@ from app.retention.backup import Manifest, keys_of, opened
 from app.retention.data_folder_lock import the_only_one
 from app.retention.database_copy import POSTGRESQL_COPY, SQLITE_COPY, dump_postgresql, load_postgresql
 
-STOP_IT: Final = "Stop it first (systemctl stop campus-mail): nobody may write while the database is exchanged."
+STOP_IT: Final = "Stop it first (systemctl stop campus-mail): no process may write while the database is exchanged."
 
 
 class RestoreRefused(StartError):

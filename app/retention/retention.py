@@ -1,4 +1,4 @@
-"""What may be kept for how long, and how it goes: in small portions, so that nobody who writes is held up.
+"""Retention: what may be kept for how long, removed in small portions, so that no writer is held up.
 
 Orders stay for ever as records without a name; everything that is about people or merely technical goes.
 """
@@ -42,7 +42,7 @@ from app.retention.anonymization import forget_alarm_notices, forget_orders, for
 PORTION: Final = 200
 """Rows of one transaction: some milliseconds."""
 PAUSE_S: Final = 0.02
-"""Between portions, so that whoever waits to write comes in between."""
+"""Between portions, so that waiting writers come in between."""
 
 Work = Callable[[AsyncSession, datetime, int], Awaitable[int]]
 """Deal with at most so many rows from before a time; how many it were."""

@@ -248,7 +248,7 @@ def test_nobody_gets_a_role_who_could_never_sign_in(
     refused = CliRunner().invoke(commands, ["people", "role", address, "--add", "maintainer"])
     assert (refused.exit_code, refused.stdout) == (2, "")
     assert f"{address} could not sign in: addresses of campus.example can" in refused.stderr
-    assert CliRunner().invoke(commands, ["people", "list"]).stdout == "Nobody yet.\n"
+    assert CliRunner().invoke(commands, ["people", "list"]).stdout == "No people yet.\n"
 
 
 @sqlite_alone
@@ -265,7 +265,7 @@ def test_a_command_that_the_database_fails_says_so_and_changes_nothing(settings:
     assert ran.stderr.splitlines() == [
         "campus-mail: The database could not be used, and nothing was changed: database or disk is full."
     ]
-    assert CliRunner(env=environment).invoke(commands, ["people", "list"]).stdout == "Nobody yet.\n"
+    assert CliRunner(env=environment).invoke(commands, ["people", "list"]).stdout == "No people yet.\n"
 
 
 @sqlite_alone

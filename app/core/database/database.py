@@ -37,7 +37,7 @@ WRITE_AND_TAKE_BACK = (
     "INSERT INTO alembic_version (version_num) VALUES ('trial')",
     "DELETE FROM alembic_version WHERE version_num = 'trial'",
 )
-"""Nobody else ever sees that row, and its pages are written. (SQLite leaves a page alone that would stay the same.)"""
+"""No reader ever sees that row, and its pages are written. (SQLite leaves a page alone that would stay the same.)"""
 
 
 class Database:
@@ -100,7 +100,7 @@ class Database:
             await self._close(connection)
 
     async def _close(self, used: AsyncSession | AsyncConnection) -> None:
-        """To its end: whoever is cancelled while it waits would leave a connection behind."""
+        """To its end: a caller that is cancelled while it waits would leave a connection behind."""
         if self.engine.dialect.name == "sqlite":  # does not wait
             await used.close()
         else:
@@ -110,8 +110,8 @@ class Database:
     async def rebuilding(self) -> AsyncIterator[AsyncConnection]:
         """One transaction in which tables may be written anew, as SQLite has to for most changes of a schema.
 
-        It would take the rows that refer to a table for orphans as soon as the old one is dropped: whoever rebuilds
-        looks for orphans at the end (`PRAGMA foreign_key_check`).
+        It would take the rows that refer to a table for orphans as soon as the old one is dropped: a caller that
+        rebuilds looks for orphans at the end (`PRAGMA foreign_key_check`).
         """
         async with self.writing.connect() as connection:
             await connection.run_sync(_heed_foreign_keys, "OFF")
@@ -151,7 +151,8 @@ async def savepoint(session: AsyncSession) -> AsyncIterator[None]:
 
 
 def columns_of(table: type[SQLModel]) -> list[ColumnElement[Any]]:
-    """All columns, for a row that is only looked at: a session takes three times as long to make one that it knows."""
+    """Return all columns, for a row that is only read: a session takes three times as long to make one that it
+    knows."""
     return list(inspect(table).columns)
 
 
@@ -220,7 +221,7 @@ def _insert(table: type[SQLModel]) -> Insert:
 
 
 def _options(url: str) -> dict[str, Any]:
-    """How many connections are kept, and by whom they are opened."""
+    """Return the options of the engine: how many connections are kept, and what opens them."""
     made = make_url(url)
     if made.get_backend_name() != "sqlite":
         of_ours = {"connect_args": {"async_creator_fn": postgresql_driver.connect}}
@@ -244,7 +245,7 @@ def _prepare_sqlite(connection: Any, record: Any) -> None:
         for pragma in PRAGMAS:
             cursor.execute(f"PRAGMA {pragma}")
         cursor.close()
-    except BaseException:  # no database of ours; nobody else knows this connection yet
+    except BaseException:  # no database of ours; no other code knows this connection yet
         connection.close()
         raise
 

@@ -27,7 +27,7 @@ _present: ContextVar[_Deadline | None] = ContextVar("deadline", default=None)
 
 
 def left_s() -> float:
-    """How long the database may still be waited for here; 0 or more."""
+    """Return the time for which the database may still be waited for here; 0 or more."""
     present = _present.get()
     if present is None or present.at_s is None:
         return WAIT_S

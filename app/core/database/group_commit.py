@@ -1,9 +1,10 @@
 """Writers that wait for each other share one commit.
 
-A commit with full sync takes as long as the disk does, and only one writer can be at work. So whoever has done its work
-while others wait passes the open transaction on instead of committing it; the last one commits for all. What fails is
-undone alone (the first with the transaction, those that follow to a savepoint of their own), and nobody goes on before
-the common commit.
+A commit with full sync takes as long as the disk does, and only one writer can be at work. So a writer that has done
+its work while others wait passes the open transaction on instead of committing it; the last one commits for all. What
+fails is
+undone alone (the first with the transaction, those that follow to a savepoint of their own), and no writer goes on
+before the common commit.
 
 Some work may be lost in a power cut because it would only be done again. Its commit waits for no disk, unless it shares
 one with work that must last.
@@ -30,7 +31,7 @@ log = structlog.get_logger(__name__)
 AT_MOST: Final = 32
 """Works in one commit: the first of them waits for the last."""
 NO_LONGER_THAN_S: Final = 0.05
-"""Real seconds. Nobody joins a transaction that has been open for so long."""
+"""Real seconds. No writer joins a transaction that has been open for so long."""
 AFTER_COMMIT: Final = "after_commit"
 CONNECTION: Final = "connection"
 """Of a session that writes: kept, because asking the session for it takes as long as a statement."""
@@ -40,13 +41,13 @@ Say = Callable[[], None]
 
 @dataclass
 class _Work:
-    """What one writer has done, and what is to be said of it once it is on the disk."""
+    """The work of one writer, and what is to be said of it once it is on the disk."""
 
     says: list[Say]
     done: asyncio.Future[None]
 
     def committed(self) -> None:
-        """Said even if whoever did it waits no longer; and done, whatever becomes of what is said."""
+        """Said even if its writer waits no longer; and done, whatever becomes of what is said."""
         for say in self.says:
             try:
                 say()
@@ -58,7 +59,7 @@ class _Work:
     def failed(self, error: BaseException) -> None:
         if not self.done.done():
             self.done.set_exception(error)
-            self.done.exception()  # its writer may have gone: then nobody asks
+            self.done.exception()  # its writer may have gone: then it is not asked for
 
 
 @dataclass
@@ -86,7 +87,7 @@ class _Group:
             raise
 
     def may_go_on(self, now_s: float) -> bool:
-        """Whether somebody else may still write in it. A connection that broke takes nobody else with it."""
+        """Tell if another writer may still write in it. A connection that broke fails no other writer."""
         is_full = self.turns >= AT_MOST or now_s - self.begun_s > NO_LONGER_THAN_S
         return not is_full and not self.is_lost and not self.connection.invalidated
 
@@ -133,7 +134,7 @@ class Writers:
             async with asyncio.timeout(left_s()):
                 await self._turn.acquire()
         except BaseException as error:
-            # What was passed on to whoever gives up here has to be committed by somebody.
+            # What was passed on to a writer that gives up here still has to be committed.
             self._committing = asyncio.create_task(self._commit_if_nobody_comes())
             if isinstance(error, TimeoutError):
                 raise NoTurn("others were writing all the time that there was to wait") from None
@@ -161,14 +162,14 @@ class Writers:
         return self._group
 
     async def _end_turn(self) -> None:
-        """Pass the transaction on to whoever waits, or commit it."""
+        """Pass the transaction on to a waiting writer, or commit it."""
         group = self._group
         if group and not (self._waiting and group.may_go_on(time.monotonic())):
             await self._commit_open()
 
     async def _commit_open(self) -> None:
         group, self._group = self._group, None
-        assert group is not None, "no transaction is open"  # noqa: S101  # whoever has the turn has looked
+        assert group is not None, "no transaction is open"  # noqa: S101  # the writer that has the turn has looked
         try:
             await uncancelled(asyncio.ensure_future(_commit(group)))
         except BaseException as error:

@@ -16,15 +16,15 @@ CUT_OFF: Final = ("08", "57P")
 AWAY: Final = (*CUT_OFF, "53", "55P03", "57", "58")
 """How SQLSTATEs begin: connection, resources (a full disk), a lock that was waited for, the operator, the system."""
 ONE_WRITER: Final = f"SELECT set_config('lock_timeout', $1, true), pg_advisory_xact_lock({0x434D_0001})"
-"""PostgreSQL's writers take turns as SQLite's do, with a lock that is held to the end of the transaction: whoever
+"""PostgreSQL's writers take turns as SQLite's do, with a lock that is held to the end of the transaction: a writer that
 decides by what it has read decides by what is true, so that no transaction has to be repeated because of another one,
-and nobody has to think of which rows to lock."""
+and no code has to think of which rows to lock."""
 SHORTEST_WAIT_S: Final = 0.1
 """A connection that can be had is had, however late it is; and no time at all would mean for ever."""
 
 
 async def connect(*arguments: Any, **options: Any) -> Any:
-    """What SQLAlchemy calls for a new connection (its `async_creator_fn`). Raises OperationalError."""
+    """Open a connection for SQLAlchemy (its `async_creator_fn`). Raises OperationalError."""
     import asyncpg
 
     try:

@@ -47,7 +47,7 @@ async def bring_to_head(database: Database) -> None:
 
 
 def _first_of(error: BaseException) -> BaseException:
-    """What went wrong first: a full disk, say, and not what was refused because of it."""
+    """Return the first error: a full disk, say, and not what was refused because of it."""
     first = error.orig if isinstance(error, DBAPIError) and error.orig is not None else error
     while error.__context__ is not None:
         error = error.__context__
@@ -57,13 +57,13 @@ def _first_of(error: BaseException) -> BaseException:
 
 
 async def is_at_head(database: Database) -> bool:
-    """Whether the schema is the one of this code."""
+    """Tell if the schema is the one of this code."""
     async with database.engine.connect() as connection:
         return await connection.run_sync(revision_of) == _scripts().get_current_head()
 
 
 def _open(url: URL) -> None:
-    """Whether SQLite can open its file is found out without the asynchronous driver.
+    """Find out without the asynchronous driver if SQLite can open its file.
 
     A connection of the driver that fails to open leaves a thread behind, which complains once the event loop is closed.
     """

@@ -1,4 +1,4 @@
-"""Waiting to the end, whoever gives up meanwhile."""
+"""Waiting to the end, even if the caller is cancelled meanwhile."""
 
 import asyncio
 from typing import TypeVar

@@ -1,7 +1,8 @@
 """aiosqlite, but what is short is done at once, on the event loop.
 
-A short statement takes SQLite some 10 µs and holds nobody up. The way to a thread and back takes longer, four times for
-each statement as aiosqlite and SQLAlchemy have it, and on a busy event loop every one of these ways waits for its turn
+A short statement takes SQLite some 10 µs and holds up no other work. The way to a thread and back takes longer, four
+times for each statement as aiosqlite and SQLAlchemy have it, and on a busy event loop every one of these ways waits
+for its turn
 at the interpreter (decision 0034). So only what may take long goes to the connection's thread: the wait for the write
 lock, the commit with its sync, and whatever is not known to be short. A question that turns out not to be short is
 interrupted, asked again in the thread, and goes there at once the next time.
@@ -41,10 +42,10 @@ SMALL_CHANGE: Final = re.compile(
 
 
 def connect(database: str, **options: Any) -> "Connection":
-    """What SQLAlchemy calls for a new connection (its `async_creator_fn`)."""
+    """Open a connection for SQLAlchemy (its `async_creator_fn`)."""
     options["check_same_thread"] = False  # two threads, but never at the same time: each errand is waited for
     connection = Connection(lambda: sqlite3.connect(database, **options), iter_chunk_size=64)
-    connection._thread.daemon = True  # as SQLAlchemy has it: a connection that nobody closed holds up no exit
+    connection._thread.daemon = True  # as SQLAlchemy has it: a connection that was not closed holds up no exit
     return connection
 
 
@@ -94,7 +95,7 @@ class Connection(aiosqlite.Connection):
         return await self.errand(what)
 
     def _has_begun(self) -> bool:
-        """Take the write lock that was asked for, if nobody else has it: whoever has to wait does so in the thread."""
+        """Take the write lock that was asked for, if it is free: to wait for it is left to the thread."""
         if LOCKS not in self._brackets:
             return True
         before = self._brackets[: self._brackets.index(LOCKS)]

@@ -1,7 +1,7 @@
 """Headers as the standard library writes them, but the same one is read and folded once.
 
 By the book that takes longer than everything else about a mail, and most headers are the same in one mail after the
-other: the sender, the title of a notice, the address of whoever has several orders.
+other: the sender, the title of a notice, the address of a person with several orders.
 """
 
 from email.policy import EmailPolicy
@@ -14,7 +14,7 @@ MESSAGE_ID: Final = "Message-ID"
 
 
 class RememberingPolicy(EmailPolicy):
-    """Mails share header objects, which nothing changes: whoever sets a header anew puts another in its place."""
+    """Mails share header objects, which nothing changes: to set a header anew is to put another in its place."""
 
     def header_max_count(self, name: str) -> int | None:
         return _max_count(name)

@@ -16,7 +16,7 @@ log = structlog.get_logger(__name__)
 
 
 class Mailer(Protocol):
-    """What features see of the way out."""
+    """The way out, as features see it."""
 
     @property
     def at_once(self) -> int: ...
@@ -70,7 +70,7 @@ class SpoolMailer:
                     _end(written, problem)
         finally:
             self._writing = None
-            for _, written in batch:  # cut off: nobody shall wait for ever
+            for _, written in batch:  # cut off: no caller shall wait for ever
                 written.cancel()
 
     async def begin(self) -> None:
@@ -87,7 +87,7 @@ class SpoolMailer:
 
 
 def _end(written: asyncio.Future[None], problem: Exception | None) -> None:
-    if written.done():  # whoever wanted it waits no longer
+    if written.done():  # its caller waits no longer
         return
     if problem is None:
         written.set_result(None)
@@ -108,7 +108,7 @@ class SmtpMailer:
         await self.server.send(message_of(mail, self.sender))
 
     async def send_soon(self, mail: Mail) -> None:
-        # How long it takes must not tell whether somebody is known here, and a slow server keeps nobody waiting.
+        # How long it takes must not tell if an address is known here, and a slow server keeps no request waiting.
         await self.soon.send(mail)
 
     async def begin(self) -> None:

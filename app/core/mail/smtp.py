@@ -33,7 +33,7 @@ class NotMailed(Exception):
 
 @dataclass(frozen=True)
 class SmtpServer:
-    """How a mail server is reached. `tls` "none" is for one on this machine."""
+    """A mail server and the way to it. `tls` "none" is for one on this machine."""
 
     host: str
     port: int

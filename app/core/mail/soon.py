@@ -94,7 +94,8 @@ class SentSoon:
             _forget(file)
 
     async def _try_again_and_again(self, key: str, message: EmailMessage) -> bool:
-        """Whether it is sent or refused for good; else the service ends, and the next one goes on."""
+        """Send it, again and again; True: it is sent or refused for good; False: the service ends, and the next one
+        goes on."""
         for pause_s in pauses_s():
             is_last = await self._rest(pause_s)
             try:
@@ -107,7 +108,7 @@ class SentSoon:
         raise AssertionError("pauses have no end")
 
     async def _rest(self, pause_s: float) -> bool:
-        """Whether the service ends meanwhile."""
+        """Rest; True if the service ends meanwhile."""
         with suppress(TimeoutError):
             async with asyncio.timeout(pause_s):
                 await self._told_to_finish.wait()

@@ -15,7 +15,7 @@ from app.core.mail.message import Mail, message_of, name_of
 
 UNFINISHED: Final = re.compile(r"[A-Za-z0-9._-]+\.eml\.tmp")
 STALE_AFTER_S: Final = 3600.0
-"""Real seconds. A younger file may be one that somebody else is writing."""
+"""Real seconds. A younger file may be one that another process is writing."""
 
 Given = TypeVar("Given")
 Made = TypeVar("Made")
@@ -48,7 +48,7 @@ class Spool:
         return self.folder / f"{name_of(mail.key)}.eml"
 
     def files(self) -> Iterator[Path]:
-        """All mails that are written whole."""
+        """Return all mails that are written whole."""
         return self.folder.glob("*.eml")
 
     def send_all(self, mails: Sequence[Mail]) -> list[Exception | None]:

@@ -1,4 +1,4 @@
-"""What people are told, in their language: one catalogue per language, which the pages share (`web/texts`)."""
+"""Texts for people, in their language: one catalogue per language, which the pages share (`web/texts`)."""
 
 import json
 from collections.abc import Mapping
@@ -16,7 +16,7 @@ FOLDER: Final = ROOT / "web" / "texts"
 
 @cache
 def catalogue(language: str) -> Mapping[str, str]:
-    """All texts of a language; an unknown language reads English."""
+    """Return all texts of a language; an unknown language reads English."""
     name = language if language in LANGUAGES else "en"
     texts: dict[str, str] = json.loads((FOLDER / f"{name}.json").read_text(encoding="utf-8"))
     return texts

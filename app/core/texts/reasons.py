@@ -21,7 +21,7 @@ from app.core.texts import catalogue, text
 PREFIXES: Final = ("why.", "alarm.of.")
 NOT_RECOGNISED: Final = "why.in_english"
 OWN_CODE: Final = "why.own_code"
-"""For a code of a robot's own program: words that nobody has translated, but that look like no mistake of the page."""
+"""For a code of a robot's own program: words without a translation, that look like no mistake of the page."""
 CODE: Final = re.compile(r"[a-z][a-zA-Z0-9]*(?:_\w+|\(.*\)|_\w+\(.*\))")
 """An atom of a program, of several words, or a structure. A single word may be anybody's."""
 REASON: Final = "reason"
@@ -29,7 +29,7 @@ REASON: Final = "reason"
 
 
 class Words(BaseModel):
-    """A text of the catalogue and what fills its gaps: whoever has the catalogue can say it in any language."""
+    """A text of the catalogue and what fills its gaps: with the catalogue it can be said in any language."""
 
     key: str
     facts: dict[str, str]
@@ -55,7 +55,7 @@ def key_of_code(gap: str, fact: str) -> str | None:
 
 
 def in_language(language: str, sentence: str) -> str:
-    """The sentence for somebody who reads `language`; a code as a sentence of its own."""
+    """The sentence for a reader of `language`; a code as a sentence of its own."""
     words = words_of(sentence)
     if words is None:
         return text(language, NOT_RECOGNISED, {"sentence": sentence})
@@ -69,7 +69,7 @@ def in_words(language: str, facts: Mapping[str, str]) -> Mapping[str, str]:
 
 
 def _filling(language: str, gap: str, fact: str) -> str:
-    """What stands in a gap: a code in words, another sentence in the reader's language, or the fact itself."""
+    """Return the text of a gap: a code in words, another sentence in the reader's language, or the fact itself."""
     if key := key_of_code(gap, fact):
         return text(language, key).rstrip(".")
     if gap != REASON:

@@ -45,7 +45,8 @@ def day_and_time(language: str, at: datetime, now: datetime) -> str:
 
 
 def as_fact(at: datetime, zone: tzinfo | None) -> str:
-    """How a time lies in the facts of a notice, which is worded when it is read: with its zone's distance from UTC."""
+    """Return a time as the facts of a notice have it, which is worded when it is read: with its zone's distance from
+    UTC."""
     return at.astimezone(zone).isoformat(timespec="minutes")
 
 

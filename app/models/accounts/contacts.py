@@ -1,4 +1,4 @@
-"""The address book: whom somebody has saved. Those they exchanged mail with are found among the orders."""
+"""The address book: people that a person has saved. Those they exchanged mail with are found among the orders."""
 
 from datetime import datetime
 

@@ -1,4 +1,4 @@
-"""Who somebody is at the campus's own sign-in (OpenID Connect)."""
+"""Identities at the campus's own sign-in (OpenID Connect)."""
 
 from datetime import datetime
 

@@ -1,4 +1,4 @@
-"""Whoever sends, receives, dispatches or maintains; also somebody who has only been sent something."""
+"""People who send, receive, dispatch or maintain; also those who have only been sent something."""
 
 from datetime import datetime
 from enum import StrEnum
@@ -10,7 +10,7 @@ from app.models.columns import UtcTime
 
 
 class Role(StrEnum):
-    """What somebody may do beyond their own orders."""
+    """Roles: permissions beyond a person's own orders."""
 
     MEMBER = "member"
     DISPATCHER = "dispatcher"

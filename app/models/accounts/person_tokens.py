@@ -1,4 +1,4 @@
-"""What people's scripts sign in with."""
+"""Tokens with which people's scripts sign in."""
 
 from datetime import datetime
 

@@ -1,4 +1,4 @@
-"""Who is signed in where: the cookie's secret is known here by its hash alone."""
+"""Sessions of browsers: the cookie's secret is known here by its hash alone."""
 
 from datetime import datetime
 

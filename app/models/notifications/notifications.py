@@ -1,4 +1,4 @@
-"""What people are told: each thing once per person, however often it is reported."""
+"""Notifications: each thing once per person, however often it is reported."""
 
 from datetime import datetime
 from enum import StrEnum
@@ -38,7 +38,7 @@ class NoticeKind(StrEnum):
 class Notice(SQLModel, table=True):
     """`facts` fill the text's gaps (post titles, names, the window); a hand-over code is never among them.
 
-    `key` names the thing that is told: the order, the kind and, for what may happen again after somebody had to see to
+    `key` names the thing that is told: the order, the kind and, for what may happen again after a person had to see to
     it, the round. An alarm has no order. `routed_at` is null until the channels have it (`outbox`) and its reader's
     open pages.
     """

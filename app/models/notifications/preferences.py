@@ -1,4 +1,4 @@
-"""What people want to be told, and where: what they muted, the devices they named, the address of a program."""
+"""Preferences of people: what they muted, the devices they named, the address of a program."""
 
 from datetime import datetime
 
@@ -9,7 +9,7 @@ from app.models.columns import UtcTime
 
 
 class NoticeWishes(SQLModel, table=True):
-    """`muted` has the kinds that somebody does not want on a channel; what it does not name is at its default.
+    """`muted` has the kinds that a person does not want on a channel; what it does not name is at its default.
 
     Who has no row has changed nothing.
     """

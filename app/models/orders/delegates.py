@@ -1,4 +1,4 @@
-"""Whoever may hand over instead of the sender or the recipient, and digits that were mistyped too often."""
+"""Delegates, who may hand over instead of the sender or the recipient, and digits that were mistyped too often."""
 
 from datetime import datetime
 

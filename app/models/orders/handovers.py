@@ -10,7 +10,7 @@ from app.models.columns import UtcTime
 
 
 class Evidence(StrEnum):
-    """What a hand-over goes by, from a code that was proved to be shown down to nothing but the robot's word."""
+    """The evidence of a hand-over, from a code that was proved to be shown down to nothing but the robot's word."""
 
     PROOF = "proof"
     TAP = "tap"
@@ -23,14 +23,14 @@ class Evidence(StrEnum):
 
 
 class Settled(StrEnum):
-    """What was found of a hand-over that was only claimed."""
+    """The finding of a hand-over that was only claimed."""
 
     TRUE = "true"
     FALSE = "false"
 
 
 class Handover(SQLModel, table=True):
-    """One receipt. `purpose` is load, receive or return; `code_sha256` is None if nobody was identified.
+    """One receipt. `purpose` is load, receive or return; `code_sha256` is None if no person was identified.
 
     `how`: code, tap, digits or button by a receipt; `dispatcher` if a person fetched the mail by hand. `holder` says
     whose code it was (one of `app.orders.custody.codes.Holder`), `person_id` and `delegate_id` who that is,

@@ -11,7 +11,7 @@ from app.models.orders.orders import OrderState
 
 
 class EventsAreAppendOnly(RuntimeError):
-    """Somebody tried to change or delete what has happened: write a new event instead."""
+    """An event of the past was to be changed or deleted: write a new event instead."""
 
 
 MOVED: Final = "moved"

@@ -1,4 +1,4 @@
-"""Links to one order, for somebody who has no account: mailed, and known here by their hash alone."""
+"""Links to one order, for a person without an account: mailed, and known here by their hash alone."""
 
 from datetime import datetime
 

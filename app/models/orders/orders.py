@@ -29,7 +29,7 @@ class OrderState(StrEnum):
 
 
 class Priority(StrEnum):
-    """How much sooner than others an order is fetched."""
+    """Priorities: how much sooner than others an order is fetched."""
 
     LOW = "low"
     NORMAL = "normal"
@@ -42,7 +42,7 @@ class Order(SQLModel, table=True):
     Dispatch leaves it alone until `not_before`. `placed_by_id` is who placed it for the sender. `return_post` is where
     mail that was not taken goes, `wait_until` how long the robot waits at the present stop. `…_requested_at` are wishes
     that take effect on the robot's word; `let_go_by` is a robot that is still to be told to drop this order.
-    `occurs_on` is the day of its standing order (local, as 2026-01-05). `passed_on_at_post` is where somebody of the
+    `occurs_on` is the day of its standing order (local, as 2026-01-05). `passed_on_at_post` is where staff of the
     mailroom has the mail in hand for its next leg with another robot.
     `window_…` is the arrival that was promised, `expected_…` the one expected now, worked out at `estimated_at`; they
     are null while no time is known.
@@ -90,7 +90,7 @@ class Order(SQLModel, table=True):
 
     @property
     def is_passed_on(self) -> bool:
-        """One robot has carried it, somebody has taken it out, and another carries it further."""
+        """One robot has carried it, a person has taken it out, and another robot carries it further."""
         return self.passed_on_at_post is not None
 
     @property

@@ -1,4 +1,4 @@
-"""What robots told of their batteries over time."""
+"""Battery samples of robots over time."""
 
 from datetime import datetime
 

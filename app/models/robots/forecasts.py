@@ -1,4 +1,4 @@
-"""What was learned of how long things take, and what people were told of their orders' arrivals."""
+"""Durations that were learned, and promised arrivals of orders."""
 
 from datetime import datetime
 
@@ -8,7 +8,7 @@ from app.models.columns import UtcTime
 
 
 class DurationRow(SQLModel, table=True):
-    """How long one thing has taken (`fleet.eta.durations.Thing`), beside what map and settings assume of it."""
+    """One duration (`fleet.eta.durations.Thing`), beside what map and settings assume of it."""
 
     __tablename__ = "durations"
 
@@ -35,12 +35,12 @@ class Quantiles(SQLModel):
 
 
 class ForecastRow(Quantiles, table=True):
-    """What was told of an order when it was placed, in seconds since `begins_at`, and when its robot came. `fetch_…`
+    """The promise of an order when it was placed, in seconds since `begins_at`, and when its robot came. `fetch_…`
     names the wait that it began with."""
 
     __tablename__ = "forecasts"
 
-    # No reference: what it says of estimates outlives the order, and is about nobody.
+    # No reference: what it says of estimates outlives the order, and is about no person.
     order_id: str = Field(primary_key=True, max_length=64)
     begins_at: datetime = Field(sa_type=UtcTime, index=True)
     fetch_name: str = Field(max_length=130)
@@ -49,7 +49,7 @@ class ForecastRow(Quantiles, table=True):
 
 
 class ForecastUnderWayRow(Quantiles, table=True):
-    """What was told of an order that a robot has, in seconds since `told_at`, and when the robot came: the first that
+    """The promise of an order that a robot has, in seconds since `told_at`, and when the robot came: the first that
     was told, and the first after the mail was loaded."""
 
     __tablename__ = "forecasts_under_way"

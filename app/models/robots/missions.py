@@ -1,4 +1,4 @@
-"""What each robot is to do: a mission is an ordered list of stops."""
+"""Missions: ordered lists of stops."""
 
 from datetime import datetime
 from enum import StrEnum

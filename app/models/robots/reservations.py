@@ -1,4 +1,4 @@
-"""Who asked to enter which corridor, and who may: no time-out ever frees one."""
+"""Reservation requests for corridors, and grants: no time-out ever frees one."""
 
 from datetime import datetime
 from typing import Any

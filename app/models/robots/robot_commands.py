@@ -1,4 +1,4 @@
-"""What robots were told to do by people and by the service, and what they answered."""
+"""Commands of people and of the service to robots, and the answers."""
 
 from datetime import datetime
 

@@ -1,4 +1,4 @@
-"""What robots have said and what they are to be told: numbered both ways, so that nothing is lost or done twice."""
+"""Messages from and to robots: numbered both ways, so that nothing is lost or done twice."""
 
 from datetime import datetime
 from typing import Any

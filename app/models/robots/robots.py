@@ -12,7 +12,7 @@ from app.models.columns import UtcTime
 class RobotRow(SQLModel, table=True):
     """`server_journal` is the journal of what the server sends to this robot, `last_seq` its highest number so far.
 
-    `online` says that its socket is open now; every start of the service begins with nobody online. `public_key`
+    `online` says that its socket is open now; every start of the service begins with no robot online. `public_key`
     (Ed25519, base64) is what its receipts are signed with; None: enrolled without one. `clock_off_s` is how far its
     clock was ahead at its last hello, or when it was seen to have been set since. `home` and `docked` as it says;
     None: it has not said. `waits_for`: the corridor it wishes to enter, for which robots, until about when.
