@@ -1,4 +1,4 @@
-"""The address book: those somebody exchanged mail with, newest first, and those they saved."""
+"""The address book: people that a person exchanged mail with, newest first, and those they saved."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ SAVED: Final = "saved"
 
 @dataclass(frozen=True)
 class Known:
-    """Somebody that a person knows: `person` if they are known here, `saved` if they are in the book."""
+    """A contact of a person: `person` if they are known here, `saved` if they are in the book."""
 
     email: str
     person: Person | None
@@ -97,7 +97,7 @@ async def _saved(session: AsyncSession, person_id: str, search: str, place: Sequ
 async def save_contact(
     session: AsyncSession, person_id: str, email: str, label: str, post: str | None, now: datetime
 ) -> Known:
-    """Put somebody into the book, or change what it says of them."""
+    """Put a contact into the book, or change what it says of them."""
     row = await session.get(Contact, (person_id, email))
     row = row or Contact(person_id=person_id, email=email, saved_at=now)
     row.label, row.post = label, post
@@ -107,7 +107,7 @@ async def save_contact(
 
 
 async def forget_contact(session: AsyncSession, person_id: str, email: str) -> None:
-    """Take somebody out of the book; mail that was exchanged stays known. Raises UnknownContact."""
+    """Take a contact out of the book; mail that was exchanged stays known. Raises UnknownContact."""
     row = await session.get(Contact, (person_id, email))
     if row is None:
         raise UnknownContact(f"{email} is not in your address book.")

@@ -1,4 +1,4 @@
-"""Who asks, as an argument: `async def my_route(user: CurrentUser)`.
+"""The caller, as an argument: `async def my_route(user: CurrentUser)`.
 
 `CurrentUser`: a person at a browser (cookie) or one of their scripts (token), each as far as they may.
 `Dispatcher`, `Maintainer`: the same, with that role. `AtBrowser`: at a browser, because no script may do this.
@@ -42,7 +42,7 @@ _token_documented = HTTPBearer(
 
 @dataclass(frozen=True)
 class Caller:
-    """Who asks. `session_id` is the browser's session; a script has `scopes` instead."""
+    """The caller of a request. `session_id` is the browser's session; a script has `scopes` instead."""
 
     person: Person
     session_id: int | None = None
@@ -125,7 +125,7 @@ async def _at_browser(caller: CallerDep, session_id: Annotated[int, Depends(_ses
 
 
 async def _still_signed_in(request: Request, database: DatabaseDep, clock: ClockDep) -> StillSignedIn:
-    """Whether the session or token of this request goes on, and with it what its person may see."""
+    """Tell if the session or token of this request goes on, and with it what its person may see."""
 
     async def ask(user: Person) -> bool:
         try:

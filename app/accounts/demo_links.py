@@ -34,7 +34,7 @@ class NoSuchLink(NotFound):
 
 
 def link_path(key: ServerKey, email: str, page: Page) -> str:
-    """What follows the service's address in the link that opens `page` as the person with this address."""
+    """Return the path and query of the link that opens `page` as the person with this address."""
     return f"/demo/{page}?who={email}&key={_proof(key, email)}"
 
 

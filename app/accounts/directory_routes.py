@@ -37,11 +37,11 @@ async def find_people(
 
 @router.put("/people/{person_id}/roles/{role}", responses=problems(UnknownPerson, RoleNeeded))
 async def give_role(person_id: PersonId, role: Role, user: Maintainer, session: SessionDep) -> PersonView:
-    """Give somebody a role."""
+    """Give a person a role."""
     return PersonView.of(await change_role(session, person_id, role, give=True, by=user))
 
 
 @router.delete("/people/{person_id}/roles/{role}", responses=problems(UnknownPerson, LastMaintainer, RoleNeeded))
 async def take_role(person_id: PersonId, role: Role, user: Maintainer, session: SessionDep) -> PersonView:
-    """Take a role from somebody; everybody stays a member."""
+    """Take a role from a person; everybody stays a member."""
     return PersonView.of(await change_role(session, person_id, role, give=False, by=user))

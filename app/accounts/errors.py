@@ -1,4 +1,4 @@
-"""What can be wrong with who somebody says they are, and with what they want to change about people.
+"""Errors of sign-in, and of changes to people.
 
 Unprocessable ├── AddressNotAllowed
               └── NoSuchPost
@@ -51,13 +51,13 @@ class LinkRefused(NotSignedIn):
 
 
 class WrongState(NotSignedIn):
-    """Somebody came back from the provider who was not sent there by this browser, or too long ago."""
+    """A browser came back from the provider that was not sent there by us, or too long ago."""
 
     code = "wrong_state"
 
 
 class OidcRefused(NotSignedIn):
-    """The provider did not let somebody in, or did not take the code that they came back with."""
+    """The provider did not let a person in, or did not take the code that they came back with."""
 
     code = "oidc_refused"
 
@@ -136,7 +136,7 @@ class UnknownToken(NotFound):
 
 
 class UnknownPerson(NotFound):
-    """Nobody has this id."""
+    """No person has this id."""
 
     code = "unknown_person"
 
@@ -148,6 +148,6 @@ class UnknownContact(NotFound):
 
 
 class LastMaintainer(Conflict):
-    """Somebody must be able to give roles."""
+    """The last maintainer stays one, so that roles can be given."""
 
     code = "last_maintainer"

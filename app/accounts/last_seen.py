@@ -22,7 +22,7 @@ from app.models import PersonSession, PersonToken
 WRITE_EVERY_S: Final = 1.0
 LOOK_AGAIN_S: Final = 60.0
 WAIT_S: Final = 1.0
-"""Real seconds that it waits for whoever has the database: others want to write more urgently."""
+"""Real seconds that it waits for the holder of the database: others want to write more urgently."""
 
 log = structlog.get_logger(__name__)
 
@@ -59,7 +59,7 @@ class LastSeen:
             await self._write()
 
     async def _write(self) -> None:
-        """What cannot be written now is noted again by the next request that comes with it."""
+        """Write; what cannot be written now is noted again by the next request that comes with it."""
         sessions, self._sessions = self._sessions, {}
         tokens, self._tokens = self._tokens, {}
         if not sessions and not tokens:

@@ -1,4 +1,5 @@
-"""Links in mails, for recipients without account and for delegates: one opens one order, for whoever it was mailed to.
+"""Links in mails, for recipients without account and for delegates: one opens one order, for the person it was mailed
+to.
 
 The token stands in the URL's fragment, which no browser sends and no proxy sees; the page sends it in a body. It
 derives from the server key and the row's nonce, so that a mail that is written again holds the same link.
@@ -29,7 +30,7 @@ LINK_LIFETIME_S: Final = 14 * 86400.0
 
 @dataclass(frozen=True)
 class Guest:
-    """Somebody who came by a link: themselves without any role, for one order. `is_delegate`: not its recipient."""
+    """A person who came by a link: themselves without any role, for one order. `is_delegate`: not its recipient."""
 
     person: Person
     order_id: str
@@ -60,7 +61,7 @@ class Links:
         not_before, nonce, expires_at = found
         now = self.clock.utc()
         if nonce is None or expires_at <= now:
-            # Like the codes: whoever is named for an order that was left for later comes then.
+            # Like the codes: a delegate of an order that was left for later comes then.
             ends_at = max(now, not_before or now) + timedelta(seconds=LINK_LIFETIME_S)
             nonce = await self._make_good(person, order_id, ends_at)
         return f"{self.settings.public_url.rstrip('/')}/{PAGE}#{self._token(nonce, order_id, person.id)}"
@@ -90,7 +91,7 @@ class Links:
         return base64.urlsafe_b64encode(secret).decode().rstrip("=")
 
     async def open(self, session: AsyncSession, token: str) -> Guest:
-        """Who comes by this link, and for which order. Raises LinkRefused."""
+        """Return the guest of this link and their order. Raises LinkRefused."""
         wanted = select(OrderLink, Person).where(
             OrderLink.token_hash == hash_of(token), OrderLink.person_id == Person.id
         )
@@ -101,8 +102,8 @@ class Links:
         order = await session.get_one(Order, row.order_id)
         is_delegate = order.recipient_id != person.id
         if is_delegate and not await _is_named(session, person, order.id):
-            raise LinkRefused("Whoever named you for this order has taken that back.")
-        # A copy: whoever is a dispatcher too is only the recipient here, or a delegate.
+            raise LinkRefused("The person who named you for this order has taken that back.")
+        # A copy: a dispatcher too is only the recipient here, or a delegate.
         return Guest(Person(**{**person.model_dump(), "roles": []}), order.id, is_delegate)
 
 
@@ -138,4 +139,4 @@ _IN_NEED_OF_A_LINK: Final = (
         ),
     )
 )
-"""Nothing for whoever signs in, nor for whom the order does not concern."""
+"""Nothing for a person who signs in, nor for one whom the order does not concern."""

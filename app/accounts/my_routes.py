@@ -1,4 +1,4 @@
-"""What a person sees and changes of their own: name and language, sessions, tokens of scripts."""
+"""A person's own data over HTTP: name and language, sessions, tokens of scripts."""
 
 from datetime import timedelta
 from typing import Annotated
@@ -92,7 +92,7 @@ async def my_contacts(
 async def keep_contact(
     *, email: ContactEmail, wish: ContactWish, user: AtBrowser, session: SessionDep, campus: CampusDep, clock: ClockDep
 ) -> ContactView:
-    """Save somebody with a label and a post, or change them."""
+    """Save a contact with a label and a post, or change them."""
     _require_post(campus, wish.post)
     return ContactView.of(await save_contact(session, user.id, email, wish.label, wish.post, clock.utc()))
 

@@ -1,4 +1,4 @@
-"""How often somebody may knock at a door: counted in memory, per person or per address they come from.
+"""Rate limits: counted in memory, per person or per network address.
 
 The library counts in the machine's own time, also under a scaled clock: knocking is real. It keeps two numbers for
 each knocker, of this window and of the one before, which counts less the longer ago it was.
@@ -25,12 +25,12 @@ from app.core.settings import Settings
 from app.models import Person
 
 HOME_BITS: Final = 64
-"""Whoever has one IPv6 address has a whole network of them."""
+"""The holder of one IPv6 address has a whole network of them."""
 STREAM_PAUSE_S: Final = 10
 
 
 class Door(StrEnum):
-    """What is counted by itself; `rate_limits` in the settings says how much is too much."""
+    """The things that are counted by themselves; `rate_limits` in the settings says how much is too much."""
 
     CODES = "sign_in_codes_per_address"
     CODES_OF_HOST = "sign_in_codes_per_host"
@@ -61,7 +61,7 @@ class RateLimits:
         raise _too_often("Too often.", max(1, round(reset_at_s - time.time())))
 
     def open_stream(self, person_id: str) -> None:
-        """Raises TooManyRequests. Whoever gets in leaves by `close_stream`."""
+        """Raises TooManyRequests. A stream that was let in leaves by `close_stream`."""
         if self._open_streams[person_id] >= self._streams:
             raise _too_often(f"You have {self._streams} event streams open already.", STREAM_PAUSE_S)
         self._open_streams[person_id] += 1
@@ -113,7 +113,7 @@ def per_person_at_browser(door: Door) -> Any:
 
 
 def per_host(door: Door) -> Any:
-    """For `dependencies=`: counts the address at this door, whoever it is."""
+    """For `dependencies=`: counts the address at this door, for any caller."""
 
     async def counted(request: Request) -> None:
         await find_part(request, RateLimits).count(door, host_of(request))

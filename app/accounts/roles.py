@@ -1,4 +1,4 @@
-"""Who has which role. The last maintainer stays: somebody must be able to give roles."""
+"""Roles of people. The last maintainer stays: roles can only be given by one."""
 
 import structlog
 from sqlalchemy import String, cast
@@ -13,13 +13,13 @@ log = structlog.get_logger(__name__)
 
 
 async def change_role(session: AsyncSession, person_id: str, role: Role, *, give: bool, by: Person) -> Person:
-    """Give somebody a role or take it. Raises UnknownPerson, LastMaintainer."""
+    """Give a person a role or take it. Raises UnknownPerson, LastMaintainer."""
     maintainers = await _maintainers(session)
     person = await session.get(Person, person_id)
     if person is None:
-        raise UnknownPerson(f"Nobody has the id {person_id}.")
+        raise UnknownPerson(f"No person has the id {person_id}.")
     if not give and role is Role.MAINTAINER and maintainers == {person_id}:
-        raise LastMaintainer(f"{person.name} is the last maintainer. Make somebody else one first.")
+        raise LastMaintainer(f"{person.name} is the last maintainer. Make another person one first.")
     if person.has_role(role) is not give:
         set_roles(person, {role} if give else set(), set() if give else {role})
         log.info("role changed", person=person.id, role=str(role), given=give, by=by.id)

@@ -1,4 +1,4 @@
-"""What is said about people over HTTP."""
+"""People over HTTP."""
 
 import re
 from datetime import datetime
@@ -42,7 +42,7 @@ class SignIn(BaseModel):
 
 
 class PersonView(BaseModel):
-    """A person: oneself, or somebody of the campus as dispatchers and maintainers see them."""
+    """A person: oneself, or a person of the campus as dispatchers and maintainers see them."""
 
     id: str
     email: str
@@ -67,13 +67,13 @@ class PeoplePage(PageOf[PersonView]):
 
 
 def _without_defaults(schema: dict[str, Any]) -> None:
-    """What is absent is not changed, so that no default is meant."""
+    """Take out the defaults: what is absent is not changed."""
     for kind in schema["properties"].values():
         kind.pop("default", None)
 
 
 class AboutMe(BaseModel):
-    """What somebody may change about themselves; what is absent stays as it is."""
+    """Changes of one's own account; what is absent stays as it is."""
 
     model_config = ConfigDict(extra="forbid", json_schema_extra=_without_defaults)
 
@@ -83,7 +83,7 @@ class AboutMe(BaseModel):
 
 
 class SessionView(BaseModel):
-    """Where somebody is signed in; `seen_at` is some minutes behind."""
+    """A session of a person; `seen_at` is some minutes behind."""
 
     id: int
     device: str = Field(description="Browser and system in words, such as `Firefox, Windows`; empty if unknown.")
@@ -137,7 +137,7 @@ class TokenPage(PageOf[TokenView]):
 
 
 class ContactWish(BaseModel):
-    """What the address book is to say of somebody."""
+    """The entry that the address book is to have of a contact."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -146,7 +146,7 @@ class ContactWish(BaseModel):
 
 
 class ContactView(BaseModel):
-    """Somebody one knows. `post` is the saved one, else the one they call their usual post."""
+    """A contact. `post` is the saved one, else the one they call their usual post."""
 
     email: str
     name: str

@@ -1,4 +1,4 @@
-"""What a script's token may be used for. A route that is in no row here takes no token at all."""
+"""Scopes of scripts' tokens. A route that is in no row here takes no token at all."""
 
 from collections.abc import Iterable, Mapping
 from enum import StrEnum
@@ -49,6 +49,6 @@ def opened_by(tags: Iterable[str], method: str) -> frozenset[Scope]:
 
 
 def narrowed(roles: Iterable[str], scopes: Iterable[str]) -> list[str]:
-    """The roles that are left to somebody who comes with a token of these scopes."""
+    """The roles that are left to a person who comes with a token of these scopes."""
     held = set(scopes)
     return [role for role in roles if role == Role.MEMBER or NEEDED_FOR_ROLE[Role(role)] in held]

@@ -1,4 +1,4 @@
-"""What somebody types into a search field."""
+"""Search fields: text as people type it."""
 
 from typing import Annotated, Any
 
@@ -6,12 +6,12 @@ from pydantic import StringConstraints
 from sqlalchemy import ColumnElement, or_
 from sqlmodel import col
 
-# PostgreSQL takes no zero byte. Marks that nobody sees may be pasted along: then nothing is found.
+# PostgreSQL takes no zero byte. Invisible marks may be pasted along: then nothing is found.
 SearchText = Annotated[str, StringConstraints(max_length=100, pattern=r"^[^\x00]*$")]
 
 
 def says(search: str, *columns: Any) -> ColumnElement[bool]:
-    """Whether one of these columns holds this text, in capitals or not."""
+    """Return the condition that one of these columns holds this text, in capitals or not."""
     return or_(*(col(column).icontains(one, autoescape=True) for column in columns for one in _spellings(search)))
 
 

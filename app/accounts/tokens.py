@@ -26,13 +26,13 @@ class Script:
 
 
 async def find_script(session: AsyncSession, authorization: str, now: datetime) -> Script | None:
-    """Who comes with this Authorization header; None if the token is refused."""
+    """Return the script of this Authorization header; None if the token is refused."""
     shown = read_token(KIND, authorization)
     row = await session.get(PersonToken, shown.prefix) if shown else None
     if shown is None or row is None or row.revoked_at or row.expires_at <= now or not shown.fits(row.secret_hash):
         return None
     person = await session.get_one(Person, row.person_id)
-    # A copy: nobody's roles in the database are narrowed by what a script may do.
+    # A copy: roles in the database are not narrowed by what a script may do.
     return Script(Person(**{**person.model_dump(), "roles": narrowed(person.roles, row.scopes)}), row)
 
 
@@ -56,7 +56,7 @@ async def issue_token(
 
 
 def good_tokens(person_id: str, now: datetime) -> SelectOfScalar[PersonToken]:
-    """The tokens of somebody that still open something."""
+    """The tokens of a person that still open something."""
     return select(PersonToken).where(
         PersonToken.person_id == person_id, col(PersonToken.revoked_at).is_(None), PersonToken.expires_at > now
     )

@@ -1,4 +1,4 @@
-"""How many notices a person has not read."""
+"""The number of unread notices."""
 
 from sqlalchemy import func
 from sqlmodel import col, select
@@ -8,6 +8,6 @@ from app.models import Notice
 
 
 async def unread_notices(session: AsyncSession, person_id: str) -> int:
-    """All of them, whatever page of the inbox they are on."""
+    """Count them all, whatever page of the inbox they are on."""
     unread = select(func.count()).where(Notice.person_id == person_id, col(Notice.read_at).is_(None))
     return (await session.exec(unread)).one()

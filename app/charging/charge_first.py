@@ -1,7 +1,7 @@
 """Before each leg: a robot that has not the charge for it is sent to a dock first, while it still comes to one.
 
 Work was given to it because its charge was enough as far as anybody could tell. Then it stood in a corridor, or was led
-another way. Its own battery plan would break off later, and take it to the nearest dock, whoever stands there.
+another way. Its own battery plan would break off later, and take it to the nearest dock, occupied or not.
 """
 
 from collections.abc import Sequence
@@ -34,7 +34,7 @@ class ChargeFirst:
     fleet: Fleet
 
     async def sends(self, session: AsyncSession, robot: RobotRow, claim: ClaimRow, legs: Sequence[Leg]) -> bool:
-        """Whether the robot goes to a dock instead: then its claim is answered by that."""
+        """Tell if the robot goes to a dock instead: then its reservation request is answered by that."""
         charges = Charges(self.fleet.orders.ways, self.fleet.settings, self.fleet.spending.rates)
         way = (legs[0].from_post, *(leg.to_post for leg in legs))
         if charges.goes_on(robot, way) or not self.fleet.connections.understands(robot.name, UNTIL_RATIO):

@@ -15,7 +15,7 @@ from maps.ways import Ways
 
 
 def driving_there(needs: Iterable[Need]) -> dict[str, str]:
-    """Which dock each robot comes to whose own battery plan has taken over: the nearest, whoever stands there."""
+    """The dock that each robot comes to whose own battery plan has taken over: the nearest, occupied or not."""
     low = (need for need in needs if need.dock is None and need.charge.ratio < THRESHOLDS.low and need.ways)
     return {need.robot: min(need.ways, key=lambda dock: (need.ways[dock].way_m, dock)) for need in low}
 
@@ -33,8 +33,8 @@ def leaving(moves: Iterable[Move], needs: Mapping[str, Need], resting: Mapping[s
 
 
 def parking(campus: CampusMap, work: OpenWork, robot: RobotNow, ways: Ways) -> str | None:
-    """The nearest post without a dock where it stands in nobody's way: a bay stays free beside it, or no way leads on.
-    None if there is none. Nobody leads a robot aside that asks for no way."""
+    """The nearest post without a dock where it blocks no robot: a bay stays free beside it, or no way leads on.
+    None if there is none. A robot is led aside only if it asks for a way."""
     taken = [post for one in work.robots.values() if one.name != robot.name for post in _posts_of(one, work)]
     way_m = {
         post.name: ways.length_m(robot.post, post.name)

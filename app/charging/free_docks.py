@@ -1,4 +1,4 @@
-"""Which docks are free: nobody stands in them or is on his way there, and they are no other robot's own."""
+"""Free docks: no robot stands in them or is on its way there, and they are no other robot's own."""
 
 from typing import Final
 

@@ -1,8 +1,8 @@
 """Sends robots that have nothing to do and no dock of their own to a dock, and calls them away again for work.
 
 Who goes where is decided in `fleet.charging`. Here is one look at the database, and one transaction for each robot that
-is sent. Nobody is sent to a dock that is taken: somebody stands in it or is on his way to it, or it is a robot's own.
-Whoever could leave one is sent to park (`dock_room`).
+is sent. No robot is sent to an occupied dock: another stands in it or is on its way to it, or it is a robot's own.
+A robot that could leave one is sent to park (`dock_room`).
 """
 
 from collections import Counter
@@ -36,7 +36,7 @@ from protocol.parts import StopAction
 LOOK_EVERY_S: Final = 5.0
 """Real seconds: charges change slowly."""
 REST_S: Final = 0.5
-"""Real seconds, between two looks: whoever is called away has a way to drive."""
+"""Real seconds, between two polls: a robot that is called away has a way to drive."""
 LEARNED_FROM: Final = timedelta(days=28)
 _HOUR: Final = timedelta(hours=1)
 

@@ -1,4 +1,4 @@
-"""Whether a robot has the charge for what it is to do: the map and the settings, put to `fleet.charging`.
+"""Charge limits of robots for their work: the map and the settings, put to `fleet.charging`.
 
 What a robot is refused for must be something that will change by itself: those with a home charge there whenever they
 have nothing to do, others are sent to a dock (`charge_desk`).
@@ -28,8 +28,8 @@ LEAVES_DOCK: Final = THRESHOLDS.begin + THRESHOLDS.hysteresis
 
 
 class Charged(Protocol):
-    """What counts of a robot here. `home`: a post where it charges when it has nothing to do; `docked`: None if it does
-    not tell."""
+    """The facts about a robot that count here. `home`: a post where it charges when it has nothing to do; `docked`:
+    None if it does not tell."""
 
     @property
     def name(self) -> str: ...
@@ -67,7 +67,7 @@ class Charges:
         return verdict.is_accepted
 
     def verdict(self, robot: IdleRobot, ratio: float, order: WaitingOrder) -> Verdict:
-        """Ways that nobody knows cost nothing: they are not what keeps a robot from work."""
+        """Unknown ways cost nothing: they are not what keeps a robot from work."""
         charge = Charge(ratio, self.rates.get(robot.name, self._assumed), docked=bool(robot.docked or robot.charging))
         way_m = self._length_m(robot.post, order.from_post) + self._length_m(order.from_post, order.to_post)
         work, to_dock = self._use(way_m, handovers=2), self._use(self._to_dock_m(order.to_post))
@@ -88,7 +88,7 @@ class Charges:
         return low_s
 
     def goes_on(self, robot: Charged, way: Sequence[str]) -> bool:
-        """Whether it has the charge for these corridors, from post to post, and to a dock after them."""
+        """Tell if it has the charge for these corridors, from post to post, and to a dock after them."""
         ratio, rates = robot.battery_ratio, self.rates.get(robot.name, self._assumed)
         if ratio is None or robot.docked or ratio >= THRESHOLDS.full - THRESHOLDS.hysteresis:
             return True  # there is no more to be had, or nothing known
@@ -111,7 +111,7 @@ class Charges:
         return nearest(Need(robot.name, Charge(ratio, rates), 0.0, uses), list(uses), THRESHOLDS)
 
     def goes_beyond(self, robot: Charged) -> bool:
-        """Whether it is as full as it gets, so that it may be given what is more than one charge."""
+        """Tell if it is as full as it gets, so that it may be given what is more than one charge."""
         ratio = robot.battery_ratio or 0.0
         return ratio >= THRESHOLDS.full or (ratio >= THRESHOLDS.begin and not self._will_charge(robot))
 

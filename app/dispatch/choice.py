@@ -62,7 +62,7 @@ class Assignment:
 
 
 def counts_since(created_at: datetime, priority: Priority) -> datetime:
-    """Since when an order counts as waiting: so the important go first, and nobody waits for ever."""
+    """Since when an order counts as waiting: so the important go first, and none waits for ever."""
     return created_at - timedelta(seconds=HEAD_STARTS[priority] * HEAD_START_S)
 
 
@@ -73,7 +73,7 @@ MayTake = Callable[[IdleRobot, WaitingOrder], bool]
 def choose_robots(
     waiting: Iterable[WaitingOrder], robots: Sequence[IdleRobot], ways: Ways, may_take: MayTake = lambda *_: True
 ) -> list[Assignment]:
-    """Who fetches what: the first of `waiting` (longest first) chooses first, the nearest of those who may."""
+    """Assign robots to orders: the first of `waiting` (longest first) chooses first, the nearest of those who may."""
     free: defaultdict[str | None, list[IdleRobot]] = defaultdict(list)
     for robot in sorted(filter(has_enough_charge, robots), key=_name):
         free[robot.post].append(robot)
@@ -104,7 +104,7 @@ def _name(robot: IdleRobot) -> str:
 
 
 def has_enough_charge(robot: IdleRobot) -> bool:
-    """Whether a robot may be given work; one that has not said how full it is may not."""
+    """Tell if a robot may be given work; one that has not said how full it is may not."""
     return robot.battery_ratio is not None and robot.battery_ratio >= ENOUGH_CHARGE
 
 
@@ -127,6 +127,6 @@ NOT_ENOUGH_FOR_IT: Final = "No free robot has enough charge for this way yet."
 
 
 def lacks_charge(order: WaitingOrder, robots: Sequence[IdleRobot], may_take: MayTake) -> bool:
-    """Whether it is for that alone that no free robot fetches this order, though some could work."""
+    """Tell if it is for that alone that no free robot fetches this order, though some could work."""
     able = [robot for robot in robots if has_enough_charge(robot) and order.may_go_with(robot.name)]
     return bool(able) and not any(may_take(robot, order) for robot in able)

@@ -2,7 +2,7 @@
 they wait: both go to pages together. The forecast of the timetable is put right by what came of earlier ones; what is
 told first of an order, and first after its mail was loaded, is kept to learn from.
 
-What people were promised is kept beside it and is not made later here: whoever comes after that is late, and the timer
+The promised window is kept beside it and is not made later here: a robot that comes after that is late, and the timer
 tells of it.
 """
 
@@ -194,7 +194,7 @@ def interval_from(forecast: Interval, now: datetime) -> Expected:
 
 
 def is_otherwise(before: Expected | None, expected: Expected | None, now: datetime) -> bool:
-    """Whether people should hear of it: known at last, no longer known, soon over, or by enough otherwise."""
+    """Tell if people should hear of it: known at last, no longer known, soon over, or by enough otherwise."""
     if before is None or expected is None:
         return before is not expected
     enough = min(NEWS, max(SHORTEST, SHARE * (expected[1] - now)))

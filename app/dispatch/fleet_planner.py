@@ -1,4 +1,4 @@
-"""Who fetches what where traffic goes by the timetable: decided at once for all robots, then improved.
+"""Assignment by the schedule: decided at once for all robots, then improved.
 
 look → decide → write → tell the timetable
 look → decide → improve, in a process of its own → write, if it still holds → tell the timetable
@@ -147,7 +147,7 @@ class FleetPlanner:
 
 
 def _has_not_seen(timetable: Timetable | None, work: OpenWork) -> bool:
-    """Whether a robot has come that the timetable knows from its next look on, which wakes dispatch: that none can be
+    """Tell if a robot has come that the schedule knows from its next poll on, which wakes dispatch: that none can be
     planned for is not so before."""
     return timetable is not None and any(
         robot.is_there for name, robot in work.robots.items() if name not in timetable.known

@@ -38,7 +38,7 @@ class Stop(NamedTuple):
 
 @dataclass(frozen=True)
 class Foresight:
-    """What is drawn of each goal and corridor of the timetable, as it stands at one moment."""
+    """The random draws for each goal and corridor of the schedule, as it stands at one moment."""
 
     estimates: Estimates
     network: Network

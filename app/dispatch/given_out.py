@@ -41,7 +41,7 @@ class NewStop:
 
 @dataclass(frozen=True)
 class Changes:
-    """What is other than it was. `routes`: the ids of all stops of a robot, in their order; `new`: those of them that
+    """The changes of a decision. `routes`: the ids of all stops of a robot, in their order; `new`: those of them that
     are not written down yet; `given`: orders that waited, to robots; `taken`: orders that are to leave their robots."""
 
     work: OpenWork
@@ -54,7 +54,7 @@ class Changes:
         return bool(self.routes or self.taken)
 
     def still_hold(self, now: OpenWork) -> bool:
-        """Whether all that they begin with is as it was."""
+        """Tell if all that they begin with is as it was."""
         then = self.work
         names = {*self.routes, *(then.orders[order].robot or "" for order in self.taken)}
         are_there = all(now.orders.get(order) == then.orders[order] for order in self.given)
@@ -62,7 +62,7 @@ class Changes:
 
 
 def _before(work: OpenWork, name: str) -> tuple[object, ...]:
-    """All that counts of a robot and of what it has before it."""
+    """Return all that counts of a robot and of what it has before it."""
     robot = work.robots.get(name)
     may = None if robot is None else (robot.takes_work, robot.gives_away)
     orders = {order.id: order for order in work.orders.values() if order.robot == name}
@@ -70,8 +70,8 @@ def _before(work: OpenWork, name: str) -> tuple[object, ...]:
 
 
 def changes_of(work: OpenWork, decision: Decision) -> Changes:
-    """What this decision changes. An order that another robot has is taken from that one first, and given anew once it
-    waits again: a robot out of network must not load what another fetches."""
+    """Return the changes of this decision. An order that another robot has is taken from that one first, and given
+    anew once it waits again: a robot out of network must not load what another fetches."""
     robot_of = decision.robot_of()
     given = {order.id: robot_of[order.id] for order in work.waiting if order.id in robot_of}
     taken = [
@@ -108,7 +108,7 @@ def _reordered(had: Sequence[StopNow], planned: Sequence[str], new: Mapping[str,
 
 async def give_out(session: AsyncSession, fleet: Fleet, changes: Changes, own: set[str]) -> bool:
     """Write it down, and tell robots; False if it does not hold any more. `own`: orders that are given here."""
-    # Locked before the look: nobody else gives them a mission between the two.
+    # Locked before the read: no other writer gives them a mission between the two.
     robots = [await known_robot(session, name, to_change=True) for name in sorted(changes.routes)]
     if not changes.still_hold(await look_at_work(session, fleet.clock.utc())):
         return False
@@ -165,7 +165,7 @@ def _stop(mission: MissionRow, new: NewStop, key: str, position: int, wait_limit
 
 
 async def _take(session: AsyncSession, fleet: Fleet, order_id: str) -> None:
-    """Its robot is told to let it go, and answers; until then nobody else fetches it."""
+    """Its robot is told to let it go, and answers; until then no other robot fetches it."""
     order = await fleet.orders.order(session, order_id)
     order.reassign_requested_at, order.let_go_by = fleet.clock.utc(), order.robot
     log.info("taken_from", order=order_id, robot=order.robot)

@@ -22,8 +22,8 @@ class Visit:
 
 @dataclass(frozen=True)
 class Tour:
-    """What a robot has before it. `start` is the post that it comes to next; None: nobody knows, so that its way begins
-    at its first stop."""
+    """The way that a robot has before it. `start` is the post that it comes to next; None: unknown, so that its way
+    begins at its first stop."""
 
     robot: str
     start: str | None

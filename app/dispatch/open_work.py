@@ -1,4 +1,4 @@
-"""What the planner decides about, as the database has it: orders that are not delivered, robots, and the stops before
+"""Open work for the planner, as the database has it: orders that are not delivered, robots, and the stops before
 them. One look, in which everything is of one moment."""
 
 from collections.abc import Container, Iterable, Mapping, Sequence
@@ -183,8 +183,8 @@ def _not_to_be_disturbed(
     missions: Mapping[str, Sequence[str]],
     commands: Iterable[Any],
 ) -> set[str]:
-    """Robots at which somebody stands, or that are in trouble; that were told something and have not answered, which
-    would cross with what they are told next; that do what nobody gave them, or have mail that is in no mission."""
+    """Robots at which a person stands, or that are in trouble; that were told something and have not answered, which
+    would cross with what they are told next; that do work of their own, or have mail that is in no mission."""
     standing = {order.robot for order in orders if order.state in (*WAITING_AT_A_STOP, OrderState.ATTENTION)}
     asked = {one.robot for one in commands if one.answered_at is None and one.kind in ("recall", "cancel")}
     unclear = {robot for robot, ids in missions.items() if len(ids) > 1 or is_own(ids[0]) or not stops.get(robot)}

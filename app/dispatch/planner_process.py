@@ -70,7 +70,7 @@ class PlannerProcess:
         return answer
 
     def cut_off(self) -> None:
-        """Whatever it is doing: whoever has asked hears that it has failed."""
+        """End it, whatever it is doing: the caller hears that it has failed."""
         if self._process is not None and self._process.returncode is None:
             with suppress(ProcessLookupError):
                 self._process.kill()
@@ -83,7 +83,7 @@ class PlannerProcess:
 
 
 def answer_all(reads: BinaryIO, writes: BinaryIO) -> None:
-    """Until there is nobody any more who asks."""
+    """Answer until there is no caller any more."""
     while len(head := reads.read(_LENGTH.size)) == _LENGTH.size:
         (length,) = _LENGTH.unpack(head)
         decision, budget_s = pickle.loads(reads.read(length))  # noqa: S301  # from the service that has started this
@@ -94,5 +94,5 @@ def answer_all(reads: BinaryIO, writes: BinaryIO) -> None:
 
 
 if __name__ == "__main__":
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # whoever ends the service at a terminal ends this with it
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the service, ended at a terminal, ends this with it
     answer_all(sys.stdin.buffer, sys.stdout.buffer)

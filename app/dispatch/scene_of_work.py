@@ -41,7 +41,7 @@ class SceneOfWork:
         placed = _Placed(work, traffic, {key for theirs in keys.values() for key in theirs}, self.settings, now, now_s)
         orders = {one.id: one for one in placed.orders()}
         robots = {name: self._able(work, orders, name, keys[name]) for name in keys if name in work.robots}
-        # What waits for its time is not in `work` yet, so that nobody comes too early.
+        # What waits for its time is not in `work` yet, so that no robot comes too early.
         rules = Rules(age_limit_s=AGE_LIMIT_S, worth_s=WORTH_S, early_s=0.0)
         return scene_of(traffic, robots, orders, now_s, rules)
 
@@ -58,14 +58,14 @@ class SceneOfWork:
 
 
 def _left_out(work: OpenWork, orders: Mapping[str, OpenOrder], name: str, keys: Sequence[str]) -> int:
-    """How many orders it has that are not in its route, such as one just given: each takes a place."""
+    """Count its orders that are not in its route, such as one just given: each takes a place."""
     in_route = {one.id for one in orders.values() if one.give.key in keys}
     return sum(1 for order in work.orders.values() if order.robot == name and order.id not in in_route)
 
 
 def _has_begun(stop: StopNow | None) -> bool:
-    """What a robot does for reasons of its own is nothing that dispatch puts anything before; nor is a stop
-    of no order, to charge or to make room."""
+    """Tell if it has begun: what a robot does for reasons of its own comes before all that dispatch gives it; nor is a
+    stop of no order, to charge or to make room."""
     return stop is None or stop.departed or stop.order_id is None
 
 

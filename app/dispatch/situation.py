@@ -1,4 +1,5 @@
-"""What dispatch looks at: who waits, who is free, who is under way and could take something along."""
+"""The situation of dispatch: orders that wait, robots that are free, robots under way that could take something
+along."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -48,7 +49,7 @@ class Situation:
 
 @dataclass(frozen=True)
 class Todo:
-    """What there is to do for dispatch: orders that a robot is to drop, missions to tell, and whether orders wait."""
+    """Work to do for dispatch: orders that a robot is to drop, missions to tell, and if orders wait."""
 
     dropped: Sequence[str]
     changed: Sequence[str]
@@ -187,7 +188,8 @@ _TODO: Final[CompoundSelect[Any]] = union_all(
 
 
 async def tours(session: AsyncSession) -> list[Tour]:
-    """Missions under way that may get one more order: of robots that can be told, and wait for nobody just now."""
+    """Missions under way that may get one more order: of robots that can be told, and do not wait for a person just
+    now."""
     rows = (await (await connection_of(session)).execute(_UNDER_WAY)).all()
     return [await tour_of(session, *row) for row in rows]
 
@@ -220,7 +222,7 @@ _ABOARD: Final = select(func.count()).select_from(Order).where(col(Order.robot) 
 
 
 async def tour_of(session: AsyncSession, mission_id: str, robot: str, post: str | None) -> Tour:
-    """What is left of a mission, as a way; it may turn aside wherever it comes to next."""
+    """Return the rest of a mission, as a way; it may turn aside wherever it comes to next."""
     stops = await stops_left(session, mission_id)
     aboard = (await (await connection_of(session)).execute(_ABOARD, {"of": robot})).scalar_one()
     return Tour(robot=robot, start=post, visits=tuple(visit_of(stop) for stop in stops), aboard=aboard)

@@ -22,7 +22,7 @@ TAKES_ITS_TURN: Final = frozenset({"next", "turn", "overdue"})
 
 
 class Answer(NamedTuple):
-    """What is said of one order. `has_time`: it only waits for its turn; `comes_in_s`: until it is given, if known."""
+    """The answer for one order. `has_time`: it only waits for its turn; `comes_in_s`: until it is given, if known."""
 
     order_id: str
     why: str

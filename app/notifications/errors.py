@@ -1,4 +1,4 @@
-"""What can be refused about notices.
+"""Refusals about notices.
 
 Unprocessable ├── MutedEverywhere
               └── BadSubscription
@@ -13,7 +13,7 @@ from app.core.errors import Conflict, NotFound, Unprocessable
 
 
 class MutedEverywhere(Unprocessable):
-    """A robot waits with somebody's mail: one channel at least has to be left for that."""
+    """A robot waits with a person's mail: one channel at least has to be left for that."""
 
     code = "muted_everywhere"
 
@@ -49,6 +49,6 @@ class NotInSpool(NotFound):
 
 
 class SentAlready(Conflict):
-    """It has gone out: sending it again would tell somebody twice."""
+    """It has gone out: sending it again would notify a person twice."""
 
     code = "sent_already"

@@ -1,4 +1,4 @@
-"""How far the channels are behind: for whoever watches over the service."""
+"""The lag of the channels, for monitoring."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -13,17 +13,17 @@ CHANNELS: Final[tuple[ChannelName, ...]] = (MAIL, PUSH, WEBHOOK)
 """Besides the inbox, which has everything."""
 
 MUTED_AT_FIRST: Final[Mapping[str, frozenset[NoticeKind]]] = {
-    # Alarms are many and for those on duty, who have the page open; whoever wants them elsewhere says so.
+    # Alarms are many and for those on duty, who have the page open; others choose them elsewhere.
     MAIL: frozenset({NoticeKind.ALARM}),
     PUSH: frozenset({NoticeKind.ALARM}),
     WEBHOOK: frozenset(),
 }
 MUST_REACH: Final = frozenset({NoticeKind.ROBOT_HERE_FOR_YOU})
-"""A robot stands in the tunnel with somebody's mail: that cannot be muted everywhere."""
+"""A robot stands in the tunnel with a person's mail: that cannot be muted everywhere."""
 
 
 def muted_of(wishes: Mapping[str, Sequence[str]] | None) -> dict[str, frozenset[NoticeKind]]:
-    """Everything that somebody does not want, by channel."""
+    """Everything that a person does not want, by channel."""
     known = {str(kind) for kind in NoticeKind}
     chosen = wishes or {}
     return {

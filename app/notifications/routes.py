@@ -15,7 +15,7 @@ router = APIRouter(tags=["notices"])
 
 @router.get("/notices", responses=PAGED)
 async def my_notices(user: CurrentUser, session: ReadingDep, page: PageDep) -> Inbox:
-    """What this person was told, newest first."""
+    """List what this person was told, newest first."""
     return await inbox(session, user, page)
 
 

@@ -53,7 +53,7 @@ _OUTGOING: Final = insert(OutgoingNotice)
 
 @dataclass(frozen=True)
 class New:
-    """A notice that no channel has yet, and its reader; `muted` is None for whoever has changed nothing."""
+    """A notice that no channel has yet, and its reader; `muted` is None for a reader who has changed nothing."""
 
     notice: Notice
     person: Person

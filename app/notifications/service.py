@@ -89,7 +89,7 @@ async def _with_role(session: AsyncSession, role: Role) -> list[Person]:
 
 
 async def inbox(session: AsyncSession, person: Person, page: Paging) -> Inbox:
-    """What a person was told, newest first."""
+    """Return what a person was told, newest first."""
     notices, following = await page.of(session, select(Notice).where(Notice.person_id == person.id), NEWEST_FIRST)
     return Inbox(
         items=[NoticeView.of(notice, person.language) for notice in notices],

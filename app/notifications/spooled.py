@@ -14,11 +14,11 @@ from app.core.logs import REDACTED, SECRET_TEXTS
 
 SHOWN: Final = 100
 FRAGMENT: Final = re.compile(r"#\S+")
-"""Of a link: where the token of somebody without an account stands."""
+"""Of a link: where the token of a person without an account stands."""
 
 
 class SpooledMail(BaseModel):
-    """What a mail's head says."""
+    """The head of a mail."""
 
     name: str
     to: str

@@ -1,4 +1,4 @@
-"""What robots told of their batteries: at most one sample a minute, and one when charging begins or ends."""
+"""Battery samples: at most one a minute, and one when charging begins or ends."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field

@@ -1,4 +1,4 @@
-"""What robots are told to do: each command is a row, and each row has one answer, which finds it by its id."""
+"""Commands to robots: each is a row, and each row has one answer, which finds it by its id."""
 
 from collections.abc import Sequence
 from datetime import datetime
@@ -64,7 +64,7 @@ def note(
 
 
 async def answered(session: AsyncSession, robot: str, answer: CommandAnswer, now: datetime) -> RobotCommand:
-    """Write the robot's answer to its command. Raises UnknownCommand: nobody told this robot so."""
+    """Write the robot's answer to its command. Raises UnknownCommand: this robot was not told so."""
     row = await session.get(RobotCommand, answer.command_id)
     if row is None or row.robot != robot:
         raise UnknownCommand(f"{robot} was given no command {answer.command_id}")
@@ -76,7 +76,7 @@ async def answered(session: AsyncSession, robot: str, answer: CommandAnswer, now
 async def unanswered(
     session: AsyncSession, *, robot: str | None = None, kind: str | None = None, order_id: str | None = None
 ) -> Sequence[RobotCommand]:
-    """What robots were told and have not answered yet, oldest first."""
+    """Return the commands that robots have not answered yet, oldest first."""
     wanted = select(RobotCommand).where(col(RobotCommand.answered_at).is_(None))
     given = {"robot": robot, "kind": kind, "order_id": order_id}
     wanted = wanted.filter_by(**{name: value for name, value in given.items() if value is not None})

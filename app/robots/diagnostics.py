@@ -1,6 +1,6 @@
-"""Who watches which robot, and what they are shown. In memory alone: nothing of it is kept.
+"""Live diagnostics: who watches which robot, and what they are shown. In memory alone: nothing of it is kept.
 
-A robot tells what it senses and thinks only while somebody watches, and a page says every few seconds that it still
+A robot tells what it senses and thinks only while it is watched, and a page says every few seconds that it still
 does. So a forgotten page costs nothing, nor does one that was closed.
 """
 
@@ -17,7 +17,7 @@ from protocol.insight import Insight
 from protocol.to_robot import Watch
 
 HOLDS_S: Final = 30.0
-"""Real seconds for which it counts that somebody has said that they watch."""
+"""Real seconds for which a page's word counts that it is watched."""
 
 
 class Watched(BaseModel):
@@ -36,7 +36,7 @@ class Seats(Protocol):
 
 @dataclass
 class Watching:
-    """Who watches until when (real seconds), by robot and person."""
+    """The watchers until when (real seconds), by robot and person."""
 
     seats: Seats
     feed: Feed
@@ -44,8 +44,8 @@ class Watching:
     _watchers: dict[str, dict[str, float]] = field(default_factory=dict)
 
     def watch(self, robot: str, person_id: str, anew: bool = False) -> bool:
-        """Somebody looks, or still does, perhaps on another page (`anew`); False if this robot is not there, or knows
-        nothing of being watched."""
+        """A technician looks, or still does, perhaps on another page (`anew`); False if this robot is not there, or
+        knows nothing of being watched."""
         now_s = self.stopwatch()
         watchers = self._at(robot, now_s)
         is_new = anew or person_id not in watchers
@@ -53,7 +53,7 @@ class Watching:
         return self.seats.watch(robot, Watch(for_s=HOLDS_S, whole=is_new))
 
     def wanted_of(self, robot: str) -> Watch | None:
-        """What a robot is to be told that has just come: whoever watches has not given up when it was away."""
+        """Return what a robot is to be told that has just come: its watchers have not given up when it was away."""
         now_s = self.stopwatch()
         watchers = self._at(robot, now_s)
         return Watch(for_s=max(watchers.values()) - now_s, whole=True) if watchers else None

@@ -1,4 +1,4 @@
-"""What each robot spends, learned from what it has told: at the start of the service, and now and then again.
+"""The energy use of each robot, learned from its reports: at the start of the service, and now and then again.
 
 Nothing of it is kept: samples and grants are, and from them it is made anew in milliseconds.
 """
@@ -80,7 +80,7 @@ class Spending:
         return samples, [(at, way_m) for at, way_m in ways if at is not None and way_m is not None]
 
     def _driven_m(self, corridor: str, from_post: str, left_at: str | None) -> float | None:
-        """None if it came out where it had gone in, so that nobody knows how far it was; or if the map has changed."""
+        """None if it came out where it had gone in, so that the distance is unknown; or if the map has changed."""
         return None if left_at == from_post else self._length_m.get((corridor, from_post))
 
 

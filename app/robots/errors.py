@@ -1,4 +1,4 @@
-"""What can be wrong with what a robot does or says.
+"""Errors in what a robot does or says.
 
 ServiceError
 ├── RobotExists      a robot of this name is enrolled already

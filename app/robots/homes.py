@@ -51,7 +51,7 @@ async def _owner(session: AsyncSession, campus: CampusMap, robot: str, home: str
 
 
 async def _is_at_work(session: AsyncSession, robot: str, hello: Hello) -> bool:
-    """Mail, stops or corridors that nobody else can take over while this robot is not heard."""
+    """Mail, stops or corridors that no other robot can take over while this one is not heard."""
     if hello.cargo or hello.mission is not None:
         return True
     return await active_mission(session, robot) is not None or bool(await reservations.held_by(session, robot))

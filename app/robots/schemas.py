@@ -14,7 +14,7 @@ from protocol.one_line import ONE_LINE
 
 
 class CommandReason(BaseModel):
-    """Why: the robot keeps it, and whoever reads the log later wants to know."""
+    """The reason: the robot keeps it, and later readers of the log want to know."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -30,7 +30,7 @@ class WayIsOpen(BaseModel):
 
 
 class CommandView(BaseModel):
-    """What a robot was told, and what became of it: `accepted` null until it answers; `reason` is its own sentence, in
+    """A command to a robot, and its result: `accepted` null until it answers; `reason` is its own sentence, in
     English, `reason_words` the same as a text of the catalogue, if it is one.
 
     `online` false: it has not heard of it yet, and will when it is back.

@@ -1,4 +1,4 @@
-"""What can be done with robots: enrol one, tell one something, take in what one says, show them all."""
+"""Robots: enrol one, tell one something, take in what one says, show them all."""
 
 import re
 import time
@@ -98,21 +98,21 @@ class Fleet:
 
     @cached_property
     def learning(self) -> Learning:
-        """What is learned from robots of how long things take."""
+        """Return what is learned from robots of how long things take."""
         return Learning(self.database, self.orders.estimates, self.clock)
 
     @cached_property
     def spending(self) -> Spending:
-        """What is learned from robots of how much charge they need."""
+        """Return what is learned from robots of how much charge they need."""
         return Spending(self.database, self.campus)
 
     @cached_property
     def watching(self) -> Watching:
-        """Who watches which robot."""
+        """Return the watchers of robots."""
         return Watching(self.connections, self.feed, time.monotonic)
 
     async def begin(self) -> None:
-        """At the start of the service nobody is connected yet, whatever the last run has left behind."""
+        """At the start of the service no robot is connected yet, whatever the last run has left behind."""
         async with self.database.transaction() as session:
             await session.exec(update(RobotRow).values(online=False))
 
@@ -161,7 +161,7 @@ class Fleet:
             robot.activity = message.activity
 
     def announce(self, session: AsyncSession, robot: RobotRow, is_seen: bool = True) -> None:
-        """After the commit: whoever waits for robots looks again, and pages see it as it is now, if that is news."""
+        """After the commit: workers that wait for robots poll again, and pages see it as it is now, if that is news."""
         tell = self._news_of(robot) if is_seen else None
 
         def say() -> None:
@@ -180,7 +180,7 @@ class Fleet:
         return partial(self.feed.publish, Happening("robot", self.view_of(robot)))
 
     def have_spoken(self, session: AsyncSession, robots: Iterable[str]) -> None:
-        """After the commit: these robots are as pages know them, but whoever waits for robots looks again."""
+        """After the commit: these robots are as pages know them, but workers that wait for robots poll again."""
 
         def say() -> None:
             for robot in robots:
@@ -190,7 +190,7 @@ class Fleet:
         after_commit(session, say)
 
     async def views(self, session: AsyncSession) -> Sequence[RobotView]:
-        """All robots, by name."""
+        """Return all robots, by name."""
         robots = (await session.exec(select(RobotRow).order_by(col(RobotRow.name)))).all()
         return [self.view_of(robot) for robot in robots]
 
@@ -200,7 +200,7 @@ class Fleet:
 
 
 def note_state(robot: RobotRow, position: Position, battery: Battery) -> None:
-    """What `hello` and `snapshot` share."""
+    """Take over what `hello` and `snapshot` share."""
     robot.post, robot.previous, robot.towards = position.post, position.previous, position.towards
     robot.seen_at = position.seen_at and put_right(position.seen_at, robot.clock_off_s)
     robot.battery_ratio, robot.charging, robot.docked = battery.ratio, battery.charging, battery.docked

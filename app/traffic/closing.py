@@ -13,7 +13,7 @@ log = structlog.get_logger(__name__)
 
 
 async def close(session: AsyncSession, fleet: Fleet, name: str, reason: str, by: Person) -> ClosedCorridors:
-    """Nobody is let in any more; whoever is in there drives on. Closed again it has another reason. Raises
+    """Let no robot in any more; one that is in there drives on. Closed again it has another reason. Raises
     NoSuchCorridor."""
     corridor = corridor_on(fleet.campus, name).name
     row = await session.get(ClosedCorridor, corridor)
@@ -29,7 +29,7 @@ async def open_again(session: AsyncSession, fleet: Fleet, name: str, by: Person)
     """Robots are let in; one that is open stays so. Raises NoSuchCorridor.
 
     A robot that turned back there is told so, and its own word ends that: it may have turned back again since. One that
-    cannot be told goes round it for its ten minutes, but nobody else does.
+    cannot be told goes round it for its ten minutes, but no other does.
     """
     corridor = corridor_on(fleet.campus, name).name
     row = await session.get(ClosedCorridor, corridor)

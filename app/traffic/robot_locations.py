@@ -49,7 +49,7 @@ class Hold:
 
 @dataclass(frozen=True)
 class Whereabouts:
-    """One robot. `goals`: key and post of all that it has before it, in order. `stopped`: somebody or something
+    """One robot. `goals`: key and post of all that it has before it, in order. `stopped`: a person or something
     keeps it where it is, and it has said so."""
 
     robot: str
@@ -75,7 +75,7 @@ class Whereabouts:
 
 @dataclass(frozen=True)
 class Picture:
-    """All robots whose place is known, by name, and the corridors that are closed."""
+    """A snapshot of the traffic: all robots whose place is known, by name, and the corridors that are closed."""
 
     robots: Mapping[str, Whereabouts]
     closed: frozenset[str]
@@ -141,7 +141,7 @@ def _whereabouts(
 
 
 def _with_its_own(wish: Wish | None, goals: tuple[tuple[str, str], ...]) -> tuple[tuple[str, str], ...]:
-    """What it goes to now comes first, whatever its mission says: nobody knows better when it has to charge."""
+    """Put first what it goes to now, whatever its mission says: the robot knows best when it has to charge."""
     if wish is None or wish.is_for_later or (goals and goals[0][1] == wish.goal):
         return goals
     return ((OF_ITS_OWN, wish.goal), *goals)

@@ -36,7 +36,7 @@ async def closed_corridors(user: CurrentUser, session: ReadingDep) -> ClosedCorr
 async def close_corridor(
     corridor: CorridorName, why: CommandReason, dispatcher: Dispatcher, session: SessionDep, fleet: FleetDep
 ) -> ClosedCorridors:
-    """Let no robot into a corridor any more, until it is opened again; whoever is in there drives on."""
+    """Let no robot into a corridor any more, until it is opened again; one that is in there drives on."""
     return await close(session, fleet, corridor, why.reason, dispatcher)
 
 
@@ -44,7 +44,8 @@ async def close_corridor(
 async def open_corridor(
     corridor: CorridorName, dispatcher: Dispatcher, session: SessionDep, fleet: FleetDep
 ) -> ClosedCorridors:
-    """Let robots into a closed corridor again: whoever says so has looked. Robots that turned back there are told."""
+    """Let robots into a closed corridor again: the dispatcher who says so has looked. Robots that turned back there
+    are told."""
     return await open_again(session, fleet, corridor, dispatcher)
 
 
@@ -54,7 +55,7 @@ async def open_corridor(
 async def tell_robot_of_open_way(
     name: RobotName, way: WayIsOpen, dispatcher: Dispatcher, session: SessionDep, fleet: FleetDep
 ) -> CommandView:
-    """Tell a robot that a corridor which it took for closed is free again: whoever says so has looked."""
+    """Tell a robot that a corridor which it took for closed is free again: the dispatcher who says so has looked."""
     robot = await known_robot(session, name, to_change=True)
     return CommandView.of(await open_way(session, fleet, robot, way.corridor, dispatcher), robot.online)
 
@@ -63,7 +64,8 @@ async def tell_robot_of_open_way(
 async def take_robot_out(
     name: RobotName, why: CommandReason, dispatcher: Dispatcher, session: SessionDep, fleet: FleetDep
 ) -> CommandView:
-    """Give the corridors of a robot that is dead to others: whoever says so has looked, and it is in nobody's way.
+    """Give the corridors of a robot that is dead to others: the dispatcher who says so has looked, and it blocks no
+    robot.
 
     It stands still when it hears so, until it is put down at a post or in a dock.
     """

@@ -34,7 +34,7 @@ class MayEnter:
 
 @dataclass(frozen=True)
 class HasToWait:
-    """For this corridor, for these robots, until about so many seconds from now. `closed`: until somebody opens it."""
+    """For this corridor, for these robots, until about so many seconds from now. `closed`: until it is opened."""
 
     robot: str
     leg: Leg
@@ -56,7 +56,7 @@ Verdict = MayEnter | HasToWait | Elsewhere
 
 @dataclass
 class Timetable:
-    """One for a campus. `vanished`: robots of which nobody has heard for long; they count as standing.
+    """One for a campus. `vanished`: robots that were not heard of for long; they count as standing.
     `estimates`: how long corridors took, as it was known when this was made; without them lengths decide."""
 
     campus: CampusMap
@@ -97,7 +97,8 @@ class Timetable:
             self._follow_goals(now, now_s)
 
     def _follow_closed(self, picture: Picture, now_s: float) -> None:
-        """What people have closed, and what a robot may enter besides the corridor that it is thought to be in."""
+        """Take over what people have closed, and what a robot may enter besides the corridor that it is thought to be
+        in."""
         self._close_and_open(picture.closed.union(*map(_spare, picture.robots.values())), now_s)
 
     def _close_and_open(self, closed: frozenset[str], now_s: float) -> None:
@@ -215,7 +216,7 @@ class Timetable:
         return tuple(name for name, one in self._known.items() if any(h.corridor == corridor for h in one.holds))
 
     def _in_the_way(self, one: Whereabouts, goal: str) -> tuple[str, ...]:
-        """Those that stand, as long as nobody lets them go on, in a corridor of its way or in a bay at its end."""
+        """Those that stand, until a person lets them go on, in a corridor of its way or in a bay at its end."""
         try:
             way = shortest_route(self.campus, one.post, goal).posts
         except CampusMapError:
@@ -266,7 +267,7 @@ def _gave_up(before: Whereabouts, now: Whereabouts) -> bool:
 
 
 def network_for(campus: CampusMap, settings: Settings, estimates: Estimates | None = None) -> Network:
-    """How long corridors take is learned, or assumed from their lengths."""
+    """Return the network: how long corridors take is learned, or assumed from their lengths."""
 
     def travel_s(corridor: Corridor, start: str) -> float:
         learned_s = estimates.usual_s(start, corridor.other(start)) if estimates is not None else None

@@ -89,7 +89,7 @@ class TrafficDesk:
         if verdicts or before != timetable.vanished:
             async with self._fleet.database.transaction() as session:
                 await self._tell_of_vanished(session, picture, before, timetable.vanished, now)
-                names = sorted(verdict.robot for verdict in verdicts)  # locked in one order, whoever else does
+                names = sorted(verdict.robot for verdict in verdicts)  # locked in one order, as all others do
                 rows = {name: await known_robot(session, name, to_change=True) for name in names}
                 said = [
                     await self._say(session, rows[verdict.robot], picture.robots[verdict.robot], verdict, now)

@@ -1,4 +1,4 @@
-"""What a session was opened with, in words: enough to recognise one's own, and nothing more is kept."""
+"""The device of a session, in words: enough to recognise one's own, and nothing more is kept."""
 
 import re
 from collections.abc import Sequence

@@ -80,7 +80,7 @@ _OPENED_BY_COOKIE: Final = (  # put together once: that takes longer than asking
 
 
 def open_sessions(person_id: str, now: datetime) -> SelectOfScalar[PersonSession]:
-    """Where somebody is signed in."""
+    """The sessions of a person."""
     return select(PersonSession).where(
         PersonSession.person_id == person_id, col(PersonSession.revoked_at).is_(None), PersonSession.expires_at > now
     )
@@ -95,7 +95,7 @@ async def end_session(session: AsyncSession, person_id: str, session_id: int, no
 
 
 async def end_others(session: AsyncSession, person_id: str, but: int, now: datetime) -> None:
-    """End all sessions of somebody but one."""
+    """End all sessions of a person but one."""
     others = update(PersonSession).where(
         col(PersonSession.person_id) == person_id,
         col(PersonSession.id) != but,

@@ -1,7 +1,7 @@
 """The browser that asks for a sign-in code, known by a cookie of its own from then on.
 
 Anybody may ask for a code for anybody's address. A code opens a session only in the browser that asked for it, so that
-another one can neither replace it nor use up its tries. In a browser where somebody has signed in the cookie says so,
+another one can neither replace it nor use up its tries. In a browser where a person has signed in the cookie says so,
 under a seal: its requests are counted by themselves, so that strangers behind the same address do not shut it out.
 """
 
@@ -30,7 +30,7 @@ OURS: Final = re.compile(r"[A-Za-z0-9_-]{43}")
 
 @dataclass(frozen=True)
 class Browser:
-    """`secret` is the cookie's, a new one if it brought none; `is_known`: somebody has signed in here."""
+    """`secret` is the cookie's, a new one if it brought none; `is_known`: a person has signed in here."""
 
     secret: str
     is_known: bool
@@ -56,7 +56,7 @@ def per_browser(door: Door) -> Any:
 
 
 def remember(request: Request, response: Response, browser: Browser, *, has_signed_in: bool = False) -> None:
-    """Keep the cookie for longer than a session, so that whoever signs in again is known."""
+    """Keep the cookie for longer than a session, so that a browser that signs in again is known."""
     is_known = browser.is_known or has_signed_in
     seal = f".{_seal(request, browser.secret)}" if is_known else ""
     set_cookie(request, response, COOKIE, f"{browser.secret}{seal}", LIFETIME_S)
@@ -68,7 +68,7 @@ def _seal(request: Request, secret: str) -> str:
 
 
 async def has_signed_in(connection: AsyncConnection, email: str, browser: str) -> bool:
-    """Whether this browser had a session of this person, as long as ended sessions are kept."""
+    """Tell if this browser had a session of this person, as long as ended sessions are kept."""
     theirs = select(PersonSession.id).where(
         PersonSession.person_id == Person.id,
         PersonSession.browser_hash == hash_of(browser),

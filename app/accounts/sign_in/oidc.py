@@ -1,7 +1,7 @@
 """Signing in at the campus itself: OpenID Connect, authorization code with PKCE.
 
 State, nonce and the code verifier derive from the server key and one random id, which travels in a signed cookie for
-ten minutes: nothing is stored for somebody who only begins.
+ten minutes: nothing is stored for a sign-in that only begins.
 """
 
 import base64
@@ -53,7 +53,7 @@ ALGORITHMS: Final = (
     "EdDSA",
     "Ed25519",
 )
-"""None with a shared key: whoever knows the client's secret could sign as the provider."""
+"""None with a shared key: a holder of the client's secret could sign as the provider."""
 LIFETIME: Final = timedelta(minutes=10)
 LEEWAY_S: Final = 60
 TIMEOUT_S: Final = 10.0
@@ -104,7 +104,7 @@ class Attempt:
 
 @dataclass(frozen=True)
 class Claims:
-    """Who somebody is, on the provider's word."""
+    """The claims about a person, on the provider's word."""
 
     subject: str
     email: str
@@ -228,7 +228,7 @@ def _failed(error: Exception) -> ProviderFailed:
 
 
 def _claims(said: dict[str, Any]) -> Claims:
-    """Only an address that the provider has verified says who somebody is. Raises EmailNotVerified."""
+    """Only an address that the provider has verified identifies a person. Raises EmailNotVerified."""
     email = str(said.get("email", "")).lower()
     if said.get("email_verified") is not True or not EMAIL.fullmatch(email):
         raise EmailNotVerified("The campus has not verified your mail address. Sign in by a mailed code.")
@@ -236,7 +236,8 @@ def _claims(said: dict[str, Any]) -> Claims:
 
 
 async def person_of(session: AsyncSession, desk: SignInDesk, claims: Claims, language: str, now: datetime) -> Person:
-    """Who this is here: known by issuer and subject, else by the verified address. Raises AddressNotAllowed."""
+    """Return the person of these claims: known by issuer and subject, else by the verified address. Raises
+    AddressNotAllowed."""
     settings = desk.settings
     if not is_allowed(claims.email, settings):
         raise AddressNotAllowed(f"Sign in with an address of {', '.join(settings.allowed_domains)}.")

@@ -58,7 +58,7 @@ async def mail_code(
 
 
 async def _count(request: Request, email: str, browser: Browser, limits: RateLimits, database: Database) -> None:
-    """Strangers are counted together as well; whoever has signed in here before is not kept out by them."""
+    """Strangers are counted together as well; a browser that has signed in here before is not kept out by them."""
     await limits.count(Door.CODES, f"{email} {browser.secret}")
     async with database.asking() as connection:
         is_known = await has_signed_in(connection, email, browser.secret)

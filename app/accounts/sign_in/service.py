@@ -28,12 +28,12 @@ CODES_THAT_COUNT: Final = 3
 
 
 def is_allowed(email: str, settings: Settings) -> bool:
-    """Whether somebody with this address may have an account."""
+    """Tell if a person with this address may have an account."""
     return email.rpartition("@")[2] in settings.allowed_domains
 
 
 def may_be_sent_mail(email: str, settings: Settings) -> bool:
-    """Whether a new address may be an order's recipient."""
+    """Tell if a new address may be an order's recipient."""
     return settings.allow_outside_recipients or is_allowed(email, settings)
 
 
@@ -101,9 +101,9 @@ class SignInDesk:
         return (await session.exec(newest.with_for_update())).all()
 
     async def newcomer(self, session: AsyncSession, email: str, language: str, now: datetime) -> Person:
-        """Whoever signs in with this address, made at their first sign-in.
+        """Return the person who signs in with this address, made at their first sign-in.
 
-        Whoever was only sent something so far was given the default language; what their browser speaks is nearer.
+        A person who was only sent something so far was given the default language; what their browser speaks is nearer.
         """
         person = await self.person(session, email, now, language)
         if not await _has_signed_in(session, person):
@@ -119,7 +119,7 @@ class SignInDesk:
         return token
 
     async def person(self, session: AsyncSession, email: str, now: datetime, language: str | None = None) -> Person:
-        """Whoever has this address; a new row if nobody yet."""
+        """Return the person with this address; a new row if there is none yet."""
         person = await find_person(session, email)
         if person is None:
             person = make_person(email, language or self.settings.default_language, now)
@@ -133,12 +133,12 @@ class SignInDesk:
 
 
 def make_person(email: str, language: str, now: datetime) -> Person:
-    """Somebody new, as a member."""
+    """A new person, as a member."""
     return Person(id=new_id(), email=email, name=name_from(email), language=language, created_at=now)
 
 
 async def find_person(session: AsyncSession, email: str) -> Person | None:
-    """Whoever has this address (lower case), if anybody."""
+    """Return the person with this address (lower case), if there is one."""
     return (await session.exec(_WITH_ADDRESS, params={"address": email})).first()
 
 

@@ -55,7 +55,7 @@ async def _tell_of_new(
     stops: Sequence[Sequence[Values]],
     orders: Sequence[Order],
 ) -> None:
-    """What `tell_mission` would tell of each of them, with nothing read that is at hand."""
+    """Send what `tell_mission` would tell each of them, with nothing read that is at hand."""
     verifiers = await fleet.orders.verifiers(session, *orders)
     news: dict[str, tuple[Part, ...]] = {}
     for mission, both, order in zip(missions, stops, orders, strict=True):
@@ -118,7 +118,7 @@ LOAD, RECEIVE = "load", "receive"
 def best_tour(
     order: WaitingOrder, under_way: Sequence[Tour], ways: Ways, capacity: int, detour_ratio: float
 ) -> tuple[Tour, Insertion] | None:
-    """Whose way gets longest by least, if by no more than `detour_ratio` of the order's own."""
+    """Return the tour that gets longest by least, if by no more than `detour_ratio` of the order's own way."""
     load, receive = Visit(LOAD, order.from_post, 1), Visit(RECEIVE, order.to_post, -1)
     limit_m = detour_ratio * ways.length_m(order.from_post, order.to_post)
     found = [

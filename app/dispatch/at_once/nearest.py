@@ -1,4 +1,4 @@
-"""Who fetches what where every corridor is granted at once: the nearest robot that is free; and what lies on somebody's
+"""Assignment where every corridor is granted at once: the nearest robot that is free; and what lies on a robot's
 way goes along."""
 
 from collections.abc import Sequence
@@ -90,7 +90,7 @@ class NearestRobots:
     async def _assign_what_can_be(
         self, session: AsyncSession, assignments: Sequence[Assignment], waiting: Sequence[WaitingOrder]
     ) -> set[str]:
-        """There are fewer robots than orders: what lies on somebody's way goes along. Which orders were given."""
+        """There are fewer robots than orders: what lies on a robot's way goes along. Which orders were given."""
         given = {one.order_id for one in assignments}
         busy = {one.robot for one in assignments}
         idle = [robot for robot in await idle_robots(session) if robot.name not in busy]

@@ -1,4 +1,4 @@
-"""What a channel is, what it is given, and how it says that something did not go out."""
+"""The interface of a channel: what it is given, and how it reports a failure."""
 
 from dataclasses import dataclass
 from datetime import timedelta
@@ -10,7 +10,8 @@ from app.notifications.wording import body_of, title_of
 
 @dataclass(frozen=True)
 class Sending:
-    """One notice to one person on one channel. `key` is the same on every try: whoever is sent it twice can tell."""
+    """One notice to one person on one channel. `key` is the same on every try: a receiver that gets it twice can
+    tell."""
 
     key: str
     target: str | None
@@ -43,7 +44,7 @@ class Channel(Protocol):
 
     @property
     def at_once(self) -> int:
-        """How many sendings may be under way; of those to the same target one at a time."""
+        """Return how many deliveries may be under way; of those to the same target one at a time."""
         ...
 
     @property

@@ -16,11 +16,11 @@ Drawing = Callable[[], tuple[str, bytes]]
 CodePicture = Callable[[Notice], Drawing | None]
 """What draws the hand-over code that goes with a notice, as file name and PNG; None if none goes with it."""
 LinkFor = Callable[[Person, Notice], Awaitable[str | None]]
-"""A link for somebody who has no account, by which they may follow this one order; None: they sign in."""
+"""A link for a person without an account, by which they may follow this one order; None: they sign in."""
 
 
 LEADS_NOWHERE: Final = frozenset({NoticeKind.DELEGATION_OVER})
-"""Told to somebody whom the order concerns no more: they could not open it."""
+"""Told to a person whom the order concerns no more: they could not open it."""
 
 
 async def no_link(person: Person, notice: Notice) -> str | None:

@@ -17,7 +17,7 @@ GONE: Final = frozenset({404, 410})
 
 @dataclass(frozen=True)
 class Answer:
-    """What the other side said; its body is nobody's concern and is not read."""
+    """The answer of the other side; its body is of no use and is not read."""
 
     status: int
     again_after_s: float | None

@@ -28,7 +28,7 @@ TTL_S: Final[Mapping[str, int]] = {"high": 1800, "normal": 7200, "low": 86400}
 
 
 def urgency_of(kind: NoticeKind) -> str:
-    """How much of a device's battery it is worth (RFC 8030, 5.3)."""
+    """Return how much of a device's battery it is worth (RFC 8030, 5.3)."""
     if kind in WAITING_ROBOT:
         return "high"
     return "normal" if kind in SOON else "low"
@@ -40,7 +40,7 @@ def topic_of(sending: Sending) -> str:
 
 
 def payload_of(sending: Sending) -> bytes:
-    """What the page's worker shows; with the same `tag`, the browser shows it once. Never a hand-over code."""
+    """Return what the page's worker shows; with the same `tag`, the browser shows it once. Never a hand-over code."""
     notice = sending.notice
     shown = {
         "tag": notice.key,

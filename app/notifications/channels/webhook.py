@@ -38,7 +38,7 @@ class Address:
 
 
 def secret_of(key: ServerKey, webhook_id: str) -> str:
-    """What the owner of a webhook is shown; nothing of it is stored."""
+    """Return the secret that the owner of a webhook is shown; nothing of it is stored."""
     return PREFIX + base64.b64encode(key.derive("webhook", webhook_id)).decode()
 
 
@@ -56,7 +56,7 @@ def signature(secret: bytes, delivery_id: str, at: datetime, body: bytes) -> str
 
 
 def body_of(sending: Sending) -> bytes:
-    """What is told; never a hand-over code."""
+    """Return the body of a delivery; never a hand-over code."""
     notice, person = sending.notice, sending.person
     told = {
         "type": f"notice.{notice.kind}",
@@ -105,7 +105,7 @@ class WebhookChannel:
         if answer.status == GONE and sending.target != SERVICE:
             await self._forget(sending)
             raise NotSent("the receiver has ended its webhook", for_good=True)
-        if not answer.is_good:  # whoever runs the receiver may mend it
+        if not answer.is_good:  # the operator of the receiver may mend it
             raise NotSent(f"the receiver answered {answer.status}", again_after_s=answer.again_after_s)
 
     async def _address(self, sending: Sending) -> Address:

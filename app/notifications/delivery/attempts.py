@@ -28,12 +28,12 @@ _SENT: Final = (
 
 
 def pause_s(tries: int) -> float:
-    """How long to wait after the `tries`-th failure: doubling, to a quarter of an hour."""
+    """Return the pause after the `tries`-th failure: doubling, to a quarter of an hour."""
     return float(min(FIRST_PAUSE_S * 2 ** min(tries - 1, 20), LONGEST_PAUSE_S))
 
 
 async def note_sent(session: AsyncSession, sent: Sequence[Due], now: datetime) -> None:
-    """All that went out, in one statement. What was erased meanwhile is not there any more."""
+    """Note all that went out, in one statement. What was erased meanwhile is not there any more."""
     if sent:
         connection = await connection_of(session)
         await connection.execute(_SENT, [{"its_id": one.id, "its_key": one.sending.key, "now": now} for one in sent])
@@ -42,7 +42,7 @@ async def note_sent(session: AsyncSession, sent: Sequence[Due], now: datetime) -
 async def note_not_sent(
     session: AsyncSession, not_sent: Sequence[tuple[Due, NotSent]], now: datetime, give_up: Mapping[str, timedelta]
 ) -> None:
-    """What did not go out, each with its pause; `give_up`: after how long, by channel."""
+    """Note what did not go out, each with its pause; `give_up`: after how long, by channel."""
     for due, problem in not_sent:
         row = await session.get(OutgoingNotice, due.id)
         if row is None or row.key != due.sending.key:  # erased meanwhile
@@ -53,7 +53,7 @@ async def note_not_sent(
 
 
 def note(row: OutgoingNotice, problem: NotSent, now: datetime, gives_up_after: timedelta) -> None:
-    """What becomes of a sending that failed: to be tried again, or given up."""
+    """Note a failed delivery: to be tried again, or given up."""
     row.tries += 1
     row.problem = str(problem)[:500]
     if problem.for_good or now - row.created_at >= gives_up_after:

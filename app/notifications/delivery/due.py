@@ -1,4 +1,4 @@
-"""What the outbox owes now: which channels have anything to do, and which sendings are next on one of them.
+"""Deliveries that are due: which channels have anything to do, and which come next on one of them.
 
 The questions are put together once; the worker asks them many times a second.
 """

@@ -1,4 +1,4 @@
-"""What dispatchers see of notices on their way: what waits or was given up, and the mails in the spool."""
+"""The outbox over HTTP, for dispatchers: what waits or was given up, and the mails in the spool."""
 
 import asyncio
 from datetime import datetime

@@ -1,7 +1,7 @@
 """Takes notices to their channels, after the commit that wrote them and again after a failure.
 
 Channels work side by side, each with places for so many sendings at once: a slow mail server holds up no push. What is
-done is noted down together; a crash before that sends it again under the same key, by which whoever gets it can tell.
+done is noted down together; a crash before that sends it again under the same key, by which the receiver can tell.
 """
 
 import asyncio
@@ -82,7 +82,7 @@ class OutboxWorker:
         self._under_way.clear()
 
     async def has_work(self) -> bool:
-        """Whether anything is to be routed, sent or noted down now."""
+        """Tell if anything is to be routed, sent or noted down now."""
         has_new, due_now = await self._look()
         return bool(self._under_way or has_new or due_now)
 
@@ -103,7 +103,7 @@ class OutboxWorker:
                 await self._bell.wait()
 
     async def _finish(self) -> None:
-        """What is due now still goes out, as far as the time goes; what hangs by then is cut off."""
+        """Send what is due now, as far as the time goes; what hangs by then is cut off."""
         clock = asyncio.get_running_loop().time
         ends_s = clock() + FINISH_WITHIN_S
         while (left_s := ends_s - clock()) > 0 and await self.has_work():
@@ -119,13 +119,13 @@ class OutboxWorker:
         return {task: what for task, what in self._under_way.items() if task.done()}
 
     async def _look(self) -> tuple[bool, list[tuple[Channel, Due]]]:
-        """Whether there is anything new, and what is due: one question while nothing happens."""
+        """Find out if there is anything new, and what is due: one question while nothing happens."""
         async with self.database.reading() as session:
             waiting = await due.waiting(session, self.clock.utc())
             return NOT_ROUTED in waiting, await self._due(session, waiting, self._under_way.values())
 
     async def _write_down(self, ended: Ended) -> list[tuple[Channel, Due]]:
-        """What became of sendings, and which follow from new notices; what is due then.
+        """Write down the ends of deliveries, and those that follow from new notices; return what is due then.
 
         No disk is waited for: after a power cut it is routed again, or sent again under its key.
         """

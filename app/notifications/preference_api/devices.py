@@ -31,7 +31,8 @@ def check_keys(keys: SubscriptionKeys) -> None:
 
 
 async def add_device(session: AsyncSession, person: Person, wish: NewDevice, now: datetime) -> PushSubscription:
-    """A browser that subscribed. Whoever is signed in there has it from now on; the oldest of many makes room."""
+    """A browser that subscribed. The person who is signed in there has it from now on; the oldest of many makes
+    room."""
     await session.exec(delete(PushSubscription).where(col(PushSubscription.endpoint) == wish.endpoint))
     for surplus in (await devices_of(session, person.id))[MOST_DEVICES - 1 :]:
         await session.delete(surplus)

@@ -1,4 +1,4 @@
-"""What a person wants to be told, and where: muted kinds, browsers, a webhook."""
+"""A person's preferences over HTTP: muted kinds, browsers, a webhook."""
 
 from typing import Annotated, Final
 
@@ -46,7 +46,7 @@ ServerKeyDep = Annotated[ServerKey, part(ServerKey)]
 
 @router.get("/me/notices", responses=problems(401, 403))
 async def my_wishes(user: CurrentUser, session: ReadingDep, key: PushKeyDep) -> WishesView:
-    """What this person is told, and where."""
+    """Return what this person is told, and where."""
     return await _view(session, user, key)
 
 

@@ -1,4 +1,4 @@
-"""What people want to be told, over HTTP."""
+"""Preferences over HTTP."""
 
 from datetime import datetime
 from typing import Annotated
@@ -43,7 +43,7 @@ class NewWebhookView(WebhookView):
 
 
 class TrialView(BaseModel):
-    """What became of a delivery for trial."""
+    """The result of a delivery for trial."""
 
     is_good: bool = Field(description="Whether the receiver took it: its answer was 2xx.")
     status: int | None = Field(description="What it answered; null: nothing.")
@@ -51,7 +51,7 @@ class TrialView(BaseModel):
 
 
 class WishesView(BaseModel):
-    """What somebody is told, and where. The inbox has everything; `muted` says what a channel does not carry."""
+    """The preferences of a person. The inbox has everything; `muted` says what a channel does not carry."""
 
     language: str
     kinds: list[NoticeKind]
@@ -63,7 +63,7 @@ class WishesView(BaseModel):
 
 
 class Wishes(BaseModel):
-    """What is not to come on a channel. A channel that is not named stays as it is."""
+    """Kinds that are not to come on a channel. A channel that is not named stays as it is."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -78,7 +78,7 @@ class SubscriptionKeys(BaseModel):
 
 
 class NewDevice(BaseModel):
-    """What `PushSubscription.toJSON()` of a browser gives."""
+    """The result of `PushSubscription.toJSON()` in a browser."""
 
     endpoint: Url
     keys: SubscriptionKeys

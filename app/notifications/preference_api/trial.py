@@ -1,4 +1,4 @@
-"""A delivery for trial, at a tap: whoever set a webhook up knows at once whether their program hears, or why not."""
+"""A delivery for trial, at a tap: the owner of a webhook knows at once if their program hears, or why not."""
 
 import json
 from datetime import datetime

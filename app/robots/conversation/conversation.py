@@ -33,7 +33,7 @@ MAX_IN_HAND: Final = 100
 OF_THE_MOMENT: Final = (Ack, Insight)
 """What says nothing to the disk but what it acknowledges."""
 NO_JOURNAL: Final = "none"
-"""On what is said before the greeting: nothing durable, so that nobody looks at it."""
+"""On what is said before the handshake: nothing durable, so that it is not read."""
 FAILED: Final = 1011
 PROTOCOL_BROKEN: Final = 4400
 TOKEN_REFUSED: Final = 4401
@@ -47,7 +47,7 @@ class Gone(Exception):
 
 
 class Conversation:
-    """What one open connection knows. It is this robot's seat in `Connections`."""
+    """One open connection. It is this robot's seat in `Connections`."""
 
     def __init__(self, intake: Intake, token: RobotToken, socket: WebSocket) -> None:
         self._intake, self._fleet, self._socket = intake, intake.fleet, socket
@@ -103,7 +103,7 @@ class Conversation:
                 PROTOCOL_BROKEN, error.code, Error(code=error.code, message=sentence(error), seq=error.seq)
             )
         except Exception:
-            # Our mistake: the robot keeps what it had to say and comes back; whoever reads the log can help it.
+            # Our mistake: the robot keeps what it had to say and comes back; the reader of the log can help it.
             log.exception("conversation_failed", robot=self.robot)
             await self._close(FAILED, "the service has failed")
         finally:
@@ -212,7 +212,7 @@ class Conversation:
     def failed(self, error: Exception) -> None:
         if not self._end.done():
             self._end.set_exception(error)
-            self._end.exception()  # if the connection has ended meanwhile, nobody asks
+            self._end.exception()  # if the connection has ended meanwhile, it is not asked for
 
     # To the robot.
 
@@ -242,7 +242,7 @@ class Conversation:
             await self._send(watch)
 
     async def _send_news(self) -> None:
-        """What was handed over, if nothing else is to be sent before it."""
+        """Send what was handed over, if nothing else is to be sent before it."""
         news, self._news = [one for one in self._news if one.seq > self._sent], []
         if not news:
             return

@@ -1,4 +1,4 @@
-"""What robots say, taken in for all of them together: one transaction for whatever has come meanwhile.
+"""Intake of robots' messages, for all of them together: one transaction for whatever has come meanwhile.
 
 The messages of one robot keep their order, and each connection hears of them after the commit alone. If anything in a
 transaction fails, all of it is undone and each robot's messages are taken by themselves, so that a mistake in one of
@@ -162,7 +162,7 @@ class Intake:
         new = {id(one) for one, verdict in zip(durable, verdicts, strict=True) if verdict is True}
         for one, verdict in zip(durable, verdicts, strict=True):
             one.failure = verdict if isinstance(verdict, MessageGap) else None
-        # Kept until the end: the session forgets rows that nobody holds.
+        # Kept until the end: the session forgets rows without a reference.
         ahead = await look_ahead(session, [one.envelope.body for one in durable if id(one) in new])
         for one in said:
             if one.envelope.seq is None or id(one) in new:
@@ -219,7 +219,8 @@ class Intake:
 
 
 def _must_last(envelope: Envelope) -> bool:
-    """What is not numbered would only be said again: a power cut may have it. But for errors, which ring an alarm."""
+    """Tell if it must survive a power cut: what is not numbered would only be said again. But for errors, which ring
+    an alarm."""
     return envelope.seq is not None or isinstance(envelope.body, Error)
 
 
@@ -238,7 +239,7 @@ def _from_good_tokens(said: Sequence[Said], good: Mapping[str, Known]) -> Sequen
 
 
 def _is_of_its_row(one: Said, good: Mapping[str, Known], now: datetime) -> bool:
-    """Whether the message changes what is known of its robot; most tell only of missions and orders."""
+    """Tell if the message changes what is known of its robot; most tell only of missions and orders."""
     off_s = (one.envelope.at - now).total_seconds()
     return isinstance(one.envelope.body, OF_THE_ROBOT) or has_been_set(
         good[one.speaker.token_prefix].clock_off_s, off_s

@@ -31,7 +31,7 @@ class ClosedCorridorView(BaseModel):
 
 
 class ClosedCorridors(BaseModel):
-    """All of them, by name: it replaces what was known."""
+    """Closed corridors, all of them, by name: they replace what was known."""
 
     closed: list[ClosedCorridorView]
 

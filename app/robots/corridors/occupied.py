@@ -41,7 +41,7 @@ class RobotTraffic(BaseModel):
 
 
 async def traffic_for(session: AsyncSession, person: Person) -> Traffic:
-    """What this person may see of it."""
+    """Return what this person may see of it."""
     held = select(GrantRow).where(col(GrantRow.cleared_at).is_(None))
     if not any(person.has_role(role) for role in SEE_ALL):
         held = held.where(col(GrantRow.robot).in_(await _robots_of(session, person)))

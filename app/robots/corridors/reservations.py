@@ -1,4 +1,4 @@
-"""Who may enter which corridor, as robots ask and say. By the timetable a claim waits here for `traffic_desk`; with the
+"""Reservation requests, as robots send them. By the schedule a request waits here for `app.traffic.service`; with the
 setting `traffic` at `at_once` everything is granted.
 
 A grant holds until the robot reports the corridor clear; no time-out ever frees one.
@@ -52,7 +52,7 @@ async def answer(
 
 
 async def withdraw(session: AsyncSession, robot: RobotRow, message: Withdraw) -> bool:
-    """Whether the robot waited for it; what has been answered meanwhile it gives back itself."""
+    """Withdraw a request; True if the robot waited for it. What has been answered meanwhile it gives back itself."""
     waiting = update(ClaimRow).where(
         col(ClaimRow.robot) == robot.name,
         col(ClaimRow.claim_id) == message.claim_id,
@@ -80,8 +80,8 @@ async def clear(session: AsyncSession, campus: CampusMap, robot: str, message: C
 
 
 async def _forget_what_begins_elsewhere(session: AsyncSession, robot: str, post: str) -> None:
-    """What it asked for before it got here some other way is nothing that it could enter. While it is inside a corridor
-    it may be asking for what comes after that."""
+    """Drop what it asked for before it got here some other way: nothing that it could enter. While it is inside a
+    corridor it may be asking for what comes after that."""
     waiting = select(ClaimRow).where(ClaimRow.robot == robot, col(ClaimRow.granted).is_(None))
     for claim in (await session.exec(waiting)).all():
         if claim.legs[0]["from_post"] != post and not await held_by(session, robot):

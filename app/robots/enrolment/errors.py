@@ -1,4 +1,4 @@
-"""What an enrolment can be refused for.
+"""Refusals of an enrolment.
 
 NotSignedIn ├── WrongEnrolmentCode
             └── NoEnrolmentCode

@@ -81,7 +81,7 @@ async def list_robot_tokens(
 async def revoke_robot_token(
     name: RobotName, token_prefix: Prefix, maintainer: Maintainer, session: SessionDep, fleet: FleetDep, clock: ClockDep
 ) -> None:
-    """Take a robot's token back: whoever is connected by it is cut off, and nobody signs in by it again."""
+    """Take a robot's token back: its connection is cut off, and no robot signs in by it again."""
     row = await session.get(RobotToken, token_prefix)
     if row is None or row.robot != name:
         raise UnknownRobotToken(f"Robot {name} has no token {token_prefix}.")

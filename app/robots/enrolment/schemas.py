@@ -19,7 +19,7 @@ class EnrolmentCodeView(BaseModel):
 
 
 class Enrolment(BaseModel):
-    """What a robot comes with: its code, and the public half of its Ed25519 key, in base64."""
+    """A robot's enrolment: its code, and the public half of its Ed25519 key, in base64."""
 
     model_config = ConfigDict(extra="forbid")
 

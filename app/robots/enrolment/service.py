@@ -24,7 +24,7 @@ CODE_LIFETIME_S: Final = 900.0
 
 @dataclass(frozen=True)
 class EnrolmentDesk:
-    """Makes codes and admits whoever comes with one."""
+    """Makes codes and admits the robot that comes with one."""
 
     settings: Settings
     key: ServerKey

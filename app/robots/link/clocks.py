@@ -24,7 +24,7 @@ def by_its_clock(at: datetime, off_s: float) -> datetime:
 
 
 def has_been_set(known_s: float, seen_s: float) -> bool:
-    """Whether a clock that was `known_s` ahead must have been set since, if a message says that it is `seen_s` ahead.
+    """Tell if a clock that was `known_s` ahead must have been set since, if a message says that it is `seen_s` ahead.
 
     A message takes its time but never comes before it was sent: it may well make a clock look slower than it is. No
     connection lives long enough to make it look slower by the tolerance.

@@ -1,4 +1,4 @@
-"""Who is connected now: one robot, one socket. In memory, since a socket does not outlive its process either."""
+"""Open connections: one robot, one socket. In memory, since a socket does not outlive its process either."""
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Protocol
@@ -19,7 +19,7 @@ class Seat(Protocol):
         ...
 
     def watch(self, watch: Watch) -> bool:
-        """Somebody watches this robot; False if it does not know what that is."""
+        """This robot is watched; False if it does not know what that is."""
         ...
 
     def give_way(self) -> None:
@@ -49,30 +49,30 @@ class Connections:
         return True
 
     def is_seated(self, robot: str) -> bool:
-        """Whether this robot is connected now."""
+        """Tell if this robot is connected now."""
         return robot in self._seats
 
     def understands(self, robot: str, word: str) -> bool:
-        """Whether this robot is connected now, and has named this message among those that it knows."""
+        """Tell if this robot is connected now, and has named this message among those that it knows."""
         seat = self._seats.get(robot)
         return seat is not None and word in seat.understands
 
     def wake(self, robot: str) -> None:
-        """Something new is in the outbox of this robot; nobody minds if it is not connected."""
+        """Something new is in the outbox of this robot, connected or not."""
         if seat := self._seats.get(robot):
             seat.wake()
 
     def watch(self, robot: str, watch: Watch) -> bool:
-        """Somebody watches this robot; False if it is not connected, or does not know what that is."""
+        """This robot is watched; False if it is not connected, or does not know what that is."""
         seat = self._seats.get(robot)
         return seat is not None and seat.watch(watch)
 
     def tokens(self, robots: Iterable[str]) -> dict[str, str]:
-        """What those of these robots who are connected came in with: their tokens' prefixes."""
+        """Return the prefixes of the tokens by which those of these robots came in that are connected."""
         return {robot: seat.token_prefix for robot in robots if (seat := self._seats.get(robot))}
 
     def hand_over(self, news: Mapping[str, Kept]) -> None:
-        """What has just been put into outboxes: nobody has to look for it there."""
+        """Hand over what has just been put into outboxes: it need not be read from there."""
         for robot, kept in news.items():
             if seat := self._seats.get(robot):
                 seat.wake(kept.messages if seat.token_prefix == kept.token else ())

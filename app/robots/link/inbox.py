@@ -1,4 +1,4 @@
-"""What robots say, taken once and in order: the same rules as on the robot's side (`protocol/sequence.py`)."""
+"""Inbox: robots' messages, taken once and in order: the same rules as on the robot's side (`protocol/sequence.py`)."""
 
 from collections.abc import Sequence
 from datetime import datetime
@@ -30,7 +30,7 @@ async def resume(session: AsyncSession, robot: str, journal: str, resume_from: i
 
 
 async def knows_another_journal(session: AsyncSession, robot: str, journal: str) -> bool:
-    """Whether this robot has spoken before, but never from this journal: its memory is a new one."""
+    """Tell if this robot has spoken before, but never from this journal: its memory is a new one."""
     journals = (await session.exec(select(RobotJournal.journal).where(RobotJournal.robot == robot))).all()
     return bool(journals) and journal not in journals
 

@@ -1,4 +1,4 @@
-"""What robots are to be told, kept until they have it. Written in the transaction of whatever it follows from."""
+"""Outbox: messages to robots, kept until they have them. Written in the transaction of whatever it follows from."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -36,7 +36,7 @@ class Waiting:
 
 @dataclass(frozen=True, slots=True)
 class Kept:
-    """What has been put into one robot's outbox; whoever came in with `token` may hear it at once."""
+    """A message in one robot's outbox; the connection that came in with `token` may hear it at once."""
 
     messages: Sequence[Waiting]
     token: str | None
@@ -84,7 +84,8 @@ _COUNT: Final = update(RobotRow).where(col(RobotRow.name) == bindparam("of")).va
 
 
 async def pending(session: AsyncSession, robot: str, prefix: str, after: int, limit: int) -> Sequence[Waiting]:
-    """What the robot has not acknowledged, beyond `after`, in order; `prefix` is the token that it came in with."""
+    """Return what the robot has not acknowledged, beyond `after`, in order; `prefix` is the token that it came in
+    with."""
     asked = {"of": robot, "prefix": prefix, "after": after, "at_most": limit}
     return [Waiting(*row) for row in (await (await connection_of(session)).execute(_PENDING, asked)).all()]
 
@@ -148,7 +149,7 @@ _LOWEST: Final = select(func.min(MessageToRobot.seq)).where(
 
 
 def went_back_in_time(robot: RobotRow, received: Received) -> bool:
-    """Whether the robot has had messages from this journal that we have not written yet.
+    """Tell if the robot has had messages from this journal that we have not written yet.
 
     Then this database was put back from an older copy, and the numbers that come next would look like repetitions.
     """

@@ -24,7 +24,7 @@ def make_token() -> NewToken:
 async def token_of(session: AsyncSession, authorization: str | None) -> RobotToken | None:
     """The token that an Authorization header carries, which says whose it is; None if it is refused.
 
-    Writes nothing: whoever knocks with a wrong one holds up nobody who writes.
+    Writes nothing: a robot with a wrong one holds up no writer.
     """
     shown = read_token(KIND, authorization or "")
     row = await session.get(RobotToken, shown.prefix) if shown else None
@@ -34,7 +34,7 @@ async def token_of(session: AsyncSession, authorization: str | None) -> RobotTok
 
 
 async def note_use(session: AsyncSession, prefix: str, now: datetime) -> None:
-    """Somebody has come in with this token."""
+    """A robot has come in with this token."""
     await session.exec(update(RobotToken).where(col(RobotToken.prefix) == prefix).values(used_at=now))
 
 
@@ -47,7 +47,7 @@ class Known:
 
 
 async def still_good(session: AsyncSession, prefixes: set[str]) -> dict[str, Known]:
-    """Which of these tokens, that let somebody in, are worth something still, and whose they are."""
+    """Which of these tokens, that let a robot in, are worth something still, and whose they are."""
     rows = await (await connection_of(session)).execute(_STILL_GOOD, {"prefixes": list(prefixes)})
     return {prefix: Known(name, clock_off_s) for prefix, name, clock_off_s in rows.all()}
 

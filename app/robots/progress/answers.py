@@ -1,4 +1,4 @@
-"""What follows from the answers that robots give to commands."""
+"""Consequences of robots' answers to commands."""
 
 from typing import Final
 
@@ -30,7 +30,7 @@ async def follow_answer(report: Report, answer: CommandAnswer) -> None:
     elif command.kind == REVOKE and answer.accepted:
         await _taken_out(report)
     elif command.kind == "confirm" and command.order_id is not None and not answer.accepted:
-        # Whoever tapped reads it on their page; nobody else has to look.
+        # The person who tapped reads it on their page; no other has to look.
         word = report.word(answer.happened_at, None, answer.reason)
         await report.orders.note(report.session, command.order_id, "confirm_refused", word)
     elif not answer.accepted:

@@ -1,4 +1,4 @@
-"""What follows from a robot's progress: stops and missions come on, and orders with them."""
+"""Consequences of a robot's progress: stops and missions come on, and orders with them."""
 
 from collections.abc import Awaitable, Callable, Mapping
 from typing import Final
@@ -80,7 +80,7 @@ async def _at_stop(report: Report, progress: Progress, mission: MissionRow, stop
     if name is not None and not was_told:
         setattr(stop, name, progress.happened_at)
     if is_over or was_told or stop.order_id is None or not await _is_theirs(report, stop):
-        pass  # what was reported before, or what concerns nobody any more
+        pass  # what was reported before, or what concerns no order any more
     elif progress.step is Step.GAVE_UP:
         await _GIVEN_UP[StopAction(stop.action)](report, progress, mission, stop.order_id)
     else:
@@ -111,7 +111,7 @@ async def _come_along(report: Report, progress: Progress, stop: StopRow, order_i
 
 
 async def _not_loaded(report: Report, progress: Progress, mission: MissionRow, order_id: str) -> None:
-    """The sender did not come, or (which is nobody's delay, but a fault) the robot cannot get there.
+    """The sender did not come, or (which is no person's delay, but a fault) the robot cannot get there.
 
     Nothing came aboard, so nothing is left to do for this order.
     """
@@ -150,4 +150,4 @@ _GIVEN_UP: Final[Mapping[StopAction, _GiveUp]] = {
     StopAction.RECEIVE: _not_taken,
     StopAction.RETURN: _not_taken_back,
 }
-"""Other stops have no order, so that nobody waits there."""
+"""Other stops have no order, so that no person waits there."""

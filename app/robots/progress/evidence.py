@@ -1,7 +1,7 @@
-"""What a receipt goes by: what it carries that its robot could not know without the hand-over.
+"""The evidence of a receipt: what it carries that its robot could not know without the hand-over.
 
-A stolen robot has everything that robots are told, and its key. What it cannot have is a code that nobody has shown it,
-nor a command that nobody has asked for, and it cannot drive faster than its base.
+A stolen robot has everything that robots are told, and its key. What it cannot have is a code that it was not shown,
+nor a command that was not given, and it cannot drive faster than its base.
 """
 
 import hmac
@@ -56,8 +56,8 @@ def evidence_of(
     code: HandoverCode | None,
     command: RobotCommand | None,
 ) -> tuple[Evidence, str | None]:
-    """What the receipt goes by; if by nothing, also why (one of UNPROVED). `missions`: that of its stop as it was told
-    to the robot, and the one that the receipt names."""
+    """Return the evidence of the receipt; if there is none, also why (one of UNPROVED). `missions`: that of its stop
+    as it was told to the robot, and the one that the receipt names."""
     if command is not None:
         return Evidence(receipt.how), None
     if code is None:
@@ -83,7 +83,7 @@ def _must_prove(robot: RobotRow, receipt: HandoverReceipt, mission: MissionRow) 
 async def is_too_fast(
     session: AsyncSession, ways: Ways, clock: Clock, robot: RobotRow, receipt: HandoverReceipt, now: datetime
 ) -> bool:
-    """Whether no robot could have driven here, from where this one was before, in the time that has passed.
+    """Tell if no robot could have driven here, from where this one was before, in the time that has passed.
 
     By the robot's own times, and, for what it had told at once, by the service's.
     """

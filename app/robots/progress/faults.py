@@ -1,4 +1,4 @@
-"""What follows from a robot's faults: an alarm, and with mail aboard an order that a person has to see to."""
+"""Consequences of a robot's faults: an alarm, and with mail aboard an order that a person has to see to."""
 
 from typing import Final
 
@@ -24,7 +24,7 @@ NEEDS_A_PERSON: Final = frozenset(
         "stuck",
     }
 )
-"""The robot's faults (docs/safety.md) that it does not get out of by itself; what passes is nobody's delay."""
+"""The robot's faults (docs/safety.md) that it does not get out of by itself; what passes is no person's delay."""
 
 
 async def follow_fault(report: Report, fault: Fault) -> None:

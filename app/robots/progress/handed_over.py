@@ -1,8 +1,8 @@
-"""What follows from a receipt: mail has changed hands. It is written down whatever the order's state says: only the
+"""Consequences of a receipt: mail has changed hands. It is written down whatever the order's state says: only the
 robot writes custody, and what it proves has happened. Refused is only what no chain of custody could contain.
 
 What a robot only claims is written down as claimed. Mail that is said to be aboard goes its way; mail that is said to
-be out waits for a person who asks whoever should have it."""
+be out waits for a person who asks the one who should have it."""
 
 from collections.abc import Mapping
 from typing import Final
@@ -72,8 +72,8 @@ async def _settle(report: Report, receipt: HandoverReceipt, handover: Handover) 
 
 
 async def _let_somebody_ask(report: Report, receipt: HandoverReceipt) -> None:
-    """Nobody is told that they have it. An order that has ended or was given to another stays as it is: the alarm rings
-    all the same."""
+    """No person is told that they have it. An order that has ended or was given to another stays as it is: the alarm
+    rings all the same."""
     order = await report.orders.order(report.session, receipt.order_id)
     if order.robot == report.robot and order.state in MAIL_ABOARD:
         word = report.word(receipt.happened_at, receipt.post, NOT_PROVED)
@@ -111,7 +111,7 @@ async def _stop(report: Report, receipt: HandoverReceipt) -> tuple[StopRow, Miss
 
 async def _move(report: Report, receipt: HandoverReceipt, *, quietly: bool) -> None:
     """The order follows its mail. An order that has ended otherwise stays ended, and a person has to look. `quietly`:
-    people are told nothing that nobody knows."""
+    people are told nothing that is not known."""
     order = await report.orders.order(report.session, receipt.order_id)
     if order.robot not in (None, report.robot):
         order.let_go_by = order.robot  # it was given to another, but this one had the mail already
@@ -137,7 +137,7 @@ async def _loaded_too_late(report: Report, order: Order, receipt: HandoverReceip
 
 
 async def _contradiction(report: Report, receipt: HandoverReceipt, state: OrderState) -> None:
-    """When such mail is out again, nobody has to look any more."""
+    """When such mail is out again, no person has to look any more."""
     if receipt.purpose != Purpose.LOAD:
         await clear_alarms(report.session, report.robot, CONTRADICTION, report.now, about=receipt.order_id)
         return
@@ -158,7 +158,7 @@ async def _states(report: Report, order: Order, receipt: HandoverReceipt) -> tup
 
 
 async def _taken_back(report: Report, order: Order, receipt: HandoverReceipt) -> OrderState:
-    """Who took it is told by the code; with none, by the place."""
+    """Find out who took it: the code tells; with none, the place."""
     for code in codes_of(order, await delegates_of(report.session, [order])):
         if code.sha256(report.orders.key) == receipt.code_sha256:
             of_delegate = Holder.RECIPIENT if code.purpose is Purpose.RECEIVE else Holder.SENDER

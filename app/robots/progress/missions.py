@@ -37,7 +37,8 @@ async def mission_of(report: Report, progress: Progress) -> MissionRow:
 
 
 async def _adopt(report: Report, progress: Progress) -> MissionRow:
-    """What is aboard goes back. The robot has let go of the mission before, and of what it had not loaded."""
+    """Adopt a mission of the robot's own: what is aboard goes back. The robot has let go of the mission before, and of
+    what it had not loaded."""
     await _end_own(report)
     for before in await _active(report):
         if await _was_begun(report, before):
@@ -55,7 +56,7 @@ async def _adopt(report: Report, progress: Progress) -> MissionRow:
 
 
 async def _was_begun(report: Report, mission: MissionRow) -> bool:
-    """Whether the robot has held it: one that it has only been told of, or an update of it, is still to come."""
+    """Tell if the robot has held it: one that it has only been told of, or an update of it, is still to come."""
     if 0 < mission.accepted_update < mission.told_update:
         return False
     touched = select(StopRow.id).where(StopRow.mission_id == mission.id, col(StopRow.departed_at).is_not(None))
@@ -84,7 +85,7 @@ async def start_returning(report: Report, order: Order, progress: Progress) -> N
 
 
 async def let_go_of(report: Report, mission: MissionRow, word: Word) -> None:
-    """A mission that the robot does not hold any more: what it has not loaded is to be fetched by somebody else."""
+    """A mission that the robot does not hold any more: what it has not loaded is to be fetched by another."""
     end(report, mission, MissionState.CANCELLED)
     for stop in await stops_left(report.session, mission.id):
         stop.dropped_at = report.now
@@ -101,7 +102,7 @@ async def drop_order(report: Report, order: Order, word: Word) -> None:
 
 
 async def drop_stops(report: Report, order_id: str) -> None:
-    """Nothing is left to do for this order; a mission in which nothing is left at all is over, whoever gave it."""
+    """Nothing is left to do for this order; a mission in which nothing is left at all is over, whatever gave it."""
     for stop in await stops_of_order(report.session, order_id, report.robot):
         stop.dropped_at = report.now
     await end_what_is_empty(report)

@@ -1,4 +1,4 @@
-"""What follows from what robots report: one function per kind of report, in a table.
+"""Consequences of robots' reports: one function per kind of report, in a table.
 
 Each runs in the transaction that writes the report down, and does nothing the second time, so that a robot may repeat
 itself.

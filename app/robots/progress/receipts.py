@@ -1,4 +1,4 @@
-"""What a robot's receipt says: that this robot wrote it, and whose code opened. Else custody does not move.
+"""Receipts of robots: this robot wrote it, and this code opened. Else custody does not move.
 
 What it goes by is another matter (`app.robots.progress.evidence`): what nothing proves is written down as claimed."""
 
@@ -43,12 +43,12 @@ PROBLEMS: Final[Mapping[str, str]] = {
 
 
 def counts_for_nothing(purpose: str, order_id: str, problem: str) -> str:
-    """What dispatchers are told; `problem` is one of PROBLEMS."""
+    """Return the sentence for dispatchers; `problem` is one of PROBLEMS."""
     return f"a receipt ({purpose}) for order {order_id} counts for nothing: {PROBLEMS[problem]}"
 
 
 def claimed(purpose: str, order_id: str, post: str, problem: str) -> str:
-    """What dispatchers are told; `problem` is one of UNPROVED."""
+    """Return the sentence for dispatchers; `problem` is one of UNPROVED."""
     return f"the robot says that mail of order {order_id} changed hands ({purpose}) at {post}: {UNPROVED[problem]}"
 
 
@@ -116,7 +116,8 @@ class _Judge:
         return evidence, problem
 
     async def _command(self) -> RobotCommand | None:
-        """Who asked for it in the app: once, and not if the robot has said no to it."""
+        """Return the command of the person who asked for it in the app: once, and not if the robot has said no to
+        it."""
         receipt = self.receipt
         if receipt.how not in ("tap", "digits"):
             return None
@@ -130,7 +131,7 @@ class _Judge:
         return command
 
     async def _code(self) -> HandoverCode | None:
-        """Whose it was; None for the Spot button, which loads only."""
+        """Return the code that opened; None for the Spot button, which loads only."""
         receipt = self.receipt
         if receipt.code_sha256 is None:
             if receipt.purpose is not Purpose.LOAD:

@@ -58,8 +58,8 @@ class Report:
 
         A robot that was given up on and goes on by itself takes its order out of attention: what it does is the truth.
         People have been told of where that was, and are now told of what it has come to. But for mail that it says it
-        has not any more: what becomes of that is for the person to say who has asked. `quietly`: nobody is told of the
-        last state.
+        has not any more: what becomes of that is for the person to say who has asked. `quietly`: no person is told of
+        the last state.
         """
         order = await self.orders.order(self.session, order_id)
         before = order.state_before_attention

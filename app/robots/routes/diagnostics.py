@@ -1,4 +1,4 @@
-"""What maintainers look at: a robot's senses and mind now, and its battery over time."""
+"""Diagnostics over HTTP, for maintainers: a robot's senses and mind now, and its battery over time."""
 
 from datetime import datetime, timedelta
 from typing import Annotated, Final
@@ -41,7 +41,7 @@ class BatterySampleView(BaseModel):
 
 
 class BatteryHistory(BaseModel):
-    """What a robot told of its battery, oldest first: at most about 300 samples, those where charging began or ended
+    """The battery of a robot, oldest first: at most about 300 samples, those where charging began or ended
     among them. `low_ratio`: below this a robot goes to charge, unless its own settings say otherwise."""
 
     robot: str

@@ -1,4 +1,4 @@
-"""What dispatchers and maintainers do with robots: look at one, tell it something, see to its alarms."""
+"""Robots over HTTP, for dispatchers and maintainers: one robot, its commands, its alarms."""
 
 from collections.abc import Callable
 from typing import Annotated
@@ -69,7 +69,7 @@ async def pause_robot(
 
 @router.post("/robots/{name}/resume", status_code=202, responses=TOLD)
 async def resume_robot(name: RobotName, dispatcher: Dispatcher, session: SessionDep, fleet: FleetDep) -> CommandView:
-    """Let a robot go on after a pause or an emergency stop: whoever says so has looked."""
+    """Let a robot go on after a pause or an emergency stop: the dispatcher who says so has looked."""
     return await _tell(session, fleet, name, dispatcher, "resume", lambda id_: Resume(command_id=id_))
 
 
@@ -122,7 +122,7 @@ async def list_alarms(
 async def acknowledge_alarm(
     alarm_id: AlarmId, user: DispatcherOrMaintainer, session: SessionDep, clock: ClockDep
 ) -> AlarmView:
-    """Say that somebody sees to an alarm. It stays open until it is over by itself."""
+    """Acknowledge an alarm: a person sees to it. It stays open until it is over by itself."""
     alarm = await session.get(Alarm, alarm_id, with_for_update=True)
     if alarm is None:
         raise UnknownAlarm(f"There is no alarm {alarm_id}.")
