@@ -73,14 +73,14 @@ def with_links(text: str, source: Path, places: Mapping[Path, Path]) -> str:
 
 
 def _in_site(target: str, source: Path, places: Mapping[Path, Path]) -> str | None:
-    """The link's target in the site, or None where the site does not have it."""
+    """The link's target in the site, or None for a file that only the repository has."""
     path, mark, anchor = target.partition("#")
     if not path or "://" in target or target.startswith("mailto:"):
         return target
     wanted = (source.parent / path).resolve()
     place = places.get(wanted) or places.get(wanted / "README.md")
     if place is None:
-        return None
+        return None if wanted.exists() else target  # a link that leads nowhere is for the build to refuse
     return os.path.relpath(place, places[source].parent) + mark + anchor
 
 

@@ -24,10 +24,11 @@ PLACES = {
     [
         ("[why](../explanation/why.md#so)", "[why](../explanation/why.md#so)"),
         ("[start](../../README.md)", "[start](../index.md)"),
-        ("[the fault table](../../robot/faults.py)", "the fault table (`robot/faults.py`)"),
-        ("[faults.py](../../robot/faults.py)", "faults.py"),
+        ("[the settings](../../robot/config.py)", "the settings (`robot/config.py`)"),
+        ("[config.py](../../robot/config.py)", "config.py"),
         ("[paper](https://example.org/p)", "[paper](https://example.org/p)"),
-        ("```\n[kept](../../robot/faults.py)\n```", "```\n[kept](../../robot/faults.py)\n```"),
+        ("[gone](../explanation/gone.md)", "[gone](../explanation/gone.md)"),
+        ("```\n[kept](../../robot/config.py)\n```", "```\n[kept](../../robot/config.py)\n```"),
     ],
 )
 def test_links_hold_in_the_site_and_links_to_code_become_words(before, after):
