@@ -1,6 +1,6 @@
 """Runs the code blocks of a page as a reader does: saves the named files, types the commands, compares the output.
 
-- A block with `title="path"` is saved there; with `append` behind it, added to the end of that file.
+- A block with `title="path"` is saved there; one with `title="end of path"` is added to the end of that file.
 - A `console` block has commands (`$ …`) and their output. A line of "…" stands for any lines, "…" within a line for
   any text. Output and error stream are one text.
 - All other blocks are shown only.
@@ -16,7 +16,7 @@ from pathlib import Path
 
 CHECKOUT = Path(__file__).parents[2]
 BLOCK = re.compile(r"^```(\w+)([^\n]*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
-TITLE = re.compile(r'title="([^"]+)"( append)?')
+TITLE = re.compile(r'title="(end of )?([^"]+)"')
 COMMAND_SECONDS = 100
 
 
@@ -48,8 +48,8 @@ def run(page: str, folder: Path) -> Iterator[Ran]:
     """Do what the page says, in its order. Yields each command with what is printed."""
     for language, info, text in BLOCK.findall(page):
         if title := TITLE.search(info):
-            with (folder / title[1]).open("a" if title[2] else "w", encoding="utf-8") as file:
-                file.write(("\n" if title[2] else "") + text)
+            with (folder / title[2]).open("a" if title[1] else "w", encoding="utf-8") as file:
+                file.write(("\n" if title[1] else "") + text)
         elif language == "console":
             for command, expected in re.findall(r"^\$ (.*)\n((?:(?!\$ ).*\n)*)", text, re.MULTILINE):
                 yield Ran(command, expected, _output(command, folder))

@@ -56,6 +56,8 @@ async def test_the_site_builds_without_a_warning_and_its_search_works_from_files
     )
     said, _ = await built.communicate()
     assert built.returncode == 0, said.decode()
+    badly_fenced = [page.name for page in staging.SITE.rglob("*.html") if "\n```" in page.read_text(encoding="utf-8")]
+    assert badly_fenced == []
     foreign: list[str] = []
     async with async_playwright() as playwright:
         browser = await playwright.chromium.launch(executable_path=find_chromium(), args=["--no-sandbox"])
