@@ -6,7 +6,7 @@ BIN := .venv/bin
 ARGS ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help setup setup-develop setup-robot test check licences sbom format demo fleet-demo serve robot bench bench-mind bench-body bench-service bench-paper bench-pages bench-service-kills bench-fleet fuzz-mind client pages icons screenshots fuzz-api pin clean
+.PHONY: help setup setup-develop setup-robot test check licences sbom format demo fleet-demo serve robot bench bench-mind bench-body bench-service bench-paper bench-pages bench-service-kills bench-fleet fuzz-mind client pages icons screenshots fuzz-api docs pin clean
 # A recipe that fails must not leave its stamp behind.
 .DELETE_ON_ERROR:
 
@@ -98,6 +98,9 @@ screenshots: setup-develop ## Take pictures of every page into docs/pictures/pag
 
 fuzz-api: setup-develop ## Let schemathesis look for answers that the API document does not promise, twenty minutes long
 	@CAMPUS_MAIL_FUZZ_S=300 $(BIN)/python -m pytest -q --timeout 900 tests/app/test_api_fuzz.py $(ARGS)
+
+docs: setup-develop ## Build the documentation site into var/site; warnings are errors
+	@$(BIN)/python -m docs.site
 
 pin: .venv/.python-ready ## Write constraints.txt anew from pyproject.toml
 	$(BIN)/pip install --quiet uv

@@ -9,6 +9,8 @@ import pytest
 
 CHECKOUT = Path(__file__).parent.parent
 LONGEST_FILE = 400
+LONGEST_DECISION = 20
+LONGEST_README_WORDS = 600
 LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)|(?:src|srcset|href)=\"([^\"]+)\"")
 DECISION = re.compile(r"docs/decisions/(\d{4})")
 # Spelled with brackets so that this file does not find itself.
@@ -51,6 +53,12 @@ def test_every_decision_is_in_the_index():
     decisions = [path.name for path in (CHECKOUT / "docs/decisions").glob("[0-9]*.md")]
     assert decisions
     assert [name for name in decisions if f"({name})" not in index] == []
+
+
+def test_a_decision_and_the_readme_are_short():
+    lengths = {path: len(path.read_text().splitlines()) for path in (CHECKOUT / "docs/decisions").glob("[0-9]*.md")}
+    assert {path.name for path, lines in lengths.items() if lines > LONGEST_DECISION} == set()
+    assert len((CHECKOUT / "README.md").read_text(encoding="utf-8").split()) <= LONGEST_README_WORDS
 
 
 def test_every_decision_that_code_speaks_of_is_there():

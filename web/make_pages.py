@@ -28,7 +28,7 @@ IMPORT: Final = re.compile(
     r"""(?:^|[;\s}])(?:import|export)\s*(?:[\w$*{][^"';]*?from)?\s*["']([^"']+)["']""", re.MULTILINE
 )
 LIT: Final = "/npm/joined/lit.js"
-"""Its packages in one file, which `make setup` makes (docs/decisions/0064-lit-is-one-file.md)."""
+"""Its packages in one file, which `make setup` makes (docs/decisions/0041-answers-before-modules.md)."""
 IMPORTS: Final = {"lit": LIT, "/npm/lit-html/lit-html.js": LIT, "lit-html/": "/npm/lit-html/"}
 """What asks for a part of it by its address, as directives do, is led to the same file: there must not be two."""
 MODULE: Final = '<link rel="modulepreload" href="{}" />'
