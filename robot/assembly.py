@@ -9,34 +9,33 @@ from bdi import Agent, Program, parse_program
 from maps import CampusMap, find_map
 from maps.tags import tag_numbers
 from protocol.clock import Clock
-
-from .action.actions import Actions, table_for
-from .action.hands import Hands
-from .black_box import BlackBox
-from .config import ConfigError, PerceptMode, Settings, read_token
-from .daemon import BodyWatch, Daemon
-from .drive_loop import DriveLoop
-from .drivers.create2 import Create2
-from .drivers.dock_infrared import DockInfrared
-from .drivers.interfaces import BodyShape, Camera, Host, LineSensor
-from .drivers.marker_pose import Optics
-from .drivers.marker_reader import MarkerReader, MarkerWatch
-from .drivers.port_thread import PortThread
-from .drivers.serial_port import SerialPort, open_serial
-from .duties import Duties
-from .hardware import line_sensor, pin_factory, real_camera, real_port
-from .host import Computer, HostWatch
-from .link import Link
-from .memory import Memory
-from .mind import Mind
-from .navigator import Navigator
-from .outbox import Outbox
-from .signatures import signer
-from .simulated import Build, CameraMount, DiodeMount, Motion, Options, Pack, SimulatedHost, SimulatedRobot, World
-from .simulated_world import SavedWorld
-from .stop_memory import FILE_NAME as STOPS
-from .stop_memory import StopMemory
-from .store import Store
+from robot.action.actions import Actions, table_for
+from robot.action.hands import Hands
+from robot.black_box import BlackBox
+from robot.config import ConfigError, PerceptMode, Settings, read_token
+from robot.daemon import BodyWatch, Daemon
+from robot.drive_loop import DriveLoop
+from robot.drivers.create2 import Create2
+from robot.drivers.dock_infrared import DockInfrared
+from robot.drivers.interfaces import BodyShape, Camera, Host, LineSensor
+from robot.drivers.marker_pose import Optics
+from robot.drivers.marker_reader import MarkerReader, MarkerWatch
+from robot.drivers.port_thread import PortThread
+from robot.drivers.serial_port import SerialPort, open_serial
+from robot.duties import Duties
+from robot.hardware import line_sensor, pin_factory, real_camera, real_port
+from robot.host import Computer, HostWatch
+from robot.link import Link
+from robot.memory import Memory
+from robot.mind import Mind
+from robot.navigator import Navigator
+from robot.outbox import Outbox
+from robot.signatures import signer
+from robot.simulated import Build, CameraMount, DiodeMount, Motion, Options, Pack, SimulatedHost, SimulatedRobot, World
+from robot.simulated_world import SavedWorld
+from robot.stop_memory import FILE_NAME as STOPS
+from robot.stop_memory import StopMemory
+from robot.store import Store
 
 OUR_PROGRAM = Path(__file__).parent / "agent" / "main.asl"
 

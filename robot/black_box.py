@@ -24,7 +24,7 @@ from typing import Any
 
 import structlog
 
-from .errors import BlackBoxUnreadable
+from robot.errors import BlackBoxUnreadable
 
 log = structlog.get_logger("robot.black_box")
 

@@ -3,9 +3,9 @@
 import struct
 from collections.abc import Iterable, Iterator
 
-from .black_box import Row
-from .drivers.open_interface import Opcode
-from .drivers.stream_parser import StreamParser
+from robot.black_box import Row
+from robot.drivers.open_interface import Opcode
+from robot.drivers.stream_parser import StreamParser
 
 RESTLESS = frozenset(
     {"left_count", "right_count", "voltage_mv", "current_ma", "charge_mah", "temperature_c", "stasis", "left_motor_ma"}

@@ -17,8 +17,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol
 
-from .reflexes import LATCHED
-from .skills.interfaces import View
+from robot.reflexes import LATCHED
+from robot.skills.interfaces import View
 
 SOCKET_NAME = "control"
 SEEN_WITHIN_S = 1.0

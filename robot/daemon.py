@@ -25,16 +25,15 @@ from typing import Protocol
 
 from protocol.envelope import YOUNGER
 from protocol.to_server import Hello, Snapshot
-
-from .black_box import BlackBox
-from .config import RateSettings
-from .drive_loop import DriveLoop
-from .drivers.interfaces import Base
-from .drivers.marker_reader import MarkerWatch
-from .host import HostWatch
-from .mind import Mind
-from .runners import Loop
-from .stop_memory import StopMemory
+from robot.black_box import BlackBox
+from robot.config import RateSettings
+from robot.drive_loop import DriveLoop
+from robot.drivers.interfaces import Base
+from robot.drivers.marker_reader import MarkerWatch
+from robot.host import HostWatch
+from robot.mind import Mind
+from robot.runners import Loop
+from robot.stop_memory import StopMemory
 
 SOFTWARE = "campus-mail robot 0.1.0"
 LAST_TICKS = 30

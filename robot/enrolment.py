@@ -9,8 +9,8 @@ from urllib.parse import urlsplit
 
 import httpx
 
-from .config import ConfigError
-from .durable_file import replace
+from robot.config import ConfigError
+from robot.durable_file import replace
 
 LONGEST_TOKEN = 512
 LIMIT_S = 10.0

@@ -8,16 +8,15 @@ from typing import Any
 
 from maps import Marker, find_map
 from protocol.clock import Clock, RealClock, SteppedClock
-
-from .assembly import Simulation, simulated_robot
-from .config import Settings
-from .drivers.interfaces import Camera
-from .drivers.serial_port import SerialPort, open_serial
-from .drivers.wake_up import WakeUpLine
-from .hardware import pin_factory, real_camera, real_port
-from .simulated import Pose, SimulatedRobot
-from .simulated.live import Live
-from .simulated.pushing import pushed_over_the_tape
+from robot.assembly import Simulation, simulated_robot
+from robot.config import Settings
+from robot.drivers.interfaces import Camera
+from robot.drivers.serial_port import SerialPort, open_serial
+from robot.drivers.wake_up import WakeUpLine
+from robot.hardware import pin_factory, real_camera, real_port
+from robot.simulated import Pose, SimulatedRobot
+from robot.simulated.live import Live
+from robot.simulated.pushing import pushed_over_the_tape
 
 
 @dataclass(frozen=True)

@@ -8,11 +8,11 @@ import tempfile
 from collections.abc import Callable
 from typing import Any
 
-from .config import ConfigError, Settings
-from .drivers.camera import GrabbingCamera
-from .drivers.line_sensor import ThreeDiodes
-from .drivers.serial_port import SerialPort, open_serial
-from .drivers.wake_up import GpioWakeUpLine, NoWakeUpLine, SerialRts, WakeUpLine
+from robot.config import ConfigError, Settings
+from robot.drivers.camera import GrabbingCamera
+from robot.drivers.line_sensor import ThreeDiodes
+from robot.drivers.serial_port import SerialPort, open_serial
+from robot.drivers.wake_up import GpioWakeUpLine, NoWakeUpLine, SerialRts, WakeUpLine
 
 
 def pin_factory() -> Any:

@@ -10,8 +10,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from protocol.clock import Clock
-
-from .drivers.interfaces import Host, HostReport
+from robot.drivers.interfaces import Host, HostReport
 
 UNDER_VOLTAGE_NOW = 1 << 0
 """Bit of get_throttled (Raspberry Pi documentation, "vcgencmd"): below 4.63 V now; bit 16 is "since the start"."""

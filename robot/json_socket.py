@@ -16,7 +16,7 @@ from typing import Any
 
 import structlog
 
-from .errors import RobotError
+from robot.errors import RobotError
 
 LONGEST_LINE = 4096
 MAX_VISITORS = 8

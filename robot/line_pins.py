@@ -6,7 +6,7 @@ from typing import Any
 
 from gpiozero import DigitalInputDevice
 
-from .config import LineSettings
+from robot.config import LineSettings
 
 PIN_NAMES = ("left", "centre", "right")
 LOOKS_HZ = 200.0

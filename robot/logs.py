@@ -14,7 +14,7 @@ from queue import Full, Queue
 
 import structlog
 
-from .config import ConfigError
+from robot.config import ConfigError
 
 LONGEST_FILE_BYTES = 1_000_000
 KEPT_FILES = 4

@@ -15,19 +15,18 @@ from bdi import Agent, Finished, Message
 from maps import CampusMapError
 from protocol.parts import Activity, Battery
 from protocol.to_server import Snapshot, Why
-
-from .action.actions import Actions
-from .action.corridors import WAY_BLOCKED, detour, tried_again
-from .action.hands import PLACE_UNKNOWN, Hands
-from .config import PerceptMode, Settings
-from .held import REVOKED
-from .long_silence import LongSilence
-from .perception.battery import BatterySense, BatteryWord
-from .perception.percepts import perceive
-from .perception.seen import Seen, Whereabouts
-from .reasons import LONG_AWAY, reason
-from .reflexes import HALTING, LATCHED, TOLD
-from .skills.interfaces import View
+from robot.action.actions import Actions
+from robot.action.corridors import WAY_BLOCKED, detour, tried_again
+from robot.action.hands import PLACE_UNKNOWN, Hands
+from robot.config import PerceptMode, Settings
+from robot.held import REVOKED
+from robot.long_silence import LongSilence
+from robot.perception.battery import BatterySense, BatteryWord
+from robot.perception.percepts import perceive
+from robot.perception.seen import Seen, Whereabouts
+from robot.reasons import LONG_AWAY, reason
+from robot.reflexes import HALTING, LATCHED, TOLD
+from robot.skills.interfaces import View
 
 log = structlog.get_logger("robot.mind")
 

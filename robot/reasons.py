@@ -8,11 +8,10 @@ from typing import Final
 
 from protocol.parts import StopAction
 from protocol.to_server import Why
-
-from .duties import Duties
-from .navigator import Navigator
-from .reflexes import FAULTS, Response
-from .skills.interfaces import View
+from robot.duties import Duties
+from robot.navigator import Navigator
+from robot.reflexes import FAULTS, Response
+from robot.skills.interfaces import View
 
 _STAND: Final = {fault.name: fault.told for fault in FAULTS if fault.response is not Response.NOTHING}
 """The faults that a robot stands for; others are told, but are no reason for what it does."""

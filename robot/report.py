@@ -4,9 +4,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from .link import Link, LinkState
-from .mind import Mind
-from .simulated import SimulatedRobot
+from robot.link import Link, LinkState
+from robot.mind import Mind
+from robot.simulated import SimulatedRobot
 
 _QUIET_ACTIONS = ("drive(", "report(", "clear_fault(", "say(", "rest(")
 

@@ -15,20 +15,19 @@ from types import FrameType
 import structlog
 
 from protocol.clock import Clock, RealClock, SharedClock, SteppedClock
-
-from .assembly import Parts, Simulation, assemble
-from .config import ConfigError, Settings
-from .control import SOCKET_NAME, Control
-from .errors import RobotError
-from .insight import Insights
-from .json_socket import JsonSocket
-from .link import Link, LinkError
-from .mind import Mind, messages_from_person
-from .report import Ending, Refusal, Reporter
-from .runners import SWITCH_INTERVAL_S, LockstepRunner, Runner, ThreadedRunner
-from .service_manager import ServiceManager, SignsOfLife
-from .simulated import Door, SimulatedRobot
-from .status import StatusBoard
+from robot.assembly import Parts, Simulation, assemble
+from robot.config import ConfigError, Settings
+from robot.control import SOCKET_NAME, Control
+from robot.errors import RobotError
+from robot.insight import Insights
+from robot.json_socket import JsonSocket
+from robot.link import Link, LinkError
+from robot.mind import Mind, messages_from_person
+from robot.report import Ending, Refusal, Reporter
+from robot.runners import SWITCH_INTERVAL_S, LockstepRunner, Runner, ThreadedRunner
+from robot.service_manager import ServiceManager, SignsOfLife
+from robot.simulated import Door, SimulatedRobot
+from robot.status import StatusBoard
 
 log = structlog.get_logger("robot.run")
 

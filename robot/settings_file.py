@@ -13,8 +13,8 @@ from annotated_types import Ge, Gt, Le, Lt
 from pydantic.fields import FieldInfo
 from tomlkit.exceptions import TOMLKitError
 
-from .config import ConfigError, Section, Settings, load_settings
-from .durable_file import replace
+from robot.config import ConfigError, Section, Settings, load_settings
+from robot.durable_file import replace
 
 HEADER = """\
 # Every setting of a robot with its default: what is commented out has no default.

@@ -13,8 +13,7 @@ from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
 from cryptography.hazmat.primitives.serialization import Encoding, NoEncryption, PrivateFormat, load_pem_private_key
 
 from protocol.to_server import HandoverReceipt
-
-from .config import ConfigError
+from robot.config import ConfigError
 
 _WAY_OUT = "Enrol this robot again: python -m robot enrol NAME SERVER."
 

@@ -5,8 +5,8 @@ import os
 from pathlib import Path
 from typing import Any
 
-from .errors import RobotError
-from .simulated import Pose, SimulatedRobot
+from robot.errors import RobotError
+from robot.simulated import Pose, SimulatedRobot
 
 SAVE_EVERY_S = 0.5
 """How often the charge of one that stands still is written down."""

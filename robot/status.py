@@ -4,14 +4,13 @@ from dataclasses import dataclass
 from typing import Any
 
 from protocol.clock import Clock
-
-from .daemon import SOFTWARE, Daemon
-from .drivers.create2 import Create2
-from .drivers.port_thread import PortThread
-from .link import Link
-from .mind import Mind
-from .reflexes import TOLD
-from .runners import Lag, Runner
+from robot.daemon import SOFTWARE, Daemon
+from robot.drivers.create2 import Create2
+from robot.drivers.port_thread import PortThread
+from robot.link import Link
+from robot.mind import Mind
+from robot.reflexes import TOLD
+from robot.runners import Lag, Runner
 
 
 @dataclass(frozen=True)

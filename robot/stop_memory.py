@@ -11,8 +11,8 @@ from pathlib import Path
 
 import structlog
 
-from .durable_file import replace
-from .reflexes import LATCHED
+from robot.durable_file import replace
+from robot.reflexes import LATCHED
 
 FILE_NAME = "stops.json"
 """In the robot's data folder."""

@@ -6,13 +6,12 @@ from typing import Final, Protocol
 import structlog
 
 from maps import CampusMapError
-
-from ..config import PerceptMode
-from ..duties import NoSuchStop
-from .arguments import WrongArguments, checked
-from .hands import PLACE_UNKNOWN, Hands
-from .runs import AtOnce, Ended, Ends, Run
-from .table import ACTIONS, PAPER_ACTIONS, Action
+from robot.action.arguments import WrongArguments, checked
+from robot.action.hands import PLACE_UNKNOWN, Hands
+from robot.action.runs import AtOnce, Ended, Ends, Run
+from robot.action.table import ACTIONS, PAPER_ACTIONS, Action
+from robot.config import PerceptMode
+from robot.duties import NoSuchStop
 
 log = structlog.get_logger("robot.actions")
 

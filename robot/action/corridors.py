@@ -5,10 +5,9 @@ from typing import Final
 
 from maps import NoRoute, corridor_name, shortest_route
 from protocol.parts import Leg
-
-from .arguments import Value
-from .hands import Hands
-from .runs import DONE, AtOnce, Ended, Run, Wait
+from robot.action.arguments import Value
+from robot.action.hands import Hands
+from robot.action.runs import DONE, AtOnce, Ended, Run, Wait
 
 WAY_BLOCKED: Final = "way_blocked"
 AWAITS_NETWORK_S: Final = 120.0

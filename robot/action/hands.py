@@ -6,11 +6,10 @@ from typing import Final
 
 from maps import CampusMapError
 from protocol.to_server import Step
-
-from ..drivers.interfaces import BodyShape
-from ..duties import Duties
-from ..navigator import Navigator
-from ..skills.interfaces import Body, View
+from robot.drivers.interfaces import BodyShape
+from robot.duties import Duties
+from robot.navigator import Navigator
+from robot.skills.interfaces import Body, View
 
 PLACE_UNKNOWN: Final = "place_unknown"
 """The fault of a robot that cannot tell where it is, and the reason for which its actions fail meanwhile."""

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-from ..skills.interfaces import Body, Done, JobEnd, Skill
+from robot.skills.interfaces import Body, Done, JobEnd, Skill
 
 
 @dataclass(frozen=True)

@@ -9,10 +9,13 @@ from typing import Final, get_args
 
 from protocol.parts import Purpose
 from protocol.to_server import Step
-
-from ..custody import Waiting
-from ..duties import ChargeStep
-from ..skills import (
+from robot.action.arguments import Argument, Kind, Value, word
+from robot.action.corridors import CLOSED_BY, claim, mark_blocked, noted_move, release, reopen, set_destination
+from robot.action.hands import PLACE_UNKNOWN, Hands
+from robot.action.runs import AtOnce, Ended, Meanwhile, Rest, Run, SkillMaker, Skills, ThenRest, Unless
+from robot.custody import Waiting
+from robot.duties import ChargeStep
+from robot.skills import (
     Dock,
     DrivePulse,
     FindLine,
@@ -24,13 +27,9 @@ from ..skills import (
     Undock,
     WaitHandover,
 )
-from ..skills.find_line import WIDEST_RAD, over_line
-from ..skills.interfaces import Done, Skill
-from ..skills.tunes import TUNES
-from .arguments import Argument, Kind, Value, word
-from .corridors import CLOSED_BY, claim, mark_blocked, noted_move, release, reopen, set_destination
-from .hands import PLACE_UNKNOWN, Hands
-from .runs import AtOnce, Ended, Meanwhile, Rest, Run, SkillMaker, Skills, ThenRest, Unless
+from robot.skills.find_line import WIDEST_RAD, over_line
+from robot.skills.interfaces import Done, Skill
+from robot.skills.tunes import TUNES
 
 
 @dataclass(frozen=True)

@@ -3,9 +3,9 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from ..drivers.interfaces import WheelSpeeds
-from ..line_pins import PIN_NAMES
-from .rig import CalibrationFailed, Rig
+from robot.calibration.rig import CalibrationFailed, Rig
+from robot.drivers.interfaces import WheelSpeeds
+from robot.line_pins import PIN_NAMES
 
 SWING_COUNTS = 500
 """Right minus left: 54 degrees, so that every diode crosses the tape by far."""

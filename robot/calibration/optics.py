@@ -4,11 +4,11 @@ import math
 from collections.abc import Iterable
 from statistics import median
 
-from ..drivers.interfaces import Frame
-from ..drivers.marker_pose import Optics, code_pose
-from ..drivers.marker_reader import MARKER_SIZE_MM
-from ..drivers.qr_decoders import best_decoder, grey_of
-from .rig import CalibrationFailed
+from robot.calibration.rig import CalibrationFailed
+from robot.drivers.interfaces import Frame
+from robot.drivers.marker_pose import Optics, code_pose
+from robot.drivers.marker_reader import MARKER_SIZE_MM
+from robot.drivers.qr_decoders import best_decoder, grey_of
 
 FEWEST = 3
 

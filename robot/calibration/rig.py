@@ -3,9 +3,9 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from ..drivers.interfaces import STOP, Base, BaseState, Mode, WheelSpeeds
-from ..drivers.odometry import counts_between
-from ..errors import RobotError
+from robot.drivers.interfaces import STOP, Base, BaseState, Mode, WheelSpeeds
+from robot.drivers.odometry import counts_between
+from robot.errors import RobotError
 
 TICK_S = 0.01
 AWAKE_WITHIN_S = 5.0

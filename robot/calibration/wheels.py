@@ -4,8 +4,8 @@ import math
 from collections.abc import Callable
 from itertools import pairwise
 
-from ..drivers.interfaces import WheelSpeeds
-from .rig import CalibrationFailed, Rig
+from robot.calibration.rig import CalibrationFailed, Rig
+from robot.drivers.interfaces import WheelSpeeds
 
 DRIVE = WheelSpeeds(100, 100)
 SPIN = WheelSpeeds(-60, 60)

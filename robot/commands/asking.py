@@ -8,10 +8,9 @@ from typing import Annotated, NoReturn
 import typer
 
 from maps import CampusMapError
-
-from ..config import ConfigError, Settings, load_settings
-from ..equipment import Equipment
-from ..simulated import SimulatedWorldError
+from robot.config import ConfigError, Settings, load_settings
+from robot.equipment import Equipment
+from robot.simulated import SimulatedWorldError
 
 UNFINISHED, MISUSE = 1, 2
 INSTALLED = Path("/etc/campus-mail/robot.toml")

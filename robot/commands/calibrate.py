@@ -7,20 +7,29 @@ from typing import Annotated, Any, NoReturn
 
 import typer
 
-from ..calibration.line import swing
-from ..calibration.optics import field_of_view_deg
-from ..calibration.rig import Rig
-from ..calibration.wheels import CENTRE, mm_per_count, roll, spin, wheel_base_mm
-from ..config import ConfigError, Settings
-from ..control import SOCKET_NAME
-from ..drivers.create2 import Create2
-from ..drivers.interfaces import Camera, Frame
-from ..equipment import Equipment, real_equipment, stepped_equipment
-from ..errors import PortAbsent, PortBusy, RobotError
-from ..json_socket import NobodyAnswers, ask
-from ..line_pins import open_pins
-from ..settings_file import write_settings
-from .asking import INSTALLED, MISUSE, UNFINISHED, ConfigOption, refuse, settings_of, settings_path, simulated_bench
+from robot.calibration.line import swing
+from robot.calibration.optics import field_of_view_deg
+from robot.calibration.rig import Rig
+from robot.calibration.wheels import CENTRE, mm_per_count, roll, spin, wheel_base_mm
+from robot.commands.asking import (
+    INSTALLED,
+    MISUSE,
+    UNFINISHED,
+    ConfigOption,
+    refuse,
+    settings_of,
+    settings_path,
+    simulated_bench,
+)
+from robot.config import ConfigError, Settings
+from robot.control import SOCKET_NAME
+from robot.drivers.create2 import Create2
+from robot.drivers.interfaces import Camera, Frame
+from robot.equipment import Equipment, real_equipment, stepped_equipment
+from robot.errors import PortAbsent, PortBusy, RobotError
+from robot.json_socket import NobodyAnswers, ask
+from robot.line_pins import open_pins
+from robot.settings_file import write_settings
 
 FRAMES, FRAMES_WITHIN_S = 10, 10.0
 YesOption = Annotated[bool, typer.Option("--yes", help="Write without asking.")]

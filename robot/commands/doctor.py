@@ -9,13 +9,13 @@ from typing import Annotated, Any
 
 import typer
 
-from ..config import ConfigError, Settings, load_settings
-from ..control import SOCKET_NAME
-from ..doctor.findings import Finding, Grade, Patient
-from ..doctor.table import examine
-from ..equipment import Equipment, living_equipment, real_equipment
-from ..json_socket import NobodyAnswers, ask
-from .asking import UNFINISHED, ConfigOption, JsonOption, refuse, settings_path, simulated_bench
+from robot.commands.asking import UNFINISHED, ConfigOption, JsonOption, refuse, settings_path, simulated_bench
+from robot.config import ConfigError, Settings, load_settings
+from robot.control import SOCKET_NAME
+from robot.doctor.findings import Finding, Grade, Patient
+from robot.doctor.table import examine
+from robot.equipment import Equipment, living_equipment, real_equipment
+from robot.json_socket import NobodyAnswers, ask
 
 PUSH_S = 20.0
 

@@ -6,13 +6,13 @@ from typing import Annotated
 
 import typer
 
-from ..config import ConfigError, load_settings
-from ..doctor.findings import Grade
-from ..doctor.service import asked
-from ..enrolment import checked_token, keep_secret, token_for
-from ..settings_file import write_settings
-from ..signatures import new_key
-from .asking import INSTALLED, UNFINISHED, ConfigOption, refuse
+from robot.commands.asking import INSTALLED, UNFINISHED, ConfigOption, refuse
+from robot.config import ConfigError, load_settings
+from robot.doctor.findings import Grade
+from robot.doctor.service import asked
+from robot.enrolment import checked_token, keep_secret, token_for
+from robot.settings_file import write_settings
+from robot.signatures import new_key
 
 
 def enrol(

@@ -7,13 +7,13 @@ from typing import Annotated
 
 import typer
 
-from ..black_box import rows
-from ..black_box_table import table
-from ..config import Settings
-from ..control import SOCKET_NAME
-from ..errors import RobotError
-from ..json_socket import ask
-from .asking import OTHER_FOLDER, UNFINISHED, ConfigOption, DataOption, refuse, settings_of
+from robot.black_box import rows
+from robot.black_box_table import table
+from robot.commands.asking import OTHER_FOLDER, UNFINISHED, ConfigOption, DataOption, refuse, settings_of
+from robot.config import Settings
+from robot.control import SOCKET_NAME
+from robot.errors import RobotError
+from robot.json_socket import ask
 
 UNIT = "campus-mail-robot"
 NEWEST_LINES = 100

@@ -9,14 +9,13 @@ import typer
 
 from bdi import BdiError
 from maps import CampusMapError, find_map
-
-from ..assembly import Simulation
-from ..config import ConfigError, PerceptMode, Settings, load_settings
-from ..errors import RobotError
-from ..logs import configure_logs
-from ..running import Wish, clock_for, run_once
-from ..simulated import SimulatedWorldError
-from .asking import UNFINISHED, refuse
+from robot.assembly import Simulation
+from robot.commands.asking import UNFINISHED, refuse
+from robot.config import ConfigError, PerceptMode, Settings, load_settings
+from robot.errors import RobotError
+from robot.logs import configure_logs
+from robot.running import Wish, clock_for, run_once
+from robot.simulated import SimulatedWorldError
 
 DEFAULT_LIMIT_S = 7200.0
 # A run of minutes would not see the battery of a Create 2 become low and full again: with --battery the simulated pack

@@ -7,11 +7,10 @@ import typer
 
 from bdi import BdiError
 from maps import CampusMapError
-
-from ..assembly import check_settings
-from ..config import ConfigError, load_settings
-from ..settings_file import complete_toml
-from .asking import refuse
+from robot.assembly import check_settings
+from robot.commands.asking import refuse
+from robot.config import ConfigError, load_settings
+from robot.settings_file import complete_toml
 
 
 def settings(

@@ -5,9 +5,9 @@ from typing import Any
 
 import typer
 
-from ..control import SOCKET_NAME
-from ..json_socket import NobodyAnswers, ask
-from .asking import OTHER_FOLDER, UNFINISHED, ConfigOption, DataOption, JsonOption, settings_of
+from robot.commands.asking import OTHER_FOLDER, UNFINISHED, ConfigOption, DataOption, JsonOption, settings_of
+from robot.control import SOCKET_NAME
+from robot.json_socket import NobodyAnswers, ask
 
 
 def status(config: ConfigOption = None, data: DataOption = None, as_json: JsonOption = False) -> None:

@@ -4,13 +4,13 @@ from typing import Annotated
 
 import typer
 
-from ..config import Settings
-from ..control import SOCKET_NAME
-from ..drivers.last_resort import stop_base
-from ..errors import RobotError
-from ..json_socket import NobodyAnswers, ask
-from ..stop_memory import FILE_NAME, StopMemory
-from .asking import UNFINISHED, ConfigOption, DataOption, settings_of
+from robot.commands.asking import UNFINISHED, ConfigOption, DataOption, settings_of
+from robot.config import Settings
+from robot.control import SOCKET_NAME
+from robot.drivers.last_resort import stop_base
+from robot.errors import RobotError
+from robot.json_socket import NobodyAnswers, ask
+from robot.stop_memory import FILE_NAME, StopMemory
 
 PortOption = Annotated[str | None, typer.Option("--port", help="Serial port of the base, where it is another.")]
 

@@ -7,9 +7,9 @@ from contextlib import suppress
 from grp import getgrgid
 from pathlib import Path
 
-from ..drivers.base_watch import BaseAnswer, watch_base
-from ..errors import PortBusy, RobotError
-from .findings import Finding, Patient, fail, ok, skip, warn
+from robot.doctor.findings import Finding, Patient, fail, ok, skip, warn
+from robot.drivers.base_watch import BaseAnswer, watch_base
+from robot.errors import PortBusy, RobotError
 
 SERIAL_PINS = {"BOARD8", "BOARD10", "GPIO14", "GPIO15", "BCM14", "BCM15"}
 CONSOLES = ("console=serial0", "console=ttyS0", "console=ttyAMA0")

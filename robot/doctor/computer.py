@@ -10,11 +10,10 @@ from statistics import median
 
 from bdi import BdiError
 from maps import CampusMapError
-
-from ..assembly import check_settings
-from ..config import ConfigError
-from ..host import DISK_LOW_MB, THROTTLED_FILE
-from .findings import Finding, Patient, fail, ok, skip, warn
+from robot.assembly import check_settings
+from robot.config import ConfigError
+from robot.doctor.findings import Finding, Patient, fail, ok, skip, warn
+from robot.host import DISK_LOW_MB, THROTTLED_FILE
 
 NEEDED = (
     "serial",

@@ -6,8 +6,8 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
-from ..config import Settings
-from ..equipment import Equipment
+from robot.config import Settings
+from robot.equipment import Equipment
 
 
 class Grade(StrEnum):

@@ -5,12 +5,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..config import ConfigError
-from ..drivers.interfaces import Camera, Frame
-from ..drivers.qr_decoders import best_decoder
-from ..errors import RobotError
-from ..line_pins import PIN_NAMES, PinWatch, open_pins
-from .findings import Finding, Patient, fail, ok, skip, warn
+from robot.config import ConfigError
+from robot.doctor.findings import Finding, Patient, fail, ok, skip, warn
+from robot.drivers.interfaces import Camera, Frame
+from robot.drivers.qr_decoders import best_decoder
+from robot.errors import RobotError
+from robot.line_pins import PIN_NAMES, PinWatch, open_pins
 
 LOOK_S = 1.0
 FEWEST_CHANGES = 2

@@ -7,10 +7,9 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus, WebSocketExce
 from websockets.sync.client import connect
 
 from maps import CampusMapError, find_map
-
-from ..config import ConfigError, read_token
-from ..enrolment import trusted
-from .findings import Finding, Patient, fail, ok, skip, warn
+from robot.config import ConfigError, read_token
+from robot.doctor.findings import Finding, Patient, fail, ok, skip, warn
+from robot.enrolment import trusted
 
 LIMIT_S = 5.0
 REFUSAL_WITHIN_S = 1.0

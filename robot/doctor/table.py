@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator
 
-from . import cable, computer, senses, service
-from .findings import Finding, Look, Patient, fail
+from robot.doctor import cable, computer, senses, service
+from robot.doctor.findings import Finding, Look, Patient, fail
 
 CHECKS: tuple[tuple[str, Look], ...] = (
     ("packages", computer.packages),

@@ -8,8 +8,8 @@ from itertools import count
 
 import structlog
 
-from ..drivers.interfaces import STOP, WheelSpeeds
-from ..skills.interfaces import BaseRequest, Done, Failed, JobEnd, Outcome, Running, Skill, View
+from robot.drivers.interfaces import STOP, WheelSpeeds
+from robot.skills.interfaces import BaseRequest, Done, Failed, JobEnd, Outcome, Running, Skill, View
 
 log = structlog.get_logger("robot.drive")
 

@@ -7,9 +7,12 @@ cancels skills, the camera loop reports what it read, and both read the latest `
 from collections import deque
 from collections.abc import Callable, Container, Iterable
 
-from .. import reflexes
-from ..black_box import BlackBox
-from ..drivers.interfaces import (
+from robot import reflexes
+from robot.black_box import BlackBox
+from robot.drive_loop.jobs import Jobs
+from robot.drive_loop.sensing import Sensing
+from robot.drive_loop.wheels import Wheels
+from robot.drivers.interfaces import (
     STOP,
     Base,
     BodyShape,
@@ -19,11 +22,8 @@ from ..drivers.interfaces import (
     PositionSource,
     WheelSpeeds,
 )
-from ..drivers.wheel_speeds import DEADLINE_S
-from ..skills.interfaces import Failed, JobEnd, Skill, View
-from .jobs import Jobs
-from .sensing import Sensing
-from .wheels import Wheels
+from robot.drivers.wheel_speeds import DEADLINE_S
+from robot.skills.interfaces import Failed, JobEnd, Skill, View
 
 PERIOD_S = 0.02
 LATE_PERIODS = 3

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 
 import structlog
 
-from ..drivers.interfaces import (
+from robot.drivers.interfaces import (
     NOTHING_SEEN,
     Base,
     BaseState,
@@ -18,9 +18,9 @@ from ..drivers.interfaces import (
     Sighting,
     WheelSpeeds,
 )
-from ..drivers.odometry import advanced
-from ..navigation.line_symbol import LineWord
-from ..reflexes import Lasting
+from robot.drivers.odometry import advanced
+from robot.navigation.line_symbol import LineWord
+from robot.reflexes import Lasting
 
 log = structlog.get_logger("robot.drive")
 

@@ -6,7 +6,7 @@ because a "no" was just being played is mail that the robot believes aboard and 
 
 from collections import deque
 
-from ..drivers.interfaces import Base, BaseState, Note
+from robot.drivers.interfaces import Base, BaseState, Note
 
 MOST_WAITING = 4
 """More than these would be heard long after what they tell of; the oldest goes first."""

@@ -1,9 +1,9 @@
 """The base as the loop commands it: who is master of the wheels, and what they may do."""
 
-from ..drivers.interfaces import Base, BaseState, Mode, WheelSpeeds
-from ..skills.interfaces import BaseRequest, Play, SeekDock, SetMode, ShowLights
-from ..skills.tunes import BUMPED
-from .speaker import Speaker
+from robot.drive_loop.speaker import Speaker
+from robot.drivers.interfaces import Base, BaseState, Mode, WheelSpeeds
+from robot.skills.interfaces import BaseRequest, Play, SeekDock, SetMode, ShowLights
+from robot.skills.tunes import BUMPED
 
 OFF_DOCK_S = 2.0
 """Contacts bounce: only after so long without power is the robot off its dock."""

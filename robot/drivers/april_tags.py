@@ -10,9 +10,8 @@ import cv2
 import numpy as np
 
 from maps.tags import TAG_SIZE_MM
-
-from .interfaces import Frame
-from .qr_decoders import Corners, Decoded
+from robot.drivers.interfaces import Frame
+from robot.drivers.qr_decoders import Corners, Decoded
 
 CORRECTED = 0.2
 """Share of the 5 bits that could be mended which are: one. Others would be read out of bricks and posters."""

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import replace
 
-from .interfaces import BaseState, ChargingState, Mode
+from robot.drivers.interfaces import BaseState, ChargingState, Mode
 
 PRESSED_FOR_S = 0.3
 """A press of a button is shown so long at least: whoever looks ten times a second must see it."""

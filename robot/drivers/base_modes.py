@@ -1,7 +1,7 @@
 """Who is master of the wheels: which mode was asked for, which one the base reports, and when to ask again."""
 
-from . import open_interface as oi
-from .interfaces import BaseState, Mode
+from robot.drivers import open_interface as oi
+from robot.drivers.interfaces import BaseState, Mode
 
 MODE_RETRY_S = 0.5
 MODE_KNOWN_AFTER_S = 0.06

@@ -4,10 +4,10 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from .create2 import Create2
-from .interfaces import BaseState
-from .serial_port import SerialPort
-from .wake_up import WakeUpLine
+from robot.drivers.create2 import Create2
+from robot.drivers.interfaces import BaseState
+from robot.drivers.serial_port import SerialPort
+from robot.drivers.wake_up import WakeUpLine
 
 POLL_S = 0.005
 STARTING_S = 1.5

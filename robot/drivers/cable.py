@@ -5,10 +5,10 @@ from collections.abc import Callable
 
 import serial
 
-from ..errors import RobotError
-from .link_health import LinkHealth
-from .open_interface import BAUD, FILLING
-from .serial_port import SerialPort
+from robot.drivers.link_health import LinkHealth
+from robot.drivers.open_interface import BAUD, FILLING
+from robot.drivers.serial_port import SerialPort
+from robot.errors import RobotError
 
 RETRY_S = 1.0
 READ_AT_ONCE = 4096

@@ -13,8 +13,8 @@ from typing import Any, Protocol, cast
 import cv2
 import structlog
 
-from ..errors import CameraAbsent
-from .interfaces import Frame
+from robot.drivers.interfaces import Frame
+from robot.errors import CameraAbsent
 
 log = structlog.get_logger("robot.camera")
 

@@ -9,18 +9,18 @@ from collections.abc import Callable
 
 import structlog
 
-from . import open_interface as oi
-from . import start_ladder as ladder
-from .base_frames import HeldButtons, state_of, together
-from .base_modes import OPCODES, ModeKeeper
-from .cable import Cable, Chunk
-from .encoder_counts import EncoderCounts
-from .interfaces import STOP, BaseState, Mode, Note, WheelSpeeds
-from .link_health import LinkHealth
-from .serial_port import SerialPort
-from .stream_parser import StreamParser
-from .wake_up import KeepAwake, NoWakeUpLine, WakeUpLine
-from .wheel_speeds import DEADLINE_S, SPEED_CAP_MM_S, LatchedSpeeds, possible
+from robot.drivers import open_interface as oi
+from robot.drivers import start_ladder as ladder
+from robot.drivers.base_frames import HeldButtons, state_of, together
+from robot.drivers.base_modes import OPCODES, ModeKeeper
+from robot.drivers.cable import Cable, Chunk
+from robot.drivers.encoder_counts import EncoderCounts
+from robot.drivers.interfaces import STOP, BaseState, Mode, Note, WheelSpeeds
+from robot.drivers.link_health import LinkHealth
+from robot.drivers.serial_port import SerialPort
+from robot.drivers.stream_parser import StreamParser
+from robot.drivers.wake_up import KeepAwake, NoWakeUpLine, WakeUpLine
+from robot.drivers.wheel_speeds import DEADLINE_S, SPEED_CAP_MM_S, LatchedSpeeds, possible
 
 __all__ = ["Create2", "possible"]
 

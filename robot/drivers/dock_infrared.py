@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import IntEnum
 
-from .interfaces import Base, BaseState, Fix
+from robot.drivers.interfaces import Base, BaseState, Fix
 
 
 class Side(IntEnum):

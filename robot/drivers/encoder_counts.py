@@ -1,6 +1,6 @@
 """Counts that do not leap: a base that was reset counts from anywhere, and a damaged frame may pass its checksum."""
 
-from .odometry import counts_between
+from robot.drivers.odometry import counts_between
 
 FASTEST_COUNTS_S = 700.0
 """300 mm/s: half as much again as the base is ever told, for the time of a silence."""

@@ -5,7 +5,7 @@ A working sensor never gives two equal pictures: its grain is another in each.
 
 import numpy as np
 
-from .interfaces import Frame
+from robot.drivers.interfaces import Frame
 
 EVERY_PX = 4
 """Equal in each fourth pixel of each fourth row is equal: the rest would only cost time (0.02 ms instead of 0.3)."""

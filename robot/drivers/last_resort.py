@@ -8,9 +8,9 @@ import os
 import termios
 import tty
 
-from ..errors import PortAbsent
-from .interfaces import STOP
-from .open_interface import Opcode, drive_direct
+from robot.drivers.interfaces import STOP
+from robot.drivers.open_interface import Opcode, drive_direct
+from robot.errors import PortAbsent
 
 OUR_LONGEST_COMMAND = len(drive_direct(STOP))
 STOP_BYTES = drive_direct(STOP) * 2 + bytes((Opcode.START,)) * OUR_LONGEST_COMMAND

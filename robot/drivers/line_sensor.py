@@ -2,7 +2,7 @@
 
 from gpiozero import DigitalInputDevice
 
-from .interfaces import NOTHING_SEEN, LineReading
+from robot.drivers.interfaces import NOTHING_SEEN, LineReading
 
 TO_CHANGE = 0.6
 """A diode changes only with more than this share of the samples: 2 of 2, 2 of 3, 3 of 4, 7 of 10."""

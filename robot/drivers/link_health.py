@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from .firmware_text import BatteryText, battery_text, firmware_version
+from robot.drivers.firmware_text import BatteryText, battery_text, firmware_version
 
 KEPT_LINES = 20
 

@@ -15,9 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from maps.sheets import marker_code
-
-from .interfaces import Frame
-from .qr_decoders import Corners
+from robot.drivers.interfaces import Frame
+from robot.drivers.qr_decoders import Corners
 
 Points = NDArray[np.float64]
 

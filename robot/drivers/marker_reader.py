@@ -7,12 +7,11 @@ from collections import deque
 from collections.abc import Iterable, Mapping
 
 from maps.campus_map import MARKER_SIZE_M
-
-from .april_tags import TagDetector
-from .frozen_picture import FrozenPicture
-from .interfaces import BodyShape, Camera, CameraReport, Fix, Frame, Sighting
-from .marker_pose import Optics, SheetPose, code_pose, tag_pose
-from .qr_decoders import Decoded, Decoder, best_decoder, grey_of
+from robot.drivers.april_tags import TagDetector
+from robot.drivers.frozen_picture import FrozenPicture
+from robot.drivers.interfaces import BodyShape, Camera, CameraReport, Fix, Frame, Sighting
+from robot.drivers.marker_pose import Optics, SheetPose, code_pose, tag_pose
+from robot.drivers.qr_decoders import Decoded, Decoder, best_decoder, grey_of
 
 HANDOVER_PREFIX = "CM1:"
 LONGEST_CODE = 200

@@ -2,7 +2,7 @@
 
 import math
 
-from .interfaces import BaseState, BodyShape, Odometry
+from robot.drivers.interfaces import BaseState, BodyShape, Odometry
 
 SPOT_RATIO = 0.25
 """Movement of the centre under this share of the wheels' own is a turn on the spot (an arc round one wheel has 0.5)."""

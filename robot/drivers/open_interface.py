@@ -7,7 +7,7 @@ import struct
 from collections.abc import Sequence
 from enum import IntEnum
 
-from .interfaces import Note, WheelSpeeds
+from robot.drivers.interfaces import Note, WheelSpeeds
 
 BAUD = 115200
 SLOW_BAUD = 19200

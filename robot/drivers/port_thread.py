@@ -10,11 +10,11 @@ from collections.abc import Callable
 
 import structlog
 
-from .base_frames import together
-from .create2 import Create2
-from .interfaces import BaseState, Mode, Note, WheelSpeeds
-from .link_health import LinkHealth
-from .serial_port import wait_for_bytes
+from robot.drivers.base_frames import together
+from robot.drivers.create2 import Create2
+from robot.drivers.interfaces import BaseState, Mode, Note, WheelSpeeds
+from robot.drivers.link_health import LinkHealth
+from robot.drivers.serial_port import wait_for_bytes
 
 log = structlog.get_logger("robot.base")
 

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple, cast
 import cv2
 import numpy as np
 
-from .interfaces import Frame
+from robot.drivers.interfaces import Frame
 
 Corner = tuple[float, float]
 Corners = tuple[Corner, Corner, Corner, Corner]

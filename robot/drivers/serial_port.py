@@ -6,8 +6,8 @@ from typing import Any, Protocol
 
 import serial
 
-from ..errors import PortAbsent, PortBusy
-from .open_interface import BAUD
+from robot.drivers.open_interface import BAUD
+from robot.errors import PortAbsent, PortBusy
 
 WRITE_TIMEOUT_S = 0.05
 """The drive loop writes, and must not wait for a cable that takes nothing."""

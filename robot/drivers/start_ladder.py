@@ -7,7 +7,7 @@ answers; then at 19200 baud; then Reset, which takes the base five seconds. Then
 from collections import deque
 from dataclasses import dataclass
 
-from . import open_interface as oi
+from robot.drivers import open_interface as oi
 
 SILENT_S = 1.0
 """Without a frame for so long the base is started again; a stream has one every 15 ms."""

@@ -9,7 +9,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from .open_interface import FULL_STREAM, HEADER, WITHOUT_MODE, StreamLayout
+from robot.drivers.open_interface import FULL_STREAM, HEADER, WITHOUT_MODE, StreamLayout
 
 LONGEST_TEXT = 400
 _PRINTABLE_TAIL = re.compile(rb"[\t\x20-\x7e]*\Z")

@@ -8,7 +8,7 @@ from typing import Any, Protocol
 
 import serial
 
-from .serial_port import open_serial
+from robot.drivers.serial_port import open_serial
 
 PULSE_S = 1.0
 EVERY_S = 60.0

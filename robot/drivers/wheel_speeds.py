@@ -1,7 +1,7 @@
 """The speeds that are latched in the base: which are possible, how long they may stay, when the wheels stand."""
 
-from ..config import MAX_WHEEL_SPEED_MM_S
-from .interfaces import STOP, BaseState, WheelSpeeds
+from robot.config import MAX_WHEEL_SPEED_MM_S
+from robot.drivers.interfaces import STOP, BaseState, WheelSpeeds
 
 SPEED_CAP_MM_S = MAX_WHEEL_SPEED_MM_S
 SLOWEST_MM_S = 30.0

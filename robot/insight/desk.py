@@ -14,11 +14,10 @@ from typing import Final, Protocol
 
 from bdi import TraceEntry
 from protocol.insight import MAX_INSIGHT_BYTES, Insight, IntentionTold, LeftOut, TraceLine
-
-from ..mind import Mind
-from ..runners import Lag
-from .senses import sensors, timings
-from .thoughts import intention_told, line_told, short
+from robot.insight.senses import sensors, timings
+from robot.insight.thoughts import intention_told, line_told, short
+from robot.mind import Mind
+from robot.runners import Lag
 
 EVERY_S: Final = 0.5
 """Machine's time: a network does not get faster with a simulated clock."""

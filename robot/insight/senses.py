@@ -4,10 +4,9 @@ from collections.abc import Mapping
 from typing import Final
 
 from protocol.insight import Bump, Drop, Light, LoopTiming, Sensors
-
-from ..drivers.interfaces import BaseState
-from ..runners import Lag
-from ..skills.interfaces import View
+from robot.drivers.interfaces import BaseState
+from robot.runners import Lag
+from robot.skills.interfaces import View
 
 LIGHTS: Final[tuple[Light, ...]] = ("left", "front_left", "centre_left", "centre_right", "front_right", "right")
 DROPS: Final[tuple[Drop, ...]] = (

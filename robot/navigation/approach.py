@@ -4,8 +4,7 @@ import math
 
 from maps import CampusMap, Marker, Point, Post
 from maps.geometry import seen_from, wrapped
-
-from ..drivers.interfaces import Sighting
+from robot.drivers.interfaces import Sighting
 
 FARTHEST_MM = 1500.0
 """A marker that puts the post farther off was misread, or hangs elsewhere than the map says."""

@@ -8,8 +8,7 @@ import math
 
 from maps import CampusMap
 from maps.geometry import wrapped
-
-from ..drivers.interfaces import Odometry
+from robot.drivers.interfaces import Odometry
 
 SURE_RAD = math.radians(30)
 """It looks along another corridor to within this, and so much less along the one that was meant."""

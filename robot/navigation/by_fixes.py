@@ -3,9 +3,8 @@
 from collections.abc import Iterable
 
 from maps import CampusMap
-
-from ..drivers.interfaces import Fix, Odometry
-from .place import Leaving, Place, Unknown
+from robot.drivers.interfaces import Fix, Odometry
+from robot.navigation.place import Leaving, Place, Unknown
 
 FRESH_S = 2.0
 

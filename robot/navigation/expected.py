@@ -10,11 +10,10 @@ from dataclasses import dataclass
 
 from maps import CampusMap, Corridor
 from maps.geometry import seen_from
-
-from ..drivers.interfaces import Sighting
-from .approach import marker_point, robot_heading_rad
-from .place import AtPost, Between, Coming, Leaving, Place, Unknown
-from .steps import LEFT_MM, corridor_between
+from robot.drivers.interfaces import Sighting
+from robot.navigation.approach import marker_point, robot_heading_rad
+from robot.navigation.place import AtPost, Between, Coming, Leaving, Place, Unknown
+from robot.navigation.steps import LEFT_MM, corridor_between
 
 SHARE, SLACK_MM = 0.08, 200.0
 """A marker comes so much earlier than the map says at most: calibrated wheels and tape measures err by 3 % and 40 mm

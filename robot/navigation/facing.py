@@ -4,8 +4,7 @@ import math
 
 from maps import CampusMap
 from maps.geometry import wrapped
-
-from .approach import robot_heading_rad
+from robot.navigation.approach import robot_heading_rad
 
 NEAR_RAD = math.radians(50)
 """The way the robot looks by odometry picks one of a post's markers, if it is so near to one of them."""

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
-from ..drivers.interfaces import LineReading
+from robot.drivers.interfaces import LineReading
 
 
 class LineSymbol(StrEnum):

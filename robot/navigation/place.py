@@ -17,8 +17,7 @@ from typing import TypeAlias
 
 from maps import Corridor
 from maps.geometry import wrapped
-
-from ..drivers.interfaces import Odometry
+from robot.drivers.interfaces import Odometry
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,10 +4,9 @@ from enum import StrEnum
 
 from maps import CampusMap
 from protocol import parts
-
-from ..drivers.interfaces import Odometry
-from .place import AtPost, Between, Leaving, Looks, Place, Unknown
-from .steps import corridor_between
+from robot.drivers.interfaces import Odometry
+from robot.navigation.place import AtPost, Between, Leaving, Looks, Place, Unknown
+from robot.navigation.steps import corridor_between
 
 
 class Moment(StrEnum):

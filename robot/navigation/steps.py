@@ -3,8 +3,7 @@
 from dataclasses import replace
 
 from maps import CampusMap, Corridor
-
-from .place import AtPost, Between, Coming, Leaving, Place, Unknown
+from robot.navigation.place import AtPost, Between, Coming, Leaving, Place, Unknown
 
 REACHED_MM = 30.0
 """So near counts as at the post; a robot that stops there is within a few millimetres."""

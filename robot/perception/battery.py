@@ -3,8 +3,8 @@
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
-from ..config import BatterySettings
-from ..drivers.interfaces import BaseState, ChargingState
+from robot.config import BatterySettings
+from robot.drivers.interfaces import BaseState, ChargingState
 
 
 class BatteryWord(StrEnum):

@@ -9,9 +9,9 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Final
 
-from ..config import PerceptMode
-from ..skills import FindLine, Turn, Undock
-from .seen import Seen
+from robot.config import PerceptMode
+from robot.perception.seen import Seen
+from robot.skills import FindLine, Turn, Undock
 
 Terms = Iterable[str]
 MANOEUVRES: Final = frozenset({FindLine.name, Turn.name, Undock.name})

@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass, field
 
-from ..held import Held
-from ..skills.interfaces import View
-from .battery import BatterySense
+from robot.held import Held
+from robot.perception.battery import BatterySense
+from robot.skills.interfaces import View
 
 
 @dataclass(frozen=True)

@@ -3,10 +3,10 @@
 It works when everything above is dead: it needs the newest frame of the base, a few ages, and the speeds wanted.
 """
 
-from .decisions import BACK_OFF, Decision, ReflexState, decide
-from .lasting import Lasting
-from .senses import Senses
-from .table import FAULTS, HALTING, LATCHED, REFUSING, STOPPING, TOLD, Fault, Response
+from robot.reflexes.decisions import BACK_OFF, Decision, ReflexState, decide
+from robot.reflexes.lasting import Lasting
+from robot.reflexes.senses import Senses
+from robot.reflexes.table import FAULTS, HALTING, LATCHED, REFUSING, STOPPING, TOLD, Fault, Response
 
 __all__ = [
     "BACK_OFF",

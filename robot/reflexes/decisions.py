@@ -3,9 +3,9 @@
 from collections.abc import Container
 from dataclasses import dataclass, replace
 
-from ..drivers.interfaces import STOP, WheelSpeeds
-from .senses import Senses
-from .table import FAULTS, LATCHED, Fault, Response
+from robot.drivers.interfaces import STOP, WheelSpeeds
+from robot.reflexes.senses import Senses
+from robot.reflexes.table import FAULTS, LATCHED, Fault, Response
 
 BUMP_STAND_S = 0.2
 BACK_OFF = WheelSpeeds(-80, -80)

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from ..drivers.interfaces import NOTHING_SEEN, STOP, BaseState, LineReading, WheelSpeeds
+from robot.drivers.interfaces import NOTHING_SEEN, STOP, BaseState, LineReading, WheelSpeeds
 
 STRAIGHT = 0.8
 """Slower over faster wheel from which on it drives straight: in a turn the caster's bit is always 0 (packet 58)."""

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from ..drivers.interfaces import BaseState, HostReport
+from robot.drivers.interfaces import BaseState, HostReport
 
 WELL = HostReport()
 

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Final
 
-from ..drivers.interfaces import BaseState
-from .senses import Senses
+from robot.drivers.interfaces import BaseState
+from robot.reflexes.senses import Senses
 
 SILENCE_S = 1.0
 BASE_SILENT_S = 0.5

@@ -14,15 +14,14 @@ import structlog
 import typer
 
 from maps import CampusMapError
-
-from ..simulated import SimulatedWorldError
-from .errors import RecordingError, ScenarioError
-from .judging import Ending, shortfalls
-from .loading import load_scenario
-from .pictures import write_pictures
-from .recording import Recorder
-from .replaying import write_page
-from .stage import Stage
+from robot.scenarios.errors import RecordingError, ScenarioError
+from robot.scenarios.judging import Ending, shortfalls
+from robot.scenarios.loading import load_scenario
+from robot.scenarios.pictures import write_pictures
+from robot.scenarios.recording import Recorder
+from robot.scenarios.replaying import write_page
+from robot.scenarios.stage import Stage
+from robot.simulated import SimulatedWorldError
 
 NOT_AS_EXPECTED, MISUSE = 1, 2
 

@@ -4,13 +4,12 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from maps import CampusMap
-
-from ..assembly import Parts
-from ..simulated import Pose, SimulatedRobot
-from ..skills.tunes import TUNES
-from .places import AT_POST_M, post_at
-from .scenario import RobotRow
-from .stepped_link import SteppedLink
+from robot.assembly import Parts
+from robot.scenarios.places import AT_POST_M, post_at
+from robot.scenarios.scenario import RobotRow
+from robot.scenarios.stepped_link import SteppedLink
+from robot.simulated import Pose, SimulatedRobot
+from robot.skills.tunes import TUNES
 
 AT_DOCK_M: Final = 1.0
 _NAMES: Final = {tuple(number for number, _ in notes): name for name, notes in TUNES.items()}

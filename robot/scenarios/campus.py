@@ -6,9 +6,8 @@ from maps import CampusMap
 from maps.campus_map import build_map, find_map, map_path
 from maps.map_file import load_map_file
 from maps.scaling import fitting_factor, scaled
-
-from .errors import ScenarioError
-from .scenario import MapChoice
+from robot.scenarios.errors import ScenarioError
+from robot.scenarios.scenario import MapChoice
 
 
 def campus_of(choice: MapChoice, source: Path | None = None) -> CampusMap:

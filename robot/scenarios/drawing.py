@@ -10,11 +10,10 @@ from random import Random
 from typing import Any, Final
 
 from maps import CampusMap, NoRoute, shortest_route
-
-from .campus import campus_of
-from .errors import ScenarioError
-from .places import along
-from .scenario import MapChoice, Scenario
+from robot.scenarios.campus import campus_of
+from robot.scenarios.errors import ScenarioError
+from robot.scenarios.places import along
+from robot.scenarios.scenario import MapChoice, Scenario
 
 WORLDS: Final = {
     "track": MapChoice(name="test_track"),

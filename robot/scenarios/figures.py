@@ -6,12 +6,11 @@ from itertools import pairwise
 from typing import Any, Final
 
 from maps import CampusMap, shortest_route
-
-from .judging import Ending, Fate
-from .mail import WITH_RECIPIENT
-from .scenario import OrderRow, Scenario
-from .stage import Stage
-from .watching import Times
+from robot.scenarios.judging import Ending, Fate
+from robot.scenarios.mail import WITH_RECIPIENT
+from robot.scenarios.scenario import OrderRow, Scenario
+from robot.scenarios.stage import Stage
+from robot.scenarios.watching import Times
 
 MISSION_SPEED_M_S: Final = 0.150
 

@@ -7,12 +7,11 @@ from typing import Final
 from maps import CampusMap
 from protocol.parts import Part
 from protocol.to_robot import Cancel, EmergencyStop, Pause, Recall, Resume
-
-from ..simulated import Faults
-from ..simulated.start import start_pose
-from .actors import Actor
-from .scenario import Deed, FaultRow, MessageRow, Scenario, Timed
-from .stand_in import StandIn
+from robot.scenarios.actors import Actor
+from robot.scenarios.scenario import Deed, FaultRow, MessageRow, Scenario, Timed
+from robot.scenarios.stand_in import StandIn
+from robot.simulated import Faults
+from robot.simulated.start import start_pose
 
 Note = Callable[[str, str], None]
 """Told what has happened, for the record: to which robot, and what."""

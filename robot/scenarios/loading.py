@@ -10,13 +10,12 @@ from pydantic import BaseModel, ValidationError
 
 from maps import CampusMap
 from maps.errors import CampusMapError
-
-from ..simulated import SWITCHES, Faults, SimulatedWorldError
-from ..simulated.start import start_pose
-from .campus import campus_of
-from .drawing import drawn
-from .errors import ScenarioError
-from .scenario import Place, Scenario, Stander, Table
+from robot.scenarios.campus import campus_of
+from robot.scenarios.drawing import drawn
+from robot.scenarios.errors import ScenarioError
+from robot.scenarios.scenario import Place, Scenario, Stander, Table
+from robot.simulated import SWITCHES, Faults, SimulatedWorldError
+from robot.simulated.start import start_pose
 
 DRAWN: Final = "drawn:"
 

@@ -5,8 +5,7 @@ from hashlib import sha256
 from random import Random
 
 from protocol.parts import Purpose
-
-from .scenario import OrderRow
+from robot.scenarios.scenario import OrderRow
 
 WITH_SENDER, WITH_RECIPIENT = "sender", "recipient"
 

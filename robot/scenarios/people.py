@@ -12,12 +12,11 @@ from random import Random
 from typing import Final
 
 from maps import CampusMap
-
-from ..simulated.obstacles import BUMPER_RADIUS_M
-from .actors import Actor
-from .mail import WITH_RECIPIENT, WITH_SENDER, Letter, code
-from .places import stands_at
-from .scenario import PersonAtPost, Stander, Walker
+from robot.scenarios.actors import Actor
+from robot.scenarios.mail import WITH_RECIPIENT, WITH_SENDER, Letter, code
+from robot.scenarios.places import stands_at
+from robot.scenarios.scenario import PersonAtPost, Stander, Walker
+from robot.simulated.obstacles import BUMPER_RADIUS_M
 
 NOTICES_AFTER_S: Final = 1.5
 """A robot that has stood for so long is taken to wait."""

@@ -7,9 +7,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from ..simulated.obstacles import BUMPER_RADIUS_M
-from .errors import RecordingError
-from .recording import Row, read_recording
+from robot.scenarios.errors import RecordingError
+from robot.scenarios.recording import Row, read_recording
+from robot.simulated.obstacles import BUMPER_RADIUS_M
 
 WIDTH_PX: Final = 960
 EDGE_M: Final = 0.7

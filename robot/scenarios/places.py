@@ -5,8 +5,7 @@ from itertools import pairwise
 
 from maps import CampusMap, Corridor, Point
 from maps.geometry import distance_to_path_m
-
-from .scenario import Place, Stander
+from robot.scenarios.scenario import Place, Stander
 
 AT_POST_M = 0.25
 """So near to a post, a robot stands at it as far as people are concerned."""

@@ -23,15 +23,14 @@ from types import TracebackType
 from typing import Any, Final
 
 from maps import CampusMap
-
-from ..mind import Mind
-from ..perception.percepts import perceive
-from .actors import Actor
-from .errors import RecordingError
-from .judging import Ending, shortfalls
-from .places import stands_at
-from .scenario import Place, Scenario
-from .stage import Stage
+from robot.mind import Mind
+from robot.perception.percepts import perceive
+from robot.scenarios.actors import Actor
+from robot.scenarios.errors import RecordingError
+from robot.scenarios.judging import Ending, shortfalls
+from robot.scenarios.places import stands_at
+from robot.scenarios.scenario import Place, Scenario
+from robot.scenarios.stage import Stage
 
 VERSION: Final = 1
 EVERY_S: Final = 0.2

@@ -8,8 +8,8 @@ from html import escape
 from pathlib import Path
 from typing import Final
 
-from .errors import RecordingError
-from .recording import Row, read_recording
+from robot.scenarios.errors import RecordingError
+from robot.scenarios.recording import Row, read_recording
 
 FOLDER: Final = Path(__file__).parent / "page"
 SCRIPTS: Final = ("data.js", "map.js", "axis.js", "player.js")

@@ -9,23 +9,22 @@ from typing import Final
 
 from maps import CampusMap
 from protocol.clock import SteppedClock
-
-from ..assembly import Parts, Simulation, assemble
-from ..config import ConfigError, Settings, load_settings
-from ..runners import LockstepRunner, Loop
-from ..simulated import Motion, World
-from .actors import Actor
-from .campus import campus_of
-from .errors import ScenarioError
-from .happenings import Happenings
-from .judging import Ending, verdict
-from .mail import letters_of
-from .people import Crowd, handings
-from .places import is_in
-from .scenario import NoNetwork, RobotRow, Scenario
-from .stand_in import StandIn
-from .stepped_link import SteppedLink
-from .watching import Watch
+from robot.assembly import Parts, Simulation, assemble
+from robot.config import ConfigError, Settings, load_settings
+from robot.runners import LockstepRunner, Loop
+from robot.scenarios.actors import Actor
+from robot.scenarios.campus import campus_of
+from robot.scenarios.errors import ScenarioError
+from robot.scenarios.happenings import Happenings
+from robot.scenarios.judging import Ending, verdict
+from robot.scenarios.mail import letters_of
+from robot.scenarios.people import Crowd, handings
+from robot.scenarios.places import is_in
+from robot.scenarios.scenario import NoNetwork, RobotRow, Scenario
+from robot.scenarios.stand_in import StandIn
+from robot.scenarios.stepped_link import SteppedLink
+from robot.scenarios.watching import Watch
+from robot.simulated import Motion, World
 
 LOOK_HZ: Final = 10.0
 """How often people look, the service answers and the truth is compared."""

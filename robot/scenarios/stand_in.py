@@ -31,9 +31,8 @@ from protocol.to_server import (
     Step,
     Why,
 )
-
-from .interlocking import Claimed, Interlocking
-from .mail import Letter, Receipt, fingerprint
+from robot.scenarios.interlocking import Claimed, Interlocking
+from robot.scenarios.mail import Letter, Receipt, fingerprint
 
 VALID_FOR: Final = timedelta(days=2)
 

@@ -15,11 +15,10 @@ from typing import Final, Protocol
 from protocol.clock import Clock
 from protocol.errors import ProtocolError
 from protocol.to_server import Hello, Snapshot, Why
-
-from ..connection import Connection, Ends, LinkBroken, Newest, Rhythm
-from ..link import LinkState
-from ..memory import Incoming, Memory
-from ..outbox import Outbox
+from robot.connection import Connection, Ends, LinkBroken, Newest, Rhythm
+from robot.link import LinkState
+from robot.memory import Incoming, Memory
+from robot.outbox import Outbox
 
 DEAD_AFTER_S: Final = 8.0
 """A dead network is noticed by pings after so long at most (`connection.Rhythm`)."""

@@ -4,11 +4,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from maps import CampusMap
-
-from .actors import Actor
-from .people import Bystander
-from .places import corridor_at
-from .stand_in import StandIn
+from robot.scenarios.actors import Actor
+from robot.scenarios.people import Bystander
+from robot.scenarios.places import corridor_at
+from robot.scenarios.stand_in import StandIn
 
 NEAR_PERSON_M = 0.6
 """A robot that stands so near to somebody in its way waits for them."""

@@ -1,19 +1,19 @@
 """The simulated world that ships with the product: a strict Create 2 on a serial port, pins, frames."""
 
-from .battery import Pack
-from .body import Build
-from .door import Door
-from .drive_base import Motion
-from .errors import SimulatedWorldError, UnknownStart, UnknownSwitch, WrongValue
-from .faults import SWITCHES, Faults
-from .frames import CameraMount
-from .host import SimulatedHost
-from .obstacles import Person, Wall
-from .pins import DiodeMount
-from .robot import Options, SimulatedRobot
-from .serial_line import MemoryPort
-from .start import Pose
-from .world import World
+from robot.simulated.battery import Pack
+from robot.simulated.body import Build
+from robot.simulated.door import Door
+from robot.simulated.drive_base import Motion
+from robot.simulated.errors import SimulatedWorldError, UnknownStart, UnknownSwitch, WrongValue
+from robot.simulated.faults import SWITCHES, Faults
+from robot.simulated.frames import CameraMount
+from robot.simulated.host import SimulatedHost
+from robot.simulated.obstacles import Person, Wall
+from robot.simulated.pins import DiodeMount
+from robot.simulated.robot import Options, SimulatedRobot
+from robot.simulated.serial_line import MemoryPort
+from robot.simulated.start import Pose
+from robot.simulated.world import World
 
 __all__ = [
     "SWITCHES",

@@ -9,12 +9,11 @@ import typer
 
 from maps import MapError, find_map
 from protocol.clock import RealClock
-
-from .door import Door
-from .errors import SimulatedWorldError, WorldStopped
-from .faults import SWITCHES
-from .live import Live
-from .robot import SimulatedRobot
+from robot.simulated.door import Door
+from robot.simulated.errors import SimulatedWorldError, WorldStopped
+from robot.simulated.faults import SWITCHES
+from robot.simulated.live import Live
+from robot.simulated.robot import SimulatedRobot
 
 FAILED, MISUSE = 1, 2
 cli = typer.Typer(help=__doc__, add_completion=False)

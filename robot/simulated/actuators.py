@@ -6,9 +6,9 @@ Source [S] unless marked [A] (assumption).
 from collections.abc import Callable
 from struct import unpack
 
-from .drive_base import TOP_SPEED_MM_S, WHEEL_BASE_MM
-from .packets import Readings
-from .songs import SongBook
+from robot.simulated.drive_base import TOP_SPEED_MM_S, WHEEL_BASE_MM
+from robot.simulated.packets import Readings
+from robot.simulated.songs import SongBook
 
 STRAIGHT = (0x7FFF, -0x8000)
 TURN_RADIUS_OF_CLIFF_MM = 165

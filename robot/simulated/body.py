@@ -8,17 +8,17 @@ import math
 from dataclasses import dataclass, field
 from random import Random
 
-from .activity import Activity, Hazards
-from .battery import Battery, Pack
-from .docking import Beside, SeekDock, Wheels, bearing_rad, ir_character
-from .drive_base import DriveBase, Motion
-from .faults import Faults
-from .obstacles import BUMPER_RADIUS_M, Contact, light_signals
-from .open_interface import OpenInterface
-from .packets import Readings
-from .pins import DiodeMount, LinePins
-from .serial_line import SerialLine, spoiled, thinned
-from .world import World
+from robot.simulated.activity import Activity, Hazards
+from robot.simulated.battery import Battery, Pack
+from robot.simulated.docking import Beside, SeekDock, Wheels, bearing_rad, ir_character
+from robot.simulated.drive_base import DriveBase, Motion
+from robot.simulated.faults import Faults
+from robot.simulated.obstacles import BUMPER_RADIUS_M, Contact, light_signals
+from robot.simulated.open_interface import OpenInterface
+from robot.simulated.packets import Readings
+from robot.simulated.pins import DiodeMount, LinePins
+from robot.simulated.serial_line import SerialLine, spoiled, thinned
+from robot.simulated.world import World
 
 STEP_S = 0.005
 STEPS_PER_SLOT = 3

@@ -5,8 +5,8 @@ from collections.abc import Callable
 
 import cv2
 
-from .faults import Faults
-from .frames import Frame, Renderer, View
+from robot.simulated.faults import Faults
+from robot.simulated.frames import Frame, Renderer, View
 
 SHOWN_FOR_S = 20.0
 STEPS_WITH_IT_M = 0.3

@@ -10,13 +10,13 @@ from pathlib import Path
 from queue import Empty, SimpleQueue
 from typing import Any
 
-from ..json_socket import JsonSocket
-from .camera import SHOWN_FOR_S
-from .errors import SimulatedWorldError, UnknownSwitch, WrongValue
-from .faults import SWITCHES
-from .obstacles import Person
-from .robot import BUMP_S, SimulatedRobot
-from .start import Pose
+from robot.json_socket import JsonSocket
+from robot.simulated.camera import SHOWN_FOR_S
+from robot.simulated.errors import SimulatedWorldError, UnknownSwitch, WrongValue
+from robot.simulated.faults import SWITCHES
+from robot.simulated.obstacles import Person
+from robot.simulated.robot import BUMP_S, SimulatedRobot
+from robot.simulated.start import Pose
 
 ANSWER_WITHIN_S = 5.0
 Request = Mapping[str, Any]

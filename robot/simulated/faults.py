@@ -3,7 +3,7 @@
 from dataclasses import dataclass, fields
 from typing import Any
 
-from .errors import UnknownSwitch, WrongValue
+from robot.simulated.errors import UnknownSwitch, WrongValue
 
 
 @dataclass

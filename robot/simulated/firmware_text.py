@@ -1,6 +1,6 @@
 """The text that the firmware prints on the same line as the packets, as field reports have it ([F])."""
 
-from .packets import Readings
+from robot.simulated.packets import Readings
 
 SOFT_RESET = b"Soft reset!\n"
 # (seconds after the Reset command, bytes). The robot hears nothing until the last of them.

@@ -28,9 +28,8 @@ from maps.sheets import (
     tag_cells,
 )
 from maps.tags import TAG_SIZE_MM
-
-from .faults import Faults
-from .obstacles import Obstacle
+from robot.simulated.faults import Faults
+from robot.simulated.obstacles import Obstacle
 
 BACKGROUNDS = 4
 Frame = NDArray[np.uint8]

@@ -1,8 +1,7 @@
 """The computer that a simulated robot thinks with: it is well until a switch says otherwise."""
 
 from protocol.clock import Clock
-
-from .faults import Faults
+from robot.simulated.faults import Faults
 
 JUMP_S = 3600.0
 FREE_MB, FULL_MB = 20_000.0, 5.0

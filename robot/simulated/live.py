@@ -4,9 +4,8 @@ import threading
 from types import TracebackType
 
 from protocol.clock import Clock
-
-from .errors import WorldStopped
-from .robot import SimulatedRobot
+from robot.simulated.errors import WorldStopped
+from robot.simulated.robot import SimulatedRobot
 
 PAUSE_S = 0.005
 LOOK_EVERY_S = 0.2

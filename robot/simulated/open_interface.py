@@ -7,17 +7,17 @@ after five idle minutes in Passive. Source [S] unless marked [F] (field report) 
 
 from collections.abc import Callable
 
-from . import firmware_text
-from .activity import Activity, Hazards
-from .actuators import ACTUATORS, Actuators
-from .commands import BAUD_CODES, COMMANDS, RESET, START, CommandParser, Mode
-from .faults import Faults
-from .packets import Readings
-from .quirks import FAST_BAUD, SLOW_BAUD, Quirks
-from .reports import Reports
-from .songs import SongBook
-from .transmitter import Transmitter
-from .wakefulness import Wakefulness
+from robot.simulated import firmware_text
+from robot.simulated.activity import Activity, Hazards
+from robot.simulated.actuators import ACTUATORS, Actuators
+from robot.simulated.commands import BAUD_CODES, COMMANDS, RESET, START, CommandParser, Mode
+from robot.simulated.faults import Faults
+from robot.simulated.packets import Readings
+from robot.simulated.quirks import FAST_BAUD, SLOW_BAUD, Quirks
+from robot.simulated.reports import Reports
+from robot.simulated.songs import SongBook
+from robot.simulated.transmitter import Transmitter
+from robot.simulated.wakefulness import Wakefulness
 
 BAUD_CHANGE_S = 0.1
 MODE_CHANGE_S = 0.02

@@ -10,8 +10,8 @@ from random import Random
 
 from gpiozero.pins.mock import MockFactory, MockPin
 
-from .faults import Faults
-from .floor import TAPE_WIDTH_M, Floor, distance_to_tape_m
+from robot.simulated.faults import Faults
+from robot.simulated.floor import TAPE_WIDTH_M, Floor, distance_to_tape_m
 
 KEPT_STATES = 1000
 

@@ -4,8 +4,8 @@ import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from .robot import SimulatedRobot
-from .start import Pose
+from robot.simulated.robot import SimulatedRobot
+from robot.simulated.start import Pose
 
 HALF_WAY_MM = 40.0
 SHOVE_MM, SHOVE_EVERY_S = 10.0, 0.03

@@ -1,6 +1,6 @@
 """Switches of the byte machine that begin at a moment and last: frozen, mute on the dock, a slow line."""
 
-from .faults import Faults
+from robot.simulated.faults import Faults
 
 FAST_BAUD, SLOW_BAUD = 115200, 19200
 MUTE_AFTER_S = 30.0

@@ -3,10 +3,10 @@
 Source [S] unless marked [A] (assumption).
 """
 
-from .commands import Mode
-from .faults import Faults
-from .packets import Layout, Readings, stream_frame
-from .songs import SongBook
+from robot.simulated.commands import Mode
+from robot.simulated.faults import Faults
+from robot.simulated.packets import Layout, Readings, stream_frame
+from robot.simulated.songs import SongBook
 
 BUTTON_S = 1 / 6
 

@@ -10,18 +10,17 @@ from gpiozero.pins.mock import MockFactory
 
 from maps import CampusMap
 from maps.tags import tag_numbers
-
-from . import firmware_text
-from .battery import CURRENT_MA, Battery
-from .body import Body, Build
-from .camera import SHOWN_FOR_S, SimulatedCamera
-from .errors import WrongValue
-from .faults import Faults
-from .frames import CameraMount, Renderer, View
-from .obstacles import Obstacle
-from .serial_line import MemoryLine, MemoryPort, PtyLine
-from .start import Pose, start_pose
-from .world import World
+from robot.simulated import firmware_text
+from robot.simulated.battery import CURRENT_MA, Battery
+from robot.simulated.body import Body, Build
+from robot.simulated.camera import SHOWN_FOR_S, SimulatedCamera
+from robot.simulated.errors import WrongValue
+from robot.simulated.faults import Faults
+from robot.simulated.frames import CameraMount, Renderer, View
+from robot.simulated.obstacles import Obstacle
+from robot.simulated.serial_line import MemoryLine, MemoryPort, PtyLine
+from robot.simulated.start import Pose, start_pose
+from robot.simulated.world import World
 
 BUMP_S = 0.5
 FAULT_TEXT = firmware_text.FAULT.decode()

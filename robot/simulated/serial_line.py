@@ -17,7 +17,7 @@ from typing import Protocol
 
 import serial
 
-from .faults import Faults
+from robot.simulated.faults import Faults
 
 BUFFER_BYTES = 4096  # what the operating system keeps for a reader that is late
 CHUNK = 4096

@@ -6,8 +6,7 @@ from maps import CampusMap, UnknownPost
 from maps.campus_map import MARKER_BEFORE_POST_M
 from maps.errors import UnknownCorridor
 from maps.geometry import moved
-
-from .errors import UnknownStart
+from robot.simulated.errors import UnknownStart
 
 
 @dataclass(frozen=True)

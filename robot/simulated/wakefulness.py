@@ -3,8 +3,8 @@
 Source [S] unless marked [F] (field report) or [A] (assumption).
 """
 
-from . import firmware_text
-from .faults import Faults
+from robot.simulated import firmware_text
+from robot.simulated.faults import Faults
 
 SLEEP_AFTER_S = 300.0
 BRC_PULSE_S = 0.05

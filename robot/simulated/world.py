@@ -5,10 +5,9 @@ from itertools import chain
 from random import Random
 
 from maps import CampusMap, Dock, Marker
-
-from .docking import Beside, beside
-from .floor import Floor
-from .obstacles import Contact, Obstacle, contact
+from robot.simulated.docking import Beside, beside
+from robot.simulated.floor import Floor
+from robot.simulated.obstacles import Contact, Obstacle, contact
 
 # Farther away nothing touches and nothing is seen by the light bumpers.
 NEAR_M = 2.0

@@ -1,10 +1,10 @@
 """The long actions of the body. What one is: `interfaces`; how each ends, and by which names it fails: `ends`."""
 
-from .dock import Dock, Undock
-from .find_line import FindLine
-from .follow_line import FollowLine
-from .handover import WaitHandover
-from .interfaces import (
+from robot.skills.dock import Dock, Undock
+from robot.skills.find_line import FindLine
+from robot.skills.follow_line import FollowLine
+from robot.skills.handover import WaitHandover
+from robot.skills.interfaces import (
     Body,
     Done,
     Failed,
@@ -19,10 +19,10 @@ from .interfaces import (
     Step,
     View,
 )
-from .look_back import LookBack
-from .paper import DrivePulse, PaperTurn
-from .say import Say
-from .turn import Turn
+from robot.skills.look_back import LookBack
+from robot.skills.paper import DrivePulse, PaperTurn
+from robot.skills.say import Say
+from robot.skills.turn import Turn
 
 __all__ = [
     "Body",

@@ -5,11 +5,11 @@ from dataclasses import asdict, dataclass
 
 import structlog
 
-from ..drivers.dock_infrared import sight_of
-from ..drivers.interfaces import STOP, BodyShape, Mode, Odometry, WheelSpeeds
-from .find_line import align, over_line, sweep
-from .interfaces import Done, Failed, Outcome, Running, SeekDock, SetMode, View
-from .script import Part, Script, Scripted, roll, stand, turn_by
+from robot.drivers.dock_infrared import sight_of
+from robot.drivers.interfaces import STOP, BodyShape, Mode, Odometry, WheelSpeeds
+from robot.skills.find_line import align, over_line, sweep
+from robot.skills.interfaces import Done, Failed, Outcome, Running, SeekDock, SetMode, View
+from robot.skills.script import Part, Script, Scripted, roll, stand, turn_by
 
 log = structlog.get_logger("robot.dock")
 

@@ -2,9 +2,9 @@
 
 import math
 
-from ..drivers.interfaces import BodyShape, WheelSpeeds
-from .interfaces import Done, Failed, Running, View
-from .script import Part, Script, Scripted, roll, stand, turn_by
+from robot.drivers.interfaces import BodyShape, WheelSpeeds
+from robot.skills.interfaces import Done, Failed, Running, View
+from robot.skills.script import Part, Script, Scripted, roll, stand, turn_by
 
 COAST_MM = 40.0
 ARC_MM = 120.0

@@ -7,15 +7,14 @@ import math
 from typing import ClassVar
 
 from maps import CampusMap
-
-from ..drivers.interfaces import STOP, BodyShape, WheelSpeeds
-from ..navigation.expected import Expected
-from .find_line import FindLine, over_line
-from .give_way import GiveWay, most_mm_s
-from .interfaces import Done, Failed, Running, Step, View
-from .line_estimate import LineEstimate, gains
-from .post_ahead import PostAhead
-from .unread_post import TAPE_HALF_MM, UnreadPost
+from robot.drivers.interfaces import STOP, BodyShape, WheelSpeeds
+from robot.navigation.expected import Expected
+from robot.skills.find_line import FindLine, over_line
+from robot.skills.give_way import GiveWay, most_mm_s
+from robot.skills.interfaces import Done, Failed, Running, Step, View
+from robot.skills.line_estimate import LineEstimate, gains
+from robot.skills.post_ahead import PostAhead
+from robot.skills.unread_post import TAPE_HALF_MM, UnreadPost
 
 SLOWEST_MM_S = 70.0
 CLOSE_MM, SLOW_BY_MM = 8.0, 25.0

@@ -6,7 +6,7 @@ see shiny walls. So it slows down but never stands for them, and in the end it t
 
 import math
 
-from .interfaces import View
+from robot.skills.interfaces import View
 
 NEAR_SOMETHING_MM_S = 65.0
 """A touch at this speed is a nudge; from cruising it is reached within 40 mm, and the light

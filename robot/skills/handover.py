@@ -5,9 +5,8 @@ from hmac import compare_digest
 from typing import ClassVar
 
 from protocol.proofs import ShownCode
-
-from .interfaces import Done, Play, Running, Step, View
-from .tunes import REFUSED
+from robot.skills.interfaces import Done, Play, Running, Step, View
+from robot.skills.tunes import REFUSED
 
 TWICE_WITHIN_S = 2.0
 FORGET_WRONG_S = 3.0

@@ -12,8 +12,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from protocol.proofs import ShownCode
-
-from ..drivers.interfaces import (
+from robot.drivers.interfaces import (
     NOTHING_SEEN,
     STOP,
     BaseState,
@@ -25,7 +24,7 @@ from ..drivers.interfaces import (
     Sighting,
     WheelSpeeds,
 )
-from ..navigation.line_symbol import LineSymbol
+from robot.navigation.line_symbol import LineSymbol
 
 START = Odometry()
 

@@ -9,7 +9,7 @@ import math
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from ..drivers.interfaces import BodyShape, LineReading
+from robot.drivers.interfaces import BodyShape, LineReading
 
 EDGE_SIGMA_MM = 2.0
 OFFSET_NOISE_MM2_PER_MM = 0.01

@@ -1,9 +1,9 @@
 """Going back a little along the corridor that the robot came by, until it reads the marker of the post ahead."""
 
-from ..drivers.interfaces import STOP, WheelSpeeds
-from ..navigation.approach import is_aslant
-from .interfaces import Done, Failed, Running, View
-from .script import Script, Scripted, roll, stand
+from robot.drivers.interfaces import STOP, WheelSpeeds
+from robot.navigation.approach import is_aslant
+from robot.skills.interfaces import Done, Failed, Running, View
+from robot.skills.script import Script, Scripted, roll, stand
 
 BACK_MM_S = 50.0
 """A marker is in sight for 400 mm: at this speed for 8 s, and nothing behind is hit hard."""

@@ -1,9 +1,9 @@
 """The paper's own actions, so that its program runs: `drive` is a pulse, `turn` ends on the line or fails in 10 s."""
 
-from ..drivers.interfaces import STOP, BodyShape, WheelSpeeds
-from ..errors import UnknownSkill
-from .interfaces import Done, Step, View
-from .turn import Turn
+from robot.drivers.interfaces import STOP, BodyShape, WheelSpeeds
+from robot.errors import UnknownSkill
+from robot.skills.interfaces import Done, Step, View
+from robot.skills.turn import Turn
 
 PULSE_S = 0.2
 """The prototype's driver stopped the wheels so long after the last command."""

@@ -4,11 +4,10 @@ import math
 from dataclasses import replace
 
 from maps import CampusMap
-
-from ..drivers.interfaces import Odometry
-from ..navigation.approach import arrival_heading_rad, post_ahead_mm
-from ..navigation.expected import OWN_POST_MM, Expected, hangs_beside_this_line
-from .interfaces import View
+from robot.drivers.interfaces import Odometry
+from robot.navigation.approach import arrival_heading_rad, post_ahead_mm
+from robot.navigation.expected import OWN_POST_MM, Expected, hangs_beside_this_line
+from robot.skills.interfaces import View
 
 SHARP_MM = 40.0
 """The nearer to abreast the marker is, the less its distance ahead depends on how the camera was mounted."""

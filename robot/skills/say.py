@@ -2,9 +2,9 @@
 
 from typing import ClassVar
 
-from ..errors import UnknownSkill
-from .interfaces import Done, Play, ShowLights, Step, View
-from .tunes import TUNES
+from robot.errors import UnknownSkill
+from robot.skills.interfaces import Done, Play, ShowLights, Step, View
+from robot.skills.tunes import TUNES
 
 
 class Say:

@@ -9,8 +9,8 @@ import math
 from collections.abc import Callable, Generator
 from typing import ClassVar
 
-from ..drivers.interfaces import STOP, BodyShape, WheelSpeeds
-from .interfaces import Outcome, Running, Step, View
+from robot.drivers.interfaces import STOP, BodyShape, WheelSpeeds
+from robot.skills.interfaces import Outcome, Running, Step, View
 
 Script = Generator[Running, View, Outcome]
 Part = Generator[Running, View, View]

@@ -1,6 +1,6 @@
 """What the robot's little speaker says. MIDI notes and seconds."""
 
-from ..drivers.interfaces import Note
+from robot.drivers.interfaces import Note
 
 ARRIVED: tuple[Note, ...] = ((72, 0.15), (76, 0.15), (79, 0.3))
 ACCEPTED: tuple[Note, ...] = ((79, 0.12), (84, 0.3))

@@ -2,10 +2,10 @@
 
 import math
 
-from ..drivers.interfaces import BodyShape, Odometry, WheelSpeeds
-from .find_line import align, over_line, settle
-from .interfaces import Done, Failed, View
-from .script import Part, Script, Scripted, roll, turn_by
+from robot.drivers.interfaces import BodyShape, Odometry, WheelSpeeds
+from robot.skills.find_line import align, over_line, settle
+from robot.skills.interfaces import Done, Failed, View
+from robot.skills.script import Part, Script, Scripted, roll, turn_by
 
 SMALLEST_RAD = math.radians(5)
 PUSHED_MM = 30.0

@@ -9,8 +9,7 @@ from statistics import mean, median
 
 from maps import CampusMap, CampusMapError
 from maps.geometry import wrapped
-
-from ..drivers.interfaces import BodyShape, LineReading, Odometry
+from robot.drivers.interfaces import BodyShape, LineReading, Odometry
 
 SHARE, SLACK_MM = 0.03, 40.0
 """No marker so far beyond the length of the corridor: calibrated wheels and tape measures err by less."""

@@ -6,8 +6,7 @@ from pathlib import Path
 import pytest
 
 from robot.store import Store
-
-from .reflexes.moving import Moving
+from tests.robot.reflexes.moving import Moving
 
 
 @pytest.fixture

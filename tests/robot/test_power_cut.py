@@ -15,8 +15,7 @@ from robot.duties import Duties
 from robot.memory import Memory
 from robot.outbox import Outbox
 from robot.store import Store
-
-from .test_duties import LETTER, LOAD, NOW, RECEIVE, TO_POST3, TO_POST4, FakeServer
+from tests.robot.test_duties import LETTER, LOAD, NOW, RECEIVE, TO_POST3, TO_POST4, FakeServer
 
 SECTOR, LOG_HEAD = 512, 32
 Files = tuple[bytes, bytes]

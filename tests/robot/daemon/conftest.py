@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from .simulated_run import SimulatedRun
+from tests.robot.daemon.simulated_run import SimulatedRun
 
 
 @pytest.fixture

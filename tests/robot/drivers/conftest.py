@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
-from .against_the_byte_machine import Together
+from tests.robot.drivers.against_the_byte_machine import Together
 
 
 @pytest.fixture
