@@ -3,11 +3,11 @@
 from collections.abc import Iterable, Iterator
 
 from bdi.builtin.table import wrong_arguments
-from bdi.intentions import Intention, StepFailed
-from bdi.logic import HasLogic
-from bdi.mind import Mind
-from bdi.terms import Handle, List, String, Term, show
-from bdi.unify import in_order, undo, unify
+from bdi.language.terms import Handle, List, String, Term, show
+from bdi.language.unify import in_order, undo, unify
+from bdi.model.intentions import Intention, StepFailed
+from bdi.model.logic import HasLogic
+from bdi.model.mind import Mind
 
 
 def bind(mind: HasLogic, left: Term, right: Term) -> bool:

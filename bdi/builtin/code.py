@@ -1,11 +1,11 @@
 """Plans, rules and events as terms, `{ +!g(X) <- a }`, with the values that their variables have."""
 
 from bdi.builtin.table import wrong_arguments
-from bdi.errors import AgentSpeakSyntaxError, Place
-from bdi.parser import parse_event, parse_plan
-from bdi.syntax import Body, Plan, Rule, Trigger, event_of, with_terms
-from bdi.terms import Atom, Code, Literal, String, Structure, Term, Var, atom
-from bdi.unify import deref, renamed, substituted
+from bdi.language.errors import AgentSpeakSyntaxError, Place
+from bdi.language.parser import parse_event, parse_plan
+from bdi.language.syntax import Body, Plan, Rule, Trigger, event_of, with_terms
+from bdi.language.terms import Atom, Code, Literal, String, Structure, Term, Var, atom
+from bdi.language.unify import deref, renamed, substituted
 
 
 def plan_in(term: Term, name: str) -> Plan:

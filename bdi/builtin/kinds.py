@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
-from bdi.terms import (
+from bdi.language.terms import (
     ARITHMETIC,
     NEGATIVE,
     POSITIVE,

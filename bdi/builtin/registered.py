@@ -2,10 +2,10 @@
 
 from typing import Any
 
-from bdi.errors import UnknownInternalAction
-from bdi.logic import HasLogic
-from bdi.syntax import Function
-from bdi.terms import Predicate, Structure, Term, Var, is_internal, literal_of, predicate
+from bdi.language.errors import UnknownInternalAction
+from bdi.language.syntax import Function
+from bdi.language.terms import Predicate, Structure, Term, Var, is_internal, literal_of, predicate
+from bdi.model.logic import HasLogic
 
 
 class Registered:

@@ -10,10 +10,10 @@ from difflib import get_close_matches
 from typing import Any, TypeAlias
 
 from bdi.builtin.kinds import Kind, at_place, counts
-from bdi.errors import NotALiteral, UnknownPerformative
-from bdi.intentions import StepFailed
-from bdi.logic import Builtin, HasLogic
-from bdi.terms import Predicate, Structure, Term, show
+from bdi.language.errors import NotALiteral, UnknownPerformative
+from bdi.language.terms import Predicate, Structure, Term, show
+from bdi.model.intentions import StepFailed
+from bdi.model.logic import Builtin, HasLogic
 
 Answer: TypeAlias = bool | Iterator[Any] | None  # None counts as True
 

@@ -8,8 +8,8 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
-from bdi.agent import Agent
-from bdi.errors import AgentSpeakError
+from bdi.language.errors import AgentSpeakError
+from bdi.reasoning.agent import Agent
 from bdi.tools.checks import Finding, Severity, findings_of
 from bdi.tools.console import DIFFERENT, complaints, load, output
 from bdi.tools.options import AsJson, Compatible, Programs

@@ -8,9 +8,9 @@ from typing import Any
 import typer
 from rich.console import Console
 
-from bdi.errors import AgentSpeakSyntaxError, BdiError
-from bdi.parser import load_program
-from bdi.syntax import Program
+from bdi.language.errors import AgentSpeakSyntaxError, BdiError
+from bdi.language.parser import load_program
+from bdi.language.syntax import Program
 
 DIFFERENT = 1
 UNUSABLE = 2

@@ -8,12 +8,12 @@ from typing import Annotated
 import typer
 from rich.markup import escape
 
-from bdi.agent import Agent
-from bdi.outcome import Outcome
-from bdi.recording import digest
-from bdi.replaying import Difference, Recording, Run, read_recording
+from bdi.reasoning.agent import Agent
+from bdi.reasoning.outcome import Outcome
 from bdi.tools.console import DIFFERENT, aside, complaints, load, output
 from bdi.tools.options import AsJson
+from bdi.tools.recording.recorder import digest
+from bdi.tools.recording.replaying import Difference, Recording, Run, read_recording
 
 
 def replay(

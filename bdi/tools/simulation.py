@@ -5,14 +5,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
-from bdi.agent import Agent
-from bdi.errors import UnknownAgent
-from bdi.messages import Finished, Message
-from bdi.outcome import Action, Outcome
-from bdi.percept_file import NOTHING, USER, Stimulus
-from bdi.syntax import Program
-from bdi.system import MultiAgentSystem, Stimuli
+from bdi.communication.system import MultiAgentSystem, Stimuli
+from bdi.language.errors import UnknownAgent
+from bdi.language.syntax import Program
+from bdi.model.messages import Finished, Message
+from bdi.reasoning.agent import Agent
+from bdi.reasoning.outcome import Action, Outcome
 from bdi.tools.console import load
+from bdi.tools.percept_file import NOTHING, USER, Stimulus
 
 CYCLE_MS = 100  # the paper's cycle (section 5.2); here it only gives `.wait` a clock
 LONGEST_RUN = 1_000_000

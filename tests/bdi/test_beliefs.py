@@ -3,7 +3,7 @@
 import pytest
 
 from bdi import Agent, AgentSpeakError, Finished, Message, NotALiteral, parse_program, show
-from bdi.terms import structure
+from bdi.language.terms import structure
 
 
 def acts(program: str, *percepts: list[str] | None, told: tuple[tuple[str, str], ...] = ()) -> list[str]:

@@ -3,7 +3,7 @@
 import pytest
 
 from bdi import Agent, parse_program, show
-from bdi.intentions import StepFailed
+from bdi.model.intentions import StepFailed
 
 BELIEFS = "p(1). p(2)[hot]. p(3). q(a,1). q(b,2). r(X) :- p(X) & X > 1."
 

@@ -6,8 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bdi import Agent, Program, Term, parse_term, show
-from bdi.terms import List, String, atom, number, structure
-from bdi.unify import resolve
+from bdi.language.terms import List, String, atom, number, structure
+from bdi.language.unify import resolve
 
 agent = Agent(Program("laws"))
 atoms = st.sampled_from("abcdef").map(atom)

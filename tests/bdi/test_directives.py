@@ -17,7 +17,7 @@ from bdi import (
     load_program,
     parse_program,
 )
-from bdi.syntax import Clause, Directive, Plan
+from bdi.language.syntax import Clause, Directive, Plan
 
 
 def deeds(agent: Agent, cycles: int = 20) -> list[str]:

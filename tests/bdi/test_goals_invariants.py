@@ -5,7 +5,7 @@ from hypothesis import HealthCheck, given, note, settings
 from hypothesis import strategies as st
 
 from bdi import Agent, Finished, Message, Outcome, parse_program
-from bdi.intentions import State
+from bdi.model.intentions import State
 
 GOALS = ("g0", "g1", "g2", "g3")
 goal = st.sampled_from(GOALS)

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Callable
 
 from bdi import Agent, Finished, Message, parse_program
-from bdi.logic.logic import REMEMBERED_FORMULAS
+from bdi.model.logic.logic import REMEMBERED_FORMULAS
 from tests.own_process import in_own_process
 
 # A robot's life in small: missions by message, percepts that flicker, failures, waits, a goal for ever, beliefs that

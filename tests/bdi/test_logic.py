@@ -11,9 +11,9 @@ from hypothesis import HealthCheck, given, reject, settings
 from hypothesis import strategies as st
 
 from bdi import Agent, Finished, Message, Term, Var, parse_program, parse_term, show
-from bdi.arithmetic import ArithmeticFailure
-from bdi.terms import AND, NOT, OR, RELATIONS, List, Structure, atom
-from bdi.unify import Trail, compare, renamed, resolve, undo, unify, unify_annots, variables_in
+from bdi.language.arithmetic import ArithmeticFailure
+from bdi.language.terms import AND, NOT, OR, RELATIONS, List, Structure, atom
+from bdi.language.unify import Trail, compare, renamed, resolve, undo, unify, unify_annots, variables_in
 
 # ---- the meaning ---------------------------------------------------------------------------------------------------
 

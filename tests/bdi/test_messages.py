@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bdi import Agent, BdiError, Finished, Message, Outcome, UnknownPerformative, parse_program, parse_term
-from bdi.performatives import PERFORMATIVES
+from bdi.reasoning.performatives import PERFORMATIVES
 
 
 def agent_of(text: str, name: str = "r1") -> Agent:

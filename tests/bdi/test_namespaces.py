@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from bdi import Agent, AgentSpeakSyntaxError, Finished, Includes, Message, NotALiteral, parse_program, parse_term
-from bdi.parser.includes import Read
+from bdi.language.parser.includes import Read
 
 
 def reader(files: Mapping[str, str]) -> Read:

@@ -3,7 +3,7 @@
 import pytest
 
 from bdi import Agent, Finished, parse_program
-from bdi.errors import WrongPriority
+from bdi.language.errors import WrongPriority
 
 LEVELS = "priorities([safety, health, map, mission, navigation, movement]). "
 

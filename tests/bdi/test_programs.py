@@ -25,7 +25,7 @@ from bdi import (
     parse_term,
 )
 from bdi.builtin import ACTIONS, FUNCTIONS
-from bdi.performatives import PERFORMATIVES
+from bdi.reasoning.performatives import PERFORMATIVES
 
 MAIL = """// the heart of a courier
 dockStation(post0).

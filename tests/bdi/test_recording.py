@@ -10,8 +10,8 @@ from typer.testing import CliRunner, Result
 
 from bdi import Agent, BdiError, Finished, Message, load_program, parse_program, parse_term
 from bdi.__main__ import app
-from bdi.recording import RecordedTooLate, Recorder
-from bdi.replaying import NotARecording, read_recording
+from bdi.tools.recording.recorder import RecordedTooLate, Recorder
+from bdi.tools.recording.replaying import NotARecording, read_recording
 
 ROOT = Path(__file__).parents[2]
 GAMBLER = """!go. { include("more.asl") }

@@ -8,7 +8,7 @@ import pytest
 from bdi import Agent, AgentSpeakSyntaxError, parse_program
 from bdi.builtin import ACTIONS, FUNCTIONS, NOT_SUPPORTED, Definition
 from bdi.builtin.kinds import counts
-from bdi.performatives import PERFORMATIVES
+from bdi.reasoning.performatives import PERFORMATIVES
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "agentspeak-reference.md").read_text()

@@ -1,7 +1,7 @@
 """Sub-plans: what is there only while the plan that they stand behind is being carried out."""
 
 from bdi import Action, Agent, Finished, TraceEntry, parse_program
-from bdi.trace import Deliberated
+from bdi.debug.trace import Deliberated
 
 
 class Run:

@@ -7,14 +7,14 @@ from pathlib import Path
 import pytest
 from lark import Lark, LarkError
 
-from bdi.parser import parse_program
-from bdi.parser.tables import GRAMMAR, KEPT, STARTS, written
+from bdi.language.parser import parse_program
+from bdi.language.parser.tables import GRAMMAR, KEPT, STARTS, written
 
 EXAMPLES = sorted((Path(__file__).parents[2] / "examples" / "agents").glob("*.asl"))
 
 
 def test_the_kept_tables_are_those_of_the_grammar() -> None:
-    assert KEPT.read_text() == written(GRAMMAR.read_text()), "run python -m bdi.parser.tables"
+    assert KEPT.read_text() == written(GRAMMAR.read_text()), "run python -m bdi.language.parser.tables"
 
 
 @pytest.fixture(scope="module")

@@ -13,7 +13,7 @@ from typer.testing import CliRunner, Result
 
 from bdi import AgentSpeakSyntaxError
 from bdi.__main__ import app
-from bdi.tools.breakpoints import breakpoint_of
+from bdi.tools.stepping.breakpoints import breakpoint_of
 
 ROOT = Path(__file__).parents[2]
 MAIL = """!deliver(post4). line(lost).

@@ -5,7 +5,7 @@ import json
 import pytest
 
 from bdi import Agent, Deliberated, Finished, Message, Stepped, parse_program
-from bdi.trace import Changed, Verdict
+from bdi.debug.trace import Changed, Verdict
 
 COURIER = """
 speed(3). limit(5). post(library). post(uc).

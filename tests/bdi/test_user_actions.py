@@ -9,11 +9,11 @@ from typing import Any
 import pytest
 
 from bdi import Agent, Atom, Finished, InternalActions, Literal, Term, UnknownInternalAction, atom, parse_program, show
-from bdi.intentions import StepFailed
-from bdi.mind import Mind
-from bdi.recording import Recorder
-from bdi.replaying import read_recording
-from bdi.user_actions import ANY, ATOM, LIST, NUMBER, OUT, STRING, optional, rest
+from bdi.builtin.user_actions import ANY, ATOM, LIST, NUMBER, OUT, STRING, optional, rest
+from bdi.model.intentions import StepFailed
+from bdi.model.mind import Mind
+from bdi.tools.recording.recorder import Recorder
+from bdi.tools.recording.replaying import read_recording
 
 library = InternalActions()
 POSTS = {"library": (0.0, 120.0), "canteen": (50.0, 0.0)}

@@ -5,7 +5,7 @@ import json
 import pytest
 
 from bdi import Agent, Finished, Message, parse_program
-from bdi.explain import WORDS
+from bdi.debug.explain import WORDS
 
 
 def agent_of(text: str, cycles: int = 0, **options: object) -> Agent:

@@ -2,7 +2,7 @@
 
 from collections.abc import Collection
 
-from bdi.syntax import Program
+from bdi.language.syntax import Program
 from bdi.tools.checks import failures, goals, names, plans, rules, variables
 from bdi.tools.checks.findings import Finding, Severity
 from bdi.tools.checks.reading import read

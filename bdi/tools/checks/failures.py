@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator
 
-from bdi.syntax import Plan, Trigger
-from bdi.terms import TRUE, Predicate, Structure, Term, Var, show
+from bdi.language.syntax import Plan, Trigger
+from bdi.language.terms import TRUE, Predicate, Structure, Term, Var, show
 from bdi.tools.checks.findings import Finding, Severity
 from bdi.tools.checks.goals import leave_nothing_out
 from bdi.tools.checks.names import spelled

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 from pathlib import Path
 
-from bdi.errors import Place
+from bdi.language.errors import Place
 
 
 class Severity(IntEnum):

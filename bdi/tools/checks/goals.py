@@ -2,8 +2,8 @@
 
 from collections.abc import Collection, Iterator
 
-from bdi.syntax import Plan, Trigger
-from bdi.terms import NOT, TRUE, Predicate, Structure, Term, Var, is_internal, show
+from bdi.language.syntax import Plan, Trigger
+from bdi.language.terms import NOT, TRUE, Predicate, Structure, Term, Var, is_internal, show
 from bdi.tools.checks.findings import Finding, Severity, place_of
 from bdi.tools.checks.names import similar, spelled, unifies
 from bdi.tools.checks.reading import How, Reading

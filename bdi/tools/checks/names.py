@@ -2,11 +2,11 @@
 
 from collections.abc import Iterable, Iterator
 
-from bdi.syntax import Trigger
-from bdi.terms import PRIVATE_SPACE, Literal, Predicate, Var
+from bdi.language.syntax import Trigger
+from bdi.language.terms import PRIVATE_SPACE, Literal, Predicate, Var
+from bdi.language.unify import Trail, renamed, undo, unify
 from bdi.tools.checks.findings import Finding, Severity, place_of
 from bdi.tools.checks.reading import How, Reading, Use
-from bdi.unify import Trail, renamed, undo, unify
 
 SHORTEST = 4  # letters, for one wrong letter to say anything
 

@@ -2,11 +2,11 @@
 
 from collections.abc import Iterator
 
-from bdi.syntax import Body, Plan, Simple, Trigger
-from bdi.terms import TRUE, Structure, Term, Var, atom, show
+from bdi.language.syntax import Body, Plan, Simple, Trigger
+from bdi.language.terms import TRUE, Structure, Term, Var, atom, show
+from bdi.language.unify import Trail, renamed, substituted, undo, unify, variables_in
 from bdi.tools.checks.findings import Finding, Severity
 from bdi.tools.checks.reading import How, Reading, bodies_of
-from bdi.unify import Trail, renamed, substituted, undo, unify, variables_in
 
 ENDS = frozenset({".fail", ".drop_intention"})  # without arguments that name another goal
 

@@ -4,10 +4,23 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from enum import Enum
 
-from bdi.errors import Place
-from bdi.syntax import Body, Does, Fork, If, Plan, Program, Rule, Simple, Step, Trigger
-from bdi.terms import AND, NOT, OR, RELATIONS, Atom, Code, Literal, Predicate, Structure, Term, Var, is_internal
-from bdi.unify import parts_of
+from bdi.language.errors import Place
+from bdi.language.syntax import Body, Does, Fork, If, Plan, Program, Rule, Simple, Step, Trigger
+from bdi.language.terms import (
+    AND,
+    NOT,
+    OR,
+    RELATIONS,
+    Atom,
+    Code,
+    Literal,
+    Predicate,
+    Structure,
+    Term,
+    Var,
+    is_internal,
+)
+from bdi.language.unify import parts_of
 
 
 class How(Enum):
