@@ -3,7 +3,7 @@
 from bdi.builtin.user_actions import InternalActions
 from bdi.communication.system import MultiAgentSystem, Stimuli
 from bdi.debug.explain import Why
-from bdi.debug.trace import Changed, Deliberated, Failed, Stepped, TraceEntry, Verdict
+from bdi.debug.trace import Changed, Deliberated, Failed, GoalFailure, Stepped, TraceEntry, Verdict
 from bdi.language.errors import (
     AgentSpeakError,
     AgentSpeakSyntaxError,
@@ -26,7 +26,7 @@ from bdi.language.syntax import Program
 from bdi.language.terms import Atom, List, Literal, String, Structure, Term, Var, atom, show, structure
 from bdi.model.messages import Finished, Message
 from bdi.reasoning.agent import Agent
-from bdi.reasoning.outcome import Action, GoalFailure, Outcome
+from bdi.reasoning.output import Action, Outcome
 from bdi.reasoning.perception import Drain, Latest, Perception
 
 __all__ = [

@@ -46,9 +46,9 @@ class Neighbours:
     def readers(self, receiver: str, sender: str) -> Sequence[Reader]:
         agents = self._system.agents
         if receiver == EVERYBODY:
-            return [agent for name, agent in agents.items() if name != sender]
+            return [agent.message_handling for name, agent in agents.items() if name != sender]
         if receiver in agents:
-            return [agents[receiver]]
+            return [agents[receiver].message_handling]
         if receiver in self._system.post.outside:
             return ()
         raise _nobody(receiver, self.names())

@@ -23,7 +23,7 @@ from bdi.language.terms import Literal, Term
 from bdi.model.messages import Finished, Message
 from bdi.model.society import ALONE
 from bdi.reasoning.agent import Agent
-from bdi.reasoning.outcome import QUIET, Outcome
+from bdi.reasoning.output import QUIET, Outcome
 
 Make = Callable[[Program, str], Agent]  # an agent of this program and name, with the actions and the seed of the caller
 
@@ -114,7 +114,7 @@ class MultiAgentSystem:
         self.post.close_inbox(name)
         self.post.deliver_all(self.directory.forget(name))
         for other in self._members.values():
-            for question in other.agent.questions_to(name):
+            for question in other.agent.message_handling.questions_to(name):
                 self.post.deliver(Message(name, "sorry", "dead", other.agent.name, reply_to=question))
         return True
 
@@ -191,8 +191,8 @@ class MultiAgentSystem:
             if percepts is not None:
                 agent.percepts.change(percepts)
             for message in given.messages:
-                agent.read(message)
-            checked[name] = Stimuli(percepts, given.messages, agent.started(given.finished))
+                agent.message_handling.read(message)
+            checked[name] = Stimuli(percepts, given.messages, agent.execution.started(given.finished))
         return checked
 
     def _cycle(self, member: _Member, inbox: list[Message], given: Stimuli) -> Outcome:
@@ -216,7 +216,7 @@ class MultiAgentSystem:
         """A plan that understood a message when it was sent may be gone."""
         for message in inbox:
             try:
-                agent.read(message)
+                agent.message_handling.read(message)
             except BdiError:
                 self.post.lost.append(message)
             else:

@@ -5,14 +5,13 @@ from dataclasses import asdict, dataclass, field
 from types import MappingProxyType
 from typing import Any
 
-from bdi.debug.trace import Deliberated
+from bdi.debug.trace import Deliberated, Observed
 from bdi.language.errors import AgentSpeakError
 from bdi.language.parser import parse_event
 from bdi.language.syntax import Trigger
 from bdi.language.terms import Literal, show
 from bdi.language.unify import renamed, unify
 from bdi.model.intentions import Event, Intention, Means, State
-from bdi.reasoning.circumstance import Circumstance
 
 UNKNOWN = "unknown"  # a goal that is not pursued
 
@@ -85,7 +84,7 @@ class Why:
         return self.sentence
 
 
-def explain(agent: Circumstance, goal: Literal) -> Why:
+def explain(agent: Observed, goal: Literal) -> Why:
     """The first intention for this goal, else the event that waits for a plan, else how it ended."""
     for intention in agent.intentions.values():
         for height, means in enumerate(intention.stack):
@@ -97,7 +96,7 @@ def explain(agent: Circumstance, goal: Literal) -> Why:
     return _about_the_past(agent, goal)
 
 
-def explain_intention(agent: Circumstance, intention: Intention) -> Why:
+def explain_intention(agent: Observed, intention: Intention) -> Why:
     """What an intention is about now, seen from its topmost goal."""
     return _about_intention(agent, intention, len(intention.stack) - 1)
 
@@ -106,7 +105,7 @@ def _is_about(event: Event, goal: Literal) -> bool:
     return event.trigger in PURSUED and unify(renamed(goal, {}), renamed(event.literal, {}), [])
 
 
-def _about_event(agent: Circumstance, event: Event) -> Why:
+def _about_event(agent: Observed, event: Event) -> Why:
     if event in agent.held_events:
         return Why(event.plain, "pending held", State.SUSPENDED.value)
     blocked = _atomic_plan(agent, event.intention)
@@ -114,7 +113,7 @@ def _about_event(agent: Circumstance, event: Event) -> Why:
     return Why(event.plain, kind, State.EVENT.value, waits_for=blocked)
 
 
-def _about_the_past(agent: Circumstance, goal: Literal) -> Why:
+def _about_the_past(agent: Observed, goal: Literal) -> Why:
     for failure in reversed(agent.given_up):
         event = _event_of(failure.goal)
         if event and event[0] in _LOOKED_BACK and unify(renamed(goal, {}), renamed(event[1], {}), []):
@@ -130,7 +129,7 @@ def _event_of(text: str) -> tuple[Trigger, Literal] | None:
         return None  # a goal with a value that has no notation, such as a map
 
 
-def _about_intention(agent: Circumstance, intention: Intention, height: int) -> Why:
+def _about_intention(agent: Observed, intention: Intention, height: int) -> Why:
     top = intention.stack[-1]
     kind, what, left_s = _reason(agent, intention)
     return Why(
@@ -154,7 +153,7 @@ def _goals_between(intention: Intention, height: int) -> list[Means]:
     return [means for means in between if means.event.trigger is Trigger.GOAL_ADDED]
 
 
-def _reason(agent: Circumstance, intention: Intention) -> tuple[str, str | None, float | None]:
+def _reason(agent: Observed, intention: Intention) -> tuple[str, str | None, float | None]:
     """Kind, what it waits for, and how long at most."""
     waits_for: Any = intention.waits_for
     state = intention.state
@@ -178,15 +177,15 @@ def _reason(agent: Circumstance, intention: Intention) -> tuple[str, str | None,
     return ("turn", blocked, None) if blocked else ("running", None, None)
 
 
-def _left(agent: Circumstance, deadline_s: float | None) -> float | None:
+def _left(agent: Observed, deadline_s: float | None) -> float | None:
     return None if deadline_s is None else max(0.0, deadline_s - agent.now)
 
 
-def _answer_until(agent: Circumstance, intention: Intention) -> float | None:
-    return next((asked.deadline_s for asked in agent._asked.values() if asked.intention is intention), None)
+def _answer_until(agent: Observed, intention: Intention) -> float | None:
+    return next((asked.deadline_s for asked in agent.asked.values() if asked.intention is intention), None)
 
 
-def _atomic_plan(agent: Circumstance, intention: Intention | None) -> str | None:
+def _atomic_plan(agent: Observed, intention: Intention | None) -> str | None:
     """The plan that holds the agent for itself, unless it belongs to this intention."""
     atomic = agent.atomic
     if atomic is None or atomic is intention:

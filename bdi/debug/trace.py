@@ -4,14 +4,30 @@ An entry holds the event, plan or step itself and becomes words only when it is 
 JSON can hold (`data`): listening costs little. Ask at once: the variables of an event get values later.
 """
 
-from typing import Any, NamedTuple, TypeAlias
+from collections import deque
+from random import Random
+from typing import Any, NamedTuple, Protocol, TypeAlias
 
 from bdi.language.syntax import Simple, Step, Trigger
 from bdi.language.terms import Literal, show
-from bdi.model.intentions import Event
-from bdi.model.plans import CompiledPlan
+from bdi.model.beliefs import Beliefs
+from bdi.model.intentions import Event, Intention
+from bdi.model.logic import Logic
+from bdi.model.plans import CompiledPlan, Library
+from bdi.model.society import Asked
 
 CHOSEN, WOULD_APPLY, HEAD, CONTEXT, ERROR = "chosen", "would apply", "head", "context", "error"
+
+
+class GoalFailure(NamedTuple):
+    """A goal that no plan could rescue: its intention was dropped."""
+
+    goal: str
+    error: str
+    message: str
+
+    def __str__(self) -> str:
+        return f"{self.goal}: {self.error} ({self.message})"
 
 
 class Verdict(NamedTuple):
@@ -129,3 +145,22 @@ def brief(step: Step) -> str:
         return str(step)
     text = str(step)
     return text if len(text) <= 40 else f"{text.partition('{')[0].strip()} {{…}}"
+
+
+class Observed(Protocol):
+    """An agent as explanations see it; they only read."""
+
+    name: str
+    cycles: int
+    now: float
+    random: Random
+    beliefs: Beliefs
+    library: Library
+    logic: Logic
+    events: deque[Event]
+    held_events: list[Event]
+    intentions: dict[int, Intention]
+    atomic: Intention | None
+    asked: dict[str, Asked]
+    choices: deque[Deliberated]
+    given_up: deque[GoalFailure]

@@ -10,13 +10,12 @@ Nothing is changed by asking: chance is put back, and internal actions that do s
 from typing import NamedTuple
 
 from bdi.builtin import ACTIONS
-from bdi.debug.trace import CHOSEN, CONTEXT, ERROR, HEAD, WOULD_APPLY, Deliberated, Verdict
+from bdi.debug.trace import CHOSEN, CONTEXT, ERROR, HEAD, WOULD_APPLY, Deliberated, Observed, Verdict
 from bdi.language.syntax import Plan
 from bdi.language.terms import AND, INTERNAL, NOT, OPERATORS, RELATIONS, Atom, Literal, Structure, Term, Var, show
 from bdi.language.unify import Trail, deref, parts_of, renamed, resolve, substituted, undo, unify, unify_annots
 from bdi.model.intentions import NOT_WORKED_OUT, Event
 from bdi.model.plans import CompiledPlan
-from bdi.reasoning.circumstance import Circumstance
 
 ENOUGH_ANSWERS = 20  # of the first part of a context: to say "for none of them"
 SHOWN_BELIEFS = 3
@@ -44,7 +43,7 @@ class _Failed(NamedTuple):
     bindings: Bindings
 
 
-def deliberated(agent: Circumstance, event: Event, plan: CompiledPlan | None, explain: bool) -> Deliberated:
+def deliberated(agent: Observed, event: Event, plan: CompiledPlan | None, explain: bool) -> Deliberated:
     """The entry of the trace for this choice; the agent remembers it for a while."""
     said = tuple(verdicts(agent, event, plan)) if explain else ()
     choice = Deliberated(agent.cycles, event, plan, tuple(event.options), said)
@@ -52,7 +51,7 @@ def deliberated(agent: Circumstance, event: Event, plan: CompiledPlan | None, ex
     return choice
 
 
-def verdicts(agent: Circumstance, event: Event, chosen: CompiledPlan | None) -> list[Verdict]:
+def verdicts(agent: Observed, event: Event, chosen: CompiledPlan | None) -> list[Verdict]:
     """One for each plan with this trigger and name, in source order. Beliefs must be as they were for the choice."""
     found_out = [(inner, inner.ref) for _, inner in event.returns]
     for inner, _ in found_out:
@@ -69,7 +68,7 @@ def verdicts(agent: Circumstance, event: Event, chosen: CompiledPlan | None) -> 
             inner.ref = value
 
 
-def _candidates(agent: Circumstance, event: Event) -> list[CompiledPlan]:
+def _candidates(agent: Observed, event: Event) -> list[CompiledPlan]:
     """Also those whose head does not unify; sub-plans of a plan take the place of the agent's."""
     mine = agent.library.plans
     scoped = [option for option in event.options if option not in mine]
@@ -81,7 +80,7 @@ def _is_about(plan: Plan, event: Event) -> bool:
 
 
 def _verdict(
-    agent: Circumstance, option: CompiledPlan, literal: Literal, chosen: CompiledPlan | None, tried: bool
+    agent: Observed, option: CompiledPlan, literal: Literal, chosen: CompiledPlan | None, tried: bool
 ) -> Verdict:
     """`tried`: whether it was its turn before the one that was taken, so that it certainly did not apply."""
     plan = option.as_seen()
@@ -98,7 +97,7 @@ def _verdict(
     return Verdict(option.label, plan.place.source, plan.place.line, kind, why, shown)
 
 
-def _try(agent: Circumstance, plan: Plan, literal: Literal) -> tuple[_Failed | None, Bindings]:
+def _try(agent: Observed, plan: Plan, literal: Literal) -> tuple[_Failed | None, Bindings]:
     names: dict[Var, Term] = {}
     trail: Trail = []
     try:
@@ -132,7 +131,7 @@ def _listed(annots: tuple[Term, ...]) -> str:
 
 
 def _context_problem(
-    agent: Circumstance, context: Term, names: dict[Var, Term], known: Bindings
+    agent: Observed, context: Term, names: dict[Var, Term], known: Bindings
 ) -> tuple[_Failed | None, Bindings]:
     """The first part of the conjunction that makes it false."""
     holds: Term | None = None
@@ -172,7 +171,7 @@ def _only_asks(formula: Term) -> bool:
     return all(map(_only_asks, parts_of(formula)))
 
 
-def _why_not(agent: Circumstance, formula: Term, answers: list[Bindings], bindings: Bindings) -> str:
+def _why_not(agent: Observed, formula: Term, answers: list[Bindings], bindings: Bindings) -> str:
     text = _with(formula, bindings if len(answers) == 1 else {})
     for_all = ""
     if len(answers) > 1:
@@ -204,7 +203,7 @@ def _variables(formula: Term) -> list[Var]:
     return [variable for part in parts_of(formula) for variable in _variables(part)]
 
 
-def _believed(agent: Circumstance, formula: Term) -> str:
+def _believed(agent: Observed, formula: Term) -> str:
     """What is believed instead, of the same name."""
     if not isinstance(formula, Atom | Structure) or formula.functor in OPERATORS or formula.functor.startswith("."):
         return ""

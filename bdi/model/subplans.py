@@ -13,7 +13,7 @@ what it finds out stays its own. A reaction ends with the goal that it belongs t
 """
 
 from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Protocol
 
 from bdi.language.syntax import BELIEF_ADDED, BELIEF_REMOVED, Plan, Trigger, with_terms
@@ -38,8 +38,6 @@ class HasIntentions(Protocol):
     logic: Logic
     events: deque[Event]
     intentions: dict[int, Intention]
-
-    def drop(self, intention: Intention) -> None: ...
 
 
 class Reaction(Event):
@@ -103,9 +101,10 @@ def _values_of(variables: tuple[Var, ...], means: Means) -> list[Term]:
 class Scopes:
     """Looks up sub-plans, and sees to their reactions while the agent selects; an agent that has some has one."""
 
-    def __init__(self, mind: HasIntentions, selector: Selects) -> None:
+    def __init__(self, mind: HasIntentions, drop: Callable[[Intention], None], selector: Selects) -> None:
         self.selector = selector
         self._mind = mind
+        self._drop = drop
         self._reacting = False  # whether a reaction may be there
 
     def options(self, stack: Around, trigger: Trigger, literal: Literal) -> Options:
@@ -176,7 +175,7 @@ class Scopes:
         for intention in reactions:
             reaction = _reaction_of(intention.stack)
             if reaction is not None and not self._is_pursued(reaction):
-                self._mind.drop(intention)
+                self._drop(intention)
 
     def _is_pursued(self, reaction: Reaction) -> bool:
         """Whether the plan around is still being carried out, perhaps by a branch of its intention."""

@@ -1,7 +1,7 @@
 """`.wait` for an event or a formula, with or without an end."""
 
 from collections.abc import Callable
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 from bdi.language.syntax import Trigger
 from bdi.language.terms import Literal, String, Structure, Term, atom, number, predicate, structure
@@ -14,6 +14,14 @@ class HasTime(HasLogic, Protocol):
     """`now` in seconds, of the clock that the agent is given."""
 
     now: float
+
+
+class Deadline(NamedTuple):
+    """The end of the time for a goal; one that is not hard only raises an event."""
+
+    moment_s: float
+    milliseconds: float
+    is_hard: bool
 
 
 class Moment(float):

@@ -1,14 +1,17 @@
 """What the steps of a plan do to the agent: the verbs that `plans.Doer` asks for."""
 
+from collections.abc import Callable
 from typing import Any
 
+from bdi.builtin.program_check import is_known_action
 from bdi.debug.trace import Changed
-from bdi.language.syntax import BELIEF_ADDED, BELIEF_REMOVED, GOAL_ADDED, Trigger
+from bdi.language.syntax import BELIEF_ADDED, BELIEF_REMOVED, GOAL_ADDED, Does, Trigger
 from bdi.language.terms import (
     ANNOTATED,
     DEFAULT_SPACE,
     IN_SPACE,
     Atom,
+    Code,
     Literal,
     Predicate,
     Structure,
@@ -35,38 +38,55 @@ from bdi.model.intentions import (
 from bdi.model.logic import Builtin, Frame
 from bdi.model.plans import Options
 from bdi.model.waiting import reason_of
-from bdi.reasoning.deadlines import Deadlines
-from bdi.reasoning.loading import is_known_action
-from bdi.reasoning.outcome import Action
+from bdi.reasoning.circumstance import Circumstance
+from bdi.reasoning.deadlines import DeadlineWatch
+from bdi.reasoning.event_queue import EventQueue
+from bdi.reasoning.intention_base import IntentionBase
+from bdi.reasoning.output import Action, Output
 from bdi.reasoning.performatives import sourced
 
 Arguments = tuple[Term, ...]
 _new = object.__new__
 
 
-class Doing(Deadlines):
-    """An agent that can take steps."""
+class Actions:
+    """Carries out the steps of plans: the `Doer` of one agent."""
 
-    __slots__ = ()
+    __slots__ = ("agent", "deadline_watch", "event_queue", "intention_base", "learn", "output", "step")
 
-    # ---- actions ---------------------------------------------------------------------------------------------------
+    def __init__(
+        self,
+        agent: Circumstance,
+        output: Output,
+        event_queue: EventQueue,
+        intention_base: IntentionBase,
+        deadline_watch: DeadlineWatch,
+    ) -> None:
+        self.agent = agent
+        self.output = output
+        self.event_queue = event_queue
+        self.intention_base = intention_base
+        self.deadline_watch = deadline_watch
+        self.step: Callable[[Intention], None]  # the next step of this intention: see `execution`
+        self.learn: Callable[[Code, Does], None]  # +{ plan }: see `plan_base`
 
     def start_action(self, intention: Intention, term: Literal) -> None:
         """drive(forward)"""
-        if self.known_actions is not None and not is_known_action(term, self.known_actions):
+        agent = self.agent
+        if agent.known_actions is not None and not is_known_action(term, agent.known_actions):
             raise StepFailed("unknown_action", f"the body has no action {term.predicate!r}")
-        number = self._last_action = self._last_action + 1
-        self._pending[number] = intention
+        number = agent.last_action = agent.last_action + 1
+        agent.pending[number] = intention
         intention.action = number
         intention.state = WAITS_FOR_ACTION
         intention.waits_for = term
-        if self.goal_states is not None:
-            self.goal_states.tell_all(intention, "waiting", reason_of(intention))
-        self._actions.append(make(Action, (number, term, intention.number)))
+        if agent.goal_states is not None:
+            agent.goal_states.tell_all(intention, "waiting", reason_of(intention))
+        self.output.actions.append(make(Action, (number, term, intention.number)))
 
     def call_internal(self, intention: Intention, builtin: Builtin, args: tuple[Any, ...]) -> bool:
         """.print(X)"""
-        trail = self.logic.trail
+        trail = self.agent.logic.trail
         answer = builtin.ask(args)
         if answer is not True and answer is not False and answer is not None:
             answer = next(iter(answer), None) is not None
@@ -75,8 +95,6 @@ class Doing(Deadlines):
             return True
         undo(trail, 0)
         return False
-
-    # ---- goals -----------------------------------------------------------------------------------------------------
 
     def achieve(
         self, intention: Intention, key: Predicate, args: Arguments, annots: Arguments, options: Options
@@ -95,6 +113,7 @@ class Doing(Deadlines):
         returns: tuple[tuple[Var, Var], ...] = (),
     ) -> None:
         """!g with nothing in it that is still free"""
+        agent = self.agent
         intention.state = WAITS_FOR_EVENT
         event = _new(Event)  # as a call of Event, in half the time
         event.trigger = GOAL_ADDED
@@ -104,26 +123,26 @@ class Doing(Deadlines):
         event.options = options
         event.intention = intention
         event.returns = returns
-        self.events.append(event)
-        if annots is not FROM_SELF or self.watches_clock or self.attentive:
+        agent.events.append(event)
+        if annots is not FROM_SELF or agent.watches_clock or agent.attentive:
             self._announce(event)
 
     def with_subplans(
         self, intention: Intention, trigger: Trigger, goal: Term, options: Options | None
     ) -> Options | None:
         """Sub-plans of the plans that led here go before those of the agent."""
-        if self.scopes is None or not isinstance(goal, Atom | Structure):
+        if self.agent.scopes is None or not isinstance(goal, Atom | Structure):
             return options
-        return self.scopes.options(intention.stack, trigger, goal) or options
+        return self.agent.scopes.options(intention.stack, trigger, goal) or options
 
     def achieve_apart(self, goal: Literal, options: Options | None = None) -> None:
         """!!g"""
         if options is None:
-            options = self.library.options(GOAL_ADDED, goal.predicate)
+            options = self.agent.library.options(GOAL_ADDED, goal.predicate)
         args, _ = _with_own_variables(goal.args)
         event = Event(GOAL_ADDED, goal.predicate, args, annots_from_self(goal.annots), options)
-        self.events.append(event)
-        if event.annots or self.waiters or self.goal_states is not None:
+        self.agent.events.append(event)
+        if event.annots or self.agent.waiters or self.agent.goal_states is not None:
             self._announce(event)
 
     def ask_plans(self, intention: Intention, goal: Literal, options: Options) -> None:
@@ -131,21 +150,19 @@ class Doing(Deadlines):
         args, returns = _with_own_variables(goal.args)
         annots = annots_from_self(goal.annots)
         event = Event(Trigger.TEST_ADDED, goal.predicate, args, annots, options, intention, returns)
-        self._wait_for_event(intention, event)
-        if event.annots or self.waiters or self.goal_states is not None:
+        self.event_queue.wait_for_event(intention, event)
+        if event.annots or self.agent.waiters or self.agent.goal_states is not None:
             self._announce(event)
 
     def _announce(self, goal: Event) -> None:
         """A new goal: sub-plans go before plans, its deadlines begin, those who wait for it or watch it are told."""
-        if self.scopes is not None and goal.intention is not None and goal.trigger is GOAL_ADDED:
+        if self.agent.scopes is not None and goal.intention is not None and goal.trigger is GOAL_ADDED:
             goal.options = self.with_subplans(goal.intention, GOAL_ADDED, goal.literal, goal.options)
-        self.set_deadlines(goal)
-        if self.waiters:
-            self._tell_waiters(goal.trigger, goal.literal)
-        if self.goal_states is not None:
-            self.goal_states.tell(goal, "pending")
-
-    # ---- beliefs ---------------------------------------------------------------------------------------------------
+        self.deadline_watch.set(goal)
+        if self.agent.waiters:
+            self.event_queue.tell_waiters(goal.trigger, goal.literal)
+        if self.agent.goal_states is not None:
+            self.agent.goal_states.tell(goal, "pending")
 
     def believe(self, literal: Literal, intention: Intention | None, last: bool = False) -> None:
         """+b: waits for its event; ++b does not"""
@@ -154,7 +171,7 @@ class Doing(Deadlines):
             if type(arg) not in FIXED and not is_ground(arg):  # what the plan finds out later is not believed
                 literal, fact = _apart(literal), _apart(literal)
                 break
-        relation = self.beliefs.relation(fact.predicate)
+        relation = self.agent.beliefs.relation(fact.predicate)
         known = relation.facts.get(fact.args)
         before = known.annots if type(known) is Belief else ()
         if relation.add(fact.args, fact.annots, last):
@@ -180,19 +197,19 @@ class Doing(Deadlines):
         if pattern.predicate is ANNOTATED:  # _[source(bob)]
             pattern = in_space(atom(DEFAULT_SPACE), pattern)
         if pattern.predicate is IN_SPACE:
-            for found in list(self.logic.in_any_space(pattern)):
+            for found in list(self.agent.logic.in_any_space(pattern)):
                 self.forget_all(found)  # type: ignore[arg-type]
             return
-        relation = self.beliefs.relation(pattern.predicate)
+        relation = self.agent.beliefs.relation(pattern.predicate)
         for belief in list(relation):
-            if relation.find_in(belief, pattern.args, pattern.annots, self.logic.trail):
+            if relation.find_in(belief, pattern.args, pattern.annots, self.agent.logic.trail):
                 relation.discard(belief.args)
                 self._react(BELIEF_REMOVED, literal_of(pattern.predicate, belief.args, belief.annots), None)
 
     def _take_back(self, literal: Literal, annots: Arguments) -> Literal | None:
         """Remove these annotations (the source among them) of the newest belief that unifies; what it was, or None."""
-        relation = self.beliefs.relation(literal.predicate)
-        trail = self.logic.trail
+        relation = self.agent.beliefs.relation(literal.predicate)
+        trail = self.agent.logic.trail
         found = relation.find(literal.args, annots, trail)
         if found is None:
             undo(trail, 0)
@@ -205,34 +222,34 @@ class Doing(Deadlines):
 
     def _react(self, trigger: Trigger, literal: Literal, intention: Intention | None) -> None:
         """Post the event of a changed belief. A plan that made the change waits for it, even if nobody reacts."""
-        if self._listeners:
-            self._trace(Changed(self.cycles, trigger, literal))
+        if self.output.listeners:
+            self.output.trace(Changed(self.agent.cycles, trigger, literal))
         if intention is None:
-            self.notice(trigger, literal)
+            self.event_queue.notice(trigger, literal)
         else:
-            options = self.with_subplans(intention, trigger, literal, self.library.options(trigger, literal.predicate))
-            self._wait_for_event(intention, event_of(trigger, literal, options, intention))
-            self._tell_waiters(trigger, literal)
-
-    # ---- branches --------------------------------------------------------------------------------------------------
+            options = self.with_subplans(
+                intention, trigger, literal, self.agent.library.options(trigger, literal.predicate)
+            )
+            self.event_queue.wait_for_event(intention, event_of(trigger, literal, options, intention))
+            self.event_queue.tell_waiters(trigger, literal)
 
     def fork(self, intention: Intention, branches: list[Step | None], wait_for_all: bool) -> None:
         """a |&| b, a ||| b: every branch becomes an intention with the same plans below."""
         fork = Fork(wait_for_all, len(intention.stack), intention.fork)
         *below, top = intention.stack
         for first in branches:
-            branch = self._new_intention()
+            branch = self.intention_base.new_intention()
             means = Means(top.plan, top.frame[:], top.event)
             means.step, means.loops = first, top.loops
             branch.stack = [*below, means]
             branch.fork, branch.guarded = fork, intention.guarded
             branch.atomic = intention.atomic
             fork.branches.append(branch)
-            self.running.append(branch)
+            self.agent.running.append(branch)
         if fork.outer is not None:
             outer = fork.outer.branches
             outer[outer.index(intention)] = fork
-        self._end(intention)
+        self.intention_base.end(intention)
 
     def join(self, intention: Intention) -> None:
         """The end of a branch: the last one goes on, or the first one alone."""
@@ -243,11 +260,11 @@ class Doing(Deadlines):
         if fork.wait_for_all and len(fork.branches) > 1:
             fork.branches.remove(intention)
             fork.frames.append(frame)
-            self._end(intention)
+            self.intention_base.end(intention)
         else:
             for other in fork.frames:
                 _take_over(frame, other)
-            self._leave_fork(intention, fork)
+            self.intention_base.leave_fork(intention, fork)
 
 
 def _take_over(frame: Frame, other: Frame) -> None:

@@ -6,79 +6,74 @@ goes on, and raises `^!g[state(late)]`. A goal that ends before has no deadline 
 takes care of its failure. Time goes on while a goal is suspended.
 """
 
-from collections.abc import Iterable
-from typing import NamedTuple
-
+from bdi.debug.trace import GoalFailure
 from bdi.language.terms import Structure, predicate, show, structure
 from bdi.language.unify import resolve
 from bdi.model.goal_states import raise_state
 from bdi.model.intentions import Event, Intention, Means, StepFailed
-from bdi.reasoning.outcome import GoalFailure
+from bdi.model.waiting import Deadline
+from bdi.reasoning.circumstance import Circumstance
+from bdi.reasoning.output import Output
 from bdi.reasoning.recovery import Recovery
 
 HARD, SOFT = predicate("hard_deadline", 1), predicate("soft_deadline", 1)
 
 
-class Deadline(NamedTuple):
-    moment_s: float
-    milliseconds: float
-    is_hard: bool
+class DeadlineWatch:
+    """Sets the deadlines of new goals and fails goals that are late."""
 
+    __slots__ = ("agent", "output", "recovery")
 
-class Deadlines(Recovery):
-    """An agent whose goals may have deadlines: `deadlines` holds those of goals that are still pursued."""
+    def __init__(self, agent: Circumstance, output: Output, recovery: Recovery) -> None:
+        self.agent = agent
+        self.output = output
+        self.recovery = recovery
 
-    __slots__ = ("deadlines",)
-
-    def __init__(self, name: str, actions: Iterable[str] | None, random_seed: int | None) -> None:
-        super().__init__(name, actions, random_seed)
-        self.deadlines: dict[Event, list[Deadline]] = {}
-
-    def set_deadlines(self, goal: Event) -> None:
+    def set(self, goal: Event) -> None:
         """Of a goal that is new. One that is no number is reported, and the goal has none."""
         written = [each for each in goal.annots if type(each) is Structure and each.predicate in (HARD, SOFT)]
         if written:
             found = [self._deadline(goal, annot) for annot in written]
-            self.watches_clock = True
-            self.deadlines[goal] = [deadline for deadline in found if deadline is not None]
+            self.agent.watches_clock = True
+            self.agent.deadlines[goal] = [deadline for deadline in found if deadline is not None]
 
     def _deadline(self, goal: Event, annot: Structure) -> Deadline | None:
         milliseconds = resolve(annot.args[0])
         if isinstance(milliseconds, int | float):
-            return Deadline(self.now + milliseconds / 1000, milliseconds, annot.predicate is HARD)
+            return Deadline(self.agent.now + milliseconds / 1000, milliseconds, annot.predicate is HARD)
         problem = f"{annot.functor} takes milliseconds, not {show(milliseconds)}"
-        self._report(GoalFailure(str(goal), "wrong_arguments", problem))
+        self.output.report(GoalFailure(str(goal), "wrong_arguments", problem))
         return None
 
-    def check_deadlines(self) -> None:
+    def check(self) -> None:
         """Those whose time is over: outer goals first."""
-        for goal, deadlines in list(self.deadlines.items()):
+        for goal, deadlines in list(self.agent.deadlines.items()):
             if not self._is_pursued(goal):
-                del self.deadlines[goal]
+                del self.agent.deadlines[goal]
                 continue
-            due = [deadline for deadline in deadlines if deadline.moment_s <= self.now]
+            due = [deadline for deadline in deadlines if deadline.moment_s <= self.agent.now]
             for deadline in due:
                 deadlines.remove(deadline)
                 self._is_late(goal, deadline)
             if not deadlines:
-                del self.deadlines[goal]
+                del self.agent.deadlines[goal]
 
     def _pursuing(self, goal: Event) -> Intention | None:
-        return next((each for each in self.intentions.values() if _pursues(each.stack, goal)), None)
+        return next((each for each in self.agent.intentions.values() if _pursues(each.stack, goal)), None)
 
     def _is_pursued(self, goal: Event) -> bool:
-        return goal in self.events or goal in self.held_events or self._pursuing(goal) is not None
+        return goal in self.agent.events or goal in self.agent.held_events or self._pursuing(goal) is not None
 
     def _is_late(self, goal: Event, deadline: Deadline) -> None:
         intention = self._pursuing(goal)
         if not deadline.is_hard:
-            raise_state(self, goal, "late", structure("soft_deadline", deadline.milliseconds))
+            raise_state(self.agent, goal, "late", structure("soft_deadline", deadline.milliseconds))
             return
         failure = StepFailed("deadline_reached", f"{goal} was not reached in {show(deadline.milliseconds)} ms")
         if intention is None:
-            self.give_up_waiting(goal, failure)
+            self.recovery.give_up_waiting(goal, failure)
         else:
-            self.give_up_goal(intention, lambda means: means.event is goal, failure)
+            self.recovery.give_up_goal(intention, lambda means: means.event is goal, failure)
 
 
 def _pursues(stack: list[Means], goal: Event) -> bool:

@@ -1,10 +1,10 @@
 """Messages of other agents: read at the door, obeyed one a cycle; and the questions whose answers are waited for."""
 
-from collections import deque
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
+from bdi.debug.trace import GoalFailure
 from bdi.language.errors import BdiError, NotALiteral, UnknownPerformative
 from bdi.language.parser import literal_from, parse_plan, term_from
 from bdi.language.syntax import GOAL_ADDED, Trigger
@@ -15,10 +15,13 @@ from bdi.model.messages import WAITED_FOR, Message
 from bdi.model.plans import CompiledPlan, Options, relevant
 from bdi.model.society import Asked, Reader
 from bdi.model.waiting import reason_of
-from bdi.reasoning.actions import Doing
-from bdi.reasoning.outcome import GoalFailure
+from bdi.reasoning.actions import Actions
+from bdi.reasoning.circumstance import Circumstance
+from bdi.reasoning.intention_base import IntentionBase
+from bdi.reasoning.output import Output
 from bdi.reasoning.percepts import REMEMBERED_TEXTS
 from bdi.reasoning.performatives import KNOW_HOW, PERFORMATIVES, Performative, with_nested_source
+from bdi.reasoning.recovery import Recovery
 
 KQML_RECEIVED = predicate("kqml_received", 4)
 DEFAULT_PLAN = "@kqml_default +!kqml_received(S,P,C,M) <- .kqml.default(S,P,C,M)."
@@ -39,34 +42,34 @@ class Letter(NamedTuple):
     plans: Options | None = None
 
 
-class Hearing(Doing):
-    """An agent that is told."""
+class MessageHandling:
+    """Reads messages, obeys them, sends them, and waits for answers."""
 
-    __slots__ = ("_default_plan", "_mailbox", "_read", "accepts")
+    __slots__ = ("_default_plan", "_read", "actions", "agent", "intention_base", "output", "recovery")
 
-    def __init__(self, name: str, actions: Iterable[str] | None, random_seed: int | None) -> None:
-        super().__init__(name, actions, random_seed)
-        self._mailbox: deque[Letter] = deque()
+    def __init__(
+        self, agent: Circumstance, output: Output, intention_base: IntentionBase, recovery: Recovery, actions: Actions
+    ) -> None:
+        self.agent = agent
+        self.output = output
+        self.intention_base = intention_base
+        self.recovery = recovery
+        self.actions = actions
         self._read: dict[str, Literal] = {}
         self._default_plan: CompiledPlan | None = None
-        self.accepts: Callable[[Message], bool] | None = None
-        """Social acceptance: who may tell, ask and want what. A message for which it answers False is not obeyed.
-        Answers to the agent's own questions are always taken."""
-
-    # ---- the door: whatever is wrong is refused here, before anything changes --------------------------------------
 
     def read(self, message: Message) -> Letter:
         """Raises UnknownPerformative, AgentSpeakSyntaxError, NotALiteral."""
         if message.reply_to and self._is_waited_for(message.reply_to):
             return Letter(message, term_from(message.content))
-        options = self.library.options(GOAL_ADDED, KQML_RECEIVED)
+        options = self.agent.library.options(GOAL_ADDED, KQML_RECEIVED)
         if options:
             content = _content_of(message)
             plans = _named(relevant(options, _received(message, content)))
             if plans:
                 return Letter(message, content, plans)
         try:
-            return Letter(message, _performative(message).read(self, message.content))
+            return Letter(message, _performative(message).read(self.agent, message.content))
         except StepFailed as problem:
             raise NotALiteral(message.content, problem) from problem
 
@@ -83,14 +86,12 @@ class Hearing(Doing):
                 self._read[content] = literal
         return literal
 
-    # ---- one message -----------------------------------------------------------------------------------------------
-
-    def process_message(self, letter: Letter) -> None:
+    def process(self, letter: Letter) -> None:
         """One message of another agent."""
         message, content, plans = letter
         if message.reply_to and self._is_waited_for(message.reply_to):
             self._process_answer(message, content)
-        elif self.accepts is not None and not self.accepts(message):
+        elif self.agent.accepts is not None and not self.agent.accepts(message):
             return
         elif plans is None:
             self._obey(message, content)
@@ -100,38 +101,38 @@ class Hearing(Doing):
     def _obey(self, message: Message, content: Any) -> None:
         """What cannot be done is reported, as a goal would be."""
         try:
-            _performative(message).obey(self, message, content)
+            _performative(message).obey(self.agent, message, content)
         except StepFailed as failure:
-            self._report(GoalFailure(f"{message.performative} of {message.sender}", failure.error, failure.message))
+            self.output.report(
+                GoalFailure(f"{message.performative} of {message.sender}", failure.error, failure.message)
+            )
 
     def _obey_own_plans(self, message: Message, content: Term, plans: Options) -> None:
         """`+!kqml_received(SENDER, PERFORMATIVE, CONTENT, ID)`: plans of the program, then what is usual."""
         if message.performative in PERFORMATIVES:
             if self._default_plan is None:
-                self._default_plan = CompiledPlan(parse_plan(DEFAULT_PLAN), self.library.compiler)
+                self._default_plan = CompiledPlan(parse_plan(DEFAULT_PLAN), self.agent.library.compiler)
             plans = plans.followed_by(self._default_plan)
-        self.achieve_apart(_received(message, content), plans)
+        self.actions.achieve_apart(_received(message, content), plans)
 
     def obey(self, message: Message) -> None:
         """What is usual for this performative: .kqml.default. Raises StepFailed, AgentSpeakSyntaxError."""
         try:
             performative = _performative(message)
-            performative.obey(self, message, performative.read(self, message.content))
+            performative.obey(self.agent, message, performative.read(self.agent, message.content))
         except (UnknownPerformative, NotALiteral) as problem:
             raise StepFailed("wrong_arguments", str(problem)) from problem
 
     def answer_by_plan(self, message: Message, question: Literal) -> bool:
         """Whether there is a plan `+?question`; what it finds out is the answer."""
-        if not self.library.options(Trigger.TEST_ADDED, question.predicate):
+        if not self.agent.library.options(Trigger.TEST_ADDED, question.predicate):
             return False
-        if not _named(self.library.options(GOAL_ADDED, ANSWER)):
+        if not _named(self.agent.library.options(GOAL_ADDED, ANSWER)):
             for plan in ANSWERING_PLANS:
-                self.add_plan(parse_plan(plan))
+                self.agent.plan_base.add(parse_plan(plan))
         goal = Structure(ANSWER, (atom(message.sender), question, atom(message.id)))
-        self.achieve_apart(goal, _named(self.library.options(GOAL_ADDED, ANSWER)))
+        self.actions.achieve_apart(goal, _named(self.agent.library.options(GOAL_ADDED, ANSWER)))
         return True
-
-    # ---- writing ---------------------------------------------------------------------------------------------------
 
     def post(self, message: Message) -> None:
         """.send, .broadcast. Raises StepFailed for what nobody could read."""
@@ -139,7 +140,7 @@ class Hearing(Doing):
             readers: Sequence[Reader] = (self,)
             message = replace(message, sender=MYSELF)
         else:
-            readers = self.society.readers(message.receiver, self.name)
+            readers = self.agent.society.readers(message.receiver, self.agent.name)
         if readers or not message.reply_to:  # what somebody outside waits for, only he knows
             _check_readable(message, readers or (self,))
         self.send(message)
@@ -147,60 +148,62 @@ class Hearing(Doing):
     def send(self, message: Message) -> None:
         """What it writes to itself it reads in a cycle to come."""
         if self._is_self(message.receiver):
-            self._mailbox.append(self.read(replace(message, sender=MYSELF)))
+            self.agent.mailbox.append(self.read(replace(message, sender=MYSELF)))
         else:
-            super().send(message)
+            self.output.send(message)
 
     def _is_self(self, receiver: str) -> bool:
-        return receiver in (self.name, MYSELF)
-
-    # ---- questions -------------------------------------------------------------------------------------------------
+        return receiver in (self.agent.name, MYSELF)
 
     def wait_for_answer(
         self, intention: Intention, message_id: str, answer: Term, deadline_s: float | None, receivers: Sequence[str]
     ) -> None:
         intention.state = State.ANSWER
         intention.waits_for = f"the answer of {' or '.join(receivers)}"
-        if self.goal_states is not None:
-            self.goal_states.tell_all(intention, "waiting", reason_of(intention))
-        self.watches_clock = True
-        self._asked[message_id] = Asked(intention, answer, deadline_s, frozenset(receivers))
+        if self.agent.goal_states is not None:
+            self.agent.goal_states.tell_all(intention, "waiting", reason_of(intention))
+        self.agent.watches_clock = True
+        self.agent.asked[message_id] = Asked(intention, answer, deadline_s, frozenset(receivers))
 
     def questions_to(self, receiver: str) -> list[str]:
         """Ids of the messages that this one may still answer."""
-        return [question for question, asked in self._asked.items() if receiver in asked.receivers]
+        return [question for question, asked in self.agent.asked.items() if receiver in asked.receivers]
 
     def _is_waited_for(self, question: str) -> bool:
         """Whether somebody waits for the answer, or did."""
-        return question in self._asked or (question.endswith(WAITED_FOR) and question.startswith(f"{self.name}-"))
+        return question in self.agent.asked or (
+            question.endswith(WAITED_FOR) and question.startswith(f"{self.agent.name}-")
+        )
 
     def _process_answer(self, message: Message, answer: Term) -> None:
-        asked = self._asked.pop(message.reply_to, None)
-        if asked is None or asked.intention.number not in self.intentions:
+        asked = self.agent.asked.pop(message.reply_to, None)
+        if asked is None or asked.intention.number not in self.agent.intentions:
             return  # too late: the time was over, or the intention was dropped
         if message.performative == "sorry":
             self._miss_answer(message, asked)
         elif message.performative == "untell":
-            self._take_answer(asked.intention, asked.pattern, FALSE)
+            self.take_answer(asked.intention, asked.pattern, FALSE)
         else:
             sourced = _said_by(message.sender, answer)
-            self._take_answer(asked.intention, asked.pattern, sourced)
+            self.take_answer(asked.intention, asked.pattern, sourced)
 
     def _miss_answer(self, message: Message, asked: Asked) -> None:
         """One that was asked will not answer."""
         left = asked.receivers - {message.sender}
         if left:
-            self._asked[message.reply_to] = asked._replace(receivers=left)
+            self.agent.asked[message.reply_to] = asked._replace(receivers=left)
         else:
-            self.fail(asked.intention, StepFailed("ask_failed", f"{message.sender} will not answer"))
+            self.recovery.fail(asked.intention, StepFailed("ask_failed", f"{message.sender} will not answer"))
 
-    def _take_answer(self, intention: Intention, pattern: Term, answer: Term) -> None:
-        if unify(pattern, answer, self.logic.trail):
-            self.logic.trail.clear()
-            self._go_on(intention)
+    def take_answer(self, intention: Intention, pattern: Term, answer: Term) -> None:
+        if unify(pattern, answer, self.agent.logic.trail):
+            self.agent.logic.trail.clear()
+            self.intention_base.go_on(intention)
         else:
-            undo(self.logic.trail, 0)
-            self.fail(intention, StepFailed("ask_failed", f"the answer is {show(answer)}, not {show(pattern)}"))
+            undo(self.agent.logic.trail, 0)
+            self.recovery.fail(
+                intention, StepFailed("ask_failed", f"the answer is {show(answer)}, not {show(pattern)}")
+            )
 
 
 def _performative(message: Message) -> Performative:

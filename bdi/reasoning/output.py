@@ -1,96 +1,128 @@
-"""What an agent tells the outside: the outcome of a cycle as it comes together, and the trace for those who listen."""
+"""The outcome of a cycle as it accumulates, and the trace for listeners."""
 
-from collections import deque
 from collections.abc import Callable
+from typing import NamedTuple
 
-from bdi.debug.trace import Deliberated, Failed, TraceEntry
-from bdi.language.terms import make
+from bdi.debug.trace import Failed, GoalFailure, TraceEntry
+from bdi.language.terms import Literal, make, show
 from bdi.model.messages import Message
-from bdi.reasoning.outcome import Action, GoalFailure, Outcome
-
-REMEMBERED = 50  # goals that were given up, and choices: what `why` looks back on
+from bdi.reasoning.circumstance import Circumstance
 
 
-class Telling:
-    """An agent with a name that has something to say."""
+class Action(NamedTuple):
+    """An action that was started. Its intention (a number) waits until `Finished(id)` comes in."""
+
+    id: int
+    term: Literal
+    intention: int
+
+    def __str__(self) -> str:
+        return show(self.term)
+
+
+class Outcome(NamedTuple):
+    """What one cycle did to the outside."""
+
+    actions: tuple[Action, ...] = ()
+    cancelled: tuple[int, ...] = ()
+    messages: tuple[Message, ...] = ()
+    printed: tuple[str, ...] = ()
+    failures: tuple[GoalFailure, ...] = ()
+    trace: tuple[TraceEntry, ...] = ()
+
+
+QUIET = Outcome()  # of a cycle that did nothing outside
+
+
+class Output:
+    """Collects what one agent does to the outside, and calls its listeners."""
 
     __slots__ = (
-        "_actions",
-        "_cancelled",
         "_entries",
-        "_explains",
         "_failures",
         "_last_message",
-        "_listeners",
         "_messages",
         "_printed",
-        "_reported",
-        "choices",
-        "cycles",
-        "given_up",
-        "name",
+        "actions",
+        "agent",
+        "cancelled",
+        "explains",
+        "listeners",
+        "reported",
     )
 
-    def __init__(self, name: str) -> None:
-        self.name = name
-        self.cycles = 0
+    def __init__(self, agent: Circumstance) -> None:
+        self.agent = agent
+        self.listeners: list[Callable[[TraceEntry], None]] = []
+        self.explains = False  # whether a listener wants to hear why
         self._last_message = 0
-        self._listeners: list[Callable[[TraceEntry], None]] = []
-        self._explains = False  # whether a listener wants to hear why
-        self.choices: deque[Deliberated] = deque(maxlen=REMEMBERED)  # while somebody listens
-        self.given_up: deque[GoalFailure] = deque(maxlen=REMEMBERED)
-        self._reset_outcome()
+        self._reset()
 
     def say(self, line: str) -> None:
         """.print"""
         self._printed.append(line)
-        self._reported = True
+        self.reported = True
 
     def send(self, message: Message) -> None:
         """.send"""
         self._messages.append(message)
-        self._reported = True
+        self.reported = True
 
     def new_message_id(self) -> str:
         self._last_message += 1
-        return f"{self.name}-{self._last_message}"
+        return f"{self.agent.name}-{self._last_message}"
 
-    def _report(self, failure: GoalFailure) -> None:
+    def report(self, failure: GoalFailure) -> None:
         self._failures.append(failure)
-        self.given_up.append(failure)
-        self._reported = True
-        if self._listeners:
-            self._trace(Failed(self.cycles, *failure))
+        self.agent.given_up.append(failure)
+        self.reported = True
+        if self.listeners:
+            self.trace(Failed(self.agent.cycles, *failure))
 
-    def _trace(self, entry: TraceEntry) -> None:
+    def trace(self, entry: TraceEntry) -> None:
         self._entries.append(entry)
-        self._reported = True
-        for listener in self._listeners:
+        self.reported = True
+        for listener in self.listeners:
             listener(entry)
 
-    def _reset_outcome(self) -> None:
-        self._reported = False
-        self._actions: list[Action] = []
-        self._cancelled: list[int] = []
+    def _reset(self) -> None:
+        self.reported = False
+        self.actions: list[Action] = []
+        self.cancelled: list[int] = []
         self._messages: list[Message] = []
         self._printed: list[str] = []
         self._failures: list[GoalFailure] = []
         self._entries: list[TraceEntry] = []
 
-    def _take_actions(self) -> Outcome:
-        """The outcome of a cycle that did nothing but start actions."""
-        actions = tuple(self._actions)
-        self._actions = []
+    def take(self) -> Outcome:
+        """Return the outcome of the cycle and begin the next one."""
+        if self.reported:
+            outcome = Outcome(
+                tuple(self.actions),
+                tuple(self.cancelled),
+                tuple(self._messages),
+                tuple(self._printed),
+                tuple(self._failures),
+                tuple(self._entries),
+            )
+            self._reset()
+            return outcome
+        actions, self.actions = tuple(self.actions), []
         return make(Outcome, (actions, (), (), (), (), ()))
 
-    def _take_outcome(self) -> Outcome:
-        outcome = Outcome(
-            tuple(self._actions),
-            tuple(self._cancelled),
-            tuple(self._messages),
-            tuple(self._printed),
-            tuple(self._failures),
-            tuple(self._entries),
-        )
-        self._reset_outcome()
-        return outcome
+    def cancel(self, action: int) -> None:
+        """Tell the body that an action is no longer wanted."""
+        self.cancelled.append(action)
+        self.reported = True
+
+    # ---- listeners -------------------------------------------------------------------------------------------------
+
+    def listen(self, callback: Callable[[TraceEntry], None], explain: bool) -> None:
+        self.listeners.append(callback)
+        self.explains = self.explains or explain
+
+    def stop_listening(self, callback: Callable[[TraceEntry], None]) -> None:
+        self.listeners.remove(callback)
+        if not self.listeners:
+            self.explains = False
+            self.agent.choices.clear()

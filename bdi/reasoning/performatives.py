@@ -60,13 +60,13 @@ def _from_sender(message: Message, literal: Literal) -> Literal:
 
 
 def _literal(mind: Mind, content: Term | str) -> Literal:
-    return mind.literal_of(content)
+    return mind.message_handling.literal_of(content)
 
 
 def _literals(mind: Mind, content: Term | str) -> Sequence[Literal]:
     """p(1)   [p(1),p(2)]"""
     if type(content) is str and not content.lstrip().startswith("["):
-        return (mind.literal_of(content),)
+        return (mind.message_handling.literal_of(content),)
     return [literal_from(each) for each in _items(content)]
 
 
@@ -114,17 +114,17 @@ def _plan_or_label(item: Term) -> str | Plan:
 
 def _tell(mind: Mind, message: Message, literals: Sequence[Literal]) -> None:
     for literal in literals:
-        mind.believe(_from_sender(message, literal), None)
+        mind.actions.believe(_from_sender(message, literal), None)
 
 
 def _untell(mind: Mind, message: Message, literals: Sequence[Literal]) -> None:
     for literal in literals:
-        mind.forget(_from_sender(message, literal), None)
+        mind.actions.forget(_from_sender(message, literal), None)
 
 
 def _achieve(mind: Mind, message: Message, goals: Sequence[Literal]) -> None:
     for goal in goals:
-        mind.achieve_apart(_from_sender(message, goal))
+        mind.actions.achieve_apart(_from_sender(message, goal))
 
 
 def _unachieve(mind: Mind, message: Message, goal: Literal) -> None:
@@ -133,7 +133,7 @@ def _unachieve(mind: Mind, message: Message, goal: Literal) -> None:
 
 
 def _signal(mind: Mind, message: Message, literal: Literal) -> None:
-    mind.notice(Trigger.BELIEF_ADDED, _from_sender(message, literal))
+    mind.event_queue.notice(Trigger.BELIEF_ADDED, _from_sender(message, literal))
 
 
 def _ask_one(mind: Mind, message: Message, literal: Literal) -> None:
@@ -141,7 +141,7 @@ def _ask_one(mind: Mind, message: Message, literal: Literal) -> None:
     answers = _answers(mind, literal)
     if answers:
         _answer(mind, message, "tell", answers[0])
-    elif not mind.answer_by_plan(message, literal):
+    elif not mind.message_handling.answer_by_plan(message, literal):
         _answer(mind, message, "untell", literal)
 
 
@@ -182,7 +182,9 @@ def _as_told(plan: Plan) -> Plan:
 
 
 def _answer(mind: Mind, message: Message, performative: str, content: Term) -> None:
-    mind.send(Message(mind.name, performative, content, message.sender, mind.new_message_id(), reply_to=message.id))
+    mind.message_handling.send(
+        Message(mind.name, performative, content, message.sender, mind.output.new_message_id(), reply_to=message.id)
+    )
 
 
 def _tell_how(mind: Mind, message: Message, plans: List) -> None:

@@ -1,8 +1,9 @@
 """When a step or a goal fails: the search for a plan that takes care of it."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 
 from bdi.builtin.arguments import text_of
+from bdi.debug.trace import GoalFailure
 from bdi.language.errors import AgentSpeakSyntaxError, Place
 from bdi.language.parser import parse_term
 from bdi.language.syntax import BELIEF_ADDED, BELIEF_REMOVED, Trigger
@@ -12,27 +13,35 @@ from bdi.model.goal_states import META
 from bdi.model.intentions import FAILURE_OF, Event, FailureEvent, Fork, Intention, Means, Step, StepFailed
 from bdi.model.messages import Finished
 from bdi.model.plans import relevant
-from bdi.model.subplans import Scopes
 from bdi.reasoning.circumstance import Circumstance
-from bdi.reasoning.outcome import GoalFailure
+from bdi.reasoning.event_queue import EventQueue
+from bdi.reasoning.intention_base import IntentionBase
+from bdi.reasoning.output import Output
 
 ERROR, ERROR_MESSAGE = predicate("error", 1), predicate("error_msg", 1)
 
 WANTED = {failure: goal for goal, failure in FAILURE_OF.items()}
 
 
-class Recovery(Circumstance):
-    """A failure is an event `-!g[error(E), error_msg(M), …]`, searched for from the failed goal down the stack."""
+class Recovery:
+    """Finds a plan for a failure.
 
-    __slots__ = ("scopes",)
+    A failure is an event `-!g[error(E), error_msg(M), …]`, searched for from the failed goal down the stack.
+    """
 
-    def __init__(self, name: str, actions: Iterable[str] | None, random_seed: int | None) -> None:
-        super().__init__(name, actions, random_seed)
-        self.scopes: Scopes | None = None  # once some plan has sub-plans
+    __slots__ = ("agent", "event_queue", "intention_base", "output")
+
+    def __init__(
+        self, agent: Circumstance, output: Output, event_queue: EventQueue, intention_base: IntentionBase
+    ) -> None:
+        self.agent = agent
+        self.output = output
+        self.event_queue = event_queue
+        self.intention_base = intention_base
 
     def fail(self, intention: Intention, failure: StepFailed, step: Step | None = None) -> None:
         """A step failed: look down the stack for a plan `-!g` that takes care of it."""
-        self._withdraw(intention)
+        self.intention_base.withdraw(intention)
         done = intention.waits_for  # an action as it was started, with its values
         step = step or intention.last
         code = show(done) if isinstance(done, Atom | Structure) else "" if step is None else _code_of(step)
@@ -63,7 +72,7 @@ class Recovery(Circumstance):
             if not fork.wait_for_all and len(fork.branches) > 1:
                 fork.branches.remove(branch)
                 for each in branch.intentions() if isinstance(branch, Fork) else [branch]:
-                    self._drop_branch(each)
+                    self.intention_base.drop_branch(each)
                 return True
             branch, fork = fork, fork.outer
         return False
@@ -71,10 +80,11 @@ class Recovery(Circumstance):
     def _post_failure(
         self, intention: Intention | None, goal: Event, trigger: Trigger, place: int, annots: tuple[Term, ...]
     ) -> bool:
-        options = self.library.options(trigger, goal.key)
-        if self.scopes is not None and intention is not None:
+        agent = self.agent
+        options = agent.library.options(trigger, goal.key)
+        if agent.scopes is not None and intention is not None:
             literal = literal_of(goal.key, resolve_all(goal.args), (*goal.annots, *annots))
-            options = self.scopes.options(intention.stack[:place], trigger, literal) or options
+            options = agent.scopes.options(intention.stack[:place], trigger, literal) or options
         if not options:
             return False
         for _, inner in goal.returns:
@@ -83,18 +93,18 @@ class Recovery(Circumstance):
         event = FailureEvent(trigger, goal.key, args, (*goal.annots, *annots), options, intention, goal.returns)
         event.under, event.of_atomic = place, False
         if intention is None:
-            self.events.append(event)
+            agent.events.append(event)
         else:
-            self._wait_for_event(intention, event)
-        if self.waiters:
-            self._tell_waiters(trigger, event.literal)
-        if self.goal_states is not None:
+            self.event_queue.wait_for_event(intention, event)
+        if agent.waiters:
+            self.event_queue.tell_waiters(trigger, event.literal)
+        if agent.goal_states is not None:
             for means in intention.stack[: place - 1 if place else None : -1] if intention is not None else ():
-                self.goal_states.failed(means.event, _error_of(annots), intention)
-            self.goal_states.failed(goal, _error_of(annots), intention)
+                agent.goal_states.failed(means.event, _error_of(annots), intention)
+            agent.goal_states.failed(goal, _error_of(annots), intention)
         return True
 
-    def _fail_event(self, event: Event) -> None:
+    def fail_event(self, event: Event) -> None:
         """A goal that no plan is for, or none whose context holds."""
         if event.trigger in META:
             return  # nobody waits for what is only told
@@ -116,42 +126,42 @@ class Recovery(Circumstance):
             annots = _failure_annots(failure, str(event), _place_of_step(last))
             if self._post_failure(intention, event, trigger, height, annots):
                 return
-        if self.goal_states is not None:
-            self.goal_states.given_up(event, atom(failure.error), intention)
+        if self.agent.goal_states is not None:
+            self.agent.goal_states.given_up(event, atom(failure.error), intention)
         if intention is None:
-            self._report(GoalFailure(_named(event), failure.error, failure.message))
+            self.output.report(GoalFailure(_named(event), failure.error, failure.message))
         elif trigger is None or not self._fail_below(intention, height, annots):
             self._give_up(intention, failure, event)
 
     def _give_up(self, intention: Intention, failure: StepFailed, event: Event | None = None) -> None:
         goal = intention.stack[0].event if event is None or intention.stack else event
-        self._report(GoalFailure(_named(goal), failure.error, failure.message))
-        if self.goal_states is not None:
+        self.output.report(GoalFailure(_named(goal), failure.error, failure.message))
+        if self.agent.goal_states is not None:
             for means in reversed(intention.stack):
-                self.goal_states.given_up(means.event, atom(failure.error), intention)
-        self.drop(intention)
+                self.agent.goal_states.given_up(means.event, atom(failure.error), intention)
+        self.intention_base.drop(intention)
 
     def reach_goal(self, intention: Intention, is_goal: Callable[[Means], bool]) -> None:
         """The lowest goal like this counts as reached: what was done for it is dropped."""
         place = _place_of(intention, is_goal)
         if place is None:
             return
-        turn = self.running.index(intention) if intention in self.running else None
+        turn = self.agent.running.index(intention) if intention in self.agent.running else None
         self._leave_goals_above(intention, place)
         reached = intention.stack[place]
         reached.step, reached.loops = None, ()
-        if self.clear_finished(intention, reached) and intention is not self.current:
-            self._resume(intention)
+        if self.intention_base.clear_finished(intention, reached) and intention is not self.agent.current:
+            self.intention_base.resume(intention)
             if turn is not None:  # it keeps its turn
-                self.running.insert(turn, self.running.pop())
+                self.agent.running.insert(turn, self.agent.running.pop())
 
     def reach_event(self, event: Event) -> None:
         """A goal that has no plan yet counts as reached."""
-        if self.goal_states is not None:
-            self.goal_states.event_achieved(event)
+        if self.agent.goal_states is not None:
+            self.agent.goal_states.event_achieved(event)
         self._take_event(event)
         if event.intention is not None:
-            self._go_on(event.intention)
+            self.intention_base.go_on(event.intention)
 
     def give_up_waiting(self, event: Event, failure: StepFailed) -> None:
         """A goal that has no plan yet counts as failed."""
@@ -160,9 +170,9 @@ class Recovery(Circumstance):
 
     def _take_event(self, event: Event) -> None:
         if event.intention is not None:
-            self._interrupt(event.intention)
+            self.intention_base.interrupt(event.intention)
         else:
-            (self.held_events if event in self.held_events else self.events).remove(event)
+            (self.agent.held_events if event in self.agent.held_events else self.agent.events).remove(event)
 
     def give_up_goal(self, intention: Intention, is_goal: Callable[[Means], bool], failure: StepFailed) -> None:
         """The lowest goal like this counts as failed."""
@@ -170,16 +180,16 @@ class Recovery(Circumstance):
         if place is None:
             return
         self._leave_goals_above(intention, place)
-        self._end_atomic(intention, place)  # it fails from outside, and holds the agent no longer
+        self.intention_base.end_atomic(intention, place)  # it fails from outside, and holds the agent no longer
         self.fail(intention, failure)
 
     def _leave_goals_above(self, intention: Intention, place: int) -> None:
-        self._interrupt(intention)
-        if self.goal_states is not None:
-            self.goal_states.dropped(intention, place + 1)
+        self.intention_base.interrupt(intention)
+        if self.agent.goal_states is not None:
+            self.agent.goal_states.dropped(intention, place + 1)
         del intention.stack[place + 1 :]
-        self._leave_forks(intention, place)
-        self._end_atomic(intention)
+        self.intention_base.leave_forks(intention, place)
+        self.intention_base.end_atomic(intention)
 
 
 def _named(event: Event) -> str:

@@ -9,7 +9,7 @@ import typer
 from rich.markup import escape
 
 from bdi.reasoning.agent import Agent
-from bdi.reasoning.outcome import Outcome
+from bdi.reasoning.output import Outcome
 from bdi.tools.console import DIFFERENT, aside, complaints, load, output
 from bdi.tools.options import AsJson
 from bdi.tools.recording.recorder import digest

@@ -12,7 +12,7 @@ from bdi.debug.trace import TraceEntry
 from bdi.language.syntax import Program
 from bdi.language.terms import show
 from bdi.reasoning.agent import Agent
-from bdi.reasoning.outcome import QUIET, Outcome
+from bdi.reasoning.output import QUIET, Outcome
 from bdi.tools.console import aside, complaints
 from bdi.tools.options import AsJson, Compatible, Cycles, Fail, Outside, Percepts, Programs, Seed
 from bdi.tools.percept_file import read_percepts

@@ -10,7 +10,7 @@ from bdi.language.errors import UnknownAgent
 from bdi.language.syntax import Program
 from bdi.model.messages import Finished, Message
 from bdi.reasoning.agent import Agent
-from bdi.reasoning.outcome import Action, Outcome
+from bdi.reasoning.output import Action, Outcome
 from bdi.tools.console import load
 from bdi.tools.percept_file import NOTHING, USER, Stimulus
 

@@ -88,9 +88,9 @@ def test_a_sub_goal_that_is_only_an_event_can_be_suspended() -> None:
     run = Run(program, quick=False)
     run.more(3)
     intention = run.agent.intentions[1]
-    run.agent.hold(intention)
+    run.agent.suspension.hold(intention)
     assert run.more(3, "a") == []
-    run.agent.release(intention)
+    run.agent.suspension.release(intention)
     assert run.more(30) == ["bad"]
 
 

@@ -89,12 +89,12 @@ def check(agent: Agent, body: Body) -> None:
         assert intention.state is State.RUNNING
         assert not intention.held
         assert intention.stack
-    assert sorted(agent._pending) == sorted(body.open)
-    for number, intention in agent._pending.items():
+    assert sorted(agent.pending) == sorted(body.open)
+    for number, intention in agent.pending.items():
         assert intention in alive
         assert (intention.action, intention.state) == (number, State.ACTION)
     waiting = [waiter.intention for waiter in agent.waiters] + [timer[2] for timer in agent.timers]
-    waiting += [asked.intention for asked in agent._asked.values()]
+    waiting += [asked.intention for asked in agent.asked.values()]
     assert all(intention in alive for intention in waiting)
     assert len(waiting) == len(set(map(id, waiting))), "waits for two things"
     for event in agent.events:
@@ -103,7 +103,7 @@ def check(agent: Agent, body: Body) -> None:
         assert event.intention is None or event.intention.held
     assert agent.atomic is None or agent.atomic in alive
     by_event = [event.intention for event in (*agent.events, *agent.held_events) if event.intention is not None]
-    busy = {*map(id, running), *map(id, waiting), *map(id, agent._pending.values()), *map(id, by_event)}
+    busy = {*map(id, running), *map(id, waiting), *map(id, agent.pending.values()), *map(id, by_event)}
     for intention in alive:
         kept = intention.held or intention.state is State.CONDITION
         assert id(intention) in busy or kept, f"{intention} is forgotten"
@@ -123,7 +123,7 @@ def test_whatever_goals_do_to_each_other_nothing_is_lost_or_left(program: str, f
         which, fate = fates[cycle % len(fates)]
         messages = [Message("bob", "tell", f"b({fate})")] if which == 5 else []
         known.hear(agent.cycle(None, messages, news, cycle / 10))
-        if not agent._feedback:
+        if not agent.feedback:
             check(agent, known)
         news = known.end(which, fate == 0) if fate < 2 else []
     if agent.idle:

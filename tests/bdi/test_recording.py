@@ -209,7 +209,7 @@ def test_recording_changes_nothing() -> None:
     agent, (recorder, _) = Agent(parse_program(text), random_seed=1), recorded(text, random_seed=1)
     for number in range(20):
         finished = [Finished(number)] if number and number % 3 == 0 else []
-        known = [news for news in finished if news.id <= agent._last_action]
+        known = [news for news in finished if news.id <= agent.last_action]
         assert [str(a) for a in agent.cycle((), [], known).actions] == [
             str(a) for a in recorder.cycle((), [], known).actions
         ]

@@ -16,7 +16,7 @@ BELIEVED = Kind("a literal or a rule", lambda value: type(value) in (Atom, Struc
 @internal_action("abolish", LITERAL)
 def abolish(mind: Mind, pattern: Literal) -> Answer:
     """Forget every belief that unifies, whoever said it."""
-    mind.forget_all(pattern)
+    mind.actions.forget_all(pattern)
     return True
 
 
@@ -52,7 +52,7 @@ def _believe(mind: Mind, term: Term, last: bool) -> bool:
     if rule is not None:
         mind.beliefs.relation(rule.head.predicate).add_rule(mind.logic.derivation(rule), last)
     elif isinstance(term, Atom | Structure):
-        mind.believe(term, None, last)
+        mind.actions.believe(term, None, last)
     else:
         raise wrong_arguments("asserta", "a literal or a rule", term)
     return True

@@ -40,9 +40,9 @@ def _happen(mind: Mind, trigger: Trigger, literal: Literal) -> None:
     if not any(isinstance(annot, Structure) and annot.predicate is SOURCE for annot in literal.annots):
         literal = literal_of(literal.predicate, literal.args, (*literal.annots, SELF))
     if trigger is GOAL_ADDED:
-        mind.achieve_apart(literal)
+        mind.actions.achieve_apart(literal)
     else:
-        mind.notice(trigger, literal)
+        mind.event_queue.notice(trigger, literal)
 
 
 # ---- later ---------------------------------------------------------------------------------------------------------

@@ -50,7 +50,7 @@ def drop_all_intentions(mind: Mind) -> Answer:
     mine = mind.current
     for intention in list(mind.intentions.values()):
         if mine is None or not intention.is_beside(mine):
-            mind.drop(intention)
+            mind.intention_base.drop(intention)
     return True
 
 
@@ -65,14 +65,14 @@ def drop_all_events(mind: Mind) -> Answer:
     """With the intentions that wait for one."""
     for event in [*mind.events, *mind.held_events]:
         if event in mind.events or event in mind.held_events:
-            mind.drop_event(event)
+            mind.intention_base.drop_event(event)
     return True
 
 
 @internal_action("drop_intention", optional(GOAL))
 def drop_intention(mind: Mind, goal: Term | None = None) -> Answer:
     for intention in [running_intention(mind, "drop_intention")] if goal is None else _intentions_for(mind, goal):
-        mind.drop(intention)
+        mind.intention_base.drop(intention)
     return True
 
 
@@ -86,7 +86,7 @@ def drop_desire(mind: Mind, goal: Term) -> Answer:
 def drop_event(mind: Mind, goal: Term) -> Answer:
     """With the intention that waits for it."""
     for event in _events_for(mind, goal):
-        mind.drop_event(event)
+        mind.intention_base.drop_event(event)
     return True
 
 
@@ -96,7 +96,7 @@ def drop_future_intention(mind: Mind, goal: Term) -> Answer:
     for intention in list(mind.intentions.values()):
         ahead = (each for means in intention.stack for each in goals_ahead(means))
         if any(unifiable(mind, goal, each) for each in ahead):
-            mind.drop(intention)
+            mind.intention_base.drop(intention)
     return True
 
 
@@ -168,14 +168,14 @@ def intention(mind: Mind, number: Term, state: Term, stack: Term | None = None, 
 @internal_action("suspend", optional(GOAL))
 def suspend(mind: Mind, goal: Term | None = None) -> Answer:
     if goal is None:
-        mind.hold(running_intention(mind, "suspend"))
+        mind.suspension.hold(running_intention(mind, "suspend"))
         return True
     for intention in _intentions_for(mind, goal):
         if not intention.held:
-            mind.hold(intention)
+            mind.suspension.hold(intention)
     for event in _events_for(mind, goal):
         if event not in mind.held_events:
-            mind.hold_goal(event)
+            mind.suspension.hold_goal(event)
     return True
 
 
@@ -183,10 +183,10 @@ def suspend(mind: Mind, goal: Term | None = None) -> Answer:
 def resume(mind: Mind, goal: Term) -> Answer:
     """What `.suspend` suspended; what only waits goes on waiting."""
     for intention in _intentions_for(mind, goal):
-        mind.release(intention)
+        mind.suspension.release(intention)
     for event in _events_for(mind, goal):
         if event in mind.held_events:
-            mind.release_goal(event)
+            mind.suspension.release_goal(event)
     return True
 
 
@@ -215,9 +215,9 @@ def _reasons(mind: Mind, goal: Term) -> Iterator[Term]:
 def succeed_goal(mind: Mind, goal: Term) -> Answer:
     """It counts as reached: what was being done for it is dropped, and who wanted it goes on."""
     for intention in _intentions_for(mind, goal):
-        mind.reach_goal(intention, _pursues(mind, goal))
+        mind.recovery.reach_goal(intention, _pursues(mind, goal))
     for event in _events_for(mind, goal):
-        mind.reach_event(event)
+        mind.recovery.reach_event(event)
     return True
 
 
@@ -229,7 +229,7 @@ def done(mind: Mind, goal: Term | None = None) -> Answer:
     stack = running_intention(mind, "done").stack
     own = (stack[0].event.around or stack)[-1].event
     for intention in list(mind.intentions.values()):
-        mind.reach_goal(intention, lambda means: means.event is own)
+        mind.recovery.reach_goal(intention, lambda means: means.event is own)
     return True
 
 
@@ -239,8 +239,8 @@ def fail_goal(mind: Mind, goal: Term, *annots: Term) -> Answer:
     failure = StepFailed("goal_failed", "given up by .fail_goal", annots)
     events = list(_events_for(mind, goal))
     for intention in _intentions_for(mind, goal):
-        mind.give_up_goal(intention, _pursues(mind, goal), failure)
+        mind.recovery.give_up_goal(intention, _pursues(mind, goal), failure)
     for event in events:
         if event in mind.events or event in mind.held_events:
-            mind.give_up_waiting(event, failure)
+            mind.recovery.give_up_waiting(event, failure)
     return True

@@ -36,7 +36,7 @@ def _forget_plan(mind: Mind, plan: Plan) -> None:
     for known in list(mind.library.plans):
         written = known.plan if plan.label.functor else replace(known.plan, label=atom(""))
         if known.label == plan.label.functor or str(written) == str(plan):
-            mind.remove_plan(known.label)
+            mind.plan_base.remove(known.label)
 
 
 def _forget_rule(mind: Mind, rule: Rule) -> None:

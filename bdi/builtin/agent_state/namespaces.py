@@ -49,5 +49,5 @@ def include(mind: Mind, file: Term, space: Term | None = None) -> Answer:
         raise wrong_arguments("include", "the name of a namespace", space)
     name = None if isinstance(space, Var) else "" if space is None or space.functor == DEFAULT_SPACE else space.functor
     program, loaded_into = load_module(text_of(file), name, mind.includes, mind.program)
-    mind.load(program)
+    mind.plan_base.include(program)
     return space is None or unify(space, atom(loaded_into or DEFAULT_SPACE), mind.logic.trail)

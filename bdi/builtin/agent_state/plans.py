@@ -25,7 +25,7 @@ def add_plan(mind: Mind, plans: Term, source: Term = SELF.args[0], place: Term |
     for each in plans if isinstance(plans, List) else (plans,):
         plan = _labelled(mind, plan_in(each, "add_plan"), source)
         if not _is_there(mind, plan):
-            mind.add_plan(plan, first=place is atom("begin"))
+            mind.plan_base.add(plan, first=place is atom("begin"))
     return True
 
 
@@ -58,7 +58,7 @@ def remove_plan(mind: Mind, labels: Term, source: Term = SELF.args[0]) -> Answer
         label = _label_in(each)
         for compiled in list(mind.library.plans):
             if compiled.label == label and source in _sources(compiled.plan):
-                mind.remove_plan(label)
+                mind.plan_base.remove(label)
     return True
 
 

@@ -125,7 +125,7 @@ def df_subscribe(mind: Mind, service: Term, kind: Term = ANY_KIND) -> Answer:
 @internal_action("kqml.default", NAME, ATOM, ANY, NAME)
 def kqml_default(mind: Mind, sender: Term, performative: Term, content: Term, message_id: Term) -> Answer:
     """What would happen if the program had no plan `+!kqml_received(SENDER, PERFORMATIVE, CONTENT, ID)`."""
-    mind.obey(Message(text_of(sender), text_of(performative), content, mind.name, text_of(message_id)))
+    mind.message_handling.obey(Message(text_of(sender), text_of(performative), content, mind.name, text_of(message_id)))
     return True
 
 
@@ -133,5 +133,5 @@ def kqml_default(mind: Mind, sender: Term, performative: Term, content: Term, me
 def kqml_test(mind: Mind, question: Literal) -> Answer:
     """?question, by plans alone."""
     options = mind.library.options(Trigger.TEST_ADDED, question.predicate)
-    mind.ask_plans(running_intention(mind, "kqml.test"), question, options)
+    mind.actions.ask_plans(running_intention(mind, "kqml.test"), question, options)
     return True

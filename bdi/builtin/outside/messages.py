@@ -47,27 +47,27 @@ def send(
     if answer is None or kind not in QUESTIONS:
         reply_to = "" if answer is None else _question_id(answer)
         for each in receivers:
-            _post(mind, Message(mind.name, kind, content, each, mind.new_message_id(), reply_to))
+            _post(mind, Message(mind.name, kind, content, each, mind.output.new_message_id(), reply_to))
         return True
     intention = running_intention(mind, "send")
-    question = f"{mind.new_message_id()}{WAITED_FOR}"
+    question = f"{mind.output.new_message_id()}{WAITED_FOR}"
     for each in receivers:
         _post(mind, Message(mind.name, kind, content, each, question))
     deadline_s = None if longest_ms is None else mind.now + longest_ms / 1000
-    mind.wait_for_answer(intention, question, answer, deadline_s, receivers)
+    mind.message_handling.wait_for_answer(intention, question, answer, deadline_s, receivers)
     return True
 
 
 @internal_action("broadcast", ATOM, ANY)
 def broadcast(mind: Mind, performative: Atom, content: Term) -> Answer:
-    _post(mind, Message(mind.name, text_of(performative), content, EVERYBODY, mind.new_message_id()))
+    _post(mind, Message(mind.name, text_of(performative), content, EVERYBODY, mind.output.new_message_id()))
     return True
 
 
 def _post(mind: Mind, message: Message) -> None:
     if isinstance(message.content, Var):
         raise wrong_arguments("send", "something to say", message.content)
-    mind.post(replace(message, content=own_copy(message.content)))
+    mind.message_handling.post(replace(message, content=own_copy(message.content)))
 
 
 def _receiver(term: Term) -> str:

@@ -23,7 +23,7 @@ def wait(
     condition = what.term()
     intention = running_intention(mind, "wait")
     if isinstance(condition, int | float):
-        mind.wait_for(intention, moment_after(mind.now, condition))
+        mind.intention_base.wait_for(intention, moment_after(mind.now, condition))
         return True
     deadline_s = None if timeout is None else moment_of(mind.now, timeout)
     if timeout is not None and deadline_s is None:
@@ -36,7 +36,7 @@ def wait(
     waiter.elapsed, waiter.since_s = elapsed, mind.now
     if event is None and waiter.check(mind):
         return waiter.tell_elapsed(mind)
-    mind.wait_for(intention, waiter)
+    mind.intention_base.wait_for(intention, waiter)
     return True
 
 

@@ -25,7 +25,7 @@ from bdi.language.terms import Term, show
 from bdi.model.messages import Finished, Message
 from bdi.model.society import ALONE, Society
 from bdi.reasoning.agent import Agent
-from bdi.reasoning.outcome import Outcome
+from bdi.reasoning.output import Outcome
 from bdi.tools.recording.recorded_replies import listening
 
 VERSION = 1

@@ -18,7 +18,7 @@ from bdi.language.parser import literal_from, parse_program
 from bdi.language.syntax import Belief, Goal, Program
 from bdi.model.messages import Finished, Message
 from bdi.reasoning.agent import Agent
-from bdi.reasoning.outcome import Outcome
+from bdi.reasoning.output import Outcome
 from bdi.tools.recording.recorded_replies import remembered
 from bdi.tools.recording.recorder import VERSION, digest, result_of
 

@@ -11,7 +11,7 @@ from bdi.language.terms import show
 from bdi.model.intentions import Intention, Means
 from bdi.model.messages import Message
 from bdi.reasoning.agent import Agent
-from bdi.reasoning.outcome import Outcome
+from bdi.reasoning.output import Outcome
 from bdi.tools.simulation import Happened, Prepare
 
 

@@ -1,4 +1,4 @@
-"""What goes first, by a table that the program states among its beliefs:
+"""The event and the intention whose turn it is: in order, or by a table that the program states among its beliefs:
 
     priorities([safety, health, map, mission, navigation, movement]).   // levels, the most urgent first
     priority(+bumped, safety).                                         // of an event, as +b(_), -b(_) or "+!g(_)"
@@ -14,8 +14,8 @@ A level has no turn while a more urgent one always has something to do. An inten
 moment has nothing to do, so that the others go on meanwhile. An atomic plan goes before everything.
 """
 
-from collections.abc import Iterable, Iterator
-from typing import NamedTuple, Protocol
+from collections.abc import Callable, Iterable, Iterator
+from typing import NamedTuple
 
 from bdi.language.errors import AgentSpeakSyntaxError, Place, WrongPriority
 from bdi.language.parser import parse_event
@@ -37,8 +37,8 @@ from bdi.language.terms import (
 from bdi.language.unify import undo, unify
 from bdi.model.intentions import Event, Intention, Means
 from bdi.model.plans import CompiledPlan, applies
-from bdi.model.subplans import Reaction
-from bdi.reasoning.recovery import Recovery
+from bdi.model.subplans import Reaction, Scopes, Selects
+from bdi.reasoning.circumstance import Circumstance
 
 LEVELS, LEVEL = predicate("priorities", 1), predicate("priority", 2)
 OF_PLAN = predicate("priority", 1)
@@ -139,17 +139,10 @@ def _with_subplans(plans: Iterable[Plan]) -> Iterator[Plan]:
         yield from _with_subplans(plan.subplans)
 
 
-class Selector(Protocol):
-    """Who selects: the agent itself, or the table that its program states."""
-
-    def select_event(self) -> Event | None: ...
-    def select_intention(self) -> Intention | None: ...
-
-
 class Priorities:
     """Selects for one agent by its table; while an atomic plan runs, as without one."""
 
-    def __init__(self, table: Table, mind: Recovery, otherwise: Selector) -> None:
+    def __init__(self, table: Table, mind: Circumstance, otherwise: Selects) -> None:
         self._otherwise = otherwise
         self._table = table
         self._mind = mind
@@ -240,3 +233,71 @@ class Priorities:
                 self._table.none,
             )
         return levels.pop() if levels else self._table.none
+
+
+class InOrder:
+    """Selects without a table of priorities."""
+
+    __slots__ = ("agent",)
+
+    def __init__(self, agent: Circumstance) -> None:
+        self.agent = agent
+
+    def select_event(self) -> Event | None:
+        """First in, first out, passing over what no plan is about; while an atomic plan runs only its own events."""
+        agent = self.agent
+        events = agent.events
+        if agent.atomic is None:
+            while events:
+                event = events.popleft()
+                if event.options or event.intention is not None or event.trigger not in BELIEF_EVENTS:
+                    return event
+                if agent.scopes is not None and agent.scopes.awaits(event):
+                    return event
+            return None
+        for event in events:
+            if event.intention is not None and event.intention.atomic:
+                events.remove(event)
+                return event
+        return None
+
+    def select_intention(self) -> Intention | None:
+        """Round robin; an atomic plan runs alone."""
+        agent = self.agent
+        if agent.atomic is None:
+            return agent.running.popleft() if agent.running else None
+        for intention in agent.running:
+            if intention.atomic or intention is agent.atomic:
+                agent.running.remove(intention)
+                if not intention.atomic:
+                    agent.atomic = None
+                return intention
+        return None
+
+
+class Selection:
+    """The selector of one agent: sub-plans come first, then the table of its program or the order."""
+
+    __slots__ = ("_agent", "_drop", "_in_order", "priorities", "selector")
+
+    def __init__(self, agent: Circumstance, drop: Callable[[Intention], None]) -> None:
+        self._agent = agent
+        self._drop = drop
+        self._in_order = InOrder(agent)
+        self.priorities: Priorities | None = None
+        self.selector: Selects = self._in_order
+
+    def follow(self, table: Table) -> None:
+        """Select by this table from now on."""
+        self.priorities = Priorities(table, self._agent, otherwise=self._in_order)
+        if self._agent.scopes is None:
+            self.selector = self.priorities
+        else:
+            self._agent.scopes.selector = self.priorities
+
+    def heed_subplans(self, plans: Iterable[Plan]) -> None:
+        """Look for sub-plans from now on if one of these plans has some."""
+        agent = self._agent
+        if agent.scopes is None and any(plan.subplans for plan in plans):
+            self.selector = agent.scopes = Scopes(agent, self._drop, self.selector)
+            agent.attentive = True
