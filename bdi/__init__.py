@@ -1,4 +1,8 @@
-"""A mind for hire: AgentSpeak programs with the meaning that Jason gives them, one reasoning cycle at a time."""
+"""AgentSpeak programs with the meaning that Jason gives them, one reasoning cycle at a time.
+
+Uses Lark, and nothing else of this checkout: no robot, clock or thread. What callers need is exported here; start with
+`Agent.cycle`, or with the table of packages in README.md.
+"""
 
 from bdi.builtin.user_actions import InternalActions
 from bdi.communication.system import MultiAgentSystem, Stimuli
@@ -25,6 +29,7 @@ from bdi.language.parser import Includes, load_program, parse_literal, parse_pla
 from bdi.language.syntax import Program
 from bdi.language.terms import Atom, List, Literal, String, Structure, Term, Var, atom, show, structure
 from bdi.model.messages import Finished, Message
+from bdi.model.mind import Mind
 from bdi.reasoning.agent import Agent
 from bdi.reasoning.output import Action, Outcome
 from bdi.reasoning.perception import Drain, Latest, Perception
@@ -51,6 +56,7 @@ __all__ = [
     "List",
     "Literal",
     "Message",
+    "Mind",
     "MultiAgentSystem",
     "NotALiteral",
     "OtherSensor",
