@@ -1,4 +1,4 @@
-"""What internal actions do with their arguments."""
+"""Helpers for the arguments of internal actions."""
 
 from collections.abc import Iterable, Iterator
 
@@ -25,7 +25,7 @@ def alternatives(mind: HasLogic, alternatives: Iterable[tuple[tuple[Term, Term],
 
 
 def unifiable(mind: HasLogic, left: Term, right: Term) -> bool:
-    """Whether they would unify; nothing stays bound."""
+    """Return whether they would unify; nothing stays bound."""
     mark = len(mind.logic.trail)
     found = unify(left, right, mind.logic.trail)
     undo(mind.logic.trail, mark)

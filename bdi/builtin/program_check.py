@@ -32,7 +32,7 @@ _CALCULATED = ARITHMETIC | {NEGATIVE, POSITIVE}
 
 
 def is_known_action(term: Literal, known: KnownActions) -> bool:
-    """Whether the body has this action; with no declaration, every one is."""
+    """Return whether the body has this action; with no declaration, every one is."""
     key = term.predicate
     return known is None or key.name in known or f"{key.name}/{key.arity}" in known
 
@@ -63,7 +63,7 @@ class _Check:
         self.registered = {(each.name, each.arity) for each in functions}
 
     def value(self, literal: Literal, place: Place) -> None:
-        """A belief or goal to begin with: nobody could take care of it if it cannot be worked out."""
+        """Check an initial belief or goal: no plan could handle one that cannot be evaluated."""
         self.term(literal, place)
         try:
             resolve(literal)
@@ -112,15 +112,15 @@ class _Check:
         for part in parts_of(term):
             self.term(part, place)
 
-    def code(self, held: Body | Plan | Rule, place: Place) -> None:
+    def code(self, quoted: Body | Plan | Rule, place: Place) -> None:
         """A plan as a value: its actions may be meant for another body."""
-        if isinstance(held, Body):
-            self.body(held, None)
-        elif isinstance(held, Plan):
-            self.plan(held, None)
+        if isinstance(quoted, Body):
+            self.body(quoted, None)
+        elif isinstance(quoted, Plan):
+            self.plan(quoted, None)
         else:
-            self.term(held.head, place)
-            self.formula(held.formula, place)
+            self.term(quoted.head, place)
+            self.formula(quoted.formula, place)
 
     def call(self, term: Literal, place: Place) -> None:
         """An internal action or function: does it exist, with so many arguments, of these kinds?"""
@@ -178,7 +178,7 @@ def _worked_out(term: Structure) -> Term | None:
 
 
 def steps_of(body: Body) -> Iterator[Step]:
-    """All steps of a body, those inside others too."""
+    """Yield all steps of a body, those inside others too."""
     for step in body.steps:
         yield step
         if isinstance(step, Fork):

@@ -60,7 +60,7 @@ class Table:
         return [table[name] for table in (self.actions, self.functions) if name in table]
 
     def like(self, name: str) -> list[str]:
-        """Names that somebody may have meant."""
+        """Return names that may have been meant."""
         return get_close_matches(name, [*self.actions, *self.functions], 3, 0.75)
 
 
@@ -108,7 +108,7 @@ class Bound:
 
 
 def find_builtin(key: Predicate, mind: HasLogic, own: Table | None = None) -> Builtin | None:
-    """What `.name/arity` is for this agent, in its own table or in ours; or None."""
+    """Find `.name/arity` for this agent, in its own table or in ours; or None."""
     for table in (own, STANDARD) if own else (STANDARD,):
         action, value = table.actions.get(key.name), table.functions.get(key.name)
         action = action if action and action.accepts(key.arity) else None

@@ -126,7 +126,7 @@ def _signature(call: Callable[..., Any]) -> tuple[Kind, ...]:
 
 
 def _answers(hint: Any) -> int:
-    """How many arguments the answer takes."""
+    """Return how many arguments the answer takes."""
     origin = get_origin(hint)
     if isinstance(origin, type) and issubclass(origin, Iterable) and not issubclass(origin, Collection):
         return _answers(get_args(hint)[0])
@@ -164,7 +164,7 @@ def _valued(name: str, call: Callable[..., Any], kinds: tuple[Kind, ...]) -> Cal
 
 
 def _called(name: str, call: Callable[..., Any], *args: Any) -> Any:
-    """What the user's code answers; whatever it raises becomes the failure of the step."""
+    """Call the user's code; an exception in it becomes the failure of the step."""
     try:
         return call(*args)
     except StepFailed:

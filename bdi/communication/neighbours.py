@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Protocol
 
 from bdi.communication.directory import Directory
-from bdi.communication.mailbox import Post
+from bdi.communication.mailboxes import Mailboxes
 from bdi.communication.saving import text_of
 from bdi.language.errors import AgentSpeakError
 from bdi.language.syntax import Program
@@ -19,11 +19,11 @@ Save = Callable[[str, str], None]  # where to, and the text of the agent: `.save
 
 
 class System(Protocol):
-    """What `MultiAgentSystem` offers to those who live in it."""
+    """The interface of `MultiAgentSystem` for its agents."""
 
     load: Load | None
     save: Save | None
-    post: Post
+    mailboxes: Mailboxes
     directory: Directory
 
     @property
@@ -49,9 +49,9 @@ class Neighbours:
             return [agent.message_handling for name, agent in agents.items() if name != sender]
         if receiver in agents:
             return [agents[receiver].message_handling]
-        if receiver in self._system.post.outside:
+        if receiver in self._system.mailboxes.outside:
             return ()
-        raise _nobody(receiver, self.names())
+        raise _unknown_receiver(receiver, self.names())
 
     def create(self, name: str, source: str, beliefs: Iterable[Literal], goals: Iterable[Literal]) -> str:
         """Without a source the agent has an empty program."""
@@ -76,26 +76,26 @@ class Neighbours:
     def save(self, target: str, agent: str, goals: Iterable[Literal]) -> None:
         save = self._system.save
         if save is None:
-            raise StepFailed("no_saver", "this system was given nobody who keeps programs: give it save=")
+            raise StepFailed("no_saver", "this system was given no way to save programs: give it save=")
         try:
             save(target, text_of(self._system.agents[agent], goals))
         except OSError as problem:
             raise StepFailed("program_not_saved", f"{target}: {problem}") from problem
 
     def register(self, agent: str, service: str, kind: str) -> None:
-        self._system.post.deliver_all(self._system.directory.register(agent, service, kind))
+        self._system.mailboxes.deliver_all(self._system.directory.register(agent, service, kind))
 
     def deregister(self, agent: str, service: str, kind: str) -> None:
-        self._system.post.deliver_all(self._system.directory.deregister(agent, service, kind))
+        self._system.mailboxes.deliver_all(self._system.directory.deregister(agent, service, kind))
 
     def search(self, service: str, kind: str) -> Sequence[str]:
         return self._system.directory.search(service, kind)
 
     def subscribe(self, agent: str, service: str, kind: str) -> None:
-        self._system.post.deliver_all(self._system.directory.subscribe(agent, service, kind))
+        self._system.mailboxes.deliver_all(self._system.directory.subscribe(agent, service, kind))
 
 
-def _nobody(receiver: str, names: Sequence[str]) -> StepFailed:
+def _unknown_receiver(receiver: str, names: Sequence[str]) -> StepFailed:
     known = ", ".join(names)
     annots = (structure("receiver", atom(receiver)),)
     return StepFailed("unknown_receiver", f"there is no agent {receiver}; there are {known}", annots)

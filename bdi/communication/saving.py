@@ -12,7 +12,7 @@ DEFAULT_PLANS = "kqml"  # the namespace of plans that an agent has without being
 
 
 def text_of(agent: Agent, goals: Iterable[Literal] = ()) -> str:
-    """The agent as a program. What it perceives is left out: whoever starts from this text sees for itself."""
+    """The agent as a program. Percepts are left out: an agent that starts from this text perceives for itself."""
     relations = agent.beliefs.relations.values()
     names = _Readable(relation.predicate.namespace for relation in relations)
     beliefs = [_clause(entry, names) for relation in relations for entry in reversed(list(_kept(relation)))]

@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from bdi.communication.directory import Directory
-from bdi.communication.mailbox import Post
+from bdi.communication.mailboxes import Mailboxes
 from bdi.communication.neighbours import Load, Neighbours, Save
 from bdi.communication.saving import copy_beliefs, program_of
 from bdi.language.errors import BdiError, DuplicateAgent, Place, UnknownAgent
@@ -30,7 +30,7 @@ Make = Callable[[Program, str], Agent]  # an agent of this program and name, wit
 
 @dataclass(frozen=True, slots=True)
 class Stimuli:
-    """What one agent gets in one round, as `Agent.cycle` takes it."""
+    """The input of one agent in one round, as `Agent.cycle` takes it."""
 
     percepts: Iterable[Term | str] | None = None
     messages: Sequence[Message] = ()
@@ -50,8 +50,8 @@ class MultiAgentSystem:
     """Agents by name, and the messages between them.
 
     `load` reads the programs of `.create_agent`, `make` makes agents of them, `save` takes what `.save_agent` writes;
-    without one of them the internal action fails by name. `outside` names whom agents can write to beside each other
-    (whoever writes to them can be written to as well): such messages stay in the outcomes.
+    without one of them the internal action fails by name. `outside` names receivers outside the system
+    (every outside sender is added): messages to them stay in the outcomes.
     """
 
     def __init__(
@@ -68,9 +68,9 @@ class MultiAgentSystem:
         self.traffic: tuple[Message, ...] = ()
         """What the agents sent in the last round, in order; broadcasts once for every receiver."""
         self.undelivered: tuple[Message, ...] = ()
-        """Messages that nobody read since the last round: their receiver was killed, or no longer understood them."""
+        """Messages that were not read since the last round: their receiver was killed, or no longer understood them."""
         self.load, self._make, self.save = load, make, save
-        self.post = Post(outside)
+        self.mailboxes = Mailboxes(outside)
         self._members: dict[str, _Member] = {}
         self._killed: dict[str, _Member] = {}
         self._stop_at_s: float | None = None
@@ -91,7 +91,7 @@ class MultiAgentSystem:
             raise DuplicateAgent(agent.name)
         agent.society = Neighbours(self)
         self._members[agent.name] = _Member(agent)
-        self.post.open_inbox(agent.name)
+        self.mailboxes.open_inbox(agent.name)
 
     def free_name(self, wanted: str) -> str:
         """The name itself, or with _2, _3, … if it is taken."""
@@ -102,7 +102,7 @@ class MultiAgentSystem:
         return name
 
     def kill(self, name: str) -> bool:
-        """The agent has no more cycles. Whoever waits for its answer learns that none will come.
+        """Remove the agent: it has no more cycles. Agents that wait for its answer are told that none will come.
 
         False: there is none of this name.
         """
@@ -111,11 +111,11 @@ class MultiAgentSystem:
             return False
         member.agent.society = ALONE
         self._killed[name] = member
-        self.post.close_inbox(name)
-        self.post.deliver_all(self.directory.forget(name))
+        self.mailboxes.close_inbox(name)
+        self.mailboxes.deliver_all(self.directory.forget(name))
         for other in self._members.values():
             for question in other.agent.message_handling.questions_to(name):
-                self.post.deliver(Message(name, "sorry", "dead", other.agent.name, reply_to=question))
+                self.mailboxes.deliver(Message(name, "sorry", "dead", other.agent.name, reply_to=question))
         return True
 
     def create(
@@ -147,35 +147,35 @@ class MultiAgentSystem:
     def round(self, stimuli: Mapping[str, Stimuli] | None = None, now: float = 0.0) -> dict[str, Outcome]:
         """One cycle of every agent: what each did to the outside, by name. Killed ones cancel their actions.
 
-        Raises UnknownAgent for stimuli of nobody, and what `Agent.cycle` raises; then no agent has had a cycle.
+        Raises UnknownAgent, and what `Agent.cycle` raises; then no agent has had a cycle.
         """
         stimuli = self._checked(stimuli or {})
         self.now = now
         self.rounds += 1
-        turns = [(name, member, self.post.take(name)) for name, member in self._members.items()]
+        turns = [(name, member, self.mailboxes.take(name)) for name, member in self._members.items()]
         outcomes: dict[str, Outcome] = {}
         for name, member, inbox in turns:
             if name in self._killed:
-                self.post.lost += inbox
+                self.mailboxes.lost += inbox
             else:
                 outcomes[name] = self._cycle(member, inbox, stimuli.get(name, NOTHING_NEW))
         for name, member in self._killed.items():
             outcome = outcomes.get(name, QUIET)
             outcomes[name] = outcome._replace(cancelled=(*outcome.cancelled, *sorted(member.started)))
         self._killed = {}
-        self.traffic, self.undelivered = tuple(self.post.sent), tuple(self.post.lost)
-        self.post.sent, self.post.lost = [], []
+        self.traffic, self.undelivered = tuple(self.mailboxes.sent), tuple(self.mailboxes.lost)
+        self.mailboxes.sent, self.mailboxes.lost = [], []
         return outcomes
 
     @property
     def idle(self) -> bool:
-        """Whether nobody has anything left to do until something comes in from outside."""
+        """Return whether no agent has anything left to do until something comes in from outside."""
         agents = self.agents.values()
-        return not self._killed and self.post.is_empty and all(agent.idle for agent in agents)
+        return not self._killed and self.mailboxes.is_empty and all(agent.idle for agent in agents)
 
     @property
     def stopped(self) -> bool:
-        """Whether an agent said `.stopMAS`, and the time that it gave is over."""
+        """Return whether an agent said `.stopMAS`, and the time that it gave is over."""
         return self._stop_at_s is not None and self.now >= self._stop_at_s
 
     def stop(self, at_s: float = 0.0, exit_code: int = 0) -> None:
@@ -198,7 +198,7 @@ class MultiAgentSystem:
     def _cycle(self, member: _Member, inbox: list[Message], given: Stimuli) -> Outcome:
         agent, messages = member.agent, given.messages
         if messages:
-            self.post.outside.update(message.sender for message in messages)
+            self.mailboxes.outside.update(message.sender for message in messages)
         if inbox:
             messages = [*self._readable(agent, inbox), *messages]
         outcome = (agent.recorder or agent).cycle(given.percepts, messages, given.finished, self.now)
@@ -210,7 +210,7 @@ class MultiAgentSystem:
         member.started -= set(outcome.cancelled)
         if not outcome.messages:
             return outcome
-        return outcome._replace(messages=tuple(each for each in outcome.messages if not self.post.deliver(each)))
+        return outcome._replace(messages=tuple(each for each in outcome.messages if not self.mailboxes.deliver(each)))
 
     def _readable(self, agent: Agent, inbox: list[Message]) -> Iterator[Message]:
         """A plan that understood a message when it was sent may be gone."""
@@ -218,7 +218,7 @@ class MultiAgentSystem:
             try:
                 agent.message_handling.read(message)
             except BdiError:
-                self.post.lost.append(message)
+                self.mailboxes.lost.append(message)
             else:
                 yield message
 

@@ -31,7 +31,7 @@ WORDS: Mapping[str, str] = MappingProxyType(
         "running": "{goal} is being worked on by plan {plan}",
         "pending": "{goal} waits for its turn: no plan has been chosen yet",
         "pending behind": "{goal} waits for its turn: no plan has been chosen yet, {what} is atomic and goes first",
-        "pending held": "{goal} is suspended: no plan is chosen until it is resumed",
+        "pending suspended": "{goal} is suspended: no plan is chosen until it is resumed",
         "given up": "{goal} was given up: {what}",
         UNKNOWN: "{goal} is not pursued: it was never asked for, is reached, or was given up",
         "needed for": ", needed for {goal}",
@@ -50,7 +50,7 @@ _LOOKED_BACK = {Trigger.GOAL_ADDED, Trigger.TEST_ADDED}
 class Why:
     """`sentence` is for people; the rest says the same as data. `kind` and `values` are what a table of words needs;
     `waits_for` is an action, event or answer as text, `left_s` how long it waits at most. `because` are the goals from
-    the top of the intention down, `chosen` says why this plan (known while somebody listens to the agent)."""
+    the top of the intention down, `chosen` says why this plan (known while the agent has a listener)."""
 
     goal: str
     kind: str
@@ -77,7 +77,7 @@ class Why:
         return text + "".join(words["needed for"].format(goal=goal) for goal in self.needed_for) + "."
 
     def data(self) -> dict[str, Any]:
-        """What JSON can hold."""
+        """Return the explanation as plain data for JSON."""
         return {"sentence": self.sentence, **asdict(self)}
 
     def __str__(self) -> str:
@@ -90,14 +90,14 @@ def explain(agent: Observed, goal: Literal) -> Why:
         for height, means in enumerate(intention.stack):
             if _is_about(means.event, goal):
                 return _about_intention(agent, intention, height)
-    for event in (*agent.events, *agent.held_events):
+    for event in (*agent.events, *agent.suspended_events):
         if _is_about(event, goal):
             return _about_event(agent, event)
     return _about_the_past(agent, goal)
 
 
 def explain_intention(agent: Observed, intention: Intention) -> Why:
-    """What an intention is about now, seen from its topmost goal."""
+    """Explain an intention, seen from its topmost goal."""
     return _about_intention(agent, intention, len(intention.stack) - 1)
 
 
@@ -106,8 +106,8 @@ def _is_about(event: Event, goal: Literal) -> bool:
 
 
 def _about_event(agent: Observed, event: Event) -> Why:
-    if event in agent.held_events:
-        return Why(event.plain, "pending held", State.SUSPENDED.value)
+    if event in agent.suspended_events:
+        return Why(event.plain, "pending suspended", State.SUSPENDED.value)
     blocked = _atomic_plan(agent, event.intention)
     kind = "pending behind" if blocked else "pending"
     return Why(event.plain, kind, State.EVENT.value, waits_for=blocked)
@@ -135,7 +135,7 @@ def _about_intention(agent: Observed, intention: Intention, height: int) -> Why:
     return Why(
         intention.stack[height].event.plain,
         kind,
-        State.SUSPENDED.value if intention.held else intention.state.value,
+        State.SUSPENDED.value if intention.suspended else intention.state.value,
         intention.number,
         top.plan.label,
         str(top.step.source) if top.step is not None else None,
@@ -157,8 +157,8 @@ def _reason(agent: Observed, intention: Intention) -> tuple[str, str | None, flo
     """Kind, what it waits for, and how long at most."""
     waits_for: Any = intention.waits_for
     state = intention.state
-    if intention.held:
-        by = intention.held_by
+    if intention.suspended:
+        by = intention.suspended_by
         return ("suspended by" if by else "suspended"), by or None, None
     if state is State.ACTION:
         return "action", show(waits_for), None
@@ -195,7 +195,7 @@ def _atomic_plan(agent: Observed, intention: Intention | None) -> str | None:
 
 
 def _why_chosen(choices: Iterable[Deliberated], means: Means) -> str | None:
-    """Why this plan: from the choice that was made, if somebody listened then."""
+    """Return why this plan was chosen, if there was a listener then."""
     choice = next((each for each in reversed(list(choices)) if each.event is means.event), None)
     if choice is None:
         return None

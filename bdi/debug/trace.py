@@ -1,4 +1,4 @@
-"""What an agent tells while somebody listens: one entry for everything that is chosen, done and changed, in order.
+"""The trace of an agent: one entry for each choice, step and change, in order, made while there are listeners.
 
 An entry holds the event, plan or step itself and becomes words only when it is asked for them (`str`) or for data that
 JSON can hold (`data`): listening costs little. Ask at once: the variables of an event get values later.
@@ -158,7 +158,7 @@ class Observed(Protocol):
     library: Library
     logic: Logic
     events: deque[Event]
-    held_events: list[Event]
+    suspended_events: list[Event]
     intentions: dict[int, Intention]
     atomic: Intention | None
     asked: dict[str, Asked]

@@ -162,7 +162,7 @@ def conjuncts(formula: Term) -> list[Term]:
 
 
 def _only_asks(formula: Term) -> bool:
-    """Whether asking again changes nothing."""
+    """Return whether asking again changes nothing."""
     name = getattr(formula, "functor", "")
     if name.startswith(INTERNAL) and name not in ASKS_TOO:
         known = ACTIONS.get(name)
@@ -204,7 +204,7 @@ def _variables(formula: Term) -> list[Var]:
 
 
 def _believed(agent: Observed, formula: Term) -> str:
-    """What is believed instead, of the same name."""
+    """Return the beliefs of the same name that hold instead."""
     if not isinstance(formula, Atom | Structure) or formula.functor in OPERATORS or formula.functor.startswith("."):
         return ""
     relation = agent.beliefs.relations.get(formula.predicate)

@@ -1,4 +1,4 @@
-"""What can go wrong in the mind, by name.
+"""Errors, by name.
 
 BdiError
 ├── AgentSpeakError            the program is at fault: carries file, line and column

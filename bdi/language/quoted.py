@@ -11,7 +11,7 @@ from bdi.language.syntax import Body, Does, Plan, Rule, Simple, Step, variables_
 from bdi.language.terms import ANNOTATED, TRUE, Code, Structure, Term, Var, show_by
 from bdi.language.unify import Trail, substituted, unify, unify_by
 
-Held = Body | Plan | Rule
+Quoted = Body | Plan | Rule
 NOTHING = Body()
 
 
@@ -24,33 +24,33 @@ def unify_codes(left: Code, right: Term, trail: Trail) -> bool:
 
 
 def whole_scope(code: Code) -> dict[Var, Term]:
-    """What each of its variables means; those that mean nothing yet get a variable that is nobody else's."""
+    """Return the value of each of its variables; those without one get a fresh variable."""
     return {each: code.scope.get(each) or Var(each.name) for each in variables_of(code.body)}
 
 
-def as_read(code: Code) -> Held:
+def as_read(code: Code) -> Quoted:
     """With the values that its variables have now."""
     scope = code.scope
-    held: Held = with_terms(code.body, lambda term: substituted(term, scope)) if scope else code.body
-    return held
+    quoted: Quoted = with_terms(code.body, lambda term: substituted(term, scope)) if scope else code.body
+    return quoted
 
 
-def _meant(code: Code) -> Held:
+def _meant(code: Code) -> Quoted:
     values = whole_scope(code)
-    held: Held = with_terms(code.body, lambda term: substituted(term, values)) if values else code.body
-    return held
+    quoted: Quoted = with_terms(code.body, lambda term: substituted(term, values)) if values else code.body
+    return quoted
 
 
-def _value(held: Body) -> Term:
+def _value(quoted: Body) -> Term:
     """A variable alone is what it stands for."""
-    if len(held.steps) == 1 and _is_variable(held.steps[0]):
-        return held.steps[0].term  # type: ignore[union-attr]
-    names: dict[Var, Term] = {each: Var(each.name) for each in variables_of(held)}
-    written: Body = with_terms(held, lambda term: substituted(term, names))
+    if len(quoted.steps) == 1 and _is_variable(quoted.steps[0]):
+        return quoted.steps[0].term  # type: ignore[union-attr]
+    names: dict[Var, Term] = {each: Var(each.name) for each in variables_of(quoted)}
+    written: Body = with_terms(quoted, lambda term: substituted(term, names))
     return Code(written, {names[each]: each for each in names})  # type: ignore[misc]
 
 
-def _unify(left: Held, right: Held, trail: Trail) -> bool:
+def _unify(left: Quoted, right: Quoted, trail: Trail) -> bool:
     if isinstance(left, Body) and isinstance(right, Body):
         return _unify_steps(left.steps, right.steps, trail)
     if isinstance(left, Plan) and isinstance(right, Plan):

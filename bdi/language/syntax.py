@@ -1,4 +1,4 @@
-"""What a program is made of, as the parser hands it over. Formulas are terms (see the operators in `terms`)."""
+"""The syntax tree of a program. Formulas are terms (see the operators in `terms`)."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
@@ -24,7 +24,7 @@ from bdi.language.unify import variables_in
 
 
 class Trigger(StrEnum):
-    """What happened: belief, achievement goal or test goal, gained or lost."""
+    """The kind of an event: belief, achievement goal or test goal, gained or lost."""
 
     BELIEF_ADDED = "+"
     BELIEF_REMOVED = "-"
@@ -41,7 +41,7 @@ BELIEF_ADDED, BELIEF_REMOVED, GOAL_ADDED = Trigger.BELIEF_ADDED, Trigger.BELIEF_
 
 
 class Does(StrEnum):
-    """What one step of a plan body does; the value is how it is written."""
+    """The kinds of steps of a plan body; the value is the notation."""
 
     ACTION = ""
     INTERNAL = "."
@@ -175,7 +175,7 @@ class Plan:
     head_annots: tuple[Term, ...] = ()  # where the head is a variable
 
     def has(self, annotation: str) -> bool:
-        """Whether the label carries this annotation, as `@label[atomic]`."""
+        """Return whether the label carries this annotation, as `@label[atomic]`."""
         return any(getattr(annot, "functor", "") == annotation for annot in self.label.annots)
 
     def __str__(self) -> str:
@@ -231,7 +231,7 @@ class Function:
     place: Place
 
 
-Held = TypeVar("Held", bound="Body | Plan | Rule")  # what a value in braces can hold
+Quoted = TypeVar("Quoted", bound="Body | Plan | Rule")  # what a value in braces can hold
 
 Clause: TypeAlias = Belief | Rule | Goal | Plan | Directive
 
@@ -268,24 +268,24 @@ class Program:
         return Program(self.source, **both, namespaces=more.namespaces)
 
 
-def variables_of(held: Body | Plan | Rule) -> dict[Var, None]:
+def variables_of(quoted: Body | Plan | Rule) -> dict[Var, None]:
     """The variables of a plan body, plan or rule, in order of appearance."""
     found: dict[Var, None] = {}
-    for term in terms_of(held):
+    for term in terms_of(quoted):
         variables_in(term, found)
     return found
 
 
-def terms_of(held: Body | Plan | Rule) -> Iterator[Term]:
+def terms_of(quoted: Body | Plan | Rule) -> Iterator[Term]:
     """The terms of a plan body, plan or rule, in order of appearance; those inside them are not given apart."""
-    if isinstance(held, Rule):
-        yield from (held.head, held.formula)
-    elif isinstance(held, Plan):
-        yield from (held.label, held.head, *held.head_annots)
-        yield from (formula for formula in (held.context, held.condition) if formula is not None)
-        yield from terms_of(held.body)
+    if isinstance(quoted, Rule):
+        yield from (quoted.head, quoted.formula)
+    elif isinstance(quoted, Plan):
+        yield from (quoted.label, quoted.head, *quoted.head_annots)
+        yield from (formula for formula in (quoted.context, quoted.condition) if formula is not None)
+        yield from terms_of(quoted.body)
     else:
-        for step in held.steps:
+        for step in quoted.steps:
             yield from _terms_of(step)
 
 
@@ -301,21 +301,21 @@ def _terms_of(step: Step) -> Iterator[Term]:
             yield from terms_of(inner)
 
 
-def with_terms(held: Held, change: Callable[[Any], Any]) -> Held:
+def with_terms(quoted: Quoted, change: Callable[[Any], Any]) -> Quoted:
     """The same plan body, plan or rule with each of its terms changed."""
-    if isinstance(held, Rule):
-        return replace(held, head=change(held.head), formula=change(held.formula))
-    if isinstance(held, Body):
-        return replace(held, steps=tuple(_with_terms(step, change) for step in held.steps))
+    if isinstance(quoted, Rule):
+        return replace(quoted, head=change(quoted.head), formula=change(quoted.formula))
+    if isinstance(quoted, Body):
+        return replace(quoted, steps=tuple(_with_terms(step, change) for step in quoted.steps))
     return replace(
-        held,
-        label=change(held.label),
-        head=change(held.head),
-        head_annots=tuple(map(change, held.head_annots)),
-        context=None if held.context is None else change(held.context),
-        condition=None if held.condition is None else change(held.condition),
-        body=with_terms(held.body, change),
-        subplans=tuple(with_terms(inner, change) for inner in held.subplans),
+        quoted,
+        label=change(quoted.label),
+        head=change(quoted.head),
+        head_annots=tuple(map(change, quoted.head_annots)),
+        context=None if quoted.context is None else change(quoted.context),
+        condition=None if quoted.condition is None else change(quoted.condition),
+        body=with_terms(quoted.body, change),
+        subplans=tuple(with_terms(inner, change) for inner in quoted.subplans),
     )
 
 
@@ -330,19 +330,19 @@ def _with_terms(step: Step, change: Callable[[Any], Any]) -> Step:
     return replace(step, condition=change(step.condition), body=with_terms(step.body, change))
 
 
-def event_of(held: Body | Plan | Rule) -> tuple[Trigger, Literal | Var] | None:
+def event_of(quoted: Body | Plan | Rule) -> tuple[Trigger, Literal | Var] | None:
     """{+!g(X)} as an event, also {+b} which is a plan body as well; None for anything else."""
-    if isinstance(held, Plan):
-        return held.trigger, held.head
-    if isinstance(held, Body) and len(held.steps) == 1 and isinstance(held.steps[0], Simple):
-        step = held.steps[0]
+    if isinstance(quoted, Plan):
+        return quoted.trigger, quoted.head
+    if isinstance(quoted, Body) and len(quoted.steps) == 1 and isinstance(quoted.steps[0], Simple):
+        step = quoted.steps[0]
         if step.does in (Does.ADD, Does.REMOVE) and not isinstance(step.term, Code):
             return Trigger(step.does.value), step.term  # type: ignore[return-value]
     return None
 
 
 def event_alone(plan: Plan) -> Body | Plan:
-    """What `{+!g(X)}` and `{+b}` are: the event of the plan, as it is written by itself."""
+    """Return the event that `{+!g(X)}` or `{+b}` consists of."""
     if plan.trigger in (BELIEF_ADDED, BELIEF_REMOVED):
         return Body((Simple(Does(plan.trigger.value), plan.head, plan.place),))
     return Plan(atom(""), plan.trigger, plan.head, None, Body(), plan.place, head_annots=plan.head_annots)

@@ -189,13 +189,13 @@ THIS_SPACE = "this_ns"  # how a program names the namespace that it is read into
 DEFAULT_SPACE = "default"  # how the namespace without a name is called
 PRIVATE_SPACE = "#"  # begins the name of a local namespace: no text can say it
 IN_SPACE = predicate("::", 2)  # NS::p(X), n::X: a literal whose namespace or name is a variable
-ANNOTATED = predicate("[]", 1)  # X[a]: whatever literal X is, with these annotations too
+ANNOTATED = predicate("[]", 1)  # X[a]: the literal that X is, with these annotations added
 RELATIONS = frozenset(predicate(name, 2) for name in ("<", "<=", ">", ">=", "==", "\\==", "=", "=.."))
 INTERNAL = "."  # internal actions are structures whose name has a dot: `.print(X)`, `courier.distance(A,B,D)`
 
 
 def is_internal(name: str) -> bool:
-    """Whether this names an internal action or a function, by its form. 'in.quotes' is a name like any other."""
+    """Return whether this names an internal action or a function, by its form. 'in.quotes' is a name like any other."""
     return INTERNAL in name and name != "=.." and not name.startswith("'")
 
 
@@ -346,7 +346,7 @@ _SHOW: dict[type, Any] = {
 
 
 def show_by(kind: type, text_of: Callable[[Any], str]) -> None:
-    """How values of this kind are written is known further up."""
+    """Register the notation of a kind of value that is defined in a higher module."""
     _SHOW[kind] = text_of
 
 

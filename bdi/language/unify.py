@@ -41,7 +41,7 @@ FIXED = frozenset({Atom, int, float, String, Handle})  # types without parts and
 
 
 def deref(term: Term) -> Term:
-    """What a variable stands for; any other term is itself."""
+    """Return the value of a variable; any other term is itself."""
     while type(term) is Var:
         if term.ref is None:
             return term
@@ -123,7 +123,7 @@ def _amounts_to(expression: Structure, value: Term) -> bool:
 
 
 def unify_annots(wanted: tuple[Term, ...], present: tuple[Term, ...], trail: Trail) -> bool:
-    """Each wanted annotation is found among the present ones. A last `|T` takes those that nobody asked for.
+    """Unify each wanted annotation with a present one. A last `|T` takes the present ones that were not asked for.
 
     Both sides are gone through once, in standard order, so that two wanted annotations never share a present one.
     """
@@ -184,7 +184,7 @@ _UNIFIERS: dict[type, Callable[..., bool]] = {
 
 
 def unify_by(kind: type, unifier: Callable[[Any, Term, Trail], bool]) -> None:
-    """How values of this kind unify is known further up."""
+    """Register the unification of a kind of value that is defined in a higher module."""
     _UNIFIERS[kind] = unifier
 
 

@@ -1,4 +1,4 @@
-"""What the agent believes: one relation for each predicate, newest first, indexed by the first argument."""
+"""Beliefs of an agent: one relation for each predicate, newest first, indexed by the first argument."""
 
 from collections.abc import Callable, Iterable, Iterator
 from itertools import combinations
@@ -39,7 +39,7 @@ class Derivation:
 
 
 class Relation:
-    """All beliefs with one predicate. `facts` goes from the oldest to the newest: read it reversed."""
+    """The beliefs with one predicate. `facts` goes from the oldest to the newest: read it reversed."""
 
     __slots__ = ("_crowded", "_dependents", "by_first", "facts", "irregular", "predicate")
 
@@ -104,7 +104,7 @@ class Relation:
             self._count_irregular(-1)
 
     def discard(self, args: Arguments) -> None:
-        """Forget the fact with exactly these arguments, whoever said it."""
+        """Forget the fact with exactly these arguments, whatever its source."""
         if self.facts.pop(args, None) is not None:
             self._note(args, -1)
 
@@ -135,7 +135,7 @@ class Relation:
 
     def depend(self, forget: Callable[[], None]) -> None:
         """Call this method of an object that takes the relation for regular once it is no longer. As long as there is
-        such an object: nobody is kept alive."""
+        such an object: no object is kept alive."""
         known = self._dependents
         if len(known) >= self._crowded:
             known = self._dependents = {key: each for key, each in known.items() if each() is not None}
@@ -167,7 +167,7 @@ class Relation:
         return None
 
     def find_in(self, belief: Belief, args: Arguments, annots: Arguments, trail: Trail) -> bool:
-        """Whether this fact unifies; nothing stays bound."""
+        """Return whether this fact unifies; nothing stays bound."""
         mark = len(trail)
         found = agrees(belief, args, annots, trail)
         undo(trail, mark)
@@ -175,7 +175,7 @@ class Relation:
 
 
 def agrees(belief: Belief, args: Arguments, annots: Arguments, trail: Trail) -> bool:
-    """Whether the fact unifies. Its own variables stay free: it means the same the next time."""
+    """Return whether the fact unifies. Its own variables stay free: it means the same the next time."""
     stored = belief.args
     if belief.open:
         names: dict[Var, Term] = {}
@@ -230,7 +230,7 @@ class Beliefs:
         return found
 
     def __iter__(self) -> Iterator[Literal]:
-        """All facts with their annotations, relation by relation, newest first."""
+        """Yield all facts with their annotations, relation by relation, newest first."""
         for key, relation in self.relations.items():
             for belief in relation:
                 yield literal_of(key, belief.args, belief.annots)

@@ -114,7 +114,7 @@ class GoalStates:
                 self.tell(goal, "failed", error, intention)
 
     def given_up(self, goal: Event, error: Term, intention: Intention | None) -> None:
-        """It failed, and nobody takes care of it."""
+        """Report that a goal failed and no plan handles the failure."""
         self.failed(goal, error, intention)
         if goal not in self._over:
             self._over.add(goal)

@@ -1,4 +1,4 @@
-"""What the agent is busy with: events to react to, and intentions, each a stack of half-done plans."""
+"""Events, and intentions: stacks of plans that are being carried out."""
 
 from collections.abc import Callable, Sequence
 from enum import Enum
@@ -79,7 +79,7 @@ class Event:
 
     @property
     def plain(self) -> str:
-        """What it is about, as people read it: without annotations."""
+        """Return the literal of the event without annotations."""
         return show(literal_of(self.key, resolve_all(self.args)))
 
     def __str__(self) -> str:
@@ -115,7 +115,7 @@ class Means:
 
     @property
     def holds_agent(self) -> bool:
-        """Whether it is not interleaved with others: an atomic plan, or one that takes care of its failure."""
+        """Return whether it is not interleaved with others: an atomic plan, or one that takes care of its failure."""
         return self.plan.atomic or self.event.of_atomic
 
 
@@ -127,12 +127,12 @@ class Intention:
         "atomic",
         "fork",
         "guarded",
-        "held",
-        "held_by",
         "last",
         "number",
         "stack",
         "state",
+        "suspended",
+        "suspended_by",
         "waits_for",
     )
 
@@ -140,8 +140,8 @@ class Intention:
         self.number = number
         self.stack: list[Means] = []
         self.state = State.RUNNING
-        self.held = False  # suspended by .suspend: keeps its state, takes no steps
-        self.held_by = ""  # the plan that suspended it
+        self.suspended = False  # suspended by .suspend: keeps its state, takes no steps
+        self.suspended_by = ""  # the plan that suspended it
         self.action: int | None = None  # id of the started action it waits for
         self.waits_for: Any = None  # moment or message id, by state
         self.atomic = False
@@ -150,7 +150,7 @@ class Intention:
         self.last: Step | None = None  # that it took
 
     def is_beside(self, other: "Intention") -> bool:
-        """Whether both are branches of one intention, or the same."""
+        """Return whether both are branches of one intention, or the same."""
         if self.fork is None or other.fork is None:
             return self is other
         return self.fork.outermost() is other.fork.outermost()
@@ -176,7 +176,7 @@ class Fork:
         self.outer = outer
 
     def intentions(self) -> "list[Intention]":
-        """All that run for it, those of inner forks too."""
+        """Return all that run for it, those of inner forks too."""
         found: list[Intention] = []
         for branch in self.branches:
             found += branch.intentions() if isinstance(branch, Fork) else [branch]

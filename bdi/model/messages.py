@@ -1,4 +1,4 @@
-"""What comes in and goes out besides percepts: messages between agents, and the news that an action is over."""
+"""Messages between agents, and reports that an action has ended."""
 
 from copy import copy
 from dataclasses import dataclass

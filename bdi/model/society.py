@@ -1,4 +1,4 @@
-"""The others, as one agent sees them: whom it can write to, create, kill, and what it can look up about them."""
+"""The other agents as one agent sees them: it can send to them, create, kill and look them up."""
 
 from collections.abc import Iterable, Sequence
 from typing import Any, NamedTuple, NoReturn, Protocol
@@ -9,20 +9,20 @@ from bdi.model.messages import Message
 
 
 class Reader(Protocol):
-    """Whoever gets a message."""
+    """A receiver of messages."""
 
     def read(self, message: Message) -> Any:
         """Raises UnknownPerformative, AgentSpeakSyntaxError, NotALiteral."""
 
 
 class Society(Protocol):
-    """What an agent can ask of those it lives with. Whatever cannot be done raises StepFailed."""
+    """The services of a multi-agent system for one agent. A request that fails raises StepFailed."""
 
     def names(self) -> Sequence[str]:
-        """All agents, in the order in which they joined."""
+        """Return all agents, in the order in which they joined."""
 
     def readers(self, receiver: str, sender: str) -> Sequence[Reader]:
-        """Who would read a message to this name (`*`: to everybody); nobody for one outside. Raises StepFailed."""
+        """Return the receivers of a message to this name (`*`: a broadcast); none outside. Raises StepFailed."""
 
     def create(self, name: str, source: str, beliefs: Iterable[Literal], goals: Iterable[Literal]) -> str:
         """A new agent; its name, which differs if the wanted one is taken."""
@@ -42,7 +42,7 @@ class Society(Protocol):
 
 
 class Alone:
-    """The society of an agent that lives by itself: it can write to whoever the caller knows, and nothing else."""
+    """The society of a single agent: its messages go to the caller, and nothing else works."""
 
     def readers(self, receiver: str, sender: str) -> Sequence[Reader]:
         return ()

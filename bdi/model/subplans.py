@@ -119,7 +119,7 @@ class Scopes:
         return Options.of_the_moment(found, library.compiler)
 
     def awaits(self, event: Event) -> bool:
-        """Whether a sub-plan may react to this event of the world."""
+        """Return whether a sub-plan may react to this event of the world."""
         literal = event.literal
         return any(
             _relevant(around, event.trigger, literal)
@@ -166,7 +166,7 @@ class Scopes:
         return None
 
     def _awake(self) -> list[Intention]:
-        return [intention for intention in self._mind.intentions.values() if not intention.held]
+        return [intention for intention in self._mind.intentions.values() if not intention.suspended]
 
     def _end_reactions(self) -> None:
         """Those whose goal is over."""
@@ -178,7 +178,7 @@ class Scopes:
                 self._drop(intention)
 
     def _is_pursued(self, reaction: Reaction) -> bool:
-        """Whether the plan around is still being carried out, perhaps by a branch of its intention."""
+        """Return whether the plan around is still being carried out, perhaps by a branch of its intention."""
         goal = reaction.plan.goal
         return any(means.event is goal for each in self._mind.intentions.values() for means in each.stack)
 

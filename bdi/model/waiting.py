@@ -37,7 +37,7 @@ def moment_after(now: float, milliseconds: float) -> Moment:
 
 
 def reason_of(intention: Intention) -> Term | None:
-    """What it waits for: action(drive(uc)), wait(500)[time(500)], wait("+b(X)"), ask; None: for nothing outside."""
+    """Return what it waits for: action(drive(uc)), wait(500)[time(500)], wait("+b(X)"), ask; or None."""
     awaited = intention.waits_for
     if intention.state is State.ACTION:
         return structure("action", awaited)

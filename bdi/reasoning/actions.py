@@ -1,4 +1,4 @@
-"""What the steps of a plan do to the agent: the verbs that `plans.Doer` asks for."""
+"""The effects of plan steps on the agent: the verbs of `plans.Doer`."""
 
 from collections.abc import Callable
 from typing import Any
@@ -187,7 +187,7 @@ class Actions:
             self._react(BELIEF_REMOVED, gone, intention)
 
     def update(self, literal: Literal, intention: Intention) -> None:
-        """-+b: one belief of this predicate, with these annotations, goes, whatever its arguments"""
+        """-+b: replaces one belief of this predicate with these annotations and any arguments"""
         anything = Structure(literal.predicate, tuple([Var() for _ in literal.args]), literal.annots)
         self.forget(anything, None)
         self.believe(literal, intention)
@@ -221,7 +221,7 @@ class Actions:
         return gone
 
     def _react(self, trigger: Trigger, literal: Literal, intention: Intention | None) -> None:
-        """Post the event of a changed belief. A plan that made the change waits for it, even if nobody reacts."""
+        """Post the event of a changed belief. A plan that made the change waits for it, even if no plan reacts."""
         if self.output.listeners:
             self.output.trace(Changed(self.agent.cycles, trigger, literal))
         if intention is None:
@@ -268,7 +268,7 @@ class Actions:
 
 
 def _take_over(frame: Frame, other: Frame) -> None:
-    """What another branch has found out, and this one has not."""
+    """Copy the values that another branch has found and this one has not."""
     for slot, (mine, theirs) in enumerate(zip(frame, other, strict=False)):
         if theirs is not None and (mine is None or type(deref(mine)) is Var):
             frame[slot] = theirs

@@ -52,7 +52,6 @@ class Circumstance:
         "given_up",
         "goal_states",
         "has_conditions",
-        "held_events",
         "includes",
         "intention_base",
         "intentions",
@@ -78,6 +77,7 @@ class Circumstance:
         "scopes",
         "selected",
         "society",
+        "suspended_events",
         "suspension",
         "timers",
         "waiters",
@@ -119,7 +119,7 @@ class Circumstance:
         # percepts, events and intentions
         self.percepts = Percepts(self)
         self.events: deque[Event] = deque()
-        self.held_events: list[Event] = []  # of suspended goals and intentions
+        self.suspended_events: list[Event] = []  # of suspended goals and intentions
         self.considered: Event | None = None  # the event for which a plan is or was last chosen
         self.intentions: dict[int, Intention] = {}
         self.running: deque[Intention] = deque()

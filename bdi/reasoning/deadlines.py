@@ -1,7 +1,7 @@
 """Goals that must be reached in time.
 
 `!g[hard_deadline(MS)]` fails with `error(deadline_reached)` when it is not reached after so many milliseconds of the
-clock that the agent is given, whatever it waits for by then; a started action is cancelled. `!g[soft_deadline(MS)]`
+clock that the agent is given, even if it still waits; a started action is cancelled. `!g[soft_deadline(MS)]`
 goes on, and raises `^!g[state(late)]`. A goal that ends before has no deadline any more, nor has the plan `-!g` that
 takes care of its failure. Time goes on while a goal is suspended.
 """
@@ -62,7 +62,7 @@ class DeadlineWatch:
         return next((each for each in self.agent.intentions.values() if _pursues(each.stack, goal)), None)
 
     def _is_pursued(self, goal: Event) -> bool:
-        return goal in self.agent.events or goal in self.agent.held_events or self._pursuing(goal) is not None
+        return goal in self.agent.events or goal in self.agent.suspended_events or self._pursuing(goal) is not None
 
     def _is_late(self, goal: Event, deadline: Deadline) -> None:
         intention = self._pursuing(goal)

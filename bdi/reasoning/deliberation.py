@@ -52,7 +52,7 @@ class Deliberation:
             self._add_means(event, plan, frame)
         elif event.trigger in BELIEF_EVENTS:
             if event.intention is not None:
-                self.intention_base.resume(event.intention)
+                self.intention_base.make_ready(event.intention)
         else:
             self.recovery.fail_event(event)
 
@@ -91,11 +91,11 @@ class Deliberation:
         if plan.is_special or agent.goal_states is not None:
             self._begin_specially(intention, event, plan)
         intention.state = RUNNING
-        if not intention.held:
+        if not intention.suspended:
             agent.running.append(intention)
 
     def _begin_specially(self, intention: Intention, event: Event, plan: CompiledPlan) -> None:
-        """An atomic plan, one with a goal condition, or somebody watches the states of goals."""
+        """Begin an atomic plan or one with a goal condition, or report the state of the goal."""
         agent = self.agent
         if agent.goal_states is not None and event.trigger in PURSUED:
             agent.goal_states.tell(event, "executing", None, intention)

@@ -17,11 +17,11 @@ class EventQueue:
 
     def wait_for_event(self, intention: Intention, event: Event) -> None:
         intention.state = WAITS_FOR_EVENT
-        (self.agent.held_events if intention.held else self.agent.events).append(event)
+        (self.agent.suspended_events if intention.suspended else self.agent.events).append(event)
 
     def notice(self, trigger: Trigger, literal: Literal) -> None:
         """An event of the world. What came to be has its turn even if no plan is about it yet: one may be told by then.
-        (Not while an atomic plan holds the agent: nobody would take it away.) What ceased to be has none, unless
+        (Not while an atomic plan holds the agent: the queue would only grow.) What ceased to be has none, unless
         sub-plans may be about it."""
         agent = self.agent
         event = event_of(trigger, literal, self.relevant_plans(trigger, literal))

@@ -51,7 +51,7 @@ class Execution:
         intention = agent.selected = self.selection.selector.select_intention()
         if intention is not None:
             self.step(intention)
-            if intention.state is RUNNING and not intention.held:
+            if intention.state is RUNNING and not intention.suspended:
                 goes_on = intention.stack[-1].step is not None and not intention.atomic  # most of the time
                 if goes_on or self.intention_base.clear_finished(intention):
                     agent.running.append(intention)
@@ -93,12 +93,11 @@ class Execution:
             agent.current = None
 
     def _leave_reached_goals(self) -> None:
-        """`+!g <: condition`: once the condition holds, the goal counts as reached. Whatever it waits for outside, it
-        does no longer: its action is cancelled."""
+        """`+!g <: condition`: once the condition holds, the goal counts as reached, and its action is cancelled."""
         guarded = [each for each in self.agent.intentions.values() if each.guarded]
         self.agent.has_conditions = bool(guarded)
         for intention in guarded:
-            if not intention.held:
+            if not intention.suspended:
                 self.recovery.reach_goal(intention, self._is_reached)
 
     def _is_reached(self, means: Means) -> bool:

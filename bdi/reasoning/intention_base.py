@@ -37,22 +37,22 @@ class IntentionBase:
         intention = agent.intentions[number] = Intention(number)
         return intention
 
-    def resume(self, intention: Intention) -> None:
-        """It can go on; unless somebody suspended it."""
+    def make_ready(self, intention: Intention) -> None:
+        """Let it take steps again, unless it is suspended."""
         intention.state = RUNNING
         intention.waits_for = None
-        if not intention.held:
+        if not intention.suspended:
             self.agent.running.append(intention)
 
     def go_on(self, intention: Intention) -> None:
-        """What it waited for is here: on with the next step, or back to the plan below."""
+        """Continue with the next step, or with the plan below: the wait is over."""
         agent = self.agent
         acted = intention.state is State.ACTION
         intention.state = RUNNING
         intention.waits_for = None
         if agent.goal_states is not None and not acted:
             agent.goal_states.tell_all(intention, "executing")
-        if not intention.held and (intention.stack[-1].step is not None or self.clear_finished(intention)):
+        if not intention.suspended and (intention.stack[-1].step is not None or self.clear_finished(intention)):
             agent.running.append(intention)
         if agent.goal_states is not None and acted:
             agent.goal_states.tell_all(intention, "executing")
@@ -83,7 +83,7 @@ class IntentionBase:
         return False
 
     def end_atomic(self, intention: Intention, height: int | None = None) -> None:
-        """Whether it holds the agent depends on what is below this height (None: on all)."""
+        """Decide whether the plans below this height (None: all) still keep the intention atomic."""
         agent = self.agent
         intention.atomic = any(means.holds_agent for means in intention.stack[:height])
         if intention.atomic and agent.atomic is None:
@@ -92,9 +92,9 @@ class IntentionBase:
             self.pass_atomic_on()
 
     def pass_atomic_on(self) -> None:
-        """Another branch of the same plan, or a plan resumed meanwhile, holds the agent now; or nobody."""
+        """Make another atomic intention that is not suspended the current one, if there is one."""
         intentions = self.agent.intentions.values()
-        self.agent.atomic = next((each for each in intentions if each.atomic and not each.held), None)
+        self.agent.atomic = next((each for each in intentions if each.atomic and not each.suspended), None)
 
     def end(self, intention: Intention) -> None:
         intention.state = State.DONE
@@ -109,7 +109,7 @@ class IntentionBase:
 
     def drop_branch(self, intention: Intention) -> None:
         if self.agent.goal_states is not None:
-            for event in (*self.agent.events, *self.agent.held_events):
+            for event in (*self.agent.events, *self.agent.suspended_events):
                 if event.intention is intention:
                     self.agent.goal_states.event_dropped(event)
             self.agent.goal_states.dropped(intention)
@@ -125,16 +125,18 @@ class IntentionBase:
             return
         if self.agent.goal_states is not None:
             self.agent.goal_states.event_dropped(event)
-        (self.agent.held_events if event in self.agent.held_events else self.agent.events).remove(event)
+        (self.agent.suspended_events if event in self.agent.suspended_events else self.agent.events).remove(event)
 
     def _forget_events(self, intention: Intention) -> None:
         if self.agent.events:
             self.agent.events = deque(event for event in self.agent.events if event.intention is not intention)
-        if self.agent.held_events:
-            self.agent.held_events = [event for event in self.agent.held_events if event.intention is not intention]
+        if self.agent.suspended_events:
+            self.agent.suspended_events = [
+                event for event in self.agent.suspended_events if event.intention is not intention
+            ]
 
     def withdraw(self, intention: Intention) -> None:
-        """Whatever the intention waited for, it does no longer."""
+        """End every wait of the intention; cancel its action."""
         agent = self.agent
         if intention.action is not None:
             agent.pending.pop(intention.action, None)
@@ -152,10 +154,10 @@ class IntentionBase:
             agent.asked = {key: asked for key, asked in agent.asked.items() if asked[0] is not intention}
 
     def interrupt(self, intention: Intention) -> None:
-        """Nothing that it waits for matters any more, nor that it was suspended."""
+        """End every wait and suspension of the intention."""
         self.withdraw(intention)
         self._forget_events(intention)
-        intention.held = False
+        intention.suspended = False
         intention.state = RUNNING
         intention.waits_for = None
 
@@ -209,41 +211,41 @@ class Suspension:
         self.agent = agent
         self.intention_base = intention_base
 
-    def hold(self, intention: Intention) -> None:
+    def suspend(self, intention: Intention) -> None:
         """It takes no more steps and no plan is chosen for it; what it waits for may still come in. A suspended
-        atomic plan lets the others go on: nobody could resume it otherwise."""
+        atomic plan lets the others go on: no plan could resume it otherwise."""
         agent = self.agent
-        intention.held = True
-        intention.held_by = agent.current.stack[-1].plan.label if agent.current is not None else ""
+        intention.suspended = True
+        intention.suspended_by = agent.current.stack[-1].plan.label if agent.current is not None else ""
         if intention in agent.running:
             agent.running.remove(intention)
         for event in [event for event in agent.events if event.intention is intention]:
-            self._hold_event(event)
+            self._suspend_event(event)
         if agent.goal_states is not None:
             agent.goal_states.tell_all(intention, "suspended")
         if agent.atomic is intention:
             self.intention_base.pass_atomic_on()
 
-    def hold_goal(self, event: Event) -> None:
+    def suspend_goal(self, event: Event) -> None:
         """A goal that is still an event, and the intention that waits for it."""
         if event.intention is not None:
-            self.hold(event.intention)
+            self.suspend(event.intention)
         else:
-            self._hold_event(event)
+            self._suspend_event(event)
 
-    def _hold_event(self, event: Event) -> None:
+    def _suspend_event(self, event: Event) -> None:
         self.agent.events.remove(event)
-        self.agent.held_events.append(event)
+        self.agent.suspended_events.append(event)
         if self.agent.goal_states is not None:
             self.agent.goal_states.tell(event, "suspended")
 
-    def release(self, intention: Intention) -> None:
+    def resume(self, intention: Intention) -> None:
         agent = self.agent
-        if not intention.held:
+        if not intention.suspended:
             return
-        intention.held = False
-        for event in [event for event in agent.held_events if event.intention is intention]:
-            self._release_event(event)
+        intention.suspended = False
+        for event in [event for event in agent.suspended_events if event.intention is intention]:
+            self._resume_event(event)
         if agent.goal_states is not None:
             agent.goal_states.tell_all(intention, "resumed")
         if intention.state is RUNNING and intention is not agent.current:
@@ -251,14 +253,14 @@ class Suspension:
         if intention.atomic and agent.atomic is None:
             agent.atomic = intention
 
-    def release_goal(self, event: Event) -> None:
+    def resume_goal(self, event: Event) -> None:
         if event.intention is not None:
-            self.release(event.intention)
+            self.resume(event.intention)
         else:
-            self._release_event(event)
+            self._resume_event(event)
 
-    def _release_event(self, event: Event) -> None:
-        self.agent.held_events.remove(event)
+    def _resume_event(self, event: Event) -> None:
+        self.agent.suspended_events.remove(event)
         self.agent.events.append(event)
         if self.agent.goal_states is not None:
             self.agent.goal_states.tell(event, "resumed")

@@ -1,4 +1,4 @@
-"""Messages of other agents: read at the door, obeyed one a cycle; and the questions whose answers are waited for."""
+"""Messages of other agents: checked on arrival, processed one a cycle; questions and their answers."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
@@ -74,7 +74,7 @@ class MessageHandling:
             raise NotALiteral(message.content, problem) from problem
 
     def literal_of(self, content: Term | str) -> Literal:
-        """What a message is about. Text without variables is remembered."""
+        """Return the content of a message as a literal. Text without variables is cached."""
         if type(content) is not str:
             return literal_from(content)
         literal = self._read.get(content)
@@ -99,7 +99,7 @@ class MessageHandling:
             self._obey_own_plans(message, content, plans)
 
     def _obey(self, message: Message, content: Any) -> None:
-        """What cannot be done is reported, as a goal would be."""
+        """Obey a message; report a failure as that of a goal."""
         try:
             _performative(message).obey(self.agent, message, content)
         except StepFailed as failure:
@@ -116,7 +116,7 @@ class MessageHandling:
         self.actions.achieve_apart(_received(message, content), plans)
 
     def obey(self, message: Message) -> None:
-        """What is usual for this performative: .kqml.default. Raises StepFailed, AgentSpeakSyntaxError."""
+        """Obey a message in the default way: .kqml.default. Raises StepFailed, AgentSpeakSyntaxError."""
         try:
             performative = _performative(message)
             performative.obey(self.agent, message, performative.read(self.agent, message.content))
@@ -124,7 +124,7 @@ class MessageHandling:
             raise StepFailed("wrong_arguments", str(problem)) from problem
 
     def answer_by_plan(self, message: Message, question: Literal) -> bool:
-        """Whether there is a plan `+?question`; what it finds out is the answer."""
+        """Start a plan `+?question`, whose result is the answer. Return False if there is none."""
         if not self.agent.library.options(Trigger.TEST_ADDED, question.predicate):
             return False
         if not _named(self.agent.library.options(GOAL_ADDED, ANSWER)):
@@ -134,19 +134,19 @@ class MessageHandling:
         self.actions.achieve_apart(goal, _named(self.agent.library.options(GOAL_ADDED, ANSWER)))
         return True
 
-    def post(self, message: Message) -> None:
-        """.send, .broadcast. Raises StepFailed for what nobody could read."""
+    def send_checked(self, message: Message) -> None:
+        """Send a message if a receiver can read it: .send, .broadcast. Raises StepFailed otherwise."""
         if self._is_self(message.receiver):
             readers: Sequence[Reader] = (self,)
             message = replace(message, sender=MYSELF)
         else:
             readers = self.agent.society.readers(message.receiver, self.agent.name)
-        if readers or not message.reply_to:  # what somebody outside waits for, only he knows
+        if readers or not message.reply_to:  # an outside receiver decides for itself
             _check_readable(message, readers or (self,))
         self.send(message)
 
     def send(self, message: Message) -> None:
-        """What it writes to itself it reads in a cycle to come."""
+        """Send a message; one to the agent itself is read in a later cycle."""
         if self._is_self(message.receiver):
             self.agent.mailbox.append(self.read(replace(message, sender=MYSELF)))
         else:
@@ -170,7 +170,7 @@ class MessageHandling:
         return [question for question, asked in self.agent.asked.items() if receiver in asked.receivers]
 
     def _is_waited_for(self, question: str) -> bool:
-        """Whether somebody waits for the answer, or did."""
+        """Return whether an intention waits for the answer, or did."""
         return question in self.agent.asked or (
             question.endswith(WAITED_FOR) and question.startswith(f"{self.agent.name}-")
         )
@@ -238,7 +238,7 @@ def _named(plans: Options) -> Options:
 
 
 def _check_readable(message: Message, readers: Iterable[Any]) -> None:
-    """Somebody must be able to read it."""
+    """Check that at least one receiver can read the message."""
     problems = []
     for reader in readers:
         try:

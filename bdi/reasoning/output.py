@@ -21,7 +21,7 @@ class Action(NamedTuple):
 
 
 class Outcome(NamedTuple):
-    """What one cycle did to the outside."""
+    """The outputs of one cycle."""
 
     actions: tuple[Action, ...] = ()
     cancelled: tuple[int, ...] = ()

@@ -1,4 +1,4 @@
-"""What an agent is shown of its sensors, where values come in one by one between its cycles.
+"""Percepts of sensors whose values arrive one by one between the cycles.
 
     perception = Perception(default=Latest(age_limit_s=2.0), modes={"post": Drain()}, named_by={"distance": 1})
     perception.arrived("line(center)", now)
@@ -78,7 +78,7 @@ class Perception:
             self._latest[sensor] = _Reading(frozenset((percept,)), now)
 
     def replace(self, name: str, percepts: Iterable[Value], now: float) -> None:
-        """All that the sensors of this name say now, for what can be several things at once, or nothing:
+        """Replace all readings of this name, for sensors that can report several things at once, or nothing:
         `replace("fault", ["fault(bump)","fault(cliff)"], now)`. Raises like `arrived`, and then nothing has changed."""
         readings: dict[Sensor, set[Value]] = {}
         for percept in percepts:
@@ -97,7 +97,7 @@ class Perception:
         self._latest = {sensor: reading for sensor, reading in self._latest.items() if sensor.name != name}
 
     def now(self, now: float) -> frozenset[Value]:
-        """What the agent perceives in this cycle; what is drained is gone with it."""
+        """Return the percepts of this cycle, and remove those that are drained."""
         self._latest = {
             sensor: reading for sensor, reading in self._latest.items() if self._is_fresh(sensor, reading, now)
         }

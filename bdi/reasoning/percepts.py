@@ -1,4 +1,4 @@
-"""What is perceived now, compared with what was: only the difference costs time."""
+"""Percepts compared with those of the cycle before: only the difference costs time."""
 
 from collections.abc import Iterable
 from operator import attrgetter
@@ -29,7 +29,7 @@ class Percept:
         self.args = literal.args
         self.annots = (*literal.annots, PERCEPT)
         self.plain = all(type(arg) in FIXED for arg in literal.args)
-        self.belief = Belief(literal.args, self.annots)  # the same one whenever nobody else believes it
+        self.belief = Belief(literal.args, self.annots)  # reused while the percept is its only source
         self.open = not is_ground(literal)
         perceived = literal_of(literal.predicate, literal.args, self.annots)
         self.added = _event(Trigger.BELIEF_ADDED, perceived, mind)
@@ -86,7 +86,7 @@ Change: TypeAlias = tuple[frozenset[Any], list[Percept], list[Percept]]  # what 
 
 
 class Percepts:
-    """What is perceived, in the notation in which it came: text, or terms, or (once both were met) always terms."""
+    """The current percepts, in the notation in which they came: text, terms, or (once both were met) always terms."""
 
     def __init__(self, mind: Mind) -> None:
         self.now: frozenset[Any] = frozenset()

@@ -1,4 +1,4 @@
-"""What a message of another agent does, by its performative: first it is read, at the door, later obeyed."""
+"""Performatives: how the content of a message is read on arrival, and what obeying it does."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -128,7 +128,7 @@ def _achieve(mind: Mind, message: Message, goals: Sequence[Literal]) -> None:
 
 
 def _unachieve(mind: Mind, message: Message, goal: Literal) -> None:
-    """Whoever wanted it: a goal that is pursued again by its own plan has lost its sender."""
+    """Drop the goal, whatever its source: a goal that its own plan pursues again has lost its sender."""
     drop_desire(mind, goal)
 
 

@@ -51,9 +51,9 @@ class Recovery:
             self._give_up(intention, failure)
 
     def _fail_below(self, intention: Intention, height: int, annots: tuple[Term, ...]) -> bool:
-        """Post the failure of the topmost goal below this height that somebody has a plan for. False: nobody has."""
+        """Post the failure of the topmost goal below this height that has a plan for it. Return False if none has."""
         for place in range(height - 1, -1, -1):
-            if intention.fork is not None and self._loses(intention, place):
+            if intention.fork is not None and self._ends_branch(intention, place):
                 return True
             means = intention.stack[place]
             trigger = FAILURE_OF.get(means.event.trigger)
@@ -63,9 +63,8 @@ class Recovery:
                 return True
         return False
 
-    def _loses(self, intention: Intention, place: int) -> bool:
-        """Whether it is a branch of `a ||| b` in the plan at this place that others still run for; then only the branch
-        is over."""
+    def _ends_branch(self, intention: Intention, place: int) -> bool:
+        """End a branch of `a ||| b` in the plan at this place if other branches still run. Return False otherwise."""
         branch: Intention | Fork = intention
         fork = intention.fork
         while fork is not None and place < fork.height:
@@ -107,7 +106,7 @@ class Recovery:
     def fail_event(self, event: Event) -> None:
         """A goal that no plan is for, or none whose context holds."""
         if event.trigger in META:
-            return  # nobody waits for what is only told
+            return  # no intention waits for a meta event
         known = bool(relevant(event.options, event.literal))
         error = "no_applicable" if known else "no_relevant"
         problem = "no plan has a context that holds" if known else "there is no plan"
@@ -119,7 +118,7 @@ class Recovery:
         intention = event.intention
         height = len(intention.stack) if intention is not None else 0
         annots = event.annots
-        if trigger is None:  # the plan for a failure does not apply: nobody else is asked
+        if trigger is None:  # the plan for a failure does not apply: no other is tried
             failure = _first_failure(annots)
         else:
             last = None if intention is None else intention.last
@@ -151,7 +150,7 @@ class Recovery:
         reached = intention.stack[place]
         reached.step, reached.loops = None, ()
         if self.intention_base.clear_finished(intention, reached) and intention is not self.agent.current:
-            self.intention_base.resume(intention)
+            self.intention_base.make_ready(intention)
             if turn is not None:  # it keeps its turn
                 self.agent.running.insert(turn, self.agent.running.pop())
 
@@ -172,7 +171,7 @@ class Recovery:
         if event.intention is not None:
             self.intention_base.interrupt(event.intention)
         else:
-            (self.agent.held_events if event in self.agent.held_events else self.agent.events).remove(event)
+            (self.agent.suspended_events if event in self.agent.suspended_events else self.agent.events).remove(event)
 
     def give_up_goal(self, intention: Intention, is_goal: Callable[[Means], bool], failure: StepFailed) -> None:
         """The lowest goal like this counts as failed."""
@@ -203,7 +202,7 @@ def _place_of(intention: Intention, is_goal: Callable[[Means], bool]) -> int | N
 
 
 def _code_of(step: Step) -> str:
-    """What stands there; of a compound step, such as `if`, all of it."""
+    """Return the text of a step; of a compound step, such as `if`, all of it."""
     return show(step.source.term) if hasattr(step.source, "term") else str(step.source)
 
 
@@ -231,7 +230,7 @@ def _reason_of(failure: Term | str) -> Term:
 
 
 def _first_failure(annots: tuple[Term, ...]) -> StepFailed:
-    """What a failure event is about."""
+    """Return the failure that an event reports."""
     message = next(each.args[0] for each in annots if type(each) is Structure and each.predicate is ERROR_MESSAGE)
     return StepFailed(show(_error_of(annots)), text_of(message))
 

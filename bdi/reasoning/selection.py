@@ -70,7 +70,7 @@ class Table:
         return rank
 
     def of_plan(self, plan: Plan) -> int:
-        """What its label says. A level that the table does not have, of a plan that was told, counts as none."""
+        """Return the level in its label. An unknown level, of a plan that another agent sent, counts as none."""
         level = _level_of(plan)
         return self.none if level is None else self.ranks.get(show(level), self.none)
 
@@ -155,8 +155,8 @@ class Priorities:
         best: Event | None = None
         urgency = 0
         for event in list(mind.events):
-            about_nobody = not event.options and event.intention is None and event.trigger in BELIEF_EVENTS
-            if about_nobody and (mind.scopes is None or not mind.scopes.awaits(event)):
+            is_ignored = not event.options and event.intention is None and event.trigger in BELIEF_EVENTS
+            if is_ignored and (mind.scopes is None or not mind.scopes.awaits(event)):
                 mind.events.remove(event)
                 continue
             level = self.of_event(event)

@@ -1,4 +1,4 @@
-"""What comes in beside messages: percepts, news of actions, and the moments that somebody waits for."""
+"""Percepts, and the passing of time: waits and deadlines that are over."""
 
 from heapq import heappop
 
@@ -70,7 +70,7 @@ class Sensing:
             self.event_queue.tell_waiters(event.trigger, event.literal)
 
     def wake(self) -> None:
-        """What waited for a moment goes on; what is too late fails."""
+        """Continue intentions whose wait is over; fail those that are too late."""
         agent = self.agent
         while agent.timers and agent.timers[0][0] <= agent.now:
             _, _, intention = heappop(agent.timers)

@@ -26,7 +26,7 @@ USER = "user"  # who a message is from if the file does not say
 
 @dataclass(frozen=True, slots=True)
 class Stimulus:
-    """What one cycle gets. `percepts` None: nothing new; `messages` are (performative, content, sender); `others`
+    """The input of one cycle. `percepts` None: nothing new; `messages` are (performative, content, sender); `others`
     is what agents of these names get instead."""
 
     percepts: tuple[str, ...] | None
@@ -34,7 +34,7 @@ class Stimulus:
     others: tuple[tuple[str, "Stimulus"], ...] = ()
 
     def of(self, agent: str) -> "Stimulus":
-        """What the agent of this name gets."""
+        """Return the input of the agent of this name."""
         return dict(self.others).get(agent, self)
 
     def messages_to(self, agent: str) -> list[Message]:
@@ -78,7 +78,7 @@ def split_literals(line: str) -> list[str]:
 
 
 def read_at(place: Place, text: str, read: Callable[[str], Term]) -> str:
-    """What `read` makes of a part of a line, as AgentSpeak writes it, so that equal terms are equal texts. Raises
+    """Return a part of a line in the notation of AgentSpeak, so that equal terms are equal texts. Raises
     AgentSpeakSyntaxError with the place in the file."""
     try:
         return show(read(text))

@@ -136,7 +136,7 @@ class _Report:
             typer.echo(json.dumps({"cycle": happened.cycle, **whose, **filled}))
 
     def close(self, simulation: Simulation) -> None:
-        """What somebody may wonder about at the end."""
+        """Print hints about how the run ended."""
         for name in sorted(simulation.setting.failing - simulation.started):
             aside(f"--fail {name}: no action of this name was started")
         if self.silent:

@@ -22,7 +22,7 @@ Prepare = Callable[[Agent, Program], None]  # may listen to an agent before its 
 
 
 class Happened(NamedTuple):
-    """What one agent did in one cycle, and what it sent, be it to other agents or outside."""
+    """The outputs of one agent in one cycle, with all messages that it sent."""
 
     cycle: int
     agent: str
@@ -89,8 +89,10 @@ class Simulation:
             yield from happened
 
     def cycle(self) -> tuple[Happened, ...]:
-        """What each agent does in the next cycle; nothing when the run is over. Raises UnknownAgent for percepts of
-        somebody who never was there."""
+        """Run the next cycle of each agent; return nothing when the run is over.
+
+        Raises UnknownAgent for percepts of an agent that never was there.
+        """
         if self.over:
             return ()
         scripted = self.setting.stimuli

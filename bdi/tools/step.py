@@ -91,7 +91,7 @@ def step(
 
 
 def _lines(commands: Path | None, console: Console, echo: bool) -> Iterator[str]:
-    """What is typed, piped or written in a file. What is not typed is shown, so that the output reads by itself."""
+    """Yield the commands, typed, piped or from a file. Those not typed are echoed to complete the output."""
     if commands is None and sys.stdin.isatty():
         yield from _typed(console)
         return

@@ -29,7 +29,7 @@ def intention_told(agent: Agent, intention: Intention) -> IntentionTold:
     beside = tuple(one.number for one in branches_of(intention) if one is not intention)
     return IntentionTold(
         number=intention.number,
-        state="suspended" if intention.held else intention.state.name.lower(),
+        state="suspended" if intention.suspended else intention.state.name.lower(),
         because=because(explain_intention(agent, intention)),
         stack=tuple(_means(agent.choices, means) for means in intention.stack[-MOST_GOALS:]),
         beside=beside[:MOST_GOALS],

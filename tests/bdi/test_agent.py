@@ -1,4 +1,4 @@
-"""What a body sees of an agent: actions, cancellations, failures, messages, waiting."""
+"""The agent as its body sees it: actions, cancellations, failures, messages, waiting."""
 
 from collections.abc import Iterable
 from typing import Any

@@ -1,4 +1,4 @@
-"""What is believed: percepts, facts with variables, facts that change while they are asked for, what is refused."""
+"""Beliefs: percepts, facts with variables, facts that change while they are asked for, refused ones."""
 
 import pytest
 
@@ -141,7 +141,7 @@ def test_a_proof_may_be_long_wherever_it_is_asked_for(step: str) -> None:
 
 
 def test_branches_do_not_take_each_others_variables() -> None:
-    """What they found out is put together where they meet."""
+    """Branches combine their values where they join."""
     assert acts("!g. +!g <- (X = 1; a(X)) |&| (Y = 2; b(Y)); c(X,Y).") == ["a(1)", "b(2)", "c(1,2)"]
     program = "!g. +!g <- (X = 1; a(X)) |&| (.wait(0); X = 2; b(X)). -!g[error(E)] <- failed(E)."
     assert acts(program) == ["a(1)", "b(2)"]

@@ -23,7 +23,7 @@ def run(text: str, moments_s: Sequence[float] = TENTHS_S, seed: int = 1) -> list
 
 
 def steps(*lines: str, beliefs: str = "") -> list[str]:
-    """What a plan of these steps does."""
+    """Return the outputs of a plan of these steps."""
     return run(f"{beliefs} !g. +!g <- {'; '.join(lines)}.")
 
 

@@ -1,4 +1,4 @@
-"""What is wrong with a call is said when the agent is made; and no internal action is forgotten."""
+"""Calls of internal actions are checked when the agent is made; every internal action is tested."""
 
 import pytest
 

@@ -34,7 +34,7 @@ class Run:
     def nothing_is_left(self) -> bool:
         gc.collect()
         agent = self.agent
-        left = (agent.intentions, agent.events, agent.held_events, agent.running, agent.timers, agent.waiters)
+        left = (agent.intentions, agent.events, agent.suspended_events, agent.running, agent.timers, agent.waiters)
         return agent.idle and not agent.deadlines and not any(left)
 
 

@@ -1,4 +1,4 @@
-"""What a plan for a failure is told: the kind of error, a sentence, the step and its place."""
+"""Annotations of a failure event: the kind of error, a sentence, the step and its place."""
 
 import pytest
 

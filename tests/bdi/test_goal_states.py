@@ -4,7 +4,7 @@ from bdi import Agent, Finished, Message, parse_program
 
 
 def heard(program: str, cycles: int = 40, finish: bool = True, fail: str = "") -> list[str]:
-    """What a plan `^!g[state(S)] <- .print(S)` and the like print; actions succeed at once, or never."""
+    """Return what plans such as `^!g[state(S)] <- .print(S)` print; actions succeed at once, or never."""
     agent = Agent(parse_program(program))
     said: list[str] = []
     finished: list[Finished] = []

@@ -88,9 +88,9 @@ def test_a_sub_goal_that_is_only_an_event_can_be_suspended() -> None:
     run = Run(program, quick=False)
     run.more(3)
     intention = run.agent.intentions[1]
-    run.agent.suspension.hold(intention)
+    run.agent.suspension.suspend(intention)
     assert run.more(3, "a") == []
-    run.agent.suspension.release(intention)
+    run.agent.suspension.resume(intention)
     assert run.more(30) == ["bad"]
 
 
@@ -153,7 +153,7 @@ def test_dropping_what_was_suspended_leaves_nothing() -> None:
     run.more(20)
     assert run.cancelled == ["drive"]
     assert not run.agent.intentions
-    assert not run.agent.held_events
+    assert not run.agent.suspended_events
 
 
 def test_dropping_one_branch_drops_the_intention() -> None:

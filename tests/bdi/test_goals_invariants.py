@@ -1,4 +1,4 @@
-"""Random programs that suspend, resume, drop, succeed and fail each other's goals: whatever they do, every started
+"""Random programs that suspend, resume, drop, succeed and fail each other's goals: every started
 action is finished or cancelled exactly once, and nothing of a goal that is over stays behind."""
 
 from hypothesis import HealthCheck, given, note, settings
@@ -56,7 +56,7 @@ def programs(draw: st.DrawFn) -> str:
 
 
 class Body:
-    """What a body knows of the actions: which are started, over, cancelled."""
+    """A body's record of its actions: started, over, cancelled."""
 
     def __init__(self) -> None:
         self.open: list[int] = []
@@ -87,7 +87,7 @@ def check(agent: Agent, body: Body) -> None:
     for intention in running:
         assert intention in alive
         assert intention.state is State.RUNNING
-        assert not intention.held
+        assert not intention.suspended
         assert intention.stack
     assert sorted(agent.pending) == sorted(body.open)
     for number, intention in agent.pending.items():
@@ -98,14 +98,14 @@ def check(agent: Agent, body: Body) -> None:
     assert all(intention in alive for intention in waiting)
     assert len(waiting) == len(set(map(id, waiting))), "waits for two things"
     for event in agent.events:
-        assert event.intention is None or (event.intention in alive and not event.intention.held)
-    for event in agent.held_events:
-        assert event.intention is None or event.intention.held
+        assert event.intention is None or (event.intention in alive and not event.intention.suspended)
+    for event in agent.suspended_events:
+        assert event.intention is None or event.intention.suspended
     assert agent.atomic is None or agent.atomic in alive
-    by_event = [event.intention for event in (*agent.events, *agent.held_events) if event.intention is not None]
+    by_event = [event.intention for event in (*agent.events, *agent.suspended_events) if event.intention is not None]
     busy = {*map(id, running), *map(id, waiting), *map(id, agent.pending.values()), *map(id, by_event)}
     for intention in alive:
-        kept = intention.held or intention.state is State.CONDITION
+        kept = intention.suspended or intention.state is State.CONDITION
         assert id(intention) in busy or kept, f"{intention} is forgotten"
         if intention.fork is not None:
             assert intention in intention.fork.intentions()

@@ -43,7 +43,7 @@ FEW = 400  # what so many cycles may leave behind: far less than one object for 
 
 
 def run_of(agent: Agent, acted: Counter[str]) -> Callable[[int], None]:
-    """What runs so many cycles more and counts the actions; every seventh action fails."""
+    """Return a function that runs so many more cycles and counts the actions; every seventh action fails."""
     finished: list[Finished] = []
     number = 0
 
@@ -72,7 +72,7 @@ def test_a_hundred_thousand_cycles_leave_nothing_behind() -> None:
 
 
 def a_hundred_thousand_cycles() -> tuple[Counter[str], int, int]:
-    """What was done in them, and what they have left: objects and blocks of memory."""
+    """Run cycles; return the actions, and the objects and blocks of memory that are left."""
     acted: Counter[str] = Counter()
     run = run_of(Agent(parse_program(ROBOT)), acted)
     run(WARM_UP)
@@ -90,7 +90,7 @@ def test_nobody_is_remembered_who_is_gone() -> None:
 
 
 def plans_and_questions_come_and_go() -> tuple[int, int]:
-    """What a round of them leaves: objects and blocks of memory. After each whole round as many questions are
+    """Return the objects and blocks of memory that a round leaves. After each whole round as many questions are
     remembered as ever are: in between it may be a hundred or all."""
     agent = Agent(
         parse_program("q(a). +!go(N) <- .add_plan({ @p +!h : q(_) <- true }); !h; .remove_plan(p); !go(N+1).")

@@ -1,4 +1,4 @@
-"""What was recorded with Jason 3.3.2 must come out here: 40 programs, 900 terms, and the paper's agent.
+"""Results recorded with Jason 3.3.2 are ours too: 40 programs, 900 terms, and the paper's agent.
 
 The records lie beside the checkout (shared/cases); without them these tests are skipped and say so.
 """

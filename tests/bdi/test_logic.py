@@ -195,7 +195,7 @@ quick = settings(
 
 
 def facts_of(agent: Agent) -> list[Fact]:
-    """What the agent has, in the order in which it is found: beliefs with their annotations, and rules."""
+    """Return the beliefs with their annotations, and the rules, in the order in which they are found."""
     found: list[Fact] = []
     for relation in agent.beliefs.relations.values():
         for key in reversed(relation.facts):
@@ -208,7 +208,7 @@ def facts_of(agent: Agent) -> list[Fact]:
 
 
 def meant(formula: str, agent: Agent, given: dict[str, str] | None = None) -> list[dict[str, str]]:
-    """What X, Y and Z are in each answer."""
+    """Return X, Y and Z of each answer."""
     wrapped = parse_term(f"all({formula},X,Y,Z)")
     assert isinstance(wrapped, Structure)
     term, *wanted = wrapped.args
@@ -314,7 +314,7 @@ def test_a_formula_means_the_same_wherever_it_stands(
 
 
 def done_for(agent: Agent, x: str) -> dict[str, str] | None:
-    """What X, Y and Z were in the action that was done for g(x); None if it was the other one."""
+    """Return X, Y and Z of the action for g(x); None if it was the other one."""
     message, acts = [Message("tester", "achieve", f"g({x})")], []
     for _ in range(6):
         acts += agent.cycle(None, message).actions

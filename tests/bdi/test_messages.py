@@ -1,4 +1,4 @@
-"""What messages do, performative by performative, and what an agent's own plans for messages change."""
+"""Effects of messages, performative by performative, and of an agent's own plans for messages."""
 
 import pytest
 from hypothesis import given, settings
@@ -17,7 +17,7 @@ def told(agent: Agent, performative: str, content: str, sender: str = "bob", **m
 
 
 def actions(agent: Agent, cycles: int = 8, start_s: float = 0.0) -> list[str]:
-    """What it does in the next cycles, a second apart; no action ever ends."""
+    """Return the outputs of the next cycles, a second apart; no action ever ends."""
     return [str(each) for n in range(cycles) for each in agent.cycle(now=start_s + n).actions]
 
 
@@ -176,7 +176,7 @@ def test_who_may_tell_and_want_what_is_decided_by_a_function() -> None:
     assert [str(each) for each in answer.actions] == ["know(false)"]
 
 
-# ---- whatever comes in ---------------------------------------------------------------------------------------------
+# ---- any input -----------------------------------------------------------------------------------------------------
 
 OWN_PLANS = """
 r(X) :- .nth(9,[a],X).

@@ -14,7 +14,7 @@ def told(agent: Agent, performative: str, content: str, sender: str = "bob", **m
 
 
 def actions(agent: Agent, cycles: int = 8, start_s: float = 0.0) -> list[str]:
-    """What it does in the next cycles, a second apart; no action ever ends."""
+    """Return the outputs of the next cycles, a second apart; no action ever ends."""
     return [str(each) for n in range(cycles) for each in agent.cycle(now=start_s + n).actions]
 
 

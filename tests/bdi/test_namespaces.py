@@ -20,7 +20,7 @@ def reader(files: Mapping[str, str]) -> Read:
 
 
 def deeds(text: str, cycles: int = 40, **files: str) -> list[str]:
-    """What is done and printed; the files are modules with the ending .asl."""
+    """Return what is done and printed; the files are modules with the ending .asl."""
     read = reader({f"{name}.asl": content for name, content in files.items()})
     return done_by(Agent(parse_program(text, read=read), includes=Includes(read)), cycles)
 

@@ -309,7 +309,7 @@ def test_a_part_is_cut_out_of_a_text_that_comes_first_or_second() -> None:
 
 
 def test_every_source_of_a_belief_is_an_answer_of_its_own() -> None:
-    """Who votes for the same counts twice: one belief, two sources."""
+    """Two votes for the same candidate: one belief, two sources."""
     text = """yes[source(ann),source(bob)]. at(uc)[source(gps),k(1),k(2)].
         most(N) :- .count(yes[source(_)],N).
         !g. +!g <- ?most(N); .findall(S,yes[source(S)],L); .findall(S-K,at(_)[source(S),k(K)],M); show(N,L,M);

@@ -180,7 +180,7 @@ def recorded(text: str, **options: Any) -> tuple[Recorder, io.StringIO]:
 
 
 def test_any_agent_can_be_recorded_whatever_it_is_given(tmp_path: Path) -> None:
-    """Percepts and contents as terms or text, reasons of failures, seeds that nobody knows, entries of the trace."""
+    """Percepts and contents as terms or text, reasons of failures, unknown seeds, entries of the trace."""
     recorder, file = recorded(
         "+!g(X) <- .random(R); act(X, R). -!g(X)[reason(Y)] <- sorry(X, Y). +p(X) : X > 1 <- seen(X).",
         actions=["act", "sorry", "seen"],

@@ -54,7 +54,7 @@ ALL_TABLES = [line for line in PAGE.splitlines() if line.startswith("## ")]
 
 
 def names(title: str) -> list[str]:
-    """What the first cells of a table call things, without arguments."""
+    """Return the names in the first cells of a table, without arguments."""
     return [code.partition("(")[0] for row in rows(title) for code in CODE.findall(row[0])]
 
 

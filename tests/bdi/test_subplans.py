@@ -15,7 +15,7 @@ class Run:
         self._cycle = 0
 
     def cycles(self, count: int, *percepts: str, done: str | None = None, failed: str | None = None) -> "Run":
-        """What an action is named by is over in the first of the cycles."""
+        """Return the outputs of some cycles; the named actions end in the first of them."""
         for _ in range(count):
             self._cycle += 1
             finished = [Finished(self.under_way.pop(name).id) for name in (done,) if name]

@@ -1,4 +1,4 @@
-"""What people write by mistake, and the sentence that says how to mend it."""
+"""Common mistakes in programs, and the sentence that says how to correct each."""
 
 import sys
 from types import FrameType

@@ -15,7 +15,7 @@ OK = "!go. +!go <- act. "  # a goal with its plan, so that nothing else is found
 
 
 def codes(text: str, percepts: list[str] | None = None) -> list[str]:
-    """What is found, but for hints."""
+    """Return the findings without hints."""
     found = findings_of(parse_program(text), percepts)
     return [each.code for each in found if each.severity is not Severity.HINT]
 
@@ -125,7 +125,7 @@ def test_in_the_robots_own_program_nothing_is_found_not_even_a_hint() -> None:
 
 
 def test_a_failure_that_no_plan_takes_ends_the_intention_and_check_says_so() -> None:
-    """What the warning says is what happens: the plan of the goal below is not asked."""
+    """The warning is true: the plan of the goal below is not tried."""
     program = "!trip. +!trip <- !leg. -!trip <- saved. +!leg <- drive. -!leg[reason(blocked)] <- rest."
     agent = Agent(parse_program(program))
     (drive,) = [action for _ in range(5) for action in agent.cycle(None, [], [], 0.0).actions]

@@ -237,7 +237,7 @@ def test_in_a_terminal_it_prompts_and_colours() -> None:
 
 
 def read_until(terminal: int, awaited: str) -> str:
-    """What comes until this text is there, or 20 seconds have passed."""
+    """Read until this text is there, or 20 seconds have passed."""
     text, end = "", time.monotonic() + 20
     while time.monotonic() < end and not (awaited and awaited in text):
         if select.select([terminal], [], [], 0.1)[0]:

@@ -1,4 +1,4 @@
-"""What an agent tells while somebody listens."""
+"""Trace entries for a listener."""
 
 import json
 
@@ -15,7 +15,7 @@ near(uc).
 
 
 def choice(plans: str, beliefs: str = COURIER, percepts: tuple[str, ...] = ()) -> Deliberated:
-    """What was chosen for the first goal of this program, and why."""
+    """Return the choice for the first goal of this program, with its reasons."""
     agent = Agent(parse_program(beliefs + "!go(library,2). " + plans))
     agent.listen(lambda entry: None, explain=True)
     for _ in range(10):
@@ -26,7 +26,7 @@ def choice(plans: str, beliefs: str = COURIER, percepts: tuple[str, ...] = ()) -
 
 
 def verdict(plan: str, **options: str) -> Verdict:
-    """What is said of this plan, which comes before one that applies."""
+    """Return the verdict on this plan, which comes before one that applies."""
     return choice(f"{plan} @last +!go(_,_) <- stay.", **options).verdicts[0]  # type: ignore[arg-type]
 
 

@@ -15,7 +15,7 @@ BELIEVED = Kind("a literal or a rule", lambda value: type(value) in (Atom, Struc
 
 @internal_action("abolish", LITERAL)
 def abolish(mind: Mind, pattern: Literal) -> Answer:
-    """Forget every belief that unifies, whoever said it."""
+    """Forget every belief that unifies, whatever its source."""
     mind.actions.forget_all(pattern)
     return True
 

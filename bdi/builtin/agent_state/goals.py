@@ -19,7 +19,7 @@ from bdi.model.waiting import reason_of
 
 
 def _pursues(mind: Mind, goal: Term) -> Callable[[Means], bool]:
-    """Whether means are for this goal."""
+    """Return a test whether means are for this goal."""
     return lambda means: (
         means.event.trigger in (Trigger.GOAL_ADDED, Trigger.GOAL_FAILED) and unifiable(mind, goal, means.event.literal)
     )
@@ -35,8 +35,8 @@ def _intentions_for(mind: Mind, goal: Term) -> Iterator[Intention]:
 
 def _events_for(mind: Mind, goal: Term) -> Iterator[Event]:
     """Goals that no plan is chosen for yet."""
-    for event in [*mind.events, *mind.held_events]:
-        still = event in mind.events or event in mind.held_events
+    for event in [*mind.events, *mind.suspended_events]:
+        still = event in mind.events or event in mind.suspended_events
         if still and event.trigger is Trigger.GOAL_ADDED and unifiable(mind, goal, event.literal):
             yield event
 
@@ -46,7 +46,7 @@ def _events_for(mind: Mind, goal: Term) -> Iterator[Event]:
 
 @internal_action("drop_all_intentions")
 def drop_all_intentions(mind: Mind) -> Answer:
-    """All but the one that says so, with its branches; events of the world stay."""
+    """Drop all intentions but the one that calls this, with its branches; events of the world stay."""
     mine = mind.current
     for intention in list(mind.intentions.values()):
         if mine is None or not intention.is_beside(mine):
@@ -63,8 +63,8 @@ def drop_all_desires(mind: Mind) -> Answer:
 @internal_action("drop_all_events")
 def drop_all_events(mind: Mind) -> Answer:
     """With the intentions that wait for one."""
-    for event in [*mind.events, *mind.held_events]:
-        if event in mind.events or event in mind.held_events:
+    for event in [*mind.events, *mind.suspended_events]:
+        if event in mind.events or event in mind.suspended_events:
             mind.intention_base.drop_event(event)
     return True
 
@@ -114,7 +114,7 @@ def desire(mind: Mind, goal: Term, intention: Term | None = None) -> Answer:
     """A goal that is still an event, or intended."""
     waiting = [
         ((goal, event.literal),)
-        for event in (*mind.events, *mind.held_events)
+        for event in (*mind.events, *mind.suspended_events)
         if event.trigger is Trigger.GOAL_ADDED and intention is None
     ]
     return alternatives(mind, [*waiting, *_intended(mind, goal, intention)])
@@ -168,25 +168,25 @@ def intention(mind: Mind, number: Term, state: Term, stack: Term | None = None, 
 @internal_action("suspend", optional(GOAL))
 def suspend(mind: Mind, goal: Term | None = None) -> Answer:
     if goal is None:
-        mind.suspension.hold(running_intention(mind, "suspend"))
+        mind.suspension.suspend(running_intention(mind, "suspend"))
         return True
     for intention in _intentions_for(mind, goal):
-        if not intention.held:
-            mind.suspension.hold(intention)
+        if not intention.suspended:
+            mind.suspension.suspend(intention)
     for event in _events_for(mind, goal):
-        if event not in mind.held_events:
-            mind.suspension.hold_goal(event)
+        if event not in mind.suspended_events:
+            mind.suspension.suspend_goal(event)
     return True
 
 
 @internal_action("resume", GOAL)
 def resume(mind: Mind, goal: Term) -> Answer:
-    """What `.suspend` suspended; what only waits goes on waiting."""
+    """Resume what `.suspend` suspended; intentions that only wait go on waiting."""
     for intention in _intentions_for(mind, goal):
-        mind.suspension.release(intention)
+        mind.suspension.resume(intention)
     for event in _events_for(mind, goal):
-        if event in mind.held_events:
-            mind.suspension.release_goal(event)
+        if event in mind.suspended_events:
+            mind.suspension.resume_goal(event)
     return True
 
 
@@ -201,10 +201,10 @@ def _reasons(mind: Mind, goal: Term) -> Iterator[Term]:
         awaited = reason_of(intention)
         if awaited is not None:
             yield awaited
-        if intention.held:
+        if intention.suspended:
             yield atom("suspended")
     for event in _events_for(mind, goal):
-        if event in mind.held_events:
+        if event in mind.suspended_events:
             yield atom("suspended")
 
 
@@ -241,6 +241,6 @@ def fail_goal(mind: Mind, goal: Term, *annots: Term) -> Answer:
     for intention in _intentions_for(mind, goal):
         mind.recovery.give_up_goal(intention, _pursues(mind, goal), failure)
     for event in events:
-        if event in mind.events or event in mind.held_events:
+        if event in mind.events or event in mind.suspended_events:
             mind.recovery.give_up_waiting(event, failure)
     return True

@@ -15,12 +15,12 @@ from bdi.model.mind import Mind
 def learn(mind: Mind, code: Code, does: Does) -> None:
     """+{…} learns (a plan after the others, a rule before the older ones; +<{…} and +>{…} say where), -{…} forgets.
     What is not known is forgotten already. Raises StepFailed for anything but a plan or a rule."""
-    held = with_values(code)
-    if not isinstance(held, Plan | Rule) or does not in _DEEDS:
+    quoted = with_values(code)
+    if not isinstance(quoted, Plan | Rule) or does not in _DEEDS:
         raise StepFailed("wrong_arguments", f"{does.value}{show(code)} is no plan or rule to learn or forget")
     if does in (Does.REMOVE, Does.REMOVE_APART):
-        _forget_plan(mind, held) if isinstance(held, Plan) else _forget_rule(mind, held)
-    elif isinstance(held, Plan):
+        _forget_plan(mind, quoted) if isinstance(quoted, Plan) else _forget_rule(mind, quoted)
+    elif isinstance(quoted, Plan):
         add_plan(mind, code, place=atom("begin") if does is Does.ADD_FIRST else None)
     else:
         (assertz if does is Does.ADD_LAST else asserta)(mind, code)
@@ -32,7 +32,7 @@ _DEEDS = frozenset(
 
 
 def _forget_plan(mind: Mind, plan: Plan) -> None:
-    """By its label; without one, whatever is written alike."""
+    """By its label; without one, every plan of the same text."""
     for known in list(mind.library.plans):
         written = known.plan if plan.label.functor else replace(known.plan, label=atom(""))
         if known.label == plan.label.functor or str(written) == str(plan):

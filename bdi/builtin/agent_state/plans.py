@@ -30,7 +30,7 @@ def add_plan(mind: Mind, plans: Term, source: Term = SELF.args[0], place: Term |
 
 
 def _labelled(mind: Mind, plan: Plan, source: Term) -> Plan:
-    """A plan without a name gets one that no other has; one of somebody else says whose it is."""
+    """A plan without a name gets a new one; the name of a plan from another agent says whose it is."""
     key, args, annots = plan.label.predicate, plan.label.args, plan.label.annots
     if not key.name:
         taken = {compiled.label for compiled in mind.library.plans}
@@ -42,7 +42,7 @@ def _labelled(mind: Mind, plan: Plan, source: Term) -> Plan:
 
 
 def _is_there(mind: Mind, plan: Plan) -> bool:
-    """Whether this very plan is known. Raises StepFailed for another one of this name."""
+    """Return whether this very plan is known. Raises StepFailed for another one of this name."""
     for compiled in mind.library.plans:
         if compiled.label == str(plan.label.predicate):
             if str(compiled.plan) == str(plan):
@@ -89,7 +89,7 @@ def _relevant(mind: Mind, term: Term, name: str) -> list[CompiledPlan]:
 
 
 def concerns(mind: Mind, plan: Plan, trigger: Trigger, head: Literal | Var) -> bool:
-    """Whether it is a plan for this event, whatever their annotations are."""
+    """Return whether it is a plan for this event, whatever their annotations are."""
     if plan.trigger is not trigger:
         return False
     if isinstance(head, Var) or isinstance(plan.head, Var):
@@ -113,9 +113,9 @@ def relevant_plans(mind: Mind, event: Term, plans: Term, labels: Term | None = N
 def relevant_plan(mind: Mind, event: Term, plan: Term) -> Answer:
     """Each relevant plan in turn; of a given plan, its event."""
     if isinstance(event, Var) and isinstance(plan, Code) and isinstance(plan.body, Plan):
-        held = plan.body
+        quoted = plan.body
         return unify(
-            event, Code(replace(held, label=atom(""), context=None, body=Body()), plan.scope), mind.logic.trail
+            event, Code(replace(quoted, label=atom(""), context=None, body=Body()), plan.scope), mind.logic.trail
         )
     found = _relevant(mind, event, "relevant_plan")
     return alternatives(mind, (((plan, _as_term(each.plan)),) for each in found))

@@ -18,7 +18,7 @@ def intention_term(intention: Intention) -> Term:
 
 
 def state_of(intention: Intention, current: Intention | None) -> Term:
-    if intention.held:
+    if intention.suspended:
         return atom("suspended")
     return atom("running" if intention.state is RUNNING or intention is current else "waiting")
 

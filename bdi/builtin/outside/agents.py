@@ -124,7 +124,7 @@ def df_subscribe(mind: Mind, service: Term, kind: Term = ANY_KIND) -> Answer:
 
 @internal_action("kqml.default", NAME, ATOM, ANY, NAME)
 def kqml_default(mind: Mind, sender: Term, performative: Term, content: Term, message_id: Term) -> Answer:
-    """What would happen if the program had no plan `+!kqml_received(SENDER, PERFORMATIVE, CONTENT, ID)`."""
+    """Process the message as if the program had no plan `+!kqml_received(SENDER, PERFORMATIVE, CONTENT, ID)`."""
     mind.message_handling.obey(Message(text_of(sender), text_of(performative), content, mind.name, text_of(message_id)))
     return True
 

@@ -1,4 +1,4 @@
-"""What the agent sends, and what it is called: `.send`, `.broadcast`, `.my_name`, …"""
+"""Messages and the agent's own name: `.send`, `.broadcast`, `.my_name`, …"""
 
 from dataclasses import replace
 
@@ -67,7 +67,7 @@ def broadcast(mind: Mind, performative: Atom, content: Term) -> Answer:
 def _post(mind: Mind, message: Message) -> None:
     if isinstance(message.content, Var):
         raise wrong_arguments("send", "something to say", message.content)
-    mind.message_handling.post(replace(message, content=own_copy(message.content)))
+    mind.message_handling.send_checked(replace(message, content=own_copy(message.content)))
 
 
 def _receiver(term: Term) -> str:
@@ -77,7 +77,7 @@ def _receiver(term: Term) -> str:
 
 
 def _question_id(term: Term) -> str:
-    """What is no question may be the answer to one: the id comes with +!kqml_received(_, _, _, ID)."""
+    """Return the id of the question that a message answers; it comes with +!kqml_received(_, _, _, ID)."""
     if isinstance(term, Atom | String):
         return text_of(term)
     raise wrong_arguments("send", "the id of the question that it answers, for what is no question", term)

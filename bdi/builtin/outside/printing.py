@@ -1,4 +1,4 @@
-"""What the agent says to those who watch it: `.print`, `.printf`, `.puts`, `.log`, …"""
+"""Output of text: `.print`, `.printf`, `.puts`, `.log`, …"""
 
 import re
 

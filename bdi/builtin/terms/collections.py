@@ -12,7 +12,7 @@ from bdi.model.logic import HasLogic
 
 
 def _made(mind: HasLogic, target: Term, kind: type) -> Any:
-    """What the variable holds; a free one holds a new one from here on."""
+    """Return the container that the variable holds; a free variable holds a new one from here on."""
     if isinstance(target, Var):
         made = Handle(kind())
         bind(mind, target, made)

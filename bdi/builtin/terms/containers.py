@@ -1,4 +1,4 @@
-"""What a variable of the program can hold and change in place: a map, a set, a queue."""
+"""Containers that a variable can hold and a program changes in place: maps, sets, queues."""
 
 from bisect import insort
 from collections import deque

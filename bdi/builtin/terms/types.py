@@ -1,4 +1,4 @@
-"""What a term is: `.atom`, `.ground`, `.type`, …; and terms with fresh variables."""
+"""Types of terms: `.atom`, `.ground`, `.type`, …; and terms with fresh variables."""
 
 from collections import deque
 from collections.abc import Callable
@@ -57,5 +57,5 @@ def copy_term(mind: HasLogic, term: Term, copy: Term) -> Answer:
 
 @internal_action("rename_apart", ANY, OUT)
 def rename_apart(mind: HasLogic, term: Term, copy: Term) -> Answer:
-    """The term with variables that nobody else has."""
+    """The term with fresh variables."""
     return bind(mind, copy, renamed(term, {}))

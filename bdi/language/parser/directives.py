@@ -1,4 +1,4 @@
-"""What `{ name(…) }` and `{ begin name(…) } … { end }` do to a program.
+"""Directives: `{ name(…) }` and `{ begin name(…) } … { end }`.
 
 A directive of one's own is a function from the directive, as it is written, and the clauses of its block (none without
 a block) to the clauses that stand there instead:
@@ -26,7 +26,7 @@ BUILT_IN = (*OF_FILES, *OF_SPACES, *OF_FUNCTIONS)
 
 
 def expanded(directive: Directive, clauses: tuple[Clause, ...], own: Directives) -> list[Clause]:
-    """What stands there instead: by a goal pattern, or by a directive of the caller's own."""
+    """Return the clauses that replace a directive: a goal pattern, or a directive of the caller's own."""
     name = directive.term.functor
     expand = own.get(name) or (PATTERNS.get(name) if directive.clauses is not None else None)
     if expand is None:

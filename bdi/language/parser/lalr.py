@@ -10,7 +10,7 @@ from bdi.language.parser.tables import Production, Row, Tables, tables
 END = "$END"
 WORD = "ATOM"  # what a keyword is where the grammar expects none
 HIGHEST = 4000  # stack; no text that is less deep needs more
-DEEPEST = 120  # rules inside each other; it keeps whatever walks through terms within the stack of Python
+DEEPEST = 120  # rules inside each other; it keeps recursion through terms within Python's stack
 
 
 class Token(NamedTuple):
@@ -115,7 +115,7 @@ class Parse:
         return self.values[-1]
 
     def meant(self, token: Token) -> list[Token]:
-        """What is meant by a token that cannot come. Raises Unexpected."""
+        """Return the token that was meant where this one cannot come. Raises Unexpected."""
         tokens = self.mend(self, token) if self.mend else None
         if tokens is None:
             raise Unexpected(token)
@@ -176,7 +176,7 @@ class Parse:
         self.depths.append(depth)
 
     def accepts(self, *kinds: str) -> bool:
-        """Whether these tokens could follow."""
+        """Return whether these tokens could follow."""
         states = self.states[:]
         return all(_shift(self.tables, states, kind) for kind in kinds)
 
@@ -196,7 +196,7 @@ def _children(kept: list[int], parts: list[Any]) -> list[Any]:
     if not kept:
         return []
     if kept[0] < 0:
-        children, rest = parts[~kept[0]], kept[1:]  # that list is nobody else's: it grows in place
+        children, rest = parts[~kept[0]], kept[1:]  # no other node uses that list: it grows in place
     else:
         children, rest = [], kept
     for place in rest:

@@ -1,4 +1,4 @@
-"""How older programs are written, and what is written today.
+"""Notations of older programs, and the present ones.
 
 `and` and `or` for `&` and `|` (as papers print them), steps without `;` between them, labels with a capital letter
 (both of Jason 2). In the compatibility mode they are read with a warning; otherwise the same words make the error.
@@ -13,16 +13,16 @@ WORDS_OF_OLD = {"and": "&", "or": "|"}
 
 
 class Mend(NamedTuple):
-    """What is meant by a token that cannot come now."""
+    """A present notation for an old one."""
 
-    tokens: list[Token]  # instead of it
-    start: int  # of what is written the old way
+    tokens: list[Token]  # instead of the one that cannot come
+    start: int  # of the old notation
     sentence: str
     today: str
 
 
 def mend(parse: Parse, token: Token) -> Mend | None:
-    """What an old program means by this token, if it can mean anything."""
+    """Return the present notation for a token of an old program, if there is one."""
     return _connective(parse, token) or _label(parse, token) or _separator(parse, token)
 
 

@@ -19,7 +19,7 @@ class Reason(NamedTuple):
 
 
 class Case(NamedTuple):
-    """What the parser knew when it could not go on."""
+    """The state of the parser when it could not go on."""
 
     token: Token  # that cannot come now
     before: list[Token]
@@ -38,7 +38,7 @@ class Case(NamedTuple):
         return self.parse.accepts(*map(kind_of, signs))
 
     def clause(self) -> list[Token]:
-        """What was read since the last full stop."""
+        """Return the tokens since the last full stop."""
         ends = [place for place, token in enumerate(self.before) if token.text == "."]
         return self.before[ends[-1] + 1 :] if ends else self.before
 

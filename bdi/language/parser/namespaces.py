@@ -144,7 +144,7 @@ class Module:
         return replace(step, condition=self.formula(step.condition), body=self.body(step.body))
 
     def _object(self, step: Simple) -> Term:
-        """What a step is about: an action belongs to the body, anything else that is named to the module."""
+        """Resolve the names in a step: an action belongs to the body, any other name to the module."""
         if step.does in (Does.ACTION, Does.INTERNAL, Does.VARIABLE):
             return self.term(step.term)
         return self.formula(step.term)

@@ -86,7 +86,7 @@ class Pursuit:
         return self.call(name, literal_of(key, literal.args, literal.annots))
 
     def give_up(self, *steps: Simple) -> Plan:
-        """-!g <- .fail, as last plan: whoever wanted the goal is told."""
+        """-!g <- .fail, as last plan: the failure goes on to the plan that wanted the goal."""
         error, message = structure("error", Var("E")), structure("error_msg", Var("M"))
         failed = Structure(self.goal.predicate, self.goal.args, (error, message))
         return self.plan(Trigger.GOAL_FAILED, failed, None, *steps, self.call("fail", error, message))
@@ -192,7 +192,7 @@ def sequenced(directive: Directive, clauses: tuple[Clause, ...]) -> list[Clause]
     asked, goal = _event_and_goal(directive)
     pursuit, place = Pursuit(goal, directive.place), directive.place
     wanted, pursue, other = structure(WANTED, goal), structure(PURSUE, goal), Var("G")
-    nobody = Structure(NOT, (structure(WANTED, Var("_")),))
+    not_wanted = Structure(NOT, (structure(WANTED, Var("_")),))
     done = pursuit.step(Does.REMOVE, wanted)
     # The first step is taken at once: a second event cannot slip in between.
     start = Body((Simple(Does.ADD_APART, wanted, place), Simple(Does.ACHIEVE_APART, pursue, place)))
@@ -200,7 +200,7 @@ def sequenced(directive: Directive, clauses: tuple[Clause, ...]) -> list[Clause]
     wait = Body((Simple(Does.ADD_LAST, wanted, place),))
     next_one = pursuit.step(Does.ACHIEVE_APART, structure(PURSUE, other))
     return [
-        replace(asked, label=at_once, context=_both(nobody, asked.context), body=start),
+        replace(asked, label=at_once, context=_both(not_wanted, asked.context), body=start),
         replace(asked, body=wait),
         pursuit.plan(Trigger.GOAL_ADDED, pursue, None, pursuit.step(Does.ACHIEVE, goal), done),
         pursuit.plan(Trigger.GOAL_FAILED, pursue, None, done),
@@ -245,7 +245,7 @@ def _literals(directive: Directive, count: int) -> tuple[Literal, ...]:
 
 
 def _is_literal(term: Term) -> TypeGuard[Literal]:
-    """Whether it can be believed and wanted: no comparison, no `NS::p`."""
+    """Return whether it can be believed and wanted: no comparison, no `NS::p`."""
     if not isinstance(term, Atom | Structure):
         return False
     return term.predicate not in NO_LITERALS and term.predicate is not IN_SPACE and not is_internal(term.functor)

@@ -1,4 +1,4 @@
-"""What a formula does as a step of a plan."""
+"""Formulas as steps of a plan."""
 
 from typing import NamedTuple
 
@@ -41,7 +41,7 @@ _BELIEF_STEPS = {
 
 
 def step_of(term: Term, place: Place) -> Simple:
-    """What a formula does as a step: signs make it a change of belief."""
+    """Return the kind of step that a formula is: signs make it a change of belief."""
     signs, inner = [], term
     while isinstance(inner, Structure) and inner.predicate in (NEGATIVE, POSITIVE):
         signs.append(inner.predicate)
@@ -88,7 +88,7 @@ def _deed_of(term: Term, place: Place) -> Does:
 
 
 def believed(term: Term, place: Place) -> Term:
-    """What can be added and removed: a belief, and `{ plan }` and `{ rule }`."""
+    """Check that this can be added and removed: a belief, `{ plan }` or `{ rule }`."""
     good = isinstance(term, Var | Code) or (
         isinstance(term, Atom | Structure) and term.predicate not in NO_LITERALS and not is_internal(term.functor)
     )

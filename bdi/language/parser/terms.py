@@ -1,4 +1,4 @@
-"""What the grammar says about terms and formulas."""
+"""The actions of the grammar for terms and formulas."""
 
 from functools import cmp_to_key
 from typing import Any, NamedTuple
@@ -157,8 +157,8 @@ class Terms:
     def tail(self, term: Term) -> Marked:
         return Marked("tail", term)
 
-    def code(self, held: Body | Plan | Rule) -> Term:
-        return Code(held, {variable: variable for variable in variables_of(held)})
+    def code(self, quoted: Body | Plan | Rule) -> Term:
+        return Code(quoted, {variable: variable for variable in variables_of(quoted)})
 
 
 def _literal(name: str, braces: list[Braces], negated: bool = False, space: str = "") -> Literal:

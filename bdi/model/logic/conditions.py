@@ -35,7 +35,7 @@ class Conditions(TermWriter, ABC):
 
     @abstractmethod
     def is_regular(self, relation: Relation) -> bool:
-        """Whether equality finds its facts. When that ends, what was compiled with it is compiled again."""
+        """Return whether equality finds its facts. When that ends, what was compiled with it is compiled again."""
 
     def condition(self, w: Writer, term: Term, flow: Flow, silent: bool = False) -> str | None:
         """A Python expression, if the formula binds nothing and has one answer at most.
@@ -88,7 +88,7 @@ class Conditions(TermWriter, ABC):
         return f"({quick} if {' and '.join(tests) or 'True'} else holds({name!r}, {a}, {b}))"
 
     def _equal(self, w: Writer, left: Term, right: Term, flow: Flow, silent: bool) -> str | None:
-        """X = Y, where equality says it all, or where nobody needs the bindings."""
+        """X = Y, where equality is enough, or where the bindings are not needed."""
         if is_simple(left) and is_simple(right):
             a, b = self.expression(w, left, flow), self.expression(w, right, flow)
             if flow.is_plain(left) and flow.is_plain(right):

@@ -200,7 +200,7 @@ class FormulaWriter(Conditions):
             w.replace(before, f"for {target} in {quick or slow}:", depth)
 
     def _continuation(self, w: Writer, flow: Flow, then: Then) -> str:
-        """What comes next as a function, for those who call it."""
+        """Write the continuation as a function of its own."""
         name = w.fresh("then")
         with w.function(name):
             then(flow)
@@ -290,7 +290,7 @@ class FormulaWriter(Conditions):
         self._rounds(w, "_", "", f"each({ask}({args}), trail)", "", then, flow)
 
     def arguments(self, w: Writer, term: Literal, builtin: Builtin, flow: Flow) -> tuple[str, Flow]:
-        """What an internal action is called with: values, and questions where it asks for them."""
+        """Write the arguments of an internal action: values, and questions where it asks for them."""
         lazy = [arg for place, arg in enumerate(term.args) if place in builtin.lazy]
         eager = [arg for place, arg in enumerate(term.args) if place not in builtin.lazy]
         for arg in eager:
@@ -308,7 +308,7 @@ class FormulaWriter(Conditions):
 
     @abstractmethod
     def variables_around(self) -> list[Var]:
-        """All variables of the plan that is being compiled."""
+        """Return all variables of the plan that is being compiled."""
 
     def _question(self, w: Writer, term: Term, concerned: list[Var], flow: Flow) -> str:
         """solve(known values…, collect), build(all values…), now(known values…)"""

@@ -1,4 +1,4 @@
-"""What compiled code works with: frames of variables, internal actions, questions."""
+"""Data of compiled code: frames of variables, internal actions, questions."""
 
 import sys
 from collections.abc import Callable, Iterable, Iterator
@@ -16,7 +16,7 @@ LONGEST_PROOF = 100_000  # calls; a step of a proof takes three to five
 
 
 class Builtin(Protocol):
-    """What `logic` needs to know of an internal action or function: how to call it."""
+    """An internal action or function as compiled code calls it."""
 
     lazy: frozenset[int]  # arguments handed over as questions, not as values
     named: bool  # whether the variables of the plan, by name, come first
@@ -37,7 +37,7 @@ def deep_stack() -> Iterator[None]:
 
 @dataclass(frozen=True, slots=True)
 class Known:
-    """What is known of the slots of a frame at one place of a program, before it runs."""
+    """Facts about the slots of a frame at one place of a program, before it runs."""
 
     filled: frozenset[Var] = frozenset()  # certainly not None
     met: frozenset[Var] = frozenset()  # perhaps not None
@@ -123,11 +123,11 @@ class Question:
         return answers
 
     def first(self) -> bool:
-        """Whether the formula is true, whatever its variables."""
+        """Return whether the formula is true, whatever its variables."""
         return self._asker.ask_within(lambda: self._solve(*self._values, lambda *values: True)) is not None
 
     def bind_first(self) -> bool:
-        """Whether it is true; the variables that it was asked with keep what the first answer says."""
+        """Return whether it is true; the variables that it was asked with keep what the first answer says."""
         return self._asker.ask_deeply(lambda: self._solve(*self._values, lambda *values: True)) is not None
 
     def term(self) -> Term:

@@ -1,4 +1,4 @@
-"""What plans and rules are compiled to, each once: functions of a frame or an event."""
+"""Plans and rules compiled to functions of a frame or an event."""
 
 from collections.abc import Callable, Iterable
 from typing import Any, Protocol
@@ -47,7 +47,7 @@ class Compiled:
         self.call: Callable[..., Any] = self._first_call
 
     def tell(self, tell: Callable[[Callable[..., Any]], None]) -> None:
-        """Somebody keeps what is to be called, to save a look here every time."""
+        """Register a caller that keeps the compiled function, to save a look-up at every call."""
         self._tell = tell
         tell(self.call)
 
@@ -146,7 +146,7 @@ class Functions(FormulaWriter):
         return list(dict.fromkeys((*variables_in(formula), *(self._around if self._names_all(formula) else ()))))
 
     def _names_all(self, term: Term) -> bool:
-        """Whether an internal action in it wants to know all variables by name."""
+        """Return whether an internal action in it wants to know all variables by name."""
         if isinstance(term, Atom | Structure):
             if is_internal(term.predicate.name):
                 builtin = self.builtin(term.predicate)
@@ -244,7 +244,7 @@ class Functions(FormulaWriter):
         return Compiled(compile_it)
 
     def silent(self, formula: Term, scope: Scope) -> Callable[[Frame], bool]:
-        """Whether it holds, leaving no trace in frame or variables."""
+        """Compile a test of a formula that leaves no trace in frame or variables."""
         test = self.test(formula, scope, Known(met=frozenset(variables_in(formula))))
 
         def holds(frame: Frame) -> bool:
@@ -306,7 +306,7 @@ class Functions(FormulaWriter):
             self.formula(w, plan.context, flow, done)
 
     def needs_rules(self, formula: Term | None) -> bool:
-        """Whether a proof by rules may be asked for."""
+        """Return whether a proof by rules may be asked for."""
         return formula is not None and self._may_need_rules(formula)
 
     def _matched(self, w: Writer, head: Literal | Var, annots: tuple[Term, ...]) -> Flow:

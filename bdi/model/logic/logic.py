@@ -52,7 +52,7 @@ class Logic(Functions):
     # ---- formulas that come as values ------------------------------------------------------------------------------
 
     def _ask_formula(self, formula: Term, then: Callable[[], Any]) -> Any:
-        """A formula that is only known now; X and X[a] with a free X ask for whatever is believed."""
+        """A formula that is only known now; X and X[a] with a free X ask for all beliefs."""
         if type(formula) is Var or (type(formula) is Structure and formula.predicate is ANNOTATED):
             formula = in_space(DEFAULT, formula)
         elif not isinstance(formula, Atom | Structure):
@@ -95,7 +95,7 @@ class Logic(Functions):
         return self._made(w, "solve", forget)
 
     def _all_answers(self, formula: Term, build: Callable[[], Any], most: int | None = None) -> list[Any]:
-        """What `build` makes of the bindings, for every answer or so many."""
+        """Return the result of `build` for each answer, or for so many."""
         solve, values = self._compiled(formula)
 
         def ask() -> list[Any]:
@@ -112,7 +112,7 @@ class Logic(Functions):
         return answers
 
     def query(self, formula: Term, most: int | None = None) -> list[dict[str, Term]]:
-        """All answers to a formula (or so many), each as name → value of the variables that got one."""
+        """Return all answers to a formula (or so many), each as name → value of the variables that got one."""
         variables = [variable for variable in variables_in(formula) if variable.name != "_"]
 
         def named() -> dict[str, Term]:
@@ -122,11 +122,11 @@ class Logic(Functions):
         return self._all_answers(formula, named, most)
 
     def count(self, formula: Term) -> int:
-        """How many answers there are."""
+        """Return how many answers there are."""
         return len(self._all_answers(formula, lambda: None))
 
     def first(self, formula: Term, wanted: Term) -> Term | None:
-        """What `wanted` is in the first answer."""
+        """Return the value of `wanted` in the first answer."""
         found = self._all_answers(formula, lambda: renamed(wanted, {}), most=1)
         return found[0] if found else None
 
@@ -143,7 +143,7 @@ class Logic(Functions):
             undo(self.trail, mark)
 
     def in_any_space(self, wanted: Literal) -> Iterator[Term]:
-        """What is believed that `NS::p(X)` or `n::X` could mean."""
+        """Yield the beliefs that `NS::p(X)` or `n::X` can mean."""
         if wanted.predicate is not IN_SPACE:
             yield from self.instances(wanted)
             return

@@ -1,4 +1,4 @@
-"""What compiled formulas call while they run, where a look into a dictionary is not enough."""
+"""The run-time library of compiled formulas, for cases that a dictionary look-up does not decide."""
 
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
@@ -89,7 +89,7 @@ def restoring(answers: Iterable[Any], trail: Trail) -> Iterator[Any]:
 
 
 def unifies(left: Term, right: Term) -> bool:
-    """Whether they could be made equal; nothing stays bound."""
+    """Return whether they could be made equal; nothing stays bound."""
     trail: Trail = []
     try:
         return unify(resolve(left), resolve(right), trail)

@@ -132,7 +132,7 @@ class TermWriter:
         return getattr(self.builtin(key), "function", None)
 
     def may_fail(self, term: Term) -> bool:
-        """Whether making it can raise ArithmeticFailure."""
+        """Return whether making it can raise ArithmeticFailure."""
         if isinstance(term, Atom | Structure) and (term.predicate is DIV or self.function(term.predicate)):
             return True
         return any(self.may_fail(part) for part in parts_of(term))

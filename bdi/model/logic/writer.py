@@ -10,7 +10,7 @@ DEEPEST_LOOPS = 12  # CPython allows 20 blocks within each other in one function
 
 
 class Flow:
-    """What is known at one point of the source: which local name holds which variable.
+    """The local names that hold variables at one point of the source.
 
     A variable without a name has not been met. `plain` are those whose values equality compares: ground, and without
     annotations. A flow never changes; each branch of a formula goes on with its own.
@@ -120,7 +120,7 @@ class Writer:
         return name
 
     def mentions(self, words: tuple[str, ...], since: int) -> bool:
-        """Whether a line from there on has one of these words in it."""
+        """Return whether a line from there on has one of these words in it."""
         return any(word in line for line in self._lines[since:] for word in words)
 
     @property

@@ -29,7 +29,7 @@ class Compiler:
         return self.logic.applicable(compiled.plan, scope, forget, compiled.around)
 
     def choice(self, options: Options, forget: Callable[[], None]) -> Choose:
-        """All heads and contexts as one function, as long as that is short and no proof by rules is asked for."""
+        """Join all heads and contexts to one function, as long as that is short and asks for no proof by rules."""
         if len(options) > MOST_AT_ONCE or any(self.logic.needs_rules(each.plan.context) for each in options):
             return partial(self.choose_one_by_one, options)
         try:

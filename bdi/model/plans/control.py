@@ -1,4 +1,4 @@
-"""How steps follow each other: bodies, `if`, `while`, `for`, branches side by side."""
+"""Control flow: bodies, `if`, `while`, `for`, parallel branches."""
 
 from bdi.language.syntax import Body, Does, For, Fork, If, Simple, While, variables_of
 from bdi.language.syntax import Step as Written

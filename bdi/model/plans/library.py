@@ -68,7 +68,7 @@ class CompiledPlan:
         return self.applicable(event)
 
     def forget_compiled(self) -> None:
-        """What its context was compiled with has changed."""
+        """Compile the context again: its assumptions have changed."""
         self.applicable = self._compile_then_apply
 
     def _names(self) -> frozenset[str]:
@@ -80,7 +80,7 @@ class CompiledPlan:
         return self.plan
 
     def concerns(self, literal: Literal) -> bool:
-        """Whether the head unifies, whatever the context says: then the plan is relevant."""
+        """Return whether the head unifies: then the plan is relevant."""
         trail: Trail = []
         try:
             return unify(self.plan.head, renamed(literal, {}), trail)
@@ -148,7 +148,7 @@ def relevant(options: Options, literal: Literal) -> Options:
 
 
 def applies(plan: CompiledPlan, event: Event, trail: Trail) -> bool:
-    """Whether the plan could be taken; nothing stays bound."""
+    """Return whether the plan could be taken; nothing stays bound."""
     try:
         return plan.applicable(event) is not None
     except NOT_WORKED_OUT:
@@ -187,7 +187,7 @@ class Library:
         return compiled
 
     def remove(self, label: str) -> bool:
-        """Whether there was a plan with this label."""
+        """Return whether there was a plan with this label."""
         doomed = [plan for plan in self.plans if plan.label == label]
         for plan in doomed:
             for plans in (self.plans, *self._options_with(plan.plan)):
@@ -207,7 +207,7 @@ def _reacts(plan: Plan, trigger: Trigger, key: Predicate) -> bool:
 
 
 def _names_in_space(head: Literal, key: Predicate) -> bool:
-    """Whether `+NS::p(X)` or `+n::X` is about events like these."""
+    """Return whether `+NS::p(X)` or `+n::X` is about events like these."""
     if head.predicate is not IN_SPACE:
         return False
     space, inner = head.args

@@ -1,5 +1,4 @@
-"""The steps of a plan body, each as a function of the intention and the means that it belongs to. What it does to the
-agent goes through the few verbs of `Doer`."""
+"""The steps of a plan body, each a function of its intention and means. They change the agent through `Doer` only."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
@@ -34,7 +33,7 @@ WAIT = predicate(".wait", 1)
 
 
 class Doer(Protocol):
-    """What a step of a plan can ask of the agent."""
+    """The interface of an agent for the steps of plans."""
 
     def start_action(self, intention: Intention, term: Literal) -> None: ...
     def call_internal(self, intention: Intention, builtin: Builtin, args: tuple[Any, ...]) -> bool: ...
@@ -244,7 +243,7 @@ class Steps(ABC):
 
 
 def _is_fixed(term: Literal) -> bool:
-    """Whether every part is a plain value, so that there is nothing to work out (as there is in `math.pi`)."""
+    """Return whether every part is a plain value, so that there is nothing to work out (as there is in `math.pi`)."""
     parts = parts_of(term)
     return all(type(part) in FIXED and not (type(part) is Atom and is_internal(part.functor)) for part in parts)
 

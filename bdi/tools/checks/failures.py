@@ -29,7 +29,7 @@ def _finding(plans: list[Plan], goal: str, head: str) -> Finding:
         "open-failure",
         Severity.WARNING,
         plans[0].place,
-        f"for failures of {goal} {asked} for something: any other failure ends the intention, whoever waits for it",
+        f"for failures of {goal} {asked} for something: any other failure ends the intention",
         f"add a last plan {head}[error_msg(Why)] <- .fail(error_msg(Why)), or one that takes care of it",
     )
 

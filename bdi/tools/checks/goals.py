@@ -62,7 +62,7 @@ def _is_unconditional(plan: Plan) -> bool:
 
 
 def leave_nothing_out(plans: list[Plan]) -> bool:
-    """Whether one context is the opposite of another, as in `: open` and `: not open`."""
+    """Return whether one context is the opposite of another, as in `: open` and `: not open`."""
     contexts = {show(plan.context) for plan in plans if plan.context is not None}
     return any(opposite in contexts for plan in plans for opposite in _opposites(plan.context))
 

@@ -40,7 +40,7 @@ def _scopes(reading: Reading) -> Iterator[list[Plan]]:
 
 
 def _covers(earlier: Plan, later: Plan) -> bool:
-    """Whether the earlier plan applies to every event, in every state, in which the later one does."""
+    """Return whether the earlier plan applies to every event, in every state, in which the later one does."""
     if earlier.trigger is not later.trigger or earlier.has("all_unifs"):
         return False
     constants: dict[Var, Term] = {
@@ -124,7 +124,7 @@ def uncalled_plans(reading: Reading) -> Iterator[Finding]:
             Severity.HINT,
             plan.place,
             f"nothing in the program posts !{key.name}/{key.arity}: its plans wait for a message",
-            "fine for a goal that somebody else gives; otherwise post it, or take the plan out",
+            "fine for a goal that another agent sends; otherwise post it, or take the plan out",
         )
 
 

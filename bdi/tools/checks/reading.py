@@ -24,7 +24,7 @@ from bdi.language.unify import parts_of
 
 
 class How(Enum):
-    """What is done with a name."""
+    """The uses of a name."""
 
     POSTED = "posted"  # !g, !!g, an initial goal, .send(_, achieve, g)
     TESTED = "tested"  # in a context, condition or rule, ?b
@@ -99,7 +99,7 @@ def _plan(reading: Reading, plan: Plan) -> None:
 
 
 def steps_of(body: Body) -> Iterator[Step]:
-    """All steps, those inside others too."""
+    """Yield all steps, those inside others too."""
     for step in body.steps:
         yield step
         for inner in bodies_of(step):

@@ -1,4 +1,4 @@
-"""What its society answers an agent, written down while it runs, and given again when the run is repeated.
+"""Replies of its society to an agent, recorded while it runs and given again when the run is repeated.
 
 An answer is `[what was asked, the answer]`, or `[what was asked, null, error, message, annotations]` where it failed.
 """
@@ -14,11 +14,11 @@ from bdi.model.intentions import StepFailed
 from bdi.model.messages import Message
 from bdi.model.society import ALONE, Reader, Society
 
-READ = "read"  # a message, by whoever gets it
+READ = "read"  # a message, by its receiver
 
 
 def listening(society: Society, heard: list[Any]) -> Society:
-    """The same society; whatever it answers is heard."""
+    """Return the same society; its replies are recorded in `heard`."""
     return cast(Society, _Listening(society, heard))
 
 

@@ -6,7 +6,7 @@
 
 `replaying` reads it again. One JSON object a line: for each agent a head (program with all its text, chance, declared
 actions), then its cycles (what came in, what came out) and an end. `percepts` is left out where they are those of the
-cycle before; `society` is what those around it answered (`.all_names`, `.df_search`). Whatever else is done to the
+cycle before; `society` is what those around it answered (`.all_names`, `.df_search`). Anything else that is done to the
 agent from outside, such as `add_plan`, is not recorded: a replay names the first difference.
 """
 
@@ -110,7 +110,7 @@ class Recorder:
 
 
 def record(agent: Agent, file: TextIO, program: Program, *, compatible: bool = False) -> Recorder:
-    """Record an agent whose cycles somebody else asks for, such as a system of several agents."""
+    """Record an agent whose cycles are run by other code, such as a system of several agents."""
     recorder = Recorder(agent, file, program, compatible=compatible)
     agent.recorder = recorder
     return recorder
@@ -169,7 +169,7 @@ def _plain(record: Message | Finished) -> dict[str, Any]:
 
 
 def result_of(agent: Agent, outcome: Outcome, entries: bool) -> dict[str, Any]:
-    """What came out; empty parts are left out."""
+    """Return the outputs of a cycle; empty parts are left out."""
     found: dict[str, Any] = {
         "actions": [[action.id, show(action.term), action.intention] for action in outcome.actions],
         "cancelled": list(outcome.cancelled),

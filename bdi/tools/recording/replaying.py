@@ -98,7 +98,7 @@ class Run:
         return agent
 
     def inputs(self) -> Iterable[tuple[list[str] | None, list[Message], list[Finished], float]]:
-        """What came in, cycle by cycle."""
+        """The inputs, cycle by cycle."""
         percepts: list[str] | None = None
         for line in self.lines:
             now = line.get("percepts", percepts)

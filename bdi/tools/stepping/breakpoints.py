@@ -35,7 +35,7 @@ class Breakpoint:
     literal: Literal | None
 
     def hit(self, cycle: Cycle) -> str | None:
-        """What of this cycle it is about, in words."""
+        """Describe the part of this cycle that it matches."""
         choice = cycle.choice
         if choice is not None and self.mark in ("@", "") and choice.plan is not None and choice.plan.label == self.name:
             return f"plan {self.name} is chosen"
@@ -71,7 +71,7 @@ def breakpoint_of(text: str) -> Breakpoint:
 
 
 def is_written_in(name: str, agent: Agent) -> bool:
-    """Whether a plan is called so, or mentions it."""
+    """Return whether a plan is called so, or mentions it."""
     word = re.compile(rf"(?<!\w){re.escape(name)}(?!\w)")
     return any(plan.label == name or word.search(str(plan.plan)) for plan in agent.library.plans)
 

@@ -52,7 +52,7 @@ class Stack:
 
 @dataclass(frozen=True, slots=True)
 class Cycle:
-    """What one agent did in one cycle."""
+    """The record of one agent in one cycle."""
 
     number: int
     agent: str
@@ -165,7 +165,7 @@ def _stack(agent: Agent, intention: Intention) -> Stack:
 
 
 def state_of(agent: Agent, intention: Intention) -> str:
-    """What the intention is about, without naming its goal and plan again."""
+    """Describe the intention without its goal and plan."""
     return explain_intention(agent, intention).in_words(_SHORT).removesuffix(".")
 
 

@@ -1,4 +1,4 @@
-"""What a run is expected to do: a file of lines, or the closing comment of a program.
+"""Expected outputs of a run: a file of lines, or the closing comment of a program.
 
     # a comment
     3 drive(post1)              in cycle 3 this action; `drive(_)` stands for any argument
@@ -39,7 +39,7 @@ _KINDS = frozenset(kind.value for kind in Kind if kind is not Kind.ACTION)
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """One thing that is to happen, or did. `cycle` None: whenever; `agent` "": whoever."""
+    """One output, expected or real. `cycle` None: in any cycle; `agent` "": of any agent."""
 
     kind: Kind
     text: str
@@ -51,7 +51,7 @@ class Line:
         return " ".join(str(part) for part in (self.cycle, self.agent, self.kind.value, self.text) if part)
 
     def agrees(self, happened: "Line") -> bool:
-        """Whether this expectation is met by that."""
+        """Return whether this expectation is met by that."""
         return (
             self.kind is happened.kind
             and self.cycle in (None, happened.cycle)
@@ -77,12 +77,12 @@ class Expectation:
 
     @property
     def events(self) -> list[Line]:
-        """What is to happen, in order."""
+        """The expected outputs, in order."""
         return [line for line in self.lines if line.kind in (Kind.ACTION, Kind.SAYS)]
 
     @property
     def beliefs(self) -> list[Line]:
-        """What is to be believed, or not."""
+        """The beliefs expected at the end, or their absence."""
         return [line for line in self.lines if line.kind in (Kind.BELIEVES, Kind.NOT)]
 
     @property

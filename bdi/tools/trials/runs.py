@@ -15,7 +15,7 @@ CYCLES_UNTIMED = 1_000  # the longest test of an order
 
 @dataclass(frozen=True, slots=True)
 class Trial:
-    """What to run, and what to compare it with."""
+    """A program to run, and the expected outputs."""
 
     setting: Setting
     expectation: Expectation
@@ -26,7 +26,7 @@ class Trial:
 
 
 def long_enough(expectation: Expectation, stimuli: Sequence[Stimulus]) -> int:
-    """How many cycles a test runs if nobody says so."""
+    """Return how many cycles a test runs by default."""
     if not expectation.by_cycle:
         return CYCLES_UNTIMED
     return max(expectation.last_cycle, len(stimuli)) + CYCLES_AFTER

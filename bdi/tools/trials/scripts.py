@@ -43,7 +43,7 @@ class _Section(NamedTuple):
 
 
 def script_in(text: str, source: str) -> Script | None:
-    """What the closing comment says; None if there is none that expects something. Raises AgentSpeakSyntaxError."""
+    """Read the closing comment; None if it expects nothing. Raises AgentSpeakSyntaxError."""
     sections = list(_sections(text))
     prints = next((section for section in sections if section.title == "prints"), None)
     if prints is None:

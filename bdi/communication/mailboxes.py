@@ -1,4 +1,4 @@
-"""The post between agents: what is sent in a round lies in the inboxes until the next."""
+"""Mailboxes of agents: messages that are sent in a round are read in the next."""
 
 from collections.abc import Iterable
 from dataclasses import replace
@@ -6,13 +6,13 @@ from dataclasses import replace
 from bdi.model.messages import EVERYBODY, Message, own_copy
 
 
-class Post:
-    """An inbox for everybody who lives here; `outside` are those who can be written to elsewhere."""
+class Mailboxes:
+    """One inbox for each agent of the system; `outside` names further receivers."""
 
     def __init__(self, outside: Iterable[str]) -> None:
         self.outside = set(outside)
         self.sent: list[Message] = []
-        self.lost: list[Message] = []  # nobody will read them
+        self.lost: list[Message] = []  # never read
         self._inboxes: dict[str, list[Message]] = {}
 
     def open_inbox(self, name: str) -> None:
@@ -22,7 +22,7 @@ class Post:
         self.lost += self._inboxes.pop(name)
 
     def take(self, name: str) -> list[Message]:
-        """All that has come in for this one."""
+        """Take all messages for this agent."""
         taken, self._inboxes[name] = self._inboxes[name], []
         return taken
 
@@ -31,7 +31,7 @@ class Post:
         return not any(self._inboxes.values())
 
     def deliver(self, message: Message) -> bool:
-        """Whether it is for somebody here, or for somebody who is no more; otherwise it is for the outside."""
+        """Return True if the receiver is or was an agent of the system, False if the message goes outside."""
         if message.receiver == EVERYBODY:
             others = [name for name in self._inboxes if name != message.sender]
             self.deliver_all(replace(message, content=own_copy(message.content), receiver=name) for name in others)
