@@ -15,7 +15,7 @@ def bind(mind: HasLogic, left: Term, right: Term) -> bool:
 
 
 def alternatives(mind: HasLogic, alternatives: Iterable[tuple[tuple[Term, Term], ...]]) -> Iterator[bool]:
-    """Once for every alternative whose pairs all unify."""
+    """Yield once for every alternative whose pairs all unify."""
     trail = mind.logic.trail
     for pairs in alternatives:
         mark = len(trail)

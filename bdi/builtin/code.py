@@ -46,7 +46,7 @@ def event_in(condition: Term) -> tuple[Trigger, Literal] | None:
 
 
 def trigger_in(condition: Term) -> tuple[Trigger, Literal | Var] | None:
-    """As `event_in`, but {+!_} too. Its variables are those of the plan that wrote it."""
+    """Read an event as `event_in` does, and {+!_} too. Its variables are those of the plan that wrote it."""
     if isinstance(condition, String):
         return _event_named(condition)
     event = event_of(condition.body) if isinstance(condition, Code) else None

@@ -82,7 +82,7 @@ class MultiAgentSystem:
 
     @property
     def agents(self) -> dict[str, Agent]:
-        """Those that live, in the order in which they joined."""
+        """The living agents, in the order in which they joined."""
         return {name: member.agent for name, member in self._members.items()}
 
     def add(self, agent: Agent) -> None:

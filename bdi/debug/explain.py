@@ -1,4 +1,4 @@
-"""Why a goal is not reached yet, or was given up: read off the intentions, said in words of a table."""
+"""Explanations why a goal is not reached yet, or was given up: read from the intentions, worded by a table."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, field

@@ -31,8 +31,8 @@ class GoalFailure(NamedTuple):
 
 
 class Verdict(NamedTuple):
-    """Why one plan was or was not taken. `verdict` is chosen, would apply (but stands later), head (it does not
-    unify), context (it does not hold) or error (the context cannot be worked out)."""
+    """The reason why one plan was or was not taken. `verdict` is chosen, would apply (but stands later), head (it does
+    not unify), context (it does not hold) or error (the context cannot be worked out)."""
 
     plan: str
     source: str

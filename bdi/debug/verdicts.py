@@ -1,4 +1,4 @@
-"""Why each plan for an event did or did not apply: worked out again from the plan as it is written.
+"""Verdicts: why each plan for an event did or did not apply, worked out again from its source.
 
     head      argument 2 is post1, not uc
     context   line(center) does not hold (believed: line(lost))
@@ -69,7 +69,7 @@ def verdicts(agent: Observed, event: Event, chosen: CompiledPlan | None) -> list
 
 
 def _candidates(agent: Observed, event: Event) -> list[CompiledPlan]:
-    """Also those whose head does not unify; sub-plans of a plan take the place of the agent's."""
+    """Return the plans for an event, also where the head does not unify; sub-plans replace those of the agent."""
     mine = agent.library.plans
     scoped = [option for option in event.options if option not in mine]
     return scoped or [option for option in mine if _is_about(option.plan, event)]

@@ -32,7 +32,7 @@ class BdiError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Where in a program something stands. Line and column count from 1; 0 means "not known"."""
+    """A place in a program. Line and column count from 1; 0 means "not known"."""
 
     source: str = "<text>"
     line: int = 0

@@ -29,7 +29,7 @@ def whole_scope(code: Code) -> dict[Var, Term]:
 
 
 def as_read(code: Code) -> Quoted:
-    """With the values that its variables have now."""
+    """Return the quoted code with the values that its variables have now."""
     scope = code.scope
     quoted: Quoted = with_terms(code.body, lambda term: substituted(term, scope)) if scope else code.body
     return quoted

@@ -262,7 +262,7 @@ class Program:
     warnings: tuple[CompatibilityWarning, ...] = ()  # in the compatibility mode
 
     def joined(self, more: "Program") -> "Program":
-        """Both: what was loaded first, then what was added by `.include`."""
+        """Return both programs as one: the loaded one, then the one added by `.include`."""
         parts = ("beliefs", "goals", "plans", "sources", "functions")
         both = {name: getattr(self, name) + getattr(more, name) for name in parts}
         return Program(self.source, **both, namespaces=more.namespaces)

@@ -299,7 +299,7 @@ def _spaced(operator: str) -> str:
 
 
 def _show_number(value: float) -> str:
-    """As the language prints doubles: whole ones without a point, very large and small ones as 1.0E20."""
+    """Format a double as the language does: whole ones without a point, very large and small ones as 1.0E20."""
     if math.isnan(value):
         return "NaN"
     if math.isinf(value):

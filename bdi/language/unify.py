@@ -75,7 +75,7 @@ def unify(left: Term, right: Term, trail: Trail) -> bool:
 
 
 def unify_all(left: Iterable[Term], right: Iterable[Term], trail: Trail) -> bool:
-    """Both sequences have the same length."""
+    """Unify two sequences of the same length."""
     return all(unify(a, b, trail) for a, b in zip(left, right, strict=True))
 
 

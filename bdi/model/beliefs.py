@@ -196,7 +196,7 @@ def agreements(belief: Belief, args: Arguments, annots: Arguments, trail: Trail)
 
 
 def _choices(present: Arguments, wanted: Arguments) -> Iterable[Arguments]:
-    """As many annotations as are wanted, in every way that can make a difference."""
+    """Yield as many annotations as are wanted, in every choice that can make a difference."""
     if len(present) <= len(wanted) or type(wanted[-1]) is OpenList or not any(map(variables_in, wanted)):
         return (present,)
     return combinations(sorted(present, key=in_order), len(wanted))

@@ -78,12 +78,12 @@ class GoalStates:
             raise_state(self._mind, goal, state, reason)
 
     def tell_all(self, intention: Intention, state: str, reason: Term | None = None) -> None:
-        """Of all goals of the intention, the innermost first."""
+        """Report a state of all goals of the intention, the innermost first."""
         for means in reversed(intention.stack):
             self.tell(means.event, state, reason, intention)
 
     def achieved(self, means: Means, intention: Intention) -> None:
-        """Its plan is done; if that was the plan for its failure, it is over but not achieved."""
+        """Report that the plan for a goal is done; if it was that for its failure, the goal is not achieved."""
         if means.event.trigger in (Trigger.GOAL_ADDED, Trigger.TEST_ADDED):
             self._end(means.event, "achieved", "achieved", intention)
         elif means.event not in self._over:
@@ -107,7 +107,7 @@ class GoalStates:
         self._end(event, "dropped", "dropped", event.intention)
 
     def failed(self, goal: Event, error: Term, intention: Intention | None) -> None:
-        """It failed; a plan may take care of it."""
+        """Report that a goal failed; a plan may handle it."""
         if goal not in self._failed and goal not in self._over:
             self._failed.add(goal)
             if goal.trigger in (Trigger.GOAL_ADDED, Trigger.TEST_ADDED):

@@ -12,7 +12,7 @@ from bdi.language.unify import resolve, resolve_all
 
 
 class State(Enum):
-    """Why an intention does or does not go on."""
+    """The states of an intention."""
 
     RUNNING = "is running"
     ACTION = "waits for an action"
@@ -39,7 +39,7 @@ class Step:
         self.next = following
 
     def runs(self, run: Callable[..., None]) -> None:
-        """It has been compiled (again)."""
+        """Take the function, now that it has been compiled (again)."""
         self.run = run
 
 
@@ -70,7 +70,7 @@ class Event:
 
     @property
     def around(self) -> "Sequence[Means]":
-        """For what a sub-plan reacts to: the plan that it stands in, on top of those that led there."""
+        """The plan that a reacting sub-plan stands in, on top of those that led there."""
         return ()
 
     @property
@@ -186,7 +186,7 @@ class Fork:
         return self if self.outer is None else self.outer.outermost()
 
     def give_place(self, new: "Intention | Fork") -> None:
-        """In the fork around it, this one is replaced."""
+        """Replace this fork in the one around it."""
         if self.outer is not None:
             branches = self.outer.branches
             branches[branches.index(self)] = new

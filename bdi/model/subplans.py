@@ -91,7 +91,7 @@ class Scoped(CompiledPlan):
 
 
 def _values_of(variables: tuple[Var, ...], means: Means) -> list[Term]:
-    """Free ones are the sub-plan's own."""
+    """Return the values of the variables around a sub-plan; free ones are its own."""
     names: dict[Var, Term] = {}
     places = means.plan.places
     values = [means.frame[places[variable.name]] for variable in variables]
@@ -157,7 +157,7 @@ class Scopes:
             self._reacting = True
 
     def _reacting_plan(self, intention: Intention, event: Event) -> Scoped | None:
-        """Of the top of the stack first: the first sub-plan that applies."""
+        """Return the first sub-plan that applies, from the top of the stack down."""
         literal = event.literal
         for around in _of_stack(intention.stack):
             for plan in _candidates(around, event.trigger, literal):
@@ -169,7 +169,7 @@ class Scopes:
         return [intention for intention in self._mind.intentions.values() if not intention.suspended]
 
     def _end_reactions(self) -> None:
-        """Those whose goal is over."""
+        """Drop the reactions whose goal is over."""
         reactions = [each for each in self._mind.intentions.values() if _reaction_of(each.stack) is not None]
         self._reacting = bool(reactions) or any(isinstance(event, Reaction) for event in self._mind.events)
         for intention in reactions:
@@ -191,7 +191,7 @@ def _of_stack(stack: Around) -> Iterator[Around]:
 
 
 def _all_around(stack: Around) -> Iterator[Around]:
-    """Also those around the sub-plan that this stack grew from."""
+    """Yield the plans with sub-plans, also those around the sub-plan that this stack grew from."""
     yield from _of_stack(stack)
     reaction = _reaction_of(stack)
     if reaction is not None:

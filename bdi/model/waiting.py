@@ -79,7 +79,7 @@ class Waiter:
             undo(trail, mark)
 
     def check(self, mind: HasTime) -> bool | None:
-        """True: it happened; False: too late; None: wait on."""
+        """Return True if it happened, False if it is too late, None to wait on."""
         if self.seen or self._happened(mind):
             return True
         if self.deadline_s is not None and mind.now >= self.deadline_s:

@@ -30,7 +30,7 @@ class DeadlineWatch:
         self.recovery = recovery
 
     def set(self, goal: Event) -> None:
-        """Of a goal that is new. One that is no number is reported, and the goal has none."""
+        """Set the deadlines of a new goal. One that is no number is reported and ignored."""
         written = [each for each in goal.annots if type(each) is Structure and each.predicate in (HARD, SOFT)]
         if written:
             found = [self._deadline(goal, annot) for annot in written]
@@ -46,7 +46,7 @@ class DeadlineWatch:
         return None
 
     def check(self) -> None:
-        """Those whose time is over: outer goals first."""
+        """Handle the deadlines whose time is over, outer goals first."""
         for goal, deadlines in list(self.agent.deadlines.items()):
             if not self._is_pursued(goal):
                 del self.agent.deadlines[goal]

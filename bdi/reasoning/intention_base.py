@@ -119,7 +119,7 @@ class IntentionBase:
         self.end(intention)
 
     def drop_event(self, event: Event) -> None:
-        """It has no plan yet; the intention that waits for it is over too."""
+        """Drop an event that has no plan yet; the intention that waits for it is dropped too."""
         if event.intention is not None:
             self.drop(event.intention)
             return
@@ -167,7 +167,7 @@ class IntentionBase:
         fork.branches = []
 
     def leave_fork(self, intention: Intention, fork: Fork) -> None:
-        """Only this branch goes on, in the place of the fork."""
+        """Let only this branch go on, in the place of the fork."""
         fork.branches.remove(intention)
         self._drop_branches(fork)
         fork.give_place(intention)
@@ -212,7 +212,7 @@ class Suspension:
         self.intention_base = intention_base
 
     def suspend(self, intention: Intention) -> None:
-        """It takes no more steps and no plan is chosen for it; what it waits for may still come in. A suspended
+        """Suspend: it takes no steps and no plan is chosen for it; what it waits for may still come in. A suspended
         atomic plan lets the others go on: no plan could resume it otherwise."""
         agent = self.agent
         intention.suspended = True

@@ -226,7 +226,7 @@ def _said_by(sender: str, answer: Term) -> Term:
 
 
 def _content_of(message: Message) -> Term:
-    """As a plan for messages sees it. The text of a plan or event is no term."""
+    """Return the content as a plan for messages sees it. The text of a plan or event is no term."""
     if type(message.content) is str and message.performative in KNOW_HOW:
         return String(message.content)
     return term_from(message.content)

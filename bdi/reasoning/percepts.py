@@ -97,7 +97,7 @@ class Percepts:
         self._annotated = False  # whether two percepts may be one belief
 
     def change(self, percepts: Iterable[Term | str]) -> Change | None:
-        """None if all is as before. Raises AgentSpeakSyntaxError and NotALiteral.
+        """Compare with the percepts of before; None if they are equal. Raises AgentSpeakSyntaxError and NotALiteral.
 
         Nothing is changed until `now` is set to the first of the answer.
         """
@@ -122,7 +122,7 @@ class Percepts:
         return [percept for percept in map(self._percept, staying) if (percept.relation, percept.args) in gone]
 
     def _in_order(self, percepts: frozenset[Any]) -> list[Percept]:
-        """By text: a set has another order in every run, and equal inputs must give equal runs."""
+        """Sort by text: a set has another order in every run, and equal inputs must give equal runs."""
         if len(percepts) == 1:
             (percept,) = percepts
             return [self._known.get(percept) or self._percept(percept)]

@@ -150,7 +150,7 @@ def _ask_all(mind: Mind, message: Message, literal: Literal) -> None:
 
 
 def _answers(mind: Mind, literal: Literal) -> list[Term]:
-    """With what is noted about each belief, but that it is the agent's own."""
+    """Return the beliefs with their annotations, without `source(self)`."""
     wanted = literal if literal.annots else Structure(literal.predicate, literal.args, (OpenList((), Var("Annots")),))
     try:
         return [_without_self(each) for each in mind.logic.instances(wanted)]
@@ -192,7 +192,7 @@ def _tell_how(mind: Mind, message: Message, plans: List) -> None:
 
 
 def _untell_how(mind: Mind, message: Message, known: Sequence[str | Plan]) -> None:
-    """Only what the sender itself told."""
+    """Remove plans, but only those that came from the sender."""
     for each in known:
         label = each if isinstance(each, str) else each.label.functor or _label_of(mind, each)
         remove_plan(mind, atom(label), atom(message.sender))

@@ -1,4 +1,4 @@
-"""When a step or a goal fails: the search for a plan that takes care of it."""
+"""The search for a plan that handles the failure of a step or goal."""
 
 from collections.abc import Callable
 

@@ -63,7 +63,7 @@ class Sensing:
                     self._tell_of(event)
 
     def _tell_of(self, event: Event) -> None:
-        """Those who listen or wait."""
+        """Notify listeners and waiters of an event."""
         if self.output.listeners:
             self.output.trace(Changed(self.agent.cycles, event.trigger, event.literal))
         if self.agent.waiters:

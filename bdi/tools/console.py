@@ -18,7 +18,7 @@ PROGRAM = ".asl"
 
 
 def output() -> Console:
-    """For people. Made anew each time, so that it writes to the current standard output."""
+    """Make the console for people; anew each time, so that it writes to the current standard output."""
     return Console(highlight=False, soft_wrap=True)
 
 

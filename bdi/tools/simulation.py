@@ -70,7 +70,7 @@ class Simulation:
         return agent
 
     def _load(self, name: str) -> Program:
-        """For `.create_agent`: a path, or one beside the first program."""
+        """Load the program of `.create_agent`: a path, or one beside the first program."""
         path = Path(name)
         return load(path if path.exists() else self.setting.programs[0].parent / name, self.setting.compatible)
 

@@ -37,13 +37,13 @@ def _facts_like(mind: Mind, pattern: Literal) -> Iterator[bool]:
 
 @internal_action("asserta", BELIEVED)
 def asserta(mind: Mind, term: Term) -> Answer:
-    """As `+<b`, but in a rule too; and for a rule { p(X) :- q(X) }."""
+    """Add like `+<b`, but in a rule too; and for a rule { p(X) :- q(X) }."""
     return _believe(mind, term, last=False)
 
 
 @internal_action("assertz", BELIEVED)
 def assertz(mind: Mind, term: Term) -> Answer:
-    """As `+>b`, but in a rule too; and for a rule { p(X) :- q(X) }."""
+    """Add like `+>b`, but in a rule too; and for a rule { p(X) :- q(X) }."""
     return _believe(mind, term, last=True)
 
 

@@ -25,7 +25,7 @@ def signal(mind: Mind, event: Term, how: Term | None = None) -> Answer:
 
 @internal_action("perceive")
 def perceive(mind: Mind) -> Answer:
-    """Nothing to do: the percepts of the body are taken in at the beginning of every cycle."""
+    """Do nothing: the percepts of the body are taken in at the beginning of every cycle."""
     return True
 
 

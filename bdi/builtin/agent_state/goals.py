@@ -26,7 +26,7 @@ def _pursues(mind: Mind, goal: Term) -> Callable[[Means], bool]:
 
 
 def _intentions_for(mind: Mind, goal: Term) -> Iterator[Intention]:
-    """Those that pursue it at the moment, and still do when their turn comes."""
+    """Yield intentions that pursue the goal now, and still do when their turn comes."""
     pursues = _pursues(mind, goal)
     for each in list(mind.intentions.values()):
         if any(map(pursues, each.stack)):
@@ -62,7 +62,7 @@ def drop_all_desires(mind: Mind) -> Answer:
 
 @internal_action("drop_all_events")
 def drop_all_events(mind: Mind) -> Answer:
-    """With the intentions that wait for one."""
+    """Drop all events, with the intentions that wait for one."""
     for event in [*mind.events, *mind.suspended_events]:
         if event in mind.events or event in mind.suspended_events:
             mind.intention_base.drop_event(event)
@@ -84,7 +84,7 @@ def drop_desire(mind: Mind, goal: Term) -> Answer:
 
 @internal_action("drop_event", GOAL)
 def drop_event(mind: Mind, goal: Term) -> Answer:
-    """With the intention that waits for it."""
+    """Drop an event, with the intention that waits for it."""
     for event in _events_for(mind, goal):
         mind.intention_base.drop_event(event)
     return True
@@ -136,7 +136,7 @@ def current_intention(mind: Mind, result: Term) -> Answer:
 
 
 def _present(mind: Mind) -> Intention | None:
-    """In a context that of the goal, if it has one already."""
+    """Return the current intention; in a context that of the goal, if it has one already."""
     if mind.current is None and mind.considered is not None:
         return mind.considered.intention
     return mind.current
@@ -213,7 +213,7 @@ def _reasons(mind: Mind, goal: Term) -> Iterator[Term]:
 
 @internal_action("succeed_goal", GOAL)
 def succeed_goal(mind: Mind, goal: Term) -> Answer:
-    """It counts as reached: what was being done for it is dropped, and who wanted it goes on."""
+    """Let a goal count as reached: the plans for it are dropped, and the plan that wanted it goes on."""
     for intention in _intentions_for(mind, goal):
         mind.recovery.reach_goal(intention, _pursues(mind, goal))
     for event in _events_for(mind, goal):
@@ -235,7 +235,7 @@ def done(mind: Mind, goal: Term | None = None) -> Answer:
 
 @internal_action("fail_goal", GOAL, rest(ANY))
 def fail_goal(mind: Mind, goal: Term, *annots: Term) -> Answer:
-    """It counts as failed: `-!goal[error(goal_failed), ANNOTS]` is looked for from it down the stack."""
+    """Let a goal count as failed: `-!goal[error(goal_failed), ANNOTS]` is searched for from it down the stack."""
     failure = StepFailed("goal_failed", "given up by .fail_goal", annots)
     events = list(_events_for(mind, goal))
     for intention in _intentions_for(mind, goal):

@@ -32,7 +32,7 @@ _DEEDS = frozenset(
 
 
 def _forget_plan(mind: Mind, plan: Plan) -> None:
-    """By its label; without one, every plan of the same text."""
+    """Forget a plan by its label; without one, every plan of the same text."""
     for known in list(mind.library.plans):
         written = known.plan if plan.label.functor else replace(known.plan, label=atom(""))
         if known.label == plan.label.functor or str(written) == str(plan):

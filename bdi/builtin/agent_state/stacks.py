@@ -35,7 +35,7 @@ def _means_term(means: Means) -> Term:
 
 
 def _label_of(plan: Plan) -> Term:
-    """With its place: code_line(12), code_src("mail.asl")."""
+    """Return the label with its place: code_line(12), code_src("mail.asl")."""
     place = (structure("code_line", plan.place.line), structure("code_src", String(plan.place.source)))
     return Structure(plan.label.predicate, (), (*plan.label.annots, *place))
 

@@ -114,7 +114,7 @@ def df_search(mind: Mind, service: Term, *more: Term) -> Answer:
 
 @internal_action("df_subscribe", NAME, optional(NAME))
 def df_subscribe(mind: Mind, service: Term, kind: Term = ANY_KIND) -> Answer:
-    """From now on `provider(AGENT,SERVICE)[source(df)]` is believed of every agent that offers it."""
+    """Subscribe: from now on `provider(AGENT,SERVICE)[source(df)]` is believed of every agent that offers it."""
     mind.society.subscribe(mind.name, text_of(service), text_of(kind))
     return True
 

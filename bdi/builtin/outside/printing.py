@@ -35,7 +35,7 @@ def log(mind: Mind, level: Term, *args: Term) -> Answer:
 
 @internal_action("verbose", NUMBER)
 def verbose(mind: Mind, level: Term) -> Answer:
-    """Nothing to do: an agent here never talks of its own accord, `listen` to it instead."""
+    """Do nothing: an agent here prints nothing of its own accord; `listen` to it instead."""
     return True
 
 

@@ -17,7 +17,7 @@ def _half_up(value: float) -> float:
 
 
 def _of_doubles(call: Callable[[float], float], value: float) -> float:
-    """As doubles have it: not-a-number where there is no value; what is infinite has no nearest whole number."""
+    """Round as doubles do: not-a-number where there is no value; infinity has no nearest whole number."""
     if math.isinf(value) and call in _TO_WHOLE:
         return value
     try:
@@ -27,12 +27,12 @@ def _of_doubles(call: Callable[[float], float], value: float) -> float:
 
 
 def _log(value: float) -> float:
-    """As of doubles: -infinity for 0."""
+    """Logarithm of doubles: -infinity for 0."""
     return math.log(value) if value else -math.inf
 
 
 def _std_dev(values: list[float]) -> float:
-    """Of a sample (divided by n-1); 0 of nothing, not-a-number of one."""
+    """Standard deviation of a sample (divided by n-1); 0 of nothing, not-a-number of one."""
     if len(values) < 2:
         return math.nan if values else 0
     return statistics.stdev(values)
@@ -94,7 +94,7 @@ for _name, _value in CONSTANTS.items():
 
 @function("math.random", optional(NUMBER), asks=True)
 def random_number(mind: Mind, below: float | None = None) -> Term:
-    """From 0 to 1; with an argument a whole number from 0 up to below it."""
+    """Random number from 0 to 1; with an argument a whole number from 0 up to below it."""
     return mind.random.random() if below is None else mind.random.randrange(int(below))
 
 

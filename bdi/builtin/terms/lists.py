@@ -108,7 +108,7 @@ def reverse(mind: HasLogic, value: Term, result: Term) -> Answer:
 
 @internal_action("sort", ITEMS, OUT)
 def sort(mind: HasLogic, items: Term, result: Term) -> Answer:
-    """In the standard order, equal ones kept."""
+    """Sort in the standard order; equal items are kept."""
     return bind(mind, result, List(sorted(items_of(items, "sort"), key=in_order)))
 
 
@@ -126,7 +126,7 @@ def smallest(mind: HasLogic, items: Term, result: Term) -> Answer:
 
 @internal_action("union", ITEMS, ITEMS, OUT)
 def union(mind: HasLogic, left: Term, right: Term, result: Term) -> Answer:
-    """As a list in standard order, each item once."""
+    """Union as a list in standard order, each item once."""
     return bind(mind, result, unique(items_of(left, "union") + items_of(right, "union")))
 
 
@@ -172,7 +172,7 @@ def _cut(whole: Term, start: int, end: int) -> Term:
 
 @internal_action("range", OUT, WHOLE, WHOLE, optional(WHOLE))
 def span(mind: HasLogic, value: Term, start: int, end: int, by: int = 1) -> Answer:
-    """From start to end, both included."""
+    """Return the whole numbers from start to end, both included."""
     if not by:
         raise wrong_arguments("range", "a step that is not 0", by)
     steps = range(start, end + (1 if by > 0 else -1), by)

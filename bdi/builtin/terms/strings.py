@@ -14,8 +14,8 @@ from bdi.model.logic import HasLogic
 
 @internal_action("substring", ANY, ANY, optional(OUT), optional(OUT))
 def substring(mind: HasLogic, part: Term, whole: Term, start: Term | None = None, end: Term | None = None) -> Answer:
-    """Where the part stands; with a given start (and end) the part itself. Then the text comes first, as Jason has it:
-    .substring("warehouse", P, 4), or second."""
+    """Find the position of a part; with a given start (and end) the part itself. Then the text comes first, as in
+    Jason: .substring("warehouse", P, 4), or second."""
     if isinstance(whole, Var) and isinstance(start, int):
         part, whole = whole, part
     text = text_of(whole)

@@ -119,7 +119,7 @@ class Clauses(Terms):
         return tuple(with_own_labels([plan for plan in kept if isinstance(plan, Plan)]))
 
     def label_variable(self, label: Var | Structure) -> Marked:
-        """Of a plan as a value: { @L +!G <- B }"""
+        """Label of a plan as a value: { @L +!G <- B }"""
         return Marked("label", Structure(ANNOTATED, (label,)))
 
     def label(self, label: Literal | Braces) -> Marked:

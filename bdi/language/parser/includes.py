@@ -1,4 +1,4 @@
-"""Where included files are looked for, how they are read, and what the directives in them mean."""
+"""Included files: where they are searched, how they are read, and the directives in them."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field

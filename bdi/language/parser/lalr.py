@@ -24,7 +24,7 @@ class Token(NamedTuple):
 
 
 class Builder(Protocol):
-    """Has a method for each rule of the grammar that has a value."""
+    """An object with a method for each rule of the grammar that has a value."""
 
     at: int  # where the rule that is being built begins
 
@@ -181,7 +181,7 @@ class Parse:
         return all(_shift(self.tables, states, kind) for kind in kinds)
 
     def accepted(self, *kinds: str) -> bool:
-        """As `accepts`, for what was read before the token that cannot come had any effect."""
+        """Test like `accepts`, in the state before the token that cannot come had any effect."""
         states = [self.first]
         return all(_shift(self.tables, states, kind) for kind in (*(token.kind for token in self.before), *kinds))
 

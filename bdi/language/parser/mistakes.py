@@ -1,4 +1,4 @@
-"""Why a text is no AgentSpeak, in words that say how to mend it."""
+"""Messages of syntax errors, which say how to correct them."""
 
 from collections.abc import Callable
 from typing import NamedTuple

@@ -1,4 +1,4 @@
-"""Where something stands in a text."""
+"""Places in a text."""
 
 from bisect import bisect_right
 

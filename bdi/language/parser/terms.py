@@ -168,7 +168,7 @@ def _literal(name: str, braces: list[Braces], negated: bool = False, space: str 
 
 
 def _in_order(annots: tuple[Term, ...]) -> tuple[Term, ...]:
-    """In standard order, as they are shown; a last `|T` stays last."""
+    """Sort in standard order, as annotations are shown; a last `|T` stays last."""
     if len(annots) < 2:
         return annots
     tail = annots[-1:] if isinstance(annots[-1], OpenList) else ()

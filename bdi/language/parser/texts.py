@@ -35,7 +35,7 @@ NOT_NAMED = NO_LITERALS | WAITING
 
 
 def parse(text: str, start: str, source: str, warn: Warn | None = None) -> Any:
-    """With `warn` what older programs write is read too, and `warn` is told. Raises AgentSpeakSyntaxError."""
+    """Parse a text. With `warn` older notations are read too, and reported to it. Raises AgentSpeakSyntaxError."""
     builder = Clauses(text, source, warn)
     under_way = Parse(text, start, builder, _mender(builder, warn) if warn else None)
     try:

@@ -79,14 +79,14 @@ class FormulaWriter(Conditions):
             self._literal(w, term, flow, then)
 
     def _apart(self, w: Writer, term: Term, flow: Flow, then: Then) -> None:
-        """In a function of its own, since Python has only room for so many loops within each other."""
+        """Write a function of its own, since Python limits loops within each other."""
         name = w.fresh("rest")
         with w.function(name):
             self.formula(w, term, flow, then)
         self._hand_on(w, f"{name}()")
 
     def _hand_on(self, w: Writer, call: str) -> None:
-        """If the call answers, that is the answer; otherwise not this way."""
+        """Return the result of the call, if it has one."""
         answer = w.fresh("answer")
         w.line(f"{answer} = {call}")
         w.line(f"if {answer} is not None: return {answer}")
@@ -145,7 +145,7 @@ class FormulaWriter(Conditions):
         self._rounds(w, "_", quick, f"unified({name}, {args}, (), trail)", fixed, then, flow)
 
     def _scan(self, w: Writer, term: Literal, name: str, flow: Flow, then: Then) -> None:
-        """Some variables get their value here: `dockStation(D)`."""
+        """Write a loop in which some variables get their value: `dockStation(D)`."""
         wanted, checks, parts, after = [], [], [], flow
         for arg in term.args:
             if type(arg) is Var and arg not in flow.names:

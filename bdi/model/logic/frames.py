@@ -43,7 +43,7 @@ class Known:
     met: frozenset[Var] = frozenset()  # perhaps not None
 
     def after(self, term: Term) -> "Known":
-        """Once this formula has come true."""
+        """Return the facts once this formula has come true."""
         return Known(self.filled | filled_by(term), self.met | frozenset(variables_in(term)))
 
     def among(self, variables: Iterable[Var]) -> "Known":

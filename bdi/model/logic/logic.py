@@ -177,7 +177,7 @@ class Logic(Functions):
             undo(self.trail, mark)
 
     def ask_deeply(self, ask: Callable[[], Any]) -> Any:
-        """With a higher stack if it takes one, unless the question around this one takes care of that."""
+        """Ask with a higher stack if it takes one, unless the question around this one has raised it."""
         mark = len(self.trail)
         try:
             return ask()

@@ -154,7 +154,7 @@ def decomposed(left: Term, right: Term, trail: Trail) -> bool:
 
 
 def _parts_of_plan(plan: Plan, scope: dict[Var, Term]) -> tuple[Term, ...]:
-    """Its label, its event, its context and its body."""
+    """Return its label, its event, its context and its body."""
     label = plan.label if plan.label.functor else atom("nolabel")
     context = TRUE if plan.context is None else substituted(plan.context, scope)
     return label, Code(event_alone(plan), scope), context, Code(plan.body, scope)

@@ -58,7 +58,7 @@ class TermWriter:
         return "(" + "".join(f"{self.expression(w, term, flow)}, " for term in terms) + ")"
 
     def value(self, w: Writer, term: Term, flow: Flow) -> str:
-        """As `expression`, with variables replaced by what they stand for."""
+        """Write the term like `expression`, with variables replaced by their values."""
         if self._is_flat(term):
             args = "".join(f"{self.value(w, arg, flow)}, " for arg in term.args)  # type: ignore[union-attr]
             return f"make(Structure, ({w.constant(term.predicate, 'KEY')}, ({args}), ()))"  # type: ignore[union-attr]

@@ -72,7 +72,7 @@ class CompiledPlan:
         self.applicable = self._compile_then_apply
 
     def _names(self) -> frozenset[str]:
-        """Of the variables that its sub-plans may mean."""
+        """Return the names of the variables that its sub-plans may use."""
         return frozenset(each.name for each in (*variables_of(self.plan), *self.around) if each.name != "_")
 
     def as_seen(self) -> Plan:
@@ -103,7 +103,7 @@ class Options(list[CompiledPlan]):
 
     @staticmethod
     def of_the_moment(plans: Iterable[CompiledPlan], compiler: PlanCompiler) -> "Options":
-        """For one event: not worth compiling together."""
+        """Make options for one event: not worth compiling together."""
         options = Options(plans, compiler)
         options.choose = partial(compiler.choose_one_by_one, options)
         return options
@@ -142,7 +142,7 @@ def _meant(plan: Plan, outer: frozenset[str]) -> Iterable[Var]:
 
 
 def relevant(options: Options, literal: Literal) -> Options:
-    """Those whose head unifies with the event; if all do, the very list, which is kept up to date."""
+    """Return the plans whose head unifies with the event; if all do, the list itself, which is kept up to date."""
     places = tuple([place for place, plan in enumerate(options) if plan.concerns(literal)])
     return options if len(places) == len(options) else options.part(places)
 

@@ -63,7 +63,7 @@ class Reading:
         return {use.literal.predicate for use in self.of(how)}
 
     def plans_for(self, trigger: Trigger, key: Predicate) -> list[Plan]:
-        """Those with this predicate or a variable as head, in source order."""
+        """Return the plans with this predicate or a variable as head, in source order."""
         found = (plan for plan in self.plans if plan.trigger is trigger)
         return [plan for plan in found if isinstance(plan.head, Var) or plan.head.predicate is key]
 

@@ -95,7 +95,7 @@ class Recorder:
         return outcome
 
     def _listen_to_society(self) -> None:
-        """It may have joined one since the last cycle, or left it."""
+        """Record the replies of the society, which may have changed since the last cycle."""
         if self.agent.society is not self._society:
             alone = self.agent.society is ALONE
             self._society = ALONE if alone else listening(self.agent.society, self._heard)

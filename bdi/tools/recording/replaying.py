@@ -61,7 +61,7 @@ class Run:
         return str(self.head["agent"])
 
     def program(self) -> Program:
-        """As it was when it was recorded. Raises NotReplayable."""
+        """The program as it was when it was recorded. Raises NotReplayable."""
         texts: dict[str, str] = self.head["sources"]
 
         def read(path: Path) -> str:
@@ -79,7 +79,7 @@ class Run:
         return parse_program(texts[source], source, read, **options)
 
     def _with_given(self, program: Program) -> Program:
-        """With the beliefs and goals that it was created with."""
+        """Add the beliefs and goals that the agent was created with."""
         here = Place(self.agent)
         beliefs = [Belief(literal_from(text), here) for text in self.head.get("beliefs", ())]
         goals = [Goal(literal_from(text), here) for text in self.head.get("goals", ())]

@@ -1,4 +1,4 @@
-"""Where to stop, and what to show:
+"""Breakpoints:
 
     +!goto/2   +!goto   +!goto(post1)   -!goto    this event is chosen
     +at/1      -at(post1)                         this belief comes or goes, or its event is chosen
@@ -77,7 +77,7 @@ def is_written_in(name: str, agent: Agent) -> bool:
 
 
 def stop_in(cycle: Cycle, breakpoints: Iterable[Breakpoint]) -> str | None:
-    """Why to stop after this cycle, in words."""
+    """Return the reason to stop after this cycle, in words."""
     choice = cycle.choice
     if choice is not None and choice.plan is not None and choice.plan.plan.has("breakpoint"):
         return f"plan {choice.plan.label} is a breakpoint"

@@ -37,7 +37,7 @@ class Dialogue:
         self._dump = dump  # makes JSON, if that is wanted
 
     def hold(self, lines: Iterable[str]) -> None:
-        """Until `q`, or nothing more is said."""
+        """Obey commands until `q` or the end of the input."""
         commands: dict[str, Callable[[str], None]] = {
             "": self.next,
             "n": self.next,

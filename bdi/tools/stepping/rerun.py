@@ -20,7 +20,7 @@ class _Replayed:
 
 
 class Rerun:
-    """All agents of a recording, each with its own inputs."""
+    """The agents of a recording, each with its own inputs."""
 
     def __init__(self, recording: Recording, prepare: Prepare) -> None:
         self.number = 0

@@ -26,7 +26,7 @@ class Difference(NamedTuple):
 
 
 def compared(expected: Sequence[Line], happened: Sequence[Line]) -> list[Difference]:
-    """Both in one list, in order of time."""
+    """Return both in one list, in order of time."""
     start = 0
     while start < min(len(expected), len(happened)) and expected[start].agrees(happened[start]):
         start += 1

@@ -70,7 +70,7 @@ def _term(text: str) -> Term:
 
 @dataclass(frozen=True, slots=True)
 class Expectation:
-    """All lines. With `by_cycle`, when counts; else only the order does."""
+    """The expected lines. With `by_cycle` the cycles count, otherwise only the order."""
 
     lines: tuple[Line, ...]
     by_cycle: bool
