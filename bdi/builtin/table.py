@@ -25,7 +25,7 @@ class Definition:
     name: str
     call: Callable[..., Any]
     takes: tuple[Kind, ...] = ()
-    named: bool = False  # whether it is told which variables its plan has, by name
+    named: bool = False  # whether it takes the variables of its plan, by name
     asks: bool = False  # a function that is given the agent first
     lazy: frozenset[int] = field(init=False)
 

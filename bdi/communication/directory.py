@@ -1,4 +1,4 @@
-"""The directory facilitator: which agent offers which service, and who wants to be told of it."""
+"""The directory facilitator: which agent offers which service, and the agents that subscribed to it."""
 
 from typing import NamedTuple
 
@@ -43,7 +43,7 @@ class Directory:
         return list(dict.fromkeys(offer.agent for offer in self._offers if offer.is_about(service, kind)))
 
     def subscribe(self, agent: str, service: str, kind: str = ANY_KIND) -> list[Message]:
-        """Told at once of those that are there, and later of every one that comes or goes."""
+        """Subscribe: notified at once of those that are there, and later of every change."""
         self._subscriptions[Entry(agent, service, kind)] = None
         return [_news("tell", agent, offer) for offer in self._offers if offer.is_about(service, kind)]
 

@@ -102,7 +102,7 @@ class MultiAgentSystem:
         return name
 
     def kill(self, name: str) -> bool:
-        """Remove the agent: it has no more cycles. Agents that wait for its answer are told that none will come.
+        """Remove the agent: it has no more cycles. Agents that wait for its answer are notified that none will come.
 
         False: there is none of this name.
         """

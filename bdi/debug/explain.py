@@ -203,6 +203,6 @@ def _why_chosen(choices: Iterable[Deliberated], means: Means) -> str | None:
     earlier = [verdict for verdict in choice.verdicts if verdict.plan in choice.tried and verdict.why]
     others = [verdict for verdict in earlier if verdict.plan != means.plan.label]
     if others:
-        told = [WORDS["not chosen"].format(plan=each.plan, why=each.why) for each in others]
-        return WORDS["chosen after"].format(**values, others=", ".join(told))
+        reasons = [WORDS["not chosen"].format(plan=each.plan, why=each.why) for each in others]
+        return WORDS["chosen after"].format(**values, others=", ".join(reasons))
     return WORDS["chosen only" if len(choice.options) == 1 else "chosen first"].format(**values)

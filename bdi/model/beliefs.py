@@ -46,7 +46,7 @@ class Relation:
     def __init__(self, key: Predicate) -> None:
         self.predicate = key
         self.facts: dict[Any, Belief | Derivation] = {}
-        self._crowded = FEW  # dependents, before the dead are looked for among them
+        self._crowded = FEW  # dependents, before the dead are removed
         self.irregular = 0  # entries that equality does not find: rules, facts with variables or annotated parts
         self.by_first: dict[Term, dict[Arguments, None]] | None = None
         self._dependents: dict[int, WeakMethod[Callable[[], None]]] = {}  # by object; see depend

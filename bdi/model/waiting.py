@@ -90,9 +90,9 @@ class Waiter:
         if self.elapsed is None:
             return True
         took_ms = number(round((mind.now - self.since_s) * 1000, 3))
-        told = unify(self.elapsed, took_ms, mind.logic.trail)
+        unified = unify(self.elapsed, took_ms, mind.logic.trail)
         mind.logic.trail.clear()
-        return told
+        return unified
 
 
 def event_waiter(intention: Intention, trigger: Trigger, literal: Literal, deadline_s: float | None) -> Waiter:

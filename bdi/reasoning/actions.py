@@ -70,6 +70,8 @@ class Actions:
         self.step: Callable[[Intention], None]  # the next step of this intention: see `execution`
         self.learn: Callable[[Code, Does], None]  # +{ plan }: see `plan_base`
 
+    # ---- actions -----------------------------------------------------------------------------------------------------
+
     def start_action(self, intention: Intention, term: Literal) -> None:
         """drive(forward)"""
         agent = self.agent
@@ -95,6 +97,8 @@ class Actions:
             return True
         undo(trail, 0)
         return False
+
+    # ---- goals -------------------------------------------------------------------------------------------------------
 
     def achieve(
         self, intention: Intention, key: Predicate, args: Arguments, annots: Arguments, options: Options
@@ -155,7 +159,7 @@ class Actions:
             self._announce(event)
 
     def _announce(self, goal: Event) -> None:
-        """A new goal: sub-plans go before plans, its deadlines begin, those who wait for it or watch it are told."""
+        """Announce a goal: sub-plans go before plans, its deadlines begin, waiters and meta plans are notified."""
         if self.agent.scopes is not None and goal.intention is not None and goal.trigger is GOAL_ADDED:
             goal.options = self.with_subplans(goal.intention, GOAL_ADDED, goal.literal, goal.options)
         self.deadline_watch.set(goal)
@@ -163,6 +167,8 @@ class Actions:
             self.event_queue.tell_waiters(goal.trigger, goal.literal)
         if self.agent.goal_states is not None:
             self.agent.goal_states.tell(goal, "pending")
+
+    # ---- beliefs -----------------------------------------------------------------------------------------------------
 
     def believe(self, literal: Literal, intention: Intention | None, last: bool = False) -> None:
         """+b: waits for its event; ++b does not"""
@@ -232,6 +238,8 @@ class Actions:
             )
             self.event_queue.wait_for_event(intention, event_of(trigger, literal, options, intention))
             self.event_queue.tell_waiters(trigger, literal)
+
+    # ---- branches ----------------------------------------------------------------------------------------------------
 
     def fork(self, intention: Intention, branches: list[Step | None], wait_for_all: bool) -> None:
         """a |&| b, a ||| b: every branch becomes an intention with the same plans below."""

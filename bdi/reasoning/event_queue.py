@@ -20,9 +20,12 @@ class EventQueue:
         (self.agent.suspended_events if intention.suspended else self.agent.events).append(event)
 
     def notice(self, trigger: Trigger, literal: Literal) -> None:
-        """An event of the world. What came to be has its turn even if no plan is about it yet: one may be told by then.
-        (Not while an atomic plan holds the agent: the queue would only grow.) What ceased to be has none, unless
-        sub-plans may be about it."""
+        """Post an event of the world.
+
+        An addition is queued even if no plan is about it yet: one may have arrived by its turn. (Not while an atomic
+        plan holds the agent: the queue would only grow.) A deletion is queued only for plans, or if sub-plans may be
+        about it.
+        """
         agent = self.agent
         event = event_of(trigger, literal, self.relevant_plans(trigger, literal))
         if event.options or agent.attentive or (trigger is BELIEF_ADDED and agent.atomic is None):

@@ -31,6 +31,8 @@ class IntentionBase:
         self.output = output
         self.on_failure: Callable[[Intention, StepFailed], None]
 
+    # ---- start, go on, end -------------------------------------------------------------------------------------------
+
     def new_intention(self) -> Intention:
         agent = self.agent
         number = agent.last_intention = agent.last_intention + 1
@@ -102,6 +104,8 @@ class IntentionBase:
         if self.agent.atomic is intention:
             self.pass_atomic_on()
 
+    # ---- drop --------------------------------------------------------------------------------------------------------
+
     def drop(self, intention: Intention) -> None:
         """The intention is over, with all its branches; its started actions are cancelled."""
         for each in branches_of(intention):
@@ -166,6 +170,8 @@ class IntentionBase:
             self.drop_branch(branch)
         fork.branches = []
 
+    # ---- branches and failed plans -----------------------------------------------------------------------------------
+
     def leave_fork(self, intention: Intention, fork: Fork) -> None:
         """Let only this branch go on, in the place of the fork."""
         fork.branches.remove(intention)
@@ -188,6 +194,8 @@ class IntentionBase:
         self.leave_forks(intention, height)
         if not failure.of_atomic:
             self.end_atomic(intention)
+
+    # ---- wait --------------------------------------------------------------------------------------------------------
 
     def wait_for(self, intention: Intention, awaited: Moment | Waiter) -> None:
         """.wait"""

@@ -58,6 +58,8 @@ class MessageHandling:
         self._read: dict[str, Literal] = {}
         self._default_plan: CompiledPlan | None = None
 
+    # ---- on arrival: a wrong message is refused before anything changes ----------------------------------------------
+
     def read(self, message: Message) -> Letter:
         """Raises UnknownPerformative, AgentSpeakSyntaxError, NotALiteral."""
         if message.reply_to and self._is_waited_for(message.reply_to):
@@ -85,6 +87,8 @@ class MessageHandling:
             if is_ground(literal):
                 self._read[content] = literal
         return literal
+
+    # ---- one message -------------------------------------------------------------------------------------------------
 
     def process(self, letter: Letter) -> None:
         """One message of another agent."""
@@ -134,6 +138,8 @@ class MessageHandling:
         self.actions.achieve_apart(goal, _named(self.agent.library.options(GOAL_ADDED, ANSWER)))
         return True
 
+    # ---- send --------------------------------------------------------------------------------------------------------
+
     def send_checked(self, message: Message) -> None:
         """Send a message if a receiver can read it: .send, .broadcast. Raises StepFailed otherwise."""
         if self._is_self(message.receiver):
@@ -154,6 +160,8 @@ class MessageHandling:
 
     def _is_self(self, receiver: str) -> bool:
         return receiver in (self.agent.name, MYSELF)
+
+    # ---- questions ---------------------------------------------------------------------------------------------------
 
     def wait_for_answer(
         self, intention: Intention, message_id: str, answer: Term, deadline_s: float | None, receivers: Sequence[str]

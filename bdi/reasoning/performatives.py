@@ -172,10 +172,10 @@ def _without_self(answer: Term) -> Term:
 def _ask_how(mind: Mind, message: Message, event: tuple[Trigger, Literal]) -> None:
     """The answer is a list of plans as values."""
     plans = [each.plan for each in mind.library.plans if concerns(mind, each.plan, *event)]
-    _answer(mind, message, "tellHow", List([Code(_as_told(plan)) for plan in plans]))
+    _answer(mind, message, "tellHow", List([Code(_for_sending(plan)) for plan in plans]))
 
 
-def _as_told(plan: Plan) -> Plan:
+def _for_sending(plan: Plan) -> Plan:
     """A name that the agent gave itself (p__1) may be that of another plan elsewhere."""
     label = plan.label
     return replace(plan, label=literal_of(NO_NAME, (), label.annots)) if label.functor.startswith(OWN_NAMES) else plan

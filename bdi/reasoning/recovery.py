@@ -39,6 +39,8 @@ class Recovery:
         self.event_queue = event_queue
         self.intention_base = intention_base
 
+    # ---- a failed step -----------------------------------------------------------------------------------------------
+
     def fail(self, intention: Intention, failure: StepFailed, step: Step | None = None) -> None:
         """A step failed: look down the stack for a plan `-!g` that takes care of it."""
         self.intention_base.withdraw(intention)
@@ -103,6 +105,8 @@ class Recovery:
             agent.goal_states.failed(goal, _error_of(annots), intention)
         return True
 
+    # ---- a failed goal -----------------------------------------------------------------------------------------------
+
     def fail_event(self, event: Event) -> None:
         """A goal that no plan is for, or none whose context holds."""
         if event.trigger in META:
@@ -139,6 +143,8 @@ class Recovery:
             for means in reversed(intention.stack):
                 self.agent.goal_states.given_up(means.event, atom(failure.error), intention)
         self.intention_base.drop(intention)
+
+    # ---- goals that count as reached or failed -----------------------------------------------------------------------
 
     def reach_goal(self, intention: Intention, is_goal: Callable[[Means], bool]) -> None:
         """The lowest goal like this counts as reached: what was done for it is dropped."""

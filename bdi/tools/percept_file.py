@@ -1,4 +1,4 @@
-"""A percept file: what an agent perceives and is told, one line a cycle.
+"""A percept file: percepts and messages of an agent, one line a cycle.
 
     line(center) battery(ok)
     {"percepts": ["line(lost)"], "messages": [["achieve", "g(1)"]]}

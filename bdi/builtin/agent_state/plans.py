@@ -105,8 +105,8 @@ def _as_term(plan: Plan) -> Code:
 @internal_action("relevant_plans", EVENT, OUT, optional(OUT))
 def relevant_plans(mind: Mind, event: Term, plans: Term, labels: Term | None = None) -> Answer:
     found = [compiled.plan for compiled in _relevant(mind, event, "relevant_plans")]
-    told = unify(plans, List([_as_term(plan) for plan in found]), mind.logic.trail)
-    return told and (labels is None or unify(labels, List([plan.label for plan in found]), mind.logic.trail))
+    unified = unify(plans, List([_as_term(plan) for plan in found]), mind.logic.trail)
+    return unified and (labels is None or unify(labels, List([plan.label for plan in found]), mind.logic.trail))
 
 
 @internal_action("relevant_plan", ANY, OUT)

@@ -52,7 +52,7 @@ class TooDeep(Stuck):
     """Brackets in brackets in brackets."""
 
 
-Mender = Callable[["Parse", Token], "list[Token] | None"]
+Repairer = Callable[["Parse", Token], "list[Token] | None"]
 
 
 @lru_cache(maxsize=1)
@@ -88,12 +88,12 @@ def tokens_of(text: str) -> Iterator[Token]:
 class Parse:
     """One text on its way to its value."""
 
-    def __init__(self, text: str, start: str, builder: Builder, mend: "Mender | None" = None) -> None:
+    def __init__(self, text: str, start: str, builder: Builder, repair: "Repairer | None" = None) -> None:
         made = tables()
         self.tables: Tables = made
         self.tokens = tokens_of(text)
         self.builder = builder
-        self.mend = mend  # says what is meant by a token that cannot come
+        self.repair = repair  # says what is meant by a token that cannot come
         self.methods = [getattr(builder, each.method) if each.method else None for each in made.productions]
         self.first = made.starts[start]
         self.states = [self.first]
@@ -116,7 +116,7 @@ class Parse:
 
     def meant(self, token: Token) -> list[Token]:
         """Return the token that was meant where this one cannot come. Raises Unexpected."""
-        tokens = self.mend(self, token) if self.mend else None
+        tokens = self.repair(self, token) if self.repair else None
         if tokens is None:
             raise Unexpected(token)
         return tokens

@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 from bdi.language.errors import AgentSpeakSyntaxError, Place
 from bdi.language.parser.lalr import END, WORD, Parse, Stuck, Token, TooDeep, Unexpected
-from bdi.language.parser.mends import kind_of, mend
 from bdi.language.parser.places import Places
+from bdi.language.parser.repairs import kind_of, repair
 from bdi.language.parser.tables import tables
 
 
@@ -234,7 +234,7 @@ def _in_body(case: Case) -> bool:
 
 def _written_today(case: Case) -> Reason | None:
     """and   missing ;"""
-    found = mend(case.parse, case.token)
+    found = repair(case.parse, case.token)
     return Reason(found.sentence, found.start) if found else None
 
 

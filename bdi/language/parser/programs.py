@@ -46,11 +46,11 @@ def parse_program(
     compatible: bool = False,
     warn: Warn | None = None,
 ) -> Program:
-    """A program with its includes in place. Included files are looked for as `includes.Includes` says.
+    """A program with its includes in place. Included files are searched as `includes.Includes` says.
 
     `read` gives the text of an included file (by default from disk), `directives` are the caller's own, by name (see
-    `directives`). With `compatible` what older programs write is read, too (see `mends`); `Program.warnings` says
-    where, and `warn` is told at once. Raises AgentSpeakSyntaxError, IncludeNotFound, IncludeCircle, UnknownDirective.
+    `directives`). With `compatible` what older programs write is read, too (see `repairs`); `Program.warnings` says
+    where, and `warn` is called at once. Raises AgentSpeakSyntaxError, IncludeNotFound, IncludeCircle, UnknownDirective.
     """
     collected = _Collected(Includes(read or read_file, search_path, remap or {}, directives or {}))
     if compatible:
@@ -62,7 +62,7 @@ def parse_program(
 def load_module(name: str, space: str | None, loader: Includes, so_far: Program) -> tuple[Program, str]:
     """A file for an agent that is running, and the namespace it is loaded into (None: a fresh one).
 
-    `so_far` is what the agent was made of: the file is looked for beside it. Raises as `parse_program`.
+    `so_far` is what the agent was made of: the file is searched beside it. Raises as `parse_program`.
     """
     path, text = loader.find(name, Place(so_far.source))
     collected = _Collected(loader, so_far)

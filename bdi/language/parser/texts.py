@@ -9,7 +9,7 @@ from bdi.language.errors import (
     Place,
 )
 from bdi.language.parser.clauses import Clauses, Warn
-from bdi.language.parser.lalr import Mender, Parse, Stuck, Token
+from bdi.language.parser.lalr import Parse, Repairer, Stuck, Token
 from bdi.language.parser.namespaces import Module, in_default_space
 from bdi.language.parser.steps import NO_LITERALS
 from bdi.language.syntax import (
@@ -37,7 +37,7 @@ NOT_NAMED = NO_LITERALS | WAITING
 def parse(text: str, start: str, source: str, warn: Warn | None = None) -> Any:
     """Parse a text. With `warn` older notations are read too, and reported to it. Raises AgentSpeakSyntaxError."""
     builder = Clauses(text, source, warn)
-    under_way = Parse(text, start, builder, _mender(builder, warn) if warn else None)
+    under_way = Parse(text, start, builder, _repairer(builder, warn) if warn else None)
     try:
         return under_way.run()
     except Stuck as stuck:
@@ -46,17 +46,17 @@ def parse(text: str, start: str, source: str, warn: Warn | None = None) -> Any:
         raise mistake(stuck, under_way, builder.places) from None
 
 
-def _mender(builder: Clauses, warn: Warn) -> Mender:
-    from bdi.language.parser.mends import mend
+def _repairer(builder: Clauses, warn: Warn) -> Repairer:
+    from bdi.language.parser.repairs import repair
 
-    def mended(under_way: Parse, token: Token) -> list[Token] | None:
-        found = mend(under_way, token)
+    def repaired(under_way: Parse, token: Token) -> list[Token] | None:
+        found = repair(under_way, token)
         if found is None:
             return None
         warn(CompatibilityWarning(builder.places.at(found.start), found.sentence, found.today))
         return found.tokens
 
-    return mended
+    return repaired
 
 
 def parse_term(text: str) -> Term:

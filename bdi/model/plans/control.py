@@ -32,7 +32,7 @@ class Control(Steps):
         return Known(known.filled, known.met | frozenset(variables_of(Body((written,)))))
 
     def _met_by(self, term: Term, scope: Scope) -> frozenset[Var]:
-        """One that is told the variables by name may fill any of them: .wait("+b(X)")"""
+        """An action that takes the variables by name may fill any of them: .wait("+b(X)")"""
         builtin = self.logic.builtin(term.predicate) if isinstance(term, Atom | Structure) else None
         return frozenset(scope.slots if builtin is not None and builtin.named else variables_in(term))
 

@@ -111,14 +111,14 @@ def uncalled_plans(reading: Reading) -> Iterator[Finding]:
     if reading.posts_anything:
         return
     posted = reading.names(How.POSTED)
-    told: set[object] = set()
+    reported: set[object] = set()
     for plan in reading.plans:
         if plan.trigger is not Trigger.GOAL_ADDED or isinstance(plan.head, Var):
             continue
         key = plan.head.predicate
-        if key in posted or key in told or key.name == "kqml_received" or _is_for_others(plan):
+        if key in posted or key in reported or key.name == "kqml_received" or _is_for_others(plan):
             continue
-        told.add(key)
+        reported.add(key)
         yield Finding(
             "uncalled-plan",
             Severity.HINT,

@@ -109,7 +109,7 @@ class Run:
     def replay(
         self, program: Program | None = None, heard: Callable[[int, Agent, Outcome], None] | None = None
     ) -> Difference | None:
-        """Run it again and compare every cycle; the first difference, or None. `heard` is told each outcome."""
+        """Run it again and compare every cycle; the first difference, or None. `heard` is called with each outcome."""
         agent = self.new_agent(program)
         entries = any("trace" in line for line in self.lines)
         if entries:

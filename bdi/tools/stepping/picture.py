@@ -79,8 +79,8 @@ def _event(choice: Deliberated) -> Text:
     """The event, its annotations dimmed; without where a failure happened, which the steps before have shown."""
     event = choice.event
     annots = [show(annot) for annot in event.literal.annots if getattr(annot, "functor", "") not in _LEFT_OUT]
-    told = [text for text in annots if text != "source(self)" and text.removeprefix("reason(")[:-1] not in annots]
-    return Text.assemble((str(event), "bold"), (f"[{','.join(told)}]" if told else "", "dim"))
+    extra = [text for text in annots if text != "source(self)" and text.removeprefix("reason(")[:-1] not in annots]
+    return Text.assemble((str(event), "bold"), (f"[{','.join(extra)}]" if extra else "", "dim"))
 
 
 def _plans(verdicts: Sequence[Verdict]) -> Table:
