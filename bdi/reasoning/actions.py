@@ -1,4 +1,4 @@
-"""The effects of plan steps on the agent: the verbs of `plans.Doer`."""
+"""The effects of plan steps on the agent: the verbs of `plans.Effects`."""
 
 from collections.abc import Callable
 from typing import Any
@@ -50,7 +50,7 @@ _new = object.__new__
 
 
 class Actions:
-    """Carries out the steps of plans: the `Doer` of one agent."""
+    """Carries out the steps of plans: the `Effects` of one agent."""
 
     __slots__ = ("agent", "deadline_watch", "event_queue", "intention_base", "learn", "output", "step")
 

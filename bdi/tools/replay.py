@@ -69,11 +69,11 @@ def _note_changes(run: Run) -> None:
 
 
 def _printer(run: Run, named: bool) -> Callable[[int, Agent, Outcome], None]:
-    def heard(cycle: int, agent: Agent, outcome: Outcome) -> None:
+    def on_cycle(cycle: int, agent: Agent, outcome: Outcome) -> None:
         for action in outcome.actions:
             typer.echo(f"{cycle} {run.agent} {action}" if named else f"{cycle} {action}")
 
-    return heard
+    return on_cycle
 
 
 def _data(path: Path, recorded: Recording, found: list[tuple[Run, Difference | None]]) -> dict[str, object]:

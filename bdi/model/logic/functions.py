@@ -197,12 +197,12 @@ class Functions(FormulaWriter):
 
         return Compiled(compile_it)
 
-    def goal_step(self, doer: PostsGoals, term: Literal, options: Any, scope: Scope, known: Known) -> Compiled:
+    def goal_step(self, effects: PostsGoals, term: Literal, options: Any, scope: Scope, known: Known) -> Compiled:
         """(intention, means) → what posts the goal: quicker where no variable is free"""
 
         def call(w: Writer, flow: Flow) -> str:
             key, args = w.constant(term.predicate, "KEY"), self.expressions(w, term.args, flow)
-            achieve, post = w.constant(doer.achieve, "achieve"), w.constant(doer.post_goal, "post_goal")
+            achieve, post = w.constant(effects.achieve, "achieve"), w.constant(effects.post_goal, "post_goal")
             fixed = " and ".join(f"type({name}) in FIXED" for name in flow.names.values())
             how = f"({post} if {fixed} else {achieve})" if fixed else post
             return f"{how}(intention, {key}, {args}, FROM_SELF, {w.constant(options, 'OPTIONS')})"

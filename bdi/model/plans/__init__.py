@@ -5,6 +5,6 @@ Uses `language`, `logic`, `beliefs` and `intentions`. Start with `compiler`, the
 
 from bdi.model.plans.compiler import Compiler
 from bdi.model.plans.library import CompiledPlan, Library, Options, applies, relevant
-from bdi.model.plans.steps import Doer
+from bdi.model.plans.steps import Effects
 
-__all__ = ["CompiledPlan", "Compiler", "Doer", "Library", "Options", "applies", "relevant"]
+__all__ = ["CompiledPlan", "Compiler", "Effects", "Library", "Options", "applies", "relevant"]

@@ -10,7 +10,7 @@ from bdi.model.intentions import NOT_WORKED_OUT, Event
 from bdi.model.logic import Frame, Known, Logic, Scope
 from bdi.model.plans.control import Control
 from bdi.model.plans.library import Applicable, Choose, CompiledPlan, Library, Options
-from bdi.model.plans.steps import Doer
+from bdi.model.plans.steps import Effects
 
 MOST_AT_ONCE = 30  # plans; each that comes or goes means compiling them all again
 
@@ -18,10 +18,10 @@ MOST_AT_ONCE = 30  # plans; each that comes or goes means compiling them all aga
 class Compiler:
     """Makes plans of one agent out of written ones."""
 
-    def __init__(self, doer: Doer, logic: Logic) -> None:
+    def __init__(self, effects: Effects, logic: Logic) -> None:
         self.logic = logic
         self.library = Library(self)
-        self._control = Control(doer, logic, self.library)
+        self._control = Control(effects, logic, self.library)
 
     def compile(self, compiled: CompiledPlan, forget: Callable[[], None]) -> Applicable:
         """The body becomes steps of the plan; the answer is what tells whether the plan applies."""

@@ -110,12 +110,12 @@ class Control(Steps):
 
     def _fork(self, written: Fork, scope: Scope, known: Known, following: Step | None) -> Step:
         """a |&| b   a ||| b"""
-        doer = self.doer
-        join = Step(lambda intention, means: doer.join(intention), written, following)
+        effects = self.effects
+        join = Step(lambda intention, means: effects.join(intention), written, following)
         meanwhile = Known(known.filled, known.met | frozenset(variables_of(Body((written,)))))  # by another branch
         firsts = [self.chain(branch, scope, meanwhile, join) for branch in written.branches]
         return Step(
-            lambda intention, means: doer.fork(intention, firsts, written.wait_for_all),
+            lambda intention, means: effects.fork(intention, firsts, written.wait_for_all),
             written,
             following,
         )

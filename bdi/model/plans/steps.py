@@ -1,4 +1,4 @@
-"""The steps of a plan body, each a function of its intention and means. They change the agent through `Doer` only."""
+"""The steps of a plan body, each a function of its intention and means. They change the agent by `Effects` only."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
@@ -32,7 +32,7 @@ REMEMBERED_BODIES = 200
 WAIT = predicate(".wait", 1)
 
 
-class Doer(Protocol):
+class Effects(Protocol):
     """The interface of an agent for the steps of plans."""
 
     def start_action(self, intention: Intention, term: Literal) -> None: ...
@@ -63,8 +63,8 @@ Deed = Callable[[Intention, Literal], None]
 class Steps(ABC):
     """Compiles single steps. What a step needs of its variables is compiled when it first runs."""
 
-    def __init__(self, doer: Doer, logic: Logic, library: Library) -> None:
-        self.doer = doer
+    def __init__(self, effects: Effects, logic: Logic, library: Library) -> None:
+        self.effects = effects
         self.logic = logic
         self.library = library
         self._chains: dict[tuple[Any, ...], tuple[Body, Scope, Step | None]] = {}  # of bodies held by values
@@ -89,7 +89,7 @@ class Steps(ABC):
         literal = _literal_written(term)
         if does in (Does.ACHIEVE, Does.ACHIEVE_APART):
             return self._goal(does, literal, scope, known)
-        return self._deed(_DEEDS[does](self.doer), literal, scope, known)
+        return self._deed(_DEEDS[does](self.effects), literal, scope, known)
 
     def _one(self, term: Term, scope: Scope, known: Known) -> Build:
         """The term with the values of its variables."""
@@ -109,7 +109,7 @@ class Steps(ABC):
 
     def _with_variable(self, does: Does, build: Build) -> Run:
         """!X   !!X   +X, where X is a goal, a plan body, a belief, plan or rule"""
-        doer, library = self.doer, self.library
+        effects, library = self.effects, self.library
 
         def achieve(intention: Intention, means: Means) -> None:
             goal = build(means.frame)
@@ -119,18 +119,18 @@ class Steps(ABC):
             literal = _literal(goal)
             options = library.options(GOAL_ADDED, literal.predicate)
             annots = annots_from_self(literal.annots)
-            doer.achieve(intention, literal.predicate, literal.args, annots, options)
+            effects.achieve(intention, literal.predicate, literal.args, annots, options)
 
         if does is Does.ACHIEVE:
             return achieve
         if does is Does.ACHIEVE_APART:
-            return lambda intention, means: doer.achieve_apart(_literal(build(means.frame)))
-        deed = _DEEDS[does](doer)
+            return lambda intention, means: effects.achieve_apart(_literal(build(means.frame)))
+        deed = _DEEDS[does](effects)
 
         def believe(intention: Intention, means: Means) -> None:
             value = build(means.frame)
             if type(value) is Code and does is not Does.ACTION:
-                doer.learn(value, does)
+                effects.learn(value, does)
             else:
                 deed(intention, _literal(value))
 
@@ -140,27 +140,27 @@ class Steps(ABC):
 
     def _goal(self, does: Does, term: Literal, scope: Scope, known: Known) -> Run | Compiled:
         """!g   !!g"""
-        doer = self.doer
+        effects = self.effects
         if does is Does.ACHIEVE_APART:
             build = self._one(term, scope, known)
-            return lambda intention, means: doer.achieve_apart(_literal(build(means.frame)))
+            return lambda intention, means: effects.achieve_apart(_literal(build(means.frame)))
         key, args, annots = term.predicate, term.args, annots_from_self(term.annots)
         options = self.library.options(GOAL_ADDED, key)
         if _is_fixed(term):
-            return lambda intention, means: doer.post_goal(intention, key, args, annots, options)
+            return lambda intention, means: effects.post_goal(intention, key, args, annots, options)
         if term.annots or self.logic.has_functions(term):
             whole = self._one(term, scope, known)
 
             def achieve(intention: Intention, means: Means) -> None:
                 goal = _literal(whole(means.frame))
-                doer.achieve(intention, goal.predicate, goal.args, annots_from_self(goal.annots), options)
+                effects.achieve(intention, goal.predicate, goal.args, annots_from_self(goal.annots), options)
 
             return achieve
-        return self.logic.goal_step(doer, term, options, scope, known)
+        return self.logic.goal_step(effects, term, options, scope, known)
 
     def _test(self, written: Simple, scope: Scope, known: Known) -> Run:
         """?b   ?(b & X > 2)   X > 2"""
-        term, trail, doer = written.term, self.logic.trail, self.doer
+        term, trail, effects = written.term, self.logic.trail, self.effects
         solve = self.logic.test(term, scope, known)
         value = self._one(term, scope, Known(known.filled, known.met | frozenset(variables_in(term))))
         is_test = written.does is Does.TEST
@@ -177,10 +177,10 @@ class Steps(ABC):
             shown = value(means.frame)
             plans = self.library.options(Trigger.TEST_ADDED, _literal(shown).predicate) if late else options
             if is_test:
-                plans = doer.with_subplans(intention, Trigger.TEST_ADDED, shown, plans)
+                plans = effects.with_subplans(intention, Trigger.TEST_ADDED, shown, plans)
             if not plans:
                 raise StepFailed(error, f"{mark}{show(shown)} is not the case")
-            doer.ask_plans(intention, _literal(shown), plans)
+            effects.ask_plans(intention, _literal(shown), plans)
 
         return test
 
@@ -191,10 +191,10 @@ class Steps(ABC):
         builtin = self.logic.builtin(term.predicate)
         if builtin is None:
             return _unknown_internal(term)
-        arguments, doer = self.logic.call(term, builtin, scope, known), self.doer
+        arguments, effects = self.logic.call(term, builtin, scope, known), self.effects
 
         def internal(intention: Intention, means: Means) -> None:
-            if not doer.call_internal(intention, builtin, arguments.call(means.frame)):
+            if not effects.call_internal(intention, builtin, arguments.call(means.frame)):
                 raise StepFailed("ia_failed", f"{show(term)} failed")
 
         return internal
@@ -212,7 +212,7 @@ class Steps(ABC):
             elif isinstance(value, Var):
                 raise StepFailed("body_var_without_value", f"{value.name} has no value")
             else:
-                self.doer.start_action(intention, _literal(value))
+                self.effects.start_action(intention, _literal(value))
 
         return variable
 
@@ -226,7 +226,7 @@ class Steps(ABC):
         frame.extend([None] * (scope.size - len(frame)))
         means.step = first
         if first is not None:
-            self.doer.step(intention)
+            self.effects.step(intention)
 
     def _chain_of(self, code: Code, start: int, following: Step | None) -> tuple[Scope, Step | None]:
         """The steps of the body, remembered: a loop may run it many times."""
@@ -280,13 +280,13 @@ def _unknown_internal(term: Literal) -> Run:
     return unknown
 
 
-_DEEDS: dict[Does, Callable[[Doer], Deed]] = {
-    Does.ACTION: lambda doer: doer.start_action,
-    Does.ADD: lambda doer: lambda intention, term: doer.believe(term, intention),
-    Does.ADD_FIRST: lambda doer: lambda intention, term: doer.believe(term, intention),
-    Does.ADD_LAST: lambda doer: lambda intention, term: doer.believe(term, intention, last=True),
-    Does.ADD_APART: lambda doer: lambda intention, term: doer.believe(term, None),
-    Does.REMOVE: lambda doer: lambda intention, term: doer.forget(term, intention),
-    Does.REMOVE_APART: lambda doer: lambda intention, term: doer.forget(term, None),
-    Does.UPDATE: lambda doer: lambda intention, term: doer.update(term, intention),
+_DEEDS: dict[Does, Callable[[Effects], Deed]] = {
+    Does.ACTION: lambda effects: effects.start_action,
+    Does.ADD: lambda effects: lambda intention, term: effects.believe(term, intention),
+    Does.ADD_FIRST: lambda effects: lambda intention, term: effects.believe(term, intention),
+    Does.ADD_LAST: lambda effects: lambda intention, term: effects.believe(term, intention, last=True),
+    Does.ADD_APART: lambda effects: lambda intention, term: effects.believe(term, None),
+    Does.REMOVE: lambda effects: lambda intention, term: effects.forget(term, intention),
+    Does.REMOVE_APART: lambda effects: lambda intention, term: effects.forget(term, None),
+    Does.UPDATE: lambda effects: lambda intention, term: effects.update(term, intention),
 }

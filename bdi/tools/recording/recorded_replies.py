@@ -17,71 +17,71 @@ from bdi.model.society import ALONE, Reader, Society
 READ = "read"  # a message, by its receiver
 
 
-def listening(society: Society, heard: list[Any]) -> Society:
-    """Return the same society; its replies are recorded in `heard`."""
-    return cast(Society, _Listening(society, heard))
+def recorded(society: Society, replies: list[Any]) -> Society:
+    """Return the same society; its replies are recorded in `replies`."""
+    return cast(Society, _Recording(society, replies))
 
 
-def remembered(answers: Iterable[Sequence[Any]]) -> Society:
-    """A society that answers so, one after another; what was never asked then is answered as to an agent alone."""
-    return cast(Society, _Remembered(answers))
+def replayed(replies: Iterable[Sequence[Any]]) -> Society:
+    """A society that replies so, one after another; what was never asked then is answered as to an agent alone."""
+    return cast(Society, _Replayed(replies))
 
 
-class _Listening:
-    def __init__(self, society: Society, heard: list[Any]) -> None:
+class _Recording:
+    def __init__(self, society: Society, replies: list[Any]) -> None:
         self._society = society
-        self._heard = heard
+        self._replies = replies
 
     def readers(self, receiver: str, sender: str) -> Sequence[Reader]:
-        found = self._listened("readers", receiver, sender)
-        self._heard[-1][1] = len(found)
-        return [_ListeningReader(reader, self._heard) for reader in found]
+        found = self._record("readers", receiver, sender)
+        self._replies[-1][1] = len(found)
+        return [_RecordingReader(reader, self._replies) for reader in found]
 
     def __getattr__(self, what: str) -> Callable[..., Any]:
-        return lambda *asked: self._listened(what, *asked)
+        return lambda *asked: self._record(what, *asked)
 
-    def _listened(self, what: str, *asked: Any) -> Any:
+    def _record(self, what: str, *asked: Any) -> Any:
         try:
             answer = getattr(self._society, what)(*asked)
         except StepFailed as failure:
-            self._heard.append([what, None, failure.error, failure.message, list(map(show, failure.annots))])
+            self._replies.append([what, None, failure.error, failure.message, list(map(show, failure.annots))])
             raise
-        self._heard.append([what, answer])
+        self._replies.append([what, answer])
         return answer
 
 
-class _ListeningReader:
-    def __init__(self, reader: Reader, heard: list[Any]) -> None:
+class _RecordingReader:
+    def __init__(self, reader: Reader, replies: list[Any]) -> None:
         self._reader = reader
-        self._heard = heard
+        self._replies = replies
 
     def read(self, message: Message) -> Any:
         try:
             found = self._reader.read(message)
         except BdiError as problem:
-            self._heard.append([READ, None, type(problem).__name__, str(problem), []])
+            self._replies.append([READ, None, type(problem).__name__, str(problem), []])
             raise
-        self._heard.append([READ, None])
+        self._replies.append([READ, None])
         return found
 
 
-class _Remembered:
-    def __init__(self, answers: Iterable[Sequence[Any]]) -> None:
-        self._answers = deque(answers)
+class _Replayed:
+    def __init__(self, replies: Iterable[Sequence[Any]]) -> None:
+        self._replies = deque(replies)
 
     def readers(self, receiver: str, sender: str) -> Sequence[Reader]:
-        if not self._answers:
+        if not self._replies:
             return ALONE.readers(receiver, sender)
-        found: int = self._answered("readers", receiver, sender)
-        return [_RememberedReader(self._answers)] * found
+        found: int = self._next_reply("readers", receiver, sender)
+        return [_ReplayedReader(self._replies)] * found
 
     def __getattr__(self, what: str) -> Callable[..., Any]:
-        return lambda *asked: self._answered(what, *asked)
+        return lambda *asked: self._next_reply(what, *asked)
 
-    def _answered(self, what: str, *asked: Any) -> Any:
-        if not self._answers:
+    def _next_reply(self, what: str, *asked: Any) -> Any:
+        if not self._replies:
             return getattr(ALONE, what)(*asked)
-        then, answer, *failure = self._answers.popleft()
+        then, answer, *failure = self._replies.popleft()
         if then != what:
             raise StepFailed("not_recorded", f"the society was asked for {then} when this was recorded, not for {what}")
         if failure:
@@ -90,12 +90,12 @@ class _Remembered:
         return answer
 
 
-class _RememberedReader:
-    def __init__(self, answers: deque[Sequence[Any]]) -> None:
-        self._answers = answers
+class _ReplayedReader:
+    def __init__(self, replies: deque[Sequence[Any]]) -> None:
+        self._replies = replies
 
     def read(self, message: Message) -> None:
-        then, _, *failure = self._answers.popleft() if self._answers else (READ, None)
+        then, _, *failure = self._replies.popleft() if self._replies else (READ, None)
         if then == READ and failure:
             kind, sentence, _ = failure
             unknown = kind == UnknownPerformative.__name__

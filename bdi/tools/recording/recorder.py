@@ -26,7 +26,7 @@ from bdi.model.messages import Finished, Message
 from bdi.model.society import ALONE, Society
 from bdi.reasoning.agent import Agent
 from bdi.reasoning.output import Outcome
-from bdi.tools.recording.recorded_replies import listening
+from bdi.tools.recording.recorded_replies import recorded
 
 VERSION = 1
 
@@ -57,7 +57,7 @@ class Recorder:
         self._file = file
         self._percepts: list[str] | None = None
         self._society: Society = ALONE
-        self._heard: list[Any] = []
+        self._replies: list[Any] = []
         self._entries = entries
         if entries:
             agent.listen(lambda entry: None)
@@ -77,7 +77,7 @@ class Recorder:
         """One cycle of the agent. What it refuses is not recorded: nothing has happened then."""
         percepts = None if percepts is None else list(percepts)
         messages, finished = list(messages), list(finished)
-        self._listen_to_society()
+        self._record_society()
         outcome = self._cycle(percepts, messages, finished, now)
         line: dict[str, Any] = {"agent": self.name, "cycle": self.agent.cycles, "now": now}
         texts = None if percepts is None else sorted(map(_text, percepts))
@@ -88,17 +88,17 @@ class Recorder:
             line["messages"] = [_plain(message) for message in messages]
         if finished:
             line["finished"] = [_plain(news) for news in finished]
-        if self._heard:
-            line["society"] = self._heard[:]
-            self._heard.clear()
+        if self._replies:
+            line["society"] = self._replies[:]
+            self._replies.clear()
         self._write({**line, **result_of(self.agent, outcome, self._entries)})
         return outcome
 
-    def _listen_to_society(self) -> None:
+    def _record_society(self) -> None:
         """Record the replies of the society, which may have changed since the last cycle."""
         if self.agent.society is not self._society:
             alone = self.agent.society is ALONE
-            self._society = ALONE if alone else listening(self.agent.society, self._heard)
+            self._society = ALONE if alone else recorded(self.agent.society, self._replies)
             self.agent.society = self._society
 
     def close(self) -> None:

@@ -19,7 +19,7 @@ from bdi.language.syntax import Belief, Goal, Program
 from bdi.model.messages import Finished, Message
 from bdi.reasoning.agent import Agent
 from bdi.reasoning.output import Outcome
-from bdi.tools.recording.recorded_replies import remembered
+from bdi.tools.recording.recorded_replies import replayed
 from bdi.tools.recording.recorder import VERSION, digest, result_of
 
 RESULTS = ("actions", "cancelled", "messages_out", "printed", "failures", "trace", "events", "intentions")
@@ -94,7 +94,7 @@ class Run:
             internal_actions=self.internal_actions,
         )
         agent.random.setstate(_chance(self.head["chance"]))
-        agent.society = remembered(answer for line in self.lines for answer in line.get("society", ()))
+        agent.society = replayed(answer for line in self.lines for answer in line.get("society", ()))
         return agent
 
     def inputs(self) -> Iterable[tuple[list[str] | None, list[Message], list[Finished], float]]:
@@ -107,9 +107,9 @@ class Run:
             yield now, messages, [Finished(**news) for news in line.get("finished", ())], line["now"]
 
     def replay(
-        self, program: Program | None = None, heard: Callable[[int, Agent, Outcome], None] | None = None
+        self, program: Program | None = None, on_cycle: Callable[[int, Agent, Outcome], None] | None = None
     ) -> Difference | None:
-        """Run it again and compare every cycle; the first difference, or None. `heard` is called with each outcome."""
+        """Run it again; return the first difference, or None. `on_cycle` is called with each outcome."""
         agent = self.new_agent(program)
         entries = any("trace" in line for line in self.lines)
         if entries:
@@ -119,8 +119,8 @@ class Run:
                 outcome = agent.cycle(*given)
             except BdiError as error:
                 return Difference(self.agent, line["cycle"], "input", "taken", f"refused: {error}")
-            if heard:
-                heard(line["cycle"], agent, outcome)
+            if on_cycle:
+                on_cycle(line["cycle"], agent, outcome)
             result = json.loads(json.dumps(result_of(agent, outcome, entries)))
             for what in RESULTS:
                 if line.get(what) != result.get(what):

@@ -9,7 +9,7 @@ import pytest
 
 from bdi import Agent, AgentSpeakSyntaxError, Finished, Program, load_program, parse_program
 
-PAPER = Path(__file__).parents[3] / "shared" / "cases" / "paper"
+PAPER = Path(__file__).parents[4] / "shared" / "cases" / "paper"
 
 OLD = """!deliver(post4).
 @L1 +!deliver(P) : not busy and (free(P) or open) <- +busy go(P)

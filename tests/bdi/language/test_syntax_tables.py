@@ -10,7 +10,7 @@ from lark import Lark, LarkError
 from bdi.language.parser import parse_program
 from bdi.language.parser.tables import GRAMMAR, KEPT, STARTS, written
 
-EXAMPLES = sorted((Path(__file__).parents[2] / "examples" / "agents").glob("*.asl"))
+EXAMPLES = sorted((Path(__file__).parents[3] / "examples" / "agents").glob("*.asl"))
 
 
 def test_the_kept_tables_are_those_of_the_grammar() -> None:

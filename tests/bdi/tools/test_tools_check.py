@@ -10,7 +10,7 @@ from bdi import Agent, Finished, parse_program
 from bdi.__main__ import app
 from bdi.tools.checks import Severity, findings_of
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 OK = "!go. +!go <- act. "  # a goal with its plan, so that nothing else is found
 
 

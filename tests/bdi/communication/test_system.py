@@ -21,7 +21,7 @@ from bdi import (
 )
 from bdi.__main__ import app
 
-CONTRACT_NET = Path(__file__).parents[2] / "examples" / "agents" / "contract_net"
+CONTRACT_NET = Path(__file__).parents[3] / "examples" / "agents" / "contract_net"
 
 
 def agent(name: str, text: str) -> Agent:

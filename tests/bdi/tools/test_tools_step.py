@@ -15,7 +15,7 @@ from bdi import AgentSpeakSyntaxError
 from bdi.__main__ import app
 from bdi.tools.stepping.breakpoints import breakpoint_of
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 MAIL = """!deliver(post4). line(lost).
 @direct +!deliver(P) : line(center) & open(P) <- drive(P).
 @other +!deliver(post5) <- drive(post5).

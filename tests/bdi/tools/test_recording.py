@@ -13,7 +13,7 @@ from bdi.__main__ import app
 from bdi.tools.recording.recorder import RecordedTooLate, Recorder
 from bdi.tools.recording.replaying import NotARecording, read_recording
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 GAMBLER = """!go. { include("more.asl") }
 +!go : .random(X) & X > 0.4 <- .print(X); .random(Y); bet(Y); !go.
 +!go <- .wait(250); !lose; !go.
