@@ -1,7 +1,14 @@
-"""A mind for hire: AgentSpeak programs with the meaning that Jason gives them, one reasoning cycle at a time."""
+"""AgentSpeak programs with the meaning that Jason gives them, one reasoning cycle at a time.
 
-from bdi.agent import Agent
-from bdi.errors import (
+Uses Lark, and nothing else of this checkout: no robot, clock or thread. What callers need is exported here; start with
+`Agent.cycle`, or with the table of packages in README.md.
+"""
+
+from bdi.builtin.user_actions import InternalActions
+from bdi.communication.system import MultiAgentSystem, Stimuli
+from bdi.debug.explain import Why
+from bdi.debug.trace import Changed, Deliberated, Failed, GoalFailure, Stepped, TraceEntry, Verdict
+from bdi.language.errors import (
     AgentSpeakError,
     AgentSpeakSyntaxError,
     BdiError,
@@ -18,16 +25,14 @@ from bdi.errors import (
     UnknownInternalAction,
     UnknownPerformative,
 )
-from bdi.explain import Why
-from bdi.messages import Finished, Message
-from bdi.outcome import Action, GoalFailure, Outcome
-from bdi.parser import Includes, load_program, parse_literal, parse_plan, parse_program, parse_term
-from bdi.perception import Drain, Latest, Perception
-from bdi.syntax import Program
-from bdi.system import MultiAgentSystem, Stimuli
-from bdi.terms import Atom, List, Literal, String, Structure, Term, Var, atom, show, structure
-from bdi.trace import Changed, Deliberated, Failed, Stepped, TraceEntry, Verdict
-from bdi.user_actions import InternalActions
+from bdi.language.parser import Includes, load_program, parse_literal, parse_plan, parse_program, parse_term
+from bdi.language.syntax import Program
+from bdi.language.terms import Atom, List, Literal, String, Structure, Term, Var, atom, show, structure
+from bdi.model.messages import Finished, Message
+from bdi.model.mind import Mind
+from bdi.reasoning.agent import Agent
+from bdi.reasoning.output import Action, Outcome
+from bdi.reasoning.perception import Drain, Latest, Perception
 
 __all__ = [
     "Action",
@@ -51,6 +56,7 @@ __all__ = [
     "List",
     "Literal",
     "Message",
+    "Mind",
     "MultiAgentSystem",
     "NotALiteral",
     "OtherSensor",

@@ -1,19 +1,21 @@
-"""The commands of `python -m bdi`; each is a module of `bdi.tools`."""
+"""The commands of `python -m bdi` and `agentspeak`; each is a module of `bdi.tools`."""
 
-import typer
+import sys
 
-from bdi.tools.check import check
-from bdi.tools.replay import replay
-from bdi.tools.run import run
-from bdi.tools.step import step
-from bdi.tools.testing import test
+try:
+    import typer
 
-app = typer.Typer(
-    no_args_is_help=True,
-    add_completion=False,
-    pretty_exceptions_enable=False,
-    rich_markup_mode="rich",
-)
+    from bdi.tools.check import check
+    from bdi.tools.replay import replay
+    from bdi.tools.run import run
+    from bdi.tools.step import step
+    from bdi.tools.testing import test
+except ModuleNotFoundError as missing:
+    if missing.name not in ("typer", "rich"):
+        raise
+    sys.exit(f"The commands need {missing.name}: pip install 'agentspeak-bdi[tools]'")
+
+app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False, rich_markup_mode="rich")
 
 
 @app.callback()

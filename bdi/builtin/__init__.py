@@ -1,27 +1,13 @@
-"""Internal actions and functions. To add one: write it in the module it belongs to, and decorate it."""
+"""Internal actions and functions.
 
-from bdi.builtin import (
-    agents,
-    annotations,
-    beliefs,
-    chance,
-    clock,
-    collections,
-    events,
-    formulas,
-    functions,
-    goals,
-    lists,
-    namespaces,
-    plans,
-    printing,
-    statements,
-    strings,
-    time,
-    types,
-    words,
-)
+Uses `model` and `language`. To add one: write it in the module it belongs to and decorate it; start with `table`.
+"""
+
+from bdi.builtin import statements
+from bdi.builtin.agent_state import beliefs, events, goals, namespaces, plans
+from bdi.builtin.outside import agents, chance, clock, messages, printing, time
 from bdi.builtin.table import ACTIONS, FUNCTIONS, STANDARD, Definition, Table, find_builtin
+from bdi.builtin.terms import annotations, collections, formulas, functions, lists, strings, types
 from bdi.builtin.unsupported import NOT_SUPPORTED
 
 __all__ = [
@@ -43,6 +29,7 @@ __all__ = [
     "functions",
     "goals",
     "lists",
+    "messages",
     "namespaces",
     "plans",
     "printing",
@@ -50,5 +37,4 @@ __all__ = [
     "strings",
     "time",
     "types",
-    "words",
 ]

@@ -1,13 +1,13 @@
-"""What internal actions do with their arguments."""
+"""Helpers for the arguments of internal actions."""
 
 from collections.abc import Iterable, Iterator
 
 from bdi.builtin.table import wrong_arguments
-from bdi.intentions import Intention, StepFailed
-from bdi.logic import HasLogic
-from bdi.mind import Mind
-from bdi.terms import Handle, List, String, Term, show
-from bdi.unify import in_order, undo, unify
+from bdi.language.terms import Handle, List, String, Term, show
+from bdi.language.unify import in_order, undo, unify
+from bdi.model.intentions import Intention, StepFailed
+from bdi.model.logic import HasLogic
+from bdi.model.mind import Mind
 
 
 def bind(mind: HasLogic, left: Term, right: Term) -> bool:
@@ -15,7 +15,7 @@ def bind(mind: HasLogic, left: Term, right: Term) -> bool:
 
 
 def alternatives(mind: HasLogic, alternatives: Iterable[tuple[tuple[Term, Term], ...]]) -> Iterator[bool]:
-    """Once for every alternative whose pairs all unify."""
+    """Yield once for every alternative whose pairs all unify."""
     trail = mind.logic.trail
     for pairs in alternatives:
         mark = len(trail)
@@ -25,7 +25,7 @@ def alternatives(mind: HasLogic, alternatives: Iterable[tuple[tuple[Term, Term],
 
 
 def unifiable(mind: HasLogic, left: Term, right: Term) -> bool:
-    """Whether they would unify; nothing stays bound."""
+    """Return whether they would unify; nothing stays bound."""
     mark = len(mind.logic.trail)
     found = unify(left, right, mind.logic.trail)
     undo(mind.logic.trail, mark)

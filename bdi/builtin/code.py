@@ -1,11 +1,11 @@
 """Plans, rules and events as terms, `{ +!g(X) <- a }`, with the values that their variables have."""
 
 from bdi.builtin.table import wrong_arguments
-from bdi.errors import AgentSpeakSyntaxError, Place
-from bdi.parser import parse_event, parse_plan
-from bdi.syntax import Body, Plan, Rule, Trigger, event_of, with_terms
-from bdi.terms import Atom, Code, Literal, String, Structure, Term, Var, atom
-from bdi.unify import deref, renamed, substituted
+from bdi.language.errors import AgentSpeakSyntaxError, Place
+from bdi.language.parser import parse_event, parse_plan
+from bdi.language.syntax import Body, Plan, Rule, Trigger, event_of, with_terms
+from bdi.language.terms import Atom, Code, Literal, String, Structure, Term, Var, atom
+from bdi.language.unify import deref, renamed, substituted
 
 
 def plan_in(term: Term, name: str) -> Plan:
@@ -15,25 +15,25 @@ def plan_in(term: Term, name: str) -> Plan:
             return parse_plan(str.__str__(term))
         except AgentSpeakSyntaxError as error:
             raise wrong_arguments(name, f"a plan ({error.problem})", term) from error
-    held = with_values(term) if isinstance(term, Code) else None
-    event = None if held is None else event_of(held)
+    quoted = with_values(term) if isinstance(term, Code) else None
+    event = None if quoted is None else event_of(quoted)
     if event is None or not isinstance(event[1], Atom | Structure | Var):
         raise wrong_arguments(name, "a plan, as { +!g <- a } or as a string", term)
-    return held if isinstance(held, Plan) else Plan(atom(""), *event, None, Body(), Place())
+    return quoted if isinstance(quoted, Plan) else Plan(atom(""), *event, None, Body(), Place())
 
 
 def rule_in(term: Term) -> Rule | None:
     """{ p(X) :- q(X) }"""
-    held = with_values(term) if isinstance(term, Code) else None
-    return held if isinstance(held, Rule) else None
+    quoted = with_values(term) if isinstance(term, Code) else None
+    return quoted if isinstance(quoted, Rule) else None
 
 
 def with_values(code: Code) -> Plan | Body | Rule:
-    """What it holds with the values of its variables; free ones become its own."""
+    """Return the quoted code with the values of its variables; free ones become its own."""
     names: dict[Var, Term] = {}
     values = {variable: renamed(value, names) for variable, value in code.scope.items()}
-    held: Plan | Body | Rule = code.body
-    return with_terms(held, lambda term: substituted(term, values)) if values else held
+    quoted: Plan | Body | Rule = code.body
+    return with_terms(quoted, lambda term: substituted(term, values)) if values else quoted
 
 
 # ---- events --------------------------------------------------------------------------------------------------------
@@ -46,7 +46,7 @@ def event_in(condition: Term) -> tuple[Trigger, Literal] | None:
 
 
 def trigger_in(condition: Term) -> tuple[Trigger, Literal | Var] | None:
-    """As `event_in`, but {+!_} too. Its variables are those of whoever wrote it."""
+    """Read an event as `event_in` does, and {+!_} too. Its variables are those of the plan that wrote it."""
     if isinstance(condition, String):
         return _event_named(condition)
     event = event_of(condition.body) if isinstance(condition, Code) else None

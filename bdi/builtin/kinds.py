@@ -1,4 +1,4 @@
-"""What the arguments of internal actions and functions may be: one notation for ours and for the user's own.
+"""Kinds of arguments of internal actions and functions: one notation for ours and for the user's own.
 
     @internal_action("range", ANY, WHOLE, WHOLE, optional(WHOLE))
 
@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
-from bdi.terms import (
+from bdi.language.terms import (
     ARITHMETIC,
     NEGATIVE,
     POSITIVE,
@@ -36,7 +36,7 @@ class Kind:
     lazy: bool = False  # handed over as a Question, not as a value
     optional: bool = False
     rest: bool = False  # this one, any number of times
-    out: bool = False  # unified with the answer, whatever stands there
+    out: bool = False  # unified with the result
 
 
 def kind(name: str, *types: type) -> Kind:
@@ -80,7 +80,7 @@ EVENT = kind("an event, as {+!g(X)} or a string", Code, String)
 
 
 def counts(takes: tuple[Kind, ...]) -> tuple[int, int | None]:
-    """How many arguments at least, and at most (None: any number)."""
+    """Return how many arguments at least, and at most (None: any number)."""
     least = sum(1 for each in takes if not each.optional)
     return least, None if takes and takes[-1].rest else len(takes)
 

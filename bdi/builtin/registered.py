@@ -1,11 +1,31 @@
-"""Functions that a program defines: `{ register_function("area", 2, "area_of") }`."""
+"""The internal actions and functions of one agent, among them those that its program defines."""
 
 from typing import Any
 
-from bdi.errors import UnknownInternalAction
-from bdi.logic import HasLogic
-from bdi.syntax import Function
-from bdi.terms import Predicate, Structure, Term, Var, is_internal, literal_of, predicate
+from bdi.builtin.table import Table, find_builtin
+from bdi.language.errors import UnknownInternalAction
+from bdi.language.syntax import Function
+from bdi.language.terms import Predicate, Structure, Term, Var, is_internal, literal_of, predicate
+from bdi.model.logic import Builtin, HasLogic
+
+
+class BoundActions:
+    """Internal actions and functions, bound to an agent when they are first used."""
+
+    def __init__(self, mind: HasLogic, own: Table | None) -> None:
+        self._mind = mind
+        self._own = own
+        self._bound: dict[Predicate, Builtin | None] = {}
+
+    def find(self, key: Predicate) -> Builtin | None:
+        """Return the internal action or function with this predicate, if there is one."""
+        if key not in self._bound:
+            self._bound[key] = find_builtin(key, self._mind, self._own)
+        return self._bound[key]
+
+    def define(self, function: Function) -> None:
+        """{ register_function("area", 2, "area_of") }"""
+        self._bound[key_of(function)] = Registered(self._mind, function)
 
 
 class Registered:

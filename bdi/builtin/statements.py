@@ -2,9 +2,9 @@
 
 from bdi.builtin.kinds import ANY, FORMULA, Kind, optional, rest
 from bdi.builtin.table import Answer, internal_action
-from bdi.intentions import StepFailed
-from bdi.mind import Mind
-from bdi.terms import atom
+from bdi.language.terms import atom
+from bdi.model.intentions import StepFailed
+from bdi.model.mind import Mind
 
 STATEMENTS = {
     "if_then_else": (FORMULA, ANY, optional(ANY)),

@@ -10,10 +10,10 @@ from difflib import get_close_matches
 from typing import Any, TypeAlias
 
 from bdi.builtin.kinds import Kind, at_place, counts
-from bdi.errors import NotALiteral, UnknownPerformative
-from bdi.intentions import StepFailed
-from bdi.logic import Builtin, HasLogic
-from bdi.terms import Predicate, Structure, Term, show
+from bdi.language.errors import NotALiteral, UnknownPerformative
+from bdi.language.terms import Predicate, Structure, Term, show
+from bdi.model.intentions import StepFailed
+from bdi.model.logic import Builtin, HasLogic
 
 Answer: TypeAlias = bool | Iterator[Any] | None  # None counts as True
 
@@ -25,7 +25,7 @@ class Definition:
     name: str
     call: Callable[..., Any]
     takes: tuple[Kind, ...] = ()
-    named: bool = False  # whether it is told which variables its plan has, by name
+    named: bool = False  # whether it takes the variables of its plan, by name
     asks: bool = False  # a function that is given the agent first
     lazy: frozenset[int] = field(init=False)
 
@@ -60,7 +60,7 @@ class Table:
         return [table[name] for table in (self.actions, self.functions) if name in table]
 
     def like(self, name: str) -> list[str]:
-        """Names that somebody may have meant."""
+        """Return names that may have been meant."""
         return get_close_matches(name, [*self.actions, *self.functions], 3, 0.75)
 
 
@@ -108,7 +108,7 @@ class Bound:
 
 
 def find_builtin(key: Predicate, mind: HasLogic, own: Table | None = None) -> Builtin | None:
-    """What `.name/arity` is for this agent, in its own table or in ours; or None."""
+    """Find `.name/arity` for this agent, in its own table or in ours; or None."""
     for table in (own, STANDARD) if own else (STANDARD,):
         action, value = table.actions.get(key.name), table.functions.get(key.name)
         action = action if action and action.accepts(key.arity) else None

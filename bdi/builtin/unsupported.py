@@ -1,4 +1,4 @@
-"""Internal actions of Jason that this interpreter does not have, each with the reason that a person is told."""
+"""Internal actions of Jason that this interpreter does not have, each with the reason for people."""
 
 NOT_SUPPORTED: dict[str, str] = {
     ".list_files": "an agent reads no files; give it what it has to know as percepts",

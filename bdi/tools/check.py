@@ -8,8 +8,8 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
-from bdi.agent import Agent
-from bdi.errors import AgentSpeakError
+from bdi.language.errors import AgentSpeakError
+from bdi.reasoning.agent import Agent
 from bdi.tools.checks import Finding, Severity, findings_of
 from bdi.tools.console import DIFFERENT, complaints, load, output
 from bdi.tools.options import AsJson, Compatible, Programs
@@ -101,6 +101,6 @@ def _show(console: Console, findings: list[Finding], programs: int) -> None:
             console.print(f"[dim]{escape(line)}[/dim]\n[{style}]{caret}[/{style}]")
         console.print(f"    {escape(finding.advice)}\n")
     counts = [(sum(each.severity is severity for each in findings), str(severity)) for severity in Severity]
-    told = ", ".join(f"{count} {name}{'' if count == 1 else 's'}" for count, name in counts if count)
+    counted = ", ".join(f"{count} {name}{'' if count == 1 else 's'}" for count, name in counts if count)
     where = f"{programs} programs: " if programs > 1 else ""
-    console.print(where + (told or "nothing found"))
+    console.print(where + (counted or "nothing found"))

@@ -1,4 +1,4 @@
-"""What every command does the same way: load programs, complain on the error stream, end with the right status."""
+"""Common parts of the commands: load programs, report errors on the error stream, end with the right status."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -8,9 +8,9 @@ from typing import Any
 import typer
 from rich.console import Console
 
-from bdi.errors import AgentSpeakSyntaxError, BdiError
-from bdi.parser import load_program
-from bdi.syntax import Program
+from bdi.language.errors import AgentSpeakSyntaxError, BdiError
+from bdi.language.parser import load_program
+from bdi.language.syntax import Program
 
 DIFFERENT = 1
 UNUSABLE = 2
@@ -18,12 +18,12 @@ PROGRAM = ".asl"
 
 
 def output() -> Console:
-    """For people. Made anew each time, so that it writes to whatever standard output is now."""
+    """Make the console for people; anew each time, so that it writes to the current standard output."""
     return Console(highlight=False, soft_wrap=True)
 
 
 def aside(line: str) -> None:
-    """Whatever is no result goes to the error stream, so that results can be compared and piped."""
+    """Print a line that is no result to the error stream, so that results can be compared and piped."""
     typer.echo(line, err=True)
 
 
@@ -35,7 +35,7 @@ def complain(problem: str) -> typer.Exit:
 
 @contextmanager
 def complaints() -> Iterator[None]:
-    """Whatever is wrong with what was given becomes a sentence and status 2."""
+    """Turn errors in the input into a sentence and status 2."""
     try:
         yield
     except BdiError as error:

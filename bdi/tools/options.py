@@ -10,7 +10,7 @@ Programs = Annotated[
     list[Path],
     typer.Argument(metavar="PROGRAM", help="Agent programs, .asl files. Each agent is called like its file."),
 ]
-Percepts = Annotated[Path | None, typer.Option(help="What is perceived and told, one line a cycle (see `run --help`).")]
+Percepts = Annotated[Path | None, typer.Option(help="Percepts and messages, one line a cycle (see `run --help`).")]
 Cycles = Annotated[int | None, typer.Option(min=1, help="Stop after so many cycles, of 1,000,000 at most.")]
 Fail = Annotated[list[str] | None, typer.Option(help="Actions of this name fail; may be repeated.")]
 Seed = Annotated[int, typer.Option(help="For .random: equal seeds give equal runs.")]

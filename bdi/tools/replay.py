@@ -8,12 +8,12 @@ from typing import Annotated
 import typer
 from rich.markup import escape
 
-from bdi.agent import Agent
-from bdi.outcome import Outcome
-from bdi.recording import digest
-from bdi.replaying import Difference, Recording, Run, read_recording
+from bdi.reasoning.agent import Agent
+from bdi.reasoning.output import Outcome
 from bdi.tools.console import DIFFERENT, aside, complaints, load, output
 from bdi.tools.options import AsJson
+from bdi.tools.recording.recorder import digest
+from bdi.tools.recording.replaying import Difference, Recording, Run, read_recording
 
 
 def replay(
@@ -69,11 +69,11 @@ def _note_changes(run: Run) -> None:
 
 
 def _printer(run: Run, named: bool) -> Callable[[int, Agent, Outcome], None]:
-    def heard(cycle: int, agent: Agent, outcome: Outcome) -> None:
+    def on_cycle(cycle: int, agent: Agent, outcome: Outcome) -> None:
         for action in outcome.actions:
             typer.echo(f"{cycle} {run.agent} {action}" if named else f"{cycle} {action}")
 
-    return heard
+    return on_cycle
 
 
 def _data(path: Path, recorded: Recording, found: list[tuple[Run, Difference | None]]) -> dict[str, object]:

@@ -8,16 +8,16 @@ from typing import Annotated, Any
 
 import typer
 
-from bdi.agent import Agent
-from bdi.outcome import QUIET, Outcome
-from bdi.percept_file import read_percepts
-from bdi.recording import record
-from bdi.syntax import Program
-from bdi.terms import show
+from bdi.debug.trace import TraceEntry
+from bdi.language.syntax import Program
+from bdi.language.terms import show
+from bdi.reasoning.agent import Agent
+from bdi.reasoning.output import QUIET, Outcome
 from bdi.tools.console import aside, complaints
 from bdi.tools.options import AsJson, Compatible, Cycles, Fail, Outside, Percepts, Programs, Seed
+from bdi.tools.percept_file import read_percepts
+from bdi.tools.recording.recorder import record
 from bdi.tools.simulation import Happened, Simulation, setting_of
-from bdi.trace import TraceEntry
 
 TRACE = Outcome._fields.index("trace")
 NOTHING_DONE = """\
@@ -136,7 +136,7 @@ class _Report:
             typer.echo(json.dumps({"cycle": happened.cycle, **whose, **filled}))
 
     def close(self, simulation: Simulation) -> None:
-        """What somebody may wonder about at the end."""
+        """Print hints about how the run ended."""
         for name in sorted(simulation.setting.failing - simulation.started):
             aside(f"--fail {name}: no action of this name was started")
         if self.silent:

@@ -5,14 +5,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
-from bdi.agent import Agent
-from bdi.errors import UnknownAgent
-from bdi.messages import Finished, Message
-from bdi.outcome import Action, Outcome
-from bdi.percept_file import NOTHING, USER, Stimulus
-from bdi.syntax import Program
-from bdi.system import MultiAgentSystem, Stimuli
+from bdi.communication.system import MultiAgentSystem, Stimuli
+from bdi.language.errors import UnknownAgent
+from bdi.language.syntax import Program
+from bdi.model.messages import Finished, Message
+from bdi.reasoning.agent import Agent
+from bdi.reasoning.output import Action, Outcome
 from bdi.tools.console import load
+from bdi.tools.percept_file import NOTHING, USER, Stimulus
 
 CYCLE_MS = 100  # the paper's cycle (section 5.2); here it only gives `.wait` a clock
 LONGEST_RUN = 1_000_000
@@ -22,7 +22,7 @@ Prepare = Callable[[Agent, Program], None]  # may listen to an agent before its 
 
 
 class Happened(NamedTuple):
-    """What one agent did in one cycle, and what it sent, be it to other agents or outside."""
+    """The outputs of one agent in one cycle, with all messages that it sent."""
 
     cycle: int
     agent: str
@@ -70,7 +70,7 @@ class Simulation:
         return agent
 
     def _load(self, name: str) -> Program:
-        """For `.create_agent`: a path, or one beside the first program."""
+        """Load the program of `.create_agent`: a path, or one beside the first program."""
         path = Path(name)
         return load(path if path.exists() else self.setting.programs[0].parent / name, self.setting.compatible)
 
@@ -89,8 +89,10 @@ class Simulation:
             yield from happened
 
     def cycle(self) -> tuple[Happened, ...]:
-        """What each agent does in the next cycle; nothing when the run is over. Raises UnknownAgent for percepts of
-        somebody who never was there."""
+        """Run the next cycle of each agent; return nothing when the run is over.
+
+        Raises UnknownAgent for percepts of an agent that never was there.
+        """
         if self.over:
             return ()
         scripted = self.setting.stimuli

@@ -10,14 +10,14 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from bdi.percept_file import read_percepts
-from bdi.replaying import read_recording
 from bdi.tools.console import complain, complaints
-from bdi.tools.dialogue import Dialogue
 from bdi.tools.options import AsJson, Compatible, Cycles, Fail, Outside, Percepts, Seed
-from bdi.tools.rerun import Rerun
+from bdi.tools.percept_file import read_percepts
+from bdi.tools.recording.replaying import read_recording
 from bdi.tools.simulation import Prepare, Simulation, setting_of
-from bdi.tools.stepper import Running, Stepper
+from bdi.tools.stepping.dialogue import Dialogue
+from bdi.tools.stepping.rerun import Rerun
+from bdi.tools.stepping.stepper import Running, Stepper
 
 MaybePrograms = Annotated[
     list[Path] | None, typer.Argument(metavar="PROGRAM", help="Agent programs, .asl files; none with --recording.")
@@ -91,7 +91,7 @@ def step(
 
 
 def _lines(commands: Path | None, console: Console, echo: bool) -> Iterator[str]:
-    """What is typed, piped or written in a file. What is not typed is shown, so that the output reads by itself."""
+    """Yield the commands, typed, piped or from a file. Those not typed are echoed to complete the output."""
     if commands is None and sys.stdin.isatty():
         yield from _typed(console)
         return

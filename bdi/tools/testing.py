@@ -9,14 +9,14 @@ from typing import Annotated
 import typer
 from rich.markup import escape
 
-from bdi.percept_file import read_percepts
 from bdi.tools.console import DIFFERENT, aside, complain, complaints, output
-from bdi.tools.differences import Difference
-from bdi.tools.expectations import Expectation, Line, expectation_of, read_expectation
 from bdi.tools.options import AsJson, Compatible, Cycles, Fail, Outside, Percepts, Programs, Seed
-from bdi.tools.scripts import Script, script_in
+from bdi.tools.percept_file import read_percepts
 from bdi.tools.simulation import Setting, setting_of
-from bdi.tools.trials import Result, Trial, long_enough, run_trial
+from bdi.tools.trials.differences import Difference
+from bdi.tools.trials.expectations import Expectation, Line, expectation_of, read_expectation
+from bdi.tools.trials.runs import Result, Trial, long_enough, run_trial
+from bdi.tools.trials.scripts import Script, script_in
 
 STYLES = {" ": "dim", "-": "red", "+": "green", "?": "yellow"}
 AROUND = 2  # lines as expected that are shown before and after a difference

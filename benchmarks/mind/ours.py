@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from bdi import Agent, Finished, Message, load_program
-from bdi.trace import TraceEntry
+from bdi.debug.trace import TraceEntry
 from benchmarks.mind.worker import Cycle, Worker, serve
 
 

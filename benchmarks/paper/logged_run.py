@@ -10,9 +10,9 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from bdi import Agent
-from bdi.syntax import Plan, Trigger
-from bdi.terms import Literal
-from bdi.trace import Deliberated, TraceEntry
+from bdi.debug.trace import Deliberated, TraceEntry
+from bdi.language.syntax import Plan, Trigger
+from bdi.language.terms import Literal
 from benchmarks.paper.contenders import SIMULATED_LINE_HZ, Contender
 from benchmarks.paper.stages import Stage, Stages
 from protocol.clock import SteppedClock

@@ -5,11 +5,11 @@ from pathlib import PurePath
 from typing import Final
 
 from bdi import Agent, Changed, Deliberated, Failed, Place, Stepped, TraceEntry, Why
-from bdi.explain import explain_intention
-from bdi.intentions import Intention, branches_of
-from bdi.intentions import Means as HeldMeans
-from bdi.syntax import BELIEF_ADDED
-from bdi.trace import CHOSEN, WOULD_APPLY, brief
+from bdi.debug.explain import explain_intention
+from bdi.debug.trace import CHOSEN, WOULD_APPLY, brief
+from bdi.language.syntax import BELIEF_ADDED
+from bdi.model.intentions import Intention, branches_of
+from bdi.model.intentions import Means as HeldMeans
 from protocol.insight import Because, IntentionTold, Means, NotChosen, TraceLine
 
 LONGEST: Final = 300
@@ -29,7 +29,7 @@ def intention_told(agent: Agent, intention: Intention) -> IntentionTold:
     beside = tuple(one.number for one in branches_of(intention) if one is not intention)
     return IntentionTold(
         number=intention.number,
-        state="suspended" if intention.held else intention.state.name.lower(),
+        state="suspended" if intention.suspended else intention.state.name.lower(),
         because=because(explain_intention(agent, intention)),
         stack=tuple(_means(agent.choices, means) for means in intention.stack[-MOST_GOALS:]),
         beside=beside[:MOST_GOALS],

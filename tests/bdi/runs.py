@@ -17,7 +17,7 @@ class Run:
         self.news: list[Finished] = []
 
     def more(self, cycles: int, *done: str, percepts: set[str] | None = None) -> list[str]:
-        """What is started or printed in the next cycles; at the beginning these actions are over."""
+        """Return what is started or printed in the next cycles; these actions end before the first."""
         said: list[str] = []
         self.news += [Finished(number) for number, name in self.names.items() if name in done]
         for _ in range(cycles):

@@ -1,4 +1,4 @@
-"""What differs from Jason, as docs/agentspeak.md lists it: every row has a program that shows our behaviour.
+"""Differences from Jason, as docs/agentspeak.md lists them: every row has a program that shows our behaviour.
 
 A row without a program, a program without a row, or a behaviour that has changed fails: then either the page or the
 interpreter has to be put right.

@@ -1,4 +1,4 @@
-"""What was recorded with Jason 3.3.2 must come out here: 40 programs, 900 terms, and the paper's agent.
+"""Results recorded with Jason 3.3.2 are ours too: 40 programs, 900 terms, and the paper's agent.
 
 The records lie beside the checkout (shared/cases); without them these tests are skipped and say so.
 """
@@ -12,11 +12,11 @@ from typing import Any
 import pytest
 
 from bdi import Agent, Finished, Literal, Message, Term, Var, load_program, parse_program, parse_term, show
-from bdi.arithmetic import ArithmeticFailure
-from bdi.beliefs import SELF
-from bdi.intentions import State
-from bdi.terms import Structure, literal_of
-from bdi.unify import Trail, compare, deref, resolve, unify, variables_in
+from bdi.language.arithmetic import ArithmeticFailure
+from bdi.language.terms import Structure, literal_of
+from bdi.language.unify import Trail, compare, deref, resolve, unify, variables_in
+from bdi.model.beliefs import SELF
+from bdi.model.intentions import State
 
 CASES = Path(__file__).parents[3] / "shared" / "cases"
 needs_cases = pytest.mark.skipif(not CASES.exists(), reason=f"the recorded cases are not at {CASES}")

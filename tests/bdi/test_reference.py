@@ -8,7 +8,7 @@ import pytest
 from bdi import Agent, AgentSpeakSyntaxError, parse_program
 from bdi.builtin import ACTIONS, FUNCTIONS, NOT_SUPPORTED, Definition
 from bdi.builtin.kinds import counts
-from bdi.performatives import PERFORMATIVES
+from bdi.reasoning.performatives import PERFORMATIVES
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "agentspeak-reference.md").read_text()
@@ -54,7 +54,7 @@ ALL_TABLES = [line for line in PAGE.splitlines() if line.startswith("## ")]
 
 
 def names(title: str) -> list[str]:
-    """What the first cells of a table call things, without arguments."""
+    """Return the names in the first cells of a table, without arguments."""
     return [code.partition("(")[0] for row in rows(title) for code in CODE.findall(row[0])]
 
 

@@ -73,7 +73,7 @@ def watched(tmp_path: Path) -> Iterator[WatchedRobot]:
 
 def test_nobody_watches_nothing_is_told_and_nobody_listens_to_the_agent(watched: WatchedRobot) -> None:
     assert watched.lives(2.0) == []
-    assert not watched.agent._listeners
+    assert not watched.agent.output.listeners
 
 
 def test_who_watches_sees_what_it_intends_by_which_plan_and_why(watched: WatchedRobot) -> None:
@@ -118,7 +118,7 @@ def test_beliefs_are_told_once_and_then_only_what_came_and_went(watched: Watched
 def test_it_ends_by_itself_when_nobody_says_that_they_still_look(watched: WatchedRobot) -> None:
     watched.insights.watch(2.0, whole=False)
     assert len(watched.lives(5.0)) == 4
-    assert not watched.agent._listeners
+    assert not watched.agent.output.listeners
     assert not watched.agent.choices
 
 

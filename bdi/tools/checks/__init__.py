@@ -1,8 +1,11 @@
-"""What is wrong, or most likely wrong, with a program, without running it."""
+"""Checks of a program for mistakes and likely mistakes, without running it.
+
+Uses `language` and `builtin`. Start with `reading` (what a program does with each name); the others are checks.
+"""
 
 from collections.abc import Collection
 
-from bdi.syntax import Program
+from bdi.language.syntax import Program
 from bdi.tools.checks import failures, goals, names, plans, rules, variables
 from bdi.tools.checks.findings import Finding, Severity
 from bdi.tools.checks.reading import read
@@ -25,7 +28,7 @@ CHECKS = (
 
 
 def findings_of(program: Program, percepts: Collection[str] | None = None) -> list[Finding]:
-    """All findings in the order of the program. `percepts` are the names, or name/arity, that the body declares."""
+    """Return findings in the order of the program. `percepts` are the names, or name/arity, that the body declares."""
     reading = read(program)
     found = [finding for check in CHECKS for finding in check(reading)]
     found += goals.unknown_beliefs(reading, percepts)

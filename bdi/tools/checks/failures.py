@@ -2,14 +2,14 @@
 
 from collections.abc import Iterator
 
-from bdi.syntax import Plan, Trigger
-from bdi.terms import TRUE, Predicate, Structure, Term, Var, show
+from bdi.language.syntax import Plan, Trigger
+from bdi.language.terms import TRUE, Predicate, Structure, Term, Var, show
 from bdi.tools.checks.findings import Finding, Severity
 from bdi.tools.checks.goals import leave_nothing_out
 from bdi.tools.checks.names import spelled
 from bdi.tools.checks.reading import Reading
 
-ALWAYS_TOLD = frozenset({"error", "error_msg", "code", "code_src", "code_line"})
+ALWAYS_GIVEN = frozenset({"error", "error_msg", "code", "code_src", "code_line"})
 """What every failure says of itself; `reason` and the like only some."""
 
 
@@ -29,7 +29,7 @@ def _finding(plans: list[Plan], goal: str, head: str) -> Finding:
         "open-failure",
         Severity.WARNING,
         plans[0].place,
-        f"for failures of {goal} {asked} for something: any other failure ends the intention, whoever waits for it",
+        f"for failures of {goal} {asked} for something: any other failure ends the intention",
         f"add a last plan {head}[error_msg(Why)] <- .fail(error_msg(Why)), or one that takes care of it",
     )
 
@@ -52,8 +52,8 @@ def _is_for_every_goal(plan: Plan) -> bool:
 
 def _asks_nothing_of_the_failure(plan: Plan) -> bool:
     annots = plan.head_annots if isinstance(plan.head, Var) else plan.head.annots
-    return all(_is_always_told(annot) for annot in annots)
+    return all(_is_always_given(annot) for annot in annots)
 
 
-def _is_always_told(annot: Term) -> bool:
-    return isinstance(annot, Structure) and annot.functor in ALWAYS_TOLD and isinstance(annot.args[0], Var)
+def _is_always_given(annot: Term) -> bool:
+    return isinstance(annot, Structure) and annot.functor in ALWAYS_GIVEN and isinstance(annot.args[0], Var)

@@ -1,10 +1,10 @@
-"""What a check has to say."""
+"""The result of a check."""
 
 from dataclasses import dataclass
 from enum import IntEnum
 from pathlib import Path
 
-from bdi.errors import Place
+from bdi.language.errors import Place
 
 
 class Severity(IntEnum):
@@ -41,7 +41,7 @@ class Finding:
 
 
 def place_of(word: str, start: Place) -> Place:
-    """Where a word stands first from this place on; the place itself if that cannot be found."""
+    """Find a word from this place on; the place itself if it is not found."""
     path = Path(start.source)
     if not path.is_file():
         return start

@@ -2,8 +2,8 @@
 
 from collections.abc import Collection, Iterator
 
-from bdi.syntax import Plan, Trigger
-from bdi.terms import NOT, TRUE, Predicate, Structure, Term, Var, is_internal, show
+from bdi.language.syntax import Plan, Trigger
+from bdi.language.terms import NOT, TRUE, Predicate, Structure, Term, Var, is_internal, show
 from bdi.tools.checks.findings import Finding, Severity, place_of
 from bdi.tools.checks.names import similar, spelled, unifies
 from bdi.tools.checks.reading import How, Reading
@@ -14,13 +14,13 @@ _OPPOSITE = {"<": ">=", ">=": "<", ">": "<=", "<=": ">", "==": "\\==", "\\==": "
 
 def goals_without_plan(reading: Reading) -> Iterator[Finding]:
     """A posted goal that no plan is about."""
-    told: set[str] = set()
+    reported: set[str] = set()
     for use in reading.of(How.POSTED):
         key, text = use.literal.predicate, show(use.literal)
         plans = reading.plans_for(Trigger.GOAL_ADDED, key)
-        if text in told or any(unifies(plan.head, use.literal) for plan in plans) or key.namespace:
+        if text in reported or any(unifies(plan.head, use.literal) for plan in plans) or key.namespace:
             continue
-        told.add(text)
+        reported.add(text)
         severity = Severity.ERROR
         caught = " (a plan -! takes care of that)" if reading.plans_for(Trigger.GOAL_FAILED, key) else ""
         if caught or reading.plans_come or is_internal(key.name):
@@ -62,7 +62,7 @@ def _is_unconditional(plan: Plan) -> bool:
 
 
 def leave_nothing_out(plans: list[Plan]) -> bool:
-    """Whether one context is the opposite of another, as in `: open` and `: not open`."""
+    """Return whether one context is the opposite of another, as in `: open` and `: not open`."""
     contexts = {show(plan.context) for plan in plans if plan.context is not None}
     return any(opposite in contexts for plan in plans for opposite in _opposites(plan.context))
 
@@ -107,11 +107,11 @@ def unknown_beliefs(reading: Reading, declared: Collection[str] | None) -> Itera
         if plan.trigger in (Trigger.BELIEF_ADDED, Trigger.BELIEF_REMOVED) and not isinstance(plan.head, Var)
     ]
     answered = reading.heads(Trigger.TEST_ADDED)
-    told: set[Predicate] = set()
+    reported: set[Predicate] = set()
     for key, place in asked:
-        if key in known or key in answered or key in told or key.namespace or _is_declared(key, declared):
+        if key in known or key in answered or key in reported or key.namespace or _is_declared(key, declared):
             continue
-        told.add(key)
+        reported.add(key)
         meant = similar(key, [other for other in known if other.negated == key.negated])
         if declared is None and (meant is None or meant.name == key.name):
             continue  # a percept or a message, as far as can be said

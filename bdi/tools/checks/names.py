@@ -2,11 +2,11 @@
 
 from collections.abc import Iterable, Iterator
 
-from bdi.syntax import Trigger
-from bdi.terms import PRIVATE_SPACE, Literal, Predicate, Var
+from bdi.language.syntax import Trigger
+from bdi.language.terms import PRIVATE_SPACE, Literal, Predicate, Var
+from bdi.language.unify import Trail, renamed, undo, unify
 from bdi.tools.checks.findings import Finding, Severity, place_of
 from bdi.tools.checks.reading import How, Reading, Use
-from bdi.unify import Trail, renamed, undo, unify
 
 SHORTEST = 4  # letters, for one wrong letter to say anything
 
@@ -65,12 +65,12 @@ def _heads(reading: Reading, trigger: Trigger) -> list[Use]:
 
 def _folding(kind: str, uses: list[Use]) -> Iterator[Finding]:
     first: dict[str, Use] = {}
-    told: set[str] = set()
+    reported: set[str] = set()
     for use in uses:
         name = use.literal.functor
         other = first.setdefault(folded(name), use)
-        if other.literal.functor != name and name not in told:
-            told.add(name)
+        if other.literal.functor != name and name not in reported:
+            reported.add(name)
             yield Finding(
                 "look-alike",
                 Severity.WARNING,
@@ -82,18 +82,18 @@ def _folding(kind: str, uses: list[Use]) -> Iterator[Finding]:
 
 def forgotten_marks(reading: Reading) -> Iterator[Finding]:
     """An action called like a goal or a belief: a ! or + is missing, most likely."""
-    told: set[Predicate] = set()
+    reported: set[Predicate] = set()
     goals = reading.heads(Trigger.GOAL_ADDED)
     believed = {use.literal.predicate for use in reading.of(How.ADDED) if use.plan is not None}
     for use in reading.of(How.DONE):
         key = use.literal.predicate
-        if key in told:
+        if key in reported:
             continue
         if key in goals and not _is_the_action_of(reading, key):
-            told.add(key)
+            reported.add(key)
             yield _forgotten(use, f"there are plans for the goal !{spelled(key)}", f"!{use.literal} if that was meant,")
         elif key in believed and key not in goals:
-            told.add(key)
+            reported.add(key)
             meant = f"?{use.literal} to ask for it or +{use.literal} to believe it,"
             yield _forgotten(use, f"the program believes {spelled(key)} by +{key.name}", meant)
 

@@ -2,11 +2,11 @@
 
 from collections.abc import Iterator
 
-from bdi.syntax import Body, Plan, Simple, Trigger
-from bdi.terms import TRUE, Structure, Term, Var, atom, show
+from bdi.language.syntax import Body, Plan, Simple, Trigger
+from bdi.language.terms import TRUE, Structure, Term, Var, atom, show
+from bdi.language.unify import Trail, renamed, substituted, undo, unify, variables_in
 from bdi.tools.checks.findings import Finding, Severity
 from bdi.tools.checks.reading import How, Reading, bodies_of
-from bdi.unify import Trail, renamed, substituted, undo, unify, variables_in
 
 ENDS = frozenset({".fail", ".drop_intention"})  # without arguments that name another goal
 
@@ -40,7 +40,7 @@ def _scopes(reading: Reading) -> Iterator[list[Plan]]:
 
 
 def _covers(earlier: Plan, later: Plan) -> bool:
-    """Whether the earlier plan applies to every event, in every state, in which the later one does."""
+    """Return whether the earlier plan applies to every event, in every state, in which the later one does."""
     if earlier.trigger is not later.trigger or earlier.has("all_unifs"):
         return False
     constants: dict[Var, Term] = {
@@ -111,20 +111,20 @@ def uncalled_plans(reading: Reading) -> Iterator[Finding]:
     if reading.posts_anything:
         return
     posted = reading.names(How.POSTED)
-    told: set[object] = set()
+    reported: set[object] = set()
     for plan in reading.plans:
         if plan.trigger is not Trigger.GOAL_ADDED or isinstance(plan.head, Var):
             continue
         key = plan.head.predicate
-        if key in posted or key in told or key.name == "kqml_received" or _is_for_others(plan):
+        if key in posted or key in reported or key.name == "kqml_received" or _is_for_others(plan):
             continue
-        told.add(key)
+        reported.add(key)
         yield Finding(
             "uncalled-plan",
             Severity.HINT,
             plan.place,
             f"nothing in the program posts !{key.name}/{key.arity}: its plans wait for a message",
-            "fine for a goal that somebody else gives; otherwise post it, or take the plan out",
+            "fine for a goal that another agent sends; otherwise post it, or take the plan out",
         )
 
 

@@ -4,14 +4,27 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from enum import Enum
 
-from bdi.errors import Place
-from bdi.syntax import Body, Does, Fork, If, Plan, Program, Rule, Simple, Step, Trigger
-from bdi.terms import AND, NOT, OR, RELATIONS, Atom, Code, Literal, Predicate, Structure, Term, Var, is_internal
-from bdi.unify import parts_of
+from bdi.language.errors import Place
+from bdi.language.syntax import Body, Does, Fork, If, Plan, Program, Rule, Simple, Step, Trigger
+from bdi.language.terms import (
+    AND,
+    NOT,
+    OR,
+    RELATIONS,
+    Atom,
+    Code,
+    Literal,
+    Predicate,
+    Structure,
+    Term,
+    Var,
+    is_internal,
+)
+from bdi.language.unify import parts_of
 
 
 class How(Enum):
-    """What is done with a name."""
+    """The uses of a name."""
 
     POSTED = "posted"  # !g, !!g, an initial goal, .send(_, achieve, g)
     TESTED = "tested"  # in a context, condition or rule, ?b
@@ -50,7 +63,7 @@ class Reading:
         return {use.literal.predicate for use in self.of(how)}
 
     def plans_for(self, trigger: Trigger, key: Predicate) -> list[Plan]:
-        """Those with this predicate or a variable as head, in source order."""
+        """Return the plans with this predicate or a variable as head, in source order."""
         found = (plan for plan in self.plans if plan.trigger is trigger)
         return [plan for plan in found if isinstance(plan.head, Var) or plan.head.predicate is key]
 
@@ -86,7 +99,7 @@ def _plan(reading: Reading, plan: Plan) -> None:
 
 
 def steps_of(body: Body) -> Iterator[Step]:
-    """All steps, those inside others too."""
+    """Yield all steps, those inside others too."""
     for step in body.steps:
         yield step
         for inner in bodies_of(step):

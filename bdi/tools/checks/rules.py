@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator
 
-from bdi.syntax import Belief, Program, Rule
-from bdi.terms import AND, NOT, OR, RELATIONS, Atom, Predicate, Structure, Term, is_internal
+from bdi.language.syntax import Belief, Program, Rule
+from bdi.language.terms import AND, NOT, OR, RELATIONS, Atom, Predicate, Structure, Term, is_internal
 from bdi.tools.checks.findings import Finding, Severity
 from bdi.tools.checks.reading import Reading
 

@@ -3,13 +3,13 @@
 from collections import Counter
 from collections.abc import Iterable, Iterator
 
-from bdi.errors import Place
-from bdi.syntax import Body, Does, Plan, Rule, Simple, terms_of
-from bdi.terms import Code, Term, Var
+from bdi.language.errors import Place
+from bdi.language.syntax import Body, Does, Plan, Rule, Simple, terms_of
+from bdi.language.terms import Code, Term, Var
+from bdi.language.unify import parts_of
 from bdi.tools.checks.findings import Finding, Severity, place_of
 from bdi.tools.checks.names import alike
 from bdi.tools.checks.reading import Reading, steps_of
-from bdi.unify import parts_of
 
 _GIVES = frozenset({Does.ACTION, Does.ADD, Does.ADD_APART, Does.ADD_FIRST, Does.ADD_LAST, Does.UPDATE})
 

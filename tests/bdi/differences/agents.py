@@ -42,7 +42,7 @@ def free_content() -> None:
 
 @shows("kqml-plans")
 def kqml_plans() -> None:
-    """What a message asks for is done in the cycle that reads it: no plan of the library is in between."""
+    """Obey a message in the cycle that reads it: no plan of the library is in between."""
     agent = Agent(parse_program("p(1)."))
     agent.cycle(None, [Message("ann", "untell", "q"), Message("ann", "askAll", "p(X)", id="q1")])
     [answer] = agent.cycle().messages

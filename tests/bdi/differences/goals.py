@@ -1,7 +1,7 @@
 """Goals, intentions, and what belongs around an agent."""
 
 from bdi import Agent, Message, parse_program
-from bdi.tools.scripts import script_in
+from bdi.tools.trials.scripts import script_in
 from tests.bdi.differences import happenings, shows
 
 

@@ -36,7 +36,7 @@ def argument_kind() -> None:
 @shows("unknown-action")
 def unknown_action() -> None:
     program = parse_program("+!never <- dirve(post1).")
-    Agent(program)  # nobody said what the body can do
+    Agent(program)  # the actions of the body are not declared
     with pytest.raises(UnknownAction, match="the body has no action dirve/1"):
         Agent(program, actions=["drive"])
 
