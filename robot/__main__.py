@@ -51,7 +51,7 @@ class RunByDefault(TyperGroup):
 def loaded(name: str) -> Any:
     """The command itself, or the group of commands."""
     module, _, attribute = COMMANDS[name][0].partition(":")
-    found = getattr(import_module(f"robot.commands.{module}"), attribute)
+    found = getattr(import_module(f"robot.ops.commands.{module}"), attribute)
     if not isinstance(found, typer.Typer):
         command, found = found, typer.Typer(add_completion=False, rich_markup_mode=None)
         found.command(name, epilog=EXAMPLES if name == DEFAULT else None)(command)

@@ -14,10 +14,10 @@ from protocol.parts import Battery, Leg, Position, Purpose, Received, Stop, Stop
 from protocol.proofs import ShownCode
 from protocol.to_robot import Grant, Mission
 from protocol.to_server import Claim, Hello, Step
-from robot.duties import Duties
-from robot.memory import Memory
-from robot.outbox import Outbox
-from robot.store import Store
+from robot.mission.memory import Memory
+from robot.mission.mission import Duties
+from robot.mission.outbox import Outbox
+from robot.mission.store import Store
 
 LOAD = Stop(id="s1", post="post1", action=StopAction.LOAD, order_id="o1")
 RECEIVE = Stop(id="s2", post="post4", action=StopAction.RECEIVE, order_id="o1")

@@ -7,7 +7,7 @@ from random import Random
 from protocol.clock import Clock
 from protocol.parts import Purpose, Stop, StopAction
 from protocol.to_robot import Mission, Verifier, Verifiers
-from robot.assembly import Parts
+from robot.ops.assembly import Parts
 
 POSTS = ("post1", "post2", "post3", "post4")
 ACTIONS = {Purpose.LOAD: StopAction.LOAD, Purpose.RECEIVE: StopAction.RECEIVE}

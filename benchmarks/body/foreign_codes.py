@@ -16,7 +16,7 @@ from typing import Any
 from benchmarks.body.lone_letter import LetterRun
 from benchmarks.body.missions import MEMORY, PROCESSES
 from benchmarks.body.report import Samples, Wanted, quietly, say
-from robot.scenarios.drawing import WORLDS
+from robot.scenarios.replay.drawing import WORLDS
 
 SHOWN_FOR_S = 3.0
 SHARE = (0.05, 0.6)

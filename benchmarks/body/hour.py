@@ -18,9 +18,9 @@ from benchmarks.body.errands import Errands
 from benchmarks.body.report import Samples, Wanted, say
 from benchmarks.mind.engines import CHECKOUT
 from protocol.clock import SteppedClock
-from robot.assembly import Simulation, assemble
-from robot.config import load_settings
-from robot.runners import LockstepRunner, Loop
+from robot.core.config import load_settings
+from robot.ops.assembly import Simulation, assemble
+from robot.ops.runners import LockstepRunner, Loop
 
 HOUR_S = 3600.0
 REAL_TIME_OF_AN_HOUR_S = 120.0

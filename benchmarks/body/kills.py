@@ -3,8 +3,8 @@ the mail.
 
 Each mission has a robot of its own: a process with a simulated body that is joined to a service over a WebSocket and
 runs on a shared clock faster than the machine's. The simulated body stands still at once when the daemon dies, and the
-next start goes on from there (`robot/simulated_world.py`); a real base rolls on until systemd has sent stop bytes after
-the daemon (`ExecStopPost`), and without end if its computer has died.
+next start goes on from there (`robot/ops/simulated_world.py`); a real base rolls on until systemd has sent stop bytes
+after the daemon (`ExecStopPost`), and without end if its computer has died.
 """
 
 import asyncio

@@ -10,9 +10,9 @@ from typing import Any
 from benchmarks.mind.engines import CHECKOUT
 from protocol.clock import SharedClock
 from protocol.parts import Leg, MissionHeld, Part, Position, Received
-from robot.memory import Memory
-from robot.outbox import Outbox
-from robot.store import Store
+from robot.mission.memory import Memory
+from robot.mission.outbox import Outbox
+from robot.mission.store import Store
 
 SETTINGS = """
 [battery]

@@ -16,14 +16,14 @@ from protocol.clock import SteppedClock
 from protocol.parts import Leg, Part, Purpose, Stop, StopAction
 from protocol.to_robot import Grant, Mission, Verifier, Verifiers
 from protocol.to_server import Claim, Clear, Event, Fault, HandoverReceipt
-from robot.assembly import Simulation, assemble
-from robot.config import load_settings
-from robot.duties import Duties
-from robot.memory import Incoming
-from robot.runners import LockstepRunner
+from robot.core.config import load_settings
+from robot.mission.memory import Incoming
+from robot.mission.mission import Duties
+from robot.ops.assembly import Simulation, assemble
+from robot.ops.runners import LockstepRunner
 from robot.scenarios.campus import campus_of
-from robot.scenarios.drawing import WORLDS
 from robot.scenarios.places import POST_ROOM_M, corridor_at
+from robot.scenarios.replay.drawing import WORLDS
 from robot.simulated import Motion, World
 
 DEAD_S = 3.0

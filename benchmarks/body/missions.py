@@ -1,7 +1,8 @@
 """Seeded missions on the test track and on the tunnels scaled to corridors of 3 to 10 m: what became of every letter.
 
-Each mission is a scenario drawn by its seed (`robot/scenarios/drawing.py`): flickering diodes, worn tape, dirty and
-dark markers, patches without network, people in the way, low batteries, people who come late or never, now and then an
+Each mission is a scenario drawn by its seed (`robot/scenarios/replay/drawing.py`): flickering diodes, worn tape, dirty
+and dark markers, patches without network, people in the way, low batteries, people who come late or never, now and
+then an
 injected fault. The judge knows where the mail really is, and compares it with what the robot told.
 
 `robot.scenarios.figures` defines what a stop is and how the time of a mission is compared. One mission again, with a
@@ -19,8 +20,8 @@ from time import perf_counter
 from typing import Any
 
 from benchmarks.body.report import Samples, Wanted, quietly, say
-from robot.scenarios.drawing import WORLDS, drawn
 from robot.scenarios.figures import Figures, Stopwatch, figures
+from robot.scenarios.replay.drawing import WORLDS, drawn
 from robot.scenarios.stage import Stage
 
 PROCESSES = 2

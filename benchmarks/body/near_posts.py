@@ -16,8 +16,8 @@ from typing import Any
 from benchmarks.body.lone_letter import LetterRun
 from benchmarks.body.missions import MEMORY, PROCESSES
 from benchmarks.body.report import Samples, Wanted, quietly, say
-from robot.navigation.steps import REACHED_MM
-from robot.scenarios.drawing import WORLDS
+from robot.localization.steps import REACHED_MM
+from robot.scenarios.replay.drawing import WORLDS
 
 LAST_MM = 300.0
 KILLS_OF_A_LETTER = 4

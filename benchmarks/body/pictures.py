@@ -16,7 +16,7 @@ from benchmarks.body.marker_frames import Frame
 from benchmarks.body.report import Samples, Wanted, say
 from benchmarks.body.shown_pictures import BACKGROUNDS, SIZES, ShownPicture, shown_picture
 from benchmarks.body.vision import plain_zxing, rounded, timed
-from robot.drivers.qr_decoders import Decoded, may_hold_code, zxing_decoder
+from robot.drivers.camera.qr_decoders import Decoded, may_hold_code, zxing_decoder
 
 PICTURES_A_SEED = len(SIZES) * len(BACKGROUNDS)
 SMALL_PX = (640, 480)

@@ -19,10 +19,10 @@ from benchmarks.body.errands import Errands
 from benchmarks.body.report import log_to_error_stream
 from benchmarks.mind.worker import resident_mib
 from protocol.clock import RealClock
-from robot.assembly import Simulation, assemble
-from robot.config import load_settings
+from robot.core.config import load_settings
 from robot.drivers.interfaces import Frame
-from robot.runners import Loop, ThreadedRunner
+from robot.ops.assembly import Simulation, assemble
+from robot.ops.runners import Loop, ThreadedRunner
 from robot.simulated.live import Live
 
 WORLD = "simulated world"

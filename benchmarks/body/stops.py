@@ -30,19 +30,19 @@ from benchmarks.body.report import Samples, Wanted, say
 from benchmarks.body.stops_world import STOP, live
 from maps import builtin_map
 from protocol.clock import RealClock
-from robot.assembly import Devices, join, load_program
-from robot.config import load_settings
-from robot.drivers.create2 import Create2
+from robot.core.config import load_settings
+from robot.drivers.create2.create2 import Create2
+from robot.drivers.create2.serial_port import open_serial
 from robot.drivers.interfaces import Frame, WheelSpeeds
 from robot.drivers.line_sensor import ThreeDiodes
 from robot.drivers.port_thread import PortThread
-from robot.drivers.serial_port import open_serial
+from robot.mission.store import Store
+from robot.ops.assembly import Devices, join, load_program
+from robot.ops.runners import Loop, ThreadedRunner
 from robot.reflexes import FAULTS
-from robot.runners import Loop, ThreadedRunner
 from robot.simulated import Faults
 from robot.simulated.host import SimulatedHost
 from robot.skills.interfaces import Done, Failed, Running, View
-from robot.store import Store
 
 BUMPS_PER_SEED = 5
 SEEDS_PER_CAUSE = 4

@@ -9,9 +9,9 @@ from multiprocessing.connection import Connection
 from random import Random
 
 from maps import builtin_map
-from robot.drivers.stream_parser import StreamParser
+from robot.drivers.create2.stream_parser import StreamParser
 from robot.simulated import SimulatedRobot
-from robot.simulated.serial_line import PtyLine
+from robot.simulated.base.serial_line import PtyLine
 
 STOP = bytes((145, 0, 0, 0, 0))
 LOOK_EVERY_S = 0.001

@@ -8,13 +8,13 @@ from itertools import pairwise
 from maps import CampusMap, Corridor, Marker, Point, Post
 from maps.geometry import heading_rad, moved, path_length_m
 from robot.drive_loop import DriveLoop
-from robot.drivers.create2 import Create2
+from robot.drivers.camera.marker_reader import MarkerReader, MarkerWatch
+from robot.drivers.create2.create2 import Create2
 from robot.drivers.interfaces import BodyShape
 from robot.drivers.line_sensor import ThreeDiodes
-from robot.drivers.marker_reader import MarkerReader, MarkerWatch
 from robot.simulated import Build, CameraMount, DiodeMount, Options, SimulatedRobot
-from robot.simulated.commands import COMMANDS
-from robot.simulated.serial_line import MemoryPort
+from robot.simulated.base.commands import COMMANDS
+from robot.simulated.base.serial_line import MemoryPort
 from robot.skills.interfaces import Outcome, Skill
 
 STEP_S, STEPS_PER_TICK, TICKS_PER_LOOK = 0.005, 4, 5

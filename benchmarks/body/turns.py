@@ -17,7 +17,7 @@ from maps.campus_map import build_map, builtin_path
 from maps.geometry import distance_to_path_m, heading_rad, moved
 from maps.map_file import load_map_file
 from maps.scaling import fitting_factor, scaled
-from robot.navigation.directions import turn_at_rad
+from robot.localization.directions import turn_at_rad
 from robot.simulated import Pose
 from robot.skills import Done, FollowLine, Turn
 

@@ -18,8 +18,8 @@ import zxingcpp
 from benchmarks.body.foreign_frames import KINDS, foreign
 from benchmarks.body.marker_frames import CONDITIONS, NAMES, Condition, Frame, shot
 from benchmarks.body.report import Samples, Wanted, say
-from robot.drivers.marker_reader import HANDOVER_PREFIX, MarkerReader
-from robot.drivers.qr_decoders import Decoded, Decoder, may_hold_code, read_with_opencv, zxing_decoder
+from robot.drivers.camera.marker_reader import HANDOVER_PREFIX, MarkerReader
+from robot.drivers.camera.qr_decoders import Decoded, Decoder, may_hold_code, read_with_opencv, zxing_decoder
 
 FRAMES_A_SEED = 10
 FOREIGN_A_SEED = 150

@@ -14,10 +14,10 @@ from benchmarks.body.errands import Errands
 from benchmarks.body.report import Samples, Wanted
 from protocol.clock import SteppedClock
 from protocol.insight import MAX_INSIGHT_BYTES, Insight
-from robot.assembly import Simulation, assemble
-from robot.config import load_settings
-from robot.insight import Insights
-from robot.runners import LockstepRunner
+from robot.core.config import load_settings
+from robot.ops.assembly import Simulation, assemble
+from robot.ops.diagnostics import Insights
+from robot.ops.runners import LockstepRunner
 
 LONGEST_S: Final = 600.0
 SIMULATED_LINE_HZ: Final = 50.0

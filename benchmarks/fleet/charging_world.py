@@ -28,7 +28,7 @@ WEEKEND: Final = 0.2
 CLOSED_EVERY_S: Final = 12 * 3600.0
 CLOSED_S: Final = (600.0, 3600.0)
 OWN_LOW, OWN_FULL, OWN_BEGIN = 0.25, 0.99, 0.53
-"""The robot's own battery plan (robot/config.py)."""
+"""The robot's own battery plan (robot/core/config.py)."""
 EMPTY: Final = 0.01
 WORTH_A_WAY_ROUND_S: Final = 600.0
 

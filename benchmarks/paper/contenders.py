@@ -11,9 +11,9 @@ from typing import Any
 
 from benchmarks.body.errands import Errands
 from protocol.clock import Clock
-from robot.assembly import Parts, Simulation, assemble
-from robot.config import load_settings
-from robot.mind import messages_from_person
+from robot.agent.mind import messages_from_person
+from robot.core.config import load_settings
+from robot.ops.assembly import Parts, Simulation, assemble
 
 START, SENDER, RECIPIENT, DOCK = "post2:post1", "post1", "post4", "post5"
 ON_THE_AXLE_MM = 0.0

@@ -16,8 +16,8 @@ from bdi.language.terms import Literal
 from benchmarks.paper.contenders import SIMULATED_LINE_HZ, Contender
 from benchmarks.paper.stages import Stage, Stages
 from protocol.clock import SteppedClock
-from robot.assembly import Parts
-from robot.runners import LockstepRunner
+from robot.ops.assembly import Parts
+from robot.ops.runners import LockstepRunner
 
 LIMIT_S = 1800.0
 """A run that has not delivered by then is lost: the way is 12 m, a charge takes a good minute."""

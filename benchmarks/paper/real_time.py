@@ -18,8 +18,8 @@ from benchmarks.body.report import log_to_error_stream
 from benchmarks.paper.contenders import contenders
 from benchmarks.paper.logged_run import TimedAgent
 from protocol.clock import RealClock
-from robot.mind import Mind
-from robot.runners import Loop, ThreadedRunner
+from robot.agent.mind import Mind
+from robot.ops.runners import Loop, ThreadedRunner
 from robot.simulated.live import Live
 
 WARM_UP_S = 2.0

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from benchmarks.paper.contenders import SENDER, Contender
-from robot.assembly import Parts
+from robot.ops.assembly import Parts
 
 COLLECTED: Final = "mail collected"
 POST_POINT: Final = "post point detected"

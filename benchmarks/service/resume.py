@@ -20,10 +20,10 @@ from benchmarks.service.web_client import follow
 from protocol.clock import RealClock
 from protocol.parts import Activity, Battery, Leg, Part, Position
 from protocol.to_server import Charge, Claim, Clear, Event, Hello, Progress, Snapshot, Step
-from robot.link import Link
-from robot.memory import Memory
-from robot.outbox import Outbox
-from robot.store import Store
+from robot.link.link import Link
+from robot.mission.memory import Memory
+from robot.mission.outbox import Outbox
+from robot.mission.store import Store
 
 OFFLINE_S: Final = 1800.0
 LIMIT_S: Final = 60.0

@@ -21,7 +21,7 @@ from bdi.builtin import STANDARD
 from bdi.builtin.table import Definition
 from docs.site.api_page import api
 from protocol.__main__ import messages_as_markdown
-from robot.config import Settings as RobotSettings
+from robot.core.config import Settings as RobotSettings
 
 COMMANDS: Final[Mapping[str, typer.Typer]] = {
     "app": service.app,

@@ -1,4 +1,8 @@
-"""The fifty-times-a-second loop that keeps the wheels, in four parts: `loop` joins `sensing`, `jobs` and `wheels`."""
+"""The drive loop: read, decide speeds, apply reflexes, write.
+
+May use drivers, reflexes and skills.
+Start at `loop.py`.
+"""
 
 from robot.drive_loop.loop import DriveLoop
 

@@ -8,10 +8,11 @@ from collections import deque
 from collections.abc import Callable, Container, Iterable
 
 from robot import reflexes
-from robot.black_box import BlackBox
+from robot.drive_loop.black_box import BlackBox
 from robot.drive_loop.jobs import Jobs
 from robot.drive_loop.sensing import Sensing
 from robot.drive_loop.wheels import Wheels
+from robot.drivers.create2.wheel_speeds import DEADLINE_S
 from robot.drivers.interfaces import (
     STOP,
     Base,
@@ -22,7 +23,6 @@ from robot.drivers.interfaces import (
     PositionSource,
     WheelSpeeds,
 )
-from robot.drivers.wheel_speeds import DEADLINE_S
 from robot.skills.interfaces import Failed, JobEnd, Skill, View
 
 PERIOD_S = 0.02

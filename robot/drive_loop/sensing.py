@@ -5,6 +5,7 @@ from collections.abc import Iterable
 
 import structlog
 
+from robot.drivers.create2.odometry import advanced
 from robot.drivers.interfaces import (
     NOTHING_SEEN,
     Base,
@@ -18,8 +19,7 @@ from robot.drivers.interfaces import (
     Sighting,
     WheelSpeeds,
 )
-from robot.drivers.odometry import advanced
-from robot.navigation.line_symbol import LineWord
+from robot.localization.line_symbol import LineWord
 from robot.reflexes import Lasting
 
 log = structlog.get_logger("robot.drive")

@@ -1,1 +1,5 @@
-"""The devices of the robot, each behind one door (interfaces.py)."""
+"""Device drivers: base, line sensor, camera, serial port.
+
+May use `robot.core`; knows no skill and no mission.
+Start at `interfaces.py`.
+"""

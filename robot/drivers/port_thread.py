@@ -10,11 +10,11 @@ from collections.abc import Callable
 
 import structlog
 
-from robot.drivers.base_frames import together
-from robot.drivers.create2 import Create2
+from robot.drivers.create2.base_frames import together
+from robot.drivers.create2.create2 import Create2
+from robot.drivers.create2.link_health import LinkHealth
+from robot.drivers.create2.serial_port import wait_for_bytes
 from robot.drivers.interfaces import BaseState, Mode, Note, WheelSpeeds
-from robot.drivers.link_health import LinkHealth
-from robot.drivers.serial_port import wait_for_bytes
 
 log = structlog.get_logger("robot.base")
 

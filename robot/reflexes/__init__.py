@@ -1,6 +1,7 @@
-"""What the body does without asking: one table (`table`), and one pure function that reads it (`decisions`).
+"""Reflexes: they stop the wheels without waiting for mind, network or disk.
 
-It works when everything above is dead: it needs the newest frame of the base, a few ages, and the speeds wanted.
+May use the drivers' interfaces alone.
+Start at `decisions.py`.
 """
 
 from robot.reflexes.decisions import BACK_OFF, Decision, ReflexState, decide

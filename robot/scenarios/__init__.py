@@ -1,1 +1,5 @@
-"""Scenarios: a simulated world with robots, people, mail and trouble in a file; run, judged by the truth, replayed."""
+"""Scenarios: stories of robots and people, stepped and judged by true poses.
+
+May use everything of the robot.
+Start at `scenario.py`; `python -m robot.scenarios --help` runs them.
+"""

@@ -17,9 +17,9 @@ from maps import CampusMapError
 from robot.scenarios.errors import RecordingError, ScenarioError
 from robot.scenarios.judging import Ending, shortfalls
 from robot.scenarios.loading import load_scenario
-from robot.scenarios.pictures import write_pictures
-from robot.scenarios.recording import Recorder
-from robot.scenarios.replaying import write_page
+from robot.scenarios.replay.pictures import write_pictures
+from robot.scenarios.replay.recording import Recorder
+from robot.scenarios.replay.replaying import write_page
 from robot.scenarios.stage import Stage
 from robot.simulated import SimulatedWorldError
 

@@ -6,8 +6,8 @@ from itertools import pairwise
 from typing import Any, Final
 
 from maps import CampusMap, shortest_route
+from robot.scenarios.actors.mail import WITH_RECIPIENT
 from robot.scenarios.judging import Ending, Fate
-from robot.scenarios.mail import WITH_RECIPIENT
 from robot.scenarios.scenario import OrderRow, Scenario
 from robot.scenarios.stage import Stage
 from robot.scenarios.watching import Times

@@ -7,9 +7,9 @@ from typing import Final
 from maps import CampusMap
 from protocol.parts import Part
 from protocol.to_robot import Cancel, EmergencyStop, Pause, Recall, Resume
-from robot.scenarios.actors import Actor
+from robot.scenarios.actors.actors import Actor
+from robot.scenarios.actors.stand_in import StandIn
 from robot.scenarios.scenario import Deed, FaultRow, MessageRow, Scenario, Timed
-from robot.scenarios.stand_in import StandIn
 from robot.simulated import Faults
 from robot.simulated.start import start_pose
 

@@ -5,9 +5,9 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 
 from protocol.parts import Purpose
-from robot.scenarios.mail import WITH_RECIPIENT, WITH_SENDER, Letter
+from robot.scenarios.actors.mail import WITH_RECIPIENT, WITH_SENDER, Letter
+from robot.scenarios.actors.stand_in import StandIn, Told
 from robot.scenarios.scenario import Expectation
-from robot.scenarios.stand_in import StandIn, Told
 
 SETTLES_S = 5.0
 """Somebody who hears a tune reaches into the box; the robot's receipt may be a moment earlier."""

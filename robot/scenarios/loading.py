@@ -11,8 +11,8 @@ from pydantic import BaseModel, ValidationError
 from maps import CampusMap
 from maps.errors import CampusMapError
 from robot.scenarios.campus import campus_of
-from robot.scenarios.drawing import drawn
 from robot.scenarios.errors import ScenarioError
+from robot.scenarios.replay.drawing import drawn
 from robot.scenarios.scenario import Place, Scenario, Stander, Table
 from robot.simulated import SWITCHES, Faults, SimulatedWorldError
 from robot.simulated.start import start_pose

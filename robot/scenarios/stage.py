@@ -9,20 +9,20 @@ from typing import Final
 
 from maps import CampusMap
 from protocol.clock import SteppedClock
-from robot.assembly import Parts, Simulation, assemble
-from robot.config import ConfigError, Settings, load_settings
-from robot.runners import LockstepRunner, Loop
-from robot.scenarios.actors import Actor
+from robot.core.config import ConfigError, Settings, load_settings
+from robot.ops.assembly import Parts, Simulation, assemble
+from robot.ops.runners import LockstepRunner, Loop
+from robot.scenarios.actors.actors import Actor
+from robot.scenarios.actors.mail import letters_of
+from robot.scenarios.actors.people import Crowd, handings
+from robot.scenarios.actors.stand_in import StandIn
+from robot.scenarios.actors.stepped_link import SteppedLink
 from robot.scenarios.campus import campus_of
 from robot.scenarios.errors import ScenarioError
 from robot.scenarios.happenings import Happenings
 from robot.scenarios.judging import Ending, verdict
-from robot.scenarios.mail import letters_of
-from robot.scenarios.people import Crowd, handings
 from robot.scenarios.places import is_in
 from robot.scenarios.scenario import NoNetwork, RobotRow, Scenario
-from robot.scenarios.stand_in import StandIn
-from robot.scenarios.stepped_link import SteppedLink
 from robot.scenarios.watching import Watch
 from robot.simulated import Motion, World
 

@@ -4,10 +4,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from maps import CampusMap
-from robot.scenarios.actors import Actor
-from robot.scenarios.people import Bystander
+from robot.scenarios.actors.actors import Actor
+from robot.scenarios.actors.people import Bystander
+from robot.scenarios.actors.stand_in import StandIn
 from robot.scenarios.places import corridor_at
-from robot.scenarios.stand_in import StandIn
 
 NEAR_PERSON_M = 0.6
 """A robot that stands so near to somebody in its way waits for them."""

@@ -1,9 +1,14 @@
-"""The simulated world that ships with the product: a strict Create 2 on a serial port, pins, frames."""
+"""The simulated world and body: strict, shipped, on a real pseudo-terminal.
 
-from robot.simulated.battery import Pack
+Imports `robot.core` alone: it meets the drivers in bytes, pins and frames.
+Start at `world.py` and `robot.py`.
+"""
+
+from robot.simulated.base.battery import Pack
+from robot.simulated.base.drive_base import Motion
+from robot.simulated.base.serial_line import MemoryPort
 from robot.simulated.body import Build
 from robot.simulated.door import Door
-from robot.simulated.drive_base import Motion
 from robot.simulated.errors import SimulatedWorldError, UnknownStart, UnknownSwitch, WrongValue
 from robot.simulated.faults import SWITCHES, Faults
 from robot.simulated.frames import CameraMount
@@ -11,7 +16,6 @@ from robot.simulated.host import SimulatedHost
 from robot.simulated.obstacles import Person, Wall
 from robot.simulated.pins import DiodeMount
 from robot.simulated.robot import Options, SimulatedRobot
-from robot.simulated.serial_line import MemoryPort
 from robot.simulated.start import Pose
 from robot.simulated.world import World
 

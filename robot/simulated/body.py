@@ -8,16 +8,16 @@ import math
 from dataclasses import dataclass, field
 from random import Random
 
-from robot.simulated.activity import Activity, Hazards
-from robot.simulated.battery import Battery, Pack
-from robot.simulated.docking import Beside, SeekDock, Wheels, bearing_rad, ir_character
-from robot.simulated.drive_base import DriveBase, Motion
+from robot.simulated.base.activity import Activity, Hazards
+from robot.simulated.base.battery import Battery, Pack
+from robot.simulated.base.docking import Beside, SeekDock, Wheels, bearing_rad, ir_character
+from robot.simulated.base.drive_base import DriveBase, Motion
+from robot.simulated.base.open_interface import OpenInterface
+from robot.simulated.base.packets import Readings
+from robot.simulated.base.serial_line import SerialLine, spoiled, thinned
 from robot.simulated.faults import Faults
 from robot.simulated.obstacles import BUMPER_RADIUS_M, Contact, light_signals
-from robot.simulated.open_interface import OpenInterface
-from robot.simulated.packets import Readings
 from robot.simulated.pins import DiodeMount, LinePins
-from robot.simulated.serial_line import SerialLine, spoiled, thinned
 from robot.simulated.world import World
 
 STEP_S = 0.005

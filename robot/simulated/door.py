@@ -10,7 +10,7 @@ from pathlib import Path
 from queue import Empty, SimpleQueue
 from typing import Any
 
-from robot.json_socket import JsonSocket
+from robot.core.json_socket import JsonSocket
 from robot.simulated.camera import SHOWN_FOR_S
 from robot.simulated.errors import SimulatedWorldError, UnknownSwitch, WrongValue
 from robot.simulated.faults import SWITCHES

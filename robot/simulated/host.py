@@ -8,7 +8,7 @@ FREE_MB, FULL_MB = 20_000.0, 5.0
 
 
 class SimulatedHost:
-    """Behind the same door as the real one; see `robot.host`."""
+    """Behind the same door as the real one; see `robot.ops.host`."""
 
     def __init__(self, faults: Faults, clock: Clock) -> None:
         self._faults, self._clock = faults, clock

@@ -10,15 +10,15 @@ from gpiozero.pins.mock import MockFactory
 
 from maps import CampusMap
 from maps.tags import tag_numbers
-from robot.simulated import firmware_text
-from robot.simulated.battery import CURRENT_MA, Battery
+from robot.simulated.base import firmware_text
+from robot.simulated.base.battery import CURRENT_MA, Battery
+from robot.simulated.base.serial_line import MemoryLine, MemoryPort, PtyLine
 from robot.simulated.body import Body, Build
 from robot.simulated.camera import SHOWN_FOR_S, SimulatedCamera
 from robot.simulated.errors import WrongValue
 from robot.simulated.faults import Faults
 from robot.simulated.frames import CameraMount, Renderer, View
 from robot.simulated.obstacles import Obstacle
-from robot.simulated.serial_line import MemoryLine, MemoryPort, PtyLine
 from robot.simulated.start import Pose, start_pose
 from robot.simulated.world import World
 

@@ -5,7 +5,7 @@ from itertools import chain
 from random import Random
 
 from maps import CampusMap, Dock, Marker
-from robot.simulated.docking import Beside, beside
+from robot.simulated.base.docking import Beside, beside
 from robot.simulated.floor import Floor
 from robot.simulated.obstacles import Contact, Obstacle, contact
 

@@ -1,4 +1,8 @@
-"""The long actions of the body. What one is: `interfaces`; how each ends, and by which names it fails: `ends`."""
+"""Skills: follow the line, turn, dock, hand over. Each is stepped by the drive loop.
+
+May use localization and the drivers' interfaces.
+Start at `interfaces.py`, then `follow_line.py`.
+"""
 
 from robot.skills.dock import Dock, Undock
 from robot.skills.find_line import FindLine

@@ -5,7 +5,7 @@ from dataclasses import asdict, dataclass
 
 import structlog
 
-from robot.drivers.dock_infrared import sight_of
+from robot.drivers.create2.dock_infrared import sight_of
 from robot.drivers.interfaces import STOP, BodyShape, Mode, Odometry, WheelSpeeds
 from robot.skills.find_line import align, over_line, sweep
 from robot.skills.interfaces import Done, Failed, Outcome, Running, SeekDock, SetMode, View

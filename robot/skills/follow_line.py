@@ -8,7 +8,7 @@ from typing import ClassVar
 
 from maps import CampusMap
 from robot.drivers.interfaces import STOP, BodyShape, WheelSpeeds
-from robot.navigation.expected import Expected
+from robot.localization.expected import Expected
 from robot.skills.find_line import FindLine, over_line
 from robot.skills.give_way import GiveWay, most_mm_s
 from robot.skills.interfaces import Done, Failed, Running, Step, View

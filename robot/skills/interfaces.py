@@ -24,7 +24,7 @@ from robot.drivers.interfaces import (
     Sighting,
     WheelSpeeds,
 )
-from robot.navigation.line_symbol import LineSymbol
+from robot.localization.line_symbol import LineSymbol
 
 START = Odometry()
 

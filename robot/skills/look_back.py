@@ -1,7 +1,7 @@
 """Going back a little along the corridor that the robot came by, until it reads the marker of the post ahead."""
 
 from robot.drivers.interfaces import STOP, WheelSpeeds
-from robot.navigation.approach import is_aslant
+from robot.localization.approach import is_aslant
 from robot.skills.interfaces import Done, Failed, Running, View
 from robot.skills.script import Script, Scripted, roll, stand
 

@@ -1,7 +1,7 @@
 """The paper's own actions, so that its program runs: `drive` is a pulse, `turn` ends on the line or fails in 10 s."""
 
+from robot.core.errors import UnknownSkill
 from robot.drivers.interfaces import STOP, BodyShape, WheelSpeeds
-from robot.errors import UnknownSkill
 from robot.skills.interfaces import Done, Step, View
 from robot.skills.turn import Turn
 

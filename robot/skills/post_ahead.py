@@ -5,8 +5,8 @@ from dataclasses import replace
 
 from maps import CampusMap
 from robot.drivers.interfaces import Odometry
-from robot.navigation.approach import arrival_heading_rad, post_ahead_mm
-from robot.navigation.expected import OWN_POST_MM, Expected, hangs_beside_this_line
+from robot.localization.approach import arrival_heading_rad, post_ahead_mm
+from robot.localization.expected import OWN_POST_MM, Expected, hangs_beside_this_line
 from robot.skills.interfaces import View
 
 SHARP_MM = 40.0

@@ -2,7 +2,7 @@
 
 from typing import ClassVar
 
-from robot.errors import UnknownSkill
+from robot.core.errors import UnknownSkill
 from robot.skills.interfaces import Done, Play, ShowLights, Step, View
 from robot.skills.tunes import TUNES
 

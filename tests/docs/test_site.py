@@ -24,11 +24,11 @@ PLACES = {
     [
         ("[why](../explanation/why.md#so)", "[why](../explanation/why.md#so)"),
         ("[start](../../README.md)", "[start](../index.md)"),
-        ("[the settings](../../robot/config.py)", "the settings (`robot/config.py`)"),
-        ("[config.py](../../robot/config.py)", "config.py"),
+        ("[the settings](../../robot/core/config.py)", "the settings (`robot/core/config.py`)"),
+        ("[config.py](../../robot/core/config.py)", "config.py"),
         ("[paper](https://example.org/p)", "[paper](https://example.org/p)"),
         ("[gone](../explanation/gone.md)", "[gone](../explanation/gone.md)"),
-        ("```\n[kept](../../robot/config.py)\n```", "```\n[kept](../../robot/config.py)\n```"),
+        ("```\n[kept](../../robot/core/config.py)\n```", "```\n[kept](../../robot/core/config.py)\n```"),
     ],
 )
 def test_links_hold_in_the_site_and_links_to_code_become_words(before, after):

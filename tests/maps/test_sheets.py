@@ -13,9 +13,9 @@ from typer.testing import CliRunner, Result
 from maps import builtin_map
 from maps.__main__ import cli
 from maps.sheets import CODE_LEFT_MM, CODE_TOP_MM, PAGE_HEIGHT_MM, PAGE_WIDTH_MM, Square, marker_page
-from robot.drivers.april_tags import TagDetector
-from robot.drivers.marker_reader import MarkerReader
-from robot.drivers.qr_decoders import read_with_opencv
+from robot.drivers.camera.april_tags import TagDetector
+from robot.drivers.camera.marker_reader import MarkerReader
+from robot.drivers.camera.qr_decoders import read_with_opencv
 
 TRACK = builtin_map("test_track")
 PX_PER_MM = 6

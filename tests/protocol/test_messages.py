@@ -198,7 +198,7 @@ def test_the_reference_shows_every_message_with_its_examples() -> None:
 
 def test_the_documentation_names_every_error_code_of_the_link() -> None:
     page = PAGE.read_text()
-    sources = [ROOT / "protocol/errors.py", ROOT / "app/robots/errors.py", ROOT / "robot/mission_updates.py"]
+    sources = [ROOT / "protocol/errors.py", ROOT / "app/robots/errors.py", ROOT / "robot/mission/mission_updates.py"]
     codes = {code for path in sources for code in _codes_of_link(path)}
     assert codes >= {"malformed_message", "message_gap", "mission_conflict", "unknown_stop"}
     assert [code for code in sorted(codes) if f"`{code}`" not in page] == []

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from robot.store import Store
+from robot.mission.store import Store
 from tests.robot.reflexes.moving import Moving
 
 

@@ -10,11 +10,11 @@ from protocol.clock import RealClock
 from protocol.parts import Activity, Battery, Leg, Position, Stop, StopAction
 from protocol.to_robot import Mission
 from protocol.to_server import Clear, Hello, Snapshot
-from robot.connection import Rhythm
-from robot.link import Link
-from robot.memory import Memory
-from robot.outbox import Outbox
-from robot.store import Store
+from robot.link.connection import Rhythm
+from robot.link.link import Link
+from robot.mission.memory import Memory
+from robot.mission.outbox import Outbox
+from robot.mission.store import Store
 
 QUICK = Rhythm(ping_limit_s=20.0, retry_longest_s=0.2, snapshot_every_s=0.3)
 IMPATIENT = Rhythm(ping_every_s=0.3, ping_limit_s=0.5, retry_longest_s=0.2)

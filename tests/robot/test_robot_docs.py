@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from robot.config import load_settings
-from robot.settings_file import SettingRow, rows
+from robot.core.config import load_settings
+from robot.core.settings_file import SettingRow, rows
 
 MANUAL = (Path(__file__).parents[2] / "docs" / "robot.md").read_text("utf-8")
 

@@ -25,11 +25,11 @@ from protocol.clock import RealClock
 from protocol.parts import Battery, Leg, Received
 from protocol.to_robot import Deny
 from protocol.to_server import Claim, Clear, Hello
-from robot.connection import Rhythm
-from robot.link import Link, LinkState
-from robot.memory import Memory
-from robot.outbox import Outbox
-from robot.store import Store
+from robot.link.connection import Rhythm
+from robot.link.link import Link, LinkState
+from robot.mission.memory import Memory
+from robot.mission.outbox import Outbox
+from robot.mission.store import Store
 
 pytestmark = pytest.mark.system
 

@@ -7,7 +7,7 @@ from playwright.async_api import expect
 
 from protocol.parts import Activity, Battery, Leg
 from protocol.to_server import CommandAnswer, Event, Fault, Snapshot, Why
-from robot.action.corridors import WAY_BLOCKED, tried_again, turned_back
+from robot.agent.actions.corridors import WAY_BLOCKED, tried_again, turned_back
 from tests.app.robots.playing import at_post
 from tests.web.keyboard import press
 

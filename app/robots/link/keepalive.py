@@ -7,7 +7,7 @@ from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIO
 LOOKS_AFTER_S = 3.0
 ANSWERS_WITHIN_S = 5.0
 """A robot out of the network's reach is shown as offline within 11 s: twice the one and the other once. Our own robots
-ping every 2 s (`robot/connection.py`), so that none of them is asked while its network is there."""
+ping every 2 s (`robot/link/connection.py`), so that none of them is asked while its network is there."""
 
 
 class AttentiveSocket(WebSocketsSansIOProtocol):

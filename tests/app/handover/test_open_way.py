@@ -5,7 +5,7 @@ from protocol.envelope import YOUNGER
 from protocol.parts import Leg
 from protocol.to_robot import OpenWay
 from protocol.to_server import CommandAnswer, Event, Fault
-from robot.action.corridors import WAY_BLOCKED, tried_again, turned_back
+from robot.agent.actions.corridors import WAY_BLOCKED, tried_again, turned_back
 from tests.app.handover.conftest import Campus
 
 TO_POST2, TO_POST1 = Leg(from_post="post3", to_post="post2"), Leg(from_post="post2", to_post="post1")

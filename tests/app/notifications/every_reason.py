@@ -19,8 +19,8 @@ from app.robots.progress.handed_over import NOT_PROVED
 from app.robots.progress.missions import NOT_REPORTED, UNLOADED
 from app.robots.progress.receipts import PROBLEMS, claimed
 from protocol.parts import Purpose
-from robot.action.actions import UNKNOWN
-from robot.action.corridors import CLOSED_BY
+from robot.agent.actions.actions import UNKNOWN
+from robot.agent.actions.corridors import CLOSED_BY
 from robot.reflexes import FAULTS
 from robot.skills.ends import ENDS, OF_ANY
 
@@ -93,9 +93,9 @@ def refusals_of_robots() -> Iterator[str]:
 
 
 REFUSING = {
-    "robot/duties.py": {"_cancel"},
-    "robot/custody.py": {"confirm"},
-    "robot/navigation/closed.py": {"open_way"},
+    "robot/mission/mission.py": {"_cancel"},
+    "robot/mission/custody.py": {"confirm"},
+    "robot/localization/closed.py": {"open_way"},
 }
 
 

@@ -21,7 +21,7 @@ from app.robots.progress.receipts import PROBLEMS, claimed, counts_for_nothing
 from fleet.assignment.why import SENTENCES, Why
 from protocol.one_line import one_line
 from protocol.parts import Leg
-from robot.action.corridors import CLOSED_BY, turned_back
+from robot.agent.actions.corridors import CLOSED_BY, turned_back
 from robot.reflexes import FAULTS
 from tests.app.notifications.every_reason import RAW, every_reason, told_beside_alarms
 

@@ -5,7 +5,7 @@ import pytest
 from app.robots.corridors.closed_corridors import closed_corridor, open_corridor
 from maps import corridor_name
 from protocol.parts import Leg
-from robot.action.corridors import CLOSED_BY, WAY_BLOCKED, tried_again, turned_back
+from robot.agent.actions.corridors import CLOSED_BY, WAY_BLOCKED, tried_again, turned_back
 
 TO_POST2 = Leg(from_post="post4", to_post="post2")
 

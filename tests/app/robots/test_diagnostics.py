@@ -18,7 +18,7 @@ from protocol.insight import Insight
 from protocol.parts import Activity, Battery, Position
 from protocol.to_robot import Watch
 from protocol.to_server import Snapshot
-from robot.config import BatterySettings
+from robot.core.config import BatterySettings
 from tests.app.conftest import SENDER, Browser, Mailroom
 from tests.app.robots.playing import PlayedRobot, Service, until
 

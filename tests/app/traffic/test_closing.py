@@ -12,7 +12,7 @@ from protocol.clock import SteppedClock
 from protocol.envelope import YOUNGER
 from protocol.parts import Leg
 from protocol.to_server import Claim, Event, Fault
-from robot.action.corridors import WAY_BLOCKED, tried_again, turned_back
+from robot.agent.actions.corridors import WAY_BLOCKED, tried_again, turned_back
 from tests.app.robots.playing import PlayedRobot, Service, serving, until
 
 ON = Leg(from_post="post2", to_post="post3")

@@ -5,7 +5,7 @@ does: it remembers that it charges, takes note that it was moved, and ends at on
 """
 
 from bdi import Agent, Finished, Message, parse_program
-from robot.assembly import OUR_PROGRAM
+from robot.ops.assembly import OUR_PROGRAM
 
 PROGRAM = parse_program(OUR_PROGRAM.read_text("utf-8"), source=str(OUR_PROGRAM))
 SOON = 40

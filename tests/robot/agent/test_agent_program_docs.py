@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from robot.action.table import ACTIONS, PAPER_ACTIONS, Action
-from robot.perception.percepts import PERCEPTS, Percept
+from robot.agent.actions.table import ACTIONS, PAPER_ACTIONS, Action
+from robot.agent.perception.percepts import PERCEPTS, Percept
 
 PAGE = Path(__file__).parents[3] / "docs" / "agent-program.md"
 

@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 from protocol.parts import Leg, Part
 from protocol.to_robot import Grant, Mission
 from protocol.to_server import Claim, Clear, Withdraw
-from robot.duties import Duties
-from robot.memory import Incoming
+from robot.mission.memory import Incoming
+from robot.mission.mission import Duties
 
 
 @dataclass

@@ -8,10 +8,10 @@ from typing import Any
 from protocol.clock import SteppedClock
 from protocol.parts import Purpose, Stop, StopAction
 from protocol.to_robot import Mission, Verifier, Verifiers
-from robot.assembly import Parts, Simulation, assemble
-from robot.config import load_settings
-from robot.mind import messages_from_person
-from robot.runners import LockstepRunner
+from robot.agent.mind import messages_from_person
+from robot.core.config import load_settings
+from robot.ops.assembly import Parts, Simulation, assemble
+from robot.ops.runners import LockstepRunner
 
 CODES = {Purpose.LOAD: "CM1:" + "a1" * 16, Purpose.RECEIVE: "CM1:" + "b2" * 16}
 # A strong charger, so that a charge takes a minute and not an hour.

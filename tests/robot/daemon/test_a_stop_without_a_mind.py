@@ -4,11 +4,11 @@ import json
 from pathlib import Path
 
 from protocol.clock import SteppedClock
-from robot.assembly import Parts, Simulation, assemble
-from robot.black_box import rows
-from robot.config import load_settings
-from robot.mind import messages_from_person
-from robot.runners import LockstepRunner, Loop
+from robot.agent.mind import messages_from_person
+from robot.core.config import load_settings
+from robot.drive_loop.black_box import rows
+from robot.ops.assembly import Parts, Simulation, assemble
+from robot.ops.runners import LockstepRunner, Loop
 
 TOGETHER = {"rates.line_hz": 50.0}
 

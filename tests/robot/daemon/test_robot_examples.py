@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from maps import find_map
-from robot.config import load_settings
+from robot.core.config import load_settings
 from tests.robot.daemon.simulated_run import SimulatedRun
 
 EXAMPLES = Path(__file__).parents[3] / "examples" / "robot"

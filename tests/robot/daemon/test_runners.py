@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 
 from protocol.clock import RealClock, SharedClock, SteppedClock
-from robot.assembly import Simulation, assemble
-from robot.config import load_settings
-from robot.mind import messages_from_person
-from robot.runners import Governor, LockstepRunner, Loop, ThreadedRunner
+from robot.agent.mind import messages_from_person
+from robot.core.config import load_settings
+from robot.ops.assembly import Simulation, assemble
+from robot.ops.runners import Governor, LockstepRunner, Loop, ThreadedRunner
 
 pytestmark = pytest.mark.alone
 

@@ -8,7 +8,7 @@ import pytest
 from protocol.parts import Purpose
 from protocol.proofs import ShownCode
 from protocol.to_server import Event, HandoverReceipt
-from robot.black_box import BlackBox
+from robot.drive_loop.black_box import BlackBox
 from tests.robot.daemon.simulated_run import CODES, SimulatedRun
 
 

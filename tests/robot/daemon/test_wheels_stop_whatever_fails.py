@@ -8,12 +8,12 @@ from pathlib import Path
 import pytest
 
 from protocol.clock import RealClock
-from robot.assembly import Simulation, assemble
-from robot.config import load_settings
-from robot.mind import messages_from_person
-from robot.runners import Loop, ThreadedRunner
+from robot.agent.mind import messages_from_person
+from robot.core.config import load_settings
+from robot.mission.store import StorageFull
+from robot.ops.assembly import Simulation, assemble
+from robot.ops.runners import Loop, ThreadedRunner
 from robot.simulated.live import Live
-from robot.store import StorageFull
 
 pytestmark = pytest.mark.alone
 

@@ -9,10 +9,10 @@ import pytest
 
 from robot.drive_loop import DriveLoop
 from robot.drivers.interfaces import Mode
+from robot.mission.latched_stop import StopMemory
 from robot.simulated import Pose
 from robot.skills.dock import Dock
 from robot.skills.interfaces import Failed
-from robot.stop_memory import StopMemory
 from tests.robot.reflexes.moving import Moving
 
 DOORS: dict[str, Callable[[Moving], object]] = {

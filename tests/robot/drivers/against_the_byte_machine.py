@@ -3,9 +3,9 @@
 from collections.abc import Callable
 
 from maps import builtin_map
-from robot.drivers.create2 import Create2
+from robot.drivers.create2.create2 import Create2
+from robot.drivers.create2.wake_up import NoWakeUpLine, WakeUpLine
 from robot.drivers.interfaces import BaseState, Mode, WheelSpeeds
-from robot.drivers.wake_up import NoWakeUpLine, WakeUpLine
 from robot.simulated import SimulatedRobot
 
 TICK_S = 0.02

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from maps import builtin_map
-from robot.drivers.camera import Device, GrabbingCamera
+from robot.core.errors import CameraAbsent
+from robot.drivers.camera.camera import Device, GrabbingCamera
+from robot.drivers.camera.marker_reader import MarkerReader, MarkerWatch
 from robot.drivers.interfaces import Frame
-from robot.drivers.marker_reader import MarkerReader, MarkerWatch
-from robot.errors import CameraAbsent
 from robot.simulated import SimulatedRobot
 
 pytestmark = pytest.mark.alone

@@ -5,11 +5,11 @@ from struct import calcsize
 
 import pytest
 
-from robot.drivers import open_interface as oi
-from robot.drivers.create2 import Create2, possible
+from robot.core.errors import PortAbsent
+from robot.drivers.create2 import open_interface as oi
+from robot.drivers.create2.create2 import Create2, possible
+from robot.drivers.create2.serial_port import open_serial
 from robot.drivers.interfaces import STOP, Mode, WheelSpeeds
-from robot.drivers.serial_port import open_serial
-from robot.errors import PortAbsent
 
 START, SAFE, FULL, SEEK = b"\x80", b"\x83", b"\x84", b"\x8f"
 

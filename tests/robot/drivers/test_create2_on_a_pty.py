@@ -6,10 +6,10 @@ from pathlib import Path
 import pytest
 
 from maps import builtin_map
-from robot.drivers.create2 import Create2
+from robot.core.errors import PortBusy
+from robot.drivers.create2.create2 import Create2
+from robot.drivers.create2.serial_port import open_serial
 from robot.drivers.interfaces import STOP, Mode, WheelSpeeds
-from robot.drivers.serial_port import open_serial
-from robot.errors import PortBusy
 from robot.simulated import SimulatedRobot
 
 TICK_S = 0.02
@@ -107,7 +107,7 @@ def test_a_firmware_that_counts_modes_too_high_is_driven_all_the_same(on_pty: On
 
 
 def test_a_device_that_is_a_folder_is_no_port(tmp_path: Path):
-    from robot.errors import PortAbsent
+    from robot.core.errors import PortAbsent
 
     with pytest.raises(PortAbsent):
         open_serial(str(tmp_path))

@@ -12,9 +12,9 @@ import zxingcpp
 from benchmarks.body.foreign_frames import KINDS, foreign
 from benchmarks.body.marker_frames import CONDITIONS, NAMES, Condition, shot
 from benchmarks.body.shown_pictures import BACKGROUNDS, SIZES, shown_picture
+from robot.drivers.camera.marker_reader import MarkerReader
+from robot.drivers.camera.qr_decoders import may_hold_code, read_with_opencv, zxing_decoder
 from robot.drivers.interfaces import Frame
-from robot.drivers.marker_reader import MarkerReader
-from robot.drivers.qr_decoders import may_hold_code, read_with_opencv, zxing_decoder
 
 BY_ZXING = MarkerReader(NAMES, decode=zxing_decoder(zxingcpp))
 # The budget of time is for the robot; here others use the machine too.

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from maps import builtin_map
-from robot.drivers.dock_infrared import DockInfrared, DockSight, Side, dock_sight
+from robot.drivers.create2.dock_infrared import DockInfrared, DockSight, Side, dock_sight
 from robot.drivers.interfaces import BaseState
 from robot.simulated import Pose, SimulatedRobot
 

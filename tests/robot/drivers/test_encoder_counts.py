@@ -4,8 +4,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot.drivers.encoder_counts import EncoderCounts
-from robot.drivers.odometry import counts_between
+from robot.drivers.create2.encoder_counts import EncoderCounts
+from robot.drivers.create2.odometry import counts_between
 
 FRAME_S = 0.015
 any_count = st.integers(-32768, 32767)

@@ -4,8 +4,8 @@ from itertools import pairwise
 
 import pytest
 
+from robot.drivers.create2.odometry import counts_between
 from robot.drivers.interfaces import STOP, WheelSpeeds
-from robot.drivers.odometry import counts_between
 from tests.robot.drivers.against_the_byte_machine import AHEAD, Join
 
 

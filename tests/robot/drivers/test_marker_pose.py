@@ -7,9 +7,9 @@ from itertools import product
 import pytest
 
 from maps import builtin_map
+from robot.drivers.camera.marker_pose import Optics, code_pose
+from robot.drivers.camera.marker_reader import MarkerReader
 from robot.drivers.interfaces import Sighting
-from robot.drivers.marker_pose import Optics, code_pose
-from robot.drivers.marker_reader import MarkerReader
 from robot.simulated import CameraMount
 from robot.simulated.faults import Faults
 from robot.simulated.frames import Renderer, View

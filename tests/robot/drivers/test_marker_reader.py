@@ -13,9 +13,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from maps import builtin_map
+from robot.drivers.camera.marker_reader import MarkerReader, MarkerWatch
+from robot.drivers.camera.qr_decoders import Decoded, Decoder, read_with_opencv, zxing_decoder
 from robot.drivers.interfaces import Frame
-from robot.drivers.marker_reader import MarkerReader, MarkerWatch
-from robot.drivers.qr_decoders import Decoded, Decoder, read_with_opencv, zxing_decoder
 from robot.simulated import Pose, SimulatedRobot
 
 TRACK = builtin_map("test_track")

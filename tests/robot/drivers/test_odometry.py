@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from robot.drivers.create2.odometry import advanced, counts_between
 from robot.drivers.interfaces import BaseState, BodyShape, Odometry
-from robot.drivers.odometry import advanced, counts_between
 
 SHAPE = BodyShape()
 

@@ -11,10 +11,10 @@ import pytest
 
 from maps import builtin_map
 from protocol.clock import RealClock
-from robot.drivers.create2 import Create2
+from robot.drivers.create2.create2 import Create2
+from robot.drivers.create2.serial_port import open_serial
 from robot.drivers.interfaces import Mode, WheelSpeeds
 from robot.drivers.port_thread import PortThread
-from robot.drivers.serial_port import open_serial
 from robot.simulated import SimulatedRobot
 from robot.simulated.live import Live
 

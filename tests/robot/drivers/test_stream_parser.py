@@ -6,9 +6,9 @@ from struct import calcsize, pack
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from robot.drivers import open_interface as oi
-from robot.drivers.firmware_text import BatteryText, battery_text, firmware_version
-from robot.drivers.stream_parser import StreamParser
+from robot.drivers.create2 import open_interface as oi
+from robot.drivers.create2.firmware_text import BatteryText, battery_text, firmware_version
+from robot.drivers.create2.stream_parser import StreamParser
 
 CHARGING = "bat:   min 0  sec 4  mV 17506  mA 891  tenths-deg-C 291  mAH 2696  state 8  mode 7"
 

@@ -7,9 +7,9 @@ from gpiozero import DigitalOutputDevice
 from gpiozero.pins.mock import MockFactory
 
 from maps import builtin_map
-from robot.drivers.create2 import Create2
-from robot.drivers.wake_up import GpioWakeUpLine, KeepAwake, SerialRts
-from robot.errors import PortAbsent
+from robot.core.errors import PortAbsent
+from robot.drivers.create2.create2 import Create2
+from robot.drivers.create2.wake_up import GpioWakeUpLine, KeepAwake, SerialRts
 from robot.simulated import SimulatedRobot
 
 

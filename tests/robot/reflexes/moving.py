@@ -8,7 +8,7 @@ import pytest
 
 from protocol.clock import SteppedClock
 from robot.drivers.interfaces import WheelSpeeds
-from robot.host import HostWatch
+from robot.ops.host import HostWatch
 from robot.simulated import Person, SimulatedHost
 from robot.skills.interfaces import Running, Step, View
 from tests.robot.skills.track import TICK_S, Drive

@@ -8,11 +8,11 @@ from maps import builtin_map
 from protocol.clock import SteppedClock
 from protocol.parts import Activity, Battery, Leg, Position, Purpose
 from protocol.to_server import Snapshot
-from robot.scenarios.interlocking import Claimed, Interlocking
+from robot.scenarios.actors.interlocking import Claimed, Interlocking
+from robot.scenarios.actors.mail import WITH_RECIPIENT, WITH_SENDER, Letter, Receipt, letters_of
+from robot.scenarios.actors.stand_in import StandIn
 from robot.scenarios.judging import Ending, Fate, shortfalls, verdict
-from robot.scenarios.mail import WITH_RECIPIENT, WITH_SENDER, Letter, Receipt, letters_of
 from robot.scenarios.scenario import Expectation, OrderRow
-from robot.scenarios.stand_in import StandIn
 
 ORDER = OrderRow.model_validate({"id": "o1", "from": "post1", "to": "post4"})
 

@@ -14,9 +14,9 @@ import pytest
 import structlog
 
 from robot.scenarios.errors import RecordingError
-from robot.scenarios.pictures import write_pictures
-from robot.scenarios.recording import Recorder, read_recording
-from robot.scenarios.replaying import page
+from robot.scenarios.replay.pictures import write_pictures
+from robot.scenarios.replay.recording import Recorder, read_recording
+from robot.scenarios.replay.replaying import page
 from robot.scenarios.scenario import Scenario
 from robot.scenarios.stage import Stage
 

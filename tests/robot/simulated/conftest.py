@@ -8,8 +8,8 @@ import pytest
 
 from maps import builtin_map
 from robot.simulated import Motion, Options, SimulatedRobot
+from robot.simulated.base.packets import PACKETS
 from robot.simulated.body import Build
-from robot.simulated.packets import PACKETS
 
 EXACT = Options(build=Build(motion=Motion(ripple_mm_s=0.0, wheel_error=0.0)))
 

@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 from maps import builtin_map
 from robot.simulated import SimulatedRobot
-from robot.simulated.commands import COMMANDS
+from robot.simulated.base.commands import COMMANDS
 
 PASSIVE = 1
 LONGEST_COMMAND = 2 + 2 * 255

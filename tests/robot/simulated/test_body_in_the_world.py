@@ -7,8 +7,8 @@ from gpiozero import DigitalInputDevice
 
 from maps import builtin_map
 from robot.simulated import DiodeMount, Motion, Options, Person, Pose, UnknownStart, Wall
+from robot.simulated.base.drive_base import MM_PER_COUNT
 from robot.simulated.body import Build
-from robot.simulated.drive_base import MM_PER_COUNT
 
 STILL = Motion(ripple_mm_s=0.0, wheel_error=0.0)
 

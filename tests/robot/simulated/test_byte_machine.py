@@ -2,10 +2,10 @@
 
 import pytest
 
-from robot.simulated.actuators import ACTUATORS
-from robot.simulated.commands import COMMANDS, SF
-from robot.simulated.open_interface import HANDLERS
-from robot.simulated.packets import GROUPS, PACKETS, Layout, Readings, stream_frame
+from robot.simulated.base.actuators import ACTUATORS
+from robot.simulated.base.commands import COMMANDS, SF
+from robot.simulated.base.open_interface import HANDLERS
+from robot.simulated.base.packets import GROUPS, PACKETS, Layout, Readings, stream_frame
 
 OFF, PASSIVE, SAFE, FULL = range(4)
 SIZES = {0: 26, 1: 10, 2: 6, 3: 10, 4: 14, 5: 12, 6: 52, 100: 80, 101: 28, 106: 12, 107: 9}

@@ -13,10 +13,10 @@ import zxingcpp
 
 from maps import builtin_map
 from protocol.clock import SteppedClock
-from robot.assembly import Simulation, simulated_robot
-from robot.config import load_settings
-from robot.drivers.marker_pose import Optics
-from robot.drivers.marker_reader import MarkerReader
+from robot.core.config import load_settings
+from robot.drivers.camera.marker_pose import Optics
+from robot.drivers.camera.marker_reader import MarkerReader
+from robot.ops.assembly import Simulation, simulated_robot
 from robot.simulated import CameraMount, Options, Pose
 from robot.simulated.faults import Faults
 from robot.simulated.frames import Renderer, View

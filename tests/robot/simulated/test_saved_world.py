@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from maps import builtin_map
+from robot.ops.simulated_world import SAVE_EVERY_S, SavedWorld
 from robot.simulated import SimulatedRobot
-from robot.simulated_world import SAVE_EVERY_S, SavedWorld
 
 STEP_S = 0.02
 AS_WRITTEN_M = 1e-9

@@ -9,7 +9,7 @@ import pytest
 
 from maps import builtin_map
 from maps.tags import tag_numbers
-from robot.drivers.marker_reader import MarkerReader
+from robot.drivers.camera.marker_reader import MarkerReader
 from robot.simulated import CameraMount, Options, Person, Pose, SimulatedRobot, Wall
 from robot.simulated.faults import Faults
 from robot.simulated.frames import Renderer, View

@@ -9,8 +9,8 @@ from itertools import pairwise
 import pytest
 
 from protocol.proofs import ShownCode
+from robot.core.errors import UnknownSkill
 from robot.drivers.interfaces import STOP, Mode, WheelSpeeds
-from robot.errors import UnknownSkill
 from robot.simulated import Pose
 from robot.skills import Dock, Done, DrivePulse, Failed, FollowLine, PaperTurn, Running, Say, View, WaitHandover
 from tests.robot.skills.track import Drive

@@ -7,7 +7,7 @@ import pytest
 
 from maps import builtin_map
 from robot.drivers.interfaces import BodyShape, LineReading, Odometry
-from robot.navigation.directions import turn_at_rad
+from robot.localization.directions import turn_at_rad
 from robot.skills import Done, FollowLine, Turn
 from robot.skills.unread_post import UnreadPost
 from tests.robot.skills.track import Drive

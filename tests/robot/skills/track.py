@@ -10,10 +10,10 @@ import numpy as np
 
 from maps import CampusMap, builtin_map
 from robot.drive_loop import DriveLoop
-from robot.drivers.create2 import Create2
+from robot.drivers.camera.marker_reader import MarkerReader, MarkerWatch
+from robot.drivers.create2.create2 import Create2
 from robot.drivers.interfaces import BodyShape
 from robot.drivers.line_sensor import ThreeDiodes
-from robot.drivers.marker_reader import MarkerReader, MarkerWatch
 from robot.simulated import Options, SimulatedRobot
 from robot.skills.interfaces import JobEnd, Outcome, Skill
 

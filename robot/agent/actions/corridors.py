@@ -1,0 +1,171 @@
+"""Knowing the way and being allowed to take it: what the actions about routes, grants and closed corridors do."""
+
+from collections.abc import Iterator, Sequence
+from typing import Final
+
+from maps import NoRoute, corridor_name, shortest_route
+from protocol.parts import Leg
+from robot.agent.actions.arguments import Value
+from robot.agent.actions.hands import Hands
+from robot.agent.actions.runs import DONE, AtOnce, Ended, Run, Wait
+
+WAY_BLOCKED: Final = "way_blocked"
+AWAITS_NETWORK_S: Final = 120.0
+"""So long a robot waits for an answer where it stands: a service that is started anew is there again sooner."""
+CLOSED_BY: Final = {
+    "blocked": "Something stands in it",
+    "virtual_wall": "A virtual wall guards it",
+    "post_missed": "No marker was found at its far end",
+}
+
+
+def set_destination(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
+    destination = str(arguments[0])
+    if _why_no_way(hands, destination) == "no_route":
+        return AtOnce(Ended("no_route"))
+    hands.navigator.destination = destination
+    return AtOnce()
+
+
+def _why_no_way(hands: Hands, goal: str) -> str | None:
+    """None: there is a way. `way_closed`: not now, a corridor is blocked or denied. `no_route`: none on the map."""
+    navigator = hands.navigator
+    try:
+        navigator.legs_to(goal)
+        return None
+    except NoRoute:
+        pass
+    try:
+        shortest_route(navigator.campus, navigator.here or goal, goal)
+    except NoRoute:
+        return "no_route"
+    return "way_closed"
+
+
+def claim(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
+    """Done as soon as the first corridor of the way may be entered: from post to post it is asked again. Done as well
+    when the robot has to go elsewhere first, which is then perceived: the service sends it there, or it goes on out of
+    a hole in the network by what it was granted."""
+    goal, duties, navigator = str(arguments[0]), hands.duties, hands.navigator
+    closed = _why_no_way(hands, goal)
+    way = _kept(hands) if closed else _way(hands, goal)
+    first = _from_here(hands, way) if closed else navigator.first_legs(goal)
+    _give_back(hands, first, way)
+    if closed:
+        duties.claims.avoid = frozenset()  # what was denied may be open by the next time it asks
+        return AtOnce(Ended(closed))
+    claim_id = None if detour(hands) else duties.claims.ask((*first, *way), goal)
+    asked_s = hands.view.at_s
+
+    def ask() -> Ended | None:
+        _give_back(hands, first, way)  # it may have been granted what it asked for before it changed its mind
+        if duties.claims.may_enter(first) or detour(hands):
+            return DONE
+        if leg := _way_out_of_silence(hands, asked_s):
+            duties.claims.turn_aside(leg)
+            return DONE
+        return Ended("denied") if claim_id and duties.claims.denial(claim_id) else None
+
+    return Wait(ask, dropped=duties.claims.withdraw)
+
+
+def _give_back(hands: Hands, first: Sequence[Leg], way: Sequence[Leg]) -> None:
+    """What it does not need now, as long as it stands where it is in none of it. Without network it keeps all: no other
+    robot would come to know, and it may be the only way out of there."""
+    if hands.navigator.at and hands.duties.online:
+        kept = (*first, *_granted_ahead(hands, way), detour(hands))
+        hands.duties.claims.clear(leg for leg in hands.duties.held.grants if leg not in kept)
+
+
+def _from_here(hands: Hands, legs: Sequence[Leg]) -> tuple[Leg, ...]:
+    return tuple(leg for leg in legs if leg.from_post == hands.navigator.at)
+
+
+def _granted_ahead(hands: Hands, way: Sequence[Leg]) -> Iterator[Leg]:
+    """What it may drive through from here without a stop. A corridor to which it comes only after others, not granted
+    yet, is not kept: the service thinks the robot in what it holds, and grants it nothing meanwhile."""
+    end, granted = hands.navigator.at, hands.duties.held.grants
+    for leg in way:
+        if leg not in granted or leg.from_post != end:
+            return
+        end = leg.to_post
+        yield leg
+
+
+def detour(hands: Hands) -> Leg | None:
+    """The corridor from here that it has to take first, unless the robot knows that to be closed."""
+    leg = hands.duties.held.detour
+    if leg is None or leg.from_post != hands.navigator.at:
+        return None
+    return None if _is_closed(hands, leg) else leg
+
+
+def _way_out_of_silence(hands: Hands, asked_s: float) -> Leg | None:
+    """A corridor from here that it holds and has not come through yet, where no answer can reach it; None while one may
+    come."""
+    if "link_loss" not in hands.view.faults or hands.view.at_s - asked_s < AWAITS_NETWORK_S:
+        return None
+    unused = tuple(leg for leg in hands.duties.held.grants if leg not in hands.navigator.crossed)
+    return next((leg for leg in _from_here(hands, unused) if not _is_closed(hands, leg)), None)
+
+
+def _is_closed(hands: Hands, leg: Leg) -> bool:
+    return corridor_name(leg.from_post, leg.to_post) in hands.navigator.closed.names
+
+
+def _way(hands: Hands, goal: str) -> tuple[Leg, ...]:
+    """The way to the goal, the rest of the mission and home: a robot without network finishes what it is permitted, and
+    comes back to where it can tell of it."""
+    held, navigator = hands.duties.held, hands.navigator
+    later = [stop.post for stop in (held.mission.stops if held.mission else ())[held.next_stop :]]
+    home = [navigator.home] if navigator.home else []
+    try:
+        return navigator.legs_to(goal, *(later if later[:1] == [goal] else []), *home)
+    except NoRoute:
+        return navigator.legs_to(goal)
+
+
+def _kept(hands: Hands) -> tuple[Leg, ...]:
+    """What it goes on holding while no way is open. Where another robot is in the way it lets go of everything, so that
+    this one can go on. Where something stands in a corridor it keeps what it has been granted: without network there
+    it would never be granted anything again."""
+    return () if hands.duties.claims.avoid else hands.duties.held.grants
+
+
+def release(hands: Hands, _: Sequence[Value], __: float) -> Run:
+    hands.duties.claims.withdraw()
+    here = hands.navigator.corridor
+    inside = {here.from_post, here.to_post} if here else None
+    hands.duties.claims.clear(leg for leg in hands.duties.held.grants if {leg.from_post, leg.to_post} != inside)
+    return AtOnce()
+
+
+def turned_back(leg: Leg, why: str) -> str:
+    """What people are told; the service reads from it which corridor is closed."""
+    return f"The robot turned back in the corridor from {leg.from_post} to {leg.to_post}. {CLOSED_BY[why]}."
+
+
+def tried_again(corridor: str) -> str:
+    """The same, when it is over."""
+    return "The robot tries the corridor between {} and {} again.".format(*corridor.split("-"))
+
+
+def mark_blocked(hands: Hands, arguments: Sequence[Value], now: float) -> Run:
+    leg, why = hands.navigator.corridor, str(arguments[0])
+    if leg is None:
+        return AtOnce(Ended("not_in_a_corridor"))
+    if corridor_name(leg.from_post, leg.to_post) not in hands.navigator.closed.names:
+        hands.duties.report_one_fault(WAY_BLOCKED, turned_back(leg, why), hands.place, cleared=False, lasts=True)
+    # Last: killed in between, the robot tells after its restart that it tries this way again, and does.
+    hands.navigator.closed.close(leg, now)
+    return AtOnce()
+
+
+def reopen(hands: Hands, _: Sequence[Value], __: float) -> Run:
+    hands.navigator.closed.open_all()
+    return AtOnce()
+
+
+def noted_move(hands: Hands, _: Sequence[Value], __: float) -> Run:
+    hands.navigator.noted_move()
+    return AtOnce()

@@ -1,0 +1,279 @@
+"""Where the robot is and where it goes, for actions and percepts: what they ask, and what they tell.
+
+Keeping track of the place is `Tracker`'s.
+"""
+
+import math
+from contextlib import suppress
+from functools import partial
+from itertools import pairwise
+
+from maps import CampusMap, NoRoute, corridor_name, shortest_route
+from maps.geometry import wrapped
+from protocol.parts import Leg
+from robot.agent.tracking import NEARING_MM, Tracker
+from robot.localization.closed import Closed, open_way
+from robot.localization.directions import PLAIN_TURNS, Way, kept_from, next_post, sector
+from robot.localization.docks import nearest_dock, way_out
+from robot.localization.expected import wrong_corridor
+from robot.localization.place import AtPost, Between, Leaving, Looks, Unknown
+from robot.localization.remembering import Moment
+from robot.localization.steps import corridor_between, gone_astray, marked, turned_round
+from robot.mission.mission import Duties
+from robot.skills.interfaces import View
+
+RESTS_MM = 25.0
+"""A pulse or two of the paper's `drive`. Its program does not look at the line as long as it perceives a post."""
+STRAIGHT_RAD = math.radians(12)
+"""Within this the line is under the diodes, and following it straightens the robot up."""
+MARKER_UNREAD = "marker_unread"
+SURELY_PAST_M = 0.3
+
+
+class Navigator(Tracker):
+    """Place and destination. Told by actions what they are about to do, and by the body what it sees."""
+
+    def __init__(self, campus: CampusMap, home: str | None, duties: Duties, now: float) -> None:
+        super().__init__(campus, home, duties)
+        self.destination: str | None = None
+        self.closed = Closed(duties.closed_ages_s(), duties.keep_closed, now)
+        duties.open_way = partial(open_way, campus, self.closed)
+        self._nearest: tuple[object, str | None] = ((), home)  # asked ten times a second, answered once per post
+
+    def look(self, view: View) -> None:
+        """Take in what the body sees now."""
+        self.closed.pass_time(view.at_s)
+        super().look(view)
+
+    # What actions and percepts ask.
+
+    @property
+    def rests_at(self) -> str | None:
+        """The post, as long as the robot has not rolled on from where it reached it."""
+        place = self._place
+        rests = isinstance(place, AtPost) and abs(self._odometry.ahead_mm - place.since_mm) <= RESTS_MM
+        return self.at if rests else None
+
+    @property
+    def is_known(self) -> bool:
+        """Whether anything has told where it is, since it was last lifted or taken away."""
+        return not isinstance(self._place, Unknown)
+
+    @property
+    def astray(self) -> str | None:
+        """The post that it drives towards by mistake, until it has turned round."""
+        return self.towards if isinstance(self._place, Between) and self._place.astray else None
+
+    @property
+    def doubted(self) -> str | None:
+        """The post just before which it was switched off, while it cannot tell whether it has passed it."""
+        place = self._place
+        if isinstance(place, Between | Leaving) and place.doubted:
+            return place.towards or place.here
+        return None
+
+    @property
+    def look_back_mm(self) -> float:
+        """How far it may go back in search of a marker: half of the corridor that it holds at most."""
+        length_mm = 1000 * self._place.corridor.length_m if isinstance(self._place, Between) else NEARING_MM
+        return min(NEARING_MM, length_mm / 2)
+
+    def reached_after(self, arrivals: int) -> list[str]:
+        """The posts reached after so many others; of very many the newest."""
+        new = self.arrivals - arrivals
+        return self.visited[-new:] if new else []
+
+    def way(self) -> Way | None:
+        """The way from here to the destination; None between posts, and where no way leads.
+
+        As long as the way it looks is not known the word is `forward`: the next post will tell.
+        """
+        if self.destination is None or self.at is None:
+            return None
+        if self.at == self.destination:
+            return Way.ARRIVED
+        towards = self._next_post()
+        turn_rad = self._turn_to(towards) if towards else None
+        return None if towards is None else Way.FORWARD if turn_rad is None else sector(turn_rad)
+
+    def _not_next(self) -> frozenset[str]:
+        """What it avoids where it stands: all that does not lead straight to where the service sends it first."""
+        return kept_from(self.campus, self._duties.held.detour, self.at, self.destination, self._avoided())
+
+    def _avoided(self) -> frozenset[str]:
+        return self.closed.names | {corridor_name(leg.from_post, leg.to_post) for leg in self._duties.claims.avoid}
+
+    @property
+    def corridor(self) -> Leg | None:
+        """The corridor that the robot is in, in the direction in which it was granted; None at a post."""
+        place = self._place
+        return Leg(from_post=place.here, to_post=place.far) if isinstance(place, Between) else None
+
+    @property
+    def goes_deeper(self) -> Leg | None:
+        """The corridor into which it goes on, having come in since it was switched on; None: it goes back, or may."""
+        place = self._place
+        if not isinstance(place, Between) or place.turned_round or place.begin_mm is None:
+            return None
+        return self.corridor
+
+    @property
+    def came_from(self) -> str | None:
+        """The post that lies behind it; None where it may look either way."""
+        match self._place:
+            case Between(begin_mm=None):
+                return None
+            case Between(behind=post):
+                return post
+        return self.here
+
+    def legs_to(self, *posts: str) -> tuple[Leg, ...]:
+        """The corridors from here to each of these posts in turn. Raises NoRoute."""
+        way: list[str] = [self.here] if self.here else []
+        for post in posts if way else ():
+            way += shortest_route(self.campus, way[-1], post, self._avoided()).posts[1:]
+        return tuple(Leg(from_post=a, to_post=b) for a, b in pairwise(way))
+
+    def first_legs(self, goal: str) -> tuple[Leg, ...]:
+        """The corridors that it may be in next on the way to a post: every one here while it does not know which way it
+        looks. All markers of a post carry the same text, so after a lift only the next post tells. Raises NoRoute."""
+        first = self.legs_to(goal)[:1]
+        if not first or self._looks is not None:
+            return first
+        here = first[0].from_post
+        return tuple(Leg(from_post=here, to_post=post.name) for post, _ in self.campus.neighbours(here))
+
+    def turn_rad(self, way: str) -> float:
+        """How far to turn, left is positive: to the corridor of the destination if that lies there, else a quarter.
+
+        The paper's program turns left for what lies behind.
+        """
+        plain_rad = PLAIN_TURNS[way]
+        towards = self._next_post()
+        by_map_rad = self._turn_to(towards) if towards else None
+        if by_map_rad is None or self.way() not in (way, Way.BEHIND):
+            return plain_rad
+        # A hair beyond 180 degrees must not turn the other way round than asked.
+        return by_map_rad if abs(by_map_rad) < math.radians(170) else math.copysign(by_map_rad, plain_rad)
+
+    @property
+    def aslant_rad(self) -> float:
+        """How far it must turn to look along the corridor that its way takes; 0 if it does, or if none is known."""
+        towards = self._next_post()
+        turn_rad = self._turn_to(towards) if towards else None
+        return turn_rad if turn_rad is not None and abs(turn_rad) > STRAIGHT_RAD else 0.0
+
+    def _next_post(self) -> str | None:
+        with suppress(NoRoute):
+            if self.destination is not None and self.at is not None:
+                return next_post(self.campus, self.at, self.destination, self._not_next())
+        return None
+
+    @property
+    def ahead_m(self) -> float:
+        """The length of the corridor it is in or about to enter; of the longest one while that is not known."""
+        if isinstance(self._place, Between):
+            return self._place.corridor.length_m
+        return max((corridor.length_m for corridor in self.campus.corridors), default=0.0)
+
+    @property
+    def way_left_mm(self) -> float | None:
+        """To the end of the corridor, by the map and by odometry; None where it is not known or long past."""
+        place = self._place
+        if not isinstance(place, Between) or place.ahead_mm is None or place.by_marker:
+            return None
+        left_mm = place.ahead_mm - self._odometry.ahead_mm
+        return left_mm if left_mm > -1000 * SURELY_PAST_M else None
+
+    def nearest_dock(self) -> str | None:
+        """The dock with the shortest way from here that is open; the robot's own while the place is unknown."""
+        asked = (self.here, self._duties.claims.avoid, self.closed.names)
+        if asked != self._nearest[0]:
+            near = nearest_dock(self.campus, self.here, self._avoided()) if self.here else self.home
+            self._nearest = (asked, near)
+        return self._nearest[1]
+
+    # What actions and people tell.
+
+    def leave(self) -> None:
+        """The robot is about to follow the line away from its post."""
+        self._set_out()
+
+    def begin_turn(self) -> None:
+        """At a post: after a power cut in the middle of a turn it may look anywhere."""
+        if isinstance(self._place, AtPost):
+            self._head_for(self._next_post())
+            self._note_moment(Moment.TURNING)
+
+    def turned(self) -> None:
+        """A turn has ended on the line: what was left of odometry's error is forgotten."""
+        place = self._place
+        if isinstance(place, Between):
+            self._place = turned_round(self._after_a_miss(place), self._odometry.ahead_mm)
+            self._head_for(self._place.towards)
+            return
+        ahead = self._post_ahead()
+        corridor = corridor_between(self.campus, place.here, ahead.name) if ahead and place.here else None
+        if ahead and corridor:
+            self._look_along(corridor.heading_leaving(corridor.other(ahead.name)))
+            self._head_for(ahead.name)
+
+    def _after_a_miss(self, place: Between) -> Between:
+        """It turns back after a foreign marker, and the one that was expected has not come."""
+        missed = place.ahead_mm is not None and self._odometry.ahead_mm > place.ahead_mm
+        if not missed or not self._foreign or place.by_marker:
+            return place
+        corridor = wrong_corridor(self.campus, place, self._foreign, self._scale.real_per_counted)
+        return gone_astray(place, corridor, self._counted_m(corridor.length_m)) if corridor else place
+
+    def noted_move(self) -> None:
+        """The agent knows that it was moved."""
+        self.moved = None
+
+    def reached(self, post: str | None, unread: bool = False) -> None:
+        """follow_line has stopped there. Both go by the same marker, but the body has the last word; `unread`: by the
+        map alone."""
+        if post is None:
+            return
+        self._note_marker(post, unread)
+        place, now_mm = self._place, self._odometry.ahead_mm
+        if self.at == post:
+            return
+        by_marker = not unread and isinstance(place, Between) and place.by_marker
+        if place.towards != post:
+            self._place = marked(self.campus, place, post, now_mm, now_mm)
+        if self._place.towards == post:
+            self._arrive_along(now_mm, by_marker)
+
+    def _note_marker(self, post: str, unread: bool) -> None:
+        """People are told of a marker that needs cleaning, and when all can be read again."""
+        reason = f"The marker of {post} cannot be read. The robot went there by the length of the way."
+        if unread:
+            self.unread.add(post)
+            self._duties.report_fault(MARKER_UNREAD, reason, post)
+        else:
+            self.unread.discard(post)
+        if not self.unread:
+            self._duties.report_fault(MARKER_UNREAD, "Every marker has been read again.", post, cleared=True)
+
+    def undock_way(self) -> tuple[float | None, bool]:
+        """From the dock that it stands in to the post, in mm, and whether the line that it takes leads straight on."""
+        return way_out(self.campus, self.here, self._next_post())
+
+    def undocked(self) -> None:
+        """The robot stands at the dock's post and looks away from the dock: along the line, or as far as it turned."""
+        dock = self.campus.post(self.here).dock if self.here else None
+        if dock and self.here:
+            away_rad, now_mm = dock.heading_rad + math.pi, self._odometry.ahead_mm
+            looks_rad = self._looks_rad(self._odometry)
+            if looks_rad is None or abs(wrapped(looks_rad - away_rad)) < STRAIGHT_RAD:
+                self._look_along(away_rad)
+            self._place = AtPost(self.here, now_mm, now_mm)
+
+    def place(self, post: str, towards: str | None) -> None:
+        """A person has put the robot down at a post, looking along a corridor. Raises UnknownPost, UnknownCorridor."""
+        facing_rad = self.campus.corridor(post, towards).heading_leaving(post) if towards else None
+        now_mm = self._odometry.ahead_mm
+        self.campus.post(post)
+        self._place, self._looks = Unknown(), Looks.of(facing_rad, self._odometry)
+        self._arrive(AtPost(post, now_mm, now_mm))

@@ -1,0 +1,48 @@
+"""Everything perception decides by, at one moment."""
+
+from dataclasses import dataclass, field
+
+from robot.agent.perception.battery import BatterySense
+from robot.mission.state import Held
+from robot.skills.interfaces import View
+
+
+@dataclass(frozen=True)
+class Whereabouts:
+    """Where the robot is, in words of the map. `at` is the post it stands at; between posts it is None."""
+
+    at: str | None = None
+    previous: str | None = None
+    destination: str | None = None
+    way: str | None = None
+    """forward, left, right, behind or arrived; None while it cannot be known."""
+    rests_at: str | None = None
+    """The post as long as the robot has not begun to roll on from there."""
+    moved: str | None = None
+    """The post where it found itself after it had been moved, until it has taken note."""
+    astray: str | None = None
+    """The post that it drives towards by mistake, until it has turned round."""
+    doubted: str | None = None
+    """The post just before which it was switched off, while it cannot tell whether it has passed it."""
+    closed: frozenset[str] = frozenset()
+    """Corridors, by name, in which it turned back a short while ago."""
+    detour: str | None = None
+    """The neighbour to which the service sends it first."""
+
+
+@dataclass(frozen=True)
+class Seen:
+    """A moment. Ages are told by the parts' own times: nothing waits for another sensor."""
+
+    at_s: float
+    view: View = field(default_factory=View)
+    battery: BatterySense = field(default_factory=BatterySense)
+    where: Whereabouts = Whereabouts()
+    held: Held = field(default_factory=Held)
+    halting: frozenset[str] = field(default_factory=frozenset)
+    """Those of the active faults that keep the wheels still until a person has seen to them."""
+    home: str | None = None
+    nearest_dock: str | None = None
+    unsure: bool = False
+    handing_over: bool = False
+    watch: int = 0

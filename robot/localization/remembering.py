@@ -1,0 +1,46 @@
+"""What a robot that is switched on again knows of its place."""
+
+from enum import StrEnum
+
+from maps import CampusMap
+from protocol import parts
+from robot.drivers.interfaces import Odometry
+from robot.localization.place import AtPost, Between, Leaving, Looks, Place, Unknown
+from robot.localization.steps import corridor_between
+
+
+class Moment(StrEnum):
+    """What it was about, if a power cut then leaves doubt of its place; written down before it begins."""
+
+    TURNING = "turning"
+    """At a post: it may look anywhere."""
+    NEARING = "nearing"
+    """Before the post ahead: its base may have rolled on, beyond the post and what it was granted."""
+    LIFTED = "lifted"
+    """In a person's hands, until a marker or a dock has told where it is."""
+
+
+def remembered(campus: CampusMap, position: parts.Position, moment: Moment | None) -> tuple[Place, Looks | None]:
+    """Where the robot was when it was switched off, and how it looked. `towards` was written down before it left or
+    turned."""
+    post, previous, towards = position.post, position.previous, position.towards
+    if post is None or post not in campus.posts:
+        return Unknown(lifted=moment is Moment.LIFTED), None
+    if moment is Moment.LIFTED:
+        return Unknown(post, frozenset(one for one in (post, towards) if one), lifted=True), None
+    came_by = corridor_between(campus, post, previous) if previous else None
+    if moment is Moment.TURNING:
+        return AtPost(post, 0.0, 0.0, came_by), None
+    if towards:
+        return _on_its_way(campus, post, towards, doubted=moment is Moment.NEARING)
+    facing_rad = came_by.heading_arriving(post) if came_by else None
+    return AtPost(post, 0.0, 0.0, came_by), Looks.of(facing_rad, Odometry())
+
+
+def _on_its_way(campus: CampusMap, post: str, towards: str, doubted: bool) -> tuple[Place, Looks | None]:
+    """`towards` may be the same post: it had turned round."""
+    corridor = corridor_between(campus, post, towards)
+    if corridor is None:
+        return Leaving(post, doubted=doubted), None
+    facing_rad = corridor.heading_leaving(post)
+    return Between(corridor, post, towards, doubted=doubted), Looks.of(facing_rad, Odometry())

@@ -1,1 +1,0 @@
-"""What the mind believes of the world: signals become symbols, each on its own and with its own age."""

@@ -1,0 +1,5 @@
+"""The actors of a scenario: robots, people, the service's stand-in.
+
+May use the scenario and its campus.
+Start at `actors.py`.
+"""

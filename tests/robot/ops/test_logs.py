@@ -1,0 +1,55 @@
+"""Whoever logs waits for no disk; whoever looks for a log that is not there is told where it may be."""
+
+import logging
+import shutil
+import threading
+from pathlib import Path
+
+import pytest
+import typer
+from typer.testing import CliRunner
+
+from robot.__main__ import cli
+from robot.core.logs import WAITING_LINES, WrittenElsewhere
+from robot.ops.commands.logs import journal_of
+
+
+class Card(logging.Handler):
+    """Writes nothing until it is let."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.hangs = threading.Event()
+        self.lines: list[str] = []
+
+    def emit(self, record: logging.LogRecord) -> None:
+        self.hangs.wait()
+        self.lines.append(record.getMessage())
+
+
+def test_a_card_that_hangs_keeps_nobody_waiting_and_what_there_is_room_for_is_written_in_the_end() -> None:
+    card = Card()
+    handler = WrittenElsewhere(card)
+    for number in range(2 * WAITING_LINES):
+        handler.handle(logging.LogRecord("robot", logging.INFO, __file__, 1, f"line {number}", None, None))
+    assert card.lines == []
+    threading.Timer(0.05, card.hangs.set).start()
+    handler.close()
+    assert card.lines[:2] == ["line 0", "line 1"]
+    assert WAITING_LINES <= len(card.lines) < 2 * WAITING_LINES
+
+
+@pytest.mark.skipif(not shutil.which("journalctl"), reason="no systemd here")
+def test_a_journal_without_a_line_of_the_unit_is_no_answer_but_what_to_do_is(capfd: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(typer.Exit) as ended:
+        journal_of("no-unit-has-this-name", newest=5, follow=False)
+    told = capfd.readouterr()
+    assert (ended.value.exit_code, told.out) == (2, "")
+    assert "systemctl status no-unit-has-this-name" in told.err
+    assert "log_file" in told.err
+
+
+def test_a_log_file_that_is_not_there_yet_is_named(tmp_path: Path) -> None:
+    (tmp_path / "robot.toml").write_text(f'log_file = "{tmp_path / "robot.log"}"\n')
+    shown = CliRunner().invoke(cli, ["logs", "--config", str(tmp_path / "robot.toml"), "--data", str(tmp_path)])
+    assert (shown.exit_code, f"{tmp_path / 'robot.log'} (the setting log_file)" in shown.stderr) == (2, True)
