@@ -4,9 +4,11 @@ PYTHON ?= python3
 BIN := .venv/bin
 # More for the tool behind a verb: make test ARGS="tests/maps -k route", make demo ARGS="--once --json"
 ARGS ?=
+# Where tests lie that run alone (tests/conftest.py).
+ALONE_IN = tests/robot tests/system
 
 .DEFAULT_GOAL := help
-.PHONY: help setup setup-develop setup-robot test check licences sbom format demo fleet-demo serve robot bench bench-mind bench-body bench-service bench-paper bench-pages bench-service-kills bench-fleet fuzz-mind client pages icons screenshots fuzz-api docs pin clean
+.PHONY: help setup setup-develop setup-robot test test-all check licences sbom format demo fleet-demo serve robot bench bench-mind bench-body bench-service bench-paper bench-pages bench-service-kills bench-fleet fuzz-mind client pages icons screenshots fuzz-api docs pin clean
 # A recipe that fails must not leave its stamp behind.
 .DELETE_ON_ERROR:
 
@@ -17,8 +19,22 @@ setup: .venv/.python-ready .venv/.pages-ready ## Make .venv and fetch what runs:
 
 setup-develop: .venv/.develop-ready .venv/.pages-develop-ready ## Fetch what tests, checks and benchmarks need, too (they do this by themselves)
 
-test: setup-develop .venv/.made-ready ## Run every test, a real browser among them
+# Two at a time; those that measure real time come after, with nothing beside them.
+BESIDE = --numprocesses 2 --dist worksteal --durations 10
+test: setup-develop .venv/.made-ready ## Run the tests but the slow ones, a real browser among them; ARGS="…" runs what it names
+ifeq ($(ARGS),)
+	$(BIN)/python -m pytest $(BESIDE) -m "not alone and not slow"
+	$(BIN)/python -m pytest -m "alone and not slow" $(ALONE_IN)
+else
 	$(BIN)/python -m pytest $(ARGS)
+endif
+
+ON_POSTGRESQL = tests/app/orders tests/app/dispatch tests/app/robots tests/app/traffic tests/app/cli tests/app/test_database.py \
+  tests/app/test_migrations.py
+test-all: setup-develop .venv/.made-ready ## Run every test, the slow ones too, and again on PostgreSQL those that lean on the database
+	$(BIN)/python -m pytest $(BESIDE) -m "not alone"
+	CAMPUS_MAIL_TEST_DATABASE=postgresql $(BIN)/python -m pytest $(BESIDE) -m "not alone" $(ON_POSTGRESQL)
+	$(BIN)/python -m pytest -m alone $(ALONE_IN)
 
 check: setup-develop .venv/.lint-ready .venv/.made-ready ## Format, lint, types, import contracts, types of the pages, the API documents
 	$(BIN)/ruff format --check

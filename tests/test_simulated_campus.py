@@ -58,7 +58,7 @@ def test_robots_that_meet_and_mail_that_is_nobodys_would_be_seen() -> None:
     robot = run.robots["r0"]
     robot.granted.append(Leg(from_post="uc", to_post="canal"))
     with pytest.raises(CustodyError, match="a corridor that it did not have"):
-        robot.link.link.to_server(Clear(leg=robot.granted[0], post="canal"))
+        robot.link.to_server(Clear(leg=robot.granted[0], post="canal"))
         run.clock.run(1.0)
 
 

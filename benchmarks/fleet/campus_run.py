@@ -88,12 +88,12 @@ class CampusRun:
             return
         away_s = self.clock.now_s + self._faults.expovariate(1 / every_s)
         back_s = away_s + self._faults.uniform(*AWAY_S)
-        self.clock.at(away_s, robot.link.link.disconnect)
+        self.clock.at(away_s, robot.link.disconnect)
         self.clock.at(back_s, lambda: self._is_back(robot))
 
     def _is_back(self, robot: Robot) -> None:
         if not robot.is_dead:
-            robot.link.link.connect()
+            robot.link.connect()
         self._be_away(robot)
 
     def _died(self, robot: Robot) -> None:

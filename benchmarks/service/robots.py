@@ -65,7 +65,7 @@ async def _measure(samples: Samples, server: Server, known: list[KnownRobot], da
         "report_to_durable_acknowledgement": times([s for robot in fleet for s in robot.acknowledged_after_s]),
         "not_acknowledged": sum(robot.seq - robot.acknowledged for robot in fleet),
         "acknowledged_and_not_in_the_database": _missing(database, fleet),
-        "refused": sum(len(robot.core.errors) for robot in fleet),
+        "refused": sum(len(robot.errors) for robot in fleet),
         "disconnected": len(fleet) - connected,
         "share_of_its_core": round(used, 2),
         "processor_ms_per_report": round(used_s / sum(robot.seq for robot in fleet) * 1e3, 3),

@@ -130,7 +130,7 @@ class _Scene:
             results = await asyncio.gather(*tasks, return_exceptions=True)
             for robot, result in zip(self._robots, results, strict=True):
                 if not isinstance(result, asyncio.CancelledError):
-                    robot.core.errors.append(f"it broke: {result!r}")
+                    robot.errors.append(f"it broke: {result!r}")
 
     async def _send(self, sender: Sender) -> None:
         await sender.sign_in(self._mailbox)
@@ -212,7 +212,7 @@ class _Scene:
         facts = self._facts()
         wrong = [*judged(facts), *self._problems()]
         wrong += [sentence for sender in self._senders for sentence in sender.wrong]
-        wrong += [f"{robot.name} was told off: {sentence}" for robot in self._robots for sentence in robot.core.errors]
+        wrong += [f"{robot.name} was told off: {sentence}" for robot in self._robots for sentence in robot.errors]
         wrong += (
             [] if self._drained else [f"not everything was done, and nothing more for {STANDS_STILL_S:.0f} s of peace"]
         )

@@ -23,10 +23,10 @@ async def carries_and_claims(robot: PlayedRobot, ada: Visitor, order_id: str) ->
     """The sender shows their code; the recipient has shown none when the robot says that they have the letter."""
     mission = await robot.mission()
     stops = {stop.action: stop for stop in mission.stops}
-    await robot.ends(await robot.ops.report(mission, Step.ARRIVED, stops[StopAction.LOAD]))
+    await robot.ends(await robot.report(mission, Step.ARRIVED, stops[StopAction.LOAD]))
     code = (await ada.api(f"/orders/{order_id}/code"))["text"]
     await robot.ends(await robot.say(robot.proved_receipt(mission, stops[StopAction.LOAD], code)))
-    await robot.ends(await robot.ops.report(mission, Step.ARRIVED, stops[StopAction.RECEIVE]))
+    await robot.ends(await robot.report(mission, Step.ARRIVED, stops[StopAction.RECEIVE]))
     await robot.ends(await robot.say(robot.receipt(stops[StopAction.RECEIVE], how="code")))
 
 
@@ -65,7 +65,7 @@ async def test_what_an_older_robot_tells_is_marked_as_weaker(quiet_campus: Campu
     async with quiet_campus.service.connected("r8", understands=("confirm",)) as robot:
         order_id = await ada.order("carl.sagan@campus.example")
         mission = await robot.mission()
-        await robot.ends(await robot.ops.report(mission, Step.ARRIVED, mission.stops[0]))
+        await robot.ends(await robot.report(mission, Step.ARRIVED, mission.stops[0]))
         await robot.ends(await robot.say(robot.receipt(mission.stops[0])))
         await ada.page.goto(f"/follow.html?order={order_id}")
         said = "with the weaker proof of an older robot"

@@ -50,7 +50,7 @@ async def test_what_goes_wrong_appears_by_itself_and_is_mended_by_keyboard_alone
     mission = await robot.mission()
     stops = {stop.action: stop for stop in mission.stops}
     for step in (Step.ACCEPTED, Step.DEPARTED, Step.ARRIVED):
-        await robot.ops.report(mission, step, None if step is Step.ACCEPTED else stops[StopAction.LOAD])
+        await robot.report(mission, step, None if step is Step.ACCEPTED else stops[StopAction.LOAD])
     await robot.ends(await robot.say(robot.receipt(stops[StopAction.LOAD])))
     queue = page.get_by_role("region", name=re.compile("^Under way"))
     await expect(queue.get_by_text("Signed forms")).to_be_visible()

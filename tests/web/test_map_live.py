@@ -113,7 +113,7 @@ async def test_after_hundreds_of_changes_the_page_is_as_light_as_before(visit, r
     page = ada.page
     order_id = await ada.order("bob.martin@campus.example")
     mission = await robot.mission()
-    await robot.ends(await robot.ops.report(mission, Step.ACCEPTED))
+    await robot.ends(await robot.report(mission, Step.ACCEPTED))
     await drives_about(robot, 1, battery=0.9)
     await page.goto(f"/follow.html?order={order_id}")
     facts = page.get_by_role("region", name="Where the robot is")

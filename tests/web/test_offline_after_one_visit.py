@@ -121,8 +121,8 @@ async def test_what_a_page_hears_while_it_is_open_is_there_as_well(visit, own_se
     bob = await come_once(visit, "/settings.html", "bob.martin", at=own_service)
     async with under_way(ada, bob.email) as (order, robot, mission):
         (load,) = [stop for stop in mission.stops if stop.action is StopAction.LOAD]
-        await robot.ops.report(mission, Step.ACCEPTED)
-        await robot.ends(await robot.ops.report(mission, Step.ARRIVED, load))
+        await robot.report(mission, Step.ACCEPTED)
+        await robot.ends(await robot.report(mission, Step.ARRIVED, load))
         await robot.ends(await robot.say(robot.receipt(load)))
         await is_kept(bob.page, f"/orders/{order}/code.svg")
         digits = (await bob.api(f"/orders/{order}/code"))["digits"]

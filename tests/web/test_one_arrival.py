@@ -61,7 +61,7 @@ async def drives(robot: PlayedRobot, mission: Mission, stop: Stop, here: str) ->
     posts = shortest_route(TRACK, here, stop.post).posts
     for at, post in enumerate(posts):
         step = Step.DEPARTED if at == 0 else Step.ARRIVED if at == len(posts) - 1 else Step.PASSED
-        await robot.ends(await robot.ops.report(mission, step, stop, post=post))
+        await robot.ends(await robot.report(mission, step, stop, post=post))
         await is_seen(robot, post, posts[at + 1] if at + 1 < len(posts) else None)
         yield post
 

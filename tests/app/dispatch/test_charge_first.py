@@ -84,7 +84,7 @@ async def test_it_is_let_in_on_its_way_to_the_dock_and_after_it_has_charged(
     for leg in legs:
         await robot.say(Clear(leg=leg, post=leg.to_post))
     await has(robot, 0.25, "post5", docked=True)
-    await robot.ops.report(mission, Step.DONE, dock)
+    await robot.report(mission, Step.DONE, dock)
     await has(robot, 0.25, "post5")  # a pack that takes no charge: it is not sent there for ever
     legs = await claims(robot, "c3", "post5", "post1")
     assert (await robot.hear("grant")).body == Grant(claim_id="c3", legs=legs)

@@ -120,7 +120,7 @@ async def test_a_robot_under_way_gets_one_more_order_by_the_next_update_of_its_m
         first = await an_order(service, clock)
         mission = await robot.mission()
         load, receive = mission.stops
-        await robot.ops.report(mission, Step.ARRIVED, load)
+        await robot.report(mission, Step.ARRIVED, load)
         await service.reaches(first, "at_sender")
         second = await service.order("post2", "post3")
         await waits_because(service, second, "Every robot is busy.")  # somebody is loading: nothing changes meanwhile
@@ -141,9 +141,9 @@ async def test_a_robot_that_delivered_is_given_the_next_order(service: Service, 
         await robot.greet()
         mission = await robot.mission()
         load, receive = mission.stops
-        await robot.ops.report(mission, Step.ARRIVED, load)
+        await robot.report(mission, Step.ARRIVED, load)
         await robot.say(robot.receipt(load))
-        await robot.ops.report(mission, Step.ARRIVED, receive)
+        await robot.report(mission, Step.ARRIVED, receive)
         await service.reaches(first, "at_recipient")
         second = await service.order("post4", "post1")
         await waits_because(service, second, "Every robot is busy.")
@@ -198,7 +198,7 @@ async def test_a_robot_with_mail_aboard_is_not_free_even_if_its_mission_is_over(
         mission = await robot.mission()
         load, receive = mission.stops
         await robot.say(robot.receipt(load))
-        await robot.ops.report(mission, Step.GAVE_UP, receive, reason="nobody came in 600 s")
+        await robot.report(mission, Step.GAVE_UP, receive, reason="nobody came in 600 s")
         done: Event = robot.progress(mission, Step.DONE)
         await robot.ends(await robot.say(done))
         another = await service.order()

@@ -109,7 +109,7 @@ async def test_it_is_renewed_with_what_is_learned_on_the_way_and_the_promise_is_
         ]
     ):
         clock.advance(100.0 * at)
-        await robot.ends(await robot.ops.report(mission, step, stop, post=post))
+        await robot.ends(await robot.report(mission, step, stop, post=post))
         towards = {"post5": "post3", "post3": "post2", "post2": "post1"}.get(post)
         await is_seen(robot, post, towards)
         await until(lambda: is_not_over(service, order_id, clock))
@@ -120,7 +120,7 @@ async def test_it_is_renewed_with_what_is_learned_on_the_way_and_the_promise_is_
     assert order.expected_to is not None
     assert promised is not None
     assert order.expected_to > promised, "what comes later is said, and the promise is not rewritten by it"
-    await robot.ends(await robot.ops.report(mission, Step.DEPARTED, receive, post="post1"))
+    await robot.ends(await robot.report(mission, Step.DEPARTED, receive, post="post1"))
 
 
 async def is_seen(robot: PlayedRobot, post: str, towards: str | None) -> None:

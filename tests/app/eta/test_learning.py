@@ -107,12 +107,12 @@ async def test_what_a_robot_waited_before_it_was_let_in_or_stood_at_a_stop_is_no
         await robot.greet(TO)
         mission = await robot.mission()
         stop = mission.stops[0]
-        await robot.ends(await robot.ops.report(mission, Step.DEPARTED, stop, post=TO))
+        await robot.ends(await robot.report(mission, Step.DEPARTED, stop, post=TO))
         clock.advance(200.0)
         learning = service.app.state.parts.fleet.learning
         learning.let_in("r1", [Leg(from_post=here, to_post=passed)], clock.utc())
         clock.advance(CORRIDOR_S)
-        await robot.ends(await robot.ops.report(mission, Step.PASSED, stop, post=passed))
+        await robot.ends(await robot.report(mission, Step.PASSED, stop, post=passed))
     (row,) = await service.rows(DurationRow, kind="corridor")
     assert (row.name, row.seconds) == (f"{here} {passed}", CORRIDOR_S)
 

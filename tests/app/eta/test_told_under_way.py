@@ -54,13 +54,13 @@ async def test_what_is_told_first_and_after_loading_is_kept_scored_and_learned_f
             order = await service.row(Order, id=order_id)
             assert abs(order.expected_to - first.told_at - timedelta(seconds=first.told_p90_s)) < timedelta(seconds=1)
             clock.advance(200.0)
-            await robot.ends(await robot.ops.report(mission, Step.ARRIVED, load))
+            await robot.ends(await robot.report(mission, Step.ARRIVED, load))
             await robot.ends(await robot.say(robot.receipt(load)))
             _, second = await kept(service, 2)
             assert (first.is_aboard, second.is_aboard) == (False, True)
             assert second.told_at > first.told_at
             clock.advance(300.0)
-            await robot.ends(await robot.ops.report(mission, Step.ARRIVED, receive))
+            await robot.ends(await robot.report(mission, Step.ARRIVED, receive))
             arrived_at = (await service.row(ForecastRow, order_id=order_id)).arrived_at
             assert [row.arrived_at for row in await rows(service)] == [arrived_at] * 2
         scores = {basis: told.score() for basis, told in estimates.told.items()}

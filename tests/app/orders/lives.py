@@ -173,8 +173,8 @@ class World:
         """Both sides know each other's journals from the first hello on."""
         async with self.database.transaction() as session:
             robot.journal = (await session.get_one(RobotRow, robot.name)).server_journal
-            await inbox.resume(session, robot.name, robot.mission.outbox.journal, 1, self.clock.utc())
-        robot.mission.memory.resume(robot.journal, 1)
+            await inbox.resume(session, robot.name, robot.outbox.journal, 1, self.clock.utc())
+        robot.memory.resume(robot.journal, 1)
 
     def start_service(self) -> None:
         """All that it knows is in the database: starting it anew is one of the things that happen."""
@@ -243,9 +243,9 @@ class World:
         for row in waiting:
             message = TO_ROBOT[row.type].model_validate_json(row.body)
             facts = {"type": row.type, "robot": name, "journal": robot.journal, "seq": row.seq, "body": message}
-            robot.mission.memory.receive(Envelope(**facts, at=self.clock.utc()))
+            robot.memory.receive(Envelope(**facts, at=self.clock.utc()))
             robot.heard_seq = row.seq
-        robot.mission.mission.take_messages()
+        robot.duties.take_messages()
 
     async def _waiting_for(self, robot: PlayedRobot, count: int) -> list[Any]:
         async with self.database.reading() as session:
@@ -254,12 +254,12 @@ class World:
     async def speak(self, name: str, count: int = 100, is_heard: bool = True) -> None:
         """The robot sends what it has to say; `is_heard`: the acknowledgement reaches it, else it says it again."""
         robot = self.robots[name]
-        for kept in robot.mission.outbox.pending(limit=count):
+        for kept in robot.outbox.pending(limit=count):
             if kept.seq > robot.taken_up_to and isinstance(kept.message, Event):
                 robot.said.append(kept.message)
             await robot.say(self.intake, kept.seq, kept.message)
         if is_heard:
-            robot.mission.outbox.acknowledged(robot.taken_up_to)
+            robot.outbox.acknowledged(robot.taken_up_to)
             robot.acknowledged = robot.heard_seq
 
     async def say_again(self, name: str, number: int) -> None:
@@ -268,9 +268,9 @@ class World:
         await self.speak(name)
         if robot.said:
             again = robot.said[-1 - number % len(robot.said)]
-            seq = robot.mission.outbox.put(again)
+            seq = robot.outbox.put(again)
             await robot.say(self.intake, seq, again)
-            robot.mission.outbox.acknowledged(seq)
+            robot.outbox.acknowledged(seq)
 
     async def goes_on(self, name: str, *luck: str) -> None:
         """With a network and after a look of dispatch: the robot hears, does and tells."""
@@ -285,7 +285,7 @@ class World:
     def act(self, name: str, luck: str) -> None:
         """One step of what the robot's program does with its next stop."""
         robot = self.robots[name]
-        duties, held = robot.mission.mission, robot.mission.mission.held
+        duties, held = robot.duties, robot.duties.held
         if held.mission is None:
             return
         stop = held.stop
@@ -301,7 +301,7 @@ class World:
         return is_aboard if stop.action is StopAction.LOAD else not is_aboard
 
     def _serve(self, robot: PlayedRobot, stop: Any, luck: str) -> None:
-        duties = robot.mission.mission
+        duties = robot.duties
         duties.report(Step.DEPARTED, stop.id, "post3")
         if luck == "sets out":
             return
@@ -328,7 +328,7 @@ class World:
         purpose, order_id = Purpose(stop.action.value), stop.order_id
         is_passed_on = self.where[order_id] == "mailroom"
         giver = ("mailroom" if is_passed_on else "sender") if purpose is Purpose.LOAD else robot.name
-        codes = robot.mission.mission.codes(order_id, purpose)
+        codes = robot.duties.codes(order_id, purpose)
         wanted = {"mailroom": Holder.MAILROOM, "recipient": Holder.RECIPIENT}.get(luck, Holder.SENDER)
         loads = Holder.MAILROOM if is_passed_on else Holder.SENDER
         holder = {Purpose.LOAD: loads, Purpose.RECEIVE: Holder.RECIPIENT}.get(purpose, wanted)
@@ -337,7 +337,7 @@ class World:
         shown = ShownCode.of(code.text(self.orders.key))
         if self.where[order_id] != giver or shown.sha256 not in codes:
             return False
-        robot.mission.mission.handed_over(robot.mission.mission.at_stop(stop.id), purpose, stop.post, shown)
+        robot.duties.handed_over(robot.duties.at_stop(stop.id), purpose, stop.post, shown)
         self.where[order_id] = robot.name if purpose is Purpose.LOAD else str(holder)
         return True
 

@@ -335,7 +335,7 @@ class LivesOfOrders(RuleBasedStateMachine):
         for robot in self.world.robots.values():
             await self.world.set_online(robot.name, True)
             for fault in ("wheel_drop", "bump"):
-                robot.mission.mission.report_fault(fault, "It is over.", "post3", cleared=True)
+                robot.duties.report_fault(fault, "It is over.", "post3", cleared=True)
         for _ in range(ROUNDS_TO_THE_END):
             await self.one_round()
             if await self.all_is_done():
@@ -352,12 +352,10 @@ class LivesOfOrders(RuleBasedStateMachine):
             for _ in range(6):
                 self.world.act(name, "sender")
             await self.world.speak(name)
-            assert robot.mission.outbox.waiting() == 0
+            assert robot.outbox.waiting() == 0
         orders = {order.id: order for order in await self.world.rows(Order)}
         for robot in self.world.robots.values():
-            if robot.mission.mission.held.mission is None and any(
-                orders[one].state in ENDED for one in robot.mission.mission.held.cargo
-            ):
+            if robot.duties.held.mission is None and any(orders[one].state in ENDED for one in robot.duties.held.cargo):
                 await self.world.recall(robot.name)  # its alarm says that it has mail aboard
         for order in orders.values():
             if order.state is S.ATTENTION:
@@ -367,8 +365,7 @@ class LivesOfOrders(RuleBasedStateMachine):
     async def all_is_done(self) -> bool:
         orders, missions = await self.world.rows(Order), await self.world.rows(MissionRow)
         idle = all(
-            robot.mission.mission.held.mission is None and not robot.mission.mission.held.cargo
-            for robot in self.world.robots.values()
+            robot.duties.held.mission is None and not robot.duties.held.cargo for robot in self.world.robots.values()
         )
         return idle and all(one.state in ENDED for one in orders) and not any(one.state == "active" for one in missions)
 

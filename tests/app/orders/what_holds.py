@@ -108,7 +108,7 @@ class Record:
             assert holder == ("sender" if legs == 1 or state is S.RETURNED else "mailroom")
         elif state in {S.DELIVERED, S.HELD}:
             assert holder == {S.DELIVERED: "recipient", S.HELD: "mailroom"}[state]
-        if all(robot.mission.outbox.waiting() == 0 for robot in self.world.robots.values()):
+        if all(robot.outbox.waiting() == 0 for robot in self.world.robots.values()):
             assert holder == self.world.where[order.id], "with everything told, the record is the truth"
 
     def who_is(self, person_id: str) -> str:
@@ -131,10 +131,10 @@ class Record:
             theirs = {one.id for one in missions if one.robot == robot.name}
             left = {one.id for one in stops if one.mission_id in theirs and is_left(one)}
             is_untold = any(one.told_update < one.update_number for one in missions if one.id in theirs)
-            waits = is_untold or robot.mission.outbox.waiting() or any(one.let_go_by == robot.name for one in orders)
+            waits = is_untold or robot.outbox.waiting() or any(one.let_go_by == robot.name for one in orders)
             if not waits and not await self.world.unheard(robot):
                 assert robot.still_to_do() == left
-                assert set(robot.mission.mission.held.cargo) == self.world.aboard(robot.name)
+                assert set(robot.duties.held.cargo) == self.world.aboard(robot.name)
 
 
 def ended_with_nothing_aboard(events: list[OrderEvent]) -> bool:
@@ -149,5 +149,5 @@ async def how_it_ended(world: World) -> list[str]:
     orders = [(o.id, o.state, o.state_before_attention, o.robot) for o in await world.rows(Order)]
     missions = [one for one in await world.rows(MissionRow) if one.state == "active"]
     stops = [one for one in await world.rows(StopRow) if one.mission_id in {mission.id for mission in missions}]
-    held = [f"{robot.name}: {robot.mission.mission.held}" for robot in world.robots.values()]
+    held = [f"{robot.name}: {robot.duties.held}" for robot in world.robots.values()]
     return [str(orders), *map(repr, missions), *map(repr, stops), *held]

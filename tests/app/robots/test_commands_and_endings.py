@@ -40,8 +40,8 @@ async def test_a_robot_that_cannot_get_to_the_sender_is_free_and_the_order_says_
     async with robot.connected(service.url, token):
         await robot.greet()
         mission = await robot.mission()
-        await robot.ops.report(mission, Step.DEPARTED, mission.stops[0])
-        await robot.ops.report(mission, Step.GAVE_UP, mission.stops[0], reason="no_route")
+        await robot.report(mission, Step.DEPARTED, mission.stops[0])
+        await robot.report(mission, Step.GAVE_UP, mission.stops[0], reason="no_route")
         await service.reaches(order_id, "attention")
         another = await service.order("post2", "post3")
         assert (await robot.mission()).stops[0].order_id == another
@@ -55,19 +55,19 @@ async def test_mail_that_nobody_took_is_brought_back_by_the_robots_own_mission(
     order_id, receive = await carrying(service, robot)
     async with robot.connected(service.url, robot.token):
         await robot.greet()
-        await robot.ops.report(receive.mission, Step.ARRIVED, receive.stop)
-        await robot.ops.report(receive.mission, Step.GAVE_UP, receive.stop, reason="no_one_came")
-        await robot.ends(await robot.ops.report(receive.mission, Step.DONE))
+        await robot.report(receive.mission, Step.ARRIVED, receive.stop)
+        await robot.report(receive.mission, Step.GAVE_UP, receive.stop, reason="no_one_came")
+        await robot.ends(await robot.report(receive.mission, Step.DONE))
         another = await service.order("post2", "post3")
         own, back = own_mission(order_id, "post1")
-        await robot.ops.report(own, Step.ACCEPTED)
-        await robot.ops.report(own, Step.DEPARTED, back)
-        await robot.ops.report(own, Step.ARRIVED, back)
+        await robot.report(own, Step.ACCEPTED)
+        await robot.report(own, Step.DEPARTED, back)
+        await robot.report(own, Step.ARRIVED, back)
         await service.reaches(order_id, "at_return")
         await service.app.state.parts.dispatcher.look_round()
         assert await service.states(another) == ["queued"], "its mail comes first"
         await robot.say(robot.receipt(back))
-        await robot.ends(await robot.ops.report(own, Step.DONE))
+        await robot.ends(await robot.report(own, Step.DONE))
         await service.reaches(order_id, "returned")
         assert (await robot.mission()).stops[0].post == "post2", "free again"
     assert (await service.states(order_id))[-4:] == ["at_recipient", "returning", "at_return", "returned"]
@@ -77,12 +77,12 @@ async def test_mail_that_nobody_takes_back_either_waits_for_a_person(service: Se
     order_id, receive = await carrying(service, robot)
     async with robot.connected(service.url, robot.token):
         await robot.greet()
-        await robot.ops.report(receive.mission, Step.GAVE_UP, receive.stop, reason="no_route")
-        await robot.ops.report(receive.mission, Step.DONE)
+        await robot.report(receive.mission, Step.GAVE_UP, receive.stop, reason="no_route")
+        await robot.report(receive.mission, Step.DONE)
         own, back = own_mission(order_id, "post1")
         for step in (Step.ARRIVED, Step.GAVE_UP):
-            await robot.ops.report(own, step, back, reason="no_one_came")
-        await robot.ends(await robot.ops.report(own, Step.DONE))
+            await robot.report(own, step, back, reason="no_one_came")
+        await robot.ends(await robot.report(own, Step.DONE))
         await service.reaches(order_id, "attention")
         another = await service.order("post2", "post3")
         await service.app.state.parts.dispatcher.look_round()
@@ -101,9 +101,9 @@ async def test_a_fault_with_mail_aboard_calls_a_person_and_ends_when_it_is_over_
         await robot.say(Event(happened=lifted))
         await robot.ends(await robot.say(Event(happened=lifted.model_copy(update={"cleared": True}))))
         assert (await service.states(order_id))[-2:] == ["attention", "carrying"]
-        await robot.ops.report(receive.mission, Step.ARRIVED, receive.stop)
+        await robot.report(receive.mission, Step.ARRIVED, receive.stop)
         await robot.say(Event(happened=lifted))
-        await robot.ends(await robot.ops.report(receive.mission, Step.ARRIVED, receive.stop))
+        await robot.ends(await robot.report(receive.mission, Step.ARRIVED, receive.stop))
         order = await service.row(Order, id=order_id)
         assert (str(order.state), order.why) == ("attention", "The robot was lifted."), "it has said that before"
         await robot.ends(await robot.say(robot.receipt(receive.stop)))
@@ -119,10 +119,10 @@ async def test_who_was_told_that_nobody_took_it_is_not_told_so_again_when_it_is_
     lifted = Fault(name="wheel_drop", happened_at=robot.clock.utc(), post="post3", reason="The robot was lifted.")
     async with robot.connected(service.url, robot.token):
         await robot.greet()
-        await robot.ops.report(receive.mission, Step.GAVE_UP, receive.stop, reason="no_one_came")
-        await robot.ops.report(receive.mission, Step.DONE)
+        await robot.report(receive.mission, Step.GAVE_UP, receive.stop, reason="no_one_came")
+        await robot.report(receive.mission, Step.DONE)
         own, back = own_mission(order_id, "post1")
-        await robot.ops.report(own, Step.DEPARTED, back)
+        await robot.report(own, Step.DEPARTED, back)
         await robot.say(Event(happened=lifted))
         await robot.ends(await robot.say(robot.receipt(back)))
     assert (await service.states(order_id))[-5:] == ["returning", "attention", "returning", "at_return", "returned"]
@@ -145,11 +145,11 @@ async def test_mail_that_is_called_back_turns_round_when_the_robot_says_so(
         assert (update.id, update.update) == (receive.mission.id, 2)
         assert [(stop.action, stop.post) for stop in update.stops] == [("return", "post1")]
         assert (await service.states(order_id))[-1] == "carrying"
-        await robot.ends(await robot.ops.report(update, Step.ACCEPTED, update=1))
+        await robot.ends(await robot.report(update, Step.ACCEPTED, update=1))
         assert (await service.states(order_id))[-1] == "carrying", "that was the mission before"
-        await robot.ends(await robot.ops.report(update, Step.ACCEPTED, update=2))
+        await robot.ends(await robot.report(update, Step.ACCEPTED, update=2))
         assert (await service.states(order_id))[-1] == "returning"
-        await robot.ops.report(update, Step.ARRIVED, update.stops[0], update=2)
+        await robot.report(update, Step.ARRIVED, update.stops[0], update=2)
         await robot.ends(await robot.say(robot.receipt(update.stops[0])))
     assert (await service.states(order_id))[-2:] == ["at_return", "returned"]
 
@@ -163,8 +163,8 @@ async def test_mail_that_was_called_back_too_late_is_delivered_and_the_robot_fre
         await robot.greet()
         await service.cancel(order_id)
         await robot.mission()
-        await robot.ops.report(receive.mission, Step.ARRIVED, receive.stop)
-        await robot.ops.report(receive.mission, Step.GAVE_UP, receive.stop, reason="no_one_came")
+        await robot.report(receive.mission, Step.ARRIVED, receive.stop)
+        await robot.report(receive.mission, Step.GAVE_UP, receive.stop, reason="no_one_came")
         await service.reaches(order_id, "returning")
         await robot.say(robot.receipt(receive.stop))
         await service.reaches(order_id, "delivered")
@@ -180,10 +180,10 @@ async def test_what_an_update_brings_is_not_over_with_a_mission_that_did_not_kno
         await robot.greet()
         await service.cancel(order_id)
         update = await robot.mission()
-        await robot.ops.report(receive.mission, Step.GAVE_UP, receive.stop, reason="no_one_came")
-        await robot.ends(await robot.ops.report(receive.mission, Step.DONE, update=1))
+        await robot.report(receive.mission, Step.GAVE_UP, receive.stop, reason="no_one_came")
+        await robot.ends(await robot.report(receive.mission, Step.DONE, update=1))
         assert (await service.states(order_id))[-1] == "returning", "nobody has to look for it"
-        await robot.ops.report(update, Step.ACCEPTED, update=2)
+        await robot.report(update, Step.ACCEPTED, update=2)
         await robot.say(robot.receipt(update.stops[0]))
         await service.reaches(order_id, "returned")
 
@@ -202,7 +202,7 @@ async def carrying(service: Service, robot: PlayedRobot) -> tuple[str, Ahead]:
         await robot.greet()
         mission = await robot.mission()
         load, receive = mission.stops
-        await robot.ops.report(mission, Step.ACCEPTED, update=1)
+        await robot.report(mission, Step.ACCEPTED, update=1)
         await robot.ends(await robot.say(robot.receipt(load)))
     return order_id, Ahead(mission, receive)
 
@@ -255,9 +255,9 @@ async def test_a_robot_that_gives_up_what_was_to_be_cancelled_has_cancelled_it(
     async with robot.connected(service.url, token):
         await robot.greet()
         mission = await robot.mission()
-        await robot.ends(await robot.ops.report(mission, step, mission.stops[0]))
+        await robot.ends(await robot.report(mission, step, mission.stops[0]))
         await service.cancel(order_id)
-        await robot.ops.report(mission, Step.GAVE_UP, mission.stops[0], reason=reason)
+        await robot.report(mission, Step.GAVE_UP, mission.stops[0], reason=reason)
         cancel = await told_to_cancel(robot)
         await robot.ends(await robot.say(accepts(cancel.command_id, robot)))
     assert (await service.states(order_id))[-1] == "cancelled"
@@ -274,7 +274,7 @@ async def test_a_robot_without_its_memory_is_told_again_what_to_drop(
         mission = await robot.mission()
         await service.cancel(order_id)
         await robot.hear("cancel")
-        await robot.ends(await robot.ops.report(mission, Step.ACCEPTED))  # with it, the cancel is acknowledged
+        await robot.ends(await robot.report(mission, Step.ACCEPTED))  # with it, the cancel is acknowledged
     new_disk = PlayedRobot(clock, journal="journal-2")
     async with new_disk.connected(service.url, token):
         await new_disk.greet()
@@ -324,7 +324,7 @@ async def test_a_robot_without_its_memory_gets_what_is_left_of_its_mission(
     async with robot.connected(service.url, token):
         await robot.greet()
         mission = await robot.mission()
-        await robot.ops.report(mission, Step.ARRIVED, mission.stops[0])
+        await robot.report(mission, Step.ARRIVED, mission.stops[0])
         await robot.ends(await robot.say(robot.receipt(mission.stops[0])))
         await robot.say(Claim(claim_id="c1", legs=(LEG,)))
         await robot.hear("grant")
@@ -365,8 +365,8 @@ async def test_a_sender_who_never_came_frees_the_robot(service: Service, robot: 
     async with robot.connected(service.url, token):
         await robot.greet()
         mission = await robot.mission()
-        await robot.ops.report(mission, Step.ARRIVED, mission.stops[0])
-        await robot.ops.report(mission, Step.GAVE_UP, mission.stops[0], reason="nobody came in 600 s")
+        await robot.report(mission, Step.ARRIVED, mission.stops[0])
+        await robot.report(mission, Step.GAVE_UP, mission.stops[0], reason="nobody came in 600 s")
         await service.reaches(order_id, "expired")
         another = await service.order()
         assert (await robot.mission()).stops[0].order_id == another

@@ -30,15 +30,15 @@ async def test_the_sender_hears_once_that_the_robot_is_near_when_it_has_one_corr
         await robot.greet(FAR)
         mission = await robot.mission()
         load = mission.stops[0]
-        await robot.ends(await robot.ops.report(mission, Step.DEPARTED, load, post=FAR))
+        await robot.ends(await robot.report(mission, Step.DEPARTED, load, post=FAR))
         assert (await service.states(order_id))[-1] == "to_sender"
-        await robot.ends(await robot.ops.report(mission, Step.PASSED, load, post=NEARER))
+        await robot.ends(await robot.report(mission, Step.PASSED, load, post=NEARER))
         assert await kinds(service) == ["accepted"], "it is on its way, but far off"
         for _ in range(2):
-            await robot.ends(await robot.ops.report(mission, Step.PASSED, load, post=NEXT_TO_IT))
+            await robot.ends(await robot.report(mission, Step.PASSED, load, post=NEXT_TO_IT))
             assert await kinds(service) == ["accepted", "robot_near"]
-        await robot.ends(await robot.ops.report(mission, Step.ARRIVED, load))
-        await robot.ends(await robot.ops.report(mission, Step.PASSED, load, post=NEXT_TO_IT))
+        await robot.ends(await robot.report(mission, Step.ARRIVED, load))
+        await robot.ends(await robot.report(mission, Step.PASSED, load, post=NEXT_TO_IT))
     assert await kinds(service) == ["accepted", "robot_near", "robot_here"]
 
 
@@ -51,9 +51,9 @@ async def test_what_is_told_on_the_way_is_told_at_the_time_at_which_it_is(
         await robot.greet(FAR)
         mission = await robot.mission()
         load = mission.stops[0]
-        await robot.ends(await robot.ops.report(mission, Step.DEPARTED, load, post=FAR))
+        await robot.ends(await robot.report(mission, Step.DEPARTED, load, post=FAR))
         clock.advance(1800.0)
-        await robot.ends(await robot.ops.report(mission, Step.PASSED, load, post=NEXT_TO_IT))
+        await robot.ends(await robot.report(mission, Step.PASSED, load, post=NEXT_TO_IT))
     near = (await service.rows(Notice))[-1]
     assert (near.kind, near.at) == ("robot_near", clock.utc())
 
@@ -63,7 +63,7 @@ async def test_a_robot_that_sets_out_next_door_is_near_at_once(service: Service,
     async with robot.connected(service.url, await service.enrol("r1")):
         await robot.greet(NEXT_TO_IT)
         mission = await robot.mission()
-        await robot.ends(await robot.ops.report(mission, Step.DEPARTED, mission.stops[0], post=NEXT_TO_IT))
+        await robot.ends(await robot.report(mission, Step.DEPARTED, mission.stops[0], post=NEXT_TO_IT))
     assert await kinds(service) == ["accepted", "robot_near"]
 
 

@@ -25,7 +25,7 @@ async def with_an_order(service: Service, robot: PlayedRobot) -> AsyncIterator[P
     async with robot.connected(service.url, token):
         await robot.greet()
         mission = await robot.mission()
-        await robot.ends(await robot.ops.report(mission, Step.ACCEPTED))
+        await robot.ends(await robot.report(mission, Step.ACCEPTED))
         yield robot
 
 

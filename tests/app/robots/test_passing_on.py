@@ -78,8 +78,8 @@ def mailroom(service: Service) -> Iterator[Mailroom]:
 async def loads(robot: PlayedRobot, code: str | None = None) -> None:
     mission = await robot.mission()
     stop = mission.stops[0]
-    await robot.ops.report(mission, Step.ACCEPTED)
-    await robot.ends(await robot.ops.report(mission, Step.ARRIVED, stop, post=stop.post))
+    await robot.report(mission, Step.ACCEPTED)
+    await robot.ends(await robot.report(mission, Step.ARRIVED, stop, post=stop.post))
     facts = {"code_sha256": code} if code else {}
     await robot.ends(await robot.say(robot.receipt(stop, **facts)))
 

@@ -37,14 +37,14 @@ async def test_an_order_goes_through_its_life_on_a_robots_word(service: Service,
             ("post1", "load", order_id),
             ("post4", "receive", order_id),
         ]
-        await robot.ops.report(mission, Step.ACCEPTED)
-        await robot.ops.report(mission, Step.DEPARTED, load)
-        await robot.ops.report(mission, Step.ARRIVED, load)
+        await robot.report(mission, Step.ACCEPTED)
+        await robot.report(mission, Step.DEPARTED, load)
+        await robot.report(mission, Step.ARRIVED, load)
         await robot.say(robot.receipt(load))
-        await robot.ops.report(mission, Step.DEPARTED, receive)
-        await robot.ops.report(mission, Step.ARRIVED, receive)
+        await robot.report(mission, Step.DEPARTED, receive)
+        await robot.report(mission, Step.ARRIVED, receive)
         await robot.say(robot.receipt(receive))
-        await robot.ends(await robot.ops.report(mission, Step.DONE))
+        await robot.ends(await robot.report(mission, Step.DONE))
     states = ["queued", "assigned", "to_sender", "at_sender", "carrying", "at_recipient", "delivered"]
     assert await service.states(order_id) == states
     assert [row.purpose for row in await service.rows(Handover)] == ["load", "receive"]
@@ -220,7 +220,7 @@ async def test_the_service_restarts_and_both_sides_go_on_where_they_were(
             assert welcome.resume_from == 2
             mission = await robot.mission()
             assert robot.heard[-1].seq == 2
-            await robot.ends(await robot.ops.report(mission, Step.DEPARTED, mission.stops[0]))
+            await robot.ends(await robot.report(mission, Step.DEPARTED, mission.stops[0]))
         assert await service.states(order_id) == ["queued", "assigned", "to_sender"]
 
 
@@ -268,12 +268,12 @@ async def test_what_cannot_be_followed_is_written_down_answered_and_does_not_com
         await robot.greet()
         mission = await robot.mission()
         stranger = mission.model_copy(update={"id": "m-unknown"})
-        await robot.ops.report(stranger, Step.ACCEPTED)
+        await robot.report(stranger, Step.ACCEPTED)
         await robot.say(robot.receipt(mission.stops[1]))  # received before it was loaded
         await robot.say(Clear(leg=Leg(from_post="post1", to_post="post4")))
         codes = [(await robot.hear("error")).body.model_dump()["code"] for _ in range(3)]
         assert codes == ["unknown_mission", "transition_refused", "unknown_corridor"]
-        await robot.ends(await robot.ops.report(mission, Step.DEPARTED, mission.stops[0]))
+        await robot.ends(await robot.report(mission, Step.DEPARTED, mission.stops[0]))
     assert await service.states(order_id) == ["queued", "assigned", "to_sender"]
     assert await service.rows(Handover) == [], "nothing of a refused receipt is left"
     assert {row.name for row in await service.rows(Alarm)} >= set(codes)

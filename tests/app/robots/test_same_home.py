@@ -61,7 +61,7 @@ async def test_the_second_of_two_robots_with_one_home_is_refused_and_the_first_g
         assert (alarm.robot, alarm.reason, alarm.cleared_at) == ("r2", REFUSAL, None)
         await service.order("uc", "azrieli")
         mission = await robot.mission()  # though the other stands where the mail is
-        await robot.ends(await robot.ops.report(mission, Step.DEPARTED, mission.stops[0]))
+        await robot.ends(await robot.report(mission, Step.DEPARTED, mission.stops[0]))
         await robot.say(Claim(claim_id="c1", legs=(Leg(from_post="canal", to_post="uc"),), goal="uc"))
         await robot.hear("grant")
         assert {row.robot for row in await service.rows(GrantRow)} == {"r1"}

@@ -143,9 +143,9 @@ async def _robot_takes_the_mail(running: Running, browser: httpx.Client, order_i
         mission = await robot.mission()
         load = mission.stops[0]
         await asyncio.to_thread(_see_code, browser, order_id, running.secrets)
-        await robot.ops.report(mission, Step.ACCEPTED)
-        await robot.ops.report(mission, Step.DEPARTED, load)
-        await robot.ops.report(mission, Step.ARRIVED, load)
+        await robot.report(mission, Step.ACCEPTED)
+        await robot.report(mission, Step.DEPARTED, load)
+        await robot.report(mission, Step.ARRIVED, load)
         await robot.ends(await robot.say(robot.receipt(load)))
         await robot.say_text(json.dumps({"nonsense": running.secrets["robot's token"]}))
         await robot.close_code()

@@ -55,7 +55,7 @@ def test_a_pause_is_said_to_be_for_what_it_is_for(robot: Robot) -> None:
 
 
 def test_hands_in_its_box_are_named_before_what_it_waited_for(robot: Robot) -> None:
-    robot.mission.mission.custody.wait(Waiting((MISSION, MISSION.stops[0]), Purpose.LOAD, "post3", handed_over=True))
+    robot.duties.custody.wait(Waiting((MISSION, MISSION.stops[0]), Purpose.LOAD, "post3", handed_over=True))
     action = 'wait_handover(load,"o1","s1",600)'
     assert robot.why(action) == ("Giving people at post3 a moment to step back", None)
 
@@ -70,7 +70,7 @@ def test_out_of_network_it_says_that_it_waits_for_the_network(robot: Robot) -> N
         def wake(self) -> None:
             pass
 
-    robot.mission.mission.join(Unreachable())
+    robot.duties.join(Unreachable())
     assert robot.why("claim(post4)") == ("Waiting at post3 for the network", "the network")
 
 
@@ -80,7 +80,7 @@ def test_a_base_that_does_not_answer_is_not_said_to_be_charging(robot: Robot) ->
 
 
 def test_on_its_way_it_says_where_to(robot: Robot) -> None:
-    robot.agent.navigator.leave()
+    robot.navigator.leave()
     assert robot.why("follow_line") == ("Driving towards post4", None)
 
 
@@ -92,9 +92,9 @@ def test_a_fault_comes_before_everything_else(robot: Robot) -> None:
 def test_a_robot_that_charges_with_a_mission_says_what_for(robot: Robot) -> None:
     docked = View(base=BaseState(at_s=0.0, home_base=True))
     assert robot.why(view=docked) == ("In its dock at post3", None)
-    robot.mission.mission.give(MISSION)
+    robot.duties.give(MISSION)
     assert robot.why(view=docked, charging=True) == ("Charging at post3", "a full battery")
-    assert reason((), docked, robot.agent.navigator, robot.mission.mission, True).goal == "to collect mail at post1"
+    assert reason((), docked, robot.navigator, robot.duties, True).goal == "to collect mail at post1"
 
 
 def test_an_action_nobody_has_words_for_is_not_named(robot: Robot) -> None:

@@ -30,7 +30,7 @@ def robot(tmp_path: Path) -> Iterator[Robot]:
 
 
 async def test_it_signs_in_with_its_token_and_says_what_it_carries(robot: Robot) -> None:
-    robot.mission.memory.load("o7")
+    robot.memory.load("o7")
     async with playing() as server, robot.linked(server.url) as link:
         await until(lambda: link.online)
         assert server.tokens == ["Bearer cmr_a_b"]
@@ -42,32 +42,30 @@ async def test_it_signs_in_with_its_token_and_says_what_it_carries(robot: Robot)
 
 async def test_the_snapshot_overtakes_the_backlog_which_is_flagged_and_in_order(robot: Robot) -> None:
     for post in ("post2", "post3", "post4"):
-        robot.mission.outbox.put(cleared(post))
+        robot.outbox.put(cleared(post))
     async with playing() as server:
-        server.received = Received(journal=robot.mission.outbox.journal, seq=1)
+        server.received = Received(journal=robot.outbox.journal, seq=1)
         async with robot.linked(server.url) as link:
             link.snapshot(a_snapshot("post3"))
             await until(lambda: 3 in server.numbers())
-            robot.mission.outbox.put(cleared("post5"))
+            robot.outbox.put(cleared("post5"))
             link.wake()
             await until(lambda: 4 in server.numbers())
     assert server.types() == ["hello", "snapshot", "clear", "clear", "clear"]
     assert server.numbers() == [2, 3, 4]
     assert [envelope.replay for envelope in server.heard if envelope.seq] == [True, True, False]
-    assert [kept.seq for kept in robot.mission.outbox.pending()] == [2, 3, 4], (
-        "what the welcome acknowledged is forgotten"
-    )
+    assert [kept.seq for kept in robot.outbox.pending()] == [2, 3, 4], "what the welcome acknowledged is forgotten"
 
 
 async def test_what_is_not_acknowledged_is_sent_again_after_a_cut_and_what_is_not(robot: Robot) -> None:
     async with playing() as server, robot.linked(server.url) as link:
         await until(lambda: link.online)
-        first, second = robot.mission.outbox.put(cleared("post2")), robot.mission.outbox.put(cleared("post3"))
+        first, second = robot.outbox.put(cleared("post2")), robot.outbox.put(cleared("post3"))
         link.wake()
         await until(lambda: server.numbers() == [first, second])
         await server.send(Error(code="note", message="just an acknowledgement"), ack=first)
-        await until(lambda: robot.mission.outbox.waiting() == 1)
-        server.received = Received(journal=robot.mission.outbox.journal, seq=first)
+        await until(lambda: robot.outbox.waiting() == 1)
+        server.received = Received(journal=robot.outbox.journal, seq=first)
         server.sockets[-1].transport.abort()
         await until(lambda: server.numbers() == [first, second, second])
         assert server.heard[-1].replay
@@ -78,14 +76,14 @@ async def test_a_message_is_acknowledged_when_it_is_stored_and_waits_until_it_wa
         await until(lambda: link.online)
         await server.send(MISSION, seq=1)
         await until(lambda: server.heard[-1].ack == 1)
-        assert robot.mission.memory.mission() == MISSION
+        assert robot.memory.mission() == MISSION
         assert [incoming.message for incoming in link.incoming()] == [MISSION]
         assert link.incoming() == []
     async with playing() as server, robot.linked(server.url) as link:
         (again,) = link.incoming()
         assert again.message == MISSION, "it was not handled before the restart"
-        robot.mission.memory.handled(again)
-    assert robot.mission.memory.unhandled() == []
+        robot.memory.handled(again)
+    assert robot.memory.unhandled() == []
 
 
 async def test_a_repeated_message_is_acknowledged_and_not_delivered_again(robot: Robot) -> None:
@@ -107,7 +105,7 @@ async def test_a_gap_is_not_taken_and_makes_the_robot_resume(robot: Robot) -> No
         hello = server.heard[-1].body
         assert isinstance(hello, Hello)
         assert hello.received == Received(journal="server-journal", seq=0)
-        assert robot.mission.memory.mission() is None
+        assert robot.memory.mission() is None
 
 
 async def test_messages_that_can_never_come_are_skipped_instead_of_waited_for(robot: Robot) -> None:
@@ -118,13 +116,13 @@ async def test_messages_that_can_never_come_are_skipped_instead_of_waited_for(ro
 
 
 async def test_a_robot_whose_disk_was_put_back_begins_a_new_journal(robot: Robot) -> None:
-    robot.mission.outbox.put(cleared())
-    old = robot.mission.outbox.journal
+    robot.outbox.put(cleared())
+    old = robot.outbox.journal
     async with playing() as server:
         server.received = Received(journal=old, seq=17)
         async with robot.linked(server.url):
             await until(lambda: server.numbers() == [1])
-    assert server.heard[-1].journal == robot.mission.outbox.journal != old
+    assert server.heard[-1].journal == robot.outbox.journal != old
     assert server.heard[-1].body == cleared()
 
 
@@ -138,7 +136,7 @@ async def test_other_stops_under_the_same_number_are_refused_by_name_and_the_fir
         error = server.heard[-1].body
         assert isinstance(error, Error)
         assert (error.code, error.seq, server.heard[-1].ack) == ("mission_conflict", 2, 2)
-        assert robot.mission.memory.mission() == MISSION
+        assert robot.memory.mission() == MISSION
         assert len(link.incoming()) == 1
 
 
@@ -213,7 +211,7 @@ async def test_it_comes_back_when_the_server_was_away(robot: Robot) -> None:
             await until(lambda: hopeless.problem)
             assert (hopeless.state, hopeless.online) == (LinkState.OFFLINE, False)
         await until(lambda: len(server.sockets) == 2)
-    robot.mission.outbox.put(cleared())
+    robot.outbox.put(cleared())
     async with robot.linked(f"ws://127.0.0.1:{port}") as link:
         await until(lambda: link.problem)
         async with playing(port) as server:
@@ -239,7 +237,7 @@ async def test_snapshots_are_dropped_and_events_are_not(robot: Robot) -> None:
         began_s = time.monotonic()
         for number in range(40):
             link.snapshot(a_snapshot(f"post{number}"))
-            robot.mission.outbox.put(cleared(f"post{number}"))
+            robot.outbox.put(cleared(f"post{number}"))
             link.wake()
             await asyncio.sleep(0.01)
         await until(lambda: len(server.numbers()) == 40)
@@ -250,7 +248,7 @@ async def test_snapshots_are_dropped_and_events_are_not(robot: Robot) -> None:
 
 async def test_a_slow_server_gets_no_more_than_it_acknowledges(robot: Robot) -> None:
     for _ in range(MAX_UNACKNOWLEDGED + 10):
-        robot.mission.outbox.put(cleared())
+        robot.outbox.put(cleared())
     async with playing() as server, robot.linked(server.url) as link:
         await until(lambda: len(server.numbers()) == MAX_UNACKNOWLEDGED)
         await asyncio.sleep(0.1)
@@ -307,9 +305,7 @@ async def test_what_was_stored_is_delivered_even_if_it_cannot_be_acknowledged(ro
     """The server need not send it again, so nobody else would deliver it before the next start."""
     delivered: list[Incoming] = []
     hello = Hello(position=Position(), battery=Battery(ratio=0.8), software="0.1.0", map_version="m1")
-    ends = Ends(
-        "r1", RealClock(), robot.mission.outbox, robot.mission.memory, lambda: hello, Newest(), delivered.append, QUICK
-    )
+    ends = Ends("r1", RealClock(), robot.outbox, robot.memory, lambda: hello, Newest(), delivered.append, QUICK)
     welcome = Welcome(received=Received(), server="played", at=AT)
     room = asyncio.Event()
     room.set()
@@ -319,7 +315,7 @@ async def test_what_was_stored_is_delivered_even_if_it_cannot_be_acknowledged(ro
     with pytest.raises(ConnectionResetError):
         await connection.run()
     assert [incoming.message for incoming in delivered] == [MISSION]
-    assert robot.mission.memory.received().seq == 1
+    assert robot.memory.received().seq == 1
 
 
 async def test_the_reason_is_said_when_it_changes_and_again_after_a_reconnect(robot: Robot) -> None:

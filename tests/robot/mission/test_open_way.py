@@ -125,17 +125,17 @@ def test_whatever_was_open_already_is_told_to_be_so_once_more(store: Store) -> N
     """Its own word that it was over may have been lost with a power cut, and somebody still believes it closed."""
     robot = Robot(store)
     assert robot.hears(5.0, "post2", "post3").accepted
-    assert robot.agent.navigator.closed.over == {"post2-post3"}
+    assert robot.navigator.closed.over == {"post2-post3"}
 
 
 def test_each_corridor_is_over_by_itself(store: Store) -> None:
     robot = Robot(store)
     robot.turns_back(10.0)
     robot.turns_back(100.0, Leg(from_post="post2", to_post="post4"))
-    robot.agent.navigator.closed.pass_time(10.0 + CLOSED_S)
-    assert robot.agent.navigator.closed.over == {"post2-post3"}
-    robot.agent.navigator.closed.note_told()
-    assert robot.agent.navigator.closed.over == frozenset()
+    robot.navigator.closed.pass_time(10.0 + CLOSED_S)
+    assert robot.navigator.closed.over == {"post2-post3"}
+    robot.navigator.closed.note_told()
+    assert robot.navigator.closed.over == frozenset()
     assert Robot(store, now_s=100.0 + CLOSED_S).navigator.closed.over == {"post2-post3", "post2-post4"}, "told anew"
 
 
