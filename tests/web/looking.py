@@ -12,7 +12,7 @@ from tests.web.visitor import AXE, Visitor
 
 MEASURES: Final = (ROOT / "tests/web/looking.js").read_text(encoding="utf-8")
 TEXTS: Final = {
-    name: json.loads((ROOT / f"web/texts/{name}.json").read_text(encoding="utf-8")) for name in ("en", "fr")
+    name: json.loads((ROOT / f"web/src/texts/{name}.json").read_text(encoding="utf-8")) for name in ("en", "fr")
 }
 FAMILIES: Final = "|".join(sorted({key.partition(".")[0] for key in TEXTS["en"]}))
 GAP: Final = re.compile(rf"\{{\w+\}}|^({FAMILIES})(\.[a-z_0-9]+)+$|\bundefined\b|\bNaN\b|\[object ")

@@ -11,7 +11,7 @@ from maps import CampusMap, builtin_map
 pytestmark = pytest.mark.browser
 
 DRAW = """async ([map, ...robots]) => {
-  await import("/elements/campus_map.js");
+  await import("/src/map/campus_map.js");
   const drawn = Object.assign(document.createElement("campus-map"), {map, robots});
   document.querySelector("main").replaceChildren(drawn);
   await new Promise((drawn) => requestAnimationFrame(() => setTimeout(drawn, 50)));
@@ -75,7 +75,7 @@ async def test_every_post_can_be_read_and_no_label_covers_another_or_a_post(visi
 
 
 CLOCK = """async (told) => {
-  const {ServerClock} = await import("/server_clock.js");
+  const {ServerClock} = await import("/src/service/server_clock.js");
   let machine_ms = 0;
   const clock = new ServerClock(() => machine_ms);
   return told.map(([at_ms, server_ms]) => {
@@ -104,7 +104,7 @@ async def test_the_map_is_drawn_while_posts_are_chosen(visit):
 
 
 VIEWS = """async () => {
-  const view = await import("/map_view.js");
+  const view = await import("/src/map/map_view.js");
   const frame = {x: -50, y: 0, width: 400, height: 200};
   const whole = view.whole(frame);
   const corner = {x: 340, y: 10};
@@ -147,7 +147,7 @@ async def drawn(page: Page, *scene: Any) -> Locator:
 
 
 SCENE = """async ([map, robots, traffic]) => {
-  await import("/elements/campus_map.js");
+  await import("/src/map/campus_map.js");
   const at = (s) => new Date(Date.now() + 1000 * s).toISOString();
   const known = robots.map(({seen, to, ...robot}) => ({
     last_seen: {post: seen, at: at(-130)}, expected: to ? {post: to, from: at(60), to: at(240)} : null, towards: to,

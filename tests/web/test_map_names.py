@@ -23,7 +23,7 @@ NO_ROOM = {
 LEFT_OUT = {("carleton", "320 px"): 2}
 
 ON_LINES = """async ([map, scenes]) => {
-  await import("/elements/campus_map.js");
+  await import("/src/map/campus_map.js");
   const drawn = Object.assign(document.createElement("campus-map"), {map});
   document.querySelector("main").replaceChildren(drawn);
   const frames = () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));

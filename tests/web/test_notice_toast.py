@@ -30,7 +30,7 @@ async def test_a_notice_lies_never_over_the_keyboard_and_waits_for_whoever_is_at
         await route.continue_()
 
     # It comes before what shows it has been fetched.
-    await page.route("**/after_opening.js", fetched_late)
+    await page.route("**/src/pages/after_opening.js", fetched_late)
     await page.goto("/")
     await expect(page.get_by_role("heading", name="Send a letter")).to_be_visible()
     await ada.order(BOB)

@@ -221,13 +221,19 @@ async def test_what_is_kept_is_gone_at_sign_out_and_no_order_is_sent_for_somebod
 
 
 async def test_the_files_of_the_pages_have_a_version_that_changes_with_any_of_them(tmp_path):
-    for name, text in {"index.html": "<p>", "a.js": "1", "notes.md": "", "npm_modules.json": "[]"}.items():
+    made = {"public/index.html": "<p>", "src/a.js": "1", "src/notes.md": "", "types/b.js": "", "npm_modules.json": "[]"}
+    for name, text in made.items():
+        (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_text(text)
-    files = PageFiles(tmp_path, frozenset({"npm_modules.json"}))
+    files = PageFiles(tmp_path)
     before = files.module()
-    assert json.loads(before.split(b"FILES = ")[1].rstrip(b";\n"))[:2] == ["/", "/a.js"]
+    assert json.loads(before.split(b"FILES = ")[1].rstrip(b";\n"))[:3] == [
+        "/",
+        "/src/a.js",
+        "/src/styles/everywhere.css",
+    ]
     assert files.module() == before
-    (tmp_path / "a.js").write_text("2")
+    (tmp_path / "src/a.js").write_text("2")
     assert files.module() != before
 
 
@@ -295,7 +301,7 @@ async def test_a_new_version_waits_for_a_tap_and_open_pages_go_on_with_their_own
     page, other = ada.page, await ada.new_page()
     await other.goto("/mail.html")
     await expect(other.get_by_role("heading", name="My mail")).to_be_visible()
-    words = own_pages / "texts/en.json"
+    words = own_pages / "src/texts/en.json"
     words.write_text(words.read_text(encoding="utf-8").replace("Send a letter", "Send a parcel"), encoding="utf-8")
     await page.reload()
     await expect(page.get_by_role("heading", name="Send a letter")).to_be_visible()
@@ -304,7 +310,7 @@ async def test_a_new_version_waits_for_a_tap_and_open_pages_go_on_with_their_own
     await page.get_by_role("button", name="Change to it").click()
     await expect(page.get_by_role("heading", name="Send a parcel")).to_be_visible()
     await expect(other.get_by_text("A new version of Campus Mail is there.")).to_be_visible()
-    said = await other.evaluate("async () => (await (await fetch('/texts/en.json')).json())['order.title']")
+    said = await other.evaluate("async () => (await (await fetch('/src/texts/en.json')).json())['order.title']")
     assert said == "Send a letter"
     await other.get_by_role("button", name="Change to it").click()
     await other.get_by_role("link", name="Send").click()

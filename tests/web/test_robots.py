@@ -179,7 +179,7 @@ async def test_on_a_small_phone_in_french_and_for_a_dispatcher_without_the_mind(
 
 
 WATCH_LONG = """async () => {
-  const { WatchedRun } = await import("/watched_run.js");
+  const { WatchedRun } = await import("/src/robots/watched_run.js");
   const run = new WatchedRun("r1");
   const at = "2026-01-05T09:00:00Z";
   const empty = { at, cycle: 1, loops: [], intentions: [], events: [], came: [], went: [], trace: [] };
@@ -201,7 +201,7 @@ WATCH_LONG = """async () => {
   };
 }"""
 CHARGED = """async () => {
-  const { charges, curve, some } = await import("/battery_facts.js");
+  const { charges, curve, some } = await import("/src/robots/battery_facts.js");
   const at = (minute) => new Date(Date.UTC(2026, 0, 5, 9, minute)).toISOString();
   const sample = (minute, ratio, charging = false) => ({ at: at(minute), ratio, charging });
   const samples = [sample(0, 0.4), sample(1, 0.3, true), sample(2, 0.5, true), sample(3, 0.6)];

@@ -9,11 +9,11 @@ from app.page_files import LEFT_OUT
 from web import make_pages
 
 WEB = Path(__file__).parents[2] / "web"
-PAGES = sorted(WEB.glob("*.html"))
+PAGES = sorted(WEB.glob("public/*.html"))
 TEXTS_OF = re.compile(r"const TEXTS_OF = \{(.*?)\}")
 LATER = re.compile(r"\bimport\(\"([^\"]+)\"\)")
 TEXT = re.compile(r"\b(?:t|counted|hasText)\((?:[^()\"`]*\? ?)?[\"`](\w+)\.")
-SCRIPTS = [path for path in sorted(WEB.rglob("*.js")) if "node_modules" not in path.parts]
+SCRIPTS = sorted([*WEB.glob("src/*/*.js"), *WEB.glob("public/*.js")])
 IMPORT_MAP = re.compile(r"<script type=\"importmap\">(.*?)</script>", re.DOTALL)
 
 
@@ -49,7 +49,7 @@ def test_the_lock_file_names_no_host():
 
 def pages_sent(kind: str) -> list[Path]:
     """The pages that fetch the texts of this kind."""
-    listed = TEXTS_OF.search((WEB / "texts.js").read_text(encoding="utf-8"))
+    listed = TEXTS_OF.search((WEB / "src/texts/texts.js").read_text(encoding="utf-8"))
     assert listed
     named = dict(re.findall(r'"/([\w-]+\.html)": "\.?(\w*)"', listed[1]))
     assert named.keys() <= {page.name for page in PAGES}
@@ -62,10 +62,10 @@ def modules_of(pages: list[Path]) -> set[str]:
     waiting, found = [one for one in re.findall(r"/[\w/.@-]+\.js", html) if not one.startswith("/npm/")], set()
     while waiting:
         module = waiting.pop()
-        if module in found or module == "/page_files.js" or module.startswith("/npm/"):
+        if module in found or module == "/src/offline/page_files.js" or module.startswith("/npm/"):
             continue
         found.add(module)
-        text = make_pages.file_of(module).read_text(encoding="utf-8")
+        text = make_pages.code_of(module)
         names = [*LATER.findall(text), *(one for one in make_pages.IMPORT.findall(text) if one.startswith("."))]
         waiting += [make_pages.resolve(module, name) for name in names]
     return found
@@ -74,8 +74,11 @@ def modules_of(pages: list[Path]) -> set[str]:
 @pytest.mark.parametrize(
     ("kind", "among_others"),
     [
-        ("everyday", {"/pages/order.js", "/elements/follow_page.js", "/elements/campus_map.js", "/push.js"}),
-        ("mailroom", {"/pages/mailroom.js", "/elements/mailroom_wall.js", "/elements/unsent_mail.js"}),
+        (
+            "everyday",
+            {"/src/pages/order.js", "/src/follow/follow_page.js", "/src/map/campus_map.js", "/src/offline/push.js"},
+        ),
+        ("mailroom", {"/src/pages/mailroom.js", "/src/mailroom/mailroom_wall.js", "/src/mailroom/unsent_mail.js"}),
     ],
 )
 def test_pages_need_no_text_that_they_are_not_sent(kind, among_others):
