@@ -1,6 +1,7 @@
 """What the pages are made of: what a strict policy allows, and nothing that waits in line to be fetched."""
 
 import re
+from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -47,6 +48,18 @@ def test_the_lock_file_names_no_host():
     assert "://" not in (WEB / "package-lock.json").read_text(encoding="utf-8")
 
 
+def test_no_modules_import_each_other_in_a_circle():
+    """Neither at once nor later: a circle is one module that only looks like several."""
+    ours = {f"/{path.relative_to(WEB)}" for path in SCRIPTS if "src" in path.parts}
+    imports = {module: imported_by(module) & ours for module in ours}
+    TopologicalSorter(imports).prepare()  # raises CycleError, which names the circle
+
+
+def imported_by(module: str) -> set[str]:
+    text = make_pages.code_of(module)
+    return {make_pages.resolve(module, name) for name in [*LATER.findall(text), *make_pages.IMPORT.findall(text)]}
+
+
 def pages_sent(kind: str) -> list[Path]:
     """The pages that fetch the texts of this kind."""
     listed = TEXTS_OF.search((WEB / "src/texts/texts.js").read_text(encoding="utf-8"))
@@ -65,9 +78,7 @@ def modules_of(pages: list[Path]) -> set[str]:
         if module in found or module == "/src/offline/page_files.js" or module.startswith("/npm/"):
             continue
         found.add(module)
-        text = make_pages.code_of(module)
-        names = [*LATER.findall(text), *(one for one in make_pages.IMPORT.findall(text) if one.startswith("."))]
-        waiting += [make_pages.resolve(module, name) for name in names]
+        waiting += imported_by(module)
     return found
 
 

@@ -3,7 +3,6 @@ import { html, nothing } from "lit";
 import * as api from "../service/api.js";
 import { mayOpen, PAGES } from "../service/links.js";
 import { OnLive, stopLive } from "../live/live.js";
-import { signOut } from "../session/session.js";
 import { askAgain } from "../session/session_lost.js";
 import { counted, t } from "../texts/texts.js";
 import { address } from "./address.js";
@@ -164,6 +163,7 @@ export class PageShell extends PageElement {
   }
 
   async #signOut() {
+    const { signOut } = await import("../session/sign_out.js");
     stopLive();
     await signOut();
     location.assign(PAGES.order);

@@ -1,6 +1,4 @@
-/** Who is signed in on this page, what this browser remembers for them, and what goes with them when they sign out. */
-import * as api from "../service/api.js";
-import { leaving } from "./session_lost.js";
+/** The person who is signed in on this page, and what this browser remembers for them. */
 /** @import { Person } from "../../types/api_types.ts" */
 
 /** @type {Person | null} */
@@ -44,19 +42,4 @@ export function onKept(tell) {
   const channel = new BroadcastChannel("outbox");
   channel.onmessage = tell;
   return () => channel.close();
-}
-
-/** Nothing of theirs stays on the device but orders that wait to be sent: those wait for them. */
-export async function signOut() {
-  const [{ endPush }, { inSession }] = await Promise.all([import("../offline/push.js"), import("../offline/outbox.js")]);
-  await leaving(async () => {
-    await endPush().catch(() => undefined);
-    await inSession(api.signOut).catch(unlessSignedOut);
-  });
-  await Promise.all([caches.delete("answers"), caches.delete("links"), navigator.clearAppBadge?.()]).catch(() => undefined);
-}
-
-/** A session that had ended already is as good as one that ends now. @param {unknown} failure */
-function unlessSignedOut(failure) {
-  if (!(failure instanceof api.ApiProblem && failure.status === 401)) throw failure;
 }
