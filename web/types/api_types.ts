@@ -8,7 +8,7 @@ type Schemas = components["schemas"];
 
 export type About = Schemas["About"];
 export type Person = Schemas["PersonView"];
-/** Whoever is signed in here. */
+/** The signed-in person. */
 export type Me = Schemas["MyView"];
 export type Party = Schemas["Somebody"];
 
@@ -17,10 +17,10 @@ export type MapPost = Schemas["PostView"];
 export type MapCorridor = Schemas["CorridorView"];
 export type Traffic = Schemas["Traffic"];
 export type TakenCorridor = Schemas["TakenCorridor"];
-/** All that this robot holds now. */
+/** The corridors that this robot holds now. */
 export type RobotTraffic = Schemas["RobotTraffic"];
 
-/** All corridors into which no robot is let. */
+/** The closed corridors. */
 export type ClosedCorridors = Schemas["ClosedCorridors"];
 export type ClosedCorridor = Schemas["ClosedCorridorView"];
 
@@ -63,7 +63,7 @@ export type Token = Schemas["TokenView"];
 export type NewToken = Schemas["TokenWish"];
 export type MadeToken = Schemas["NewTokenView"];
 
-/** An order that a dispatcher places for somebody at their desk. */
+/** An order that a dispatcher places for a visitor at their desk. */
 export type WalkUpOrder = WantedOrder & { on_behalf_of: string; priority: Order["priority"] };
 export type Alarm = Schemas["AlarmView"];
 export type Command = Schemas["CommandView"];
@@ -73,7 +73,7 @@ export type EstimateQuality = Schemas["EstimateQuality"];
 export type EnrolmentCode = Schemas["EnrolmentCodeView"];
 export type RobotToken = Schemas["RobotTokenView"];
 export type Watch = Schemas["WatchView"];
-/** What is sent always has all its fields, those with a default too. */
+/** A sent object always has all its fields, those with a default too. */
 type Told<T> = T extends (infer Item)[] ? Told<Item>[] : T extends object ? { [K in keyof T]-?: Told<T[K]> } : T;
 export type Watched = Told<Schemas["Watched"]>;
 export type Insight = Watched["insight"];

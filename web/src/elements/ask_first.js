@@ -18,7 +18,7 @@ export class AskFirst extends PageElement {
     super();
     /** @type {Words} */
     this.words = { open: "", title: "", body: "", yes: "", no: "" };
-    /** What the button is called where there are several of its kind. */
+    /** The button's accessible name where there are several of its kind. */
     this.label = "";
     /** @type {() => Promise<unknown>} */
     this.act = async () => undefined;

@@ -33,5 +33,5 @@ const DRAWINGS = {
 /** @param {keyof typeof DRAWINGS} name */
 export const icon = (name) => html`<svg class="icon" viewBox="0 0 24 24" aria-hidden="true">${DRAWINGS[name]}</svg>`;
 
-/** What marks an order that is later than was promised: a word and a drawing, not a colour alone. */
+/** The mark of an order that is later than was promised: a word and a drawing, not a colour alone. */
 export const lateMark = () => html`<span class="late">${icon("clock")}${t("late.mark")}</span>`;

@@ -1,11 +1,11 @@
 /**
- * Whoever goes by keyboard is never left nowhere: when what had it is gone, it goes on at the heading of that part of
+ * Keeps the keyboard focus on the page: when the focused element is gone, focus goes on at the heading of that part of
  * the page; when that only rests while something is done, it comes back. Fetched at the first key that is pressed.
  */
 
 /** @type {HTMLElement | null} what has the keyboard, and is seen to have it */
 let here = null;
-/** What that lies in, nearest first: some of it is still there when it is gone. @type {Element[]} */
+/** Its ancestors, nearest first: some of them remain when it is gone. @type {Element[]} */
 let around = [];
 let rests = false;
 

@@ -1,5 +1,5 @@
 /**
- * What one is told just now, on whatever page one is, for as long as it takes to read and reach: time stands still while
+ * Shows a new notification on any page, for as long as it takes to read and reach: time stands still while
  * the pointer or the keyboard is on it, Escape puts it away, and it never lies over what has the keyboard.
  */
 import { html, nothing } from "lit";
@@ -22,12 +22,12 @@ export class NoticeToast extends PageElement {
   #isPointedAt = false;
   /** Ids of what is told already. @type {Set<number>} */
   #told = new Set();
-  /** What had the keyboard before this did. @type {EventTarget | null} */
+  /** The element that had the focus before. @type {EventTarget | null} */
   #before = null;
 
   constructor() {
     super();
-    /** @type {Inbox | null} as it is now; whoever keeps it may have heard of notices before this element was there */
+    /** @type {Inbox | null} as it is now; its source may have received notifications before this element was there */
     this.inbox = null;
     /** When the page was opened; what was told before is no news. */
     this.since = "";
@@ -73,7 +73,7 @@ export class NoticeToast extends PageElement {
     this.#keepClear();
   }
 
-  /** Whoever looks at that very letter sees it happen already. */
+  /** A person on that letter's own page needs no toast: the page shows the change. */
   #news() {
     const since_ms = Date.parse(this.since);
     const news = this.inbox?.items.filter(({ id, at, read }) => !read && Date.parse(at) > since_ms && !this.#told.has(id)) ?? [];
@@ -87,7 +87,7 @@ export class NoticeToast extends PageElement {
     return now?.read ? null : this.notice;
   }
 
-  /** Time runs from when nobody is at it, and while the page is looked at. */
+  /** Time runs while neither pointer nor focus is on it and the page is visible. */
   #count() {
     clearTimeout(this.#timer);
     this.#isPointedAt &&= this.notice !== null;
@@ -107,7 +107,7 @@ export class NoticeToast extends PageElement {
     this.#count();
   }
 
-  /** Whoever takes Escape for something nearer says so; a dialog closes first. @param {KeyboardEvent} event */
+  /** Close on Escape, unless a nearer handler has used the key; a dialog closes first. @param {KeyboardEvent} event */
   #key(event) {
     if (event.key !== "Escape" || event.defaultPrevented || document.querySelector("dialog:modal")) return;
     this.#putAway();

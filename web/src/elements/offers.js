@@ -1,5 +1,5 @@
 /**
- * What is offered below a field while somebody types in it: with the field, a combobox as the ARIA Authoring Practices
+ * Suggestions below a field while its user types: with the field, a combobox as the ARIA Authoring Practices
  * have it. Arrows go round and round, Enter takes, Escape closes; the field keeps the focus, with a finger too.
  * @import { ReactiveController, ReactiveControllerHost } from "lit"
  */
@@ -38,7 +38,7 @@ export class Offers {
     this.#set(this.found, -1, false);
   }
 
-  /** Whether the key was for the list: then it is for nothing else. @param {KeyboardEvent} event @returns {boolean} */
+  /** Tell if the list has used the key: nothing else may then use it. @param {KeyboardEvent} event @returns {boolean} */
   key(event) {
     const by = { ArrowDown: 1, ArrowUp: -1 }[event.key];
     if (by) this.#go(by);

@@ -1,4 +1,4 @@
-/** A part of a page that is fetched and drawn only once somebody opens it. */
+/** A part of a page that is fetched and drawn only once it is opened. */
 import { html, nothing } from "lit";
 import { icon } from "./icon.js";
 import { PageElement } from "./page_element.js";

@@ -1,4 +1,4 @@
-/** What all our elements share: they draw into the page itself, so that labels, styles and zoom work as in any page. */
+/** The base of all our elements: they draw into the page itself, so that labels, styles and zoom work as in any page. */
 import { LitElement } from "lit";
 
 export class PageElement extends LitElement {

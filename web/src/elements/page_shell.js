@@ -1,4 +1,4 @@
-/** What stands around every page: name, pages, unread notices, account; and the sign-in where nobody is signed in. */
+/** The frame around every page: name, pages, unread notices, account; and the sign-in for visitors. */
 import { html, nothing } from "lit";
 import * as api from "../service/api.js";
 import { mayOpen, PAGES } from "../service/links.js";
@@ -58,7 +58,7 @@ export class PageShell extends PageElement {
     /** @type {Inbox | null} as it was asked for last: before anything is told, the person's own count is enough */
     this.inbox = null;
     this.connected = true;
-    /** Whether the session has ended though this person did not leave. */
+    /** True if the session has ended without a sign-out. */
     this.lost = false;
     new OnLive(this, {
       notice: () => this.#count(),

@@ -1,4 +1,4 @@
-/** Keeps a screen from going dark where nobody touches it, where the browser can. @import { ReactiveController, ReactiveControllerHost } from "lit" */
+/** Keeps an untouched screen from going dark, where the browser can. @import { ReactiveController, ReactiveControllerHost } from "lit" */
 
 /** @implements {ReactiveController} */
 export class StaysAwake {
@@ -15,7 +15,7 @@ export class StaysAwake {
 
   hostConnected() {
     this.#isConnected = true;
-    // A browser ends the lock of a page that is hidden; whoever comes back wants it again.
+    // A browser ends the lock of a page that is hidden: take it again when the page is back.
     document.addEventListener("visibilitychange", this.#whenSeen);
     this.#settle();
   }

@@ -1,4 +1,4 @@
-/** Six digits instead of the camera: typed by whoever sees the letter, they open for the one whose digits they are. */
+/** Six digits instead of the camera: typed by any party to the letter, they open for the one whose digits they are. */
 import { html, nothing } from "lit";
 import { inWords } from "../service/problems.js";
 import { robotAsked } from "./shows_outcome.js";

@@ -29,7 +29,7 @@ import "./wait_longer.js";
 const WAITING = ["waiting", "charging", "stopped"];
 
 export class FollowPage extends PageElement {
-  /** How often something was heard. */
+  /** A count of received events. */
   #heard = 0;
   #door = this.#ownDoor();
   #ownNaming = this.#naming();
@@ -56,7 +56,7 @@ export class FollowPage extends PageElement {
     /** @type {Robot | null} */
     this.robot = null;
     this.problem = "";
-    /** Whether it is only not known here. */
+    /** True if the service could not be asked. */
     this.unreached = false;
     new ShowsOutcome(this);
     new Ticking(this);
@@ -76,14 +76,14 @@ export class FollowPage extends PageElement {
     if (changed.has("order_id") || changed.has("demo")) [this.#door, this.#ownNaming] = [this.#ownDoor(), this.#naming()];
   }
 
-  /** How I come to my code, and to the robot. @returns {Door} */
+  /** The calls for the code and the hand-over of a person who is signed in. @returns {Door} */
   #ownDoor() {
     const id = this.order_id;
     const showToCamera = this.demo ? () => api.showCodeToCamera(id) : null;
     return { code: () => api.handoverCode(id), handOver: (digits) => api.handOver(id, digits), showToCamera };
   }
 
-  /** How I name somebody to meet the robot for me. @returns {Naming} */
+  /** The calls for delegates of a person who is signed in. @returns {Naming} */
   #naming() {
     const id = this.order_id;
     return {
@@ -154,7 +154,7 @@ export class FollowPage extends PageElement {
     </section>`;
   }
 
-  /** What is rarely done: somebody else meets the robot; digits instead of the camera. @param {Order} order */
+  /** Rare actions: name a delegate; enter digits instead of using the camera. @param {Order} order */
   #others(order) {
     const isMine = order.my_role === "recipient" ? !hasEnded(order) : order.my_role === "sender" && order.my_code !== null;
     return [

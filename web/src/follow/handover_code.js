@@ -11,7 +11,7 @@ import { PageElement } from "../elements/page_element.js";
 /** @import { Purpose, ShownCode } from "../../types/api_types.ts" */
 
 /**
- * How somebody comes to their code and to the robot: signed in, or by the link in a mail.
+ * The calls for a code and its hand-over: signed in, or by the link in a mail.
  * @typedef {{code: () => Promise<ShownCode>, handOver: (digits?: string) => Promise<unknown>, showToCamera: (() => Promise<unknown>) | null}} Door
  */
 
@@ -35,13 +35,13 @@ export class HandoverCodeElement extends PageElement {
     this.door = null;
     /** @type {Purpose | null} */
     this.purpose = null;
-    /** Whether the robot is there and asks for it. */
+    /** True while the robot waits for this code. */
     this.needed = false;
-    /** Whether the robot was asked to hand over and has not answered yet. */
+    /** True from the request to hand over until the robot answers. */
     this.asked = false;
     /** @type {ShownCode | null} */
     this.code = null;
-    /** Whether its person looks at it before it is needed. */
+    /** True if the code is shown before it is needed. */
     this.opened = false;
     this.problem = "";
     this.said = "";
@@ -92,7 +92,7 @@ export class HandoverCodeElement extends PageElement {
     </div>`;
   }
 
-  /** To be said to whoever types them: they do the same as the picture, and need a network. */
+  /** To be told to the person who types them: they do the same as the picture, and need a network. */
   #digits() {
     const { code } = this;
     if (!code) return nothing;

@@ -1,4 +1,4 @@
-/** One order for whoever came by the link in a mail: where it stands, the code, "not now". No account, no event stream. */
+/** One order for a guest, opened by the link in a mail: where it stands, the code, "not now". No account, no event stream. */
 import { html, nothing } from "lit";
 import * as api from "../service/api.js";
 import { askedOrKept } from "../offline/kept_link.js";
@@ -23,7 +23,7 @@ import { PageElement } from "../elements/page_element.js";
 /** @import { Naming } from "./order_delegates.js" */
 
 const LOOK_EVERY_MS = 5_000;
-// Each in its own words: whoever looks for theirs may read no other.
+// Each in its own language: a reader may know no other.
 const LANGUAGES = { en: "English", fr: "Français" };
 
 export class OneOrder extends PageElement {
@@ -47,14 +47,14 @@ export class OneOrder extends PageElement {
     /** @type {CampusMap | null} */
     this.map = null;
     this.problem = "";
-    /** Whether the service could not be asked just now: what is shown, if anything is, is what was known last. */
+    /** True if the last request had no answer: the page shows the last known state, if there is one. */
     this.unreached = false;
     this.door = {
       code: async () => (await askedOrKept(this.token, "code", () => api.linkedCode(this.token))).answer,
       handOver: (/** @type {string | undefined} */ digits) => api.linkedHandOver(this.token, digits),
       showToCamera: null,
     };
-    /** Whoever has no account sees each code this once. @type {Naming} */
+    /** The calls for delegates of a guest, who sees each code only once. @type {Naming} */
     this.naming = { name: (wish) => api.linkedDelegate(this.token, wish), list: null, revoke: notHere, code: notHere };
   }
 

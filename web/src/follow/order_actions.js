@@ -1,4 +1,4 @@
-/** What else I can do with a letter, by its state and my part in it. Tells the order as it is then in a `changed` event. */
+/** Actions on a letter, by its state and this person's role. Dispatches the changed order as a `changed` event. */
 import { html, nothing } from "lit";
 import * as api from "../service/api.js";
 import { repeatPage } from "../service/links.js";

@@ -1,4 +1,4 @@
-/** Somebody else meets the robot for me: named here, with a code of their own to be passed on; taken back here too. */
+/** Delegates who meet the robot for a person: added here, with a code of their own to be shared; revoked here too. */
 import { html, nothing } from "lit";
 import { looksLikeEmail } from "../session/email.js";
 import { ApiProblem } from "../service/api.js";
@@ -12,7 +12,7 @@ import { PageElement } from "../elements/page_element.js";
 /** @import { Delegate, NewDelegate, ShownCode } from "../../types/api_types.ts" */
 
 /**
- * How delegates are named: signed in, with a list of them, or by the link in a mail, where each is shown once.
+ * Naming delegates: signed in, with a list of them, or by the link in a mail, where each is shown once.
  * @typedef {{name: (wish: NewDelegate) => Promise<{delegate: Delegate, code: ShownCode}>,
  *   list: (() => Promise<Delegate[]>) | null, revoke: (id: string) => Promise<unknown>, code: (id: string) => Promise<ShownCode>}} Naming
  */
@@ -32,7 +32,7 @@ export class OrderDelegates extends PageElement {
     this.naming = null;
     /** @type {Delegate[]} */
     this.items = [];
-    /** Whose code is shown. @type {{delegate: Delegate, code: ShownCode} | null} */
+    /** The delegate whose code is shown. @type {{delegate: Delegate, code: ShownCode} | null} */
     this.shown = null;
     this.problem = "";
     this.said = "";

@@ -1,4 +1,4 @@
-/** Who, what, the number to name when asking about it, and in whose hands the letter has been. */
+/** Sender, recipient, contents, order number and chain of custody. */
 import { html, nothing } from "lit";
 import { serverNow } from "../service/server_clock.js";
 import { t } from "../texts/texts.js";
@@ -17,7 +17,7 @@ export const orderDetails = (order) => html`<section class="card" aria-labelledb
   </dl>
 </section>`;
 
-/** What somebody has written. @param {string} words */
+/** Text that a person has written. @param {string} words */
 const own = (words) => html`<bdi>${words}</bdi>`;
 
 /** @param {string} label @param {unknown} value */
@@ -52,7 +52,7 @@ function nameOf({ sender, recipient }, holder, name) {
   return name ?? t(`follow.custody.holder.${holder}`);
 }
 
-/** The robot answers for it until somebody has asked. @param {Custody} link */
+/** The robot's claim counts until a dispatcher has checked it. @param {Custody} link */
 const isSaidToBeOut = ({ evidence, holder }) => evidence === "claimed" && holder !== "robot";
 
 /** @param {Custody} link */

@@ -1,4 +1,4 @@
-/** What happened, when it happened, and what is still to come. */
+/** Past events of an order with their times, and the events to come. */
 import { html, nothing } from "lit";
 import { eventReason, timeline } from "../orders/order_words.js";
 import { serverNow } from "../service/server_clock.js";

@@ -10,7 +10,7 @@ import { OnLive } from "./live.js";
 export class ClosedNow {
   /** @type {readonly ClosedCorridor[]} */
   closed = [];
-  /** How often something was heard. */
+  /** A count of received events. */
   #heard = 0;
 
   /** @param {ReactiveControllerHost} host drawn again with each change */
@@ -27,7 +27,7 @@ export class ClosedNow {
     this.fetch();
   }
 
-  /** What is known stays if there is no answer, or if what was heard meanwhile is newer. */
+  /** Keep the known closures if there is no answer, or if a newer event has arrived. */
   async fetch() {
     const heard = this.#heard;
     const answer = await api.closedCorridors().catch(() => null);

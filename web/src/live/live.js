@@ -1,5 +1,5 @@
 /**
- * What changes, as it changes: one event stream for all tabs of a browser. One tab that is seen reads it (whichever has
+ * The event stream of changes: one for all tabs of a browser. One tab that is seen reads it (whichever has
  * the lock) and passes on what it hears; where no tab is seen there is none. docs/decisions/0069 says why.
  * @import { ReactiveController, ReactiveControllerHost } from "lit"
  * @import { Position } from "../service/api.js"
@@ -28,11 +28,11 @@ export class LiveFeed extends EventTarget {
   #known = undefined;
   /** @type {boolean | null} */
   #connected = null;
-  /** Whether what is shown has to be fetched anew, once there is a stream and somebody looks. */
+  /** True if the data has to be fetched anew, once there is a stream and the page is visible. */
   #isStale = false;
   #look = () => (document.hidden ? this.#leave() : this.#join());
 
-  /** @param {string} person_id whose stream it is: another tab may still show somebody who has left */
+  /** @param {string} person_id whose stream it is: another tab may still belong to a person who has left */
   async start(person_id) {
     this.stop();
     const name = `live ${person_id}`;
@@ -41,7 +41,7 @@ export class LiveFeed extends EventTarget {
     let early = [];
     channel.onmessage = ({ data }) => (early ? early.push(data) : this.#hear(data));
     const position = await api.positionOfAnswers();
-    await new Promise((resolve) => setTimeout(resolve)); // whoever asked has the answer before anything newer is told
+    await new Promise((resolve) => setTimeout(resolve)); // the caller gets the answer before any newer event
     if (this.#channel !== channel) return;
     if (this.#known === undefined) [this.#known, this.#isStale] = [position, position === null];
     for (const message of early) this.#hear(message);
@@ -99,7 +99,7 @@ export class LiveFeed extends EventTarget {
     this.#hear(told);
   }
 
-  /** Whether the stream stands: what is told now is heard. */
+  /** True while the stream is open. */
   get stands() {
     return this.#connected === true;
   }
@@ -145,10 +145,10 @@ export function startLive(person_id) {
   addEventListener("pageshow", (event) => event.persisted && feed.start(person_id));
 }
 
-/** Whether what the service tells now is heard on this page. */
+/** True while this page receives events. */
 export const isLive = () => feed.stands;
 
-/** Nobody is signed in any more. */
+/** End the stream after a sign-out. */
 export const stopLive = () => feed.stop();
 
 /** They are again. @param {string} person_id */

@@ -1,5 +1,5 @@
 /**
- * Which robot holds which corridor, as far as whoever looks may see it: fetched, then as it changes.
+ * Which robot holds which corridor, as far as this person may see it: fetched, then as it changes.
  * @import { ReactiveController, ReactiveControllerHost } from "lit"
  * @import { RobotTraffic, TakenCorridor } from "../../types/api_types.ts"
  */
@@ -10,7 +10,7 @@ import { OnLive } from "./live.js";
 export class TrafficNow {
   /** @type {readonly TakenCorridor[]} */
   taken = [];
-  /** How often something was heard. */
+  /** A count of received events. */
   #heard = 0;
 
   /** @param {ReactiveControllerHost} host drawn again with each change */

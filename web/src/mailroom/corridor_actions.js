@@ -1,5 +1,5 @@
 /**
- * What a dispatcher may do to the traffic: the same kind of table as `mailroom_actions.js`.
+ * Traffic actions of a dispatcher: the same kind of table as `mailroom_actions.js`.
  * @import { CampusMap, ClosedCorridor, Robot } from "../../types/api_types.ts"
  * @import { Action } from "./mailroom_actions.js"
  */
@@ -26,7 +26,7 @@ export function openAgain(map, { corridor, robots }) {
   return { names, name: robots.length ? "reopen_found" : "reopen", run: () => api.openCorridor(corridor) };
 }
 
-/** Whether its corridors can be given to others: it is away, or stands. @param {Robot} robot */
+/** True if its corridors can be released: the robot is offline, or stands. @param {Robot} robot */
 export const mayBeTakenOut = ({ online, activity, heard_at, taken_out_at }) =>
   heard_at !== null && !taken_out_at && (!online || activity === "stopped");
 

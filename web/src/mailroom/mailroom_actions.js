@@ -1,5 +1,5 @@
 /**
- * What a dispatcher may do with an order or a robot: a table. The words of each stand in the catalogue under its name:
+ * Actions of a dispatcher on an order or a robot: a table. The words of each stand in the catalogue under its name:
  * `mailroom.do.NAME` for the button, `.title`, `.body` for what follows from it, `.yes`.
  * @import { Alarm, CampusMap, Order, Robot } from "../../types/api_types.ts"
  * @typedef {{value: string, label: string, hint?: string}} Choice
@@ -27,7 +27,7 @@ const ABOARD_BEFORE = ["carrying", "at_recipient", "returning", "at_return"];
 const PRIORITIES = ["high", "normal", "low"];
 
 /**
- * What can be done with an order now, the likeliest first.
+ * The actions on an order that are possible now, the likeliest first.
  * @param {Order} order @param {Robot[]} robots @param {CampusMap | null} map @returns {Action[]}
  */
 export function orderActions(order, robots, map) {

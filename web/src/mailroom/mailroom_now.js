@@ -33,7 +33,7 @@ export class MailroomNow {
   #lookedAt_ms = -LOOK_AGAIN_MS;
   #timer = 0;
   #interval = 0;
-  /** What is heard while an answer is on its way is newer than the answer. @type {{orders: Order[], robots: Robot[]}} */
+  /** Changes received while a request is under way: newer than its answer. @type {{orders: Order[], robots: Robot[]}} */
   #heard = { orders: [], robots: [] };
 
   /** @param {ReactiveControllerHost} host */

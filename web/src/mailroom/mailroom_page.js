@@ -46,7 +46,7 @@ export class MailroomPage extends PageElement {
 
   constructor() {
     super();
-    /** What was done last. */
+    /** The result of the last action. */
     this.said = "";
     this.problem = "";
     new Ticking(this, REDRAW_MS);
@@ -153,7 +153,7 @@ export class MailroomPage extends PageElement {
     this.#keepFocus();
   }
 
-  /** What was pressed may be gone: the keyboard goes on with what is still wrong. */
+  /** Move the focus to the remaining issues when the pressed button is gone. */
   async #keepFocus() {
     await this.updateComplete;
     if (!document.activeElement || document.activeElement === document.body) this.focusOn("#wrong-title");

@@ -1,4 +1,4 @@
-/** What the mailroom does now and then. Each part is fetched when it is first wanted. */
+/** Tools of the mailroom that are used now and then. Each part is fetched when it is first wanted. */
 import { html } from "lit";
 import { PRINT_PAGE, WALL_PAGE } from "../service/links.js";
 import { t } from "../texts/texts.js";

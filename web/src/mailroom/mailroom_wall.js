@@ -1,6 +1,6 @@
 /**
  * The mailroom on a wall: for eyes alone, from afar. Nothing to press, nothing that turns over, and of people no more
- * than whoever walks past may read.
+ * than passers-by may read.
  */
 import { html, nothing } from "lit";
 import { expectedWithOrders } from "../orders/arrival.js";

@@ -21,7 +21,7 @@ const STANDS = /** @type {OrderState[]} */ (["at_sender", "at_recipient", "at_re
 export const isRobotComing = (order) => COMING.includes(order.state);
 /** @param {Order} order */
 export const isMailAboard = (order) => ABOARD.includes(order.state);
-/** Whether the robot stands at a post and waits for somebody. @param {Order} order */
+/** True while the robot waits at a post for a sender or recipient. @param {Order} order */
 export const robotStands = (order) => STANDS.includes(order.state);
 
 /** The state in which a fault struck. @param {Order} order */
@@ -30,11 +30,11 @@ export function stateBeforeAttention(order) {
   return moves.at(-1)?.state ?? "queued";
 }
 
-/** Whether five wrong digits have locked them, and nobody has released them since. @param {Order} order */
+/** True after five wrong entries, until a dispatcher unlocks the digits. @param {Order} order */
 export const digitsAreLocked = (order) =>
   order.events.findLast(({ kind }) => kind === "digits_locked" || kind === "digits_released")?.kind === "digits_locked";
 
-/** A robot that goes on only when somebody says so. @param {Robot} robot */
+/** True for a robot that continues only on a person's command. @param {Robot} robot */
 export const isHeldUp = (robot) => robot.activity === "stopped" || robot.why_words?.key === "why.paused";
 
 /** Longer than the patches without network are, and not so long that it must have been put away. */
@@ -46,7 +46,7 @@ export function isSilent({ online, heard_at }) {
   return !online && age_ms > SILENT_MS.from && age_ms < SILENT_MS.to;
 }
 
-/** Everything that somebody should see to, what hurts most first. @param {Known} known @returns {Wrong[]} */
+/** All issues that need a dispatcher, the most urgent first. @param {Known} known @returns {Wrong[]} */
 export function whatIsWrong({ orders, robots, alarms, givenUp }) {
   const open = orders.filter((order) => !hasEnded(order));
   const locked = open.filter(digitsAreLocked);
@@ -65,7 +65,7 @@ export function whatIsWrong({ orders, robots, alarms, givenUp }) {
   ];
 }
 
-/** What an order is called where many stand together. @param {Order} order */
+/** The name of an order in a list. @param {Order} order */
 export const orderTitle = (order) =>
   t("mailroom.order", { sender: order.sender.name, recipient: order.recipient.name });
 
@@ -88,10 +88,10 @@ export function whyItWaits(order, map) {
   return wait_until && robotStands(order) ? t("mailroom.why.until", { why, time: clockTime(wait_until) }) : why;
 }
 
-/** For a wall: a reason that somebody has typed may name people. @param {Order} order */
+/** For a wall display: a typed reason may name people. @param {Order} order */
 export const withoutOwnWords = (order) => (order.why_words ? order : { ...order, why: null });
 
-/** Somebody wants it back, and its robot has not turned round yet. @param {Order} order */
+/** True for a recalled order whose robot has not answered yet. @param {Order} order */
 const hasWish = (order) => order.return_requested || (order.cancel_requested && isRobotComing(order));
 
 /** Since when the order is in the state that it is in. @param {Order} order */
@@ -112,7 +112,7 @@ const SORTINGS = {
 
 export const SORTING_NAMES = Object.keys(SORTINGS);
 
-/** What is alike stands by how long it waits. @param {Order[]} orders @param {string} sorting @param {CampusMap} map */
+/** Sort orders; equal ones by how long they wait. @param {Order[]} orders @param {string} sorting @param {CampusMap} map */
 export function sorted(orders, sorting, map) {
   const value = SORTINGS[sorting] ?? SORTINGS.waiting;
   return [...orders].sort((a, b) => compare(value(a, map), value(b, map)) || compare(since(a), since(b)) || compare(a.id, b.id));

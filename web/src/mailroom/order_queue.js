@@ -34,7 +34,7 @@ export class OrderQueue extends PageElement {
     this.map = null;
     /** @type {Order[]} what is under way */
     this.orders = [];
-    /** Whether there is more of it than that. */
+    /** True if there are further pages. */
     this.more = false;
     this.sorting = SORTING_NAMES[0];
     /** @type {"open" | "ended"} */
@@ -106,7 +106,7 @@ export class OrderQueue extends PageElement {
     });
   }
 
-  /** What was found is shown as it is now. @param {Order} order */
+  /** Update an order among the search results. @param {Order} order */
   #update(order) {
     if (!this.found) return;
     this.found = { ...this.found, items: this.found.items.map((one) => (one.id === order.id && one.version <= order.version ? order : one)) };

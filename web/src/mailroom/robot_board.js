@@ -1,4 +1,4 @@
-/** All robots, each with what is known of it and what can be told to it. */
+/** A list of the robots, with the state of each and its commands. */
 import { html, nothing } from "lit";
 import { repeat } from "lit-html/directives/repeat.js";
 import { alarmText } from "../texts/alarm_words.js";
@@ -65,7 +65,7 @@ function whereSeen({ last_seen, online, heard_at }, map) {
   return online || !heard_at ? seen : `${seen} · ${t("mailroom.robots.heard", { ago: ago(heard_at, now_ms) })}`;
 }
 
-/** Alarms that somebody sees to already. @param {Robot} robot @param {Alarm[]} alarms */
+/** Acknowledged alarms. @param {Robot} robot @param {Alarm[]} alarms */
 const ofRobot = ({ name }, alarms) => alarms.filter(({ robot, acknowledged_at }) => robot === name && acknowledged_at);
 
 /** @param {Robot} robot @param {Alarm[]} alarms @param {CampusMap} map */

@@ -1,4 +1,4 @@
-/** An order for somebody at the mailroom's desk: who sends, who receives, where to; then a slip to go with the mail. */
+/** An order for a visitor at the mailroom's desk: who sends, who receives, where to; then a slip to go with the mail. */
 import { html, nothing } from "lit";
 import * as api from "../service/api.js";
 import { followPage, slipPage } from "../service/links.js";

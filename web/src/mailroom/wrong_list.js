@@ -1,4 +1,4 @@
-/** What somebody should see to, each with the next thing to do as a button. */
+/** Issues that need a dispatcher, each with its next action as a button. */
 import { html, nothing } from "lit";
 import { repeat } from "lit-html/directives/repeat.js";
 import { alarmText, alarmTextForAll } from "../texts/alarm_words.js";
@@ -17,7 +17,7 @@ import { icon } from "../elements/icon.js";
 /** @import { Wrong } from "./mailroom_words.js" */
 
 /**
- * What the buttons call.
+ * The callbacks of the buttons.
  * @typedef {object} Doing
  * @property {(action: Action, about: string) => void} ask
  * @property {(alarm: Alarm) => void} acknowledge
@@ -48,7 +48,7 @@ const line = (what, more, at, action) => html`<div class="what">
   </div>
   ${action}`;
 
-/** @param {string} text @param {string} about for whoever hears the button alone @param {() => void} press */
+/** @param {string} text @param {string} about for screen readers, which may read the button alone @param {() => void} press */
 const button = (text, about, press) =>
   html`<button type="button" @click=${press}>${text}<span class="unseen">: ${about}</span></button>`;
 

@@ -66,7 +66,7 @@ export class CampusMapElement extends PageElement {
     this.arrival = null;
     this.from = "";
     this.to = "";
-    /** Whether what is known of the robots stands below it. */
+    /** True if the list of robots is shown below the map. */
     this.facts = false;
     new Ticking(this);
   }

@@ -1,5 +1,5 @@
 /**
- * Which part of a map an element shows, and how it gets there: smoothly, unless somebody wants less motion.
+ * Which part of a map an element shows, and how it gets there: smoothly, unless the user prefers less motion.
  * @import { ReactiveController, ReactiveControllerHost } from "lit"
  * @import { Box, Point } from "./map_drawing.js"
  * @import { View } from "./map_view.js"
@@ -14,11 +14,11 @@ const wantsLessMotion = () => matchMedia("(prefers-reduced-motion: reduce)").mat
 export class MapCamera {
   #frame = /** @type {Box} */ (NOTHING);
   #animation = 0;
-  /** What is seen now. */
+  /** The current view. */
   view = whole(NOTHING);
   /** Where that is going: names are placed for this, so that they do not jump on the way. */
   target = this.view;
-  /** What was last asked for by a button or key: names keep inside of it. Fingers that drag it about do not change it. */
+  /** The last view requested by a button or key: names stay inside it. Dragging does not change it. */
   framed = this.view;
 
   /** @param {ReactiveControllerHost} host */
@@ -32,7 +32,7 @@ export class MapCamera {
     this.view = this.target;
   }
 
-  /** What there is to be seen: the whole of it, if it is something else than before. @param {Box} frame */
+  /** Set the frame of the drawing; a new frame is shown whole. @param {Box} frame */
   lookAt(frame) {
     if (frame === this.#frame) return;
     cancelAnimationFrame(this.#animation);

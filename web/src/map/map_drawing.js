@@ -88,7 +88,7 @@ function around(boxes) {
   return { x: (left + right - width) / 2, y: top - MARGIN, width, height: bottom - top + 2 * MARGIN };
 }
 
-/** The corridor between two neighbours as somebody drives it. @param {Drawing} drawn @param {string} from @param {string} to @returns {Point[]} */
+/** The corridor between two neighbours in the direction of travel. @param {Drawing} drawn @param {string} from @param {string} to @returns {Point[]} */
 export function pointsFrom(drawn, from, to) {
   const corridor = drawn.corridors.find(({ a, b }) => (a === from && b === to) || (b === from && a === to));
   if (!corridor) return [];

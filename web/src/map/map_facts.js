@@ -1,5 +1,5 @@
 /**
- * What a map shows and its list says: both are made of these facts, so that the drawing says nothing that the list does not. Pure.
+ * The facts that a map and its list show: both are made of these facts, so that the drawing says nothing that the list does not. Pure.
  * @import { Alarm, CampusMap, ClosedCorridor, MapCorridor, MapPost, Robot, TakenCorridor } from "../../types/api_types.ts"
  * @typedef {"stopped" | "charging" | "offline"} Condition
  * @typedef {{post: string, window: {from: string, to: string} | null}} MapArrival where and when, null while no time is known
@@ -11,7 +11,7 @@
  * @property {readonly TakenCorridor[]} taken by these robots, on this map
  * @property {readonly Alarm[]} closed for the robot that turned back in it
  * @property {readonly ClosedCorridor[]} byPeople
- * @property {readonly string[]} shut corridors that somebody has closed, or in which a robot turned back
+ * @property {readonly string[]} shut corridors that a dispatcher has closed, or in which a robot turned back
  * @property {{posts: MapPost[], corridors: MapCorridor[]}} silent where there is no network
  */
 
@@ -48,7 +48,7 @@ function by(robots, post) {
 /** @param {CampusMap} map @param {string} name */
 const corridorNamed = (map, name) => map.corridors.find((corridor) => corridor.name === name);
 
-/** What is told of a robot by its shape; before it was first heard it is silent without being missed. @param {Robot} robot @returns {Condition[]} */
+/** The conditions that a robot's shape shows; a robot that has never connected is offline without being missed. @param {Robot} robot @returns {Condition[]} */
 export function conditionsOf({ activity, battery, online, heard_at }) {
   /** @type {[Condition, boolean][]} */
   const all = [
@@ -68,7 +68,7 @@ function whereaboutsOf(map, { name, last_seen, towards }, taken) {
   return [...map.posts.filter((post) => post.name === last_seen?.post), ...corridors];
 }
 
-/** Whether a silent robot may be where nobody is heard. @param {CampusMap} map @param {Robot} robot @param {readonly TakenCorridor[]} taken */
+/** True if an offline robot may be where there is no network. @param {CampusMap} map @param {Robot} robot @param {readonly TakenCorridor[]} taken */
 export const isSilentAsExpected = (map, robot, taken) =>
   conditionsOf(robot).includes("offline") && whereaboutsOf(map, robot, taken).some(({ network }) => !network);
 

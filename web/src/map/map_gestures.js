@@ -62,7 +62,7 @@ export class MapGestures {
     event.preventDefault();
   };
 
-  /** What was under the fingers stays under them. @param {Point} from @param {Point} to */
+  /** Keep the point under the fingers there. @param {Point} from @param {Point} to */
   #carry(from, to) {
     const [before, now] = [this.toMap(from), this.toMap(to)];
     this.camera.move(before.x - now.x, before.y - now.y);

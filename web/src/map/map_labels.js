@@ -12,9 +12,9 @@
 import { COVERED, Obstacles, within } from "./map_obstacles.js";
 import { sidesOf } from "./map_sides.js";
 
-/** How often each looks for a better place once the others have theirs. */
+/** Rounds in which each label searches a better place once the others have theirs. */
 const ROUNDS = 4;
-/** How often they begin anew, in another order. */
+/** Attempts, each in another order. */
 const ATTEMPTS = 4;
 
 /**
@@ -57,7 +57,7 @@ function bestOf(obstacles, order) {
   return best;
 }
 
-/** All labels placed in one order; of those that do not matter, the ones that cover nothing. */
+/** Place the labels in one order; of those that do not matter, the ones that cover nothing. */
 class Attempt {
   /** @type {Map<Choosing, Side>} */
   taken = new Map();
@@ -86,7 +86,7 @@ class Attempt {
     return best !== before;
   }
 
-  /** What it covers where it stands. @param {Choosing} one */
+  /** The cost of a label at its place. @param {Choosing} one */
   #costOf(one) {
     const side = this.taken.get(one);
     if (!side) return 0;

@@ -1,5 +1,5 @@
 /**
- * What stands beside each post of a map, and where else there is something to be kept clear.
+ * The notes beside each post of a map, and other areas to be kept clear.
  * @import { CampusMap, Expected, Robot, TakenCorridor } from "../../types/api_types.ts"
  * @import { Box, Drawing } from "./map_drawing.js"
  * @import { MapFacts } from "./map_facts.js"
@@ -25,7 +25,7 @@ export function wordingsOf(map, { seen, expected, robots, arrival }, ends) {
     .sort((a, b) => b.rank - a.rank);
 }
 
-/** What is said at a post of the robots there; of several in a line each, the rest is in the list. @param {readonly Robot[]} seen @param {readonly Robot[]} expected @param {boolean} alone @param {MapFacts["arrival"]} arrival */
+/** The note at a post about the robots there: one line each, the rest is in the list. @param {readonly Robot[]} seen @param {readonly Robot[]} expected @param {boolean} alone @param {MapFacts["arrival"]} arrival */
 function notesOf(seen, expected, alone, arrival) {
   const now_ms = serverNow();
   return [

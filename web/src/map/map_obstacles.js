@@ -1,5 +1,5 @@
 /**
- * What lies on a map where a label might stand, and what it costs to cover it.
+ * Obstacles for labels on a map, and the cost of covering each.
  * @import { Box, DrawnPost, Point } from "./map_drawing.js"
  * @import { Places, Wording } from "./map_labels.js"
  */
@@ -13,7 +13,7 @@ const CLEAR = { x: 4, y: 3 };
 const NEAR = 9;
 /** From so much on something is covered. */
 export const COVERED = 10;
-/** What it costs to be nearer to another post than to its own, as if it were that one's name; to cover a line, and each unit of
+/** The cost of being nearer to another post than to its own, as if it were that one's name; to cover a line, and each unit of
  *  it; to cover a post; to lie outside of the frame; to cover words: words on a line can be read, words on words cannot. */
 const COSTS = { mistaken: 6, line: COVERED, unit: 0.2, post: 20, outside: 45, words: 60 };
 
@@ -27,7 +27,7 @@ export class Obstacles {
     this.around = posts.map((post) => ({ name: post.name, ...around(post, robots.get(post.name) ?? 0) }));
   }
 
-  /** What a label of this post covers here, in costs; beyond `most` no more is looked at. @param {Box} box @param {DrawnPost} post
+  /** The cost of a label of this post here; counting stops beyond `most`. @param {Box} box @param {DrawnPost} post
    *  @param {Box | null} room @param {Iterable<{box: Box}>} labels that stand already @param {number} [most] */
   under(box, post, room, labels, most = Infinity) {
     let cost = room && !within(box, room) ? COSTS.outside : 0;
@@ -60,7 +60,7 @@ function around({ x, y }, robots) {
   return { x: x - half, y: y - half, width: 2 * half, height: 2 * half };
 }
 
-/** How much of a line comes near a box. @param {Point} a @param {Point} b @param {Box} box */
+/** The length of a line near a box. @param {Point} a @param {Point} b @param {Box} box */
 function lengthIn(a, b, { x, y, width, height }) {
   const [right, down] = [b.x - a.x, b.y - a.y];
   const [left, far] = [(x - CLEAR.x - a.x) / right, (x + width + CLEAR.x - a.x) / right];

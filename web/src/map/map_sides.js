@@ -1,5 +1,5 @@
 /**
- * How much room a label takes, and where beside its post it may stand.
+ * The size of a label, and its possible places beside its post.
  * @import { Box, Point } from "./map_drawing.js"
  * @import { Place, Wording } from "./map_labels.js"
  * @typedef {{box: Box, place: Place, dislike: number}} Side `dislike`: below 10, how much rather it stands elsewhere
@@ -55,7 +55,7 @@ let pen = null;
 /** @type {Map<string, number>} */
 const known = new Map();
 
-/** How wide this is written on this device. @param {keyof typeof FONTS} kind @param {string} text */
+/** The width of a text on this device. @param {keyof typeof FONTS} kind @param {string} text */
 function widthOf(kind, text) {
   const key = kind + text;
   const width = known.get(key) ?? measured(kind, text);
@@ -70,7 +70,7 @@ function measured(kind, text) {
   return pen.measureText(text).width;
 }
 
-/** All places that a label may have, the best ones first. @param {Point} post @param {Wording} wording @param {Box | null} frame
+/** The places that a label may have, the best first. @param {Point} post @param {Wording} wording @param {Box | null} frame
  *  @returns {Side[]} */
 export function sidesOf(post, wording, frame) {
   const foldings = notesIn(wording, true).length > wording.notes.length ? [false, true] : [false];

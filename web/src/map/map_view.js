@@ -5,7 +5,7 @@
  */
 
 export const CLOSEST = 6;
-/** How close "to the robot" goes. */
+/** The zoom of "go to robot". */
 const NEAR = 2.5;
 /** Around what is to be seen. */
 const ROOM = 95;
@@ -25,7 +25,7 @@ export function zoomed(view, frame, factor, at = view) {
 /** @param {View} view @param {Box} frame @param {number} dx @param {number} dy */
 export const moved = (view, frame, dx, dy) => within({ ...view, x: view.x + dx, y: view.y + dy }, frame);
 
-/** All of these, as close as they allow. @param {readonly Point[]} points @param {Box} frame @returns {View} */
+/** The closest view that shows all of these points. @param {readonly Point[]} points @param {Box} frame @returns {View} */
 export function showing(points, frame) {
   if (!points.length) return whole(frame);
   const [xs, ys] = [points.map(({ x }) => x), points.map(({ y }) => y)];
@@ -52,13 +52,13 @@ function within({ x, y, zoom }, frame) {
 }
 
 /**
- * How much larger than plain posts, lines and letters are drawn: on a small screen letters grow with the zoom until they
+ * The scale of posts, lines and letters: on a small screen letters grow with the zoom until they
  * have their full size, and are never too small to be read.
  * @param {number} pixels of the screen per unit at zoom 1 @param {number} zoom
  */
 export const sizeOf = (pixels, zoom) => Math.max(1, LETTER.readable / LETTER.drawn / pixels, Math.min(zoom, 1 / pixels));
 
-/** How far apart places are drawn, in units of letters and lines. @param {View} view @param {number} size */
+/** The scale of distances, in units of letters and lines. @param {View} view @param {number} size */
 export const spreadOf = (view, size) => view.zoom / size;
 
 /** @param {View} view @param {Box} frame @param {number} size @returns {Box} in the units of the spread drawing */

@@ -1,4 +1,4 @@
-/** What is known of the robots on a map, as a list: everything that the map shows of them, and why they do it. */
+/** The robots on a map as a list: everything that the map shows of them, and why they do it. */
 import { html, nothing } from "lit";
 import { expectedNext } from "../orders/arrival.js";
 import { conditionsOf, isSilentAsExpected } from "./map_facts.js";

@@ -1,9 +1,9 @@
-/** What a person needs where there is no network, fetched in one go while there is one: the pages may ask for it later. */
+/** Fetches what a person needs offline in one go, before the pages ask for it. */
 import { aboutMe, anyList, forEverybody, myFirstContacts, myRunningOrders } from "../service/api.js";
 import { fetchAndKeep, isKept } from "./kept_answers.js";
 
 const NOT_LONGER_MS = 20_000;
-/** Who goes from page to page needs no list for each. */
+/** Moving from page to page must not fetch a list each time. */
 const NOT_BEFORE_MS = 60_000;
 
 /** When the last one began, as far as this worker knows. */
@@ -21,7 +21,7 @@ async function forAll() {
   await Promise.all((await missing(forEverybody())).map((url) => fetchAndKeep(url, inTime())));
 }
 
-/** Who is here is asked first: nothing is kept beside what another left. */
+/** Ask for the person first: nothing may be kept beside another person's data. */
 async function forPerson() {
   begun_ms = performance.now();
   const signal = inTime();

@@ -1,5 +1,5 @@
 /**
- * What the service answered, kept for when it cannot be asked: what `isKeptOffline` names. Asked first is always the
+ * Answers of the service kept for use offline, as `isKeptOffline` names them. Asked first is always the
  * service. Each question takes the store that it found when it was asked: once that was deleted, since another person may
  * be here, what is still put there is gone as well.
  */
@@ -8,7 +8,7 @@ import { LINKS } from "./kept_link.js";
 import { keepList, keepOwn, keptList } from "./running_orders.js";
 
 /** @import { Order } from "../../types/api_types.ts" */
-/** What a page has heard, and whose page it is. @typedef {{order: Order, person_id: string}} Heard */
+/** An order event and the person of the page that received it. @typedef {{order: Order, person_id: string}} Heard */
 
 const PERSONAL = "answers";
 const PUBLIC = "public answers";
@@ -55,7 +55,7 @@ export const isKept = async (url) => Boolean(await (await storeOf(url)).match(ur
 /** @param {URL} url */
 const storeOf = (url) => caches.open(isPublic(url) ? PUBLIC : PERSONAL);
 
-/** What is kept, where the service does not answer at all, or not soon.
+/** Return the kept answer where the service gives none, or not soon.
  * @param {Promise<Response>} asked @param {() => Promise<Response | undefined>} kept */
 async function inTime(asked, kept) {
   const patience = new Promise((resolve) => setTimeout(resolve, PATIENCE_MS));

@@ -8,10 +8,10 @@ const FETCHED_AT_ONCE = 3;
 const OLD_PAGES = "/old-pages";
 const known = new Set(FILES);
 
-/** Whether this version has it. @param {URL} url @param {Request} request */
+/** True if this version has the file. @param {URL} url @param {Request} request */
 export const isFile = (url, request) => known.has(url.pathname) && (!url.search || request.mode === "navigate");
 
-/** All files or none. Some lanes stay free for what a person does meanwhile. */
+/** Cache all files or none. Some lanes stay free for what a person does meanwhile. */
 export async function keepFiles() {
   const cache = await caches.open(CURRENT);
   const waiting = [...FILES];

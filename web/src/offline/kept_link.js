@@ -1,5 +1,5 @@
 /**
- * What a link in a mail has opened, kept for when the service cannot be asked. It is found again with the same link alone:
+ * The answer to a link in a mail, kept for use offline. It is found again with the same link alone:
  * of the link itself only a hash is kept.
  */
 import { ApiProblem } from "../service/api.js";

@@ -28,7 +28,7 @@ export class KeptOrders extends PageElement {
     this.person_id = "";
     /** @type {KeptOrder[]} */
     this.kept = [];
-    /** Whether an order was kept while the page was open: then its person is taken to it. */
+    /** True if an order was kept while the page was open: then scroll to it. */
     this.justNow = false;
     /** @type {CampusMap | null} */
     this.map = null;

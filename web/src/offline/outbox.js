@@ -46,7 +46,7 @@ export async function keptOrders(person_id) {
   return all.filter((kept) => kept.person_id === person_id).sort((a, b) => a.at.localeCompare(b.at));
 }
 
-/** Whether there are any, of whomever. */
+/** True if there are any, of any person. */
 export const anyKept = async () => (await inBox("readonly", (box) => box.count())) > 0;
 
 /** @param {KeptOrder} kept */
@@ -64,7 +64,7 @@ export async function discard(key) {
   announce();
 }
 
-/** Nobody signs in or out while an order is being sent. @template T @param {() => Promise<T>} act @returns {Promise<T>} */
+/** Hold off sign-in and sign-out while an order is being sent. @template T @param {() => Promise<T>} act @returns {Promise<T>} */
 export const inSession = async (act) => await (navigator.locks ? navigator.locks.request(LOCK, act) : act());
 
 /** No network, a gateway without its service, or a first request that still runs: sending it again by itself is safe.
@@ -73,7 +73,7 @@ export const isPassing = (problem) =>
   problem instanceof api.NoAnswer ||
   (problem instanceof api.ApiProblem && ([502, 503, 504].includes(problem.status) || problem.code === "still_running"));
 
-/** Whether the same order may be taken later, unchanged; any other has to be corrected first.
+/** True if the same order may be accepted later, unchanged; any other has to be corrected first.
  *  @param {Pick<Refusal, "status" | "code">} refusal */
 export const isForLater = ({ status, code }) =>
   ([401, 409, 429].includes(status) || status >= 500) && code !== "idempotency_key_reused";

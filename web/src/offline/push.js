@@ -12,7 +12,7 @@ const isSupported = () => "serviceWorker" in navigator && "PushManager" in windo
 /** @returns {{id: string, endpoint: string, person_id: string} | null} */
 const device = () => JSON.parse(localStorage.getItem(PUSH_DEVICE) ?? "null");
 
-/** What a state means, and what can be done about it. @param {PushState} state */
+/** The text for a state and its remedy. @param {PushState} state */
 export const pushWords = (state) => t(`push.${state}`);
 
 /** @returns {Promise<PushState>} */
@@ -40,7 +40,7 @@ export async function endPush() {
   return pushState();
 }
 
-/** On each visit: what a push service has renewed is told, and nobody is shown what is for another. @param {string} person_id */
+/** On each visit: report a renewed subscription; end that of another person. @param {string} person_id */
 export async function checkPush(person_id) {
   const known = device();
   if (!known) return;

@@ -6,7 +6,7 @@ import { keepOrder } from "./kept_answers.js";
 /** @typedef {Pick<Notice, "kind" | "order_id" | "title" | "body" | "at"> & {tag: string, language: string}} Pushed what app/notify sends */
 
 const NAME = "Campus Mail";
-/** Somebody stands before a robot, or is about to. */
+/** Kinds that stay on screen: a person stands before a robot, or soon will. */
 const STAYS = ["robot_here", "robot_here_for_you", "at_return", "alarm"];
 
 /** Browsers insist that every push is shown, even one that cannot be read. @param {WorkerScope} worker @param {{text(): string} | null} data */
@@ -42,13 +42,13 @@ async function count() {
   await navigator.setAppBadge?.(unread);
 }
 
-/** What was told is opened, and need not be counted any more. @param {WorkerScope} worker @param {Notification} notification */
+/** Open the page of a notification and mark it as read. @param {WorkerScope} worker @param {Notification} notification */
 export async function open({ clients }, notification) {
   notification.close();
   await Promise.all([lead(clients, notification.data?.url), read(notification.data).catch(() => undefined)]);
 }
 
-/** To the page that shows it already, or to a new one: no other is taken from under somebody's hands.
+/** To the page that shows it already, or to a new one: no other page in use is navigated away.
  * @param {WorkerScope["clients"]} clients @param {string | undefined} address */
 async function lead(clients, address) {
   const url = new URL(address ?? PAGES.notices, location.origin).href;

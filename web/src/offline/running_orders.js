@@ -10,7 +10,7 @@ import { hasEnded } from "../orders/order_words.js";
 const CODES_AT_MOST = 10;
 const ROLES = { sent: "sender", coming: "recipient" };
 
-/** What goes on; what has ended is forgotten wherever it was kept. @param {Cache} cache @param {URL} url @param {Page<Order>} page */
+/** Keep the orders in progress; remove those that have ended. @param {Cache} cache @param {URL} url @param {Page<Order>} page */
 export async function keepList(cache, url, page) {
   const [running, others] = [page.items.filter(isOwnAndOpen), page.items.filter((order) => !isOwnAndOpen(order))];
   const over = isWhole(url, page) ? await missingIn(cache, url, running) : [];
@@ -41,10 +41,10 @@ async function keptOrders(cache) {
   return Promise.all(kept.flatMap((order) => order?.json() ?? []));
 }
 
-/** Whether all that goes on in one role is listed. @param {URL} url @param {Page<Order>} page */
+/** True if the list holds every order in progress of one role. @param {URL} url @param {Page<Order>} page */
 const isWhole = ({ searchParams }, page) => searchParams.get("state") === "open" && (searchParams.get("role") ?? "all") in ROLES && !page.next;
 
-/** What is kept as running and runs no more. @param {Cache} cache @param {URL} url @param {Order[]} running */
+/** Kept orders that are no longer in progress. @param {Cache} cache @param {URL} url @param {Order[]} running */
 async function missingIn(cache, { searchParams }, running) {
   const listed = new Set(running.map(({ id }) => id));
   const role = searchParams.get("role") ?? "all";

@@ -3,7 +3,7 @@ import { hasPush } from "../session/session.js";
 /** @import { Person } from "../../types/api_types.ts" */
 /** @import { Heard } from "./kept_answers.js" */
 
-/** What a page hears when a new version is there: `take` changes to it. @typedef {CustomEvent<{take: () => void}>} NewVersion */
+/** The event of a new version: `take` changes to it. @typedef {CustomEvent<{take: () => void}>} NewVersion */
 
 /** @param {Person | null} person */
 export async function workOffline(person) {
@@ -25,7 +25,7 @@ export async function workOffline(person) {
 const registered = () =>
   navigator.serviceWorker.register("/service_worker.js", { type: "module", updateViaCache: "none" }).catch(() => undefined);
 
-/** What changes while a page is open is kept, too. @param {Heard} heard */
+/** Send the worker a change received by an open page, to be kept. @param {Heard} heard */
 export function tellWorker(heard) {
   if (heard.order.my_role !== "dispatcher") navigator.serviceWorker?.controller?.postMessage(heard);
 }

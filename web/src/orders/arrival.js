@@ -25,7 +25,7 @@ export function arrivalText(order, now_ms) {
 /** @param {Order} order @param {number} now_ms */
 export const isLate = (order, now_ms) => arrivalOf(order, now_ms)?.late === true;
 
-/** Why no time is known; one whose time has run out while nobody asked takes longer. @param {Order} order @param {CampusMap} map */
+/** Why no time is known; one whose time has run out takes longer. @param {Order} order @param {CampusMap} map */
 export function whyUnknown(order, map) {
   const { reason, reason_words } = order.estimate ?? {};
   return reason ? orderReason({ ...order, why: reason, why_words: reason_words ?? null }, map) : t("why.takes_longer");

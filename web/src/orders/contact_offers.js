@@ -10,7 +10,7 @@ import { PageElement } from "../elements/page_element.js";
 
 const TYPING_MS = 150;
 const AT_ONCE = 6;
-/** What the field says that it controls. */
+/** The id of the list that the field controls. */
 const LIST = "contact-offers";
 
 export class ContactOffers extends PageElement {

@@ -120,7 +120,7 @@ export class MailPage extends PageElement {
     this.#fetch();
   }
 
-  /** What is shown is brought up to date; what is new is shown if all is. @param {Order} order */
+  /** Update an order that is shown; add a new one if no filter is set. @param {Order} order */
   #update(order) {
     const role = order.my_role === "recipient" ? "coming" : "sent";
     const { items, next } = this.lists[role];

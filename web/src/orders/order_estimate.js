@@ -10,7 +10,7 @@ import { icon } from "../elements/icon.js";
 import { PageElement } from "../elements/page_element.js";
 /** @import { Estimate } from "../../types/api_types.ts" */
 /** @import { Schedule, When } from "./order_schedule.js" */
-/** What was refused, as `{field: sentence}`. @typedef {CustomEvent<Record<string, string>>} Refused */
+/** Refused fields, as `{field: sentence}`. @typedef {CustomEvent<Record<string, string>>} Refused */
 
 const DAY_MS = 86_400_000;
 
@@ -88,7 +88,7 @@ export class OrderEstimate extends PageElement {
   }
 }
 
-/** How long until it is this time of the day. @param {string} at local, "09:30" */
+/** The time until the next such time of the day. @param {string} at local, "09:30" */
 function untilTime(at) {
   const [hour, minute] = at.split(":").map(Number);
   const then = new Date(serverNow());

@@ -13,7 +13,7 @@ const RECENT = 3;
 const WHENS = /** @type {const} */ (["now", "later", "again"]);
 
 export class OrderForm extends PageElement {
-  /** What was chosen last: what is fetched for an earlier choice comes too late. @type {"now" | "later" | "again"} */
+  /** The latest choice: modules fetched for an earlier one come too late. @type {"now" | "later" | "again"} */
   #chosen = "now";
 
   static properties = {
@@ -48,7 +48,7 @@ export class OrderForm extends PageElement {
     if (changed.has("wanted") && !changed.get("wanted") && this.wanted.not_before) this.#mend(this.wanted.not_before);
   }
 
-  /** What else the form needs has its room, and is fetched once the form stands. */
+  /** Reserve room for the other parts of the form, and fetch them once the form stands. */
   firstUpdated() {
     import("./order_estimate.js");
   }
@@ -85,7 +85,7 @@ export class OrderForm extends PageElement {
     </select>`);
   }
 
-  /** The list of those I know is fetched when somebody comes to the field. */
+  /** The list of those I know is fetched when the field gets the focus. */
   #recipientField() {
     return field(
       { name: "recipient", label: t("order.recipient"), problem: this.problems.recipient },
@@ -138,7 +138,7 @@ export class OrderForm extends PageElement {
     this.#say({ form: "" });
   }
 
-  /** What belongs to the choice could not be fetched: what is marked stays what holds. */
+  /** Keep the marked choice where the module of the new one could not be fetched. */
   #stay() {
     for (const radio of this.querySelectorAll("input")) if (radio.name === "when") radio.checked = radio.value === this.when;
     this.#say({ form: t("error.no_answer") });
@@ -204,7 +204,7 @@ export class OrderForm extends PageElement {
     this.#want({ to_post: "", recipient: "", description: "", not_before: undefined });
   }
 
-  /** Who goes back finds an empty form: what is filled in already would be ordered twice by one tap. @param {string} page */
+  /** Empty the form on going back: else one tap would order the same again. @param {string} page */
   async #leaveFor(page) {
     this.#empty();
     history.replaceState(null, "", location.pathname); // a link that repeats an order fills the form in, too
@@ -221,7 +221,7 @@ function newestToEach(sent) {
 }
 
 const loadEnd = () => import("./send_order.js");
-/** Who begins to fill it in has its end at hand. */
+/** Fetch the module that sends the form as soon as a field is used. */
 const begin = () => void loadEnd().catch(() => undefined);
 const loadOffers = () => import("./contact_offers.js");
 

@@ -97,7 +97,7 @@ export class OrderPage extends PageElement {
   }
 }
 
-/** Who cannot be asked for the words does not answer either. @param {unknown} failure */
+/** Say that the service does not answer, where the module for its words cannot be fetched either. @param {unknown} failure */
 const inWords = (failure) => import("../service/problems.js").then((problems) => problems.inWords(failure), () => t("error.no_answer"));
 
 customElements.define("order-page", OrderPage);

@@ -56,7 +56,7 @@ const WAY = /** @type {OrderState[]} */ ([
 
 const LOADED = WAY.indexOf("carrying");
 
-/** What each part of the way is called, and the states in it. */
+/** The stages of an order, and the states in each. */
 const STAGES = /** @type {Record<string, OrderState[]>} */ ({
   collect: ["queued", "assigned", "to_sender"],
   load: ["at_sender"],
@@ -69,16 +69,16 @@ const ENDED = /** @type {OrderState[]} */ (["delivered", "returned", "held", "ex
 /** @param {Order} order */
 export const hasEnded = (order) => ENDED.includes(order.state);
 
-/** Whether the robot carries the mail to its recipient. @param {Order} order */
+/** True while the robot carries the mail to its recipient. @param {Order} order */
 export const isAboard = (order) => order.state === "carrying" || order.state === "at_recipient";
 
 /** Where the robot waits for each code. */
 const AT_ME = { load: "at_sender", receive: "at_recipient", return: "at_return" };
 
-/** Whether a robot stands somewhere and waits for a hand-over. @param {Order} order */
+/** True while a robot stands at a post and waits for a hand-over. @param {Order} order */
 export const isAtAStop = (order) => Object.values(AT_ME).includes(order.state);
 
-/** Whether the robot is there and waits for me. @param {Order} order */
+/** True while the robot waits at a post for this person. @param {Order} order */
 export const isMyTurn = (order) => order.my_code !== null && AT_ME[order.my_code] === order.state;
 
 /** The names that the sentences about an order use. @param {Order} order @param {CampusMap} map */
@@ -95,7 +95,7 @@ const names = (order, map) => ({
 export const isBetweenLegs = ({ state, passed_on_at_post }) => 
   passed_on_at_post !== null && WAY.slice(0, LOADED).includes(state);
 
-/** Nobody looks for a robot before its time. @param {Order} order @param {number} now_ms */
+/** True for an order whose time has not come: no robot is searched yet. @param {Order} order @param {number} now_ms */
 function stateOf(order, now_ms) {
   const { state, not_before } = order;
   if (isBetweenLegs(order)) return "passed_on";
@@ -112,7 +112,7 @@ function sentence(what, order, map, now_ms) {
 /** Where it stands, for the person who looks. @param {Order} order @param {CampusMap} map @param {number} now_ms */
 export const stateSentence = (order, map, now_ms) => sentence("state", order, map, now_ms);
 
-/** What happens next, or what that person is to do. @param {Order} order @param {CampusMap} map @param {number} now_ms */
+/** The next event, or the next thing this person has to do. @param {Order} order @param {CampusMap} map @param {number} now_ms */
 export function nextSentence(order, map, now_ms) {
   if (order.cancel_requested || order.return_requested) return t(isAboard(order) ? "bring_back.requested" : "cancel.requested");
   return sentence("next", order, map, now_ms);
@@ -128,7 +128,7 @@ export function stages(order) {
   }));
 }
 
-/** What is told besides the states. */
+/** Events that are shown besides the states. */
 const TOLD_TOO = ["wait_extended", "delegate_named", "delegate_revoked", "return_requested", "delayed", "taken_out"];
 
 /** @param {OrderEvent} event @param {Record<string, string>} values */
@@ -137,7 +137,7 @@ function happening(event, values) {
   return t(event.kind === "moved" ? `timeline.${event.state}` : `timeline.event.${event.kind}`, values);
 }
 
-/** Back in the queue, and somebody has said where it lies. @param {OrderEvent} event */
+/** True for an order back in the queue, after a dispatcher has said where the mail is. @param {OrderEvent} event */
 const isPassingOn = ({ seq, kind, state, post, by }) =>
   seq > 1 && kind === "moved" && state === "queued" && by === "dispatcher" && post !== null;
 

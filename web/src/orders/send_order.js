@@ -1,4 +1,4 @@
-/** The end of the order form, fetched when somebody begins to fill it in: says what is missing, or places what is wanted. */
+/** The end of the order form, fetched at the first input: says what is missing, or places the order. */
 import * as api from "../service/api.js";
 import { looksLikeEmail } from "../session/email.js";
 import { followPage, PAGES } from "../service/links.js";
@@ -34,7 +34,7 @@ async function place({ wanted, when, schedule }) {
   return followPage((await placeOrder(once, personHere()?.id ?? "")).id);
 }
 
-/** What a person can see for themselves; everything else is the service's to judge.
+/** Check the fields that a person can correct at once; everything else is the service's to judge.
  *  @param {FilledIn} filled @returns {Record<string, string>} */
 function missing({ wanted: { from_post, to_post, recipient }, when, schedule }) {
   return {

@@ -1,4 +1,4 @@
-/** What I send again and again: when it comes round next; paused, resumed, ended. */
+/** Repeating orders of a person: the next time of each; paused, resumed, ended. */
 import { html, nothing } from "lit";
 import * as api from "../service/api.js";
 import { titleOf } from "../service/posts.js";

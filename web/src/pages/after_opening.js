@@ -1,4 +1,4 @@
-/** What nobody waits for, done once a page stands: orders that wait on this device, the worker. */
+/** Low-priority work after a page has opened: orders that wait on this device, the worker. */
 import { OnLive } from "../live/live.js";
 import { onKept } from "../session/session.js";
 import { tellWorker, workOffline } from "../offline/with_worker.js";

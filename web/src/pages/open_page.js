@@ -43,7 +43,7 @@ export async function openPage(page, content) {
   });
 }
 
-/** What a page shows may have a script of its own that is still on its way: nothing else is asked for before that.
+/** Wait for the module of the page's content: nothing else is requested before it.
  *  @param {PageShell} shell */
 async function contentStands(shell) {
   await shell.updateComplete;
@@ -57,7 +57,7 @@ async function keptHere(person) {
   return keptOrders(person.id).catch(() => []);
 }
 
-/** What nobody waits for is done once the page stands. @param {() => unknown} work */
+/** Run low-priority work once the page stands. @param {() => unknown} work */
 function afterwards(work) {
   const whenIdle = () => ("requestIdleCallback" in window ? requestIdleCallback(work, { timeout: 3_000 }) : setTimeout(work, 500));
   if (document.readyState === "complete") whenIdle();
@@ -65,7 +65,7 @@ function afterwards(work) {
 }
 
 /**
- * A page for somebody who has no account and needs none.
+ * Opens a page for a guest, who needs no account.
  * @param {string} title @param {() => unknown} content
  */
 export async function openPageForGuest(title, content) {

@@ -20,7 +20,7 @@ export const orderSlip = (order, map, code, link) => html`<article class="slip" 
   ${code ? withCode(code) : withLink(order, link)}
 </article>`;
 
-/** What somebody has written. @param {string} words */
+/** Text that a person has written. @param {string} words */
 const own = (words) => html`<bdi>${words}</bdi>`;
 
 /** @param {string} label @param {unknown} value @param {unknown} [more] */

@@ -1,4 +1,4 @@
-/** What goes to the printer: the slip that goes with the mail of one order, or the marker sheets of the map's posts. */
+/** Pages to print: the slip that goes with the mail of one order, or the marker sheets of the map's posts. */
 import { html } from "lit";
 import { repeat } from "lit-html/directives/repeat.js";
 import * as api from "../service/api.js";
@@ -70,7 +70,7 @@ export class PrintPage extends PageElement {
       ${orderSlip(this.order, map, this.code, new URL(followPage(this.order.id), location.href).href)}`;
   }
 
-  /** Whether its code is to be shown here once there is one. @param {Order} order */
+  /** True if its code is to be shown here once there is one. @param {Order} order */
   #isAwaited({ state, placed_by }) {
     return state === "queued" && placed_by !== null && placed_by.email === personHere()?.email;
   }

@@ -28,7 +28,7 @@ function scale({ since, until }) {
   return (/** @type {string} */ at) => (WIDTH * (Date.parse(at) - from_ms)) / span_ms;
 }
 
-/** How high a ratio stands. @param {number} ratio */
+/** The height of a ratio in the drawing. @param {number} ratio */
 export const height = (ratio) => HEIGHT * (1 - Math.min(1, Math.max(0, ratio)));
 
 /** Samples without a long silence between them. @param {BatteryHistory} history @returns {Sample[][]} */

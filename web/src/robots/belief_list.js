@@ -1,4 +1,4 @@
-/** What a robot believes: what came and went just now, marked by a sign, and the whole list; both filtered by a word. */
+/** Beliefs of a robot: recent changes, marked by a sign, and the whole list; both filtered by a word. */
 import { html, nothing } from "lit";
 import { repeat } from "lit-html/directives/repeat.js";
 import { t } from "../texts/texts.js";

@@ -1,5 +1,5 @@
 /**
- * What a robot intends, as a tree: each intention from its first cause down to what it is doing, with the plan of each
+ * Intentions of a robot as a tree: each intention from its first cause down to what it is doing, with the plan of each
  * goal and why that one; and why it does not go on.
  */
 import { html, nothing } from "lit";

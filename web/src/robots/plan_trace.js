@@ -1,4 +1,4 @@
-/** What a robot's mind did, newest first: what it chose for what, its steps, beliefs, goals given up. */
+/** The activity log of a robot's agent, newest first: chosen plans, actions, beliefs, dropped goals. */
 import { html, nothing } from "lit";
 import { repeat } from "lit-html/directives/repeat.js";
 import { t } from "../texts/texts.js";
@@ -39,7 +39,7 @@ const kinds = (chosen, set) => html`<div class="field">
   </select>
 </div>`;
 
-/** What the filter looks through. @param {NumberedLine} line */
+/** The text that the filter searches. @param {NumberedLine} line */
 const textOf = ({ text, plan, place, cycle }) => `${cycle} ${text} ${plan ?? ""} ${place ?? ""}`;
 
 /** @param {NumberedLine} line */

@@ -15,7 +15,7 @@ import { PageElement } from "../elements/page_element.js";
 const HOUR_MS = 3_600_000;
 const SPANS = /** @type {const} */ ({ hours: 6 * HOUR_MS, day: 24 * HOUR_MS, week: 168 * HOUR_MS, month: 720 * HOUR_MS });
 const LOOK_AGAIN_MS = 60_000;
-/** A robot that has just been switched on says its first word on its battery while somebody looks. */
+/** A robot that has just been switched on sends its first battery reading while the page is open. */
 const LOOK_AGAIN_FOR_THE_FIRST_MS = 5_000;
 const SLACK_MS = 100;
 const ROWS = 13;

@@ -1,4 +1,4 @@
-/** What a dispatcher can tell a robot, and what it answered to what it was told last. */
+/** Commands of a dispatcher to a robot, and its answers to the latest. */
 import { html, nothing } from "lit";
 import { alarmText } from "../texts/alarm_words.js";
 import * as api from "../service/api.js";
@@ -34,7 +34,7 @@ export class RobotCommands extends PageElement {
     this.robot = null;
     /** @type {CampusMap | null} */
     this.map = null;
-    /** Whether this person may tell it anything. */
+    /** True if this person may send commands. */
     this.may = false;
     /** @type {Command[]} */
     this.commands = [];

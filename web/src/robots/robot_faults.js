@@ -1,4 +1,4 @@
-/** What went wrong with a robot, newest first: what it was, where, from when until when. */
+/** Faults and alarms of a robot, newest first, each with its place and times. */
 import { html, nothing } from "lit";
 import { alarmText } from "../texts/alarm_words.js";
 import * as api from "../service/api.js";

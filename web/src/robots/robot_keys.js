@@ -1,4 +1,4 @@
-/** How a robot gets in: a one-time code to enrol it, and the tokens that it has had. For maintainers. */
+/** Enrolment of a robot: a one-time code, and the tokens that it has had. For maintainers. */
 import { html, nothing } from "lit";
 import * as api from "../service/api.js";
 import { inWords } from "../service/problems.js";

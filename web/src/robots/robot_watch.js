@@ -44,9 +44,9 @@ export class RobotWatch extends PageElement {
     this.online = false;
     /** @type {Seen} */
     this.seen = this.#run.seen;
-    /** What was told when it was held still; null: it moves. @type {number | null} */
+    /** The count of reports when the view was paused; null: not paused. @type {number | null} */
     this.held = null;
-    /** Whether this robot's software can tell. */
+    /** True if this robot's software supports live diagnostics. */
     this.tells = true;
     this.problem = "";
     this.beliefFilter = this.traceFilter = this.kind = "";
@@ -73,7 +73,7 @@ export class RobotWatch extends PageElement {
     if (changed.has("robot")) this.#run = new WatchedRun(this.robot);
   }
 
-  /** What a robot tells comes by the stream alone, and once: it is asked when there is one to hear it by. */
+  /** Reports come by the event stream alone, and once: ask for them only when the stream stands. */
   firstUpdated() {
     if (isLive()) this.#say();
   }

@@ -94,7 +94,7 @@ function robotCard(robot, alarms, map) {
   </li>`;
 }
 
-/** What it is doing, in one word. @param {Robot} robot */
+/** The activity of a robot, in one word. @param {Robot} robot */
 export function robotState({ activity, online, heard_at }) {
   if (!heard_at) return html`<span class="badge over">${t("robots.never_heard")}</span>`;
   if (!online) return html`<span class="badge away">${t("robots.no_network")}</span>`;

@@ -1,4 +1,4 @@
-/** What a robot feels now: its shape from above with what is pressed or near, and the same in words. */
+/** Sensor readings of a robot: its shape from above with what is pressed or near, and the same in words. */
 import { html, nothing, svg } from "lit";
 import { hasText, t } from "../texts/texts.js";
 import { decimal } from "../texts/times.js";

@@ -1,5 +1,5 @@
 /**
- * What was watched of a robot so far: the newest of everything, what changed, and all of it for the download.
+ * The live diagnostics received so far: the newest of everything, what changed, and all of it for the download.
  * @import { Insight, TraceLine, Watched } from "../../types/api_types.ts"
  * @typedef {TraceLine & {id: number}} NumberedLine
  * @typedef {{id: number, came: boolean, text: string, at: string}} Change a belief that came or went
@@ -67,7 +67,7 @@ export class WatchedRun {
     this.#dropped += 1;
   }
 
-  /** Whether all beliefs have to be told again: none were yet, or some news are missing. */
+  /** True if all beliefs are needed anew: none were received yet, or some reports are missing. */
   get isIncomplete() {
     return this.#believed_until !== this.seen.insight?.number;
   }

@@ -21,7 +21,7 @@ export class ApiProblem extends Error {
 
 /** No answer came: no network, or no service. Whether the request arrived is not known. */
 export class NoAnswer extends Error {
-  /** Whether something was only asked. */
+  /** True for requests that change nothing. */
   isQuestion = false;
 }
 
@@ -53,7 +53,7 @@ async function send(path, { method = "GET", body, headers = {}, cache }) {
   }
 }
 
-/** What a page does once the service no longer knows who asks. @type {((isAct: boolean) => Promise<boolean>) | null} */
+/** The handler for a session that has ended. @type {((isAct: boolean) => Promise<boolean>) | null} */
 let signInAgain = null;
 
 /** @param {(isAct: boolean) => Promise<boolean>} act promises whether the same person is signed in again; `isAct`: whether
@@ -105,7 +105,7 @@ export function positionOfAnswers() {
   return position;
 }
 
-/** Whether `one` comes later in the stream. What is not known, or of another run of the service, may.
+/** True if `one` comes later in the stream. A place that is not known, or of another run of the service, may.
  *  @param {Position} one @param {Position} other */
 export function isAfter(one, other) {
   const [[run, number], [otherRun, otherNumber]] = [one, other].map((position) => position?.split("-") ?? []);
@@ -134,7 +134,7 @@ const orderPath = (id) => `/orders/${encodeURIComponent(id)}`;
 export const about = () => ask("/about");
 
 /** @param {{fresh?: boolean}} [wish] `fresh`: from the service or not at all
- *  @returns {Promise<Api.Me | null>} who is signed in here, null for nobody */
+ *  @returns {Promise<Api.Me | null>} the person who is signed in here, or null */
 export async function me({ fresh = false } = {}) {
   try {
     return await ask("/me", { cache: fresh ? "no-store" : "default" });
@@ -159,7 +159,7 @@ export const signOut = () => ask("/session", { method: "DELETE" });
 /** @returns {Promise<Api.CampusMap>} */
 export const campusMap = () => ask("/map");
 
-/** Who holds which corridor, as far as I may see it. @returns {Promise<Api.Traffic>} */
+/** The corridors and the robots that hold them, as far as this person may see them. @returns {Promise<Api.Traffic>} */
 export const traffic = () => ask("/map/traffic");
 
 /** @param {string} from_post @param {string} to_post @returns {Promise<Api.Estimate>} */
@@ -187,7 +187,7 @@ export const sayNotNow = (id) => ask(orderPath(id) + "/not-now", { method: "POST
 /** Have the robot wait longer. @param {string} id @param {number} extend_s @returns {Promise<Api.Order>} */
 export const extendWait = (id, extend_s) => ask(orderPath(id) + "/wait", { method: "POST", body: { extend_s } });
 
-/** Who may hand over for me. @param {string} id @returns {Promise<Api.Delegate[]>} */
+/** Delegates of this person for an order. @param {string} id @returns {Promise<Api.Delegate[]>} */
 export const delegates = (id) => everyPage(orderPath(id) + "/delegates");
 
 /** @param {string} id @param {Api.NewDelegate} delegate @returns {Promise<Api.Delegate>} */
@@ -228,7 +228,7 @@ export const handoverCode = async (id) => withPicture(await ask(orderPath(id) + 
  *  @param {string} id @param {string} [digits] @returns {Promise<unknown>} */
 export const handOver = (id, digits = "") => ask(orderPath(id) + "/handover", { method: "POST", body: { digits } });
 
-/** What the link in a mail opens. @param {string} what @param {string} token @param {object} [more] */
+/** Request a resource by the secret link of a mail. @param {string} what @param {string} token @param {object} [more] */
 const askByLink = (what, token, more = {}) => ask("/link/" + what, { method: "POST", body: { token, ...more } });
 
 /** A code that comes with its picture. @param {Api.LinkedCode} code @returns {Api.ShownCode} */
@@ -243,7 +243,7 @@ export const linkedCode = async (token) => withPictureInside(await askByLink("co
 /** @param {string} token @param {string} [digits] @returns {Promise<unknown>} */
 export const linkedHandOver = (token, digits = "") => askByLink("handover", token, { digits });
 
-/** Name somebody who takes the mail instead. @param {string} token @param {Api.NewDelegate} delegate
+/** Add a delegate who takes the mail instead. @param {string} token @param {Api.NewDelegate} delegate
  *  @returns {Promise<{delegate: Api.Delegate, code: Api.ShownCode}>} the code is shown this once */
 export async function linkedDelegate(token, delegate) {
   const named = await askByLink("delegate", token, delegate);
@@ -285,7 +285,7 @@ export const stopRobot = (name, reason) => tell(robotPath(name) + "/emergency-st
 /** Its corridor is free again. @param {string} name @param {string} corridor @returns {Promise<Api.Command>} */
 export const openWay = (name, corridor) => tell(robotPath(name) + "/open-way", { corridor });
 
-/** What it holds is given to others. @param {string} name @param {string} reason @returns {Promise<Api.Command>} */
+/** Release all corridors that a robot holds. @param {string} name @param {string} reason @returns {Promise<Api.Command>} */
 export const takeRobotOut = (name, reason) => tell(robotPath(name) + "/take-out", { reason });
 
 /** @returns {Promise<Api.ClosedCorridors>} */
@@ -300,10 +300,10 @@ export const openCorridor = (name) => tell(`/corridors/${encodeURIComponent(name
 /** @param {string} name @returns {Promise<Api.RobotDetails>} */
 export const robot = (name) => ask(robotPath(name));
 
-/** What it was told, newest first. @param {string} name @param {{limit?: number}} page @returns {Promise<Api.Page<Api.Command>>} */
+/** Commands to a robot, newest first. @param {string} name @param {{limit?: number}} page @returns {Promise<Api.Page<Api.Command>>} */
 export const robotCommands = (name, page) => ask(robotPath(name) + "/commands" + query(page));
 
-/** What went wrong with it, newest first. @param {string} robot
+/** Alarms of a robot, newest first. @param {string} robot
  *  @param {{limit?: number, cursor?: string, only_open?: "true"}} page @returns {Promise<Api.Page<Api.Alarm>>} */
 export const robotAlarms = (robot, page) => ask("/alarms" + query({ robot, ...page }));
 
@@ -421,7 +421,7 @@ export const sessions = (page = { limit: 50 }) => ask("/sessions" + query(page))
 /** @param {number} id @returns {Promise<null>} */
 export const endSession = (id) => ask(`/sessions/${id}`, { method: "DELETE" });
 
-/** All but this one. @returns {Promise<null>} */
+/** End all sessions but this one. @returns {Promise<null>} */
 export const endOtherSessions = () => ask("/sessions", { method: "DELETE" });
 
 /** My scripts' tokens. @param {{limit?: number, cursor?: string}} [page] @returns {Promise<Api.Page<Api.Token>>} */
@@ -433,10 +433,10 @@ export const makeToken = (wish) => ask("/tokens", { method: "POST", body: wish }
 /** @param {string} prefix @returns {Promise<null>} */
 export const revokeToken = (prefix) => ask(`/tokens/${prefix}`, { method: "DELETE" });
 
-/** Demonstration only: somebody holds my code of this order to the simulated camera. @param {string} order_id */
+/** Demonstration only: show the code of this order to the simulated camera. @param {string} order_id */
 export const showCodeToCamera = (order_id) => ask("/demo/camera", { method: "POST", body: { order_id } });
 
-/** What changes for me, as named events. @param {string | null} since a place in the stream; null: from now on */
+/** Open the event stream of this person. @param {string | null} since a place in the stream; null: from now on */
 export const openLive = (since) => new EventSource(BASE + "/live" + query({ since: since ?? undefined }));
 
 // What the service worker asks about an address.
@@ -453,13 +453,13 @@ const SESSION = new RegExp(`^${BASE}/sessions?(/|$)`);
 /** @param {string} path */
 const here = (path) => new URL(path, location.origin);
 
-/** What is kept before any page has asked for it: for everybody, and for who is signed in. */
+/** Resources cached before any page asks for them: public ones, and those of the signed-in person. */
 export const forEverybody = () => PUBLIC.map(here);
 export const aboutMe = () => here(ME);
 export const myFirstContacts = () => here(CONTACTS + query({ search: "", limit: 6 }));
 export const myRunningOrders = () => ["sent", "coming"].map((role) => here(LIST + query({ role, state: "open", limit: 20 })));
 
-/** Whether an answer is of the few that may be kept on the device (docs/decisions/0037). @param {URL} url */
+/** True for the few answers that may be kept on the device (docs/decisions/0037). @param {URL} url */
 export const isKeptOffline = (url) =>
   isPublic(url) || isMe(url) || url.pathname === CONTACTS || isList(url) || isOrder(url) || CODE.test(url.pathname);
 
@@ -472,7 +472,7 @@ export const isMe = (url) => url.pathname === ME;
 /** The first page of my own orders. @param {URL} url */
 export const isList = (url) => url.pathname === LIST && !url.searchParams.has("cursor") && !url.searchParams.get("search");
 
-/** All lists are answered from the orders that are kept: this tells that some list was. */
+/** A marker that a list of orders was fetched: lists are answered from the cached orders. */
 export const anyList = () => here(LIST);
 
 /** @param {URL} url */
@@ -487,6 +487,6 @@ export function aboutCode(id) {
   return { code: new URL(code), picture: new URL(code + ".svg") };
 }
 
-/** Whether somebody else may be signed in afterwards. @param {string} method @param {URL} url */
+/** True for requests after which another person may be signed in. @param {string} method @param {URL} url */
 export const changesSession = (method, url) =>
   (method !== "GET" && SESSION.test(url.pathname)) || url.pathname.startsWith(BASE + "/sign-in");

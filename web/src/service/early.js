@@ -1,6 +1,6 @@
 /**
- * What every page asks the service, asked while the other modules are still on their way; what its address does not tell
- * is on its way already, by the page's head (make_pages.py). A page takes each answer once; whoever asks again asks anew.
+ * Makes every page's first requests while the other modules are still on their way; what its address does not tell
+ * is on its way already, by the page's head (make_pages.py). A page takes each answer once; a second call asks anew.
  */
 import * as api from "./api.js";
 import { orderFrom } from "./links.js";
@@ -11,7 +11,7 @@ import { fetchTexts } from "../texts/texts.js";
 const LANGUAGE = "language";
 const BY_LINK = "/one-order.html";
 const WITH_MAP = ["/", "/mail.html", "/follow.html", BY_LINK];
-/** What is under way, and whom one wrote to last. */
+/** Enough orders for those in progress and the latest recipients. */
 const NEWEST = { limit: 6 };
 
 /** The language that was chosen last on this device: known before anybody says who is here. */
@@ -21,13 +21,13 @@ const about = api.about();
 /** A person who comes by a link need not be signed in. */
 const me = location.pathname === BY_LINK ? Promise.resolve(null) : api.me();
 fetchTexts(language).catch(() => undefined);
-/** Asked before it is known who is here: nobody is refused it. @type {Promise<Page<Order>> | null} */
+/** Asked before it is known who is here: no one is refused it. @type {Promise<Page<Order>> | null} */
 let orders = location.pathname === "/" ? api.orders("all", NEWEST) : null;
 const order_id = orderFrom(location.search);
 /** @type {Promise<Order> | null} */
 let followed = location.pathname === "/follow.html" && order_id ? api.order(order_id) : null;
 const map = WITH_MAP.includes(location.pathname) ? loadMap() : null;
-// Whoever needs an answer hears of its failure; nobody else has to.
+// The caller that needs an answer gets its failure: a rejection must not be reported as unhandled before.
 for (const answer of [about, me, orders, followed, map]) answer?.catch(() => undefined);
 
 /** The first answers, for the page that is being opened. */

@@ -13,7 +13,7 @@ export const PAGES = {
   settings: "/settings.html",
 };
 
-/** One of these roles opens the page; every other page is for whoever is signed in. @type {Partial<Record<PageName, Person["roles"]>>} */
+/** One of these roles opens the page; every other page is for all signed-in persons. @type {Partial<Record<PageName, Person["roles"]>>} */
 const NEEDED = {
   mailroom: ["dispatcher"],
   print: ["dispatcher"],
@@ -52,7 +52,7 @@ export const orderPage = (wanted) =>
 
 const WANTED = ["from_post", "to_post", "recipient", "description", "not_before"];
 
-/** What `repeatPage` asked for. @param {string} search @returns {Partial<WantedOrder>} */
+/** Read the order that `repeatPage` wrote. @param {string} search @returns {Partial<WantedOrder>} */
 export const wantedFrom = (search) =>
   Object.fromEntries([...new URLSearchParams(search)].filter(([name]) => WANTED.includes(name)));
 
@@ -62,5 +62,5 @@ export const orderFrom = (search) => new URLSearchParams(search).get("order");
 /** Told to delegates, who may not follow the order: the mail that they got has a link of their own. */
 const OF_DELEGATES = ["delegated", "delegation_over"];
 
-/** What a notice leads to. @param {import("../../types/api_types.ts").Notice} notice */
+/** The page that a notification leads to. @param {import("../../types/api_types.ts").Notice} notice */
 export const pageOf = ({ order_id, kind }) => (order_id && !OF_DELEGATES.includes(kind) ? followPage(order_id) : null);

@@ -1,4 +1,4 @@
-/** What went wrong, in words, and beside which field to say it. */
+/** Error messages, and the fields they belong to. */
 import { ApiProblem, NoAnswer } from "./api.js";
 import { hasText, t } from "../texts/texts.js";
 

@@ -1,4 +1,4 @@
-/** Whether something may be a mail address, as the browser's own fields judge it. */
+/** Checks email addresses as the browser's own fields do. */
 
 const judge = Object.assign(document.createElement("input"), { type: "email" });
 

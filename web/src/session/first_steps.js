@@ -1,4 +1,4 @@
-/** How it goes, for whoever is here for the first time: three steps, put away by a tap, found again under the account. */
+/** A first visitor's guide in three steps: dismissed by a tap, found again under the account. */
 import { html, svg } from "lit";
 import { putFirstHelpAway } from "./session.js";
 import { t } from "../texts/texts.js";

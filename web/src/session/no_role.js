@@ -1,4 +1,4 @@
-/** What stands on a page that is for others: who opens it, and a way on. */
+/** The page shown to a person without the required role: who may open it, and a way on. */
 import { html } from "lit";
 import { PAGES } from "../service/links.js";
 import { t } from "../texts/texts.js";

@@ -1,6 +1,6 @@
 /**
- * Somebody of the campus, found by part of a name or address while one types. What is typed may also be the whole address
- * of somebody who is not known yet. Tells `chosen` with the address.
+ * A person of the campus, searched by part of a name or address while one types. The input may also be the whole address
+ * of an unknown person. Dispatches `chosen` with the address.
  */
 import { html, nothing } from "lit";
 import * as api from "../service/api.js";

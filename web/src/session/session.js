@@ -11,7 +11,7 @@ export function beginSession(who) {
 
 export const personHere = () => person;
 
-/** Whether this device keeps unsent orders of anybody: said here for whoever cannot wait for the outbox to be opened. */
+/** A flag that this device keeps unsent orders: readable without opening the outbox. */
 const KEPT = "orders-kept";
 export const hasKept = () => localStorage.getItem(KEPT) !== null;
 
@@ -22,7 +22,7 @@ export const sayKept = (some) => (some ? localStorage.setItem(KEPT, "") : localS
 export const PUSH_DEVICE = "push-device";
 export const hasPush = () => localStorage.getItem(PUSH_DEVICE) !== null;
 
-/** Whether somebody is told how it goes: on asking, and without as long as they have sent nothing and not put it away. */
+/** The guide is shown on request, and to new senders until they dismiss it. */
 const PUT_AWAY = "first-steps-put-away";
 
 /** @param {boolean} isNew */

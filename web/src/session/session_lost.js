@@ -1,5 +1,5 @@
 /**
- * What a page does when its session has ended though its person did not leave: they sign in again over the page, and it
+ * Handles a session that has ended without a sign-out: the person signs in again over the page, and it
  * goes on as it was; where another person does, nothing of the first stays. All tabs of a browser know by one entry of its
  * storage who is here; docs/decisions/0070 says why.
  * @typedef {CustomEvent<"lost" | "back">} SessionEvent tells elements, as `session` of the window
@@ -9,14 +9,14 @@ import { PAGES } from "../service/links.js";
 import { goOnLive, stopLive } from "../live/live.js";
 /** @import { Person } from "../../types/api_types.ts" */
 
-/** Whose page was opened last, and when: the same person again is news, too. */
+/** The person whose page was opened last, and when: the same person again is news, too. */
 const HERE = "signed-in";
 const LEAVING = "leaving";
 
-/** Whose page this is. @type {string | null} */
+/** The person who is signed in on this page. @type {string | null} */
 let person_id = null;
 let isLeaving = false;
-/** Whoever waits for the session, told whether it is back. @type {((isBack: boolean) => void)[] | null} null: it was not lost */
+/** Callbacks of requests that wait for the session, called with its outcome. @type {((isBack: boolean) => void)[] | null} null: it was not lost */
 let waiting = null;
 let isPutAway = false;
 
@@ -51,7 +51,7 @@ export function putAway() {
   settle(false);
 }
 
-/** Somebody has signed in over this page. @param {Person} person */
+/** Go on after a sign-in over this page. @param {Person} person */
 export function signedIn({ id }) {
   sayHere(id);
   hear(localStorage.getItem(HERE));
@@ -87,7 +87,7 @@ function hear(said) {
   else location.reload();
 }
 
-/** Its address may tell of whoever was here. */
+/** Its address may tell of the previous person. */
 function leave() {
   stopLive();
   location.replace(PAGES.order);

@@ -9,7 +9,7 @@ import { PageElement } from "../elements/page_element.js";
 
 const FIELD_OF_CODE = { address_not_allowed: "email", wrong_code: "code", code_expired: "code" };
 
-/** Who was refused at the campus's own sign-in comes back with the code of the problem. @returns {Record<string, string>} */
+/** The problem code in the address after a refusal by the campus's own sign-in. @returns {Record<string, string>} */
 function whatCameBack() {
   const here = new URL(location.href);
   const code = here.searchParams.get("sign_in_problem");
@@ -35,7 +35,7 @@ export class SignIn extends PageElement {
     /** @type {About | null} */
     this.about = null;
     this.email = "";
-    /** Whether this is over a page that goes on afterwards, and has its own heading. */
+    /** True in a dialog over a page that goes on afterwards and has its own heading. */
     this.again = false;
     this.codeSent = false;
     this.sentAgain = false;

@@ -14,12 +14,12 @@ export class SignInAgain extends PageElement {
     super();
     /** @type {About | null} */
     this.about = null;
-    /** Of whoever was signed in. */
+    /** Of the person who was signed in. */
     this.email = "";
     this.isAsking = false;
   }
 
-  /** What was typed there the last time goes only now: a dialog that loses its inside while it closes takes the place of the
+  /** Clear the last input only now: a dialog that loses its inside while it closes takes the place of the
    *  next letter with it, and the field that has the focus again gets none. */
   async open() {
     await this.updateComplete;

@@ -22,7 +22,7 @@ export class MyContacts extends SettingsPart {
     this.items = null;
     /** @type {string | null} */
     this.next = null;
-    /** Whom the form is about; null for somebody new. @type {Contact | null} */
+    /** Whom the form is about; null for a new contact. @type {Contact | null} */
     this.edited = null;
   }
 

@@ -68,7 +68,7 @@ export class MyDelegates extends SettingsPart {
   }
 }
 
-/** What it is, and between whom. @param {MyDelegate} one */
+/** The contents, sender and recipient of a letter. @param {MyDelegate} one */
 function letter({ description, my_role, sender, recipient }) {
   const other = my_role === "recipient" ? t("mail.from", { name: sender.name }) : t("mail.to", { name: recipient.name });
   return description ? `${isolated(description)} · ${other}` : other;

@@ -8,11 +8,11 @@ import { SettingsPart } from "./settings_part.js";
 /** @import { AboutMe, CampusMap, Person } from "../../types/api_types.ts" */
 /** @typedef {HTMLInputElement | HTMLSelectElement} Changed */
 
-// Each in its own words: whoever looks for theirs may read no other.
+// Each in its own language: a reader may know no other.
 const LANGUAGES = { en: "English", fr: "Français" };
 
 export class MyProfile extends SettingsPart {
-  /** What was changed and could not be saved by itself. @type {Changed | null} */
+  /** A change that could not be saved. @type {Changed | null} */
   #unsaved = null;
 
   static properties = { person: { attribute: false }, map: { attribute: false } };

@@ -67,7 +67,7 @@ export class MyTokens extends SettingsPart {
     </form>`;
   }
 
-  /** What a token may do is no more than its person may. */
+  /** Scopes that a token can have: never more than its owner's permissions. */
   #scopes() {
     const ofRoles = Object.entries(OF_ROLES).filter(([role]) => this.person?.roles.some((one) => one === role));
     return [...EVERYBODYS, ...ofRoles.map(([, scope]) => scope)];

@@ -13,7 +13,7 @@ import { PageElement } from "../elements/page_element.js";
 /** @import { Inbox, Notice } from "../../types/api_types.ts" */
 
 export class NoticesPage extends PageElement {
-  /** How often some were read here. */
+  /** A count of changes made on this page. */
   #reads = 0;
 
   static properties = { inbox: { state: true }, problem: { state: true } };

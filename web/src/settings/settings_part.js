@@ -1,4 +1,4 @@
-/** What all parts of the settings share: a card with a title; each saves by itself, and says that it has. */
+/** The base of all parts of the settings: a card with a title; each saves by itself, and says that it has. */
 import { html, nothing } from "lit";
 import { inWords } from "../service/problems.js";
 import { t } from "../texts/texts.js";

@@ -1,4 +1,4 @@
-/** What an alarm says, in this page's language. */
+/** Alarm messages in this page's language. */
 import { inEnglish, reasonText } from "./reason_words.js";
 import { hasText, t } from "./texts.js";
 /** @import { Alarm, CampusMap } from "../../types/api_types.ts" */

@@ -32,7 +32,7 @@ export const clockTime = (at) => held(format(CLOCK).format(new Date(at)));
 export const windowText = ({ from, to }, now_ms = Date.parse(from)) =>
   held(format(isToday(from, now_ms) ? CLOCK : DAY_AND_CLOCK).formatRange(new Date(from), new Date(to)));
 
-/** A phone takes 50 ms to say its first time: done before somebody waits for it. */
+/** A phone takes 50 ms to say its first time: done before a page needs it. */
 export const prepareTimes = () => void windowText({ from: "2024-01-01T12:00Z", to: "2024-01-01T12:05Z" });
 
 /** A day and a time; today needs no day. @param {string} at @param {number} now_ms */
