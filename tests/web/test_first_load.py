@@ -1,4 +1,4 @@
-"""What a page asks for before it can be used: each thing once, and what only later is needed, later."""
+"""Requests of a page before it can be used: each once, and later needs later."""
 
 import re
 from pathlib import Path
@@ -17,7 +17,7 @@ PLACE_AN_ORDER = ("/src/orders/place_order.js", "/src/offline/outbox.js", "/src/
 
 
 async def asked_for(page: Page, awaited: list[str]) -> list[str]:
-    """All addresses that the page has had an answer from, once each of those awaited is among them."""
+    """The addresses that the page has had an answer from, once each of those awaited is among them."""
     await page.wait_for_function(WRITTEN_DOWN, arg=awaited)
     return await page.evaluate(ADDRESSES)
 
@@ -74,12 +74,12 @@ async def test_a_choice_whose_fields_could_not_be_fetched_is_not_marked_as_taken
     await page.route("**/order_schedule.js", lambda route: route.abort())
     await page.goto("/")
     await page.get_by_role("radio", name="Later").dispatch_event("click")
-    await expect(page.get_by_text("No answer. Check your network and try again.")).to_be_visible()
+    await expect(page.get_by_text("No response. Check your network and try again.")).to_be_visible()
     await expect(page.get_by_role("radio", name="Now")).to_be_checked()
     await page.unroute("**/order_schedule.js")
     await page.get_by_role("radio", name="Later").check()
     await expect(page.locator("order-schedule input").first).to_be_visible()
-    await expect(page.get_by_text("No answer. Check your network and try again.")).to_be_hidden()
+    await expect(page.get_by_text("No response. Check your network and try again.")).to_be_hidden()
     ada.complaints.clear()  # of the answers that were cut off here
 
 
@@ -90,9 +90,9 @@ async def test_an_order_whose_end_could_not_be_fetched_says_so_and_goes_out_when
     await ada.page.goto("/")
     await ada.page.get_by_label("From").select_option("Post 1")
     await ada.page.get_by_label("To", exact=True).select_option("Post 4")
-    await ada.page.get_by_label("Recipient’s e-mail").fill("bob.martin@campus.example")
+    await ada.page.get_by_label("Recipient’s email").fill("bob.martin@campus.example")
     await ada.page.get_by_role("button", name="Send the robot").click()
-    await expect(ada.page.get_by_text("No answer. Check your network and try again.")).to_be_visible()
+    await expect(ada.page.get_by_text("No response. Check your network and try again.")).to_be_visible()
     await ada.page.unroute("**/src/orders/send_order.js")
     await ada.page.get_by_role("button", name="Send the robot").click()
     await ada.page.wait_for_url("**/follow.html*")

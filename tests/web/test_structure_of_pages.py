@@ -1,4 +1,4 @@
-"""What the pages are made of: what a strict policy allows, and nothing that waits in line to be fetched."""
+"""Structure of the pages: a strict policy, no module that waits in line, no circles of imports."""
 
 import re
 from graphlib import TopologicalSorter

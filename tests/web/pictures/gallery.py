@@ -9,7 +9,7 @@ from tests.web.pictures.doings import Doing
 
 
 class Scene(StrEnum):
-    """What goes on while a picture is taken, in this order."""
+    """The scene of a picture, in this order."""
 
     DAY = "day"
     TROUBLE = "trouble"
