@@ -63,7 +63,7 @@ HEADS: Final[Mapping[str, Head]] = {
     "index": Head("order", ("order",), "orders/order_page", ("/api/v1/map", "/api/v1/orders?role=all&amp;limit=6")),
     "follow": Head("follow", ("follow",), "follow/follow_page", ("/api/v1/map",)),
     "mail": Head("mail", ("mail",), "orders/mail_page", ("/api/v1/map",)),
-    "notices": Head("notices", ("notices",), "settings/notices_page"),
+    "notices": Head("notices", ("notices",), "settings/notifications_page"),
     "settings": Head("settings", ("settings",), "settings/settings_page"),
     "one-order": Head("one_order", ("follow",), "follow/one_order", ("/api/v1/map",), by_link=True),
     "mailroom": Head("mailroom", ("mailroom", "asking"), "mailroom/mailroom_page"),

@@ -179,8 +179,8 @@ async def test_on_a_small_phone_in_french_and_for_a_dispatcher_without_the_mind(
 
 
 WATCH_LONG = """async () => {
-  const { WatchedRun } = await import("/src/robots/watched_run.js");
-  const run = new WatchedRun("r1");
+  const { DiagnosticsRun } = await import("/src/robots/diagnostics_run.js");
+  const run = new DiagnosticsRun("r1");
   const at = "2026-01-05T09:00:00Z";
   const empty = { at, cycle: 1, loops: [], intentions: [], events: [], came: [], went: [], trace: [] };
   const nothing = { ...empty, whole: false, left_out: { trace: 0 } };

@@ -16,7 +16,7 @@ export type CampusMap = Schemas["MapView"];
 export type MapPost = Schemas["PostView"];
 export type MapCorridor = Schemas["CorridorView"];
 export type Traffic = Schemas["Traffic"];
-export type TakenCorridor = Schemas["TakenCorridor"];
+export type OccupiedCorridor = Schemas["TakenCorridor"];
 /** The corridors that this robot holds now. */
 export type RobotTraffic = Schemas["RobotTraffic"];
 
@@ -55,7 +55,7 @@ export interface NewDelegate { name: string; email?: string }
 
 export type AboutMe = Schemas["AboutMe"];
 export type Contact = Schemas["ContactView"];
-export type NoticeWishes = Schemas["WishesView"];
+export type NotificationPreferences = Schemas["WishesView"];
 export type NewWebhook = Schemas["NewWebhookView"];
 export type Trial = Schemas["TrialView"];
 export type OpenSession = Schemas["SessionView"];
@@ -76,17 +76,17 @@ export type Watch = Schemas["WatchView"];
 /** A sent object always has all its fields, those with a default too. */
 type Told<T> = T extends (infer Item)[] ? Told<Item>[] : T extends object ? { [K in keyof T]-?: Told<T[K]> } : T;
 export type Watched = Told<Schemas["Watched"]>;
-export type Insight = Watched["insight"];
-export type Sensors = Insight["sensors"];
-export type IntentionTold = Insight["intentions"][number];
-export type Because = IntentionTold["because"];
-export type Means = IntentionTold["stack"][number];
+export type Diagnostics = Watched["insight"];
+export type Sensors = Diagnostics["sensors"];
+export type IntentionView = Diagnostics["intentions"][number];
+export type Because = IntentionView["because"];
+export type Means = IntentionView["stack"][number];
 export type NotChosen = Means["passed_over"][number];
-export type TraceLine = Insight["trace"][number];
+export type TraceLine = Diagnostics["trace"][number];
 export type Sending = Schemas["SendingView"];
 export type SpooledMail = Schemas["SpooledMail"];
 export type SpooledText = Schemas["SpooledText"];
 
-export type Notice = Schemas["NoticeView"];
+export type NotificationView = Schemas["NoticeView"];
 export type Inbox = Schemas["Inbox"];
 export interface Page<Item> { items: Item[]; next: string | null }

@@ -36,7 +36,7 @@ async def come_to_the_mind(page: Page) -> None:
     """Down to where the robot tells what it intends; it drives by then."""
     follows = page.locator(".intends").get_by_text(re.compile("follow_line")).first
     await expect(follows).to_be_visible(timeout=40_000)
-    await page.locator("robot-watch").evaluate("(watch) => watch.scrollIntoView({block: 'start'})")
+    await page.locator("robot-diagnostics").evaluate("(watch) => watch.scrollIntoView({block: 'start'})")
 
 
 async def all_drawn(page: Page) -> None:

@@ -1,4 +1,4 @@
-/** The frame around every page: name, pages, unread notices, account; and the sign-in for visitors. */
+/** The frame around every page: name, pages, unread notifications, account; and the sign-in for visitors. */
 import { html, nothing } from "lit";
 import * as api from "../service/api.js";
 import { mayOpen, PAGES } from "../service/links.js";
@@ -92,7 +92,7 @@ export class PageShell extends PageElement {
           ?justNow=${this.keptJustNow} @kept=${(/** @type {CustomEvent<KeptOrder[]>} */ { detail }) => (this.kept = detail)}></kept-orders>` : nothing}
         ${this.person ? this.#page(this.person) : html`<sign-in .about=${this.about} @signed-in=${() => location.reload()}></sign-in>`}
       </main>
-      ${this.person && this.page !== "notices" ? html`<notice-toast .inbox=${this.inbox} .since=${this.about?.now}></notice-toast>` : nothing}
+      ${this.person && this.page !== "notices" ? html`<notification-toast .inbox=${this.inbox} .since=${this.about?.now}></notification-toast>` : nothing}
       ${this.person ? html`<sign-in-again .about=${this.about} .email=${this.person.email}></sign-in-again>` : nothing}
       ${this.about?.simulated ? html`<footer class="foot">${t("app.demo")}</footer>` : nothing}
     `;
@@ -169,10 +169,10 @@ export class PageShell extends PageElement {
     location.assign(PAGES.order);
   }
 
-  /** The page of the notices asks by itself, and tells. */
+  /** The page of the notifications asks by itself, and tells. */
   async #count() {
     if (!this.person || this.page === "notices") return;
-    [this.inbox] = await Promise.all([api.notices().catch(() => this.inbox), import("./notice_toast.js").catch(() => undefined)]);
+    [this.inbox] = await Promise.all([api.notices().catch(() => this.inbox), import("./notification_toast.js").catch(() => undefined)]);
   }
 
   /** @param {Map<string, unknown>} changed */

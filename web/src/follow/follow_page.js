@@ -87,8 +87,8 @@ export class FollowPage extends PageElement {
   #naming() {
     const id = this.order_id;
     return {
-      name: async (wish) => {
-        const delegate = await api.nameDelegate(id, wish);
+      name: async (request) => {
+        const delegate = await api.nameDelegate(id, request);
         return { delegate, code: await api.delegateCode(id, delegate.id) };
       },
       list: () => api.delegates(id),

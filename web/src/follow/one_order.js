@@ -22,7 +22,7 @@ import { PageElement } from "../elements/page_element.js";
 /** @import { CampusMap, Order } from "../../types/api_types.ts" */
 /** @import { Naming } from "./order_delegates.js" */
 
-const LOOK_EVERY_MS = 5_000;
+const POLL_MS = 5_000;
 // Each in its own language: a reader may know no other.
 const LANGUAGES = { en: "English", fr: "Français" };
 
@@ -55,12 +55,12 @@ export class OneOrder extends PageElement {
       showToCamera: null,
     };
     /** The calls for delegates of a guest, who sees each code only once. @type {Naming} */
-    this.naming = { name: (wish) => api.linkedDelegate(this.token, wish), list: null, revoke: notHere, code: notHere };
+    this.naming = { name: (request) => api.linkedDelegate(this.token, request), list: null, revoke: notHere, code: notHere };
   }
 
   connectedCallback() {
     super.connectedCallback();
-    this.#timer = setInterval(() => document.hidden || this.#look(), LOOK_EVERY_MS);
+    this.#timer = setInterval(() => document.hidden || this.#look(), POLL_MS);
   }
 
   disconnectedCallback() {

@@ -13,7 +13,7 @@ import { PageElement } from "../elements/page_element.js";
 
 /**
  * Naming delegates: signed in, with a list of them, or by the link in a mail, where each is shown once.
- * @typedef {{name: (wish: NewDelegate) => Promise<{delegate: Delegate, code: ShownCode}>,
+ * @typedef {{name: (request: NewDelegate) => Promise<{delegate: Delegate, code: ShownCode}>,
  *   list: (() => Promise<Delegate[]>) | null, revoke: (id: string) => Promise<unknown>, code: (id: string) => Promise<ShownCode>}} Naming
  */
 

@@ -6,7 +6,7 @@ import { isolated, t } from "../texts/texts.js";
 import { clockTime, dayAndTime } from "../texts/times.js";
 /** @import { CampusMap, Order, OrderEvent } from "../../types/api_types.ts" */
 
-const TOLD_LATER_MS = 30_000;
+const REPORTED_LATE_MS = 30_000;
 
 /** @param {Order} order @param {CampusMap} map */
 export function orderTimeline(order, map) {
@@ -29,7 +29,7 @@ export function orderTimeline(order, map) {
 /** @param {OrderEvent} event @param {CampusMap} map */
 function remarks(event, map) {
   const { at, robot_at } = event;
-  const late = robot_at !== null && Date.parse(at) - Date.parse(robot_at) > TOLD_LATER_MS;
+  const late = robot_at !== null && Date.parse(at) - Date.parse(robot_at) > REPORTED_LATE_MS;
   const told = [isolated(eventReason(event, map) ?? ""), late && t("timeline.told_later", { time: clockTime(at) })].filter(Boolean);
   return told.length ? html`<span class="remark">${told.join(" · ")}</span>` : nothing;
 }

@@ -3,8 +3,8 @@
  * the lock) and passes on what it hears; where no tab is seen there is none. docs/decisions/0069 says why.
  * @import { ReactiveController, ReactiveControllerHost } from "lit"
  * @import { Position } from "../service/api.js"
- * @import { ClosedCorridors, Notice, Order, Robot, RobotTraffic, Watched } from "../../types/api_types.ts"
- * @typedef {{order: Order, robot: Robot, traffic: RobotTraffic, closed: ClosedCorridors, notice: Notice, insight: Watched, connected: boolean, resync: null}} Changes
+ * @import { ClosedCorridors, NotificationView, Order, Robot, RobotTraffic, Watched } from "../../types/api_types.ts"
+ * @typedef {{order: Order, robot: Robot, traffic: RobotTraffic, closed: ClosedCorridors, notice: NotificationView, insight: Watched, connected: boolean, resync: null}} Changes
  * @typedef {object} Message what the tab that reads tells the others
  * @property {Position} after the place in the stream up to which it had told everything before
  * @property {boolean} [open] whether the stream stands

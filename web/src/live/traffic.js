@@ -1,14 +1,14 @@
 /**
  * Which robot holds which corridor, as far as this person may see it: fetched, then as it changes.
  * @import { ReactiveController, ReactiveControllerHost } from "lit"
- * @import { RobotTraffic, TakenCorridor } from "../../types/api_types.ts"
+ * @import { RobotTraffic, OccupiedCorridor } from "../../types/api_types.ts"
  */
 import * as api from "../service/api.js";
 import { OnLive } from "./live.js";
 
 /** @implements {ReactiveController} */
 export class TrafficNow {
-  /** @type {readonly TakenCorridor[]} */
+  /** @type {readonly OccupiedCorridor[]} */
   taken = [];
   /** A count of received events. */
   #heard = 0;
@@ -42,7 +42,7 @@ export class TrafficNow {
     this.#show([...this.taken.filter((one) => one.robot !== robot), ...taken]);
   }
 
-  /** @param {readonly TakenCorridor[]} taken */
+  /** @param {readonly OccupiedCorridor[]} taken */
   #show(taken) {
     this.taken = taken;
     this.host.requestUpdate();

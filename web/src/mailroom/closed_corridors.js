@@ -8,7 +8,7 @@ import { hasText, t } from "../texts/texts.js";
 import { ago } from "../texts/times.js";
 import { icon } from "../elements/icon.js";
 /** @import { CampusMap, ClosedCorridor } from "../../types/api_types.ts" */
-/** @import { Doing } from "./wrong_list.js" */
+/** @import { Doing } from "./issue_list.js" */
 
 /** @param {readonly ClosedCorridor[]} closed @param {CampusMap} map @param {Pick<Doing, "ask"> | null} doing null: where nothing can be done */
 export function closedCorridors(closed, map, doing) {

@@ -27,7 +27,7 @@ export function openAgain(map, { corridor, robots }) {
 }
 
 /** True if its corridors can be released: the robot is offline, or stands. @param {Robot} robot */
-export const mayBeTakenOut = ({ online, activity, heard_at, taken_out_at }) =>
+export const canReleaseCorridors = ({ online, activity, heard_at, taken_out_at }) =>
   heard_at !== null && !taken_out_at && (!online || activity === "stopped");
 
 /** @param {string} robot @returns {Action} */

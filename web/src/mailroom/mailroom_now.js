@@ -11,9 +11,9 @@ import { inWords } from "../service/problems.js";
 
 const AT_ONCE = 100;
 /** Alarms and mail that was given up have no events of their own: they are looked at again when something happens. */
-const LOOK_AGAIN_MS = 3_000;
+const POLL_MS = 3_000;
 const SOON_MS = 200;
-const LOOK_ANYWAY_MS = 30_000;
+const POLL_ANYWAY_MS = 30_000;
 
 /** @implements {ReactiveController} */
 export class MailroomNow {
@@ -30,7 +30,7 @@ export class MailroomNow {
   /** @type {Sending[]} mail that is tried no more */
   givenUp = [];
   problem = "";
-  #lookedAt_ms = -LOOK_AGAIN_MS;
+  #polledAt_ms = -POLL_MS;
   #timer = 0;
   #interval = 0;
   /** Changes received while a request is under way: newer than its answer. @type {{orders: Order[], robots: Robot[]}} */
@@ -43,14 +43,14 @@ export class MailroomNow {
     new OnLive(host, {
       order: (order) => this.#hear(() => (this.#heard.orders.push(order), this.take(order))),
       robot: (robot) => this.#hear(() => (this.#heard.robots.push(robot), this.robots.set(robot.name, robot))),
-      notice: ({ kind }) => kind === "alarm" && this.lookAgain(),
+      notice: ({ kind }) => kind === "alarm" && this.poll(),
       resync: () => this.fetch(),
     });
   }
 
   hostConnected() {
     this.fetch();
-    this.#interval = setInterval(() => document.hidden || this.lookAgain(), LOOK_ANYWAY_MS);
+    this.#interval = setInterval(() => document.hidden || this.poll(), POLL_ANYWAY_MS);
   }
 
   hostDisconnected() {
@@ -76,7 +76,7 @@ export class MailroomNow {
   #hear(take) {
     take();
     this.host.requestUpdate();
-    this.lookAgain();
+    this.poll();
   }
 
   async fetch() {
@@ -101,14 +101,14 @@ export class MailroomNow {
   }
 
   /** Not more often than is of use. */
-  lookAgain() {
-    const pause_ms = Math.max(SOON_MS, this.#lookedAt_ms + LOOK_AGAIN_MS - performance.now());
+  poll() {
+    const pause_ms = Math.max(SOON_MS, this.#polledAt_ms + POLL_MS - performance.now());
     this.#timer ||= setTimeout(() => this.look(), pause_ms);
   }
 
   async look() {
     clearTimeout(this.#timer);
-    [this.#timer, this.#lookedAt_ms] = [0, performance.now()];
+    [this.#timer, this.#polledAt_ms] = [0, performance.now()];
     await this.#attempt(async () => {
       const [alarms, givenUp] = await Promise.all([api.openAlarms(), api.notSent({ given_up: "true", limit: AT_ONCE })]);
       [this.alarms, this.givenUp] = [alarms.items, givenUp.items];

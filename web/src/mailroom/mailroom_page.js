@@ -2,11 +2,11 @@
 import { html, nothing } from "lit";
 import { expectedWithOrders } from "../orders/arrival.js";
 import * as api from "../service/api.js";
-import { ClosedNow } from "../live/closed_now.js";
+import { Closures } from "../live/closures.js";
 import { OnLive } from "../live/live.js";
 import { orderActions } from "./mailroom_actions.js";
 import { MailroomNow } from "./mailroom_now.js";
-import { isHeldUp, orderTitle, whatIsWrong } from "./mailroom_words.js";
+import { isHeldUp, orderTitle, openIssues } from "./mailroom_words.js";
 import { fetchMapWhenSeen } from "../map/map_later.js";
 import { inWords } from "../service/problems.js";
 import { serverNow } from "../service/server_clock.js";
@@ -21,7 +21,7 @@ import "./order_queue.js";
 import { PageElement } from "../elements/page_element.js";
 import { robotBoard } from "./robot_board.js";
 import { sectionLinks } from "../elements/section_links.js";
-import { wrongList } from "./wrong_list.js";
+import { issueList } from "./issue_list.js";
 /** @import { Alarm, CampusMap, Command, Order, Sending } from "../../types/api_types.ts" */
 /** @import { Action } from "./mailroom_actions.js" */
 /** @import { AskDialog } from "../elements/ask_dialog.js" */
@@ -33,7 +33,7 @@ export class MailroomPage extends PageElement {
   static properties = { said: { state: true }, problem: { state: true } };
   now = new MailroomNow(this);
   traffic = new TrafficNow(this);
-  corridors = new ClosedNow(this);
+  corridors = new Closures(this);
   /** Robots that were told to wait and have not said yet that they do. @type {Set<string>} */
   #asked = new Set();
   #hasPlaceForMap = false;
@@ -57,13 +57,13 @@ export class MailroomPage extends PageElement {
     const { map, problem } = this.now;
     if (!map) return problem ? html`<h1>${t("mailroom.title")}</h1>${problemLine(problem)}` : html`<p class="waiting" role="status">${t("app.loading")}</p>`;
     const { known } = this.now;
-    const wrongs = whatIsWrong(known);
+    const issues = openIssues(known);
     return html`<div class="title-line">
         <h1>${t("mailroom.title")}</h1>
         ${mailroomTools()}
       </div>
       ${sectionLinks([
-        { id: "wrong-title", label: t("mailroom.section.wrong"), count: wrongs.length, wrong: true },
+        { id: "wrong-title", label: t("mailroom.section.wrong"), count: issues.length, wrong: true },
         { id: "queue-title", label: t("mailroom.queue"), count: known.orders.length },
         { id: "robots-title", label: t("mailroom.robots"), count: known.robots.length },
         { id: "corridors-title", label: t("corridors.title"), count: this.corridors.closed.length, wrong: true },
@@ -71,7 +71,7 @@ export class MailroomPage extends PageElement {
       ])}
       <p class="said" role="status">${this.said}</p>
       ${this.problem || problem ? problemLine(this.problem || problem) : nothing}
-      ${this.#wrong(wrongs, map)}
+      ${this.#wrong(issues, map)}
       <div class="mailroom">
         <order-queue .map=${map} .orders=${known.orders} ?more=${this.now.more !== null} @more=${() => this.now.fetchMore()}
           @act=${(/** @type {CustomEvent<Order>} */ event) => this.#act(event.detail)}></order-queue>
@@ -103,12 +103,12 @@ export class MailroomPage extends PageElement {
     fetchMapWhenSeen(place);
   }
 
-  /** @param {ReturnType<typeof whatIsWrong>} wrongs @param {CampusMap} map */
-  #wrong(wrongs, map) {
+  /** @param {ReturnType<typeof openIssues>} issues @param {CampusMap} map */
+  #wrong(issues, map) {
     return html`<section class="card wrong" aria-labelledby="wrong-title">
       <h2 id="wrong-title" tabindex="-1">${t("mailroom.wrong")}
-        ${wrongs.length ? html`<span class="count">${wrongs.length}</span>` : nothing}</h2>
-      ${wrongList(wrongs, map, this.#doing)}
+        ${issues.length ? html`<span class="count">${issues.length}</span>` : nothing}</h2>
+      ${issueList(issues, map, this.#doing)}
     </section>`;
   }
 
@@ -130,7 +130,7 @@ export class MailroomPage extends PageElement {
     if (answer?.closed) this.corridors.show(answer.closed);
     if (answer?.command_id) this.#told(answer);
     this.#keepFocus();
-    this.now.lookAgain();
+    this.now.poll();
   }
 
   /** @param {Command} command */

@@ -4,11 +4,11 @@
  */
 import { html, nothing } from "lit";
 import { expectedWithOrders } from "../orders/arrival.js";
-import { ClosedNow } from "../live/closed_now.js";
+import { Closures } from "../live/closures.js";
 import { PAGES } from "../service/links.js";
 import { fetchMap } from "../map/map_later.js";
 import { MailroomNow } from "./mailroom_now.js";
-import { shortName, sorted, whatIsWrong, withoutOwnWords } from "./mailroom_words.js";
+import { shortName, sorted, openIssues, withoutOwnWords } from "./mailroom_words.js";
 import { serverNow } from "../service/server_clock.js";
 import { t } from "../texts/texts.js";
 import { Ticking } from "../elements/ticking.js";
@@ -19,7 +19,7 @@ import { problemLine } from "../elements/field.js";
 import { PageElement } from "../elements/page_element.js";
 import { queueList } from "./queue_list.js";
 import { robotBoard } from "./robot_board.js";
-import { wrongList } from "./wrong_list.js";
+import { issueList } from "./issue_list.js";
 /** @import { Order } from "../../types/api_types.ts" */
 
 /** So many fit on a screen of 1080 lines beside everything that can be wrong. */
@@ -28,7 +28,7 @@ const SHOWN = 8;
 export class MailroomWall extends PageElement {
   now = new MailroomNow(this);
   traffic = new TrafficNow(this);
-  corridors = new ClosedNow(this);
+  corridors = new Closures(this);
 
   constructor() {
     super();
@@ -51,7 +51,7 @@ export class MailroomWall extends PageElement {
         <time>${clockTime(new Date(serverNow()).toISOString())}</time>
       </div>
       ${problem ? problemLine(problem) : nothing}
-      ${wrongList(whatIsWrong(known), map, null)}
+      ${issueList(openIssues(known), map, null)}
       <div class="wall-columns">
         <section aria-labelledby="queue-title">
           <h2 id="queue-title">${t("mailroom.queue")} <span class="count">${orders.length}</span></h2>

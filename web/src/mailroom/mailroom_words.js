@@ -4,7 +4,7 @@
  * @typedef {{orders: Order[], robots: Robot[], alarms: Alarm[], givenUp: Sending[]}} Known
  * @typedef {{kind: "alarm", key: string, alarm: Alarm} | {kind: "attention", key: string, order: Order}
  *   | {kind: "locked", key: string, order: Order} | {kind: "stopped", key: string, robot: Robot}
- *   | {kind: "silent", key: string, robot: Robot} | {kind: "given_up", key: string, sending: Sending}} Wrong
+ *   | {kind: "silent", key: string, robot: Robot} | {kind: "given_up", key: string, sending: Sending}} Issue
  */
 import { arrivalOf } from "../orders/arrival.js";
 import { hasEnded, isBetweenLegs, orderWhy } from "../orders/order_words.js";
@@ -46,22 +46,22 @@ export function isSilent({ online, heard_at }) {
   return !online && age_ms > SILENT_MS.from && age_ms < SILENT_MS.to;
 }
 
-/** All issues that need a dispatcher, the most urgent first. @param {Known} known @returns {Wrong[]} */
-export function whatIsWrong({ orders, robots, alarms, givenUp }) {
+/** All issues that need a dispatcher, the most urgent first. @param {Known} known @returns {Issue[]} */
+export function openIssues({ orders, robots, alarms, givenUp }) {
   const open = orders.filter((order) => !hasEnded(order));
   const locked = open.filter(digitsAreLocked);
   // Locked digits and robots that have vanished ring an alarm too: one line is enough.
   const ringing = alarms.filter((one) => !one.acknowledged_at && !one.cleared_at && !(locked.length && one.name === "digits_locked"));
   return [
     ...ringing
-      .map((alarm) => /** @type {Wrong} */ ({ kind: "alarm", key: `alarm-${alarm.id}`, alarm })),
+      .map((alarm) => /** @type {Issue} */ ({ kind: "alarm", key: `alarm-${alarm.id}`, alarm })),
     ...open.filter(({ state }) => state === "attention")
-      .map((order) => /** @type {Wrong} */ ({ kind: "attention", key: `attention-${order.id}`, order })),
-    ...locked.map((order) => /** @type {Wrong} */ ({ kind: "locked", key: `locked-${order.id}`, order })),
-    ...robots.filter(isHeldUp).map((robot) => /** @type {Wrong} */ ({ kind: "stopped", key: `stopped-${robot.name}`, robot })),
+      .map((order) => /** @type {Issue} */ ({ kind: "attention", key: `attention-${order.id}`, order })),
+    ...locked.map((order) => /** @type {Issue} */ ({ kind: "locked", key: `locked-${order.id}`, order })),
+    ...robots.filter(isHeldUp).map((robot) => /** @type {Issue} */ ({ kind: "stopped", key: `stopped-${robot.name}`, robot })),
     ...robots.filter((robot) => isSilent(robot) && !ringing.some((one) => one.name === "vanished" && one.robot === robot.name))
-      .map((robot) => /** @type {Wrong} */ ({ kind: "silent", key: `silent-${robot.name}`, robot })),
-    ...givenUp.map((sending) => /** @type {Wrong} */ ({ kind: "given_up", key: `sending-${sending.id}`, sending })),
+      .map((robot) => /** @type {Issue} */ ({ kind: "silent", key: `silent-${robot.name}`, robot })),
+    ...givenUp.map((sending) => /** @type {Issue} */ ({ kind: "given_up", key: `sending-${sending.id}`, sending })),
   ];
 }
 
@@ -76,7 +76,7 @@ export const orderWay = (order, map) => `${titleOf(map, order.from_post)} → ${
 export function whyItWaits(order, map) {
   const now_ms = serverNow();
   const { not_before, wait_until } = order;
-  if (hasWish(order)) return t("mailroom.why.asked_back");
+  if (isReturnAsked(order)) return t("mailroom.why.asked_back");
   if (order.state === "queued" && not_before && Date.parse(not_before) > now_ms) {
     return t("mailroom.why.not_before", { time: dayAndTime(not_before, now_ms) });
   }
@@ -92,7 +92,7 @@ export function whyItWaits(order, map) {
 export const withoutOwnWords = (order) => (order.why_words ? order : { ...order, why: null });
 
 /** True for a recalled order whose robot has not answered yet. @param {Order} order */
-const hasWish = (order) => order.return_requested || (order.cancel_requested && isRobotComing(order));
+const isReturnAsked = (order) => order.return_requested || (order.cancel_requested && isRobotComing(order));
 
 /** Since when the order is in the state that it is in. @param {Order} order */
 export const since = (order) => order.events.findLast(({ kind }) => kind === "moved")?.at ?? order.created_at;

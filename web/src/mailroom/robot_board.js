@@ -2,7 +2,7 @@
 import { html, nothing } from "lit";
 import { repeat } from "lit-html/directives/repeat.js";
 import { alarmText } from "../texts/alarm_words.js";
-import { mayBeTakenOut, takeOut } from "./corridor_actions.js";
+import { canReleaseCorridors, takeOut } from "./corridor_actions.js";
 import { robotPage } from "../service/links.js";
 import { openWays, pause, recall, resume, stop } from "./mailroom_actions.js";
 import { isHeldUp } from "./mailroom_words.js";
@@ -14,7 +14,7 @@ import { ago } from "../texts/times.js";
 import { icon } from "../elements/icon.js";
 /** @import { Alarm, CampusMap, Robot } from "../../types/api_types.ts" */
 /** @import { Action } from "./mailroom_actions.js" */
-/** @import { Doing } from "./wrong_list.js" */
+/** @import { Doing } from "./issue_list.js" */
 
 const LOW_RATIO = 0.25;
 
@@ -83,7 +83,7 @@ function buttons(robot, alarms, map, doing) {
     @click=${() => doing.ask(action, robot.name)}>${said}<span class="unseen">: ${robot.name}</span></button>`;
   return html`<div class="commands">
     ${button(waits ? resume(robot) : pause(robot), "")} ${button(recall(robot), "")} ${button(stop(robot), "stop")}
-    ${mayBeTakenOut(robot) ? button(takeOut(robot.name), "") : nothing}
+    ${canReleaseCorridors(robot) ? button(takeOut(robot.name), "") : nothing}
     ${ways.map((way) => button(way, "", t("mailroom.do.open_way.which", way.names)))}
   </div>`;
 }

@@ -1,4 +1,4 @@
-/** Notices that no channel has taken, with another try; and the mails that lie in the spool, to be read as text. */
+/** Notifications that no channel has taken, with another try; and the mails that lie in the spool, to be read as text. */
 import { html, nothing } from "lit";
 import { repeat } from "lit-html/directives/repeat.js";
 import * as api from "../service/api.js";

@@ -15,12 +15,12 @@ import { serverNow } from "../service/server_clock.js";
 import { withStyles } from "../elements/styles_later.js";
 import { t } from "../texts/texts.js";
 import { Ticking } from "../elements/ticking.js";
-import { closedSigns, corridorLines, label, postMark, silentPlaces, takenBands, takenSigns, wayLines } from "./map_parts.js";
+import { closedSigns, corridorLines, label, postMark, silentPlaces, occupiedBands, occupiedSigns, wayLines } from "./map_parts.js";
 import { mapTools } from "./map_tools.js";
 import { mapLegend, placesInWords } from "./map_words.js";
 import { PageElement } from "../elements/page_element.js";
 import { robotFacts } from "./robot_facts.js";
-/** @import { Alarm, CampusMap, ClosedCorridor, Robot, TakenCorridor } from "../../types/api_types.ts" */
+/** @import { Alarm, CampusMap, ClosedCorridor, Robot, OccupiedCorridor } from "../../types/api_types.ts" */
 /** @import { Box, Drawing, Point } from "./map_drawing.js" */
 /** @import { MapFacts } from "./map_facts.js" */
 /** @import { Place, Wording } from "./map_labels.js" */
@@ -56,7 +56,7 @@ export class CampusMapElement extends PageElement {
     this.map = null;
     /** @type {readonly Robot[]} the robots to show */
     this.robots = [];
-    /** @type {readonly TakenCorridor[]} who holds which corridor; what others hold than these robots is not shown */
+    /** @type {readonly OccupiedCorridor[]} who holds which corridor; what others hold than these robots is not shown */
     this.traffic = [];
     /** @type {readonly Alarm[]} of which some say that a corridor is closed */
     this.alarms = [];
@@ -114,9 +114,9 @@ export class CampusMapElement extends PageElement {
     return html`<svg class=${this.#camera.isWhole ? "" : "closer"} viewBox="${x} ${y} ${width} ${height}" role="img"
       aria-label=${t("map.title", { title: map.title })} @pointerdown=${down} @pointermove=${drag} @pointerup=${up}
       @pointercancel=${up} @wheel=${wheel}>
-      ${silentPlaces(drawn, this.#hatch)} ${takenBands(drawn, facts.taken)} ${corridorLines(drawn)}
+      ${silentPlaces(drawn, this.#hatch)} ${occupiedBands(drawn, facts.taken)} ${corridorLines(drawn)}
       ${wayLines(drawn, this.#way(map), "way")} ${facts.robots.map((robot) => wayLines(drawn, aheadOf(map, robot), "ahead"))}
-      ${takenSigns(drawn, facts.taken, facts.robots.length > 1)} ${closedSigns(drawn, facts.shut)}
+      ${occupiedSigns(drawn, facts.taken, facts.robots.length > 1)} ${closedSigns(drawn, facts.shut)}
       ${drawn.posts.map((post) => postMark(post, this.#at(post.name, facts)))}
       ${wordings.map((wording) => this.#label(drawn, wording, places.get(wording.name)))}
     </svg>`;

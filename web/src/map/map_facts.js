@@ -1,6 +1,6 @@
 /**
  * The facts that a map and its list show: both are made of these facts, so that the drawing says nothing that the list does not. Pure.
- * @import { Alarm, CampusMap, ClosedCorridor, MapCorridor, MapPost, Robot, TakenCorridor } from "../../types/api_types.ts"
+ * @import { Alarm, CampusMap, ClosedCorridor, MapCorridor, MapPost, Robot, OccupiedCorridor } from "../../types/api_types.ts"
  * @typedef {"stopped" | "charging" | "offline"} Condition
  * @typedef {{post: string, window: {from: string, to: string} | null}} MapArrival where and when, null while no time is known
  * @typedef {object} MapFacts
@@ -8,7 +8,7 @@
  * @property {MapArrival | null} arrival of the order that the map is about: the only time that it tells then
  * @property {Map<string, Robot[]>} seen who was last seen at which post
  * @property {Map<string, Robot[]>} expected who is expected at which post
- * @property {readonly TakenCorridor[]} taken by these robots, on this map
+ * @property {readonly OccupiedCorridor[]} taken by these robots, on this map
  * @property {readonly Alarm[]} closed for the robot that turned back in it
  * @property {readonly ClosedCorridor[]} byPeople
  * @property {readonly string[]} shut corridors that a dispatcher has closed, or in which a robot turned back
@@ -17,7 +17,7 @@
 
 import { expectedNext } from "../orders/arrival.js";
 
-/** @param {CampusMap} map @param {readonly Robot[]} robots @param {readonly TakenCorridor[]} traffic @param {readonly Alarm[]} alarms
+/** @param {CampusMap} map @param {readonly Robot[]} robots @param {readonly OccupiedCorridor[]} traffic @param {readonly Alarm[]} alarms
  *  @param {readonly ClosedCorridor[]} closed @param {number} now_ms @param {MapArrival | null} [arrival] @returns {MapFacts} */
 export function factsOf(map, robots, traffic, alarms, closed, now_ms, arrival = null) {
   const posts = new Set(map.posts.map(({ name }) => name));
@@ -60,7 +60,7 @@ export function conditionsOf({ activity, battery, online, heard_at }) {
 }
 
 /** Where it may be by now: from the post that saw it to the next, and in every corridor that it holds.
- *  @param {CampusMap} map @param {Robot} robot @param {readonly TakenCorridor[]} taken */
+ *  @param {CampusMap} map @param {Robot} robot @param {readonly OccupiedCorridor[]} taken */
 function whereaboutsOf(map, { name, last_seen, towards }, taken) {
   const held = taken.filter(({ robot }) => robot === name).map(({ corridor }) => corridor);
   const ahead = map.corridors.find(({ a, b }) => (a === last_seen?.post && b === towards) || (b === last_seen?.post && a === towards));
@@ -68,7 +68,7 @@ function whereaboutsOf(map, { name, last_seen, towards }, taken) {
   return [...map.posts.filter((post) => post.name === last_seen?.post), ...corridors];
 }
 
-/** True if an offline robot may be where there is no network. @param {CampusMap} map @param {Robot} robot @param {readonly TakenCorridor[]} taken */
+/** True if an offline robot may be where there is no network. @param {CampusMap} map @param {Robot} robot @param {readonly OccupiedCorridor[]} taken */
 export const isSilentAsExpected = (map, robot, taken) =>
   conditionsOf(robot).includes("offline") && whereaboutsOf(map, robot, taken).some(({ network }) => !network);
 

@@ -1,6 +1,6 @@
 /**
  * The notes beside each post of a map, and other areas to be kept clear.
- * @import { CampusMap, Expected, Robot, TakenCorridor } from "../../types/api_types.ts"
+ * @import { CampusMap, Expected, Robot, OccupiedCorridor } from "../../types/api_types.ts"
  * @import { Box, Drawing } from "./map_drawing.js"
  * @import { MapFacts } from "./map_facts.js"
  * @import { Wording } from "./map_labels.js"
@@ -46,7 +46,7 @@ export function aheadOf(map, robot) {
   return seen && next && seen !== next ? shortestWay(map, seen, next) : [];
 }
 
-/** Room for the name of who holds a corridor. @param {Drawing} drawn @param {TakenCorridor} taken @returns {Box} */
+/** Room for the name of who holds a corridor. @param {Drawing} drawn @param {OccupiedCorridor} taken @returns {Box} */
 export function signBox(drawn, { robot, from_post, to_post }) {
   const points = pointsFrom(drawn, from_post, to_post);
   const { x, y } = points.length ? middleOf(points) : { x: 0, y: 0 };

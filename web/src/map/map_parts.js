@@ -3,7 +3,7 @@ import { nothing, svg } from "lit";
 import { middleOf, pathOf, pointsFrom } from "./map_drawing.js";
 import { conditionsOf } from "./map_facts.js";
 import { crowdRadius, inLines, LINE_HEIGHT, notesIn, robotPlaces } from "./map_sides.js";
-/** @import { Robot, TakenCorridor } from "../../types/api_types.ts" */
+/** @import { Robot, OccupiedCorridor } from "../../types/api_types.ts" */
 /** @import { DrawnPost, Drawing } from "./map_drawing.js" */
 /** @import { Place, Wording } from "./map_labels.js" */
 
@@ -24,8 +24,8 @@ export const silentPlaces = ({ posts, corridors }, pattern) => svg`
 /** @param {Drawing} drawn */
 export const corridorLines = ({ corridors }) => corridors.map(({ points }) => svg`<path class="corridor" d=${pathOf(points)} />`);
 
-/** @param {Drawing} drawn @param {readonly TakenCorridor[]} taken */
-export const takenBands = (drawn, taken) =>
+/** @param {Drawing} drawn @param {readonly OccupiedCorridor[]} taken */
+export const occupiedBands = (drawn, taken) =>
   taken.map(({ robot, corridor, from_post, to_post }) => {
     const points = pointsFrom(drawn, from_post, to_post);
     const d = pathOf(points);
@@ -33,8 +33,8 @@ export const takenBands = (drawn, taken) =>
   });
 
 /** Which way each of them is taken, and by whom where there are several robots. @param {Drawing} drawn
- *  @param {readonly TakenCorridor[]} taken @param {boolean} named */
-export const takenSigns = (drawn, taken, named) =>
+ *  @param {readonly OccupiedCorridor[]} taken @param {boolean} named */
+export const occupiedSigns = (drawn, taken, named) =>
   taken.map(({ robot, from_post, to_post }) => {
     const points = pointsFrom(drawn, from_post, to_post);
     if (!points.length) return nothing;

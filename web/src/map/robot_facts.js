@@ -34,7 +34,7 @@ const aboutRobot = (map, facts, robot) => [
   aheadFact(map, robot, facts.arrival),
   conditionsOf(robot).includes("stopped") ? fact("warning", t("map.stopped")) : nothing,
   robot.why && (!facts.arrival || robot.activity === "driving") ? fact("send", robotWhy(robot, map)) : nothing,
-  facts.taken.filter((taken) => taken.robot === robot.name).map((taken) => fact("corridor", takenText(map, taken))),
+  facts.taken.filter((taken) => taken.robot === robot.name).map((taken) => fact("corridor", occupiedText(map, taken))),
   facts.closed.filter((alarm) => alarm.robot === robot.name).map((alarm) => fact("warning", closedText(map, alarm))),
   conditionsOf(robot).includes("offline") ? fact("network", silentText(map, facts, robot)) : nothing,
   batteryFact(robot),
@@ -53,7 +53,7 @@ function aheadFact(map, robot, arrival) {
 }
 
 /** @param {CampusMap} map @param {{from_post: string, to_post: string, since: string}} taken */
-const takenText = (map, { from_post, to_post, since }) =>
+const occupiedText = (map, { from_post, to_post, since }) =>
   t("map.taken", { from: titleOf(map, from_post), to: titleOf(map, to_post), time: clockTime(since) });
 
 /** @param {CampusMap} map @param {Alarm} alarm */

@@ -1,5 +1,5 @@
 /**
- * Notices that this device shows by itself (Web Push). The settings page asks `pushState` and switches it on and off.
+ * Notifications that this device shows by itself (Web Push). The settings page asks `pushState` and switches it on and off.
  * @typedef {"unsupported" | "refused" | "off" | "on"} PushState
  */
 import * as api from "../service/api.js";
@@ -58,7 +58,7 @@ async function tellService(person_id, made) {
 async function subscribed() {
   const before = await subscription();
   if (before) return before;
-  const { push_key } = await api.noticeWishes();
+  const { push_key } = await api.notificationPreferences();
   const { pushManager } = await navigator.serviceWorker.ready;
   return pushManager.subscribe({ userVisibleOnly: true, applicationServerKey: push_key });
 }

@@ -1,9 +1,9 @@
-/** Notices that the service pushes: shown, counted on the app's icon, and opened with a tap. */
+/** Notifications that the service pushes: shown, counted on the app's icon, and opened with a tap. */
 import * as api from "../service/api.js";
 import { pageOf, PAGES } from "../service/links.js";
 import { keepOrder } from "./kept_answers.js";
-/** @import { Notice } from "../../types/api_types.ts" */
-/** @typedef {Pick<Notice, "kind" | "order_id" | "title" | "body" | "at"> & {tag: string, language: string}} Pushed what app/notify sends */
+/** @import { NotificationView } from "../../types/api_types.ts" */
+/** @typedef {Pick<NotificationView, "kind" | "order_id" | "title" | "body" | "at"> & {tag: string, language: string}} Pushed what app/notify sends */
 
 const NAME = "Campus Mail";
 /** Kinds that stay on screen: a person stands before a robot, or soon will. */
@@ -20,7 +20,7 @@ export async function show({ registration }, data) {
       icon: "/icons/icon-192.png",
       badge: "/icons/badge-96.png",
       requireInteraction: STAYS.includes(notice.kind ?? ""),
-      data: { url: (notice.kind && pageOf(/** @type {Notice} */ (notice))) ?? PAGES.notices, kind: notice.kind, at: notice.at },
+      data: { url: (notice.kind && pageOf(/** @type {NotificationView} */ (notice))) ?? PAGES.notices, kind: notice.kind, at: notice.at },
     }),
     count().catch(() => undefined),
     notice.order_id ? keepOrder(notice.order_id).catch(() => undefined) : undefined,
@@ -68,7 +68,7 @@ async function read(told) {
 
 /** The push service gave this browser another address. @param {WorkerScope} worker */
 export async function renewSubscription({ registration }) {
-  const { push_key } = await api.noticeWishes();
+  const { push_key } = await api.notificationPreferences();
   const made = await registration.pushManager.subscribe({ userVisibleOnly: true, applicationServerKey: push_key });
   await api.addDevice(made.toJSON());
 }

@@ -129,10 +129,10 @@ export function stages(order) {
 }
 
 /** Events that are shown besides the states. */
-const TOLD_TOO = ["wait_extended", "delegate_named", "delegate_revoked", "return_requested", "delayed", "taken_out"];
+const OTHER_EVENTS = ["wait_extended", "delegate_named", "delegate_revoked", "return_requested", "delayed", "taken_out"];
 
 /** @param {OrderEvent} event @param {Record<string, string>} values */
-function happening(event, values) {
+function eventText(event, values) {
   if (isPassingOn(event)) return t("timeline.passed_on", values);
   return t(event.kind === "moved" ? `timeline.${event.state}` : `timeline.event.${event.kind}`, values);
 }
@@ -152,8 +152,8 @@ function* valuesOfEvents(order, map) {
 
 /** Everything that happened, then what is still to come on the usual way. @param {Order} order @param {CampusMap} map @returns {Entry[]} */
 export function timeline(order, map) {
-  const said = [...valuesOfEvents(order, map)].filter(({ event: { kind } }) => kind === "moved" || TOLD_TOO.includes(kind));
-  const happened = said.map(({ event, values }) => ({ state: event.state, text: happening(event, values), event }));
+  const said = [...valuesOfEvents(order, map)].filter(({ event: { kind } }) => kind === "moved" || OTHER_EVENTS.includes(kind));
+  const happened = said.map(({ event, values }) => ({ state: event.state, text: eventText(event, values), event }));
   const values = { ...names(order, map), ...(isBetweenLegs(order) && { from: names(order, map).at }) };
   const reached = WAY.indexOf(order.state);
   const ahead = reached < 0 ? [] : WAY.slice(reached + 1);

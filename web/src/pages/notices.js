@@ -1,4 +1,4 @@
 import { html } from "lit";
 import { openPage } from "./open_page.js";
 
-await openPage("notices", () => html`<notices-page></notices-page>`);
+await openPage("notices", () => html`<notifications-page></notifications-page>`);

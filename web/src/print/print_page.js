@@ -40,8 +40,8 @@ export class PrintPage extends PageElement {
     this.chosen = new Set();
     this.problem = "";
     new OnLive(this, {
-      order: (order) => order.id === this.order_id && this.#lookAgain(),
-      resync: () => this.#lookAgain(),
+      order: (order) => order.id === this.order_id && this.#poll(),
+      resync: () => this.#poll(),
     });
   }
 
@@ -115,7 +115,7 @@ export class PrintPage extends PageElement {
   }
 
   /** A slip that is not printed yet gets its code as soon as there is one. Asked for: what all dispatchers hear of has no code. */
-  async #lookAgain() {
+  async #poll() {
     if (!this.order) return;
     try {
       this.order = await api.order(this.order.id);

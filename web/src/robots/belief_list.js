@@ -4,7 +4,7 @@ import { repeat } from "lit-html/directives/repeat.js";
 import { t } from "../texts/texts.js";
 import { clockSeconds } from "../texts/times.js";
 import { field } from "../elements/field.js";
-/** @import { Change, Seen } from "./watched_run.js" */
+/** @import { Change, Seen } from "./diagnostics_run.js" */
 
 const SHOWN_CHANGES = 30;
 

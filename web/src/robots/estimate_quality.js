@@ -10,7 +10,7 @@ import { problemLine } from "../elements/field.js";
 import { PageElement } from "../elements/page_element.js";
 /** @import { CampusMap, EstimateQuality as Quality } from "../../types/api_types.ts" */
 
-const LOOK_AGAIN_MS = 60_000;
+const POLL_MS = 60_000;
 
 export class EstimateQuality extends PageElement {
   static properties = { map: { attribute: false }, quality: { state: true }, problem: { state: true } };
@@ -22,12 +22,12 @@ export class EstimateQuality extends PageElement {
     /** @type {Quality | null} */
     this.quality = null;
     this.problem = "";
-    this.fetched_ms = -LOOK_AGAIN_MS;
-    new Ticking(this, LOOK_AGAIN_MS);
+    this.fetched_ms = -POLL_MS;
+    new Ticking(this, POLL_MS);
   }
 
   updated() {
-    if (performance.now() > this.fetched_ms + LOOK_AGAIN_MS) this.#fetch();
+    if (performance.now() > this.fetched_ms + POLL_MS) this.#fetch();
   }
 
   render() {

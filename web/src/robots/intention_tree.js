@@ -7,14 +7,14 @@ import { repeat } from "lit-html/directives/repeat.js";
 import { hasText, t } from "../texts/texts.js";
 import { TreeKeys } from "../elements/tree_keys.js";
 import { PageElement } from "../elements/page_element.js";
-/** @import { Because, Insight, IntentionTold, Means, NotChosen } from "../../types/api_types.ts" */
+/** @import { Because, Diagnostics, IntentionView, Means, NotChosen } from "../../types/api_types.ts" */
 
 export class IntentionTree extends PageElement {
   static properties = { insight: { attribute: false } };
 
   constructor() {
     super();
-    /** @type {Insight | null} */
+    /** @type {Diagnostics | null} */
     this.insight = null;
     new TreeKeys(this);
   }
@@ -33,7 +33,7 @@ export class IntentionTree extends PageElement {
   }
 }
 
-/** @param {IntentionTold} told */
+/** @param {IntentionView} told */
 function intention({ number, state, because, stack, beside }) {
   const how = hasText(`mind.state.${state}`) ? t(`mind.state.${state}`) : state;
   return html`<li role="treeitem" aria-expanded="true" tabindex="-1">

@@ -4,7 +4,7 @@ import { repeat } from "lit-html/directives/repeat.js";
 import { t } from "../texts/texts.js";
 import { filterField, fitting } from "./belief_list.js";
 import { notChosen } from "./intention_tree.js";
-/** @import { NumberedLine, Seen } from "./watched_run.js" */
+/** @import { NumberedLine, Seen } from "./diagnostics_run.js" */
 
 const KINDS = ["chose", "did", "believed", "forgot", "gave_up"];
 const SHOWN = 150;

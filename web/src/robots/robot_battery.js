@@ -14,9 +14,9 @@ import { PageElement } from "../elements/page_element.js";
 
 const HOUR_MS = 3_600_000;
 const SPANS = /** @type {const} */ ({ hours: 6 * HOUR_MS, day: 24 * HOUR_MS, week: 168 * HOUR_MS, month: 720 * HOUR_MS });
-const LOOK_AGAIN_MS = 60_000;
+const POLL_MS = 60_000;
 /** A robot that has just been switched on sends its first battery reading while the page is open. */
-const LOOK_AGAIN_FOR_THE_FIRST_MS = 5_000;
+const FIRST_POLL_MS = 5_000;
 const SLACK_MS = 100;
 const ROWS = 13;
 
@@ -36,13 +36,13 @@ export class RobotBattery extends PageElement {
     /** @type {BatteryHistory | null} */
     this.history = null;
     this.problem = "";
-    this.fetched_ms = -LOOK_AGAIN_MS;
-    new Ticking(this, LOOK_AGAIN_FOR_THE_FIRST_MS);
+    this.fetched_ms = -POLL_MS;
+    new Ticking(this, FIRST_POLL_MS);
   }
 
   /** @param {Map<string, unknown>} changed */
   updated(changed) {
-    const again_ms = this.history?.samples.length ? LOOK_AGAIN_MS : LOOK_AGAIN_FOR_THE_FIRST_MS;
+    const again_ms = this.history?.samples.length ? POLL_MS : FIRST_POLL_MS;
     if (changed.has("span") || performance.now() > this.fetched_ms + again_ms - SLACK_MS) this.#fetch();
   }
 

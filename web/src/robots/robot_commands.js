@@ -2,7 +2,7 @@
 import { html, nothing } from "lit";
 import { alarmText } from "../texts/alarm_words.js";
 import * as api from "../service/api.js";
-import { mayBeTakenOut, takeOut } from "../mailroom/corridor_actions.js";
+import { canReleaseCorridors, takeOut } from "../mailroom/corridor_actions.js";
 import { openWays, pause, recall, resume, stop } from "../mailroom/mailroom_actions.js";
 import { inWords } from "../service/problems.js";
 import { reasonText } from "../texts/reason_words.js";
@@ -67,7 +67,7 @@ export class RobotCommands extends PageElement {
       ${t(`mailroom.do.${action.name}`)}
     </button>`;
     const told = [pause(robot), resume(robot), recall(robot), stop(robot)];
-    return html`<div class="choices">${[...told, ...(mayBeTakenOut(robot) ? [takeOut(robot.name)] : [])].map(button)}</div>`;
+    return html`<div class="choices">${[...told, ...(canReleaseCorridors(robot) ? [takeOut(robot.name)] : [])].map(button)}</div>`;
   }
 
   /** @param {CampusMap} map */

@@ -46,7 +46,7 @@ export class RobotPage extends PageElement {
 
   firstUpdated() {
     this.#fetch();
-    if (this.isMaintainer) import("./robot_watch.js");
+    if (this.isMaintainer) import("./robot_diagnostics.js");
     if (this.isMaintainer) import("./robot_keys.js");
   }
 
@@ -80,7 +80,7 @@ export class RobotPage extends PageElement {
         ${about(details)}
       </section>
       ${this.isMaintainer
-        ? html`<robot-watch .robot=${this.robot} .online=${details.robot.online}></robot-watch>`
+        ? html`<robot-diagnostics .robot=${this.robot} .online=${details.robot.online}></robot-diagnostics>`
         : html`<section class="card"><h2>${t("mind.title")}</h2><p class="hint">${t("mind.maintainers")}</p></section>`}
       <robot-faults class="card" .robot=${this.robot} .map=${map}></robot-faults>
       ${this.isMaintainer ? html`<robot-keys class="card" .robot=${this.robot}></robot-keys>` : nothing}

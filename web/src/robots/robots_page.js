@@ -17,7 +17,7 @@ import { icon } from "../elements/icon.js";
 import { PageElement } from "../elements/page_element.js";
 /** @import { Alarm, CampusMap, Robot } from "../../types/api_types.ts" */
 
-const LOOK_AGAIN_MS = 30_000;
+const POLL_MS = 30_000;
 
 export class RobotsPage extends PageElement {
   static properties = { robots: { state: true }, alarms: { state: true }, map: { state: true }, problem: { state: true } };
@@ -31,7 +31,7 @@ export class RobotsPage extends PageElement {
     /** @type {CampusMap | null} */
     this.map = null;
     this.problem = "";
-    this.fetched_ms = -LOOK_AGAIN_MS;
+    this.fetched_ms = -POLL_MS;
     new Ticking(this, 5_000);
     new OnLive(this, { robot: (robot) => this.#update(robot), resync: () => this.#fetch() });
   }
@@ -53,7 +53,7 @@ export class RobotsPage extends PageElement {
 
   /** Alarms have no event of their own: they are looked at again every so often. */
   updated() {
-    if (performance.now() > this.fetched_ms + LOOK_AGAIN_MS) this.#fetch();
+    if (performance.now() > this.fetched_ms + POLL_MS) this.#fetch();
   }
 
   /** @param {Robot} robot */

@@ -2,13 +2,13 @@
 import { html, nothing, svg } from "lit";
 import { hasText, t } from "../texts/texts.js";
 import { decimal } from "../texts/times.js";
-/** @import { Insight, Sensors } from "../../types/api_types.ts" */
+/** @import { Diagnostics, Sensors } from "../../types/api_types.ts" */
 
 const LIGHTS = ["left", "front_left", "centre_left", "centre_right", "front_right", "right"];
 const MIDDLE = 70;
 const [BUMPER, LIGHT] = [58, 48];
 
-/** @param {Sensors} sensors @param {Insight["loops"]} loops */
+/** @param {Sensors} sensors @param {Diagnostics["loops"]} loops */
 export function sensorPanel(sensors, loops) {
   return html`<div class="senses-now">${shape(sensors)} ${words(sensors)}</div>
     ${loops.length ? timings(loops) : nothing}`;
@@ -73,7 +73,7 @@ function words(sensors) {
 const power = (voltage_mv, current_ma, temperature_c) =>
   t("sensor.power", { volts: decimal(voltage_mv / 1000, 1), amperes: decimal(current_ma / 1000, 2), degrees: decimal(temperature_c, 0) });
 
-/** @param {Insight["loops"]} loops */
+/** @param {Diagnostics["loops"]} loops */
 function timings(loops) {
   return html`<details>
     <summary>${t("sensor.loops")}</summary>

@@ -133,7 +133,7 @@ const orderPath = (id) => `/orders/${encodeURIComponent(id)}`;
 /** @returns {Promise<Api.About>} */
 export const about = () => ask("/about");
 
-/** @param {{fresh?: boolean}} [wish] `fresh`: from the service or not at all
+/** @param {{fresh?: boolean}} [request] `fresh`: from the service or not at all
  *  @returns {Promise<Api.Me | null>} the person who is signed in here, or null */
 export async function me({ fresh = false } = {}) {
   try {
@@ -209,8 +209,8 @@ export const delegateCode = async (id, delegate_id) => withPicture(await ask(del
 /** @param {Api.HandoverCode} code @returns {Api.ShownCode} */
 const withPicture = (code) => ({ ...code, picture: code.svg_url });
 
-/** @param {Api.NewStandingOrder} wish @returns {Promise<Api.StandingOrder>} */
-export const placeStandingOrder = (wish) => ask("/standing-orders", { method: "POST", body: wish });
+/** @param {Api.NewStandingOrder} request @returns {Promise<Api.StandingOrder>} */
+export const placeStandingOrder = (request) => ask("/standing-orders", { method: "POST", body: request });
 
 /** @param {{limit?: number, cursor?: string}} [page] @returns {Promise<Api.Page<Api.StandingOrder>>} newest first */
 export const standingOrders = (page = {}) => ask("/standing-orders" + query(page));
@@ -259,7 +259,7 @@ export const robots = () => everyPage("/robots");
 /** @param {{limit?: number, cursor?: string}} [page] @returns {Promise<Api.Inbox>} newest first */
 export const notices = (page = { limit: 50 }) => ask("/notices" + query(page));
 
-/** @param {Api.Notice["id"][]} ids @returns {Promise<unknown>} */
+/** @param {Api.NotificationView["id"][]} ids @returns {Promise<unknown>} */
 export const markRead = (ids) => ask("/notices/read", { method: "POST", body: { ids } });
 
 // What dispatchers do.
@@ -356,7 +356,7 @@ export const letWait = (id, extend_s) => tell(orderPath(id) + "/wait", { extend_
 /** Digits may be typed again. @param {string} id @returns {Promise<Api.Order>} */
 export const releaseDigits = (id) => tell(orderPath(id) + "/digits/release");
 
-/** Notices that no channel has taken yet, newest first. @param {{given_up?: "true" | "false", limit?: number, cursor?: string}} page
+/** Notifications that no channel has taken yet, newest first. @param {{given_up?: "true" | "false", limit?: number, cursor?: string}} page
  *  @returns {Promise<Api.Page<Api.Sending>>} */
 export const notSent = (page) => ask("/outbox" + query(page));
 
@@ -388,22 +388,22 @@ export const contacts = (page) => ask("/me/contacts" + query(page));
 /** @param {string} email */
 const contactPath = (email) => `/me/contacts/${encodeURIComponent(email)}`;
 
-/** @param {string} email @param {{label: string, post: string | null}} wish @returns {Promise<Api.Contact>} */
-export const saveContact = (email, wish) => ask(contactPath(email), { method: "PUT", body: wish });
+/** @param {string} email @param {{label: string, post: string | null}} request @returns {Promise<Api.Contact>} */
+export const saveContact = (email, request) => ask(contactPath(email), { method: "PUT", body: request });
 
 /** @param {string} email @returns {Promise<null>} */
 export const forgetContact = (email) => ask(contactPath(email), { method: "DELETE" });
 
-/** @returns {Promise<Api.NoticeWishes>} */
-export const noticeWishes = () => ask("/me/notices");
+/** @returns {Promise<Api.NotificationPreferences>} */
+export const notificationPreferences = () => ask("/me/notices");
 
-/** @param {Api.NoticeWishes["muted"]} muted @returns {Promise<Api.NoticeWishes>} */
-export const changeNoticeWishes = (muted) => ask("/me/notices", { method: "PUT", body: { muted } });
+/** @param {Api.NotificationPreferences["muted"]} muted @returns {Promise<Api.NotificationPreferences>} */
+export const changeNotificationPreferences = (muted) => ask("/me/notices", { method: "PUT", body: { muted } });
 
-/** Have notices shown by this browser. @param {PushSubscriptionJSON} subscription @returns {Promise<{id: string}>} */
+/** Have notifications shown by this browser. @param {PushSubscriptionJSON} subscription @returns {Promise<{id: string}>} */
 export const addDevice = ({ endpoint, keys }) => ask("/me/devices", { method: "POST", body: { endpoint, keys } });
 
-/** No more notices there. @param {string} id @returns {Promise<null>} */
+/** No more notifications there. @param {string} id @returns {Promise<null>} */
 export const removeDevice = (id) => ask(`/me/devices/${encodeURIComponent(id)}`, { method: "DELETE" });
 
 /** @param {string} url @returns {Promise<Api.NewWebhook>} its secret is shown this once */
@@ -427,8 +427,8 @@ export const endOtherSessions = () => ask("/sessions", { method: "DELETE" });
 /** My scripts' tokens. @param {{limit?: number, cursor?: string}} [page] @returns {Promise<Api.Page<Api.Token>>} */
 export const tokens = (page = { limit: 50 }) => ask("/tokens" + query(page));
 
-/** @param {Api.NewToken} wish @returns {Promise<Api.MadeToken>} it is shown this once */
-export const makeToken = (wish) => ask("/tokens", { method: "POST", body: wish });
+/** @param {Api.NewToken} request @returns {Promise<Api.MadeToken>} it is shown this once */
+export const makeToken = (request) => ask("/tokens", { method: "POST", body: request });
 
 /** @param {string} prefix @returns {Promise<null>} */
 export const revokeToken = (prefix) => ask(`/tokens/${prefix}`, { method: "DELETE" });

@@ -62,5 +62,5 @@ export const orderFrom = (search) => new URLSearchParams(search).get("order");
 /** Told to delegates, who may not follow the order: the mail that they got has a link of their own. */
 const OF_DELEGATES = ["delegated", "delegation_over"];
 
-/** The page that a notification leads to. @param {import("../../types/api_types.ts").Notice} notice */
+/** The page that a notification leads to. @param {import("../../types/api_types.ts").NotificationView} notice */
 export const pageOf = ({ order_id, kind }) => (order_id && !OF_DELEGATES.includes(kind) ? followPage(order_id) : null);

@@ -18,7 +18,7 @@ export const hasKept = () => localStorage.getItem(KEPT) !== null;
 /** @param {boolean} some */
 export const sayKept = (some) => (some ? localStorage.setItem(KEPT, "") : localStorage.removeItem(KEPT));
 
-/** Where this browser remembers whom it shows notices, and as what the service knows it. */
+/** Where this browser remembers whom it shows notifications, and as what the service knows it. */
 export const PUSH_DEVICE = "push-device";
 export const hasPush = () => localStorage.getItem(PUSH_DEVICE) !== null;
 

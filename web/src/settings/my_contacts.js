@@ -93,8 +93,8 @@ export class MyContacts extends SettingsPart {
     const written = new FormData(form);
     const email = `${written.get("contact_email")}`.trim();
     if (!looksLikeEmail(email)) return void (this.problem = t("error.malformed.email"));
-    const wish = { label: `${written.get("label")}`.trim(), post: `${written.get("post")}` || null };
-    if (!(await this.attempt(() => api.saveContact(email, wish), t("settings.saved")))) return;
+    const request = { label: `${written.get("label")}`.trim(), post: `${written.get("post")}` || null };
+    if (!(await this.attempt(() => api.saveContact(email, request), t("settings.saved")))) return;
     this.edited = null;
     form.reset();
     await this.#fetch();

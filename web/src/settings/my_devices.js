@@ -1,22 +1,22 @@
-/** The devices that show notices by themselves: this one switched on and off, others taken off the list. */
+/** The devices that show notifications by themselves: this one switched on and off, others taken off the list. */
 import { html, nothing } from "lit";
 import * as api from "../service/api.js";
 import { serverNow } from "../service/server_clock.js";
 import { t } from "../texts/texts.js";
 import { dayAndTime } from "../texts/times.js";
 import { SettingsPart, remark } from "./settings_part.js";
-/** @import { NoticeWishes, Person } from "../../types/api_types.ts" */
+/** @import { NotificationPreferences, Person } from "../../types/api_types.ts" */
 
 export class MyDevices extends SettingsPart {
   /** @type {typeof import("../offline/push.js") | null} */
   #push = null;
 
-  static properties = { wishes: { attribute: false }, person: { attribute: false }, here: { state: true } };
+  static properties = { preferences: { attribute: false }, person: { attribute: false }, here: { state: true } };
 
   constructor() {
     super();
-    /** @type {NoticeWishes | null} */
-    this.wishes = null;
+    /** @type {NotificationPreferences | null} */
+    this.preferences = null;
     /** @type {Person | null} */
     this.person = null;
     /** @type {import("../offline/push.js").PushState | null} */
@@ -29,8 +29,8 @@ export class MyDevices extends SettingsPart {
   }
 
   render() {
-    if (!this.wishes) return nothing;
-    const { devices } = this.wishes;
+    if (!this.preferences) return nothing;
+    const { devices } = this.preferences;
     return this.card(
       "devices",
       html`${this.#thisDevice()}
@@ -67,7 +67,7 @@ export class MyDevices extends SettingsPart {
   #switch(turn) {
     return this.attempt(async () => {
       if (this.#push) this.here = await turn(this.#push);
-      this.#tell(await api.noticeWishes());
+      this.#tell(await api.notificationPreferences());
     });
   }
 
@@ -75,13 +75,13 @@ export class MyDevices extends SettingsPart {
   #remove(id) {
     return this.attempt(async () => {
       await api.removeDevice(id);
-      this.#tell(await api.noticeWishes());
+      this.#tell(await api.notificationPreferences());
     }, t("settings.removed"));
   }
 
-  /** @param {NoticeWishes} wishes */
-  #tell(wishes) {
-    this.dispatchEvent(new CustomEvent("wishes", { detail: wishes, bubbles: true }));
+  /** @param {NotificationPreferences} preferences */
+  #tell(preferences) {
+    this.dispatchEvent(new CustomEvent("preferences", { detail: preferences, bubbles: true }));
   }
 }
 

@@ -1,4 +1,4 @@
-/** My name, the language of pages and notices, and the post where I usually am. */
+/** My name, the language of pages and notifications, and the post where I usually am. */
 import { html, nothing } from "lit";
 import * as api from "../service/api.js";
 import { speak } from "../texts/language.js";

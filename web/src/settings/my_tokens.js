@@ -81,9 +81,9 @@ export class MyTokens extends SettingsPart {
     const name = `${written.get("token_name")}`.trim();
     const scopes = /** @type {NewToken["scopes"]} */ (written.getAll("scope").map(String));
     if (!name || !scopes.length) return void (this.problem = t(name ? "settings.scopes_missing" : "settings.token_name_missing"));
-    const wish = { name, scopes, days: Number(written.get("days")) };
+    const request = { name, scopes, days: Number(written.get("days")) };
     const make = async () => {
-      this.made = (await api.makeToken(wish)).token;
+      this.made = (await api.makeToken(request)).token;
       await this.#fetch();
     };
     if (await this.attempt(make, t("settings.token_made"))) form.reset();

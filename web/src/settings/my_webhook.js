@@ -1,4 +1,4 @@
-/** An address of mine that is told of my notices, and may be tried; the secret that signs them is shown once. */
+/** An address of mine that is told of my notifications, and may be tried; the secret that signs them is shown once. */
 import { html, nothing } from "lit";
 import * as api from "../service/api.js";
 import { serverNow } from "../service/server_clock.js";
@@ -7,21 +7,21 @@ import { dayAndTime } from "../texts/times.js";
 import { field } from "../elements/field.js";
 import { shownOnce } from "./shown_once.js";
 import { SettingsPart, remark } from "./settings_part.js";
-/** @import { NoticeWishes, Trial } from "../../types/api_types.ts" */
+/** @import { NotificationPreferences, Trial } from "../../types/api_types.ts" */
 
 export class MyWebhook extends SettingsPart {
-  static properties = { wishes: { attribute: false }, secret: { state: true } };
+  static properties = { preferences: { attribute: false }, secret: { state: true } };
 
   constructor() {
     super();
-    /** @type {NoticeWishes | null} */
-    this.wishes = null;
+    /** @type {NotificationPreferences | null} */
+    this.preferences = null;
     this.secret = "";
   }
 
   render() {
-    if (!this.wishes) return nothing;
-    const { webhook } = this.wishes;
+    if (!this.preferences) return nothing;
+    const { webhook } = this.preferences;
     return this.card(
       "webhook",
       html`${webhook
@@ -54,7 +54,7 @@ export class MyWebhook extends SettingsPart {
     this.#tell();
   }
 
-  /** Its program may have the secret by now: what a notice would meet there is seen at once. */
+  /** Its program may have the secret by now: what a notification would meet there is seen at once. */
   async #try() {
     /** @type {Trial | null} */
     let trial = null;
@@ -74,7 +74,7 @@ export class MyWebhook extends SettingsPart {
   }
 
   async #tell() {
-    this.dispatchEvent(new CustomEvent("wishes", { detail: await api.noticeWishes(), bubbles: true }));
+    this.dispatchEvent(new CustomEvent("preferences", { detail: await api.notificationPreferences(), bubbles: true }));
   }
 }
 

@@ -12,14 +12,14 @@ import "./my_profile.js";
 import "./my_sessions.js";
 import "./my_tokens.js";
 import "./my_webhook.js";
-import "./notice_table.js";
+import "./notification_table.js";
 import { PageElement } from "../elements/page_element.js";
-/** @import { CampusMap, NoticeWishes, Person } from "../../types/api_types.ts" */
+/** @import { CampusMap, NotificationPreferences, Person } from "../../types/api_types.ts" */
 
 const PARTS = ["profile", "notices", "devices", "contacts", "delegates", "sessions", "webhook", "tokens"];
 
 export class SettingsPage extends PageElement {
-  static properties = { person: { attribute: false }, map: { state: true }, wishes: { state: true }, problem: { state: true } };
+  static properties = { person: { attribute: false }, map: { state: true }, preferences: { state: true }, problem: { state: true } };
 
   constructor() {
     super();
@@ -27,10 +27,10 @@ export class SettingsPage extends PageElement {
     this.person = null;
     /** @type {CampusMap | null} */
     this.map = null;
-    /** @type {NoticeWishes | null} */
-    this.wishes = null;
+    /** @type {NotificationPreferences | null} */
+    this.preferences = null;
     this.problem = "";
-    this.addEventListener("wishes", (event) => (this.wishes = /** @type {CustomEvent} */ (event).detail));
+    this.addEventListener("preferences", (event) => (this.preferences = /** @type {CustomEvent} */ (event).detail));
     this.addEventListener("me", (event) => (this.person = /** @type {CustomEvent} */ (event).detail));
   }
 
@@ -39,8 +39,8 @@ export class SettingsPage extends PageElement {
   }
 
   render() {
-    const { person, map, wishes } = this;
-    if (!map || !wishes) return this.problem ? html`<h1>${t("title.settings")}</h1>${problemLine(this.problem)}` : html`<p class="waiting" role="status">${t("app.loading")}</p>`;
+    const { person, map, preferences } = this;
+    if (!map || !preferences) return this.problem ? html`<h1>${t("title.settings")}</h1>${problemLine(this.problem)}` : html`<p class="waiting" role="status">${t("app.loading")}</p>`;
     return html`<h1>${t("title.settings")}</h1>
       <div class="settings">
         <nav class="contents" aria-label=${t("settings.contents")}>
@@ -48,12 +48,12 @@ export class SettingsPage extends PageElement {
         </nav>
         <div class="parts">
           <my-profile .person=${person} .map=${map}></my-profile>
-          <notice-table .person=${person} .wishes=${wishes}></notice-table>
-          <my-devices .person=${person} .wishes=${wishes}></my-devices>
+          <notification-table .person=${person} .preferences=${preferences}></notification-table>
+          <my-devices .person=${person} .preferences=${preferences}></my-devices>
           <my-contacts .map=${map}></my-contacts>
           <my-delegates .map=${map}></my-delegates>
           <my-sessions></my-sessions>
-          <my-webhook .wishes=${wishes}></my-webhook>
+          <my-webhook .preferences=${preferences}></my-webhook>
           <my-tokens .person=${person}></my-tokens>
         </div>
       </div>`;
@@ -61,7 +61,7 @@ export class SettingsPage extends PageElement {
 
   async #fetch() {
     try {
-      [this.map, this.wishes] = await Promise.all([loadMap(), api.noticeWishes()]);
+      [this.map, this.preferences] = await Promise.all([loadMap(), api.notificationPreferences()]);
     } catch (failure) {
       this.problem = inWords(failure);
     }

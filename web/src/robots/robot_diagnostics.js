@@ -7,7 +7,7 @@ import * as api from "../service/api.js";
 import { isLive, OnLive } from "../live/live.js";
 import { inWords } from "../service/problems.js";
 import { counted, t } from "../texts/texts.js";
-import { WatchedRun } from "./watched_run.js";
+import { DiagnosticsRun } from "./diagnostics_run.js";
 import { beliefList } from "./belief_list.js";
 import { problemLine } from "../elements/field.js";
 import "./intention_tree.js";
@@ -15,16 +15,16 @@ import { PageElement } from "../elements/page_element.js";
 import { planTrace } from "./plan_trace.js";
 import { sensorPanel } from "./sensor_panel.js";
 /** @import { Watched } from "../../types/api_types.ts" */
-/** @import { Seen } from "./watched_run.js" */
+/** @import { Seen } from "./diagnostics_run.js" */
 
 const SAY_AGAIN_MS = 10_000;
 
-export class RobotWatch extends PageElement {
+export class RobotDiagnostics extends PageElement {
   #timer = 0;
   /** Seconds may have passed since this page was looked at last. */
   #back = () => document.hidden || this.#say();
-  /** @type {WatchedRun} */
-  #run = new WatchedRun("");
+  /** @type {DiagnosticsRun} */
+  #run = new DiagnosticsRun("");
 
   static properties = {
     robot: { attribute: false },
@@ -70,7 +70,7 @@ export class RobotWatch extends PageElement {
 
   /** @param {Map<string, unknown>} changed */
   willUpdate(changed) {
-    if (changed.has("robot")) this.#run = new WatchedRun(this.robot);
+    if (changed.has("robot")) this.#run = new DiagnosticsRun(this.robot);
   }
 
   /** Reports come by the event stream alone, and once: ask for them only when the stream stands. */
@@ -151,4 +151,4 @@ export class RobotWatch extends PageElement {
   }
 }
 
-customElements.define("robot-watch", RobotWatch);
+customElements.define("robot-diagnostics", RobotDiagnostics);

@@ -7,7 +7,7 @@ import * as api from "../service/api.js";
 import { OnLive } from "./live.js";
 
 /** @implements {ReactiveController} */
-export class ClosedNow {
+export class Closures {
   /** @type {readonly ClosedCorridor[]} */
   closed = [];
   /** A count of received events. */

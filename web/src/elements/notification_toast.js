@@ -7,13 +7,13 @@ import { orderFrom, pageOf } from "../service/links.js";
 import { t } from "../texts/texts.js";
 import { icon } from "./icon.js";
 import { PageElement } from "./page_element.js";
-/** @import { Inbox, Notice } from "../../types/api_types.ts" */
+/** @import { Inbox, NotificationView } from "../../types/api_types.ts" */
 
 const SHOWN_MS = 12_000;
 /** The first of these is wanted, and taken where there is room at neither. */
 const PLACES = ["toast", "toast high"];
 
-export class NoticeToast extends PageElement {
+export class NotificationToast extends PageElement {
   static properties = { inbox: { attribute: false }, since: { attribute: false }, notice: { state: true } };
 
   /** @type {AbortController | null} */
@@ -31,7 +31,7 @@ export class NoticeToast extends PageElement {
     this.inbox = null;
     /** When the page was opened; what was told before is no news. */
     this.since = "";
-    /** @type {Notice | null} */
+    /** @type {NotificationView | null} */
     this.notice = null;
   }
 
@@ -60,7 +60,7 @@ export class NoticeToast extends PageElement {
     return html`<div role="status">${this.notice ? this.#toast(this.notice) : nothing}</div>`;
   }
 
-  /** @param {Notice} notice */
+  /** @param {NotificationView} notice */
   #toast(notice) {
     return html`<div class="toast" @pointerenter=${() => this.#point(true)} @pointerleave=${() => this.#point(false)}
       @focusin=${this.#takeKeyboard} @focusout=${() => this.#count()}>
@@ -136,4 +136,4 @@ export class NoticeToast extends PageElement {
 const lieUponEachOther = (one, other) =>
   one.left < other.right && other.left < one.right && one.top < other.bottom && other.top < one.bottom;
 
-customElements.define("notice-toast", NoticeToast);
+customElements.define("notification-toast", NotificationToast);

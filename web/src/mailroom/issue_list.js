@@ -14,7 +14,7 @@ import { ago } from "../texts/times.js";
 import { icon } from "../elements/icon.js";
 /** @import { Alarm, CampusMap, Order, Robot, Sending } from "../../types/api_types.ts" */
 /** @import { Action } from "./mailroom_actions.js" */
-/** @import { Wrong } from "./mailroom_words.js" */
+/** @import { Issue } from "./mailroom_words.js" */
 
 /**
  * The callbacks of the buttons.
@@ -24,15 +24,15 @@ import { icon } from "../elements/icon.js";
  * @property {(sending: Sending) => void} sendAgain
  */
 
-/** @param {Wrong[]} wrongs @param {CampusMap} map @param {Doing | null} doing null: on a wall, where nothing can be done */
-export function wrongList(wrongs, map, doing) {
-  if (!wrongs.length) return html`<p class="all-well">${icon("check")}${t("mailroom.wrong.none")}</p>`;
-  return html`<ul class="wrongs">
-    ${repeat(wrongs, ({ key }) => key, (wrong) => html`<li class=${wrong.kind}>${icon("warning")}${row(wrong, map, doing)}</li>`)}
+/** @param {Issue[]} issues @param {CampusMap} map @param {Doing | null} doing null: on a wall, where nothing can be done */
+export function issueList(issues, map, doing) {
+  if (!issues.length) return html`<p class="all-well">${icon("check")}${t("mailroom.wrong.none")}</p>`;
+  return html`<ul class="issues">
+    ${repeat(issues, ({ key }) => key, (wrong) => html`<li class=${wrong.kind}>${icon("warning")}${row(wrong, map, doing)}</li>`)}
   </ul>`;
 }
 
-/** @param {Wrong} wrong @param {CampusMap} map @param {Doing | null} doing */
+/** @param {Issue} wrong @param {CampusMap} map @param {Doing | null} doing */
 function row(wrong, map, doing) {
   if (wrong.kind === "alarm") return ofAlarm(wrong.alarm, map, doing);
   if (wrong.kind === "attention") return ofOrder(wrong.order, map, doing);

@@ -10,9 +10,9 @@ import { Ticking } from "../elements/ticking.js";
 import { ago } from "../texts/times.js";
 import { problemLine } from "../elements/field.js";
 import { PageElement } from "../elements/page_element.js";
-/** @import { Inbox, Notice } from "../../types/api_types.ts" */
+/** @import { Inbox, NotificationView } from "../../types/api_types.ts" */
 
-export class NoticesPage extends PageElement {
+export class NotificationsPage extends PageElement {
   /** A count of changes made on this page. */
   #reads = 0;
 
@@ -46,7 +46,7 @@ export class NoticesPage extends PageElement {
     if (this.inbox && changed.has("inbox")) this.dispatchEvent(new CustomEvent("inbox", { bubbles: true, detail: this.inbox }));
   }
 
-  /** @param {Notice[]} notices */
+  /** @param {NotificationView[]} notices */
   #list(notices) {
     if (!notices.length) return html`<p class="empty">${t("notices.none")}</p>`;
     return html`<ul class="notices">
@@ -62,7 +62,7 @@ export class NoticesPage extends PageElement {
     </ul>`;
   }
 
-  /** @param {Notice[]} notices */
+  /** @param {NotificationView[]} notices */
   async #read(notices) {
     const ids = notices.filter(({ read }) => !read).map(({ id }) => id);
     if (!ids.length) return;
@@ -94,10 +94,10 @@ export class NoticesPage extends PageElement {
   }
 }
 
-/** @param {Inbox} inbox @param {Notice["id"][]} ids @returns {Inbox} */
+/** @param {Inbox} inbox @param {NotificationView["id"][]} ids @returns {Inbox} */
 function withRead(inbox, ids) {
   const items = inbox.items.map((notice) => (ids.includes(notice.id) ? { ...notice, read: true } : notice));
   return { ...inbox, items, unread: inbox.unread - ids.length };
 }
 
-customElements.define("notices-page", NoticesPage);
+customElements.define("notifications-page", NotificationsPage);

@@ -1,11 +1,11 @@
 /**
  * The live diagnostics received so far: the newest of everything, what changed, and all of it for the download.
- * @import { Insight, TraceLine, Watched } from "../../types/api_types.ts"
+ * @import { Diagnostics, TraceLine, Watched } from "../../types/api_types.ts"
  * @typedef {TraceLine & {id: number}} NumberedLine
  * @typedef {{id: number, came: boolean, text: string, at: string}} Change a belief that came or went
  * @typedef {object} Seen what is drawn; a newer one never changes an older one
- * @property {Insight | null} insight the newest
- * @property {Insight["loops"]} loops the newest told
+ * @property {Diagnostics | null} insight the newest
+ * @property {Diagnostics["loops"]} loops the newest told
  * @property {string[]} beliefs in alphabetical order
  * @property {Change[]} changes newest first
  * @property {NumberedLine[]} lines newest first
@@ -21,7 +21,7 @@ const MOST_KEPT = 7_200;
 /** Of the file that is downloaded (docs/pages.md). */
 const FORMAT = 1;
 
-export class WatchedRun {
+export class DiagnosticsRun {
   /** As text, which takes least room. @type {string[]} */
   #record = [];
   #began = "";
@@ -72,7 +72,7 @@ export class WatchedRun {
     return this.#believed_until !== this.seen.insight?.number;
   }
 
-  /** @param {Insight} insight */
+  /** @param {Diagnostics} insight */
   #believe({ number, whole, came, went }) {
     if (whole || this.#believed_until === number - 1) this.#believed_until = number;
     if (whole) this.#beliefs.clear();
@@ -80,7 +80,7 @@ export class WatchedRun {
     for (const text of came) this.#beliefs.add(text);
   }
 
-  /** The whole list is no change. @param {Insight} insight @returns {Change[]} */
+  /** The whole list is no change. @param {Diagnostics} insight @returns {Change[]} */
   #changes({ whole, came, went, at }) {
     if (whole) return [];
     const change = (/** @type {boolean} */ came) => (/** @type {string} */ text) => ({ id: ++this.#count, came, text, at });
