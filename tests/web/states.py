@@ -188,7 +188,7 @@ async def settling(ada: Visitor) -> States:
     await ada.put("/me/contacts/bea.lund@campus.example", {"label": "Bea next door", "post": "post2"})
     await ada.name_delegate(await ada.order(BOB, what=LONG), "porter.of.the.old.library@campus.example")
     await stands(page, "/settings.html")
-    take_back = page.get_by_role("button", name="Take it back, The porter")
+    take_back = page.get_by_role("button", name="Revoke, The porter")
     await expect(take_back).to_be_visible()
     tokens = page.get_by_role("region", name="Access tokens")
     await expect(tokens.get_by_role("button", name="Create token")).to_be_visible()

@@ -206,7 +206,7 @@ async def test_a_robot_out_of_reach_is_said_to_be_so_and_its_order_goes_on(demon
     await ada.page.goto(f"/follow.html?order={order_id}")
     await expect(ada.page.get_by_role("heading", level=1)).to_have_text(f"{robot} is coming to Post 1")
     await demonstration.robot.socket.close()
-    await expect(ada.page.get_by_text(re.compile("^Offline. Last heard of .* it continues on its own"))).to_be_visible()
+    await expect(ada.page.get_by_text(re.compile("^Offline. Last contact .* it continues on its own"))).to_be_visible()
     await expect(ada.page.get_by_role("heading", level=1)).to_have_text(f"{robot} is coming to Post 1")
 
 
@@ -287,7 +287,7 @@ async def test_a_delegate_digits_a_longer_wait_and_not_now(demonstration, visit)
     await expect(ada.page.get_by_role("img", name="Code for The porter")).to_be_visible()
     porter = ada.page.get_by_role("listitem").filter(has_text="share the code yourself")
     await ada.assert_accessible()
-    await porter.get_by_role("button", name="Take it back, The porter").click()
+    await porter.get_by_role("button", name="Revoke, The porter").click()
     await expect(ada.page.get_by_role("img", name="Code for The porter")).to_be_hidden()
     waiting = ada.page.get_by_role("region", name="The robot is waiting")
     until = await waiting.get_by_role("status").inner_text()

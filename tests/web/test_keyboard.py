@@ -118,7 +118,7 @@ async def test_a_dispatcher_orders_for_somebody_pauses_a_robot_acts_on_an_order_
     await keys.to("Acknowledge")
     await keys.press("Enter")
     await expect(
-        page.get_by_text("Seen to: A wheel does not turn although it should. It says: The lid does not close.")
+        page.get_by_text("Acknowledged: A wheel does not turn although it should. It says: The lid does not close.")
     ).to_be_visible()
     assert (await keys.here()).startswith("Issues"), "what was pressed is gone"
     await keys.to("Decide")

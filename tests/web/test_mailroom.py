@@ -62,7 +62,7 @@ async def test_what_goes_wrong_appears_by_itself_and_is_mended_by_keyboard_alone
     await expect(wrong.get_by_text("Post 1 → Post 4 is stuck", exact=True)).to_be_visible()
     await press(page, "Acknowledge")
     await expect(wrong.get_by_text(f"Robot {robot.name}, Post 2", exact=True)).to_be_hidden()
-    await expect(page.get_by_text("Seen to: The robot stands before a drop.")).to_be_visible()
+    await expect(page.get_by_text("Acknowledged: The robot stands before a drop.")).to_be_visible()
     await expect(page.get_by_role("heading", name=re.compile("^Issues"))).to_be_focused()
 
     await press(page, "Decide")
@@ -151,9 +151,7 @@ async def test_an_order_for_somebody_at_the_desk_is_placed_by_keyboard_and_print
     slip = page.get_by_role("article", name="Mail slip")
     for words in ("Grace Hill", "Bob Martin", "Post 2", "Post 4", "follow.html", "is notified when one comes"):
         await expect(slip).to_contain_text(words)
-    await expect(
-        page.get_by_text(re.compile("^No robot is assigned to this order yet. Its code comes"))
-    ).to_be_visible()
+    await expect(page.get_by_text(re.compile("^No robot is assigned yet. Its code is added"))).to_be_visible()
     for_phones = slip.get_by_role("img", name="QR code of the order page")
     await expect_drawn(for_phones)
     order_id = page.url.partition("order=")[2]
