@@ -44,7 +44,7 @@ class Keyboard:
         await self.page.evaluate("() => scrollTo(0, 0)")
         while not await self.page.evaluate(IS_ASKED_FOR):
             await self.press("Shift")
-        await self.page.evaluate("() => import('/keeps_keyboard.js')")
+        await self.page.evaluate("() => import('/src/elements/keeps_keyboard.js')")
 
     async def to(self, name: str, key: str = "Tab") -> None:
         """On to the next stop whose name begins like this."""

@@ -99,7 +99,7 @@ async def follow_what_is_told(page: Page, title: str) -> None:
 async def is_told(person: Visitor, titles: Sequence[str]) -> None:
     """Each once among the notices, and the same by mail."""
     page = person.page
-    await page.get_by_role("link", name=re.compile("Notifications")).click()
+    await page.get_by_role("link", name=re.compile("Inbox")).click()
     await expect(page.get_by_role("heading", level=1)).to_have_text("Notifications")
     await expect(page.locator(".notices li")).to_have_count(len(titles))
     for title in titles:

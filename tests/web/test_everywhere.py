@@ -40,7 +40,7 @@ async def test_a_french_speaker_orders_in_french(visit):
     await page.get_by_role("button", name="Envoyer le robot").click()
     await expect(page.get_by_role("heading", name="Recherche d’un robot")).to_be_visible()
     await expect(page.locator("html")).to_have_attribute("lang", "fr")
-    await page.get_by_role("link", name="Notifications").click()
+    await page.get_by_role("link", name="Notifs").click()
     await expect(page.get_by_text(re.compile("^Commande acceptée"))).to_be_visible()
 
 
@@ -66,8 +66,8 @@ async def test_a_notice_arrives_live_is_counted_and_can_be_read(visit):
     ada = await visit()
     page = ada.page
     await page.goto("/")
-    notices = page.get_by_role("link", name=re.compile("Notifications"))
-    await expect(notices).to_have_accessible_name("Notifications")
+    notices = page.get_by_role("link", name=re.compile("Inbox"))
+    await expect(notices).to_have_accessible_name("Inbox")
     await expect(page.get_by_role("heading", name="Send a letter")).to_be_visible()
     await ada.order(BOB)
     await expect(page.get_by_role("status").get_by_role("link", name=re.compile("^Order accepted"))).to_be_visible()
@@ -77,7 +77,7 @@ async def test_a_notice_arrives_live_is_counted_and_can_be_read(visit):
     await notices.click()
     await expect(page.get_by_role("link", name=re.compile("Order accepted.*Unread"))).to_be_visible()
     await page.get_by_role("button", name="Mark all as read").click()
-    await expect(notices).to_have_accessible_name("Notifications")
+    await expect(notices).to_have_accessible_name("Inbox")
     await expect(page.get_by_role("button", name="Mark all as read")).to_be_hidden()
     await page.get_by_role("link", name=re.compile("Order accepted")).click()
     await expect(page.get_by_role("heading", name="Looking for a robot")).to_be_visible()

@@ -61,7 +61,7 @@ async def test_the_shell_stands_while_what_the_page_shows_is_on_its_way(visit):
 async def test_what_ends_an_order_is_fetched_when_somebody_begins_one(visit):
     ada = await visit(on="phone")
     await ada.page.goto("/")
-    await expect(ada.page.locator(".estimate")).to_contain_text("arrive")
+    await expect(ada.page.locator(".estimate")).to_contain_text("arrival")
     assert not {*PLACE_AN_ORDER} & {*await ada.page.evaluate(ADDRESSES)}
     async with ada.page.expect_response("**/src/orders/place_order.js"):
         await ada.page.get_by_label("From").focus()

@@ -34,9 +34,7 @@ async def test_a_notice_lies_never_over_the_keyboard_and_waits_for_whoever_is_at
     await page.goto("/")
     await expect(page.get_by_role("heading", name="Send a letter")).to_be_visible()
     await ada.order(BOB)
-    await expect(page.get_by_role("link", name=re.compile("Notifications"))).to_have_accessible_name(
-        re.compile("1 unread")
-    )
+    await expect(page.get_by_role("link", name=re.compile("Inbox"))).to_have_accessible_name(re.compile("1 unread"))
     stands.set()
     toast = page.get_by_role("status").get_by_role("link", name=re.compile("^Order accepted"))
     await expect(toast).to_be_visible()

@@ -203,9 +203,9 @@ async def test_pages_know_how_a_device_stands_with_notices(visit):
     ada = await visit(on="phone", service_workers="allow")
     await ada.page.goto("/")
     await expect(ada.page.get_by_role("heading", name="Send a letter")).to_be_visible()
-    state = "async () => (await import('/push.js')).pushState()"
+    state = "async () => (await import('/src/offline/push.js')).pushState()"
     assert await ada.page.evaluate(state) in {"off", "refused"}
     await ada.page.evaluate("() => delete window.PushManager")
     assert await ada.page.evaluate(state) == "unsupported"
-    words = "async () => (await import('/push.js')).pushWords('refused')"
+    words = "async () => (await import('/src/offline/push.js')).pushWords('refused')"
     assert re.search("blocks notifications", await ada.page.evaluate(words))
