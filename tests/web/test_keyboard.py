@@ -74,7 +74,7 @@ async def test_somebody_signs_in_sends_a_letter_follows_it_cancels_it_and_settle
     await keys.press("Enter")
     await expect(page.get_by_label("Recipient’s email")).to_have_value(BOB)
 
-    await keys.to(r".*unread Notices")
+    await keys.to(r".*unread Inbox")
     await keys.press("Enter")
     await expect(page.get_by_role("button", name="Mark all as read")).to_be_visible()
     await keys.stands()
