@@ -125,7 +125,7 @@ pin: .venv/.python-ready ## Write constraints.txt anew from pyproject.toml
 	git diff --stat constraints.txt
 
 clean: ## Remove what setup, tests and runs have made
-	rm -rf .venv web/node_modules var test-results web/openapi_types.d.ts $(MADE)
+	rm -rf .venv web/node_modules var test-results web/types/openapi_types.d.ts $(MADE)
 	rm -rf .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis .schemathesis .ci/lint/node_modules
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 

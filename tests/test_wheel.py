@@ -18,6 +18,7 @@ from tests.system.rig import free_port, wait_for
 pytestmark = pytest.mark.slow
 
 HARDWARE = {"opencv-python-headless", "pyserial", "gpiozero", "zxing-cpp", "numpy"}
+STYLES = "/src/styles/everywhere.css"
 OF_THE_SERVICE = {"fastapi", "sqlalchemy", "uvicorn", "alembic"}
 
 
@@ -82,7 +83,7 @@ def test_a_server_installs_the_service_alone_and_serves_pages_and_api(wheel: Pat
     with server.serving() as url:
         version = httpx.get(f"{url}/version").json()["version"]
         assert f"campus_mail-{version}-" in wheel.name
-        for address in ("/", "/mailroom.html", "/npm/joined/lit.js", "/service_worker.js", "/styles/everywhere.css"):
+        for address in ("/", "/mailroom.html", "/npm/joined/lit.js", "/service_worker.js", STYLES):
             assert httpx.get(f"{url}{address}").status_code == 200, address
         assert httpx.get(f"{url}/api/v1/map").status_code in {200, 401}
 

@@ -5,7 +5,7 @@ from typing import Final
 
 from playwright.sync_api import sync_playwright
 
-ICONS: Final = Path(__file__).parent / "icons"
+ICONS: Final = Path(__file__).parent / "public/icons"
 SIZES: Final = {"icon": (192, 512), "icon-maskable": (192, 512), "badge": (96,)}
 
 

@@ -1,10 +1,10 @@
 """`make pages` writes what follows from other files: the pages' heads from the table below and their modules, and the
 types of what the service sends, from its OpenAPI document. `--check` says what is not up to date instead.
 
-*.html               one for each line of `HEADS`. Their `preload` and `modulepreload` lines are there so that no module
-                     waits for another to be read and no answer of the service for a module
-npm_modules.json     what any module of the pages needs of npm: the service worker keeps it
-openapi_types.d.ts   a type for each schema; `api_types.ts` gives them the names that the pages use
+public/*.html               one for each line of `HEADS`. Their `preload` and `modulepreload` lines are there so that no
+                            module waits for another to be read and no answer of the service for a module
+npm_modules.json            what any module of the pages needs of npm: the service worker keeps it
+types/openapi_types.d.ts    a type for each schema; `api_types.ts` gives them the names that the pages use
 """
 
 import argparse
@@ -21,9 +21,9 @@ from pathlib import Path
 from typing import Any, Final
 
 WEB: Final = Path(__file__).parent
-TYPES: Final = "openapi_types.d.ts"
+TYPES: Final = "types/openapi_types.d.ts"
 NPM_MODULES: Final = "npm_modules.json"
-MADE_BY_THE_SERVICE: Final = {"/page_files.js"}
+MADE_BY_THE_SERVICE: Final = {"/src/offline/page_files.js"}
 IMPORT: Final = re.compile(
     r"""(?:^|[;\s}])(?:import|export)\s*(?:[\w$*{][^"';]*?from)?\s*["']([^"']+)["']""", re.MULTILINE
 )
@@ -36,10 +36,10 @@ LATER_MODULE: Final = '<link rel="modulepreload" href="{}" fetchpriority="low" /
 """The page needs all of them; but what scripts ask for meanwhile, as the texts, shall not wait behind them."""
 ANSWER: Final = '<link rel="preload" as="fetch" href="{}" crossorigin />'
 SCRIPT: Final = '<script type="module" src="{}"></script>'
-STYLES: Final = '<link rel="stylesheet" href="/styles/{}.css" />'
+STYLES: Final = '<link rel="stylesheet" href="/src/styles/{}.css" />'
 INSTALLS: Final = '<link rel="manifest" href="/manifest.webmanifest" />'
 SAYS_NOT_WHENCE: Final = '<meta name="referrer" content="no-referrer" />'
-EARLY: Final = "/early.js"
+EARLY: Final = "/src/service/early.js"
 ABOUT: Final = "/api/v1/about"
 ME: Final = "/api/v1/me"
 
@@ -52,7 +52,7 @@ class Head:
     """The script that draws the shell, with a place in it for what the page shows."""
     styles: tuple[str, ...]
     shows: str | None = None
-    """The element in that place, if it has a script of its own: the shell stands while that is on its way."""
+    """The module of the element in that place, if it has one of its own: the shell stands while that is on its way."""
     answers: tuple[str, ...] = ()
     """What `early.js` asks for whatever the page's address is: begun while `early.js` is still on its way."""
     by_link: bool = False
@@ -60,13 +60,13 @@ class Head:
 
 
 HEADS: Final[Mapping[str, Head]] = {
-    "index": Head("order", ("order",), "order_page", ("/api/v1/map", "/api/v1/orders?role=all&amp;limit=6")),
-    "follow": Head("follow", ("follow",), "follow_page", ("/api/v1/map",)),
-    "mail": Head("mail", ("mail",), "mail_page", ("/api/v1/map",)),
-    "notices": Head("notices", ("notices",), "notices_page"),
-    "settings": Head("settings", ("settings",), "settings_page"),
-    "one-order": Head("one_order", ("follow",), "one_order", ("/api/v1/map",), by_link=True),
-    "mailroom": Head("mailroom", ("mailroom", "asking"), "mailroom_page"),
+    "index": Head("order", ("order",), "orders/order_page", ("/api/v1/map", "/api/v1/orders?role=all&amp;limit=6")),
+    "follow": Head("follow", ("follow",), "follow/follow_page", ("/api/v1/map",)),
+    "mail": Head("mail", ("mail",), "orders/mail_page", ("/api/v1/map",)),
+    "notices": Head("notices", ("notices",), "settings/notifications_page"),
+    "settings": Head("settings", ("settings",), "settings/settings_page"),
+    "one-order": Head("one_order", ("follow",), "follow/one_order", ("/api/v1/map",), by_link=True),
+    "mailroom": Head("mailroom", ("mailroom", "asking"), "mailroom/mailroom_page"),
     "robots": Head("robots", ("asking", "robots")),
     "print": Head("print", ("mailroom", "asking", "print")),
 }
@@ -92,7 +92,7 @@ PAGE: Final = """<!doctype html>
 
 def html_of(head: Head) -> str:
     """A whole page: all else is drawn by its scripts."""
-    scripts = [EARLY, f"/pages/{head.opens}.js", *([f"/elements/{head.shows}.js"] if head.shows else ())]
+    scripts = [EARLY, f"/src/pages/{head.opens}.js", *([f"/src/{head.shows}.js"] if head.shows else ())]
     lines = [
         SAYS_NOT_WHENCE if head.by_link else INSTALLS,
         *map(STYLES.format, ("everywhere", *head.styles)),
@@ -120,8 +120,7 @@ def modules_behind(first: str) -> set[str]:
     waiting = [first]
     while waiting:
         module = waiting.pop()
-        text = re.sub(r"/\*.*?\*/", "", file_of(module).read_text(encoding="utf-8"), flags=re.DOTALL)
-        new = {resolve(module, name) for name in IMPORT.findall(text)} - found - MADE_BY_THE_SERVICE
+        new = {resolve(module, name) for name in IMPORT.findall(code_of(module))} - found - MADE_BY_THE_SERVICE
         waiting += new
         found |= new
     return found - {first}
@@ -129,9 +128,14 @@ def modules_behind(first: str) -> set[str]:
 
 def npm_modules() -> str:
     """Those behind any module of ours, also behind one that is fetched only when it is needed."""
-    ours = [file for file in WEB.rglob("*.js") if "node_modules" not in file.parts]
+    ours = (WEB / "src").rglob("*.js")
     behind = set().union(*(modules_behind(f"/{file.relative_to(WEB)}") for file in ours))
     return json.dumps(sorted(module for module in behind if module.startswith("/npm/")), indent=2) + "\n"
+
+
+def code_of(module: str) -> str:
+    """The text of a module without its comments, which name types of other files as imports do."""
+    return re.sub(r"/\*.*?\*/", "", file_of(module).read_text(encoding="utf-8"), flags=re.DOTALL)
 
 
 def resolve(module: str, name: str) -> str:
@@ -146,8 +150,10 @@ def resolve(module: str, name: str) -> str:
 
 
 def file_of(address: str) -> Path:
-    """Where a module lies."""
-    return WEB / address.replace("/npm/", "node_modules/", 1).removeprefix("/")
+    """The file behind the address of a module."""
+    if address.startswith("/src/"):
+        return WEB / address[1:]
+    return WEB / "node_modules" / address.removeprefix("/npm/")
 
 
 def types_of(openapi: Mapping[str, Any]) -> str:
@@ -169,7 +175,7 @@ def made_files() -> dict[Path, str]:
     sys.path[:0] = [str(WEB.parent)]
     from client.make_client import document  # the checkout is on the path only now
 
-    pages = {WEB / f"{name}.html": html_of(head) for name, head in HEADS.items()}
+    pages = {WEB / f"public/{name}.html": html_of(head) for name, head in HEADS.items()}
     return pages | {WEB / NPM_MODULES: npm_modules(), WEB / TYPES: types_of(document())}
 
 

@@ -19,11 +19,11 @@ from fastapi.responses import Response
 from app.core.errors import problem_answer
 from app.core.texts import LANGUAGES
 
-MODULE: Final = "/page_files.js"
+MODULE: Final = "/src/offline/page_files.js"
 WORKER: Final = "/service_worker.js"
-STYLES: Final = "/styles/everywhere.css"
+STYLES: Final = "/src/styles/everywhere.css"
 STYLES_OF: Final = ("tokens", "base", "shell", "controls")
-TEXTS: Final = "/texts/{language}.{pages}.json"
+TEXTS: Final = "/src/texts/{language}.{pages}.json"
 IN_NEITHER: Final = frozenset({"email", "notice", "robots", "mind", "sensor", "settings"})
 LEFT_OUT: Final[Mapping[str, frozenset[str]]] = {
     "everyday": IN_NEITHER | {"mailroom", "print", "alarm"},
@@ -43,8 +43,8 @@ VERSION_CHARACTERS: Final = 16
 class PageFiles:
     """The files of one folder. They are read again when one of them was written: who edits pages restarts nothing."""
 
-    def __init__(self, folder: Path, not_pages: frozenset[str]) -> None:
-        self._folder, self._not_pages = folder, not_pages
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
         self._seen: dict[str, int] = {}
         self._module = b""
 
@@ -59,24 +59,25 @@ class PageFiles:
     def worker(self) -> bytes:
         """The service worker of this version: browsers look at it anew when its own bytes have changed."""
         version = self.module().partition(b"\n")[0]
-        return (self._folder / WORKER[1:]).read_bytes() + b"// " + version + b"\n"
+        return (self._folder / "public" / WORKER[1:]).read_bytes() + b"// " + version + b"\n"
 
     def styles(self) -> bytes:
         """The styles that every page has."""
-        return b"\n".join((self._folder / f"styles/{name}.css").read_bytes() for name in STYLES_OF)
+        return b"\n".join((self._folder / f"src/styles/{name}.css").read_bytes() for name in STYLES_OF)
 
     def texts(self, language: str, pages: str) -> bytes:
         """The texts of one language that these pages use."""
-        texts = json.loads((self._folder / f"texts/{language}.json").read_bytes())
+        texts = json.loads((self._folder / f"src/texts/{language}.json").read_bytes())
         used = {key: text for key, text in texts.items() if key.partition(".")[0] not in LEFT_OUT[pages]}
         return json.dumps(used, ensure_ascii=False, separators=(",", ":")).encode()
 
     def _files(self) -> Iterator[tuple[str, Path]]:
-        for path in self._folder.rglob("*"):
-            place = path.relative_to(self._folder)
-            if place.parts[0] in self._not_pages or path.suffix not in KEPT or place.name == WORKER[1:]:
-                continue
-            yield "/" if str(place) == "index.html" else f"/{place.as_posix()}", path
+        for address in ("/", "/src/"):
+            root = self._folder / (address.strip("/") or "public")
+            for path in root.rglob("*"):
+                place = path.relative_to(root).as_posix()
+                if path.suffix in KEPT and place != WORKER[1:]:
+                    yield "/" if place == "index.html" else address + place, path
         listed = self._folder / NPM_MODULES
         for address in json.loads(listed.read_text(encoding="utf-8")) if listed.is_file() else ():
             path = self._folder / address.replace("/npm/", "node_modules/", 1)
@@ -87,7 +88,7 @@ class PageFiles:
         version = sha256()
         for address, path in files.items():
             version.update(address.encode() + b"\0" + sha256(path.read_bytes()).digest())
-        parts = {f"/styles/{name}.css" for name in STYLES_OF}
+        parts = {f"/src/styles/{name}.css" for name in STYLES_OF}
         made = [STYLES, *(TEXTS.format(language=language, pages=pages) for language, pages in CATALOGUES)]
         addresses = json.dumps([*(address for address in files if address not in parts), *made])
         name = json.dumps(version.hexdigest()[:VERSION_CHARACTERS])

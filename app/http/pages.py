@@ -2,7 +2,6 @@
 
 import base64
 import os
-import posixpath
 import re
 from collections.abc import Iterable
 from hashlib import sha256
@@ -16,30 +15,13 @@ from starlette.routing import Match, Mount
 from starlette.staticfiles import StaticFiles
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from app.core.errors import problem_answer
 from app.http.compressed_pages import Compressed
-from app.http.page_files import NPM_MODULES, WORKER, PageFiles, add_page_files
+from app.http.page_files import WORKER, PageFiles, add_page_files
 
 log = structlog.get_logger(__name__)
 
 NPM_PACKAGES: Final = ("joined", "lit-html")
 """What browsers may fetch of node_modules."""
-NOT_PAGES: Final = frozenset(
-    {
-        "node_modules",
-        "package.json",
-        "package-lock.json",
-        "tsconfig.json",
-        "make_pages.py",
-        "make_icons.py",
-        "page_files.d.ts",
-        "worker_types.d.ts",
-        NPM_MODULES,
-        "openapi_types.d.ts",
-        "api_types.ts",
-    }
-)
-"""What lies in the pages' folder and is for those who work on them."""
 PARTS_OF_A_PAGE: Final = frozenset({"text/javascript", "text/css"})
 """What says nothing by itself: the page that asks for it has said what it may do. A page has dozens of them."""
 SAME_FOR_EVERYBODY: Final = "/api/v1/map"
@@ -52,8 +34,9 @@ IMPORT_MAP = re.compile(rb'<script type="importmap">(.*?)</script>', re.DOTALL)
 
 
 def add_pages(app: FastAPI, folder: Path) -> None:
-    """Serve `folder` at `/` and the packages at `/npm/`. Routes that are added afterwards come after them: a first page
-    asks for dozens of files, and each would be compared with every route of the API first, which took half of its time.
+    """Serve of `folder`: `public/` at `/`, `src/` at `/src/`, the packages at `/npm/`. Routes that are added afterwards
+    come after them: a first page asks for dozens of files, and each would be compared with every route of the API
+    first, which took half of its time.
     """
     for package in NPM_PACKAGES:
         package_folder = folder / "node_modules" / package
@@ -62,8 +45,9 @@ def add_pages(app: FastAPI, folder: Path) -> None:
         else:
             log.warning("the pages lack a package: run `make setup`", package=package)
     if folder.is_dir():
-        add_page_files(app, PageFiles(folder, NOT_PAGES))
-        app.router.routes.append(Pages(folder))
+        add_page_files(app, PageFiles(folder))
+        app.mount("/src", StaticFiles(directory=folder / "src"))
+        app.router.routes.append(Pages(folder / "public"))
     else:
         log.warning("there are no pages", folder=str(folder))
 
@@ -83,11 +67,6 @@ class Pages(Mount):
         return super().matches(scope)
 
 
-def is_hidden(path: str) -> bool:
-    """Tell if a path leads to what is no page, by whichever way round."""
-    return posixpath.normpath(path).strip("/").split("/")[0] in NOT_PAGES
-
-
 def import_map_hashes(pages: Iterable[Path]) -> list[str]:
     """The inline import maps, the only scripts that may stand in a page, as CSP sources."""
     maps = {found for page in pages for found in IMPORT_MAP.findall(page.read_bytes())}
@@ -96,7 +75,7 @@ def import_map_hashes(pages: Iterable[Path]) -> list[str]:
 
 def content_security_policy(folder: Path) -> str:
     """Everything from here, nothing inline but the import maps, framed by no other page."""
-    hashes = " ".join(import_map_hashes(folder.glob("*.html")))
+    hashes = " ".join(import_map_hashes(folder.glob("public/*.html")))
     return (
         f"default-src 'self'; script-src 'self' {hashes}; img-src 'self' data:; object-src 'none'; "
         "base-uri 'none'; form-action 'self'; frame-ancestors 'none'"
@@ -104,7 +83,7 @@ def content_security_policy(folder: Path) -> str:
 
 
 class CompressedPages:
-    """Compresses pages, and hides what is none.
+    """Compresses pages.
 
     The API is left as it is, but for the map: its answers hold secrets next to what others wrote, which a compressed
     length gives away bit by bit (BREACH), and its event stream must not be held back. Ranges are of the file as it lies
@@ -115,9 +94,7 @@ class CompressedPages:
         self._plain, self._compressed = app, Compressed(app)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        if scope["type"] == "http" and is_hidden(scope["path"]):
-            await problem_answer(404, "not_found", "This is not a page.")(scope, receive, send)
-        elif scope["type"] == "http" and _may_be_compressed(scope):
+        if scope["type"] == "http" and _may_be_compressed(scope):
             await self._compressed(scope, receive, send)
         else:
             await self._plain(scope, receive, send)

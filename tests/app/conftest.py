@@ -40,8 +40,9 @@ def clock() -> SteppedClock:
 @pytest.fixture
 def pages(tmp_path: Path) -> Path:
     folder = tmp_path / "pages"
-    folder.mkdir()
-    (folder / "index.html").write_text('<script type="importmap">{"imports": {}}</script>')
+    for part in ("public", "src"):
+        (folder / part).mkdir(parents=True)
+    (folder / "public/index.html").write_text('<script type="importmap">{"imports": {}}</script>')
     return folder
 
 

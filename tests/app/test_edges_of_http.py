@@ -86,7 +86,14 @@ def test_an_origin_that_is_not_ours_or_none_at_all_is_another_site(served: Serve
 
 
 @pytest.mark.parametrize(
-    "path", ["/package.json", "/.%2fpackage.json", "/x/..%2fnode_modules/lit/package.json", "/%6eode_modules/lit/x.js"]
+    "path",
+    [
+        "/package.json",
+        "/.%2fpackage.json",
+        "/x/..%2fnode_modules/lit/package.json",
+        "/%6eode_modules/lit/x.js",
+        "/src/..%2fpackage.json",
+    ],
 )
 def test_what_is_for_those_who_work_on_the_pages_is_hidden(served: Served, pages: Path, path: str) -> None:
     (pages / "node_modules" / "lit").mkdir(parents=True)
@@ -97,7 +104,7 @@ def test_what_is_for_those_who_work_on_the_pages_is_hidden(served: Served, pages
 
 def test_pages_are_compressed_and_the_api_is_not(served: Served, pages: Path, sender: Browser) -> None:
     text = "<p>Campus Mail</p>" * 100
-    (pages / "long.html").write_text(text)
+    (pages / "public/long.html").write_text(text)
     with httpx.stream("GET", f"{served.url}/long.html", headers={"Accept-Encoding": "gzip"}) as page:
         assert page.headers["content-encoding"] == "gzip"
         assert page.headers["vary"] == "Accept-Encoding"
@@ -107,12 +114,12 @@ def test_pages_are_compressed_and_the_api_is_not(served: Served, pages: Path, se
         assert page.headers["content-encoding"] == "br"
         assert page.headers["vary"] == "Accept-Encoding"
         assert brotli.decompress(b"".join(page.iter_raw())).decode() == text
-    (pages / "long.html").write_text(text + "<p>And more</p>")
+    (pages / "public/long.html").write_text(text + "<p>And more</p>")
     with httpx.stream("GET", f"{served.url}/long.html", headers={"Accept-Encoding": "br;q=0, gzip"}) as page:
         assert gzip.decompress(b"".join(page.iter_raw())).decode() == text + "<p>And more</p>", "as it is now"
     with httpx.stream("GET", f"{served.url}/long.html", headers={"Accept-Encoding": "br"}) as page:
         assert brotli.decompress(b"".join(page.iter_raw())).decode() == text + "<p>And more</p>", "as it is now"
-    (pages / "long.html").write_text(text)
+    (pages / "public/long.html").write_text(text)
     plain = httpx.get(f"{served.url}/long.html", headers={"Accept-Encoding": "identity"})
     assert ("content-encoding" in plain.headers, plain.text) == (False, text)
     part = httpx.get(f"{served.url}/long.html", headers={"Accept-Encoding": "gzip", "Range": "bytes=3-8"})

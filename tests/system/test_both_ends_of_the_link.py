@@ -116,8 +116,9 @@ async def serving(settings: Settings, port: int = 0) -> AsyncIterator[tuple[Fast
 @pytest.fixture
 def settings(tmp_path: Path) -> Settings:
     pages = tmp_path / "pages"
-    pages.mkdir()
-    (pages / "index.html").write_text('<script type="importmap">{"imports": {}}</script>')
+    for part in ("public", "src"):
+        (pages / part).mkdir(parents=True)
+    (pages / "public/index.html").write_text('<script type="importmap">{"imports": {}}</script>')
     return Settings(data=tmp_path / "service", pages=pages)
 
 

@@ -35,6 +35,6 @@ class Camera:
         await writer.wait_closed()
 
     async def sees(self) -> str:
-        """The next code that somebody holds up."""
+        """The next code that is shown to the camera."""
         async with asyncio.timeout(10):
             return await self._seen.get()

@@ -70,7 +70,7 @@ def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
 
 
 def device(playwright: Playwright, name: str) -> dict[str, Any]:
-    """What a browser context needs to be a `phone` or a `desk`."""
+    """Options of a browser context that is a `phone` or a `desk`."""
     if name == "desk":
         return {"viewport": {"width": 1280, "height": 860}}
     return {key: value for key, value in playwright.devices["Pixel 7"].items() if key != "default_browser_type"}
@@ -81,7 +81,7 @@ _newcomers = count(1)
 
 @pytest_asyncio.fixture(loop_scope="session")
 async def visit(chromium: Browser, playwright_here: Playwright, service: Service) -> AsyncIterator[Visit]:
-    """`await visit("ada.king", on="phone")`: somebody new, signed in unless `signed_in=False`."""
+    """`await visit("ada.king", on="phone")`: a new visitor, signed in unless `signed_in=False`."""
     async with AsyncExitStack() as visitors:
 
         async def come(

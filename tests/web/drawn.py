@@ -1,4 +1,4 @@
-"""Whether a picture on a page is really there."""
+"""Checks that a picture on a page is really drawn."""
 
 from playwright.async_api import Locator, expect
 

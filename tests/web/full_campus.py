@@ -20,7 +20,7 @@ class Campus:
         self.orders: list[str] = []
 
     async def staff(self, visit: Visit, **options: Any) -> Visitor:
-        """Somebody who may open every page."""
+        """A visitor with all roles."""
         person: Visitor = await visit("dana.desk", at=self.service, reduced_motion="reduce", **options)
         async with self.scene.state.database.transaction() as session:
             known = await find_person(session, person.email)

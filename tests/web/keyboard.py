@@ -1,4 +1,4 @@
-"""A keyboard alone: whoever has no pointer reaches everything by Tab, and sees at each stop where they are."""
+"""Use by keyboard alone: Tab reaches everything, and the focus is visible at each stop."""
 
 import re
 from typing import Any, Final
@@ -25,7 +25,7 @@ async def press(page: Page, button: str) -> None:
 
 
 class Keyboard:
-    """Presses keys and never points; a stop that nobody could see, or that is nowhere, fails the test at once."""
+    """Presses keys and never points; an invisible stop, or one outside the page, fails the test at once."""
 
     def __init__(self, page: Page) -> None:
         self.page = page
@@ -38,13 +38,13 @@ class Keyboard:
         await self.page.keyboard.type(text)
 
     async def stands(self) -> None:
-        """What looks after the keyboard comes once a page stands, at the first key; a map comes when it is seen."""
+        """The focus keeper is fetched at the first key; a map when it comes into view."""
         await self.page.evaluate(MAP_COMES)
         await self.page.wait_for_function(MAP_IS_THERE)
         await self.page.evaluate("() => scrollTo(0, 0)")
         while not await self.page.evaluate(IS_ASKED_FOR):
             await self.press("Shift")
-        await self.page.evaluate("() => import('/keeps_keyboard.js')")
+        await self.page.evaluate("() => import('/src/elements/keeps_keyboard.js')")
 
     async def to(self, name: str, key: str = "Tab") -> None:
         """On to the next stop whose name begins like this."""

@@ -11,14 +11,14 @@
       .map((name) => (name ?? "").trim()).find(Boolean)?.replace(/\s+/g, " ") ?? element.name ?? element.localName;
   };
 
-  /** What shows that it is here: its own ring, or that of the pill which it lies under; a date's own button has the
+  /** The visible focus: its own ring, or that of the pill which it lies under; a date's own button has the
    *  browser's, and a heading that can only be read needs none. */
   const hasRing = (element) => element.matches("input:not(:focus), [tabindex='-1']") || [element, element.nextElementSibling].filter(Boolean).some((one) => {
     const { outlineStyle, outlineWidth } = getComputedStyle(one);
     return outlineStyle !== "none" && parseFloat(outlineWidth) >= 2;
   });
 
-  /** Whether nothing lies over all of it, such as the bar of pages below a thumb. */
+  /** True if nothing covers all of it, such as the bar of pages below a thumb. */
   const isUncovered = (element) => {
     const box = (element.matches("input") && element.closest("label")) || element;
     return [...box.getClientRects()].some(({ left, right, top, bottom }) => {
@@ -48,7 +48,7 @@
   };
 
   const group = (element) => element.type === "radio" && element.closest("fieldset, form, dialog, main");
-  /** What can be pressed and was never come to; of a group of radios one is enough. */
+  /** Controls that the keyboard never reached; of a group of radios one is enough. */
   const missed = () => {
     const stops = [...root().querySelectorAll(STOPS)].filter((one) => one.checkVisibility({ visibilityProperty: true }) && !one.disabled);
     const groups = new Set(stops.filter((one) => visited.has(one)).map(group));

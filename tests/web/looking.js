@@ -8,14 +8,14 @@
   const isSeen = (element) => element.checkVisibility({ opacityProperty: true, visibilityProperty: true }) && !element.closest(".unseen, .skip, [aria-hidden='true']");
   const shared = (a, b) => [Math.min(a.right, b.right) - Math.max(a.left, b.left), Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top)];
 
-  /** What lies above the page and may cover it: a sheet, a toast, the bar of pages. */
+  /** Elements above the page that may cover it: a sheet, a toast, the bar of pages. */
   const layer = (element) => {
     for (let one = element; one && one !== root(); one = one.parentElement)
       if (["fixed", "absolute", "sticky"].includes(getComputedStyle(one).position)) return one;
     return root();
   };
 
-  /** What a finger hits: a control with its label. */
+  /** The touch target of a control, with its label. */
   const targets = () => {
     const found = [...root().querySelectorAll(TARGETS)].map((element) => (element.matches("input") && element.closest("label")) || element);
     return [...new Set(found)].filter((element) => element.checkVisibility({ visibilityProperty: true }) && !element.matches(".skip"));
@@ -34,10 +34,10 @@
     return found;
   };
 
-  /** What does not fit is there for who scrolls, or ends in an ellipsis because the whole stands elsewhere. */
+  /** Overflow can be reached by scrolling, or ends in an ellipsis because the whole stands elsewhere. */
   const scrolls = (style) => /auto|scroll/.test(style.overflowX) || /auto|scroll/.test(style.overflowY) || style.webkitLineClamp !== "none";
 
-  /** Whether a line is not scrolled out of the box that holds it. */
+  /** True if a line is not scrolled out of the box that holds it. */
   const isInSight = ({ owner, rect }) => {
     for (let box = owner; box && box !== document.documentElement; box = box.parentElement) {
       const place = box.getBoundingClientRect();
@@ -125,7 +125,7 @@
     return [...found];
   };
 
-  /** What people hear or read on this page, each once. */
+  /** The texts that people hear or read on this page, each once. */
   const said = () => {
     const names = [...document.querySelectorAll("[aria-label], [placeholder], [title], [alt]")].flatMap((one) =>
       ["aria-label", "placeholder", "title", "alt"].map((name) => one.getAttribute(name) ?? ""));
@@ -152,10 +152,10 @@
     }
     return "rgb(255, 255, 255)";
   };
-  /** What a drawing tells by a line or a shape, and which of its colours tells it. */
+  /** The shapes of a drawing that carry meaning, each with its colour. */
   const TELLING = { fill: ".campus .goal, .holder path, .shut circle, .robot:not(.offline) .body", stroke: ".corridor, .taken-edge, .hatch, .dock, .campus .post, .way, .expected, .robot.offline .body, .curve .charge, .curve .low" };
 
-  /** What axe does not see: the letters of a drawing upon their halo, and the shapes that tell something. */
+  /** Contrast that axe does not see: the letters of a drawing upon their halo, and the shapes that tell something. */
   const faint = () => {
     const least = (ratio, least, what) => (ratio < least ? [`${what} has a contrast of ${ratio.toFixed(2)}, not ${least}`] : []);
     const letters = [...root().querySelectorAll("svg text, svg tspan")].flatMap((text) => {

@@ -12,7 +12,7 @@ from tests.web.visitor import AXE, Visitor
 
 MEASURES: Final = (ROOT / "tests/web/looking.js").read_text(encoding="utf-8")
 TEXTS: Final = {
-    name: json.loads((ROOT / f"web/texts/{name}.json").read_text(encoding="utf-8")) for name in ("en", "fr")
+    name: json.loads((ROOT / f"web/src/texts/{name}.json").read_text(encoding="utf-8")) for name in ("en", "fr")
 }
 FAMILIES: Final = "|".join(sorted({key.partition(".")[0] for key in TEXTS["en"]}))
 GAP: Final = re.compile(rf"\{{\w+\}}|^({FAMILIES})(\.[a-z_0-9]+)+$|\bundefined\b|\bNaN\b|\[object ")
@@ -38,7 +38,7 @@ AXE_RUN: Final = """async (rules) => {
 
 
 class Looker:
-    """Somebody who has the measures at hand; what is wrong is kept, so that one visit tells all of it."""
+    """A visitor that measures pages; faults are collected, so that one visit reports them all."""
 
     def __init__(self, person: Visitor) -> None:
         self.person, self.page = person, person.page
@@ -46,7 +46,7 @@ class Looker:
         self.seen: list[str] = []
 
     async def look(self, state: str) -> None:
-        """All measures on one state of a page; it is left as it was found: on a desk, light."""
+        """Take all measures on one state of a page; it is left as it was found: on a desk, light."""
         await self._take_measures()
         self.seen.append(state)
         await self._axe(state, "desk, light")
@@ -84,7 +84,7 @@ class Looker:
         return [text for text in said if GAP.search(text) or text in foreign]
 
     async def moving(self, state: str) -> None:
-        """What moves although the person asked for less of that."""
+        """Note motion although the person prefers less."""
         await self._take_measures()
         self._note(state, "motion", await self.page.evaluate("() => looking.moving()"))
 

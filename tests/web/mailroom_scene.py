@@ -1,4 +1,4 @@
-"""A campus at work, written into the database of a running service: nobody has to drive for it."""
+"""A campus at work, written into the database of a running service, without driving."""
 
 from collections.abc import Sequence
 from datetime import timedelta

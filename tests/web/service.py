@@ -1,4 +1,4 @@
-"""The real service in a process of its own, with a data folder that nobody keeps."""
+"""The real service in a process of its own, with a data folder of its own that is dropped afterwards."""
 
 import contextlib
 import os
@@ -27,7 +27,7 @@ from tests.app.robots.playing import PlayedRobot
 
 ROOT = Path(__file__).parents[2]
 START_LIMIT_S = 90.0
-"""It has taken 70 on a machine with ten times too much to do, and whoever shares it fails with it. One that ends is not
+"""It has taken 70 on a machine with ten times too much to do, and its tests fail with it. One that ends is not
 waited for."""
 MAIL_LIMIT_S = 10.0
 
@@ -123,7 +123,7 @@ class Service:
         raise AssertionError(f"no code was mailed to {email}")
 
     def codes_mailed_to(self, email: str, at_least: int) -> list[str]:
-        """All sign-in codes that this person was mailed, the newest first; of one second, in any order."""
+        """The sign-in codes that this person was mailed, the newest first; of one second, in any order."""
         until_s, codes = time.monotonic() + MAIL_LIMIT_S, list[str]()
         while len(codes) < at_least and time.monotonic() < until_s:
             time.sleep(0.05)
@@ -131,7 +131,7 @@ class Service:
         return codes
 
     def link_mailed_to(self, email: str) -> str:
-        """The link to one order in the newest mail to somebody without an account."""
+        """The link to one order in the newest mail to a guest."""
         until_s = time.monotonic() + MAIL_LIMIT_S
         while time.monotonic() < until_s:
             for text in self._mails_to(email):

@@ -20,7 +20,7 @@ NEW_VERSION = "() => dispatchEvent(new CustomEvent('new-version', { detail: { ta
 OFFER_TO_INSTALL = "() => dispatchEvent(new Event('beforeinstallprompt', { cancelable: true }))"
 
 
-async def stands(page: Page, address: str, one_moment: str = "One moment") -> None:
+async def stands(page: Page, address: str, one_moment: str = "Loading") -> None:
     """Until there is more than a promise of it."""
     await page.goto(address)
     await expect(page.get_by_role("heading", level=1)).to_be_visible()
@@ -32,19 +32,19 @@ async def signing_in(ada: Visitor) -> States:
     ada.refusals_expected |= {"/api/v1/sign-in", "/api/v1/sign-in/codes"}
     await stands(page, "/")
     yield "sign-in"
-    await page.get_by_label("E-mail address").fill("eve@elsewhere.example")
+    await page.get_by_label("Email address").fill("eve@elsewhere.example")
     await page.keyboard.press("Enter")
     await expect(page.get_by_text(re.compile("Use your campus address"))).to_be_visible()
     yield "sign-in, another address refused"
-    await page.get_by_label("E-mail address").fill(ada.email)
+    await page.get_by_label("Email address").fill(ada.email)
     await page.keyboard.press("Enter")
-    await page.get_by_label("Code from the e-mail").fill("12345678")
+    await page.get_by_label("Code from the email").fill("12345678")
     await page.keyboard.press("Enter")
-    await expect(page.get_by_text(re.compile("That is not the code"))).to_be_visible()
+    await expect(page.get_by_text(re.compile("Wrong code"))).to_be_visible()
     yield "sign-in, wrong code"
     async with ada.without_network():
         await page.goto("/")
-        await expect(page.get_by_role("heading", name="Campus Mail does not answer")).to_be_visible()
+        await expect(page.get_by_role("heading", name="Campus Mail is not responding")).to_be_visible()
         yield "a service that does not answer"
 
 
@@ -54,15 +54,15 @@ async def ordering(ada: Visitor) -> States:
     await expect(page.get_by_role("region", name="How it works")).to_be_visible()
     yield "order, for a newcomer"
     await page.get_by_role("button", name="Send the robot").click()
-    await expect(page.get_by_text("Say who it is for.")).to_be_visible()
+    await expect(page.get_by_text("Enter the recipient.")).to_be_visible()
     await page.get_by_role("radio", name="Later").check()
     yield "order, refused, later"
-    await page.get_by_role("radio", name="Again and again").check()
+    await page.get_by_role("radio", name="Repeat").check()
     await expect(page.get_by_role("checkbox", name="Monday")).to_be_visible()
     yield "order, again and again"
     for name in ("bob.martin", "bea.lund", "cleo.wong", "deniz.arslan"):
         await ada.order(f"{name}@campus.example", what=LONG)
-    await expect(page.get_by_role("button", name="Put away")).to_be_visible()
+    await expect(page.get_by_role("button", name="Dismiss")).to_be_visible()
     yield "order, told of something"
     await stands(page, "/")
     await page.get_by_label("From").select_option("Post 1")
@@ -70,10 +70,10 @@ async def ordering(ada: Visitor) -> States:
     await expect(page.get_by_text(re.compile("Arrives"))).to_be_visible()
     await page.get_by_text("What does this time mean").click()
     yield "order, with others under way"
-    await page.get_by_role("combobox", name="Recipient’s e-mail").focus()
+    await page.get_by_role("combobox", name="Recipient’s email").focus()
     await expect(page.get_by_role("listbox").get_by_role("option")).to_have_count(4)
     yield "order, people offered"
-    await page.get_by_label("Recipient’s e-mail").fill(BOB)
+    await page.get_by_label("Recipient’s email").fill(BOB)
     await page.keyboard.press("Escape")
     await page.evaluate(OFFER_TO_INSTALL)
     await page.evaluate(NEW_VERSION)
@@ -84,7 +84,7 @@ async def ordering(ada: Visitor) -> States:
     async with ada.without_network():
         await page.evaluate(LEAVE_AND_COME_BACK)
         await page.get_by_role("button", name="Send the robot").click()
-        await expect(page.get_by_role("region", name="Kept on this device")).to_be_visible()
+        await expect(page.get_by_role("region", name="Saved on this device")).to_be_visible()
         await expect(page.get_by_text(re.compile("^No connection"))).to_be_visible()
         yield "order, no connection, one kept"
 
@@ -92,8 +92,8 @@ async def ordering(ada: Visitor) -> States:
 async def reading_mail(ada: Visitor) -> States:
     page = ada.page
     await stands(page, "/mail.html")
-    await expect(page.get_by_text("Nothing is coming to you.")).to_be_visible()
-    await expect(page.get_by_role("heading", name="Again and again")).to_be_visible()
+    await expect(page.get_by_text("Nothing is on its way to you.")).to_be_visible()
+    await expect(page.get_by_role("heading", name="Repeat")).to_be_visible()
     yield "my mail, empty"
     every = {"weekdays": [0, 2, 4], "at": "09:30", "zone": "America/Toronto"}
     await ada.post("/standing-orders", {"from_post": "post1", "to_post": "post4", "recipient": BOB, **every})
@@ -108,7 +108,7 @@ async def reading_mail(ada: Visitor) -> States:
     await page.get_by_role("button", name=re.compile("^End")).click()
     yield "my mail, asked whether a standing order ends"
     await page.keyboard.press("Escape")
-    await page.get_by_role("searchbox").fill("nobody of this name")
+    await page.get_by_role("searchbox").fill("no such name")
     await expect(page.get_by_text("0 letters found")).to_be_visible()
     yield "my mail, nothing found"
 
@@ -156,10 +156,10 @@ async def at_the_robot(ada: Visitor, order_id: str) -> States:
     page = ada.page
     await stands(page, f"/follow.html?order={order_id}")
     await expect(page.get_by_role("img", name="QR code for the robot’s camera")).to_be_visible()
-    await page.get_by_text("Type six digits instead").click()
+    await page.get_by_text("Enter six digits instead").click()
     await page.get_by_label("Six digits").fill("12")
     await page.keyboard.press("Enter")
-    await page.get_by_text("Let somebody else meet the robot").click()
+    await page.get_by_text("Let another person meet the robot").click()
     await page.get_by_label("Their name").fill("The porter of the old library building")
     await page.keyboard.press("Enter")
     await expect(page.get_by_role("img", name=re.compile("^Code for The porter"))).to_be_visible()
@@ -176,7 +176,7 @@ async def at_the_robot(ada: Visitor, order_id: str) -> States:
     unknown = "01ARZ3NDEKTSV4RRFFQ69G5FAV"
     ada.refusals_expected.add(f"/api/v1/orders/{unknown}")
     await page.goto(f"/follow.html?order={unknown}")
-    await expect(page.get_by_role("heading", name="This letter is not here")).to_be_visible()
+    await expect(page.get_by_role("heading", name="Letter not found")).to_be_visible()
     yield "follow, not here"
     await stands(page, "/mailroom.html")
     yield "a page for others"
@@ -188,23 +188,23 @@ async def settling(ada: Visitor) -> States:
     await ada.put("/me/contacts/bea.lund@campus.example", {"label": "Bea next door", "post": "post2"})
     await ada.name_delegate(await ada.order(BOB, what=LONG), "porter.of.the.old.library@campus.example")
     await stands(page, "/settings.html")
-    take_back = page.get_by_role("button", name="Take it back, The porter")
+    take_back = page.get_by_role("button", name="Revoke, The porter")
     await expect(take_back).to_be_visible()
-    tokens = page.get_by_role("region", name="Tokens for scripts")
-    await expect(tokens.get_by_role("button", name="Make the token")).to_be_visible()
+    tokens = page.get_by_role("region", name="Access tokens")
+    await expect(tokens.get_by_role("button", name="Create token")).to_be_visible()
     yield "settings"
-    await tokens.get_by_role("button", name="Make the token").click()
+    await tokens.get_by_role("button", name="Create token").click()
     await expect(tokens.get_by_role("alert")).to_be_visible()
     await take_back.click()
-    await expect(page.get_by_text(re.compile("^Nobody at the moment"))).to_be_visible()
+    await expect(page.get_by_text(re.compile("^No delegates"))).to_be_visible()
     await page.get_by_role("button", name="Change, Bea next door").click()
     hook = page.get_by_role("region", name="Webhook")
-    await hook.get_by_label("Address").fill("https://127.0.0.1/told")
-    await hook.get_by_role("button", name="Send notices there").click()
+    await hook.get_by_label("URL").fill("https://127.0.0.1/told")
+    await hook.get_by_role("button", name="Save webhook").click()
     await expect(hook.get_by_role("alert")).to_be_visible()
     yield "settings, refused"
-    await tokens.get_by_label("What it is for").fill("Night report")
+    await tokens.get_by_label("Purpose").fill("Night report")
     await tokens.get_by_role("checkbox").first.check()
-    await tokens.get_by_role("button", name="Make the token").click()
-    await expect(tokens.get_by_role("group", name=re.compile("^The token"))).to_be_visible()
+    await tokens.get_by_role("button", name="Create token").click()
+    await expect(tokens.get_by_role("group", name=re.compile("^Your new token"))).to_be_visible()
     yield "settings, a token shown once"

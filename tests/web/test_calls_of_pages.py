@@ -1,4 +1,4 @@
-"""What each page asks the service for when it opens: each answer once, and no more of them than it has use for."""
+"""Requests of each page when it opens: each once, and none that it has no use for."""
 
 import asyncio
 from collections import Counter
@@ -39,7 +39,7 @@ AT_MOST: Final = {
 
 
 class Asked:
-    """What a page asks the service for, as it leaves the browser."""
+    """The requests of a page, as they leave the browser."""
 
     def __init__(self, page: Page) -> None:
         self.calls: list[str] = []
@@ -75,7 +75,7 @@ async def busy_campus(tmp_path_factory: pytest.TempPathFactory) -> AsyncIterator
 
 
 async def of_all_trades(campus: Campus, visit) -> Visitor:
-    """Somebody who may open every page, and has an order and a notice of it."""
+    """A visitor with all roles, who has an order and a notification of it."""
     ada = await visit(at=campus.service)
     async with campus.scene.state.database.transaction() as session:
         person = await campus.scene.state.sign_in_desk.person(session, ada.email, campus.scene.clock.utc())
@@ -99,7 +99,7 @@ async def test_a_page_asks_for_each_answer_once(busy_campus, visit, address):
 
 
 async def test_a_robot_is_asked_to_tell_once_there_is_a_stream_to_hear_it_by(busy_campus, visit):
-    """What it tells comes once: said before the stream stands it would be lost, and asked for again."""
+    """Diagnostics arrive once: sent before the stream is open they would be lost and requested again."""
     ada = await of_all_trades(busy_campus, visit)
     asked = Asked(ada.page)
     me = (await (await ada.page.request.get(f"{API}me")).json())["id"]
@@ -107,7 +107,7 @@ async def test_a_robot_is_asked_to_tell_once_there_is_a_stream_to_hear_it_by(bus
         f"navigator.locks.request('live {me}', () => new Promise((go) => (window.letGo = go)))"
     )
     await ada.page.goto("/robots.html?robot=r1")
-    await expect(ada.page.get_by_role("status").filter(has_text="is asked to tell")).to_be_visible()
+    await expect(ada.page.get_by_role("status").filter(has_text="Waiting for data")).to_be_visible()
     await asyncio.sleep(QUIET_S)
     assert not [call for call in asked.calls if "/watch" in call or call == LIVE]
     await ada.page.evaluate("window.letGo()")

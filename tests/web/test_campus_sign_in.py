@@ -32,7 +32,7 @@ def campus(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Campus]:
 
 
 PROVIDERS_OWN = ("picocss", "favicon.ico")
-"""What its page asks for and is not given, here without a network."""
+"""Requests of its page that fail here, without a network."""
 
 
 async def sign_in_there(visitor: Visitor, subject: str) -> Page:
@@ -55,15 +55,15 @@ async def test_somebody_comes_in_by_their_campus_account(visit, campus):
 async def test_whoever_is_refused_there_reads_why_and_is_asked_for_an_address(visit, campus):
     tell_of(campus.issuer, "eve", email="eve@campus.example", email_verified=False)
     page = await sign_in_there(await visit("eve", at=campus.service, signed_in=False), "eve")
-    await expect(page.get_by_text("The campus has not verified your e-mail address.")).to_be_visible()
-    await expect(page.get_by_label("E-mail address")).to_be_visible()
+    await expect(page.get_by_text("The campus has not verified your email address.")).to_be_visible()
+    await expect(page.get_by_label("Email address")).to_be_visible()
     await page.reload()
-    await expect(page.get_by_label("E-mail address")).to_be_visible()
-    await expect(page.get_by_text("The campus has not verified your e-mail address.")).to_have_count(0)
+    await expect(page.get_by_label("Email address")).to_be_visible()
+    await expect(page.get_by_text("The campus has not verified your email address.")).to_have_count(0)
 
 
 async def test_without_a_campus_sign_in_there_is_no_way_to_it(visit):
     page = (await visit(signed_in=False)).page
     await page.goto("/")
-    await expect(page.get_by_label("E-mail address")).to_be_visible()
+    await expect(page.get_by_label("Email address")).to_be_visible()
     await expect(page.get_by_role("link", name="Sign in with your campus account")).to_have_count(0)

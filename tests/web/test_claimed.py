@@ -1,4 +1,4 @@
-"""What a robot only claims is shown as claimed, and a dispatcher who has asked settles it."""
+"""A robot's unproven claim is shown as such until a dispatcher settles it."""
 
 import re
 
@@ -16,7 +16,7 @@ pytestmark = pytest.mark.browser
 
 
 def hands_of(page: Page) -> Locator:
-    return page.get_by_role("region", name="In whose hands").get_by_role("listitem")
+    return page.get_by_role("region", name="Chain of custody").get_by_role("listitem")
 
 
 async def carries_and_claims(robot: PlayedRobot, ada: Visitor, order_id: str) -> None:
@@ -38,26 +38,24 @@ async def test_a_claim_is_shown_as_one_until_a_dispatcher_has_asked(quiet_campus
         order_id = await ada.order(bob.email)
         await carries_and_claims(robot, ada, order_id)
         await bob.page.goto(f"/follow.html?order={order_id}")
-        await expect(bob.page.get_by_role("heading", level=1)).to_have_text(
-            "Somebody from the mailroom is looking after it"
-        )
+        await expect(bob.page.get_by_role("heading", level=1)).to_have_text("The mailroom is looking into it")
         hands = hands_of(bob.page)
         await expect(hands.nth(1)).to_contain_text("confirmed with the code of Ada King")
         await expect(hands.nth(1)).to_have_class("now")
-        await expect(hands.nth(2)).to_contain_text("claimed by the robot; nobody has confirmed it")
+        await expect(hands.nth(2)).to_contain_text("reported by the robot, not confirmed")
         await expect(hands.nth(2)).not_to_have_class("now")
         await bob.assert_accessible()
 
         await dana.page.goto("/mailroom.html")
-        wrong = dana.page.get_by_role("region", name="What is wrong")
+        wrong = dana.page.get_by_role("region", name="Issues")
         await expect(wrong).to_contain_text("nothing shows that the robot has seen the code")
         await dana.page.get_by_role("button", name=re.compile("^Decide")).click()
-        dialog = dana.page.get_by_role("dialog", name=re.compile("^What becomes of the mail"))
-        await dialog.get_by_role("radio", name="It was handed over").check()
-        await dialog.get_by_role("button", name="Do that").click()
-        await expect(hands.nth(2)).to_contain_text("claimed by the robot, and found true since")
+        dialog = dana.page.get_by_role("dialog", name=re.compile("^Decide about the mail"))
+        await dialog.get_by_role("radio", name="It was delivered").check()
+        await dialog.get_by_role("button", name="Confirm").click()
+        await expect(hands.nth(2)).to_contain_text("reported by the robot, confirmed later")
         assert (await ada.api(f"/orders/{order_id}"))["state"] == "delivered"
-        await expect(wrong).to_contain_text("All is well")
+        await expect(wrong).to_contain_text("No issues")
 
 
 async def test_what_an_older_robot_tells_is_marked_as_weaker(quiet_campus: Campus, visit) -> None:

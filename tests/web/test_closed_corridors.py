@@ -1,4 +1,4 @@
-"""What is told of closed corridors, how people close and open them, and how they free the way of a dead robot."""
+"""Closed corridors on the pages: closing, reopening, and releasing those of a lost robot."""
 
 import re
 
@@ -24,25 +24,25 @@ async def test_a_corridor_that_a_robot_found_closed_is_open_again_when_somebody_
     reason = turned_back(Leg(from_post="post3", to_post="post4"), "blocked")
     await robot.ends(await robot.say(Event(happened=Fault(reason=reason, **told))))
     await page.goto(MAILROOM)
-    way, wrong = (page.get_by_role("region", name=name) for name in ("The paper's test track", "What is wrong"))
+    way, wrong = (page.get_by_role("region", name=name) for name in ("The paper's test track", "Issues"))
     in_words = "The robot turned back in the corridor from Post 3 to Post 4. Something stands in it."
     await expect(wrong.get_by_text(in_words)).to_be_visible()
-    await expect(wrong.get_by_role("button", name=re.compile(r"^It is open again\W+Post 3 – Post 4"))).to_be_visible()
+    await expect(wrong.get_by_role("button", name=re.compile(r"^Mark as open\W+Post 3 – Post 4"))).to_be_visible()
     await expect(way.locator(".shut[data-corridor]")).to_have_count(1)
-    await expect(way.get_by_text("Closed: no robot drives in")).to_be_visible()
-    await way.get_by_text("The same in words").click()
-    since = re.compile("^Found the corridor between Post 3 and Post 4 closed at ")
+    await expect(way.get_by_text("Closed to robots")).to_be_visible()
+    await way.get_by_text("Text description").click()
+    since = re.compile("^The corridor between Post 3 and Post 4 was blocked at ")
     await expect(way.get_by_text(since)).to_be_visible()
 
-    await press(page, r"I see to it\W+Robot")  # and goes there to look
-    await expect(page.get_by_text(f"Seen to: {in_words}")).to_be_visible()
+    await press(page, r"Acknowledge\W+Robot")  # and goes there to look
+    await expect(page.get_by_text(f"Acknowledged: {in_words}")).to_be_visible()
     await press(page, rf"Post 3 – Post 4 is open\W+{robot.name}")
-    await expect(page.get_by_role("button", name="Yes, it is open")).to_be_focused()
+    await expect(page.get_by_role("button", name="Yes, reopen")).to_be_focused()
     await dana.assert_accessible()
     await page.keyboard.press("Enter")
     wish = (await robot.hear("open_way")).body
     assert set(wish.ends) == {"post3", "post4"}
-    await expect(page.get_by_text("was told that the corridor between Post 3 and Post 4 is open.")).to_be_visible()
+    await expect(page.get_by_text("has been told that the corridor between Post 3 and Post 4 is open.")).to_be_visible()
     await expect(way.locator(".shut[data-corridor]")).to_have_count(1)  # until it says so itself
 
     answer = {"command_id": wish.command_id, "happened_at": robot.clock.utc()}
@@ -60,10 +60,10 @@ async def test_a_corridor_is_closed_and_opened_and_the_way_of_a_robot_that_stand
     page = dana.page
     await quiet_campus.scene.lets_wait(robot.name, "post5", "post3", for_robot="r2", minutes=30)
     await page.goto(MAILROOM)
-    waits = re.compile(r"^Waits for the corridor Post 5 – Post 3, taken by r2 until about \d")
+    waits = re.compile(r"^Waiting for corridor Post 5 – Post 3, occupied by r2 until about \d")
     await expect(page.get_by_role("region", name=re.compile("^Robots")).get_by_text(waits)).to_be_visible()
     closed = page.get_by_role("region", name="Closed corridors")
-    await expect(closed.get_by_text("Every corridor is open.")).to_be_visible()
+    await expect(closed.get_by_text("All corridors are open.")).to_be_visible()
     await press(page, "Close a corridor")
     await expect(page.get_by_label("Reason")).to_be_focused()
     await page.keyboard.type("The floor is wet")
@@ -73,14 +73,14 @@ async def test_a_corridor_is_closed_and_opened_and_the_way_of_a_robot_that_stand
     await page.keyboard.press("Enter")
     await expect(closed.get_by_role("listitem")).to_contain_text(["Post 2 – Post 3 The floor is wet"])
     await expect(page.locator("campus-map .shut[data-corridor=post2-post3]")).to_have_count(1)
-    await press(page, "Open again")
+    await press(page, "Reopen")
     await page.keyboard.press("Enter")
-    await expect(closed.get_by_text("Every corridor is open.")).to_be_visible()
+    await expect(closed.get_by_text("All corridors are open.")).to_be_visible()
 
     await robot.say(Snapshot(position=at_post("post5"), activity=Activity.STOPPED, battery=Battery(ratio=0.9)))
-    await press(page, rf"Free its way\W+{robot.name}")
+    await press(page, rf"Release its corridors\W+{robot.name}")
     await page.keyboard.press("Enter")
-    assert (await robot.hear("revoke")).body.reason == "Looked for it; it is in nobody’s way"
+    assert (await robot.hear("revoke")).body.reason == "Checked on site; it blocks no corridor"
     await expect(page.get_by_text(f"Robot {robot.name} stays out of the traffic until it stands")).to_be_visible()
     await expect(page.get_by_text("Its corridors were given to others; it takes part again").first).to_be_visible()
 
@@ -99,9 +99,9 @@ async def test_from_a_robots_page_too_it_is_told_that_a_corridor_is_open_and_wha
     await expect(page.locator(".closed-ways").get_by_text(in_french)).to_be_visible()
     await expect(page.get_by_role("region", name="Pannes et alarmes").get_by_text(in_french)).to_be_visible()
     await dana.assert_accessible()
-    await press(page, "C’est rouvert")
+    await press(page, "Signaler comme ouvert")
     await robot.ends(await robot.say(Event(happened=fault.model_copy(update={"cleared": True}))))
     await robot.socket.close()
-    await expect(page.get_by_text("Hors réseau").first).to_be_visible()
+    await expect(page.get_by_text("Hors ligne").first).to_be_visible()
     await page.keyboard.press("Enter")
-    await expect(page.get_by_text(f"Le robot {robot.name} n’a pas de réseau en ce moment.")).to_be_visible()
+    await expect(page.get_by_text(f"Le robot {robot.name} est hors ligne.")).to_be_visible()

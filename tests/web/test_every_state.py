@@ -39,7 +39,7 @@ async def campus(tmp_path_factory: pytest.TempPathFactory) -> AsyncIterator[Camp
 
 @asynccontextmanager
 async def a_robot_that_tells(service: Service) -> AsyncIterator[None]:
-    """Whoever watches it is told at once what it thinks."""
+    """A robot that sends diagnostics as soon as it is watched."""
     async with service.connected(CONNECTED, understands=("confirm", "watch")) as robot:
         for activity in (Activity.CHARGING, Activity.WAITING):
             battery = Battery(ratio=0.5, charging=activity is Activity.CHARGING)
@@ -139,12 +139,12 @@ async def test_every_page_speaks_french_stands_still_and_lets_a_keyboard_through
     # What one is told meanwhile pops up for a while, over what the keyboard may be at.
     await page.route("**/api/v1/live", lambda route: None)
     for address in EVERY_PAGE:
-        await stands(page, address.format(order_id), one_moment="Un instant")
+        await stands(page, address.format(order_id), one_moment="Chargement")
         await looker.look_at_words(address)
         await looker.moving(address)
         await page.set_viewport_size(NARROW)
         if "follow" in address:
-            assert await page.evaluate(CODE_IS_SEEN_AT_ONCE), "whoever stands at the robot need not look for the code"
+            assert await page.evaluate(CODE_IS_SEEN_AT_ONCE), "the code is in view for a person at the robot"
         keys = Keyboard(page)
         await keys.stands()
         stops = await keys.walk()
@@ -152,7 +152,7 @@ async def test_every_page_speaks_french_stands_still_and_lets_a_keyboard_through
     guest = await visit("grace.hopper", at=campus.service, signed_in=False, locale="fr-CA", reduced_motion="reduce")
     await campus.order_of("bob.martin", name_of(guest), "at_recipient")
     for address in ("/", campus.service.link_mailed_to(guest.email)):
-        await stands(guest.page, address, one_moment="Un instant")
+        await stands(guest.page, address, one_moment="Chargement")
         look_at_guest = Looker(guest)
         await look_at_guest.look_at_words(address.partition("#")[0])
         await look_at_guest.moving(address.partition("#")[0])

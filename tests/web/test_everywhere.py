@@ -1,4 +1,4 @@
-"""What holds on every page: languages, themes, small screens, and a network that comes and goes."""
+"""Properties of every page: languages, themes, small screens, and a network that comes and goes."""
 
 import re
 
@@ -17,7 +17,7 @@ SMALL_TARGETS = """() => [...document.querySelectorAll("a, button, input, select
 
 
 async def test_a_theme_is_that_of_the_device_and_changes_with_it(visit):
-    """What else holds in both themes is seen in every state (test_every_state.py)."""
+    """Both themes are seen in every state by test_every_state.py."""
     ada = await visit(on="phone", color_scheme="dark")
     await ada.page.goto("/mail.html")
     await expect(ada.page.get_by_role("heading", level=1)).to_be_visible()
@@ -30,7 +30,7 @@ async def test_a_french_speaker_orders_in_french(visit):
     ada = await visit("aline.roy", on="phone", locale="fr-CA", signed_in=False)
     page = ada.page
     await page.goto("/")
-    await expect(page.get_by_role("heading", name="Le courrier qui voyage en robot")).to_be_visible()
+    await expect(page.get_by_role("heading", name="Le courrier livré par robot")).to_be_visible()
     await ada.sign_in()
     await page.reload()
     await page.get_by_label("De", exact=True).select_option("Post 1")
@@ -40,7 +40,7 @@ async def test_a_french_speaker_orders_in_french(visit):
     await page.get_by_role("button", name="Envoyer le robot").click()
     await expect(page.get_by_role("heading", name="Recherche d’un robot")).to_be_visible()
     await expect(page.locator("html")).to_have_attribute("lang", "fr")
-    await page.get_by_role("link", name="Avis").click()
+    await page.get_by_role("link", name="Notifs").click()
     await expect(page.get_by_text(re.compile("^Commande acceptée"))).to_be_visible()
 
 
@@ -66,18 +66,18 @@ async def test_a_notice_arrives_live_is_counted_and_can_be_read(visit):
     ada = await visit()
     page = ada.page
     await page.goto("/")
-    notices = page.get_by_role("link", name=re.compile("Notices"))
-    await expect(notices).to_have_accessible_name("Notices")
+    notices = page.get_by_role("link", name=re.compile("Inbox"))
+    await expect(notices).to_have_accessible_name("Inbox")
     await expect(page.get_by_role("heading", name="Send a letter")).to_be_visible()
     await ada.order(BOB)
     await expect(page.get_by_role("status").get_by_role("link", name=re.compile("^Order accepted"))).to_be_visible()
-    await page.get_by_role("button", name="Put away").click()
-    await expect(page.get_by_role("button", name="Put away")).to_be_hidden()
+    await page.get_by_role("button", name="Dismiss").click()
+    await expect(page.get_by_role("button", name="Dismiss")).to_be_hidden()
     await expect(notices).to_have_accessible_name(re.compile("1 unread"))
     await notices.click()
     await expect(page.get_by_role("link", name=re.compile("Order accepted.*Unread"))).to_be_visible()
     await page.get_by_role("button", name="Mark all as read").click()
-    await expect(notices).to_have_accessible_name("Notices")
+    await expect(notices).to_have_accessible_name("Inbox")
     await expect(page.get_by_role("button", name="Mark all as read")).to_be_hidden()
     await page.get_by_role("link", name=re.compile("Order accepted")).click()
     await expect(page.get_by_role("heading", name="Looking for a robot")).to_be_visible()
@@ -87,6 +87,6 @@ async def test_a_service_that_does_not_answer_is_said_in_words(visit):
     ada = await visit(signed_in=False)
     async with ada.without_network():
         await ada.page.goto("/")
-        await expect(ada.page.get_by_role("heading", name="Campus Mail does not answer")).to_be_visible()
+        await expect(ada.page.get_by_role("heading", name="Campus Mail is not responding")).to_be_visible()
     await ada.page.get_by_role("button", name="Try again").click()
-    await expect(ada.page.get_by_label("E-mail address")).to_be_visible()
+    await expect(ada.page.get_by_label("Email address")).to_be_visible()

@@ -40,4 +40,4 @@ async def test_every_state_is_said_in_words_with_what_comes_next(visit, role, th
         assert not GAPS.search(await page.locator("main").inner_text()), state
         if state in ("at_sender", "attention", "returned"):
             await ada.assert_accessible()
-    assert len(set(said.values())) >= len(STATES) - 2, "a robot on its way to somebody else is one thing to a recipient"
+    assert len(set(said.values())) >= len(STATES) - 2, "a robot on its way elsewhere is one thing to a recipient"

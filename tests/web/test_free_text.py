@@ -1,4 +1,4 @@
-"""What people write stays within the page, and turns nothing round: whatever its length and whichever way it runs."""
+"""Free text stays within the page and does not reorder it, at any length and in either direction of writing."""
 
 import re
 from collections.abc import AsyncIterator

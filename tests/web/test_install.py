@@ -52,4 +52,4 @@ async def test_installing_is_offered_in_the_account_sheet_and_nowhere_else(visit
 async def test_what_is_shared_with_the_app_stands_in_the_order(visit):
     ada = await visit(on="phone")
     await ada.page.goto("/?description=Signed+forms%2C+blue+envelope")
-    await expect(ada.page.get_by_label("What is it?")).to_have_value("Signed forms, blue envelope")
+    await expect(ada.page.get_by_label("Contents")).to_have_value("Signed forms, blue envelope")

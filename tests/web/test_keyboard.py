@@ -28,11 +28,11 @@ async def test_somebody_signs_in_sends_a_letter_follows_it_cancels_it_and_settle
     page, keys = ada.page, Keyboard(ada.page)
     heading = page.get_by_role("heading", level=1)
     await page.goto("/")
-    await expect(page.get_by_label("E-mail address")).to_be_visible()
-    await keys.to("E-mail address")
+    await expect(page.get_by_label("Email address")).to_be_visible()
+    await keys.to("Email address")
     await keys.type(ada.email)
     await keys.press("Enter")
-    await expect(page.get_by_label("Code from the e-mail")).to_be_focused()
+    await expect(page.get_by_label("Code from the email")).to_be_focused()
     await keys.type(service.code_mailed_to(ada.email))
     await keys.press("Enter")
     await expect(heading).to_have_text("Send a letter")
@@ -43,7 +43,7 @@ async def test_somebody_signs_in_sends_a_letter_follows_it_cancels_it_and_settle
     await keys.type("Post 1")
     await keys.to("To")
     await keys.type("Post 4")
-    await keys.to("Recipient’s e-mail")
+    await keys.to("Recipient’s email")
     await keys.type(BOB)
     await keys.to("Now")
     await keys.press("ArrowRight")
@@ -62,7 +62,7 @@ async def test_somebody_signs_in_sends_a_letter_follows_it_cancels_it_and_settle
     assert await keys.here() == "Cancel this order", "the keyboard is back where it was"
     await keys.press("Enter", "Tab", "Enter")
     await expect(heading).to_have_text("Cancelled")
-    await expect(page.get_by_role("heading", name="Its way")).to_be_focused()
+    await expect(page.get_by_role("heading", name="Route")).to_be_focused()
 
     await keys.to("My mail", "Shift+Tab")
     await keys.press("Enter")
@@ -72,9 +72,9 @@ async def test_somebody_signs_in_sends_a_letter_follows_it_cancels_it_and_settle
     await expect(page.get_by_text("1 letter found")).to_be_visible()
     await keys.to("Send again to")
     await keys.press("Enter")
-    await expect(page.get_by_label("Recipient’s e-mail")).to_have_value(BOB)
+    await expect(page.get_by_label("Recipient’s email")).to_have_value(BOB)
 
-    await keys.to(r".*unread Notices")
+    await keys.to(r".*unread Inbox")
     await keys.press("Enter")
     await expect(page.get_by_role("button", name="Mark all as read")).to_be_visible()
     await keys.stands()
@@ -105,22 +105,22 @@ async def test_a_dispatcher_orders_for_somebody_pauses_a_robot_acts_on_an_order_
     page, keys = dana.page, Keyboard(dana.page)
     dialog = page.get_by_role("dialog")
     await page.goto("/mailroom.html")
-    await expect(page.get_by_role("button", name=re.compile("^I see to it"))).to_be_visible()
+    await expect(page.get_by_role("button", name=re.compile("^Acknowledge"))).to_be_visible()
     await keys.stands()
     await keys.to("Order at the desk")
     await keys.press("Enter")
     await expect(dialog).to_be_visible()
     stops = await keys.walk()
-    assert stops[0].startswith("Who gets it"), "it begins at the first field, and nothing behind the dialog is come to"
+    assert stops[0].startswith("Recipient"), "it begins at the first field, and nothing behind the dialog is come to"
     await keys.press("Escape")
     assert await keys.here() == "Order at the desk"
 
-    await keys.to("I see to it")
+    await keys.to("Acknowledge")
     await keys.press("Enter")
     await expect(
-        page.get_by_text("Seen to: A wheel does not turn although it should. It says: The lid does not close.")
+        page.get_by_text("Acknowledged: A wheel does not turn although it should. It says: The lid does not close.")
     ).to_be_visible()
-    assert (await keys.here()).startswith("What is wrong"), "what was pressed is gone"
+    assert (await keys.here()).startswith("Issues"), "what was pressed is gone"
     await keys.to("Decide")
     await keys.press("Enter", "ArrowDown", "Enter")
     await expect(page.get_by_text(re.compile("^Decided: "))).to_be_visible()
@@ -128,12 +128,12 @@ async def test_a_dispatcher_orders_for_somebody_pauses_a_robot_acts_on_an_order_
     await keys.to("Act.*Bob Martin to Grace Hill")
     await keys.press("Enter")
     await expect(dialog).to_be_visible()
-    await keys.to("Change the priority")
+    await keys.to("Change priority")
     await keys.press("Enter")
     await expect(page.get_by_role("radio", name="Normal priority")).to_be_focused()
     await keys.press("ArrowUp", "Enter")
-    await expect(page.get_by_text(re.compile("^The priority of .* is set"))).to_be_visible()
-    assert (await keys.here()).startswith("Act")
+    await expect(page.get_by_text(re.compile("^Priority of .* saved"))).to_be_visible()
+    assert (await keys.here()).startswith("Actions")
 
     await keys.to("Robot r1")
     await keys.press("Enter")
@@ -144,7 +144,7 @@ async def test_a_dispatcher_orders_for_somebody_pauses_a_robot_acts_on_an_order_
     await expect(page.get_by_label("Reason")).to_be_focused()
     await keys.type("A parade")
     await keys.press("Enter")
-    await expect(page.get_by_role("listitem").filter(has_text="Come back")).to_be_visible()
+    await expect(page.get_by_role("listitem").filter(has_text="Return to base")).to_be_visible()
     assert await keys.here() == "Recall"
 
     await page.goto("/print.html")
@@ -168,9 +168,9 @@ async def test_somebody_without_account_sees_their_code_and_says_not_now_by_keys
     await keys.to("Show the code")
     await keys.press("Enter")
     await expect(page.get_by_role("img", name="QR code for the robot’s camera")).to_be_visible()
-    await keys.to("I cannot take it now")
+    await keys.to("I can’t take it now")
     await keys.press("Enter", "Escape")
-    assert await keys.here() == "I cannot take it now"
+    assert await keys.here() == "I can’t take it now"
     await keys.press("Enter")
     await keys.to("Yes, send it back")
     await keys.press("Enter")

@@ -24,14 +24,14 @@ from tests.web.visitor import Visitor
 
 pytestmark = pytest.mark.browser
 
-SIGN_IN_AGAIN, WHY_NOT = "Sign in again", re.compile("You were signed out before this was done")
+SIGN_IN_AGAIN, WHY_NOT = "Sign in again", re.compile("You were signed out before this finished")
 CHECKED = {"CAMPUS_MAIL_SESSION_CHECK_S": "1"}
 NEXT_MAIL_LIMIT_S = 10.0
 
 
 @pytest.fixture(scope="module")
 def strict(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
-    """A service that looks each second whether whoever listens may still do so."""
+    """A service that checks each second that its listeners may still listen."""
     with Service(tmp_path_factory.mktemp("strict"), more=CHECKED) as service:
         yield service
 
@@ -45,9 +45,9 @@ async def sign_in_over(page: Page, person: Visitor, as_email: str = "") -> None:
     dialog, email = dialog_on(page), as_email or person.email
     before = person.service.code_mailed_to(email) if not as_email else ""
     if as_email:
-        await dialog.get_by_label("E-mail address").fill(as_email)
+        await dialog.get_by_label("Email address").fill(as_email)
     await dialog.get_by_role("button", name="Send me a code").click()
-    await dialog.get_by_label("Code from the e-mail").fill(code_after(person, email, before))
+    await dialog.get_by_label("Code from the email").fill(code_after(person, email, before))
     await dialog.get_by_role("button", name="Sign in").click()
 
 
@@ -76,7 +76,7 @@ class Form:
     fill_in: Callable[[Page], Awaitable[Any]]
     button: str
     asked: str
-    """What is asked for at the service, and what is looked at of each item there."""
+    """The request to the service, and the compared fields of each item."""
     done: list[Any]
     typed: str = ""
     """A field that is as it was filled in as long as it is not done."""
@@ -91,8 +91,8 @@ def at(address: str) -> Callable[[Visitor], Awaitable[str]]:
 
 async def fill_in_standing(page: Page) -> None:
     await fill(page, what="Payroll")
-    await page.get_by_role("radio", name="Again and again").check()
-    await page.get_by_label("At", exact=True).fill("09:30")
+    await page.get_by_role("radio", name="Repeat").check()
+    await page.get_by_label("Time", exact=True).fill("09:30")
 
 
 async def standing_order(ada: Visitor) -> str:
@@ -112,24 +112,24 @@ async def followed(ada: Visitor) -> str:
 
 
 async def fill_in_delegate(page: Page) -> None:
-    await page.get_by_text("Let somebody else meet the robot").click()
+    await page.get_by_text("Let another person meet the robot").click()
     await page.get_by_label("Their name").fill("The porter")
 
 
 async def fill_in_contact(page: Page) -> None:
     book = page.get_by_role("region", name="Address book")
-    await book.get_by_label("E-mail address").fill(BOB)
-    await book.get_by_label("Name in your book").fill("Next door")
+    await book.get_by_label("Email address").fill(BOB)
+    await book.get_by_label("Display name").fill("Next door")
 
 
 FORMS = {
     "order, again and again": Form(
-        at("/"), fill_in_standing, "^Send it each time", "/standing-orders description", ["Payroll"], "What is it?"
+        at("/"), fill_in_standing, "^Schedule repeats", "/standing-orders description", ["Payroll"], "Contents"
     ),
     "my mail": Form(standing_order, fill_in_nothing, "^Pause: Bob", "/standing-orders paused", [True]),
-    "follow": Form(followed, fill_in_delegate, "^Name them", "/me/delegates name", ["The porter"], "Their name"),
+    "follow": Form(followed, fill_in_delegate, "^Add delegate", "/me/delegates name", ["The porter"], "Their name"),
     "settings": Form(
-        at("/settings.html"), fill_in_contact, "^Save$", "/me/contacts label", ["Next door"], "Name in your book"
+        at("/settings.html"), fill_in_contact, "^Save$", "/me/contacts label", ["Next door"], "Display name"
     ),
 }
 
@@ -181,7 +181,7 @@ async def test_what_saves_by_itself_can_be_saved_once_one_is_signed_in_again(vis
         await expect(dialog_on(page)).to_be_visible()
     await sign_in_over(page, ada)
     await expect(name).to_have_value("Augusta Ada King")
-    me = page.get_by_role("region", name="About me")
+    me = page.get_by_role("region", name="Profile")
     await me.get_by_role("button", name="Save").click()
     await expect(me.get_by_role("status")).to_have_text("Saved")
     assert (await ada.api("/me"))["name"] == "Augusta Ada King"
@@ -201,8 +201,8 @@ async def test_a_refused_order_waits_in_sight_and_goes_out_once_with_its_key_at_
     await expect(kept).to_be_focused()
     await expect(kept.get_by_text(WHY_NOT)).to_be_visible()
     assert await ordered(ada) == []
-    await kept.get_by_role("button", name="Send it now").click()
-    await expect(kept.get_by_text("Sent. A robot")).to_be_visible()
+    await kept.get_by_role("button", name="Send now").click()
+    await expect(kept.get_by_text("Sent. Looking for a robot")).to_be_visible()
     assert await ordered(ada) == ["Ghost"] and len(keys) == 2 and len(set(keys)) == 1
 
 
@@ -212,17 +212,17 @@ async def test_at_the_desk_an_order_that_was_refused_goes_on_over_its_own_dialog
     async with session_that_ends_unheard(dana):
         await page.goto("/mailroom.html")
         await press(page, "Order at the desk")
-        await page.get_by_role("combobox", name="Who sends it").fill("grace.hill@campus.example")
-        await page.get_by_role("combobox", name="Who gets it").fill(BOB)
+        await page.get_by_role("combobox", name="Sender").fill("grace.hill@campus.example")
+        await page.get_by_role("combobox", name="Recipient").fill(BOB)
         await page.get_by_label("From", exact=True).select_option("Post 1")
         await page.get_by_label("To", exact=True).select_option("Post 4")
         await dana.end_sessions()
-        await page.get_by_role("button", name="Order it").click()
+        await page.get_by_role("button", name="Place order").click()
         await expect(dialog_on(page)).to_be_visible()
     await sign_in_over(page, dana)
-    await expect(page.get_by_role("combobox", name="Who gets it")).to_have_value(BOB)
+    await expect(page.get_by_role("combobox", name="Recipient")).to_have_value(BOB)
     assert len(keys) == 1
-    await page.get_by_role("button", name="Order it").click()
+    await page.get_by_role("button", name="Place order").click()
     await expect(page.get_by_role("heading", name="Ordered")).to_be_visible()
     assert len(keys) == 2 and len(set(keys)) == 1
 
@@ -236,11 +236,11 @@ async def test_a_command_to_a_robot_that_was_refused_is_given_at_one_tap(quiet_c
         await press(page, "Pause")
         await page.get_by_label("Reason").fill("A parade")
         await dana.end_sessions()
-        await page.get_by_role("button", name="Pause it").click()
+        await page.get_by_role("button", name="Pause").click()
         await expect(dialog_on(page)).to_be_visible()
     await sign_in_over(page, dana)
     await expect(page.get_by_label("Reason")).to_have_value("A parade")
-    await page.get_by_role("button", name="Pause it").click()
+    await page.get_by_role("button", name="Pause").click()
     assert (await robot.hear("pause")).body.reason == "A parade"
 
 
@@ -251,24 +251,24 @@ async def test_one_sign_in_is_enough_for_all_tabs_and_each_goes_on_where_it_was(
     await second.goto("/settings.html")
     await fill(first, what="Half a")
     await fill_in_contact(second)
-    await first.get_by_label("What is it?").focus()
+    await first.get_by_label("Contents").focus()
     await ada.end_sessions()
     for tab in (first, second):
         await expect(dialog_on(tab)).to_be_visible()
-        await expect(dialog_on(tab).get_by_label("E-mail address")).to_have_value(ada.email)
+        await expect(dialog_on(tab).get_by_label("Email address")).to_have_value(ada.email)
     await sign_in_over(second, ada)
     for tab in (first, second):
         await expect(dialog_on(tab)).to_be_hidden()
-    await expect(first.get_by_label("What is it?")).to_be_focused()
+    await expect(first.get_by_label("Contents")).to_be_focused()
     await first.keyboard.press("End")
     await first.keyboard.type(" letter")
-    await expect(first.get_by_label("What is it?")).to_have_value("Half a letter")
+    await expect(first.get_by_label("Contents")).to_have_value("Half a letter")
     await ada.order(BOB, what="From elsewhere")
     await expect(first.get_by_role("link", name=re.compile("From elsewhere"))).to_be_visible()
     await send(first)
     await first.wait_for_url("**/follow.html*")
     assert await ordered(ada) == ["Half a letter", "From elsewhere"]
-    await expect(second.get_by_role("region", name="Address book").get_by_label("E-mail address")).to_have_value(BOB)
+    await expect(second.get_by_role("region", name="Address book").get_by_label("Email address")).to_have_value(BOB)
 
 
 async def test_where_another_person_signs_in_no_tab_shows_or_sends_what_was_the_first_ones(strict, visit):
@@ -277,15 +277,15 @@ async def test_where_another_person_signs_in_no_tab_shows_or_sends_what_was_the_
     first, second = ada.page, await ada.new_page()
     for tab in (first, second):
         await tab.goto(f"/?description=Secret&recipient={BOB}")
-        await expect(tab.get_by_label("What is it?")).to_have_value("Secret")
+        await expect(tab.get_by_label("Contents")).to_have_value("Secret")
     await ada.end_sessions()
     for tab in (first, second):
         await expect(dialog_on(tab)).to_be_visible()
     await sign_in_over(first, ada, as_email=eve)
     for tab in (first, second):
         await expect(tab.locator(".account summary", has_text="Eve Ada King")).to_be_attached()
-        await expect(tab.get_by_label("What is it?")).to_have_value("")
-        await expect(tab.get_by_label("Recipient’s e-mail")).to_have_value("")
+        await expect(tab.get_by_label("Contents")).to_have_value("")
+        await expect(tab.get_by_label("Recipient’s email")).to_have_value("")
     assert await ordered(ada) == [], "the browser is Eve's now"
 
 
@@ -312,15 +312,15 @@ async def test_who_does_not_care_to_sign_in_now_reads_on_and_is_asked_when_they_
     page = ada.page
     dialog = page.get_by_role("dialog", name="Se reconnecter")
     await page.goto("/settings.html")
-    await page.get_by_label("Nom dans votre carnet").fill("Bob")
-    await page.get_by_label("Nom dans votre carnet").focus()
+    await page.get_by_label("Nom affiché").fill("Bob")
+    await page.get_by_label("Nom affiché").focus()
     await ada.end_sessions()
     await expect(dialog.get_by_role("button", name="M’envoyer un code")).to_be_focused()
     assert await page.evaluate(NO_OVERFLOW)
     await ada.assert_accessible()
     await page.keyboard.press("Escape")
     await expect(dialog).to_be_hidden()
-    await expect(page.get_by_label("Nom dans votre carnet")).to_be_focused()
+    await expect(page.get_by_label("Nom affiché")).to_be_focused()
     await expect(page.get_by_text("Vous n’êtes plus connecté·e.")).to_be_visible()
     assert await page.evaluate(NO_OVERFLOW)
     await ada.assert_accessible()

@@ -26,7 +26,7 @@ async def test_mail_is_searched_as_one_types_narrowed_down_and_sent_again(visit)
     await sent.get_by_role("button", name="Show older").click()
     await expect(letters).to_have_count(23)
     await expect(
-        page.get_by_role("region", name="Coming to me").get_by_text("Nothing is coming to you.")
+        page.get_by_role("region", name="Incoming").get_by_text("Nothing is on its way to you.")
     ).to_be_visible()
 
     search = page.get_by_role("searchbox", name="Search")
@@ -36,12 +36,12 @@ async def test_mail_is_searched_as_one_types_narrowed_down_and_sent_again(visit)
     await search.fill("post 3")
     await expect(letters).to_have_text(re.compile("Keys"))
     await page.get_by_role("radio", name="Done").check()
-    await expect(sent.get_by_text("Nothing like that here.")).to_be_visible()
+    await expect(sent.get_by_text("No results.")).to_be_visible()
     await search.fill("")
     await expect(letters).to_have_text(re.compile("Cancelled.*Signed forms", re.DOTALL))
     await ada.assert_accessible()
     await sent.get_by_role("link", name="Send again to Bob Martin").click()
-    await expect(page.get_by_label("What is it?")).to_have_value("Signed forms")
+    await expect(page.get_by_label("Contents")).to_have_value("Signed forms")
 
 
 async def test_a_standing_order_is_paused_resumed_and_ended_with_the_keyboard(visit):

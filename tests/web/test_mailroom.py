@@ -42,9 +42,9 @@ async def test_what_goes_wrong_appears_by_itself_and_is_mended_by_keyboard_alone
     ada = await visit("ada.king", at=quiet_campus.service)
     page = dana.page
     await page.goto(MAILROOM)
-    wrong = page.get_by_role("region", name="What is wrong")
-    await expect(wrong).to_contain_text("All is well")
-    await expect(page.get_by_text("Nothing is under way.")).to_be_visible()
+    wrong = page.get_by_role("region", name="Issues")
+    await expect(wrong).to_contain_text("No issues")
+    await expect(page.get_by_text("Nothing in progress.")).to_be_visible()
 
     order_id = await ada.order("bob.martin@campus.example", what="Signed forms")
     mission = await robot.mission()
@@ -52,7 +52,7 @@ async def test_what_goes_wrong_appears_by_itself_and_is_mended_by_keyboard_alone
     for step in (Step.ACCEPTED, Step.DEPARTED, Step.ARRIVED):
         await robot.report(mission, step, None if step is Step.ACCEPTED else stops[StopAction.LOAD])
     await robot.ends(await robot.say(robot.receipt(stops[StopAction.LOAD])))
-    queue = page.get_by_role("region", name=re.compile("^Under way"))
+    queue = page.get_by_role("region", name=re.compile("^In progress"))
     await expect(queue.get_by_text("Signed forms")).to_be_visible()
     await expect(queue.get_by_text("On its way").first).to_be_visible()
     fault = Fault(name="cliff", happened_at=robot.clock.utc(), post="post2", reason="It stands before a drop.")
@@ -60,22 +60,22 @@ async def test_what_goes_wrong_appears_by_itself_and_is_mended_by_keyboard_alone
 
     await expect(wrong.get_by_text(f"Robot {robot.name}, Post 2", exact=True)).to_be_visible()
     await expect(wrong.get_by_text("Post 1 → Post 4 is stuck", exact=True)).to_be_visible()
-    await press(page, "I see to it")
+    await press(page, "Acknowledge")
     await expect(wrong.get_by_text(f"Robot {robot.name}, Post 2", exact=True)).to_be_hidden()
-    await expect(page.get_by_text("Seen to: The robot stands before a drop.")).to_be_visible()
-    await expect(page.get_by_role("heading", name=re.compile("^What is wrong"))).to_be_focused()
+    await expect(page.get_by_text("Acknowledged: The robot stands before a drop.")).to_be_visible()
+    await expect(page.get_by_role("heading", name=re.compile("^Issues"))).to_be_focused()
 
     await press(page, "Decide")
-    dialog = page.get_by_role("dialog", name=re.compile("^What becomes of the mail from Ada King"))
-    await expect(dialog.get_by_role("radio", name="Go on as before")).to_be_focused()
+    dialog = page.get_by_role("dialog", name=re.compile("^Decide about the mail from Ada King"))
+    await expect(dialog.get_by_role("radio", name="Continue as before")).to_be_focused()
     await dana.assert_accessible()
     await page.keyboard.press("Escape")
     await expect(page.get_by_role("button", name=re.compile("^Decide"))).to_be_focused()
     await page.keyboard.press("Enter")
-    await expect(dialog.get_by_role("radio", name="Go on as before")).to_be_focused()
+    await expect(dialog.get_by_role("radio", name="Continue as before")).to_be_focused()
     await page.keyboard.press("ArrowDown")
-    await page.keyboard.press("Enter")  # "Bring it back"
-    await expect(wrong).to_contain_text("All is well")
+    await page.keyboard.press("Enter")  # "Return it"
+    await expect(wrong).to_contain_text("No issues")
     assert (await dana.api(f"/orders/{order_id}"))["state"] == "returning"
     await expect(queue.get_by_text("Being brought back")).to_be_visible()
 
@@ -87,24 +87,24 @@ async def test_a_robot_is_paused_let_go_on_and_stopped_by_keyboard_alone(quiet_c
     await press(page, rf"Pause\W+{robot.name}")
     await expect(page.get_by_label("Reason")).to_be_focused()
     await page.keyboard.press("Enter")
-    await expect(page.get_by_text("Say why:")).to_be_visible()
+    await expect(page.get_by_text("Enter a reason")).to_be_visible()
     await expect(page.get_by_label("Reason")).to_be_focused()
     await page.keyboard.type("A parade")
     await page.keyboard.press("Enter")
     heard = (await robot.hear("pause")).body
     assert isinstance(heard, Pause)
     assert heard.reason == "A parade"
-    await expect(page.get_by_role("status").get_by_text(f"Robot {robot.name} was asked to pause.")).to_be_visible()
+    await expect(page.get_by_role("status").get_by_text(f"Pause sent to robot {robot.name}.")).to_be_visible()
     await robot.say(Why(sentence="Paused"))
     await expect(
-        page.get_by_role("region", name="What is wrong").get_by_text(f"Robot {robot.name} stands still")
+        page.get_by_role("region", name="Issues").get_by_text(f"Robot {robot.name} has stopped")
     ).to_be_visible()
-    await page.get_by_role("button", name=re.compile("^Let it go on")).first.focus()
+    await page.get_by_role("button", name=re.compile("^Resume")).first.focus()
     await page.keyboard.press("Enter")
     await page.keyboard.press("Enter")
     await robot.hear("resume")
     await robot.say(Why(sentence="Nothing to do"))
-    await expect(page.get_by_text(f"Robot {robot.name} stands still")).to_be_hidden()
+    await expect(page.get_by_text(f"Robot {robot.name} has stopped")).to_be_hidden()
 
     await press(page, rf"Stop\W+{robot.name}")
     await expect(page.get_by_role("button", name=f"Stop {robot.name} now")).to_be_focused()
@@ -122,7 +122,7 @@ async def test_an_order_for_somebody_at_the_desk_is_placed_by_keyboard_and_print
     page = dana.page
     await page.goto(MAILROOM)
     await press(page, "Order at the desk")
-    sender = page.get_by_role("combobox", name="Who sends it")
+    sender = page.get_by_role("combobox", name="Sender")
     await expect(sender).to_be_focused()
     await page.keyboard.type("grace")
     option = page.get_by_role("option", name=re.compile(f"Grace Hill .*{grace.email}"))
@@ -140,19 +140,19 @@ async def test_an_order_for_somebody_at_the_desk_is_placed_by_keyboard_and_print
     await page.keyboard.type("Post 2")
     await page.keyboard.press("Tab")
     await page.keyboard.type("Post 2")
-    await press(page, "Order it")
-    await expect(page.get_by_text("The letter is there already")).to_be_visible()
+    await press(page, "Place order")
+    await expect(page.get_by_text("Choose two different posts")).to_be_visible()
     await expect(page.get_by_label("To", exact=True)).to_be_focused()
     await page.keyboard.type("Post 4")
-    await press(page, "Order it")
+    await press(page, "Place order")
     await expect(page.get_by_role("heading", name="Ordered")).to_be_focused()
-    await page.get_by_role("link", name="Print a slip").focus()
+    await page.get_by_role("link", name="Print slip").focus()
     await page.keyboard.press("Enter")
-    slip = page.get_by_role("article", name="Slip for the mail")
-    for words in ("Grace Hill", "Bob Martin", "Post 2", "Post 4", "follow.html", "is told when one comes"):
+    slip = page.get_by_role("article", name="Mail slip")
+    for words in ("Grace Hill", "Bob Martin", "Post 2", "Post 4", "follow.html", "is notified when one comes"):
         await expect(slip).to_contain_text(words)
-    await expect(page.get_by_text(re.compile("^No robot is on this order yet. Its code comes"))).to_be_visible()
-    for_phones = slip.get_by_role("img", name="QR code of the order’s page")
+    await expect(page.get_by_text(re.compile("^No robot is assigned yet. Its code is added"))).to_be_visible()
+    for_phones = slip.get_by_role("img", name="QR code of the order page")
     await expect_drawn(for_phones)
     order_id = page.url.partition("order=")[2]
     order = await dana.api(f"/orders/{order_id}")
@@ -173,36 +173,36 @@ async def test_everything_that_is_wrong_has_its_next_action(busy_campus, visit, 
     dana = await busy_campus.dispatcher(visit)
     page = dana.page
     await page.goto(MAILROOM)
-    wrong = page.get_by_role("region", name="What is wrong").get_by_role("listitem")
+    wrong = page.get_by_role("region", name="Issues").get_by_role("listitem")
     await expect(wrong).to_have_count(6)
-    actions = ("I see to it", "Decide", "Release the digits", "Let it go on", "Look", "Try again")
+    actions = ("Acknowledge", "Decide", "Unlock digits", "Resume", "View", "Try again")
     for row, action in zip(await wrong.all(), actions, strict=True):
         await expect(
-            row.get_by_role("link" if action == "Look" else "button", name=re.compile(f"^{action}"))
+            row.get_by_role("link" if action == "View" else "button", name=re.compile(f"^{action}"))
         ).to_be_visible()
     assert await page.evaluate("litHtmlVersions.length") == 1, "directives have the same Lit as all else"
-    await press(page, "Release the digits")
+    await press(page, "Unlock digits")
     await page.keyboard.press("Enter")
     await expect(wrong).to_have_count(5)
 
-    queue = page.get_by_role("region", name=re.compile("^Under way"))
+    queue = page.get_by_role("region", name=re.compile("^In progress"))
     rows = queue.get_by_role("listitem")
     await expect(rows).to_have_count(12)
-    await expect(queue.get_by_text("Not to be fetched before")).to_be_visible()
+    await expect(queue.get_by_text("Scheduled for")).to_be_visible()
     await queue.get_by_label("Sort by").select_option("Priority")
     await expect(rows.last).to_contain_text("Low priority")
     await queue.get_by_label("Search orders").fill("turing")
     await expect(rows).to_have_count(4)
-    await rows.filter(has_text="Contract").get_by_role("button", name=re.compile("^Act")).click()
+    await rows.filter(has_text="Contract").get_by_role("button", name=re.compile("^Actions")).click()
     await expect(page.get_by_role("dialog").get_by_role("button")).to_have_text(
         [
-            *("Let the robot wait longer", "Change the priority", "Give it to another robot", "Cancel the order"),
-            *("Stop it and decide by hand", "Close"),
+            *("Extend waiting time", "Change priority", "Reassign", "Cancel the order"),
+            *("Stop and decide by hand", "Close"),
         ]
     )
-    await page.get_by_role("button", name="Change the priority").click()
+    await page.get_by_role("button", name="Change priority").click()
     await page.get_by_role("radio", name="High priority").check()
-    await page.get_by_role("button", name="Set it").click()
+    await page.get_by_role("button", name="Save").click()
     await expect(rows.filter(has_text="Contract")).to_contain_text("High priority")
 
     await press(page, "Unsent mail")
@@ -213,7 +213,7 @@ async def test_everything_that_is_wrong_has_its_next_action(busy_campus, visit, 
     assert not re.search(r"\b\d{8}\b", await mail.inner_text())
     await page.get_by_role("button", name="Back to the list").click()
     await dialog.get_by_role("button", name=re.compile("^Try again")).first.click()
-    await expect(dialog.get_by_text("Being sent once more to")).to_be_visible()
+    await expect(dialog.get_by_text("Sending again to")).to_be_visible()
     await page.keyboard.press("Escape")
 
     await press(page, "Export")
@@ -231,7 +231,7 @@ async def test_on_a_phone_each_part_of_the_mailroom_is_a_tap_away_however_far_on
     page = dana.page
     await page.goto(MAILROOM)
     parts = page.get_by_role("navigation", name="On this page")
-    titles = {"Map": "The paper's test track", "Under way": "Under way", "Robots": "Robots", "Wrong": "What is wrong"}
+    titles = {"Map": "The paper's test track", "In progress": "In progress", "Robots": "Robots", "Issues": "Issues"}
     for part, title in titles.items():
         await parts.get_by_role("link", name=re.compile(f"^{part}")).click()
         heading = page.get_by_role("heading", level=2, name=re.compile(f"^{title}"))
@@ -246,7 +246,7 @@ async def test_a_wall_shows_the_campus_at_work_and_nobodys_full_name(busy_campus
     dana = await busy_campus.dispatcher(visit, viewport={"width": 1920, "height": 1080})
     page = dana.page
     await page.goto(f"{MAILROOM}?wall")
-    await expect(page.get_by_role("region", name=re.compile("^Under way"))).to_contain_text("G. Hill to C. Sagan")
+    await expect(page.get_by_role("region", name=re.compile("^In progress"))).to_contain_text("G. Hill to C. Sagan")
     await expect(page.get_by_role("region", name="Robots")).to_contain_text("Charging at Post 5")
     await expect(page.get_by_role("region", name="Map").get_by_role("img").first).to_be_visible()
     await expect(page.get_by_role("time")).to_have_text(re.compile(r"^\d{1,2}:\d\d"))
@@ -265,7 +265,7 @@ async def test_marker_sheets_are_printed_in_their_true_size_with_nothing_around_
     await expect(page.get_by_role("button", name="Print 6 sheets")).to_be_visible()
     await page.emulate_media(media="print")
     await expect(page.get_by_role("banner")).to_be_hidden()
-    sheets = page.get_by_role("img", name=re.compile("^Marker sheet of"))
+    sheets = page.get_by_role("img", name=re.compile("^Marker sheet for"))
     await expect(sheets).to_have_count(6)
     assert await page.evaluate(SHEET_MM) == ["148 × 210"] * 6
     for paper in ("A4", "Letter"):
@@ -286,7 +286,7 @@ async def test_a_long_queue_goes_on_where_the_page_ends(quiet_campus, visit):
     ids = [order_id for _ in range(3) for order_id in await quiet_campus.scene.is_ordered_for_later(35)]
     dana = await quiet_campus.dispatcher(visit)
     await dana.page.goto(MAILROOM)
-    rows = dana.page.get_by_role("region", name=re.compile("^Under way")).get_by_role("listitem")
+    rows = dana.page.get_by_role("region", name=re.compile("^In progress")).get_by_role("listitem")
     more = dana.page.get_by_role("button", name="Show more")
     await more.focus()
     before = await rows.count()

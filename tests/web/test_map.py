@@ -11,7 +11,7 @@ from maps import CampusMap, builtin_map
 pytestmark = pytest.mark.browser
 
 DRAW = """async ([map, ...robots]) => {
-  await import("/elements/campus_map.js");
+  await import("/src/map/campus_map.js");
   const drawn = Object.assign(document.createElement("campus-map"), {map, robots});
   document.querySelector("main").replaceChildren(drawn);
   await new Promise((drawn) => requestAnimationFrame(() => setTimeout(drawn, 50)));
@@ -75,7 +75,7 @@ async def test_every_post_can_be_read_and_no_label_covers_another_or_a_post(visi
 
 
 CLOCK = """async (told) => {
-  const {ServerClock} = await import("/server_clock.js");
+  const {ServerClock} = await import("/src/service/server_clock.js");
   let machine_ms = 0;
   const clock = new ServerClock(() => machine_ms);
   return told.map(([at_ms, server_ms]) => {
@@ -104,7 +104,7 @@ async def test_the_map_is_drawn_while_posts_are_chosen(visit):
 
 
 VIEWS = """async () => {
-  const view = await import("/map_view.js");
+  const view = await import("/src/map/map_view.js");
   const frame = {x: -50, y: 0, width: 400, height: 200};
   const whole = view.whole(frame);
   const corner = {x: 340, y: 10};
@@ -143,11 +143,11 @@ async def test_the_arithmetic_of_views(visit):
 async def drawn(page: Page, *scene: Any) -> Locator:
     """A map alone on the page."""
     await page.evaluate(SCENE, list(scene))
-    return page.get_by_role("group", name="Map. The arrow keys")
+    return page.get_by_role("group", name="Map. Arrow keys")
 
 
 SCENE = """async ([map, robots, traffic]) => {
-  await import("/elements/campus_map.js");
+  await import("/src/map/campus_map.js");
   const at = (s) => new Date(Date.now() + 1000 * s).toISOString();
   const known = robots.map(({seen, to, ...robot}) => ({
     last_seen: {post: seen, at: at(-130)}, expected: to ? {post: to, from: at(60), to: at(240)} : null, towards: to,
@@ -175,13 +175,13 @@ async def test_the_map_is_brought_closer_and_moved_by_buttons_wheel_and_keys(vis
     area = await drawn(page, as_sent(builtin_map("test_track")), ONE, [])
     svg = area.get_by_role("img", name="Map: The paper's test track")
     whole, letters = await svg.evaluate(BOX), await svg.evaluate(LETTERS)
-    await expect(page.get_by_role("button", name="Farther")).to_have_attribute("aria-disabled", "true")
-    await page.get_by_role("button", name="Closer").click()
+    await expect(page.get_by_role("button", name="Zoom out")).to_have_attribute("aria-disabled", "true")
+    await page.get_by_role("button", name="Zoom in").click()
     closer = await svg.evaluate(BOX)
-    assert closer[:2] != whole[:2] and closer[2:] == whole[2:], "at once, for whoever wants less motion"
+    assert closer[:2] != whole[:2] and closer[2:] == whole[2:], "at once, for users who prefer less motion"
     assert await svg.evaluate(LETTERS) == pytest.approx(letters, abs=2), "letters stay as large as they are"
 
-    await page.get_by_role("button", name="To the robot").click()
+    await page.get_by_role("button", name="Go to robot").click()
     robot, frame = await svg.locator(".robot").bounding_box(), await svg.bounding_box()
     assert robot and frame and frame["x"] < robot["x"] < frame["x"] + frame["width"]
     for note in ("last seen", "expected"):
@@ -205,7 +205,7 @@ async def test_the_map_is_brought_closer_and_moved_by_buttons_wheel_and_keys(vis
     await page.keyboard.down("Control")
     await page.mouse.wheel(0, -200)
     await page.keyboard.up("Control")
-    await expect(page.get_by_role("button", name="Farther")).not_to_have_attribute("aria-disabled", "true")
+    await expect(page.get_by_role("button", name="Zoom out")).not_to_have_attribute("aria-disabled", "true")
     before = await svg.evaluate(BOX)
     await page.mouse.down()
     await page.mouse.move(frame["x"] + frame["width"] / 2 - 60, frame["y"] + 60)
@@ -245,8 +245,8 @@ async def test_two_fingers_bring_it_closer_and_one_moves_it_only_then(visit):
     await touch(page, [(x, y)], [(x - 20, y - 20)], [(x - 60, y - 60)])
     moved = await svg.evaluate(BOX)
     assert moved[0] > near[0] and moved[1] > near[1]
-    await page.get_by_role("button", name="The whole map").click()
-    await expect(page.get_by_role("button", name="The whole map")).to_have_attribute("aria-disabled", "true")
+    await page.get_by_role("button", name="Whole map").click()
+    await expect(page.get_by_role("button", name="Whole map")).to_have_attribute("aria-disabled", "true")
     await expect(svg).not_to_have_class(re.compile("closer"))
 
 
@@ -305,7 +305,7 @@ async def test_several_robots_do_not_hide_each_other_and_drawing_and_list_say_th
     ]
     assert covered == []
     notes = " / ".join(text for text, _ in told["labels"])
-    for said in ("r1 · silent", "r2 · stopped", "r3 · charging", "r4 · 2 min"):
+    for said in ("r1 · offline", "r2 · stopped", "r3 · charging", "r4 · 2 min"):
         assert said in notes
 
     title = {post["name"]: post["title"] for post in track["posts"]}
@@ -313,8 +313,8 @@ async def test_several_robots_do_not_hide_each_other_and_drawing_and_list_say_th
     for robot, post, condition in told["seen"]:
         assert f"Last seen at {title[post]}, 2 min" in lists[robot]
         word = {
-            "offline": "Silent, as expected: there is no network",
-            "stopped": "Stands still",
+            "offline": "Offline, as expected: there is no network",
+            "stopped": "Stopped; needs help",
             "charging": ", charging; 80% at about",
         }
         assert [kind for kind, said in word.items() if said in lists[robot]] == [condition or None][: bool(condition)]
@@ -328,5 +328,5 @@ async def test_several_robots_do_not_hide_each_other_and_drawing_and_list_say_th
     assert told["silent"] == ["post3-post4"]
     assert "No network between Post 3 and Post 4" in told["places"]
     assert told["places"][0] == "Post 1: 2 m to Post 2"
-    await expect(page.get_by_text("No network here: robots are silent")).to_be_visible()
+    await expect(page.get_by_text("No network: robots are offline here")).to_be_visible()
     await ada.assert_accessible()

@@ -17,7 +17,7 @@ pytestmark = pytest.mark.browser
 
 CHANGES = 300
 ROUNDS = 4
-"""What is left behind by changes is left behind in each round of them. What the browser itself holds on to for a while
+"""Leaks grow with each round of changes. What the browser itself holds on to for a while
 (34 nodes were seen, in one round of many) is not."""
 QUIET_S = 1.5
 # The engine goes on compiling what runs often: some 100 kB in the first hundreds of changes, ever less after that.
@@ -69,7 +69,7 @@ async def many_changes(page: Page, browser: CDPSession, robot: PlayedRobot) -> N
 
 
 async def left_behind(page: Page, browser: CDPSession) -> dict[str, float]:
-    """What there is once all that changed is drawn, which takes a moment, and all that is held no more is gone; as
+    """Count the objects once all changes are drawn, which takes a moment, and all that is held no more is gone; as
     "Detached" the nodes that are on no page any more."""
     before, now = None, await held(page, browser)
     while before != now["Nodes"]:
@@ -116,7 +116,7 @@ async def test_after_hundreds_of_changes_the_page_is_as_light_as_before(visit, r
     await robot.ends(await robot.report(mission, Step.ACCEPTED))
     await drives_about(robot, 1, battery=0.9)
     await page.goto(f"/follow.html?order={order_id}")
-    facts = page.get_by_role("region", name="Where the robot is")
+    facts = page.get_by_role("region", name="Robot location")
     await expect(facts.get_by_text(re.compile("^Last seen at"))).to_be_visible()
 
     await robot.say(Claim(claim_id="c1", legs=(LEG,)))

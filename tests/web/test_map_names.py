@@ -23,7 +23,7 @@ NO_ROOM = {
 LEFT_OUT = {("carleton", "320 px"): 2}
 
 ON_LINES = """async ([map, scenes]) => {
-  await import("/elements/campus_map.js");
+  await import("/src/map/campus_map.js");
   const drawn = Object.assign(document.createElement("campus-map"), {map});
   document.querySelector("main").replaceChildren(drawn);
   const frames = () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
@@ -72,7 +72,7 @@ async def test_no_name_lies_on_a_corridor_without_robots_and_with_one_on_any_of_
     ada = await visit(viewport=SIZES[size], timezone_id="America/Toronto", signed_in=False)
     await ada.page.route("**/api/v1/about", tell_the_time)
     await ada.page.goto("/")
-    await expect(ada.page.get_by_label("E-mail address")).to_be_visible()
+    await expect(ada.page.get_by_label("Email address")).to_be_visible()
     found: dict[str, Any] = await ada.page.evaluate(ON_LINES, [as_sent(campus), ways])
     plain, said = found.pop("none"), " ".join(text for one in found.values() for text in one["words"])
     assert plain["on_lines"] == []

@@ -1,4 +1,4 @@
-"""What one is told just now pops up: in nobody's way, and for as long as somebody is at it."""
+"""New notifications pop up: they cover no control, and stay while pointer or focus is on them."""
 
 import asyncio
 import re
@@ -30,11 +30,11 @@ async def test_a_notice_lies_never_over_the_keyboard_and_waits_for_whoever_is_at
         await route.continue_()
 
     # It comes before what shows it has been fetched.
-    await page.route("**/after_opening.js", fetched_late)
+    await page.route("**/src/pages/after_opening.js", fetched_late)
     await page.goto("/")
     await expect(page.get_by_role("heading", name="Send a letter")).to_be_visible()
     await ada.order(BOB)
-    await expect(page.get_by_role("link", name=re.compile("Notices"))).to_have_accessible_name(re.compile("1 unread"))
+    await expect(page.get_by_role("link", name=re.compile("Inbox"))).to_have_accessible_name(re.compile("1 unread"))
     stands.set()
     toast = page.get_by_role("status").get_by_role("link", name=re.compile("^Order accepted"))
     await expect(toast).to_be_visible()

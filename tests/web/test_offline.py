@@ -37,7 +37,7 @@ KEPT_ANSWERS = """async () => {
   const kept = await Promise.all(stores.map(async (name) => (await caches.open(name)).keys()));
   return kept.flat().map(({ url }) => url.replace(/.*v1/, "")).sort();
 }"""
-KEPT = "Kept on this device"
+KEPT = "Saved on this device"
 LOCKS = """window.locks = [];
 const request = WakeLock.prototype.request;
 WakeLock.prototype.request = async function (kind) {
@@ -62,7 +62,7 @@ async def no_network(person: Visitor) -> AsyncIterator[None]:
 
 
 async def come_with_worker(visit, name: str = "ada", **options: Any) -> Visitor:
-    """Somebody whose browser has the worker already."""
+    """A visitor whose browser has the worker already."""
     person = await visit(name, on="phone", service_workers="allow", **options)
     await person.page.goto("/")
     await expect(person.page.get_by_role("heading", name="Send a letter")).to_be_visible()
@@ -96,7 +96,7 @@ async def is_kept(page: Page, address: str) -> None:
 async def sign_out(page: Page) -> None:
     await page.locator(".account summary").click()
     await page.get_by_role("button", name="Sign out").click()
-    await expect(page.get_by_label("E-mail address")).to_be_visible()
+    await expect(page.get_by_label("Email address")).to_be_visible()
 
 
 async def test_in_a_tunnel_pages_open_an_order_is_kept_and_it_is_sent_once_when_there_is_a_network(visit):
@@ -110,16 +110,16 @@ async def test_in_a_tunnel_pages_open_an_order_is_kept_and_it_is_sent_once_when_
         await fill(page, what="Keys")
         await send(page)
         kept = page.get_by_role("region", name=KEPT)
-        await expect(kept.get_by_text("Will be sent by itself")).to_be_visible()
+        await expect(kept.get_by_text("Will be sent once")).to_be_visible()
         await expect(kept).to_be_focused()
-        await expect(page.get_by_label("What is it?")).to_have_value("")
+        await expect(page.get_by_label("Contents")).to_have_value("")
         await page.get_by_role("link", name="My mail").click()
         await expect(page.get_by_role("heading", name="My mail")).to_be_visible()
         await expect(kept.get_by_text("Post 1")).to_be_visible()
         await ada.assert_accessible()
         await page.goto("/")
         await expect(kept.get_by_text("Post 1")).to_be_visible()
-    await kept.get_by_role("link", name="Follow it").click()
+    await kept.get_by_role("link", name="Track").click()
     await expect(page.get_by_role("heading", name="Looking for a robot")).to_be_visible()
     assert [order["description"] for order in (await ada.api("/orders"))["items"]] == ["Keys"]
 
@@ -131,7 +131,7 @@ async def test_a_kept_order_is_sent_once_by_the_worker_though_no_page_is_open_an
         await fill(page, what="Keys")
         await send(page)
         kept = page.get_by_role("region", name=KEPT)
-        await expect(kept.get_by_text("Will be sent by itself")).to_be_visible()
+        await expect(kept.get_by_text("Will be sent once")).to_be_visible()
         assert await page.evaluate(ASKED_TO_SYNC) == ["orders"], "the browser is to wake the worker"
         await page.close()
     # Once for the network, once more since browsers do so when the first attempt seemed to fail.
@@ -179,12 +179,12 @@ async def test_what_is_refused_later_is_said_and_can_be_mended_or_thrown_away(vi
             await fill(page, recipient=recipient)
             await send(page)
             await expect(kept.get_by_text(f"For {recipient}")).to_be_visible()
-    refused = kept.get_by_role("listitem").filter(has_text=re.compile("We know nobody with this address"))
+    refused = kept.get_by_role("listitem").filter(has_text=re.compile("This address is unknown"))
     await expect(refused).to_have_count(2)
     await refused.first.get_by_role("button", name="Discard").click()
     await expect(refused).to_have_count(1)
-    await refused.get_by_role("button", name="Mend and send").click()
-    await expect(page.get_by_label("Recipient’s e-mail")).to_have_value("mallory@elsewhere.example")
+    await refused.get_by_role("button", name="Fix and send").click()
+    await expect(page.get_by_label("Recipient’s email")).to_have_value("mallory@elsewhere.example")
     await expect(kept).to_be_hidden()
     assert (await ada.api("/orders"))["items"] == []
 
@@ -202,7 +202,7 @@ async def test_what_is_kept_is_gone_at_sign_out_and_no_order_is_sent_for_somebod
         await fill(page, what="Ada’s own")
         await send(page)
         await expect(page.get_by_role("region", name=KEPT)).to_be_visible()
-        # Whoever has this browser next comes by another way than the sign-out.
+        # The next user of this browser comes by another way than the sign-out.
         await ada.context.clear_cookies()
     eve = Visitor(ada.browser, service, f"eve.{ada.email}", ada.options)
     eve.context = ada.context
@@ -221,13 +221,19 @@ async def test_what_is_kept_is_gone_at_sign_out_and_no_order_is_sent_for_somebod
 
 
 async def test_the_files_of_the_pages_have_a_version_that_changes_with_any_of_them(tmp_path):
-    for name, text in {"index.html": "<p>", "a.js": "1", "notes.md": "", "npm_modules.json": "[]"}.items():
+    made = {"public/index.html": "<p>", "src/a.js": "1", "src/notes.md": "", "types/b.js": "", "npm_modules.json": "[]"}
+    for name, text in made.items():
+        (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_text(text)
-    files = PageFiles(tmp_path, frozenset({"npm_modules.json"}))
+    files = PageFiles(tmp_path)
     before = files.module()
-    assert json.loads(before.split(b"FILES = ")[1].rstrip(b";\n"))[:2] == ["/", "/a.js"]
+    assert json.loads(before.split(b"FILES = ")[1].rstrip(b";\n"))[:3] == [
+        "/",
+        "/src/a.js",
+        "/src/styles/everywhere.css",
+    ]
     assert files.module() == before
-    (tmp_path / "a.js").write_text("2")
+    (tmp_path / "src/a.js").write_text("2")
     assert files.module() != before
 
 
@@ -295,17 +301,17 @@ async def test_a_new_version_waits_for_a_tap_and_open_pages_go_on_with_their_own
     page, other = ada.page, await ada.new_page()
     await other.goto("/mail.html")
     await expect(other.get_by_role("heading", name="My mail")).to_be_visible()
-    words = own_pages / "texts/en.json"
+    words = own_pages / "src/texts/en.json"
     words.write_text(words.read_text(encoding="utf-8").replace("Send a letter", "Send a parcel"), encoding="utf-8")
     await page.reload()
     await expect(page.get_by_role("heading", name="Send a letter")).to_be_visible()
-    await expect(page.get_by_text("A new version of Campus Mail is there.")).to_be_visible()
+    await expect(page.get_by_text("A new version of Campus Mail is available.")).to_be_visible()
     await ada.assert_accessible()
-    await page.get_by_role("button", name="Change to it").click()
+    await page.get_by_role("button", name="Update now").click()
     await expect(page.get_by_role("heading", name="Send a parcel")).to_be_visible()
-    await expect(other.get_by_text("A new version of Campus Mail is there.")).to_be_visible()
-    said = await other.evaluate("async () => (await (await fetch('/texts/en.json')).json())['order.title']")
+    await expect(other.get_by_text("A new version of Campus Mail is available.")).to_be_visible()
+    said = await other.evaluate("async () => (await (await fetch('/src/texts/en.json')).json())['order.title']")
     assert said == "Send a letter"
-    await other.get_by_role("button", name="Change to it").click()
+    await other.get_by_role("button", name="Update now").click()
     await other.get_by_role("link", name="Send").click()
     await expect(other.get_by_role("heading", name="Send a parcel")).to_be_visible()

@@ -24,7 +24,7 @@ from tests.web.visitor import Visitor
 
 pytestmark = pytest.mark.browser
 
-ONE_MOMENT, NO_ANSWER, NOT_LOADED = "One moment", "No answer", "Without a network this could not be loaded."
+ONE_MOMENT, NO_ANSWER, NOT_LOADED = "Loading", "No response", "This could not be loaded without a network."
 NOT_KEPT = ("/notices.html", "/settings.html", "/follow.html?order=none")
 NOT_KEPT_OF_STAFF = ("/mailroom.html", "/mailroom.html?wall", "/robots.html", "/print.html?order=none")
 EVERYBODYS = ["/about", "/map"]
@@ -63,7 +63,7 @@ async def open_once(person: Visitor, address: str) -> None:
 
 
 async def of_links(page: Page, number: int) -> None:
-    """Whether so many answers are kept in the end; a page looks again every five seconds."""
+    """Wait until so many answers are kept; a page polls every five seconds."""
 
     async def kept() -> bool:
         return len(await page.evaluate(KEPT_OF_LINKS)) == number
@@ -103,16 +103,16 @@ async def test_after_one_visit_of_any_page_orders_their_codes_and_the_order_form
             await expect(page.get_by_role("heading", level=1)).to_be_visible()
             await shows_code(page, digits)
             await page.goto("/mail.html")
-            sent, coming = (page.get_by_role("region", name=name, exact=True) for name in ("Sent", "Coming to me"))
+            sent, coming = (page.get_by_role("region", name=name, exact=True) for name in ("Sent", "Incoming"))
             await expect(sent.get_by_role("link", name=re.compile("Keys"))).to_be_visible()
             await expect(
-                coming.get_by_text("Nothing is under way. What is over is shown with a network.")
+                coming.get_by_text("Nothing in progress. Completed mail is shown when you are online.")
             ).to_be_visible()
             await expect_one_word(page)  # of what comes round again
             await page.goto("/")
             await fill(page, what="More keys")
             await send(page)
-            await expect(page.get_by_role("region", name=KEPT).get_by_text("Will be sent by itself")).to_be_visible()
+            await expect(page.get_by_role("region", name=KEPT).get_by_text("Will be sent once")).to_be_visible()
 
 
 async def test_what_a_page_hears_while_it_is_open_is_there_as_well(visit, own_service: Service):
@@ -154,7 +154,8 @@ async def test_after_one_visit_by_a_link_its_order_and_code_are_there(visit, own
         async with no_network(guest):
             await page.goto("about:blank")
             await page.goto(link)
-            await expect(page.get_by_text(re.compile("^No network. You see what was known last"))).to_be_visible()
+            said = re.compile("^No network. This page shows the last known state")
+            await expect(page.get_by_text(said)).to_be_visible()
             await expect(page.get_by_role("heading", level=1)).to_be_visible()
             await shows_code(page, digits)
             await guest.assert_accessible()
@@ -188,9 +189,9 @@ async def test_what_a_link_opened_is_gone_when_somebody_signs_in_there(visit, ow
     async with delegate_of(ada, visit) as (guest, *_):
         page = guest.page
         await page.goto("/")
-        await page.get_by_label("E-mail address").fill(guest.email)
+        await page.get_by_label("Email address").fill(guest.email)
         await page.get_by_role("button", name="Send me a code").click()
-        await page.get_by_label("Code from the e-mail").fill(own_service.code_mailed_to(guest.email))
+        await page.get_by_label("Code from the email").fill(own_service.code_mailed_to(guest.email))
         await page.get_by_role("button", name="Sign in").click()
         await expect(page.get_by_role("heading", name="Send a letter")).to_be_visible()
         assert await page.evaluate(KEPT_OF_LINKS) == []
@@ -228,7 +229,7 @@ async def test_a_session_that_has_ended_leaves_nothing(visit):
     await open_once(ada, "/")
     await ada.end_sessions()
     await ada.page.goto("/")
-    await expect(ada.page.get_by_label("E-mail address")).to_be_visible()
+    await expect(ada.page.get_by_label("Email address")).to_be_visible()
     assert await ada.page.evaluate(KEPT_ANSWERS) == EVERYBODYS
 
 

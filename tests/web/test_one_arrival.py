@@ -158,7 +158,7 @@ async def test_who_orders_while_the_only_robot_has_mail_that_nobody_took_reads_t
     assert (told["from"], told["to"], told["reason"]) == (None, None, stuck)
     await carl.page.goto(f"/follow.html?order={order_id}")
     main = carl.page.locator("main")
-    await expect(main).to_contain_text("The time of arrival is not known yet.")
+    await expect(main).to_contain_text("The arrival time is not known yet.")
     await expect(main).to_contain_text(stuck)
     for wrong in ("Expected at", "nearest free robot", "Every robot is busy"):
         await expect(main).not_to_contain_text(wrong)

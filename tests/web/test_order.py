@@ -22,8 +22,8 @@ PLACE = "(element) => [element.getBoundingClientRect().top + scrollY, element.of
 async def fill(page: Page, recipient: str = BOB, from_post: str = "Post 1", to_post: str = "Post 4", what: str = ""):
     await page.get_by_label("From").select_option(from_post)
     await page.get_by_label("To", exact=True).select_option(to_post)
-    await page.get_by_label("Recipient’s e-mail").fill(recipient)
-    await page.get_by_label("What is it?").fill(what)
+    await page.get_by_label("Recipient’s email").fill(recipient)
+    await page.get_by_label("Contents").fill(what)
 
 
 async def send(page: Page):
@@ -49,11 +49,11 @@ async def test_who_orders_while_no_robot_can_come_reads_so_instead_of_a_time(vis
     ada = await visit("ada.king", on="phone")
     await ada.page.goto("/")
     button = ada.page.get_by_role("button", name="Send the robot")
-    await expect(ada.page.get_by_text("Choose both posts to see when it arrives.")).to_be_visible()
+    await expect(ada.page.get_by_text("Choose both posts to see the arrival time.")).to_be_visible()
     place = await button.evaluate(PLACE)
     await fill(ada.page)
     told = ada.page.locator(".estimate")
-    await expect(told).to_contain_text("The time of arrival is not known yet.")
+    await expect(told).to_contain_text("The arrival time is not known yet.")
     await expect(told).to_contain_text("No robot is connected at the moment.")
     assert await button.evaluate(PLACE) == place, "nothing moves under a finger"
 
@@ -62,14 +62,12 @@ async def test_the_time_of_arrival_is_shown_as_an_assumption_before_anything_is_
     ada = await visit("ada.king", on="phone")
     await there(ada)
     await ada.page.goto("/")
-    await expect(ada.page.get_by_text("Choose both posts to see when it arrives.")).to_be_visible()
+    await expect(ada.page.get_by_text("Choose both posts to see the arrival time.")).to_be_visible()
     button = ada.page.get_by_role("button", name="Send the robot")
     place = await button.evaluate(PLACE)
     await fill(ada.page)
     await expect(ada.page.get_by_role("status").get_by_text(re.compile("Arrives"))).to_be_visible()
-    await expect(
-        ada.page.get_by_text("An assumption from the map’s 6 m, not yet from measured journeys.")
-    ).to_be_visible()
+    await expect(ada.page.get_by_text("Estimated from the map’s 6 m; no measured trips yet.")).to_be_visible()
     assert await button.evaluate(PLACE) == place, "nothing moves under a finger"
     time = ada.page.locator(".estimate strong")
     await time.evaluate("time => (time.textContent = '11:58 a.m. – 12:04 p.m.')")
@@ -87,9 +85,9 @@ async def test_an_ordered_letter_is_followed_at_once_and_stands_in_my_mail(visit
     await fill(page, what="Signed forms")
     await send(page)
     await expect(page.get_by_role("heading", name="Looking for a robot")).to_be_visible()
-    await expect(page.get_by_text("The time of arrival is not known yet.")).to_be_visible()
+    await expect(page.get_by_text("The arrival time is not known yet.")).to_be_visible()
     await expect(page.get_by_text("No robot is connected at the moment.")).to_be_visible()
-    await expect(page.get_by_text("No robot is on this order yet.")).to_be_visible()
+    await expect(page.get_by_text("No robot is assigned to this order yet.")).to_be_visible()
     await page.get_by_role("link", name="My mail").click()
     sent = page.get_by_role("region", name="Sent")
     await expect(
@@ -111,14 +109,14 @@ async def test_going_back_after_ordering_offers_nothing_that_one_tap_orders_twic
         await page.goto(f"/follow.html?order={await ada.order(BOB)}")
         await page.get_by_role("button", name="Cancel this order").click()
         await page.get_by_role("dialog").get_by_role("button", name="Yes, cancel it").click()
-        await page.get_by_role("link", name="Send another like this").click()
-        await expect(page.get_by_label("Recipient’s e-mail")).to_have_value(BOB)
+        await page.get_by_role("link", name="Send another one").click()
+        await expect(page.get_by_label("Recipient’s email")).to_have_value(BOB)
     await send(page)
     await expect(page.get_by_role("heading", name="Looking for a robot")).to_be_visible()
     before = len((await ada.api("/orders"))["items"])
     await page.go_back()
     await expect(page.get_by_role("heading", name="Send a letter")).to_be_visible()
-    await expect(page.get_by_label("Recipient’s e-mail")).to_have_value("")
+    await expect(page.get_by_label("Recipient’s email")).to_have_value("")
     await send(page)
     await expect(page.locator("[aria-invalid=true]").first).to_be_visible()
     assert len((await ada.api("/orders"))["items"]) == before
@@ -132,7 +130,7 @@ async def test_the_same_post_twice_is_refused_at_the_field(visit, there):
     await fill(ada.page, to_post="Post 1")
     await send(ada.page)
     to = ada.page.get_by_label("To", exact=True)
-    await expect(to).to_have_accessible_description(re.compile("The letter is there already"))
+    await expect(to).to_have_accessible_description(re.compile("Choose two different posts"))
     await expect(to).to_be_focused()
     await to.select_option("Post 2")
     await expect(to).to_have_accessible_description("")
@@ -145,8 +143,8 @@ async def test_an_unknown_recipient_is_refused_at_the_field(visit):
     await ada.page.goto("/")
     await fill(ada.page, recipient="eve@elsewhere.example")
     await send(ada.page)
-    recipient = ada.page.get_by_label("Recipient’s e-mail")
-    await expect(recipient).to_have_accessible_description(re.compile("We know nobody with this address"))
+    recipient = ada.page.get_by_label("Recipient’s email")
+    await expect(recipient).to_have_accessible_description(re.compile("This address is unknown"))
     await expect(recipient).to_be_focused()
 
 
@@ -154,7 +152,7 @@ async def test_an_empty_form_says_what_is_missing_and_asks_nobody(visit):
     ada = await visit()
     await ada.page.goto("/")
     await send(ada.page)
-    for words in ("Choose where the robot collects it.", "Choose where it goes.", "Say who it is for."):
+    for words in ("Choose where the robot picks it up.", "Choose where it goes.", "Enter the recipient."):
         await expect(ada.page.get_by_text(words)).to_be_visible()
     await expect(ada.page.get_by_label("From")).to_be_focused()
 
@@ -214,15 +212,13 @@ async def test_an_order_without_any_answer_is_kept_and_sent_again_with_its_key_a
     await fill(page, what="Keys")
     await page.route(re.compile("/api/v1/orders$"), lose)
     await send(page)
-    kept = page.get_by_role("region", name="Kept on this device")
-    await expect(
-        kept.get_by_text("Will be sent by itself as soon as there is a network, and only once.")
-    ).to_be_visible()
+    kept = page.get_by_role("region", name="Saved on this device")
+    await expect(kept.get_by_text("Will be sent once, as soon as you are back online.")).to_be_visible()
     async with page.expect_request(re.compile("/api/v1/orders$")) as sent:  # before the reload, or because of it
         await page.unroute_all(behavior="wait")  # one that is on its way would go to the service beside the next
         await page.reload()
     assert {(await sent.value).headers["idempotency-key"]} == set(keys)
-    await kept.get_by_role("link", name="Follow it").click()
+    await kept.get_by_role("link", name="Track").click()
     await expect(page.get_by_role("heading", name="Looking for a robot")).to_be_visible()
     assert len((await ada.api("/orders"))["items"]) == 1
 
@@ -236,7 +232,7 @@ async def test_a_repeat_takes_three_taps(visit, there):
     await page.get_by_role("button", name=re.compile("^Bob Martin")).click()
     await expect(page.get_by_label("From")).to_have_value("post1")
     await expect(page.get_by_label("To", exact=True)).to_have_value("post3")
-    await expect(page.get_by_label("Recipient’s e-mail")).to_have_value(BOB)
+    await expect(page.get_by_label("Recipient’s email")).to_have_value(BOB)
     await expect(page.get_by_text(re.compile("Arrives"))).to_be_visible()
     await send(page)
     await expect(page.get_by_role("heading", name="Looking for a robot")).to_be_visible()
@@ -253,8 +249,8 @@ async def test_an_order_is_cancelled_after_asking_once(visit):
     await page.get_by_role("dialog").get_by_role("button", name="Yes, cancel it").click()
     await expect(page.get_by_role("heading", name="Cancelled")).to_be_visible()
     await expect(page.get_by_role("button", name="Cancel this order")).to_be_hidden()
-    await page.get_by_role("link", name="Send another like this").click()
-    await expect(page.get_by_label("Recipient’s e-mail")).to_have_value(BOB)
+    await page.get_by_role("link", name="Send another one").click()
+    await expect(page.get_by_label("Recipient’s email")).to_have_value(BOB)
 
 
 async def test_an_order_of_others_is_not_here(visit):
@@ -262,8 +258,8 @@ async def test_an_order_of_others_is_not_here(visit):
     order_id = await ada.order(BOB)
     eve.refusals_expected.add(f"/api/v1/orders/{order_id}")
     await eve.page.goto(f"/follow.html?order={order_id}")
-    await expect(eve.page.get_by_role("heading", name="This letter is not here")).to_be_visible()
-    await expect(eve.page.get_by_text("or it is not yours to see")).to_be_visible()
+    await expect(eve.page.get_by_role("heading", name="Letter not found")).to_be_visible()
+    await expect(eve.page.get_by_text("or you don’t have access to it")).to_be_visible()
 
 
 async def test_a_recipient_is_chosen_from_those_one_knows_with_the_keyboard(visit):
@@ -273,7 +269,7 @@ async def test_a_recipient_is_chosen_from_those_one_knows_with_the_keyboard(visi
         await ada.order(f"{name}@campus.example")
     await ada.put("/me/contacts/bea.lund@campus.example", {"label": "Bea next door", "post": "post2"})
     await page.goto("/")
-    recipient = page.get_by_role("combobox", name="Recipient’s e-mail")
+    recipient = page.get_by_role("combobox", name="Recipient’s email")
     await recipient.focus()
     offers = page.get_by_role("listbox", name="People you know").get_by_role("option")
     await expect(offers).to_have_count(3)
@@ -306,25 +302,25 @@ async def test_a_letter_is_ordered_for_later_and_again_and_again(visit, there):
     await page.get_by_label("Not before").fill("2027-05-03T09:30")
     await expect(window).not_to_have_text(now)
     await expect(window).to_contain_text("May 3, 9:3")
-    await page.get_by_role("button", name="Send the robot then").click()
-    await expect(page.get_by_role("heading", level=1)).to_have_text("Ordered for later")
+    await page.get_by_role("button", name="Schedule the robot").click()
+    await expect(page.get_by_role("heading", level=1)).to_have_text("Scheduled for later")
     await expect(page.locator(".standing .window")).to_contain_text("May 3, 9:3")
     assert (await ada.api("/orders"))["items"][0]["not_before"] == "2027-05-03T13:30:00Z"
 
     await page.goto("/")
     await fill(page, what="Payroll")
-    await page.get_by_role("radio", name="Again and again").check()
-    days = page.get_by_role("group", name="On which days?").get_by_role("checkbox")
+    await page.get_by_role("radio", name="Repeat").check()
+    days = page.get_by_role("group", name="Days").get_by_role("checkbox")
     await expect(days).to_have_count(7)
     for day in await days.all():
         await day.uncheck()
-    await page.get_by_role("button", name="Send it each time").click()
-    await expect(page.get_by_text("Say when.")).to_be_visible()
+    await page.get_by_role("button", name="Schedule repeats").click()
+    await expect(page.get_by_text("Choose a time.")).to_be_visible()
     await page.get_by_role("checkbox", name="Monday").check()
-    await page.get_by_label("At", exact=True).fill("08:15")
+    await page.get_by_label("Time", exact=True).fill("08:15")
     await ada.assert_accessible()
-    await page.get_by_role("button", name="Send it each time").click()
-    payroll = page.get_by_role("region", name="Again and again").get_by_role("listitem")
+    await page.get_by_role("button", name="Schedule repeats").click()
+    payroll = page.get_by_role("region", name="Repeat").get_by_role("listitem")
     await expect(payroll).to_contain_text("every Monday at 8:15 a.m.")
 
 
@@ -343,5 +339,5 @@ async def test_a_newcomer_is_told_how_it_works_until_they_have_understood(visit)
     await page.locator("summary").first.click()
     await page.get_by_role("link", name="Comment ça marche").click()
     await expect(steps).to_be_visible()
-    await page.get_by_text("Que veut dire cette heure").click()
-    await expect(page.get_by_text(re.compile("^Entre ces deux heures"))).to_be_visible()
+    await page.get_by_text("Que signifie cette heure").click()
+    await expect(page.get_by_text(re.compile("entre ces deux heures"))).to_be_visible()

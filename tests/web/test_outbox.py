@@ -64,12 +64,12 @@ async def test_an_order_that_was_refused_for_its_lost_session_is_shown_and_waits
     async with ada.without_network():
         await fill(page, what="Second")
         await send(page)
-        await expect(kept.get_by_text("Will be sent by itself")).to_be_visible()
-    await expect(kept.get_by_text("Sent. A robot")).to_be_visible()
+        await expect(kept.get_by_text("Will be sent once")).to_be_visible()
+    await expect(kept.get_by_text("Sent. Looking for a robot")).to_be_visible()
     assert await ordered(ada) == ["Second"]
     await ada.assert_accessible()
-    await kept.get_by_role("button", name="Send it now").click()
-    await expect(kept.get_by_text("Sent. A robot")).to_have_count(2)
+    await kept.get_by_role("button", name="Send now").click()
+    await expect(kept.get_by_text("Sent. Looking for a robot")).to_have_count(2)
     assert await ordered(ada) == ["Ghost", "Second"]
 
 
@@ -85,7 +85,7 @@ async def test_a_refused_order_is_tried_once_and_can_be_thrown_away(visit, statu
     await fill(page, what="Refused")
     await send(page)
     await expect(kept.get_by_text("Not sent.")).to_be_visible()
-    await expect(page.get_by_label("What is it?")).to_have_value("")
+    await expect(page.get_by_label("Contents")).to_have_value("")
     assert len(keys) == 1
     await page.unroute_all()
     await opened_again(page)
@@ -104,7 +104,7 @@ async def test_what_the_worker_is_refused_is_shown_and_not_tried_again_by_it(vis
     async with no_network(ada):
         await fill(page, what="Refused")
         await send(page)
-        await expect(page.get_by_role("region", name=KEPT).get_by_text("Will be sent by itself")).to_be_visible()
+        await expect(page.get_by_role("region", name=KEPT).get_by_text("Will be sent once")).to_be_visible()
         await page.close()
         keys = placings(ada.context)
     await ada.context.route("**" + ORDERS, refusing(401, "not_signed_in"))
@@ -117,6 +117,6 @@ async def test_what_the_worker_is_refused_is_shown_and_not_tried_again_by_it(vis
     await expect(kept.get_by_text("Not sent.")).to_be_visible()
     assert len(keys) == 1
     await ada.context.unroute_all()
-    await kept.get_by_role("button", name="Send it now").click()
-    await expect(kept.get_by_text("Sent. A robot")).to_be_visible()
+    await kept.get_by_role("button", name="Send now").click()
+    await expect(kept.get_by_text("Sent. Looking for a robot")).to_be_visible()
     assert await ordered(ada) == ["Refused"] and len(set(keys)) == 1

@@ -40,19 +40,19 @@ async def test_a_letter_changes_robots_and_everybody_sees_who_has_it(campus, vis
 
         page = dana.page
         await page.goto("/mailroom.html")
-        queue = page.get_by_role("region", name=re.compile("^Under way"))
+        queue = page.get_by_role("region", name=re.compile("^In progress"))
         await expect(queue.get_by_text("On its way").first).to_be_visible()
-        await queue.get_by_role("button", name=re.compile("^Act")).click()
-        await page.get_by_role("button", name="Pass it on to another robot").click()
+        await queue.get_by_role("button", name=re.compile("^Actions")).click()
+        await page.get_by_role("button", name="Move to another robot").click()
         await expect(page.get_by_role("radio", name="Post 1")).to_be_checked()  # where the robot was seen last
         await page.get_by_role("radio", name="Post 2").check()
         await dana.assert_accessible()
-        await page.get_by_role("button", name="Pass it on", exact=True).click()
-        await expect(queue.get_by_text("In the mailroom’s hands at Post 2")).to_be_visible()
+        await page.get_by_role("button", name="Move", exact=True).click()
+        await expect(queue.get_by_text("In the mailroom at Post 2")).to_be_visible()
         await first.hear("cancel")
 
         await ada.page.goto(f"/follow.html?order={order_id}")
-        await expect(ada.page.get_by_role("heading", name="Your letter changes robots at Post 2")).to_be_visible()
+        await expect(ada.page.get_by_role("heading", name="Your letter is changing robots at Post 2")).to_be_visible()
         await expect(ada.page.get_by_text("Taken out at Post 2, for another robot")).to_be_visible()
         async with second.connected(link, await campus.service.enrol_robot("r2")):
             await second.greet("post5", map_version=version, understands=ALL_BUT_PROOFS)
@@ -64,7 +64,9 @@ async def test_a_letter_changes_robots_and_everybody_sees_who_has_it(campus, vis
             await page.goto(f"/follow.html?order={order_id}")
             await expect(page.get_by_text("show the code to its camera")).to_be_visible()
             await expect(page.get_by_role("img", name=re.compile("code", re.IGNORECASE)).first).to_be_visible()
-            await expect(ada.page.get_by_role("heading", name="Your letter changes robots at Post 2")).to_be_visible()
+            await expect(
+                ada.page.get_by_role("heading", name="Your letter is changing robots at Post 2")
+            ).to_be_visible()
             await expect(ada.page.get_by_text("Robot r2 at Post 2")).to_be_visible()
             await second.ends(await second.say(second.receipt(load, code_sha256=second.codes(load)[-1])))
             await expect(ada.page.get_by_role("heading", name="Your letter is on its way to Post 4")).to_be_visible()

@@ -27,7 +27,7 @@ def chromium(whole_chromium: Browser) -> Browser:
 
 
 # Who asks for the notices while one is on its way to the screen makes Chromium forget that one: it is in the list and
-# not shown yet. Therefore nobody asks before the worker has been told that it is shown.
+# not shown yet. Therefore no test asks before the worker has been told that it is shown.
 NOTE_WHAT_IS_SHOWN = """() => {
   const show = ServiceWorkerRegistration.prototype.showNotification;
   self.shown = 0;
@@ -67,7 +67,7 @@ TAP = """async (title) => {
 
 
 async def push_to(ada: Visitor) -> Callable[[str], Awaitable[object]]:
-    """What a push service does: it hands a text to the worker; and until the worker has shown it."""
+    """Hand a text to the worker as a push service does, and wait until the worker has shown it."""
     fire, number = await worker_of(ada), 0
     (worker,) = ada.context.service_workers
     await worker.evaluate(NOTE_WHAT_IS_SHOWN)
@@ -114,7 +114,7 @@ async def test_a_pushed_notice_is_shown_once_and_leads_to_its_letter_and_an_unre
 
 
 async def told(ada: Visitor, order_id: str) -> dict[str, str]:
-    """What is pushed of the newest thing that Ada was told of this order."""
+    """The push message of Ada's newest notification of this order."""
 
     async def notices() -> list[dict[str, str]]:
         return [one for one in (await ada.api("/notices"))["items"] if one["order_id"] == order_id]
@@ -203,9 +203,9 @@ async def test_pages_know_how_a_device_stands_with_notices(visit):
     ada = await visit(on="phone", service_workers="allow")
     await ada.page.goto("/")
     await expect(ada.page.get_by_role("heading", name="Send a letter")).to_be_visible()
-    state = "async () => (await import('/push.js')).pushState()"
+    state = "async () => (await import('/src/offline/push.js')).pushState()"
     assert await ada.page.evaluate(state) in {"off", "refused"}
     await ada.page.evaluate("() => delete window.PushManager")
     assert await ada.page.evaluate(state) == "unsupported"
-    words = "async () => (await import('/push.js')).pushWords('refused')"
-    assert re.search("was told not to show notices", await ada.page.evaluate(words))
+    words = "async () => (await import('/src/offline/push.js')).pushWords('refused')"
+    assert re.search("blocks notifications", await ada.page.evaluate(words))

@@ -16,7 +16,7 @@ pytestmark = pytest.mark.browser
 
 BOB = "bob.martin@campus.example"
 TYPED = "stuck_lid"
-"""What a dispatcher has typed is shown as it was typed, even if it looks like a code."""
+"""A dispatcher's text is shown as it was typed, even if it looks like a code."""
 
 
 def shown(language: str, reason: str) -> str:

@@ -60,9 +60,9 @@ async def give_roles(service: Service, email: str, *roles: Role) -> None:
 
 async def walks_the_tree(page: Page) -> None:
     """With the arrows alone; Tab comes to the tree once, and on again."""
-    tree = page.get_by_role("tree", name="What it intends")
+    tree = page.get_by_role("tree", name="Intentions")
     await expect(tree.locator("[tabindex='0']")).to_have_count(1)
-    await page.get_by_role("button", name="Download this run").focus()
+    await page.get_by_role("button", name="Download log").focus()
     await page.keyboard.press("Tab")
     await expect(tree.locator(":focus")).to_have_count(1)
     first = tree.get_by_role("treeitem").first
@@ -105,33 +105,33 @@ async def test_a_maintainer_watches_a_driving_robot_holds_the_view_filters_and_t
     await page.get_by_role("link", name=re.compile("Robot r1")).click()
     intends, feels, believes, trace = (
         page.get_by_role("region", name=name, exact=False)
-        for name in ("What it intends", "What it feels", "What it believes", "What it did and chose")
+        for name in ("Intentions", "Sensors", "Beliefs", "Activity log")
     )
     await expect(intends.get_by_text("+!go_to(post1)", exact=True)).to_be_visible()
     await expect(intends.get_by_text(re.compile(r"waits for action follow_line\."))).to_be_visible()
-    await expect(feels.get_by_text("follows the line")).to_be_visible()
+    await expect(feels.get_by_text("following the line")).to_be_visible()
     await intends.get_by_role("treeitem").filter(has_text="+!go_to(post1)").get_by_text("Why this plan").last.click()
     await expect(intends.get_by_text(re.compile(r"^at\(post1\) does not hold"))).to_be_visible()
-    await expect(believes.get_by_text(re.compile(r"came:")).first).to_be_attached()
+    await expect(believes.get_by_text(re.compile(r"added:")).first).to_be_attached()
     await mira.assert_accessible()
 
-    await page.get_by_role("button", name="Pause the view").click()
+    await page.get_by_role("button", name="Pause updates").click()
     await walks_the_tree(page)
     newest = await trace.get_by_role("listitem").first.inner_text()
-    await expect(page.get_by_text(re.compile(r"Held still; [2-9]\d* reports came meanwhile"))).to_be_visible()
+    await expect(page.get_by_text(re.compile(r"Paused; [2-9]\d* new reports"))).to_be_visible()
     assert await trace.get_by_role("listitem").first.inner_text() == newest
-    await trace.get_by_label("Only lines with").fill("LINE(")
+    await trace.get_by_label("Filter log").fill("LINE(")
     await expect(trace.get_by_text(re.compile(r"^\d+ of \d+ lines"))).to_be_visible()
     texts = await trace.get_by_role("listitem").all_inner_texts()
     assert texts
     assert all("line(" in text for text in texts)
     await trace.get_by_label("What", exact=True).select_option("forgot")
     assert all("forgot" in text for text in await trace.get_by_role("listitem").all_inner_texts())
-    await page.get_by_role("button", name="Resume the view").click()
-    await expect(page.get_by_text("Live, as the robot tells it")).to_be_visible()
+    await page.get_by_role("button", name="Resume updates").click()
+    await expect(page.get_by_text("Live from the robot")).to_be_visible()
 
     async with page.expect_download() as downloading:
-        await page.get_by_role("button", name="Download this run").click()
+        await page.get_by_role("button", name="Download log").click()
     download = await downloading.value
     assert re.fullmatch(r"r1-[0-9T-]+\.jsonl", download.suggested_filename)
     await download.save_as(tmp_path / "run.jsonl")
@@ -144,11 +144,11 @@ async def test_a_maintainer_watches_a_driving_robot_holds_the_view_filters_and_t
 
     await page.get_by_role("button", name="Stop", exact=True).click()
     await page.get_by_role("dialog").get_by_role("button", name=re.compile("top")).click()
-    told = page.get_by_role("region", name="Now").get_by_role("listitem").filter(has_text="Stop at once")
+    told = page.get_by_role("region", name="Now").get_by_role("listitem").filter(has_text="Emergency stop")
     await expect(told).to_contain_text("done")
     await expect(feels.get_by_text("emergency stop")).to_be_visible()
-    await page.get_by_role("button", name="Make a one-time code").click()
-    await expect(page.get_by_text("Type this at robot r1. It is shown once.")).to_be_visible()
+    await page.get_by_role("button", name="Create one-time code").click()
+    await expect(page.get_by_text("Enter this on robot r1. It is shown only once.")).to_be_visible()
     await page.emulate_media(color_scheme="dark")
     await mira.assert_accessible()
 
@@ -158,7 +158,7 @@ async def test_on_a_small_phone_in_french_and_for_a_dispatcher_without_the_mind(
     marc = await visit("marc.roy", on="phone", at=tunnel, color_scheme="dark", **small)
     await give_roles(tunnel, marc.email, Role.MAINTAINER)
     await marc.page.goto("/robots.html?robot=r1")
-    await expect(marc.page.get_by_role("heading", name="Ce qu’il croit")).to_be_visible()
+    await expect(marc.page.get_by_role("heading", name="Croyances")).to_be_visible()
     await expect(marc.page.get_by_role("img", name=re.compile("^De "))).to_be_visible()
     await expect(marc.page.get_by_role("button", name="Pause", exact=True)).to_have_count(0)
     await marc.page.get_by_text(re.compile("^Tout \\(")).click()
@@ -168,19 +168,19 @@ async def test_on_a_small_phone_in_french_and_for_a_dispatcher_without_the_mind(
     await marc.page.reload()
     await expect(marc.page.get_by_role("button", name="Pause", exact=True)).to_be_visible()
     await expect(marc.page.get_by_text(re.compile("^Les responsables techniques voient ici"))).to_be_visible()
-    await expect(marc.page.get_by_role("heading", name="Ce qu’il croit")).to_have_count(0)
+    await expect(marc.page.get_by_role("heading", name="Croyances")).to_have_count(0)
     await marc.page.goto("/robots.html")
     await expect(marc.page.get_by_role("link", name=re.compile("Le robot r1"))).to_be_visible()
-    quality = marc.page.get_by_role("region", name="Justesse des arrivées annoncées")
-    await expect(quality).to_contain_text("Aucun robot n’a encore livré d’envoi")
-    await expect(quality).to_contain_text("d’après les longueurs de la carte")
+    quality = marc.page.get_by_role("region", name="Exactitude des heures d’arrivée")
+    await expect(quality).to_contain_text("Aucune livraison à comparer")
+    await expect(quality).to_contain_text("sur les distances de la carte")
     await assert_fits_and_is_accessible(marc.page)
     await marc.assert_accessible()
 
 
 WATCH_LONG = """async () => {
-  const { WatchedRun } = await import("/watched_run.js");
-  const run = new WatchedRun("r1");
+  const { DiagnosticsRun } = await import("/src/robots/diagnostics_run.js");
+  const run = new DiagnosticsRun("r1");
   const at = "2026-01-05T09:00:00Z";
   const empty = { at, cycle: 1, loops: [], intentions: [], events: [], came: [], went: [], trace: [] };
   const nothing = { ...empty, whole: false, left_out: { trace: 0 } };
@@ -201,7 +201,7 @@ WATCH_LONG = """async () => {
   };
 }"""
 CHARGED = """async () => {
-  const { charges, curve, some } = await import("/battery_facts.js");
+  const { charges, curve, some } = await import("/src/robots/battery_facts.js");
   const at = (minute) => new Date(Date.UTC(2026, 0, 5, 9, minute)).toISOString();
   const sample = (minute, ratio, charging = false) => ({ at: at(minute), ratio, charging });
   const samples = [sample(0, 0.4), sample(1, 0.3, true), sample(2, 0.5, true), sample(3, 0.6)];
@@ -228,6 +228,6 @@ async def test_what_was_watched_is_bounded_and_what_is_missing_is_known(tunnel, 
 async def test_whoever_lacks_the_role_is_told_so(tunnel, visit):
     ada = await visit("ada.king", at=tunnel)
     await ada.page.goto("/robots.html?robot=r1")
-    await expect(ada.page.get_by_role("heading", name="This page is for others")).to_be_visible()
+    await expect(ada.page.get_by_role("heading", name="You don’t have access to this page")).to_be_visible()
     watch = await ada.context.request.post("/api/v1/robots/r1/watch", headers={"Sec-Fetch-Site": "same-origin"})
     assert watch.status == 403

@@ -1,4 +1,4 @@
-"""What people settle for themselves; each part saves by itself, and says so."""
+"""Personal settings; each part saves by itself, and says so."""
 
 import re
 from collections.abc import AsyncIterator
@@ -30,7 +30,7 @@ async def test_language_name_post_and_notices_are_changed_and_kept(visit):
     await page.goto("/")
     await page.locator("summary").filter(has_text="Account").click()
     await page.get_by_role("link", name="Settings").click()
-    me = page.get_by_role("region", name="About me")
+    me = page.get_by_role("region", name="Profile")
     await me.get_by_label("Name").fill("Augusta Ada King")
     await me.get_by_label("Usual post").select_option("Post 2")
     await expect(me.get_by_role("status")).to_have_text("Saved")
@@ -39,7 +39,7 @@ async def test_language_name_post_and_notices_are_changed_and_kept(visit):
     await expect(page).to_have_title(re.compile("^Réglages"))
     await expect(page.get_by_role("navigation", name="Pages").get_by_role("link", name="Mon courrier")).to_be_visible()
 
-    notices = page.get_by_role("region", name="Avis")
+    notices = page.get_by_role("region", name="Notifications")
     await notices.get_by_role("checkbox", name="Remise, E-mail").uncheck()
     await expect(notices.get_by_role("status")).to_have_text("Enregistré")
     assert await page.evaluate(NO_OVERFLOW)
@@ -58,7 +58,7 @@ async def test_the_address_book_is_kept_with_the_keyboard_alone(visit):
     book = page.get_by_role("region", name="Address book")
     await book.get_by_role("button", name="Save, Bob Martin").focus()
     await page.keyboard.press("Enter")
-    await expect(book.get_by_label("Name in your book")).to_be_focused()
+    await expect(book.get_by_label("Display name")).to_be_focused()
     await page.keyboard.press("Control+a")
     await page.keyboard.type("Bob next door")
     await page.keyboard.press("Tab")
@@ -67,11 +67,11 @@ async def test_the_address_book_is_kept_with_the_keyboard_alone(visit):
     await page.keyboard.press("Enter")
     bob = book.get_by_role("listitem").filter(has_text="Bob next door")
     await expect(bob).to_contain_text("bob.martin@campus.example · Post 3")
-    await book.get_by_label("E-mail address").fill("porter")
+    await book.get_by_label("Email address").fill("porter")
     await page.keyboard.press("Enter")
-    await expect(book.get_by_role("alert")).to_have_text("This is not an e-mail address.")
-    await bob.get_by_role("button", name="Forget, Bob next door").click()
-    await expect(book.get_by_role("status")).to_contain_text("Forgotten")
+    await expect(book.get_by_role("alert")).to_have_text("This is not an email address.")
+    await bob.get_by_role("button", name="Remove, Bob next door").click()
+    await expect(book.get_by_role("status")).to_contain_text("Removed")
     await expect(book.get_by_role("listitem")).to_have_text(re.compile("Bob Martin"))
 
 
@@ -82,19 +82,19 @@ async def test_whoever_meets_the_robot_for_me_is_in_one_list_and_taken_back_ther
     await ada.name_delegate(letter, "porter@campus.example")
     await ada.name_delegate(await ada.order("bea.lund@campus.example"), "porter@campus.example")
     await page.goto("/settings.html")
-    named = page.get_by_role("region", name="Qui me remplace")
+    named = page.get_by_role("region", name="Personnes désignées")
     await expect(named.get_by_role("listitem")).to_have_count(2)
     oldest = named.get_by_role("listitem").last
-    for told in ("The porter", "porter@campus.example", "Va la déposer à Post 1", "Expire"):
+    for told in ("The porter", "porter@campus.example", "Dépose la lettre à Post 1", "Valable jusqu’à"):
         await expect(oldest).to_contain_text(told)
     await ada.assert_accessible()
-    await keys.to("Le retirer, The porter, Pour Bea Lund")
+    await keys.to("Révoquer, The porter, Pour Bea Lund")
     await keys.press("Enter")
-    await expect(named.get_by_role("status")).to_contain_text("Retiré")
+    await expect(named.get_by_role("status")).to_contain_text("Révoqué")
     await expect(named.get_by_role("listitem")).to_have_count(1)
-    await keys.to("Le retirer, The porter, Les clés")
+    await keys.to("Révoquer, The porter, Les clés")
     await keys.press("Enter")
-    await expect(named.get_by_text(re.compile("^Personne en ce moment"))).to_be_visible()
+    await expect(named.get_by_text(re.compile("^Personne pour l’instant"))).to_be_visible()
     await expect(named.get_by_role("link", name="Mon courrier")).to_be_visible()
     (delegate,) = (await ada.api(f"/orders/{letter}/delegates"))["items"]
     assert delegate["revoked_at"], "for the robot too"
@@ -107,20 +107,20 @@ async def test_sessions_are_ended_and_a_scripts_token_is_shown_once_and_revoked(
     await elsewhere.sign_in()
     page = ada.page
     await page.goto("/settings.html")
-    sessions = page.get_by_role("region", name="Where you are signed in")
+    sessions = page.get_by_role("region", name="Active sessions")
     await expect(sessions.get_by_role("listitem")).to_have_count(2)
     await sessions.get_by_role("button", name="End all others").click()
     await page.get_by_role("button", name="Yes, end them").click()
     await expect(sessions.get_by_role("listitem")).to_have_count(1)
     assert (await elsewhere.context.request.get("/api/v1/me")).status == 401
 
-    tokens = page.get_by_role("region", name="Tokens for scripts")
-    await tokens.get_by_role("button", name="Make the token").click()
-    await expect(tokens.get_by_role("alert")).to_have_text("Say what it is for.")
-    await tokens.get_by_label("What it is for").fill("Night report")
+    tokens = page.get_by_role("region", name="Access tokens")
+    await tokens.get_by_role("button", name="Create token").click()
+    await expect(tokens.get_by_role("alert")).to_have_text("Enter a purpose.")
+    await tokens.get_by_label("Purpose").fill("Night report")
     await tokens.get_by_role("checkbox", name="See my orders").check()
-    await tokens.get_by_role("button", name="Make the token").click()
-    token = await tokens.get_by_role("group", name=re.compile("^The token")).locator("code").inner_text()
+    await tokens.get_by_role("button", name="Create token").click()
+    token = await tokens.get_by_role("group", name=re.compile("^Your new token")).locator("code").inner_text()
     bearer = {"Authorization": f"Bearer {token}"}
     script = await elsewhere.context.request.get("/api/v1/orders", headers=bearer)
     assert script.ok
@@ -134,9 +134,9 @@ async def test_sessions_are_ended_and_a_scripts_token_is_shown_once_and_revoked(
 
     hook = page.get_by_role("region", name="Webhook")
     ada.refusals_expected.add("/api/v1/me/webhook")
-    await hook.get_by_label("Address").fill("https://127.0.0.1/told")
-    await hook.get_by_role("button", name="Send notices there").click()
-    await expect(hook.get_by_role("alert")).to_contain_text("This address cannot be used")
+    await hook.get_by_label("URL").fill("https://127.0.0.1/told")
+    await hook.get_by_role("button", name="Save webhook").click()
+    await expect(hook.get_by_role("alert")).to_contain_text("This URL cannot be used")
 
 
 @pytest_asyncio.fixture(loop_scope="session")
@@ -156,16 +156,16 @@ async def test_a_webhook_is_tried_at_a_tap_and_says_whether_it_hears_or_why_not(
     hook = page.get_by_role("region", name="Webhook")
     with receiving() as receiver:
         receiver.answers = [204, 503]
-        await hook.get_by_label("Address").fill(f"{receiver.url}/told")
-        await hook.get_by_role("button", name="Send notices there").click()
-        secret = await hook.get_by_role("group", name=re.compile("^The secret")).locator("code").inner_text()
-        await hook.get_by_role("button", name="Try it").click()
-        await expect(hook.get_by_role("status")).to_have_text("It answered 204: it hears your notices.")
+        await hook.get_by_label("URL").fill(f"{receiver.url}/told")
+        await hook.get_by_role("button", name="Save webhook").click()
+        secret = await hook.get_by_role("group", name=re.compile("^Signing secret")).locator("code").inner_text()
+        await hook.get_by_role("button", name="Send test").click()
+        await expect(hook.get_by_role("status")).to_have_text("It answered 204: notifications arrive.")
         (heard,) = receiver.received
         assert (heard.path, is_signed(heard, secret_bytes(secret))) == ("/told", True)
         await ada.assert_accessible()
-        await hook.get_by_role("button", name="Try it").click()
-        await expect(hook.get_by_role("alert")).to_contain_text("It answered 503; anything but 200 to 299")
-    await hook.get_by_role("button", name="Try it").click()
-    await expect(hook.get_by_role("alert")).to_contain_text("It did not answer (no answer: ConnectError)")
+        await hook.get_by_role("button", name="Send test").click()
+        await expect(hook.get_by_role("alert")).to_contain_text("It answered 503. Only 200 to 299")
+    await hook.get_by_role("button", name="Send test").click()
+    await expect(hook.get_by_role("alert")).to_contain_text("No answer (no answer: ConnectError)")
     await ada.assert_accessible()

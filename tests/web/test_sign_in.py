@@ -12,9 +12,9 @@ async def test_a_person_signs_in_with_the_code_from_their_mail(visit, service):
     ada = await visit("ada.king", on="phone", signed_in=False)
     page = ada.page
     await page.goto("/")
-    await page.get_by_label("E-mail address").fill(ada.email)
+    await page.get_by_label("Email address").fill(ada.email)
     await page.get_by_role("button", name="Send me a code").click()
-    code_field = page.get_by_label("Code from the e-mail")
+    code_field = page.get_by_label("Code from the email")
     await expect(code_field).to_be_focused()
     await code_field.fill(service.code_mailed_to(ada.email))
     await page.get_by_role("button", name="Sign in").click()
@@ -28,16 +28,16 @@ async def test_a_code_is_sent_again_and_either_of_them_signs_in(visit, service, 
     ada = await visit("ada.king", on="phone", signed_in=False)
     page = ada.page
     await page.goto("/")
-    await page.get_by_label("E-mail address").fill(ada.email)
+    await page.get_by_label("Email address").fill(ada.email)
     await page.get_by_role("button", name="Send me a code").click()
-    await expect(page.get_by_label("Code from the e-mail")).to_be_visible()
+    await expect(page.get_by_label("Code from the email")).to_be_visible()
     (first,) = service.codes_mailed_to(ada.email, 1)
     await page.get_by_role("button", name="Send the code again").click()
     await expect(page.get_by_role("status")).to_have_text(re.compile(f"Another code is on its way to {ada.email}"))
     codes = service.codes_mailed_to(ada.email, 2)
     (second,) = {*codes} - {first}
     assert len(codes) == 2
-    await page.get_by_label("Code from the e-mail").fill({"first": first, "second": second}[which])
+    await page.get_by_label("Code from the email").fill({"first": first, "second": second}[which])
     await page.get_by_role("button", name="Sign in").click()
     await expect(page.get_by_role("heading", name="Send a letter")).to_be_visible()
 
@@ -47,13 +47,13 @@ async def test_a_wrong_code_is_refused_in_words_beside_the_field(visit, service)
     ada.refusals_expected.add("/api/v1/sign-in")
     page = ada.page
     await page.goto("/")
-    await page.get_by_label("E-mail address").fill(ada.email)
+    await page.get_by_label("Email address").fill(ada.email)
     await page.get_by_role("button", name="Send me a code").click()
     right = service.code_mailed_to(ada.email)
-    code_field = page.get_by_label("Code from the e-mail")
+    code_field = page.get_by_label("Code from the email")
     await code_field.fill(f"{(int(right) + 1) % 10**8:08d}")
     await page.get_by_role("button", name="Sign in").click()
-    await expect(code_field).to_have_accessible_description(re.compile("That is not the code"))
+    await expect(code_field).to_have_accessible_description(re.compile("Wrong code"))
     await expect(code_field).to_be_focused()
     await code_field.fill(right)
     await page.get_by_role("button", name="Sign in").click()
@@ -65,13 +65,13 @@ async def test_an_address_from_elsewhere_is_told_which_ones_there_are(visit):
     stranger.refusals_expected.add("/api/v1/sign-in/codes")
     page = stranger.page
     await page.goto("/")
-    email = page.get_by_label("E-mail address")
+    email = page.get_by_label("Email address")
     await email.fill("eve@elsewhere.example")
     await page.get_by_role("button", name="Send me a code").click()
     await expect(email).to_have_accessible_description(re.compile("your campus address.*campus.example"))
     await email.fill("not an address")
     await page.get_by_role("button", name="Send me a code").click()
-    await expect(email).to_have_accessible_description(re.compile("not an e-mail address"))
+    await expect(email).to_have_accessible_description(re.compile("not an email address"))
 
 
 async def test_who_signs_out_is_asked_to_sign_in_again(visit):
@@ -82,6 +82,6 @@ async def test_who_signs_out_is_asked_to_sign_in_again(visit):
     await page.locator("summary", has_text="Account: Ada King").click()
     await expect(page.get_by_text(ada.email)).to_be_visible()
     await page.get_by_role("button", name="Sign out").click()
-    await expect(page.get_by_label("E-mail address")).to_be_visible()
+    await expect(page.get_by_label("Email address")).to_be_visible()
     await page.goto("/mail.html")
-    await expect(page.get_by_label("E-mail address")).to_be_visible()
+    await expect(page.get_by_label("Email address")).to_be_visible()

@@ -1,6 +1,7 @@
-"""What the pages are made of: what a strict policy allows, and nothing that waits in line to be fetched."""
+"""Structure of the pages: a strict policy, no module that waits in line, no circles of imports."""
 
 import re
+from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -9,11 +10,11 @@ from app.http.page_files import LEFT_OUT
 from web import make_pages
 
 WEB = Path(__file__).parents[2] / "web"
-PAGES = sorted(WEB.glob("*.html"))
+PAGES = sorted(WEB.glob("public/*.html"))
 TEXTS_OF = re.compile(r"const TEXTS_OF = \{(.*?)\}")
 LATER = re.compile(r"\bimport\(\"([^\"]+)\"\)")
 TEXT = re.compile(r"\b(?:t|counted|hasText)\((?:[^()\"`]*\? ?)?[\"`](\w+)\.")
-SCRIPTS = [path for path in sorted(WEB.rglob("*.js")) if "node_modules" not in path.parts]
+SCRIPTS = sorted([*WEB.glob("src/*/*.js"), *WEB.glob("public/*.js")])
 IMPORT_MAP = re.compile(r"<script type=\"importmap\">(.*?)</script>", re.DOTALL)
 
 
@@ -47,9 +48,21 @@ def test_the_lock_file_names_no_host():
     assert "://" not in (WEB / "package-lock.json").read_text(encoding="utf-8")
 
 
+def test_no_modules_import_each_other_in_a_circle():
+    """Neither at once nor later: a circle is one module that only looks like several."""
+    ours = {f"/{path.relative_to(WEB)}" for path in SCRIPTS if "src" in path.parts}
+    imports = {module: imported_by(module) & ours for module in ours}
+    TopologicalSorter(imports).prepare()  # raises CycleError, which names the circle
+
+
+def imported_by(module: str) -> set[str]:
+    text = make_pages.code_of(module)
+    return {make_pages.resolve(module, name) for name in [*LATER.findall(text), *make_pages.IMPORT.findall(text)]}
+
+
 def pages_sent(kind: str) -> list[Path]:
     """The pages that fetch the texts of this kind."""
-    listed = TEXTS_OF.search((WEB / "texts.js").read_text(encoding="utf-8"))
+    listed = TEXTS_OF.search((WEB / "src/texts/texts.js").read_text(encoding="utf-8"))
     assert listed
     named = dict(re.findall(r'"/([\w-]+\.html)": "\.?(\w*)"', listed[1]))
     assert named.keys() <= {page.name for page in PAGES}
@@ -62,20 +75,21 @@ def modules_of(pages: list[Path]) -> set[str]:
     waiting, found = [one for one in re.findall(r"/[\w/.@-]+\.js", html) if not one.startswith("/npm/")], set()
     while waiting:
         module = waiting.pop()
-        if module in found or module == "/page_files.js" or module.startswith("/npm/"):
+        if module in found or module == "/src/offline/page_files.js" or module.startswith("/npm/"):
             continue
         found.add(module)
-        text = make_pages.file_of(module).read_text(encoding="utf-8")
-        names = [*LATER.findall(text), *(one for one in make_pages.IMPORT.findall(text) if one.startswith("."))]
-        waiting += [make_pages.resolve(module, name) for name in names]
+        waiting += imported_by(module)
     return found
 
 
 @pytest.mark.parametrize(
     ("kind", "among_others"),
     [
-        ("everyday", {"/pages/order.js", "/elements/follow_page.js", "/elements/campus_map.js", "/push.js"}),
-        ("mailroom", {"/pages/mailroom.js", "/elements/mailroom_wall.js", "/elements/unsent_mail.js"}),
+        (
+            "everyday",
+            {"/src/pages/order.js", "/src/follow/follow_page.js", "/src/map/campus_map.js", "/src/offline/push.js"},
+        ),
+        ("mailroom", {"/src/pages/mailroom.js", "/src/mailroom/mailroom_wall.js", "/src/mailroom/unsent_mail.js"}),
     ],
 )
 def test_pages_need_no_text_that_they_are_not_sent(kind, among_others):

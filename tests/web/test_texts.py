@@ -9,9 +9,9 @@ from app.core.text_lines import LONGEST_TEXT
 
 WEB = Path(__file__).parents[2] / "web"
 CATALOGUES = {
-    path.stem: json.loads(path.read_text(encoding="utf-8")) for path in sorted((WEB / "texts").glob("*.json"))
+    path.stem: json.loads(path.read_text(encoding="utf-8")) for path in sorted((WEB / "src/texts").glob("*.json"))
 }
-SCRIPTS = [path for path in sorted(WEB.rglob("*.js")) if "node_modules" not in path.parts]
+SCRIPTS = sorted([*WEB.glob("src/*/*.js"), *WEB.glob("public/*.js")])
 # t("key"), hasText("key"), and t(`prefix.${…}`), whose keys begin with the prefix
 WHOLE_KEY = re.compile(r'"([a-z_]+(?:\.[a-z_0-9]+)+)"')
 KEY_PREFIX = re.compile(r"`([a-z_]+\.(?:[a-z_]+\.)*)\$\{")

@@ -66,7 +66,7 @@ async def test_when_another_robot_comes_for_a_letter_its_corridors_are_shown_and
 
     page = ada.page
     await page.goto(f"/follow.html?order={order_id}")
-    where = page.get_by_role("region", name="Where the robot is")
+    where = page.get_by_role("region", name="Robot location")
     taken = where.locator("path.taken[data-robot]")
     await expect(where.get_by_text(re.compile("^May be in the corridor from Post 5 to Post 3"))).to_be_visible()
     await expect(taken).to_have_count(1)

@@ -1,4 +1,4 @@
-"""What must not jump, break or be stretched: the header, the addresses of people, the axis of a robot's charge.
+"""Layout that must not jump, break or be stretched: the header, the addresses of people, the axis of a robot's charge.
 
 In a browser whose scrollbars take room, as on most desks."""
 
@@ -134,7 +134,7 @@ async def test_an_address_breaks_at_its_signs_wherever_it_stands_and_is_copied_w
     of_parties = page.locator(".details .address")
     await expect(of_parties).to_have_count(2)
     await breaks_well(of_parties.last, ada.email)
-    await page.get_by_text("Let somebody else meet the robot").click()
+    await page.get_by_text("Let another person meet the robot").click()
     await breaks_well(page.locator("order-delegates .address"), porter)
     await page.locator(".account summary").click()
     await breaks_well(page.locator(".account .address"), ada.email)
@@ -144,5 +144,5 @@ async def test_an_address_breaks_at_its_signs_wherever_it_stands_and_is_copied_w
     await breaks_well(page.locator("my-contacts li", has_text="The porter").locator(".address"), porter)
 
     await page.goto("/")
-    await page.get_by_role("combobox", name="Recipient’s e-mail").focus()
+    await page.get_by_role("combobox", name="Recipient’s email").focus()
     await breaks_well(page.get_by_role("option", name="The porter").locator(".address"), porter)

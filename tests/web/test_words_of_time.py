@@ -12,7 +12,7 @@ pytestmark = pytest.mark.browser
 ZONE = "America/Toronto"
 TIMES = [datetime(2026, month, 3, 5 * month % 24, 7 * month % 60, tzinfo=UTC) for month in range(1, 13)]
 SAY = """async ({ language, times, now }) => {
-  const [texts, words] = await Promise.all([import("/texts.js"), import("/times.js")]);
+  const [texts, words] = await Promise.all([import("/src/texts/texts.js"), import("/src/texts/times.js")]);
   await texts.loadTexts(language);
   return times.map((at) => [words.clockTime(at), words.dayAndTime(at, Date.parse(now))]);
 }"""

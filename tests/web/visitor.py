@@ -1,4 +1,4 @@
-"""Somebody with a browser. What their browser complains of fails the test."""
+"""A visitor with a browser. Errors that the browser reports fail the test."""
 
 import asyncio
 import re
@@ -14,7 +14,7 @@ from playwright.async_api import Browser, BrowserContext, ConsoleMessage, Page
 from tests.web.service import ROOT, Service
 
 # Browsers write every refused request to the console. A page asks who is signed in, and for their orders, before it
-# knows whether anybody is: nobody is refused by design.
+# knows whether a person is signed in: this refusal is by design.
 REFUSED = re.compile(r"Failed to load resource: the server responded with a status of 4\d\d")
 NOBODY = re.compile(r"Failed to load resource: the server responded with a status of 401")
 WHO_AM_I = "/api/v1/me"
@@ -32,7 +32,7 @@ AXE_RUN = """async () => {
   return found.violations.map(({id, nodes}) => `${id}: ${nodes.map(({html}) => html.slice(0, 120)).join(" ")}`);
 }"""
 Visit = Callable[..., Any]
-"""How somebody comes: the fixture `visit`."""
+"""The type of the fixture `visit`."""
 TOLD_APART_S = 0.3
 TOLD_WITHIN_LOOKS = 20
 
@@ -117,7 +117,7 @@ class Visitor:
         assert not violations, violations
 
     async def api(self, path: str) -> Any:
-        """What the service says to this person."""
+        """The answer of the service to this person."""
         answer = await self.context.request.get(f"/api/v1{path}")
         assert answer.ok, await answer.text()
         return await answer.json()
@@ -168,7 +168,7 @@ class Visitor:
         return await answer.json()
 
     async def name_delegate(self, order_id: str, email: str) -> None:
-        """Somebody who hands over instead; without the pages too."""
+        """A delegate who hands over instead; without the pages too."""
         headers = {"Sec-Fetch-Site": "same-origin"}
         wish = {"name": "The porter", "email": email}
         answer = await self.context.request.post(f"/api/v1/orders/{order_id}/delegates", data=wish, headers=headers)

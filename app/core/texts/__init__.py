@@ -1,4 +1,4 @@
-"""Texts for people, in their language: one catalogue per language, which the pages share (`web/texts`)."""
+"""Texts for people, in their language: one catalogue per language, which the pages share (`web/src/texts`)."""
 
 import json
 from collections.abc import Mapping
@@ -11,7 +11,7 @@ from app.core.texts.isolation import isolated
 from protocol.one_line import one_line
 
 LANGUAGES: Final[tuple[str, ...]] = get_args(Language)
-FOLDER: Final = ROOT / "web" / "texts"
+FOLDER: Final = ROOT / "web" / "src" / "texts"
 
 
 @cache

@@ -1,4 +1,4 @@
-"""Words that run from right to left within sentences that do not; `web/texts.js` does the same."""
+"""Words that run from right to left within sentences that do not; `web/src/texts/texts.js` does the same."""
 
 import re
 from typing import Final

@@ -68,8 +68,8 @@ def test_every_answer_says_what_browsers_must_not_do(secure: TestClient, path: s
 def test_a_part_of_a_page_is_short_of_words_but_never_taken_for_something_else(
     app: FastAPI, secure: TestClient, name: str
 ) -> None:
-    (app.state.parts.settings.pages / name).write_text("", encoding="utf-8")
-    answer = secure.get(f"/{name}")
+    (app.state.parts.settings.pages / "src" / name).write_text("", encoding="utf-8")
+    answer = secure.get(f"/src/{name}")
     assert answer.status_code == 200
     headers = answer.headers
     assert headers["X-Content-Type-Options"] == "nosniff"
@@ -87,7 +87,7 @@ def test_no_script_of_a_page_stands_in_it_but_the_import_maps_that_the_policy_na
     assert "unsafe" not in policy
     assert policy.count("'sha256-") >= 1
     inline = re.compile(r"<script(?![^>]*\bsrc=)(?![^>]*importmap)|\son[a-z]+\s*=|javascript:", re.IGNORECASE)
-    pages = list(Path(ROOT / "web").glob("*.html"))
+    pages = list(Path(ROOT / "web/public").glob("*.html"))
     assert pages
     assert {page.name: found for page in pages if (found := inline.findall(page.read_text()))} == {}
 

@@ -48,7 +48,7 @@ def main(
 
 
 async def _take(pictures: list[Picture], shots: Shots, context: dict[str, Any]) -> int:
-    """How many pages could not be taken."""
+    """Take the pictures and return the number of pages that failed."""
     failed = 0
     with tempfile.TemporaryDirectory() as folder:
         async with async_playwright() as playwright:

@@ -1,4 +1,4 @@
-"""What people do on a page before its picture is taken."""
+"""Steps on a page before its picture is taken."""
 
 import re
 from collections.abc import Awaitable, Callable
@@ -26,7 +26,7 @@ async def order_without_network(page: Page) -> None:
 
 
 async def open_the_desk(page: Page) -> None:
-    """An order for somebody who stands at the mailroom's desk."""
+    """An order for a visitor at the mailroom's desk."""
     await page.locator(".tools .primary").click()
     await page.locator("input[role=combobox]").first.fill("grace")
     await page.locator(".people li").first.wait_for()
@@ -36,7 +36,7 @@ async def come_to_the_mind(page: Page) -> None:
     """Down to where the robot tells what it intends; it drives by then."""
     follows = page.locator(".intends").get_by_text(re.compile("follow_line")).first
     await expect(follows).to_be_visible(timeout=40_000)
-    await page.locator("robot-watch").evaluate("(watch) => watch.scrollIntoView({block: 'start'})")
+    await page.locator("robot-diagnostics").evaluate("(watch) => watch.scrollIntoView({block: 'start'})")
 
 
 async def all_drawn(page: Page) -> None:

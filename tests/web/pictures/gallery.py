@@ -9,7 +9,7 @@ from tests.web.pictures.doings import Doing
 
 
 class Scene(StrEnum):
-    """What goes on while a picture is taken, in this order."""
+    """The scene of a picture, in this order."""
 
     DAY = "day"
     TROUBLE = "trouble"
@@ -44,7 +44,7 @@ PICTURES: Final = (
     Picture("mail-empty", NEWCOMER, "/mail.html", ".empty"),
     Picture("notices", ADA, "/notices.html", ROWS),
     Picture("notices-empty", NEWCOMER, "/notices.html", ".empty"),
-    Picture("settings", ADA, "/settings.html", ".wishes"),
+    Picture("settings", ADA, "/settings.html", ".preferences"),
     Picture("no-role", ADA, "/mailroom.html", "main h1"),
     Picture("mailroom", DANA, "/mailroom.html", ".queue li"),
     Picture("walk-up", DANA, "/mailroom.html", ".queue li", doings.open_the_desk),
@@ -56,5 +56,5 @@ PICTURES: Final = (
     Picture("mailroom-trouble", DANA, "/mailroom.html", ".wrongs li:nth-child(5)", scene=Scene.TROUBLE),
     Picture("wall", DANA, "/mailroom.html?wall", ".wrongs li:nth-child(5)", scene=Scene.TROUBLE),
     Picture("robot-faults", MIRA, "/robots.html?robot=r1", "robot-faults li", scene=Scene.TROUBLE),
-    Picture("robot-mind", MIRA, "/robots.html?robot=r5", "robot-watch", doings.come_to_the_mind, Scene.MIND),
+    Picture("robot-mind", MIRA, "/robots.html?robot=r5", "robot-diagnostics", doings.come_to_the_mind, Scene.MIND),
 )

@@ -15,7 +15,7 @@ FONTCONFIG: Final = """<?xml version="1.0"?><!DOCTYPE fontconfig SYSTEM "fonts.d
 
 
 def environment(folder: Path) -> dict[str, str]:
-    """What tells a browser to find Roboto in `folder`. It reads no WOFF from there, so they are unpacked."""
+    """Configuration by which a browser finds Roboto in `folder`. It reads no WOFF from there, so they are unpacked."""
     for weight in WEIGHTS:
         font = TTFont(FILES / f"roboto-latin-{weight}-normal.woff")
         font.flavor = None

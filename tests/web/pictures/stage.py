@@ -28,7 +28,7 @@ SCREENS: Final[dict[str, dict[str, Any]]] = {
 
 
 def screen(playwright: Playwright, name: str) -> dict[str, Any]:
-    """What a browser context needs; phones less sharp than they are, so that pictures stay small."""
+    """Options of a browser context; phones less sharp than they are, so that pictures stay small."""
     phone = {key: value for key, value in playwright.devices["Pixel 7"].items() if key != "default_browser_type"}
     return {**(phone if name == "phone" else {}), **SCREENS[name]}
 
@@ -46,7 +46,7 @@ class Stage:
     _known: dict[tuple[str, str], Visitor] = field(default_factory=dict)
 
     async def visitor(self, who: str, on: str) -> Visitor:
-        """Somebody at a screen, signed in unless they are nobody; the same one when asked for again."""
+        """A visitor at a screen, signed in unless called "nobody"; the same one when asked for again."""
         if (who, on) not in self._known:
             options = {"locale": "en-CA", "timezone_id": ZONE, "service_workers": "block", "reduced_motion": "reduce"}
             options |= screen(self.playwright, on) | self.context

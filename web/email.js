@@ -1,9 +1,0 @@
-/** Whether something may be a mail address, as the browser's own fields judge it. */
-
-const judge = Object.assign(document.createElement("input"), { type: "email" });
-
-/** @param {string} text */
-export function looksLikeEmail(text) {
-  judge.value = text;
-  return text !== "" && !judge.validity.typeMismatch;
-}

@@ -1,8 +1,0 @@
-import { html } from "lit";
-import { openPage } from "../open_page.js";
-import { withStyles } from "../styles_later.js";
-
-const wall = new URLSearchParams(location.search).has("wall");
-document.documentElement.classList.toggle("wall", wall);
-if (wall) await Promise.all([withStyles("/styles/wall.css"), import("../elements/mailroom_wall.js")]);
-await openPage("mailroom", () => (wall ? html`<mailroom-wall></mailroom-wall>` : html`<mailroom-page></mailroom-page>`));

@@ -1,6 +1,0 @@
-import { html } from "lit";
-import "../elements/print_page.js";
-import { orderFrom } from "../links.js";
-import { openPage } from "../open_page.js";
-
-await openPage("print", () => html`<print-page .order_id=${orderFrom(location.search)}></print-page>`);

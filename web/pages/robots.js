@@ -1,9 +1,0 @@
-import { html } from "lit";
-import "../elements/robot_page.js";
-import "../elements/robots_page.js";
-import { openPage } from "../open_page.js";
-
-const robot = new URLSearchParams(location.search).get("robot");
-await openPage("robots", ({ person }) =>
-  robot ? html`<robot-page .robot=${robot} .person=${person}></robot-page>` : html`<robots-page></robots-page>`,
-);
