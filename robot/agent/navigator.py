@@ -56,7 +56,7 @@ class Navigator(Tracker):
 
     @property
     def is_known(self) -> bool:
-        """Whether anything has told where it is, since it was last lifted or taken away."""
+        """Return whether anything has told where it is, since it was last lifted or taken away."""
         return not isinstance(self._place, Unknown)
 
     @property
@@ -74,7 +74,7 @@ class Navigator(Tracker):
 
     @property
     def look_back_mm(self) -> float:
-        """How far it may go back in search of a marker: half of the corridor that it holds at most."""
+        """Return how far it may go back in search of a marker: half of the corridor that it holds at most."""
         length_mm = 1000 * self._place.corridor.length_m if isinstance(self._place, Between) else NEARING_MM
         return min(NEARING_MM, length_mm / 2)
 

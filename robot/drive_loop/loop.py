@@ -108,7 +108,7 @@ class DriveLoop:
         self._inbox.append(lambda _: self._sensing.take_report(report, now))
 
     def report_host(self, report: HostReport) -> None:
-        """What the computer says of itself."""
+        """Hand in a reading of the computer's own state."""
         self._inbox.append(lambda _: self._take_host(report))
 
     def sample_line(self) -> None:

@@ -1,4 +1,4 @@
-"""What the body knows: base, line sensor, odometry, and what the camera reported; its own parts fail by name."""
+"""The body's sensors: base, line sensor, odometry, and what the camera reported; its own parts fail by name."""
 
 import math
 from collections.abc import Iterable

@@ -30,7 +30,7 @@ STOP = WheelSpeeds(0, 0)
 
 
 class Mode(IntEnum):
-    """Who is master of the wheels (packet 35). UNKNOWN is whatever odd number a firmware reports."""
+    """The mode of the base (packet 35). UNKNOWN is whatever odd number a firmware reports."""
 
     OFF = 0
     PASSIVE = 1
@@ -334,7 +334,7 @@ class Host(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class HostReport:
-    """What the computer said of itself at one look."""
+    """One reading of the computer's own state."""
 
     under_voltage: bool = False
     clock_jumped: bool = False

@@ -158,7 +158,7 @@ class Link:
             self.wake()
 
     def has_room_for_insight(self) -> bool:
-        """Whether the server is there and has been sent the one before."""
+        """Return whether the server is there and has been sent the one before."""
         return self.online and self._newest.insight is None
 
     def tell_insight(self, insight: Callable[[], Insight]) -> None:

@@ -129,7 +129,7 @@ def _is_meant(wish: Confirm, waiting: Waiting) -> bool:
 def opening(
     verifiers: Iterable[Verifier], loadings: Mapping[str, Loading], order_id: str, purpose: Purpose, now: datetime
 ) -> tuple[str, ...]:
-    """What opens a hand-over now, as SHA-256.
+    """Return the accepted hand-over codes, as SHA-256.
 
     Mail that is brought back is given to its recipient too, and to whoever shows the code that it was loaded with.
     """

@@ -42,7 +42,7 @@ HOST_HZ = 2.0
 
 
 class World(Protocol):
-    """What is moved along in simulation."""
+    """The parts that a simulation steps."""
 
     def step_until(self, now: float) -> None: ...
 

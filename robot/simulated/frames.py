@@ -1,4 +1,4 @@
-"""What the camera sees: frames from the robot's left side, 254 mm above the floor, looking left.
+"""The simulated camera's view: frames from the robot's left side, 254 mm above the floor, looking left.
 
 The marker sheets are those that `python -m maps markers` prints, seen in true perspective; people stand before them,
 or hold a hand-over code in front of the camera. What is not worth drawing is a dim wall with noise, drawn once.

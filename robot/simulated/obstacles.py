@@ -1,4 +1,4 @@
-"""What a robot can run into: people as circles, walls as lines. Contact is where the bumper's circle overlaps one."""
+"""Obstacles: people as circles, walls as lines. Contact is where the bumper's circle overlaps one."""
 
 import math
 from dataclasses import dataclass

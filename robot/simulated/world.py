@@ -1,4 +1,4 @@
-"""What surrounds the robots: floor with tape, docks, markers, obstacles. Several robots can share one."""
+"""The world around the robots: floor with tape, docks, markers, obstacles. Several robots can share one."""
 
 from collections.abc import Iterable
 from itertools import chain

@@ -1,4 +1,4 @@
-"""What a check is given, and what it answers."""
+"""The input and the result of a check."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -11,7 +11,7 @@ from robot.ops.equipment import Equipment
 
 
 class Grade(StrEnum):
-    """How a check came out. Only FAIL keeps a robot from driving."""
+    """The result of a check. Only FAIL keeps a robot from driving."""
 
     OK = "ok"
     WARN = "warn"
