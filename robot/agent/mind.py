@@ -227,7 +227,7 @@ class Mind:
 
     @property
     def why(self) -> Why | None:
-        """What the robot is doing and waiting for."""
+        """Return the robot's activity and what it waits for."""
         return self._why
 
     def snapshot(self) -> Snapshot:

@@ -88,7 +88,7 @@ class Sensing:
             self.diodes_broken = True
 
     def take_report(self, report: CameraReport, now: float) -> None:
-        """What the camera loop read in one frame."""
+        """Take in the camera loop's reading of one frame."""
         self._camera_s, self._camera_age_s = now, report.frame_age_s
         self.camera_frozen_s = report.frozen_s
         for sighting in report.posts:

@@ -307,7 +307,7 @@ class Sighting:
 
 @dataclass(frozen=True, slots=True)
 class CameraReport:
-    """What one look of the camera gave: posts of the map, hand-over codes, and how old the newest frame is."""
+    """The result of one camera frame: posts of the map, hand-over codes, and how old the newest frame is."""
 
     posts: tuple[Sighting, ...] = ()
     codes: tuple[Sighting, ...] = field(default=())

@@ -83,7 +83,7 @@ class Newest:
 
 @dataclass(frozen=True)
 class Ends:
-    """What a connection joins: this robot's memory on one side, the daemon's queue on the other."""
+    """The two ends of a connection: this robot's memory on one side, the daemon's queue on the other."""
 
     robot: str
     clock: Clock

@@ -49,7 +49,7 @@ class Expected:
 
 
 def expected(campus: CampusMap, place: Place, real_per_counted: float, disturbed: int, foreign: bool) -> Expected:
-    """What may be read next at a place."""
+    """The markers that may be read next at a place."""
     if isinstance(place, Unknown):
         return Expected()
     return Expected(dict(_windows(campus, place, real_per_counted)), disturbed, foreign)

@@ -21,7 +21,7 @@ Sign = Callable[[HandoverReceipt], HandoverReceipt]
 
 @dataclass(frozen=True)
 class Proof:
-    """What a hand-over goes by: the verifier that matched, how it came, and the command that brought it, if one did.
+    """The basis of a hand-over: the verifier that matched, how it came, and the command that brought it, if one did.
 
     `key`: of a code that was shown. It proves this one hand-over, and is written down nowhere.
     """

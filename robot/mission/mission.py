@@ -211,7 +211,7 @@ class Duties:
         return None
 
     def _recall(self) -> None:
-        """What is aboard goes back to where it came from; without any, it is free."""
+        """Return the mail aboard to where it came from; without any, it is free."""
         before = self.memory.mission()
         self.memory.drop_mission()
         self._bring_back(before)

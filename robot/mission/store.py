@@ -34,7 +34,7 @@ CREATE TABLE reported (mission_id TEXT NOT NULL, key TEXT NOT NULL, PRIMARY KEY 
 
 
 class StoreError(RobotError):
-    """What the robot must remember cannot be kept or read back."""
+    """The robot's memory cannot be written or read back."""
 
 
 class StorageFull(StoreError):

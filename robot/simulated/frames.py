@@ -121,7 +121,7 @@ class Renderer:
         return self._chosen
 
     def _marker_frame(self, view: View) -> Frame:
-        """Whatever is farther off is drawn first."""
+        """Objects farther off are drawn first."""
         frame = self._other(self._walls)
         in_view: list[tuple[float, Marker, NDArray[np.float32]] | tuple[float, _Somebody, None]] = []
         for marker in self._markers:

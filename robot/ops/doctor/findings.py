@@ -46,7 +46,7 @@ def skip(said: str) -> Finding:
 
 @dataclass(frozen=True)
 class Patient:
-    """What there is to look at."""
+    """The subjects of the checks."""
 
     settings: Settings
     source: Path | None
