@@ -227,7 +227,7 @@ class Mind:
 
     @property
     def why(self) -> Why | None:
-        """What the robot is doing and waiting for."""
+        """Return the robot's activity and what it waits for."""
         return self._why
 
     def snapshot(self) -> Snapshot:
@@ -254,5 +254,5 @@ class Mind:
 
 
 def messages_from_person(tell: Iterable[str], achieve: Iterable[str]) -> list[Message]:
-    """What the command line wants the agent to know and to do."""
+    """Return the messages that the command line gives to the agent."""
     return [*(Message("user", "tell", text) for text in tell), *(Message("user", "achieve", text) for text in achieve)]

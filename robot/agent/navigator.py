@@ -56,7 +56,7 @@ class Navigator(Tracker):
 
     @property
     def is_known(self) -> bool:
-        """Whether anything has told where it is, since it was last lifted or taken away."""
+        """Return whether anything has told where it is, since it was last lifted or taken away."""
         return not isinstance(self._place, Unknown)
 
     @property
@@ -74,7 +74,7 @@ class Navigator(Tracker):
 
     @property
     def look_back_mm(self) -> float:
-        """How far it may go back in search of a marker: half of the corridor that it holds at most."""
+        """Return how far it may go back in search of a marker: half of the corridor that it holds at most."""
         length_mm = 1000 * self._place.corridor.length_m if isinstance(self._place, Between) else NEARING_MM
         return min(NEARING_MM, length_mm / 2)
 
@@ -97,7 +97,7 @@ class Navigator(Tracker):
         return None if towards is None else Way.FORWARD if turn_rad is None else sector(turn_rad)
 
     def _not_next(self) -> frozenset[str]:
-        """What it avoids where it stands: all that does not lead straight to where the service sends it first."""
+        """Return the corridors to avoid here: all that does not lead straight to where the service sends it first."""
         return kept_from(self.campus, self._duties.held.detour, self.at, self.destination, self._avoided())
 
     def _avoided(self) -> frozenset[str]:
@@ -158,7 +158,7 @@ class Navigator(Tracker):
 
     @property
     def aslant_rad(self) -> float:
-        """How far it must turn to look along the corridor that its way takes; 0 if it does, or if none is known."""
+        """Return the angle to turn to look along the corridor that its way takes; 0 if it does, or if none is known."""
         towards = self._next_post()
         turn_rad = self._turn_to(towards) if towards else None
         return turn_rad if turn_rad is not None and abs(turn_rad) > STRAIGHT_RAD else 0.0

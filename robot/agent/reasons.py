@@ -1,4 +1,4 @@
-"""What the robot is doing and waiting for, in words for people: from the actions its intentions wait for.
+"""The robot's activity in words for people: from the actions its intentions wait for.
 
 The goal is the stop that comes next; what is waited for is the last action that has not ended.
 """

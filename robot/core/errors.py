@@ -1,4 +1,4 @@
-"""What can go wrong in the body, each by its name; a message says what, where and the way out.
+"""Errors of the body, each by its name; a message says what, where and the way out.
 
 RobotError
 ├── PortAbsent       no such serial port, or nobody may open it

@@ -1,4 +1,4 @@
-"""What systemd is told: ready, alive, stopping. A few lines of the protocol `sd_notify(3)`, so no library.
+"""Notifications for systemd: ready, alive, stopping. A few lines of the protocol `sd_notify(3)`, so no library.
 
 The watchdog is fed only when every part has given a sign of life since it was last fed: a frame of the base heard, a
 tick of the drive loop, a tick of the mind. If one of them hangs, systemd kills the daemon, stops the base
@@ -61,7 +61,7 @@ class Watchdog:
     """The signs as they were when it was last fed."""
 
     def all_alive(self, signs: Signs) -> bool:
-        """Whether every part has given a sign since this was last true."""
+        """Return whether every part has given a sign since this was last true."""
         if self.silent(signs):
             return False
         self.fed_at = dict(signs)

@@ -104,11 +104,11 @@ class DriveLoop:
         self._inbox.append(lambda tick_s: self._take_link(online, tick_s))
 
     def report(self, report: CameraReport, now: float) -> None:
-        """What the camera loop read in one frame."""
+        """Take in the camera loop's reading of one frame."""
         self._inbox.append(lambda _: self._sensing.take_report(report, now))
 
     def report_host(self, report: HostReport) -> None:
-        """What the computer says of itself."""
+        """Hand in a reading of the computer's own state."""
         self._inbox.append(lambda _: self._take_host(report))
 
     def sample_line(self) -> None:
@@ -249,7 +249,7 @@ class DriveLoop:
         self._stop_asked = True
 
     def _take_rearm(self) -> None:
-        """Whoever re-arms a robot in the same tick in which another stops it did not see that stop: it holds."""
+        """A stop holds against a re-arm in the same tick: the sender of the re-arm did not see it."""
         self._rearm = True
 
     def _take_host(self, report: HostReport) -> None:

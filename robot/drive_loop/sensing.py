@@ -1,4 +1,4 @@
-"""What the body knows: base, line sensor, odometry, and what the camera reported; its own parts fail by name."""
+"""The body's sensors: base, line sensor, odometry, and what the camera reported; its own parts fail by name."""
 
 import math
 from collections.abc import Iterable
@@ -88,7 +88,7 @@ class Sensing:
             self.diodes_broken = True
 
     def take_report(self, report: CameraReport, now: float) -> None:
-        """What the camera loop read in one frame."""
+        """Take in the camera loop's reading of one frame."""
         self._camera_s, self._camera_age_s = now, report.frame_age_s
         self.camera_frozen_s = report.frozen_s
         for sighting in report.posts:

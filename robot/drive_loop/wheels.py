@@ -36,7 +36,7 @@ class Wheels:
                 self._base.show_lights(colour, brightness, now)
 
     def drive(self, speeds: WheelSpeeds, now: float) -> WheelSpeeds:
-        """What was really sent."""
+        """The speeds that were really sent."""
         if not self.own and not speeds.still:
             self.request(SetMode(Mode.SAFE), now)
         return self._base.drive(speeds, now)

@@ -30,7 +30,7 @@ STOP = WheelSpeeds(0, 0)
 
 
 class Mode(IntEnum):
-    """Who is master of the wheels (packet 35). UNKNOWN is whatever odd number a firmware reports."""
+    """The mode of the base (packet 35). UNKNOWN is whatever odd number a firmware reports."""
 
     OFF = 0
     PASSIVE = 1
@@ -307,7 +307,7 @@ class Sighting:
 
 @dataclass(frozen=True, slots=True)
 class CameraReport:
-    """What one look of the camera gave: posts of the map, hand-over codes, and how old the newest frame is."""
+    """The result of one camera frame: posts of the map, hand-over codes, and how old the newest frame is."""
 
     posts: tuple[Sighting, ...] = ()
     codes: tuple[Sighting, ...] = field(default=())
@@ -334,7 +334,7 @@ class Host(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class HostReport:
-    """What the computer said of itself at one look."""
+    """One reading of the computer's own state."""
 
     under_voltage: bool = False
     clock_jumped: bool = False

@@ -67,7 +67,7 @@ class PortThread:
                 self.urgent.set()
 
     def poll(self, now: float) -> BaseState | None:
-        """What the thread has heard since the last call. Without it (not started, or ended) the port is read here."""
+        """Return the input since the last call. Without it (not started, or ended) the port is read here."""
         if not self._thread.is_alive() and not self._ending.is_set():
             self._look()
         with self._lock:

@@ -36,7 +36,7 @@ class LinkBroken(RobotError):
 
 
 class Socket(Protocol):
-    """What a connection needs of a WebSocket."""
+    """The interface of a WebSocket that a connection needs."""
 
     async def send(self, message: str, /) -> None: ...
     async def recv(self) -> str | bytes: ...
@@ -45,7 +45,7 @@ class Socket(Protocol):
 
 @dataclass(frozen=True)
 class Rhythm:
-    """How often and how long.
+    """Intervals and time limits of the connection.
 
     What concerns the network runs on the machine's own time, however fast a simulated clock runs: a ping answered after
     100 ms is no dead network, even if that was a minute in the world. What concerns the world runs on its clock, with
@@ -73,7 +73,7 @@ class Newest:
     """Made when its turn comes. There is room for the next once it is on its way: a slow link makes them rarer."""
 
     def take(self, news: Snapshot | Why) -> bool:
-        """Whether it says anything new."""
+        """Return whether it says anything new."""
         if isinstance(news, Snapshot):
             before, self.snapshot = self.snapshot, news
             return news != before
@@ -83,7 +83,7 @@ class Newest:
 
 @dataclass(frozen=True)
 class Ends:
-    """What a connection joins: this robot's memory on one side, the daemon's queue on the other."""
+    """The two ends of a connection: this robot's memory on one side, the daemon's queue on the other."""
 
     robot: str
     clock: Clock

@@ -62,7 +62,7 @@ class LinkReplaced(LinkError):
 
 
 class LinkState(StrEnum):
-    """How the link is, in one word."""
+    """The state of the link, in one word."""
 
     STOPPED = "stopped"
     OFFLINE = "offline"
@@ -153,12 +153,12 @@ class Link:
             self.wake()
 
     def say(self, why: Why) -> None:
-        """What the robot is doing and waiting for; sent when it changes and after every reconnect."""
+        """The robot's activity and what it waits for; sent when it changes and after every reconnect."""
         if self._newest.take(why):
             self.wake()
 
     def has_room_for_insight(self) -> bool:
-        """Whether the server is there and has been sent the one before."""
+        """Return whether the server is there and has been sent the one before."""
         return self.online and self._newest.insight is None
 
     def tell_insight(self, insight: Callable[[], Insight]) -> None:

@@ -1,4 +1,4 @@
-"""How far it is to a post whose marker the camera sees."""
+"""The distance to a post whose marker the camera sees."""
 
 import math
 

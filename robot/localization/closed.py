@@ -40,7 +40,7 @@ class Closed:
         self._since_s = {name: since_s for name, since_s in self._since_s.items() if now - since_s < CLOSED_S}
 
     def age_s(self, name: str) -> float | None:
-        """How long ago it turned back in there; None where it is open."""
+        """Return the time since it turned back in there; None where it is open."""
         return self._now_s - self._since_s[name] if name in self._since_s else None
 
     def close(self, leg: Leg, now: float) -> None:

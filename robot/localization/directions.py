@@ -32,7 +32,7 @@ def sector(turn_rad: float) -> Way:
 
 
 def turn_towards_rad(campus: CampusMap, facing_rad: float, post: str, neighbour: str) -> float:
-    """How far a robot that stands at `post` has to turn (positive to the left) to leave for `neighbour`."""
+    """Return how far a robot that stands at `post` has to turn (positive to the left) to leave for `neighbour`."""
     return wrapped(campus.corridor(post, neighbour).heading_leaving(post) - facing_rad)
 
 

@@ -41,7 +41,7 @@ class Expected:
     """A foreign marker has been read, and nothing has said since that the place is right."""
 
     def allows(self, post: str, at_mm: float, disturbed: int) -> bool:
-        """Whether this post may lie at this reading, after so many searches and touches."""
+        """Return whether this post may lie at this reading, after so many searches and touches."""
         if self.windows is None:
             return True
         least_mm, most_mm = self.windows.get(post, (math.inf, -math.inf))
@@ -49,7 +49,7 @@ class Expected:
 
 
 def expected(campus: CampusMap, place: Place, real_per_counted: float, disturbed: int, foreign: bool) -> Expected:
-    """What may be read next at a place."""
+    """The markers that may be read next at a place."""
     if isinstance(place, Unknown):
         return Expected()
     return Expected(dict(_windows(campus, place, real_per_counted)), disturbed, foreign)
@@ -102,7 +102,7 @@ def is_own(place: Place, post: str, here_mm: float, at_mm: float) -> bool:
 
 
 def hangs_beside_this_line(campus: CampusMap, sighting: Sighting) -> bool:
-    """Whether it is where a marker of its post would be; others are seen across a room."""
+    """Return whether it is where a marker of its post would be; others are seen across a room."""
     post = campus.post(sighting.text)
     for marker in post.markers:
         _, right_m = seen_from(marker_point(marker), robot_heading_rad(marker), post.point)

@@ -1,4 +1,4 @@
-"""What a robot that is switched on again knows of its place."""
+"""The place that a robot knows when it is switched on again."""
 
 from enum import StrEnum
 

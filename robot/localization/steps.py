@@ -62,7 +62,7 @@ def _marked_at_post(place: AtPost, post: str, at_mm: float, here_mm: float) -> P
 
 
 def has_reached(place: Place, here_mm: float) -> bool:
-    """Whether the axle has come to the post ahead: by its marker, or by the way that it came and goes back."""
+    """Return whether the axle has come to the post ahead: by its marker, or by the way that it came and goes back."""
     match place:
         case Coming():
             return place.at_mm - here_mm <= REACHED_MM

@@ -1,4 +1,4 @@
-"""How far the robot really goes while its wheels count a metre: learnt from corridor to corridor.
+"""The scale of odometry, real metres per counted metre: learnt from corridor to corridor.
 
 Wheels wear, and nobody calibrates them every month: two per cent is a hand's breadth in a corridor of five metres, too
 much to stop on a post whose marker cannot be read. Where both markers of a corridor were read, the map tells how long

@@ -21,7 +21,7 @@ Sign = Callable[[HandoverReceipt], HandoverReceipt]
 
 @dataclass(frozen=True)
 class Proof:
-    """What a hand-over goes by: the verifier that matched, how it came, and the command that brought it, if one did.
+    """The basis of a hand-over: the verifier that matched, how it came, and the command that brought it, if one did.
 
     `key`: of a code that was shown. It proves this one hand-over, and is written down nowhere.
     """
@@ -129,7 +129,7 @@ def _is_meant(wish: Confirm, waiting: Waiting) -> bool:
 def opening(
     verifiers: Iterable[Verifier], loadings: Mapping[str, Loading], order_id: str, purpose: Purpose, now: datetime
 ) -> tuple[str, ...]:
-    """What opens a hand-over now, as SHA-256.
+    """Return the accepted hand-over codes, as SHA-256.
 
     Mail that is brought back is given to its recipient too, and to whoever shows the code that it was loaded with.
     """

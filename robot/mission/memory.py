@@ -1,4 +1,4 @@
-"""What the robot knows after a power cut: its mission, what it carries, how to check codes, where it may drive.
+"""The robot's memory across a power cut: its mission, what it carries, how to check codes, where it may drive.
 
 Everything is in the database of `robot/mission/store.py`. What belongs together is one transaction:
 
@@ -183,7 +183,7 @@ class Memory:
             self._write("loadings", _LOADINGS, {one: at for one, at in self.loadings().items() if one != order_id})
 
     def verifiers(self) -> tuple[Verifier, ...]:
-        """What hand-over codes are checked against."""
+        """Return the verifiers of hand-over codes."""
         return self._read("verifiers", _VERIFIERS, ())
 
     def keep_verifiers(self, verifiers: Verifiers, at: datetime) -> None:
@@ -207,7 +207,7 @@ class Memory:
     # What it was told to leave undone, and what is wrong with it.
 
     def paused(self) -> bool:
-        """Whether it was asked to wait at the next post."""
+        """Return whether it was asked to wait at the next post."""
         return self._read("paused", _FLAG, False)
 
     def pause(self, paused: bool) -> None:
@@ -225,7 +225,7 @@ class Memory:
             self.forget_verifiers(order_id)
 
     def charge(self) -> str | None:
-        """How far the battery plan has come, as it was told last: low or charging; None when there is none."""
+        """Return how far the battery plan has come, as it was told last: low or charging; None when there is none."""
         return self._read("charge", _WORD, None)
 
     def note_charge(self, step: str | None) -> None:
@@ -268,7 +268,7 @@ class Memory:
                 self._write("detour", _LEG, None)
 
     def revoke(self) -> None:
-        """All that was granted is void, and nobody knows where the robot is."""
+        """Drop every grant and the place: the robot's location is unknown."""
         with self._store.transaction():
             self._write("grants", _LEGS, ())
             self._write("detour", _LEG, None)

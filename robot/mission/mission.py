@@ -1,4 +1,4 @@
-"""What the robot owes: its mission, the mail aboard, the corridors it holds, and the reports on all that.
+"""The mission and its state: its orders, the mail aboard, the corridors it holds, and the reports on all that.
 
 Every change is one transaction on the disk: what was done, what is remembered and what is told to the server either all
 happened or not at all. A report is made once for each step of a stop, however often the agent asks for it: a mission
@@ -83,7 +83,7 @@ class Duties:
 
     @property
     def online(self) -> bool:
-        """Whether the server can be reached now; a robot that works alone misses nobody."""
+        """Return whether the server can be reached now; a robot that works alone misses nobody."""
         return self._server is None or self._server.online
 
     def _changed(self) -> None:
@@ -211,7 +211,7 @@ class Duties:
         return None
 
     def _recall(self) -> None:
-        """What is aboard goes back to where it came from; without any, it is free."""
+        """Return the mail aboard to where it came from; without any, it is free."""
         before = self.memory.mission()
         self.memory.drop_mission()
         self._bring_back(before)
@@ -290,7 +290,7 @@ class Duties:
             self._begin_fault(MAIL_ABOARD, reason, post)
 
     def codes(self, order_id: str, purpose: Purpose) -> tuple[str, ...]:
-        """What opens this hand-over now, as SHA-256. For any thread, and without a look at the disk."""
+        """Return the accepted codes of this hand-over, as SHA-256. For any thread, and without a look at the disk."""
         return opening(self.held.verifiers, self.held.loadings, order_id, purpose, self.utc())
 
     def at_stop(self, stop_id: str) -> tuple[Mission, Stop]:

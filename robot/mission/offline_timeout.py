@@ -21,7 +21,7 @@ class LongSilence:
     _online_since_s: float | None = None
 
     def look(self, held: Held, utc: datetime, online: bool, now: float) -> bool:
-        """Whether it lasts; asked at every tick."""
+        """Return whether it lasts; asked at every tick."""
         if self.lasts is None:
             seen_at = held.position.seen_at
             self.lasts = bool(held.grants) and seen_at is not None and (utc - seen_at).total_seconds() > LONG_S

@@ -1,4 +1,4 @@
-"""What the server must hear of, kept on the robot's disk until the server has committed it.
+"""Messages for the server, kept on the robot's disk until the server has committed them.
 
 The journal is born with the database. Numbers begin at 1 and never go back, not even after everything has been
 acknowledged; that is how the server knows a repeated message from a new one.
@@ -82,7 +82,7 @@ class Outbox:
             database.execute("DELETE FROM outbox WHERE seq <= ?", (seq,))
 
     def waiting(self) -> int:
-        """How many messages wait for an acknowledgement."""
+        """Return the number of unacknowledged messages."""
         with self._store.transaction() as database:
             return int(database.execute("SELECT count(*) FROM outbox").fetchone()[0])
 

@@ -97,12 +97,12 @@ class Claims:
         self._told()
 
     def void(self) -> None:
-        """All that was granted or denied counts no longer."""
+        """Drop all grants and denials."""
         self._forget()
         self.avoid = frozenset()
 
     def _give_back(self, legs: Iterable[Leg], grants: Sequence[Leg]) -> bool:
-        """Whether any of them was held."""
+        """Return whether any of them was held."""
         granted = [leg for leg in legs if leg in grants]
         with self._store.transaction():
             for leg in granted:

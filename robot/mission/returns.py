@@ -38,5 +38,5 @@ def return_mission(
 
 
 def is_own(mission: Mission) -> bool:
-    """Whether the robot gave it to itself."""
+    """Return whether the robot gave it to itself."""
     return mission.id.startswith(PREFIX)

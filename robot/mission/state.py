@@ -1,4 +1,4 @@
-"""What the robot knows of its own duties, read once and read again after a change."""
+"""The mission's state, read once and read again after a change."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field

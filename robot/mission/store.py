@@ -34,7 +34,7 @@ CREATE TABLE reported (mission_id TEXT NOT NULL, key TEXT NOT NULL, PRIMARY KEY 
 
 
 class StoreError(RobotError):
-    """What the robot must remember cannot be kept or read back."""
+    """The robot's memory cannot be written or read back."""
 
 
 class StorageFull(StoreError):
@@ -95,7 +95,7 @@ class Store:
 
     @contextmanager
     def transaction(self) -> Iterator[sqlite3.Connection]:
-        """All of it on the disk, or none of it. Inside another transaction of the same thread it joins that one.
+        """Commit everything or nothing to the disk. Inside another transaction of the same thread it joins that one.
 
         Raises StorageFull or StorageFailed. A failure inside spoils the whole transaction, and whoever catches it
         half-way gets another at the end: SQLite may already have undone the first half.

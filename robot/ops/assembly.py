@@ -52,7 +52,7 @@ OUR_PROGRAM = Path(__file__).parents[1] / "agent" / "main.asl"
 
 @dataclass(frozen=True)
 class Simulation:
-    """What is asked of a simulated world. `start` as in `robot.simulated.start`; None: the dock."""
+    """Options of a simulated world. `start` as in `robot.simulated.start`; None: the dock."""
 
     start: str | None = None
     battery_ratio: float | None = None
@@ -67,7 +67,7 @@ class Simulation:
 
 @dataclass
 class Devices:
-    """What the daemon drives, simulated or real."""
+    """The body that the daemon drives, simulated or real."""
 
     base: Create2 | PortThread
     line_sensor: LineSensor

@@ -1,4 +1,4 @@
-"""What a maintainer may ask a running daemon, through the socket `control` in its data folder.
+"""Requests of a technician to a running daemon, through the socket `control` in its data folder.
 
 | request                  | what happens                                                        |
 |--------------------------|---------------------------------------------------------------------|
@@ -72,7 +72,7 @@ class Control:
         return not self.drive.view.faults & LATCHED
 
     def _seen(self, holds: Callable[[], bool]) -> dict[str, Any]:
-        """Whether the drive loop has done it: an answer that only says "asked" would be no comfort."""
+        """Report whether the drive loop has done it: an answer that only says "asked" would be no comfort."""
         until_s = time.monotonic() + SEEN_WITHIN_S
         while not (done := holds()) and time.monotonic() < until_s:
             time.sleep(LOOK_S)

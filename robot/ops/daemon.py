@@ -42,7 +42,7 @@ HOST_HZ = 2.0
 
 
 class World(Protocol):
-    """What is moved along in simulation."""
+    """The parts that a simulation steps."""
 
     def step_until(self, now: float) -> None: ...
 
@@ -59,7 +59,7 @@ class Server(Protocol):
 
 @dataclass
 class BodyWatch:
-    """What looks after the body from outside of the drive loop, since it waits for files."""
+    """Supervision of the body from outside of the drive loop, since it waits for files."""
 
     host: HostWatch
     stops: StopMemory
@@ -141,7 +141,7 @@ class Daemon:
             self.server.snapshot(self.mind.snapshot())
 
     def hello(self) -> Hello:
-        """What the server is told at every connection; called in the link's thread."""
+        """Return the report to the server at every connection; called in the link's thread."""
         state = self.mind.snapshot()
         return Hello(
             position=state.position,

@@ -21,7 +21,7 @@ from robot.simulated.pushing import pushed_over_the_tape
 
 @dataclass(frozen=True)
 class Equipment:
-    """How to reach the devices. The caller closes what it opens."""
+    """Access to the devices. The caller closes what it opens."""
 
     open_port: Callable[[], SerialPort]
     wake_up_line: WakeUpLine

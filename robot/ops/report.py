@@ -1,4 +1,4 @@
-"""What a person at the terminal sees of a run: a line for each thing of note, and a summary at the end."""
+"""The terminal report of a run: a line for each thing of note, and a summary at the end."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field

@@ -49,7 +49,7 @@ class Loop:
 
 @dataclass
 class Lag:
-    """How punctual a loop is: seconds of the daemon's clock. Shares are of the newest `KEPT_LAGS` ticks."""
+    """The punctuality of a loop: seconds of the daemon's clock. Shares are of the newest `KEPT_LAGS` ticks."""
 
     ticks: int = 0
     worst_s: float = 0.0

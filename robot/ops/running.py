@@ -41,7 +41,7 @@ class DoorTaken(RobotError):
 
 @dataclass(frozen=True)
 class Wish:
-    """What the command line asks of this run, beside the settings."""
+    """Options of the command line for this run, beside the settings."""
 
     tell: tuple[str, ...]
     goals: tuple[str, ...]

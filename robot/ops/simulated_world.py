@@ -1,4 +1,4 @@
-"""What a simulated world remembers: the robot stands where its daemon died. (A real base rolls on for a while.)"""
+"""The saved state of a simulated world: the robot stands where its daemon died. (A real base rolls on for a while.)"""
 
 import json
 import os

@@ -26,7 +26,7 @@ _FORGOTTEN = FaultMemory()
 
 @dataclass(frozen=True, slots=True)
 class ReflexState:
-    """What the reflexes remember from tick to tick, one entry for each line of the table."""
+    """State that the reflexes keep from tick to tick, one entry for each line of the table."""
 
     memories: tuple[FaultMemory, ...] = (_FORGOTTEN,) * len(FAULTS)
 
@@ -39,7 +39,7 @@ class ReflexState:
 
 @dataclass(frozen=True, slots=True)
 class Decision:
-    """What may be driven, which faults are active, which of them hold the wheels, and what to remember."""
+    """The permitted speeds, which faults are active, which of them hold the wheels, and what to remember."""
 
     allowed: WheelSpeeds
     faults: frozenset[str]

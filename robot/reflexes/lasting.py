@@ -1,4 +1,4 @@
-"""What only shows over time: wheels that stand, wheels that slip, diodes that never change."""
+"""Senses that need time: wheels that stand, wheels that slip, diodes that never change."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""What the reflexes judge by at one tick."""
+"""The input of the reflexes at one tick."""
 
 from dataclasses import dataclass
 

@@ -31,7 +31,7 @@ RECOVERED_RATIO, RECOVERED_MV = 0.13, 13_200
 
 
 class Response(Enum):
-    """What happens to the wheels."""
+    """The effect on the wheels."""
 
     STOP = "stand"
     BACK_OFF = "stand, go back 80 mm with a beep, stand"

@@ -1,4 +1,4 @@
-"""What can be wrong with a scenario before it runs."""
+"""Errors of a scenario before it runs."""
 
 
 class ScenarioError(Exception):

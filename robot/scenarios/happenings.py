@@ -1,4 +1,4 @@
-"""What happens at a moment: faults, deeds of people, messages of the service. Each once, for each robot it concerns."""
+"""Events at a moment: faults, deeds of people, messages of the service. Each once, for each robot it concerns."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field

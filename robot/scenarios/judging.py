@@ -1,4 +1,4 @@
-"""How a scenario ended: what became of each letter, by the truth, and whether that is what was expected."""
+"""The verdict on a scenario: what became of each letter, by the truth, and whether that is what was expected."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -18,7 +18,7 @@ NOTICES = frozenset(("marker_unread", "foreign_marker", "link_loss", "clock_jump
 
 
 class Fate(StrEnum):
-    """What became of a letter."""
+    """The outcome of a letter."""
 
     DELIVERED = "delivered"
     """The recipient has it, and the robot said so."""
@@ -110,7 +110,7 @@ def false_claims(letter: Letter) -> list[str]:
 
 
 def shortfalls(ending: Ending, expected: Expectation) -> list[str]:
-    """What was expected and is not so, in sentences; none when all holds."""
+    """Return unmet expectations, in sentences; none when all holds."""
     return [*_of_mail(ending, expected), *_of_driving(ending, expected), *ending.violations]
 
 

@@ -77,7 +77,7 @@ Complaint = tuple[str, str, str]
 
 
 def problems(scenario: Scenario, source: Path | None = None) -> Iterator[Complaint]:
-    """What the shape allows and the map does not: (key, what is wrong, way out)."""
+    """Return faults that the shape allows and the map does not: (key, what is wrong, way out)."""
     try:
         campus = campus_of(scenario.map, source)
     except CampusMapError as error:

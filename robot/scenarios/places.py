@@ -16,7 +16,7 @@ POST_ROOM_M = 0.45
 
 
 def is_in(place: Place, campus: CampusMap, x_m: float, y_m: float) -> bool:
-    """Whether the place covers this spot."""
+    """Return whether the place covers this spot."""
     if place.corridor is not None:
         tape = campus.corridor_named(place.corridor).tape
         return distance_to_path_m(Point(x_m, y_m), tape) <= IN_CORRIDOR_M

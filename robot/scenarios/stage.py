@@ -205,7 +205,7 @@ class Stage:
         return self._quiet_since_s is not None and now - self._quiet_since_s >= QUIET_S
 
     def ending(self) -> Ending:
-        """What has come of it so far."""
+        """The result so far."""
         return Ending(
             verdicts=[verdict(letter, self.service) for letter in self.letters.values()],
             violations=[*self.watch.violations, *self._errors()],

@@ -1,4 +1,4 @@
-"""What is watched all the time, by the world's truth: no corridor without a grant, and how the time was spent."""
+"""Continuous checks by the world's truth: no corridor without a grant, and how the time was spent."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field

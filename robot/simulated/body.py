@@ -39,7 +39,7 @@ ANGLE_BUG = 0.324056  # firmware up to 3.4.0 tells angles too small by this fact
 
 @dataclass(frozen=True)
 class Build:
-    """How this robot is put together."""
+    """The construction of this robot."""
 
     motion: Motion = field(default_factory=Motion)
     pack: Pack = field(default_factory=Pack)

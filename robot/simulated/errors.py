@@ -1,4 +1,4 @@
-"""What can be asked of the simulated world in a wrong way.
+"""Errors of requests to the simulated world.
 
 SimulatedWorldError
 ├── UnknownSwitch   no fault or door command has this name

@@ -1,4 +1,4 @@
-"""What can go wrong, as switches. Everything is off at first; `python -m robot.simulated` and the door list them."""
+"""Faults, as switches. Everything is off at first; `python -m robot.simulated` and the door list them."""
 
 from dataclasses import dataclass, fields
 from typing import Any

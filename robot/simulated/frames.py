@@ -1,4 +1,4 @@
-"""What the camera sees: frames from the robot's left side, 254 mm above the floor, looking left.
+"""The simulated camera's view: frames from the robot's left side, 254 mm above the floor, looking left.
 
 The marker sheets are those that `python -m maps markers` prints, seen in true perspective; people stand before them,
 or hold a hand-over code in front of the camera. What is not worth drawing is a dim wall with noise, drawn once.
@@ -121,7 +121,7 @@ class Renderer:
         return self._chosen
 
     def _marker_frame(self, view: View) -> Frame:
-        """Whatever is farther off is drawn first."""
+        """Objects farther off are drawn first."""
         frame = self._other(self._walls)
         in_view: list[tuple[float, Marker, NDArray[np.float32]] | tuple[float, _Somebody, None]] = []
         for marker in self._markers:

@@ -1,4 +1,4 @@
-"""What a robot can run into: people as circles, walls as lines. Contact is where the bumper's circle overlaps one."""
+"""Obstacles: people as circles, walls as lines. Contact is where the bumper's circle overlaps one."""
 
 import math
 from dataclasses import dataclass
@@ -46,7 +46,7 @@ class Wall:
 
 
 class Obstacle(Protocol):
-    """Whatever a bumper can touch."""
+    """An object that a bumper can touch."""
 
     def nearest(self, x_m: float, y_m: float) -> tuple[float, float, float]:
         """(x, y) of the point nearest to here, and how far the surface stands out from it."""
@@ -70,7 +70,7 @@ class Contact:
 
 
 def contact(obstacle: Obstacle, x_m: float, y_m: float, heading_rad: float) -> Contact:
-    """How a robot at this pose stands to the obstacle."""
+    """Return the obstacle's relation to a robot at this pose."""
     near_x, near_y, radius = obstacle.nearest(x_m, y_m)
     bearing = math.atan2(near_y - y_m, near_x - x_m) - heading_rad
     gap = math.hypot(near_x - x_m, near_y - y_m) - radius - BUMPER_RADIUS_M

@@ -30,7 +30,7 @@ BUTTONS = {"clean": 1, "spot": 2, "dock": 4}  # packet 18
 
 @dataclass(frozen=True)
 class Options:
-    """How the robot is built and what stands around it. `gap_m` > 0 leaves holes of that length in the tape."""
+    """The construction of the robot and its surroundings. `gap_m` > 0 leaves holes of that length in the tape."""
 
     build: Build = field(default_factory=Build)
     camera: CameraMount = field(default_factory=CameraMount)

@@ -1,4 +1,4 @@
-"""What surrounds the robots: floor with tape, docks, markers, obstacles. Several robots can share one."""
+"""The world around the robots: floor with tape, docks, markers, obstacles. Several robots can share one."""
 
 from collections.abc import Iterable
 from itertools import chain
@@ -27,7 +27,7 @@ class World:
         self.markers: tuple[Marker, ...] = tuple(marker for post in campus.posts.values() for marker in post.markers)
 
     def dock_beside(self, x_m: float, y_m: float, heading_rad: float) -> Beside | None:
-        """How a robot at this pose stands to the nearest dock, if one is within sight of its beams."""
+        """Return the nearest dock's relation to a robot at this pose, if one is within sight of its beams."""
         nearest = min(self.docks, key=lambda dock: abs(dock.x_m - x_m) + abs(dock.y_m - y_m), default=None)
         if nearest is None or max(abs(nearest.x_m - x_m), abs(nearest.y_m - y_m)) > NEAR_M:
             return None

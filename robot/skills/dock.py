@@ -37,7 +37,7 @@ ASLANT_RAD = math.radians(3)
 
 @dataclass
 class DockMetrics:
-    """How one docking went; logged when it is over."""
+    """The record of one docking; logged when it is over."""
 
     tries: int = 0
     bounces: int = 0
@@ -116,7 +116,7 @@ class Dock(Scripted):
         return view
 
     def _roams(self, view: View, begin: Odometry) -> bool:
-        """Whether the firmware has gone far from where it was to begin, and not to a dock."""
+        """Return whether the firmware has gone far from where it was to begin, and not to a dock."""
         if _sees_dock(view) or _charging(view):
             self._dock_seen_s = view.at_s
         far_mm = math.dist((view.odometry.x_mm, view.odometry.y_mm), (begin.x_mm, begin.y_mm))

@@ -133,7 +133,7 @@ class FollowLine:
         return Done(self._post.name, unread=self._post.supposed) if view.sent.still else Running(STOP)
 
     def _may_be_at_post(self, view: View) -> bool:
-        """Whether a post whose marker has not been read may be here: where the line ends, or branches off."""
+        """Return whether a post whose marker has not been read may be here: where the line ends, or branches off."""
         return (self._post.name is None or self._post.supposed) and self._unread.may_be_here(view.odometry)
 
     def _missed(self, view: View) -> Step:
@@ -166,7 +166,7 @@ class FollowLine:
             self._lit_mm, self._lit_ahead_mm = here.travelled_mm, here.ahead_mm
 
     def _is_on_branch(self, view: View) -> bool:
-        """Whether what the diodes read may be a branch beside the line; where it is tells where the post is."""
+        """Return whether what the diodes read may be a branch beside the line; where it is tells where the post is."""
         here, knew_mm = view.odometry, self._unread.branch_mm
         self._unread.look(view.reading, here)
         if self._post.supposed or self._unread.branch_mm != knew_mm:

@@ -22,7 +22,7 @@ SAME_PLACE_MM = 300.0
 
 
 def most_mm_s(view: View) -> float:
-    """How fast it may go for what is ahead."""
+    """Return how fast it may go for what is ahead."""
     return NEAR_SOMETHING_MM_S if view.base is not None and view.base.something_ahead else math.inf
 
 

@@ -144,7 +144,7 @@ class Skill(Protocol):
 
     @property
     def moves(self) -> bool:
-        """Whether it needs the wheels: only one such skill runs at a time."""
+        """Return whether it needs the wheels: only one such skill runs at a time."""
         ...
 
     @property
@@ -171,7 +171,7 @@ class JobEnd:
 
 
 class Body(Protocol):
-    """What the mind's side may ask of the drive loop. All of it may be called from any thread and returns at once."""
+    """The drive loop's interface for the mind. All of it may be called from any thread and returns at once."""
 
     def start(self, skill: Skill, now: float) -> int:
         """Begin a skill at the next tick; returns the job's id. Every job ends once, in `finished`."""

@@ -25,7 +25,7 @@ Interval = tuple[float, float]
 
 
 class Gains(NamedTuple):
-    """What depends on how far ahead of the axle the diodes are."""
+    """Constants that depend on the diodes' distance ahead of the axle."""
 
     lead_mm: float
     look_ahead_mm: float

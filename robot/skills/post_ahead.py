@@ -1,4 +1,4 @@
-"""How far it still is to the post ahead, from every sighting of its marker on the way there."""
+"""The distance to the post ahead, from every sighting of its marker on the way there."""
 
 import math
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""What the robot's little speaker says. MIDI notes and seconds."""
+"""Tunes of the robot's speaker. MIDI notes and seconds."""
 
 from robot.drivers.interfaces import Note
 

@@ -50,7 +50,7 @@ class UnreadPost:
         """Where a branch was seen that must be the post's."""
 
     def beyond_mm(self, here: Odometry) -> float:
-        """How far beyond its place the axle is; below 0 before it."""
+        """Return how far beyond its place the axle is; below 0 before it."""
         return -math.inf if self._by_map_mm is None else here.ahead_mm - self._by_map_mm
 
     @property
@@ -65,12 +65,12 @@ class UnreadPost:
         return self.doubt_mm if self.leads_on else self.doubt_mm + SLIP_SHARE * (self._way_left_mm or 0.0)
 
     def may_be_here(self, here: Odometry) -> bool:
-        """Whether the diodes may be over it."""
+        """Return whether the diodes may be over it."""
         return self.beyond_mm(here) > -self.doubt_mm - self._lead_mm
 
     @property
     def shows(self) -> bool:
-        """Whether the tape tells where it is: it branches off or ends there."""
+        """Return whether the tape tells where it is: it branches off or ends there."""
         return self._left or self._right or not self.leads_on
 
     def look(self, reading: LineReading, here: Odometry) -> None:
@@ -110,7 +110,7 @@ class UnreadPost:
 
 
 def _ways(campus: CampusMap, leaving: str | None, ahead: str | None) -> tuple[bool, bool, bool]:
-    """Whether a line branches off there to the left, to the right, and whether one leads straight on."""
+    """Return whether a line branches off there to the left, to the right, and whether one leads straight on."""
     if leaving is None or ahead is None:
         return False, False, True
     try:

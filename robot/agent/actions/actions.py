@@ -19,7 +19,7 @@ UNKNOWN: Final = "unknown_action"
 
 
 class Term(Protocol):
-    """What is needed of a term: `turn(left)` has the functor turn and one argument."""
+    """The part of a term that actions need: `turn(left)` has the functor turn and one argument."""
 
     @property
     def functor(self) -> str: ...

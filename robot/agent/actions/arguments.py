@@ -1,4 +1,4 @@
-"""What an action takes, declared once and checked before anything moves."""
+"""The arguments of actions, declared once and checked before anything moves."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

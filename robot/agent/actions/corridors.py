@@ -141,7 +141,7 @@ def release(hands: Hands, _: Sequence[Value], __: float) -> Run:
 
 
 def turned_back(leg: Leg, why: str) -> str:
-    """What people are told; the service reads from it which corridor is closed."""
+    """Return the message for people; the service reads from it which corridor is closed."""
     return f"The robot turned back in the corridor from {leg.from_post} to {leg.to_post}. {CLOSED_BY[why]}."
 
 

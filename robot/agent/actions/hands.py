@@ -1,4 +1,4 @@
-"""What actions work with."""
+"""The parts of the robot that actions work with."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field

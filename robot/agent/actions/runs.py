@@ -1,4 +1,4 @@
-"""What an action becomes while it lasts: polled by the mind until it ends, cancelled when its intention is dropped."""
+"""A running action: polled by the mind until it ends, cancelled when its intention is dropped."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence

@@ -28,7 +28,7 @@ UNITS_PER_MS = 10.0  # V4L2 counts exposure in 0.1 ms
 
 
 class Device(Protocol):
-    """What OpenCV's `VideoCapture` and the simulated camera both are."""
+    """The interface that OpenCV's `VideoCapture` and the simulated camera share."""
 
     def isOpened(self) -> bool: ...  # noqa: N802  # OpenCV's own name
 
@@ -49,7 +49,7 @@ def _video(device: int | str) -> Device:
 
 @dataclass(frozen=True, slots=True)
 class CameraState:
-    """What the camera really does, which may differ from what was asked. `exposure_ms` None: it chooses by itself."""
+    """The camera's real settings, which may differ from what was asked. `exposure_ms` None: it chooses by itself."""
 
     width_px: int
     height_px: int

@@ -43,7 +43,7 @@ class MarkerReader:
         self._poses: dict[Decoded, SheetPose | None] = {}
 
     def look(self, frame: Frame, now: float) -> tuple[Sighting, ...]:
-        """What is in this frame; `text` is a post's name or begins with `CM1:`."""
+        """Return the markers in this frame; `text` is a post's name or begins with `CM1:`."""
         grey = grey_of(frame)
         known = [code for code in self._decode(grey) if self._is_known(code.text)]
         if known or self._tags is None:

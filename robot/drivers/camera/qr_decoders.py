@@ -166,7 +166,7 @@ def _rungs(part: Frame) -> Iterator[tuple[float, Frame]]:
 
 
 def _try(detector: Any, picture: Frame) -> tuple[Decoded | None, Any]:
-    """What was decoded, and where something was detected."""
+    """The decoded markers, and where something was detected."""
     try:
         text, quad, _ = detector.detectAndDecode(picture)
     except (cv2.error, UnicodeDecodeError):  # raised on some foreign codes

@@ -1,4 +1,4 @@
-"""Who is master of the wheels: which mode was asked for, which one the base reports, and when to ask again."""
+"""The mode of the base: which mode was asked for, which one the base reports, and when to ask again."""
 
 from robot.drivers.create2 import open_interface as oi
 from robot.drivers.interfaces import BaseState, Mode
@@ -53,14 +53,14 @@ class ModeKeeper:
 
     @property
     def known(self) -> bool:
-        """Whether the base can be asked for a mode: it has answered the start."""
+        """Return whether the base can be asked for a mode: it has answered the start."""
         return self._offset is not None
 
     def asked(self, mode: Mode, now: float) -> None:
         self.wanted, self._asked_s = mode, now
 
     def lost(self, state: BaseState, standing: bool, now: float) -> bool:
-        """Whether to ask again: the mode is another, and the reason for its fall is gone.
+        """Return whether to ask again: the mode is another, and the reason for its fall is gone.
 
         An odd number says nothing: then only wheels that stand although they should turn show that the mode is lost.
         """

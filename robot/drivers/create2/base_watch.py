@@ -16,7 +16,7 @@ STARTING_S = 1.5
 
 @dataclass(frozen=True)
 class BaseAnswer:
-    """What was heard. No `state`: not one frame."""
+    """The input of the port. No `state`: not one frame."""
 
     state: BaseState | None
     frames: int

@@ -31,7 +31,7 @@ class DockSight:
 
 @dataclass(frozen=True, slots=True)
 class _Family:
-    """How one family of docks spells its bits."""
+    """The bits of one family of docks."""
 
     base: int
     field: int

@@ -1,4 +1,4 @@
-"""What the firmware prints on the same line as the packets: the battery while it charges, its version when it boots."""
+"""Text that the firmware prints among the packets: the battery while it charges, its version when it boots."""
 
 import re
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ _VERSION = re.compile(r"release-(?:stm32-)?(\d+)\.(\d+)\.(\d+)")
 
 @dataclass(frozen=True, slots=True)
 class BatteryText:
-    """What a `bat:` line says, printed every second while the base charges and the interface is off."""
+    """The content of a `bat:` line, printed every second while the base charges and the interface is off."""
 
     voltage_mv: int
     current_ma: int

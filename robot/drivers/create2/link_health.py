@@ -1,4 +1,4 @@
-"""What a maintainer asks about the cable and the firmware at its other end."""
+"""Statistics for a technician about the cable and the firmware at its other end."""
 
 from dataclasses import dataclass
 
@@ -36,7 +36,7 @@ class LinkHealth:
     """The last few lines that the firmware printed."""
 
     def take_lines(self, lines: list[str]) -> None:
-        """What the firmware printed."""
+        """Take in the lines that the firmware printed."""
         self.firmware_lines = (*self.firmware_lines, *lines)[-KEPT_LINES:]
         for line in lines:
             self.battery_text = battery_text(line) or self.battery_text

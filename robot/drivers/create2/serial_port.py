@@ -14,7 +14,7 @@ WRITE_TIMEOUT_S = 0.05
 
 
 class SerialPort(Protocol):
-    """What the driver needs of a port. `read` returns what has arrived, at once."""
+    """The interface of a port that the driver needs. `read` returns what has arrived, at once."""
 
     baudrate: int
 

@@ -1,4 +1,4 @@
-"""What is tried, one after the other, to make a silent base speak: a table, and who goes through it.
+"""Attempts, one after the other, to make a silent base speak: a table, and who goes through it.
 
 Start alone; then with pulses on BRC, in case it sleeps; then a stream without packet 35, which some old firmware never
 answers; then at 19200 baud; then Reset, which takes the base five seconds. Then again from the pulses on.

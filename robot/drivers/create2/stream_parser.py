@@ -51,7 +51,7 @@ class StreamParser:
         return lines
 
     def take_corrupt(self) -> int:
-        """How many candidates were wrong since the last call."""
+        """Return how many candidates were wrong since the last call."""
         corrupt, self.corrupt = self.corrupt, 0
         return corrupt
 

@@ -16,7 +16,7 @@ WITHOUT_LINE_EVERY_S = 240.0
 
 
 class WakeUpLine(Protocol):
-    """What is wired to BRC."""
+    """The device that is wired to BRC."""
 
     def low(self, on: bool) -> None:
         """Pull the line low, or let it go."""
@@ -24,7 +24,7 @@ class WakeUpLine(Protocol):
 
     @property
     def wired(self) -> bool:
-        """Whether a pulse can reach the base, as far as is known."""
+        """Return whether a pulse can reach the base, as far as is known."""
         ...
 
 
@@ -93,7 +93,7 @@ class KeepAwake:
         self._line.low(True)
 
     def step(self, idle: bool, docked: bool, now: float) -> bool:
-        """Whether the base is to be stirred with Safe and Passive: nothing is wired, and its sleep is near.
+        """Return whether the base is to be stirred with Safe and Passive: nothing is wired, and its sleep is near.
 
         `idle`: in Passive, and the wheels stand. On the dock nothing is ever sent but pulses: it would end the charge.
         """

@@ -1,1 +1,5 @@
-"""Measuring a robot: how far its wheels roll per count, how wide they stand, how its diodes and its camera see."""
+"""Calibration: measures wheel scale and spacing, the diodes, and the camera of one robot.
+
+May use the assembly and the drivers.
+Start at `rig.py`.
+"""

@@ -33,7 +33,7 @@ class Outlet(Protocol):
     """The link, as far as insights are concerned."""
 
     def has_room_for_insight(self) -> bool:
-        """Whether it is online and has sent the one before."""
+        """Return whether it is online and has sent the one before."""
         ...
 
     def tell_insight(self, insight: Callable[[], Insight]) -> None:

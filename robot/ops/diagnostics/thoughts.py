@@ -37,7 +37,7 @@ def intention_told(agent: Agent, intention: Intention) -> IntentionTold:
 
 
 def because(why: Why) -> Because:
-    """What the mind says of itself, as it travels."""
+    """Return the reason of an action as it is sent."""
     return Because(
         kind=why.kind,
         sentence=short(why.sentence, LONGEST_SENTENCE),

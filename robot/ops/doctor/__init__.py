@@ -1,1 +1,5 @@
-"""What is wrong with a robot, and the way out: `python -m robot doctor`. Small checks, one table."""
+"""The doctor, `python -m robot doctor`: checks for faults of a robot, each with its remedy.
+
+May use settings, drivers and equipment.
+Start at `table.py`.
+"""

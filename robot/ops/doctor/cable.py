@@ -20,7 +20,7 @@ LOW_MV = 13_200
 
 
 def port(patient: Patient) -> Finding:
-    """Whether the serial port is there, may be opened, and is nobody else's."""
+    """Check whether the serial port is there, may be opened, and is nobody else's."""
     name = patient.settings.serial_port
     if "://" in name:
         return skip(f"{name} is no device of this computer")
@@ -138,7 +138,7 @@ def _from_daemon(told: dict[str, object]) -> Finding:
 
 
 def wake_up(patient: Patient) -> Finding:
-    """Whether a pulse on BRC can be sent. That it arrives shows only when a sleeping base wakes."""
+    """Check whether a pulse on BRC can be sent. That it arrives shows only when a sleeping base wakes."""
     if patient.daemon is not None:
         return skip("the running daemon holds the port")
     if patient.settings.brc == "none":

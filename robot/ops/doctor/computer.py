@@ -52,7 +52,7 @@ NOW = 0b1111
 
 
 def packages(patient: Patient) -> Finding:
-    """Whether every Python package that the daemon needs can be found."""
+    """Check whether every Python package that the daemon needs can be found."""
     is_pi = "raspberry pi" in (patient.text(MODEL) or "").lower()
     needed = (*NEEDED, ON_A_PI) if is_pi and not patient.equipment.simulated else NEEDED
     if missing := [name for name in needed if importlib.util.find_spec(name) is None]:

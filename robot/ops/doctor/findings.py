@@ -1,4 +1,4 @@
-"""What a check is given, and what it answers."""
+"""The input and the result of a check."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -11,7 +11,7 @@ from robot.ops.equipment import Equipment
 
 
 class Grade(StrEnum):
-    """How a check came out. Only FAIL keeps a robot from driving."""
+    """The result of a check. Only FAIL keeps a robot from driving."""
 
     OK = "ok"
     WARN = "warn"
@@ -46,7 +46,7 @@ def skip(said: str) -> Finding:
 
 @dataclass(frozen=True)
 class Patient:
-    """What there is to look at."""
+    """The subjects of the checks."""
 
     settings: Settings
     source: Path | None

@@ -22,7 +22,7 @@ DARK, BRIGHT = 25.0, 235.0
 
 
 def pins(patient: Patient) -> Finding:
-    """Whether the diodes can be read; with --push, whether each sees the tape come and go."""
+    """Check whether the diodes can be read; with --push, whether each sees the tape come and go."""
     if patient.daemon is not None:
         return skip("the running daemon holds the pins")
     try:
@@ -61,7 +61,7 @@ def _pushed(patient: Patient, watch: PinWatch) -> Finding:
 
 
 def camera(patient: Patient) -> Finding:
-    """Whether it opens, delivers, sees enough light, and reads a marker that is before it."""
+    """Check whether it opens, delivers, sees enough light, and reads a marker that is before it."""
     if patient.daemon is not None:
         return skip("the running daemon holds the camera")
     try:

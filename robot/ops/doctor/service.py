@@ -55,7 +55,7 @@ def asked(url: str, secret: str) -> Finding:
 
 
 def map_version(patient: Patient) -> Finding:
-    """Whether robot and service mean the same map: another could send the robot into a wall."""
+    """Check whether robot and service mean the same map: another could send the robot into a wall."""
     url = patient.settings.server
     if url is None:
         return skip("no server is set")

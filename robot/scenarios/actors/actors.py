@@ -68,9 +68,9 @@ class Actor:
         self.heard = [_NAMES.get(tune, "?") for tune in tunes]
 
     def stands_s(self, now: float) -> float:
-        """How long its wheels have been still."""
+        """Return how long its wheels have been still."""
         return 0.0 if self.rolls or self._since_s is None else now - self._since_s
 
     def rolls_s(self, now: float) -> float:
-        """How long its wheels have turned without a stand."""
+        """Return how long its wheels have turned without a stand."""
         return now - self._since_s if self.rolls and self._since_s is not None else 0.0

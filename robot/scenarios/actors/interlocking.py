@@ -1,4 +1,4 @@
-"""Who may enter which corridor, by one simple and safe rule.
+"""The permission to enter a corridor, by one simple and safe rule.
 
 A claim is granted as a whole when none of the posts it touches, nor any on the shortest way from its end to the robot's
 own dock, is reserved by another robot; all of these posts are then reserved for this one until it stands in a dock
@@ -62,7 +62,7 @@ class Interlocking:
         return granted
 
     def may_be_in(self, robot: str, corridor: str) -> bool:
-        """Whether the robot has been granted this corridor, in whichever direction."""
+        """Return whether the robot has been granted this corridor, in whichever direction."""
         return any(corridor_name(leg.from_post, leg.to_post) == corridor for leg in self.held.get(robot, ()))
 
     def _posts(self, claim: Claimed) -> set[str]:

@@ -16,7 +16,7 @@ def code(seed: int, order: str, purpose: str) -> str:
 
 
 def fingerprint(text: str) -> str:
-    """What the robot is given of it."""
+    """Return the SHA-256 of a code: the robot is given no more of it."""
     return sha256(text.encode()).hexdigest()
 
 

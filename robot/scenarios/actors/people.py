@@ -65,7 +65,7 @@ class Handing:
             self._delay_s += self.person.late_s
 
     def has_business(self, actor: Actor) -> bool:
-        """Whether this robot may want something of this person."""
+        """Return whether this robot may want something of this person."""
         if self.gives and not self.letter.moved:
             return not self.letter.cancelled
         return self.letter.place == actor.name and (not self.gives or self.letter.returning)

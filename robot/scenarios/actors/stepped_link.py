@@ -65,7 +65,7 @@ class Wire:
             self._arrived.put_nowait(self.down.popleft())
 
     def cut(self) -> None:
-        """Whoever waits for something hears that nothing comes any more."""
+        """Waiting callers are notified that nothing comes any more."""
         self._broken = True
         self._arrived.put_nowait(None)
 

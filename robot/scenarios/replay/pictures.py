@@ -58,7 +58,7 @@ class Canvas:
 
 
 def write_pictures(recording: Path, folder: Path, every_s: float) -> int:
-    """How many were written, as 00000.png, 00001.png … Raises RecordingError."""
+    """Write them as 00000.png, 00001.png …; return how many. Raises RecordingError."""
     rows = read_recording(recording)
     canvas, number, due_s = Canvas(rows[0]), 0, 0.0
     ground, states = canvas.ground.copy(), dict[str, Row]()

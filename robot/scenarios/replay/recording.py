@@ -174,7 +174,7 @@ def _place(place: Place, campus: CampusMap) -> Row:
 
 
 def read_recording(path: Path) -> list[Row]:
-    """All rows. Raises RecordingError. One that was cut off in the middle is read as far as it goes."""
+    """Return all rows. Raises RecordingError. One that was cut off in the middle is read as far as it goes."""
     rows = list(_rows(path))
     if not rows or rows[0].get("kind") != "scenario":
         raise RecordingError(

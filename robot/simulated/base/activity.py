@@ -1,11 +1,11 @@
-"""What the firmware does by itself, and what stops it."""
+"""Activities of the firmware, and what stops them."""
 
 from dataclasses import dataclass
 from enum import Enum
 
 
 class Activity(Enum):
-    """What the firmware does by itself."""
+    """An activity of the firmware."""
 
     NONE = "none"
     CLEANING = "cleaning"

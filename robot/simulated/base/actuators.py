@@ -1,4 +1,4 @@
-"""What a host can move and light: wheels, brushes, lamps, digits, songs. Each method takes a command's data bytes.
+"""Actuators of the base: wheels, brushes, lamps, digits, songs. Each method takes a command's data bytes.
 
 Source [S] unless marked [A] (assumption).
 """
@@ -42,7 +42,7 @@ class Actuators:
 
     @property
     def cliff_counts(self) -> bool:
-        """Whether a cliff stops this movement: forward, or backward in a turn tighter than the robot itself."""
+        """Return whether a cliff stops this movement: forward, or backward in a turn tighter than the robot itself."""
         left, right = self.left_mm_s, self.right_mm_s
         if not left and not right:
             return False

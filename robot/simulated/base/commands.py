@@ -33,7 +33,7 @@ class Command:
     each: int = 1
 
     def missing(self, data: bytes | bytearray) -> int:
-        """How many data bytes are still to come; the robot waits for them for ever [S]."""
+        """Return how many data bytes are still to come; the robot waits for them for ever [S]."""
         counted = 0
         if self.counted_in is not None and len(data) > self.counted_in:
             counted = self.each * data[self.counted_in]

@@ -17,7 +17,7 @@ RIPPLE_EVERY_STEPS = 3  # the control loop of the base runs every 15 ms
 
 @dataclass(frozen=True)
 class Motion:
-    """How well this robot's wheels do what they are told. All [A].
+    """The accuracy of this robot's wheels. All [A].
 
     `wheel_error` is the standard deviation of each wheel's true size against its nominal one: the encoders do not see
     it, the floor does.

@@ -133,7 +133,7 @@ class OpenInterface:
 
     @property
     def has_more(self) -> bool:
-        """Whether bytes wait to be sent."""
+        """Return whether bytes wait to be sent."""
         return self._out.waiting
 
     def take(self) -> bytes:

@@ -12,7 +12,7 @@ from struct import Struct
 
 @dataclass(slots=True)
 class Readings:
-    """What the robot would report now, packet by packet, in the packets' own units."""
+    """The robot's readings now, packet by packet, in the packets' own units."""
 
     bumps_wheel_drops: int = 0
     wall: int = 0

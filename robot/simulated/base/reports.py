@@ -1,4 +1,4 @@
-"""What the byte machine tells about itself and the world: answers to queries, and the stream.
+"""Reports of the byte machine: answers to queries, and the stream.
 
 Source [S] unless marked [A] (assumption).
 """

@@ -1,4 +1,4 @@
-"""What leaves the robot on its serial line: packets, and the text that the firmware prints among them."""
+"""Output on the serial line: packets, and the text that the firmware prints among them."""
 
 from collections import deque
 from collections.abc import Iterable
