@@ -14,6 +14,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 RULES = ROOT / "deploy" / "prometheus" / "campus-mail.rules.yaml"
+RULE_TESTS = Path(__file__).with_name("alerts.yaml")
 
 
 def _exported_names(data: Path) -> set[str]:
@@ -46,6 +47,7 @@ def test_each_metric_in_the_rules_is_exported(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(shutil.which("promtool") is None, reason="promtool is missing (Debian package prometheus)")
-def test_promtool_accepts_the_rules() -> None:
-    ran = subprocess.run(["promtool", "check", "rules", RULES], capture_output=True, text=True, check=False)
-    assert ran.returncode == 0, ran.stdout + ran.stderr
+def test_promtool_accepts_the_rules_and_their_unit_tests() -> None:
+    for arguments in (["check", "rules", str(RULES)], ["test", "rules", str(RULE_TESTS)]):
+        ran = subprocess.run(["promtool", *arguments], capture_output=True, text=True, check=False)
+        assert ran.returncode == 0, ran.stdout + ran.stderr
