@@ -203,7 +203,7 @@ async def settling(ada: Visitor) -> States:
     await hook.get_by_role("button", name="Save webhook").click()
     await expect(hook.get_by_role("alert")).to_be_visible()
     yield "settings, refused"
-    await tokens.get_by_label("Purpose").fill("Night report")
+    await tokens.get_by_label("What it is for").fill("Night report")
     await tokens.get_by_role("checkbox").first.check()
     await tokens.get_by_role("button", name="Create token").click()
     await expect(tokens.get_by_role("group", name=re.compile("^Your new token"))).to_be_visible()

@@ -117,7 +117,7 @@ async def test_sessions_are_ended_and_a_scripts_token_is_shown_once_and_revoked(
     tokens = page.get_by_role("region", name="Access tokens")
     await tokens.get_by_role("button", name="Create token").click()
     await expect(tokens.get_by_role("alert")).to_have_text("Enter a purpose.")
-    await tokens.get_by_label("Purpose").fill("Night report")
+    await tokens.get_by_label("What it is for").fill("Night report")
     await tokens.get_by_role("checkbox", name="See my orders").check()
     await tokens.get_by_role("button", name="Create token").click()
     token = await tokens.get_by_role("group", name=re.compile("^Your new token")).locator("code").inner_text()
