@@ -12,9 +12,9 @@ from sqlalchemy import inspect
 from app.cli.output import AsJson, errors_in_words, say_json
 from app.core.database.database import Database
 from app.core.settings import Settings, load_settings, make_data_folder, open_clock
-from app.http.about import version
 from app.retention.backup import Manifest, Wish, back_up
 from app.retention.restoring import restore as put_back
+from protocol.software import version
 
 
 def backup(

@@ -39,6 +39,7 @@ from app.robots.routes import dispatcher as dispatcher_routes
 from app.robots.routes import robots as robot_routes
 from app.traffic import routes as traffic_routes
 from protocol.clock import Clock
+from protocol.software import version
 
 API = "/api/v1"
 ROUTERS = (
@@ -81,7 +82,7 @@ def create_app(settings: Settings, clock: Clock, outside: Outside | None = None)
     app = DocumentedApi(
         title="Campus Mail",
         summary="Orders, robots and people of a campus.",
-        version=about.version(),
+        version=version(),
         lifespan=lifespan,
         openapi_url=f"{API}/openapi.json",
         docs_url=None,  # their scripts come from elsewhere, which the pages' policy forbids

@@ -1,9 +1,6 @@
 """The service about itself: to pages, to people, to monitoring."""
 
-import tomllib
 from datetime import datetime
-from functools import cache
-from importlib import metadata
 
 from fastapi import APIRouter
 from fastapi.responses import JSONResponse
@@ -14,11 +11,12 @@ from app.core.database.database import Database, DatabaseDep
 from app.core.database.deadline import waiting_at_most
 from app.core.database.schema_version import is_at_head
 from app.core.errors import problem_answer
-from app.core.settings import ROOT, CampusDep, ClockDep, SettingsDep
+from app.core.settings import CampusDep, ClockDep, SettingsDep
 from app.core.texts import LANGUAGES
 from app.notifications.lag import outbox_lag
 from maps import Post
 from protocol.clock import Clock
+from protocol.software import version
 
 api_router = APIRouter(tags=["about"])
 root_router = APIRouter(tags=["health"])
@@ -26,15 +24,6 @@ root_router = APIRouter(tags=["health"])
 OUTBOX_LAG_LIMIT_S = 600.0
 WRITE_WITHIN_S = 2.0
 """Real seconds: monitoring that asks if the service is ready does not wait much longer for the answer."""
-
-
-@cache
-def version() -> str:
-    """Return the version in pyproject.toml, or of the wheel that was installed."""
-    project = ROOT / "pyproject.toml"
-    if not project.is_file():
-        return metadata.version("campus-mail")
-    return str(tomllib.loads(project.read_text())["project"]["version"])
 
 
 class About(BaseModel):

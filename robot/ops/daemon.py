@@ -24,6 +24,7 @@ from threading import Event
 from typing import Protocol
 
 from protocol.envelope import YOUNGER
+from protocol.software import version
 from protocol.to_server import Hello, Snapshot
 from robot.agent.mind import Mind
 from robot.core.config import RateSettings
@@ -35,7 +36,7 @@ from robot.mission.latched_stop import StopMemory
 from robot.ops.host import HostWatch
 from robot.ops.runners import Loop
 
-SOFTWARE = "campus-mail robot 0.1.0"
+SOFTWARE = f"campus-mail robot {version()}"
 LAST_TICKS = 30
 TICK_S = 0.02
 HOST_HZ = 2.0
