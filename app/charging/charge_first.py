@@ -35,7 +35,7 @@ class ChargeFirst:
 
     async def sends(self, session: AsyncSession, robot: RobotRow, claim: ClaimRow, legs: Sequence[Leg]) -> bool:
         """Tell if the robot goes to a dock instead: then its reservation request is answered by that."""
-        charges = Charges(self.fleet.orders.ways, self.fleet.settings, self.fleet.spending.rates)
+        charges = Charges(self.fleet.orders.ledger.ways, self.fleet.settings, self.fleet.spending.rates)
         way = (legs[0].from_post, *(leg.to_post for leg in legs))
         if charges.goes_on(robot, way) or not self.fleet.connections.understands(robot.name, UNTIL_RATIO):
             return False

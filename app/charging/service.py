@@ -117,7 +117,7 @@ class ChargeDesk:
         return moment.astimezone(self.fleet.settings.zone)
 
     def _need(self, robot: RobotNow, work: OpenWork, docks: list[str]) -> Need:
-        speed_m_s, length_m = self.fleet.settings.assumed_speed_m_s, self.fleet.orders.ways.length_m
+        speed_m_s, length_m = self.fleet.settings.assumed_speed_m_s, self.fleet.orders.ledger.ways.length_m
         rates = self.fleet.spending.rates.get(robot.name, usual_rates())
         way_m = {dock: length_m(robot.post, dock) for dock in docks if length_m(robot.post, dock) < float("inf")}
         ways = {dock: Use(way, way / speed_m_s) for dock, way in way_m.items()}
@@ -131,7 +131,7 @@ class ChargeDesk:
 
     def _in_the_way(self, work: OpenWork) -> Iterator[StopNow]:
         """Stops to charge or to park at, of robots that have got work meanwhile and have enough for it."""
-        charges = Charges(self.fleet.orders.ways, self.fleet.settings, self.fleet.spending.rates)
+        charges = Charges(self.fleet.orders.ledger.ways, self.fleet.settings, self.fleet.spending.rates)
         for name, stops in work.stops.items():
             posts, robot = [stop.post for stop in stops if stop.order_id], work.robots[name]
             if posts and (robot.battery_ratio or 0.0) >= charges.needed(robot, posts):
@@ -154,7 +154,7 @@ class ChargeDesk:
         async with self.fleet.database.transaction() as session:
             robot = await known_robot(session, name, to_change=True)
             work = await look_at_work(session, now)
-            post = parking(self.fleet.campus, work, work.robots[name], self.fleet.orders.ways)
+            post = parking(self.fleet.campus, work, work.robots[name], self.fleet.orders.ledger.ways)
             if post is not None and self._may_be_sent(work.robots[name], work) and robot.docked:
                 stop = StopRow(id=new_id(), mission_id=new_id(), position=0, post=post, action=StopAction.PARK)
                 await self._tell(session, robot, stop)

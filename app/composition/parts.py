@@ -33,8 +33,9 @@ from app.notifications.channels.push import PushChannel
 from app.notifications.channels.webhook import Address, WebhookChannel, secret_bytes
 from app.notifications.delivery.worker import OutboxWorker
 from app.notifications.push_key import PushKey, open_push_key
-from app.orders.batcher import OrderDesk
+from app.orders.batcher import OrderBatcher
 from app.orders.custody.codes import code_in_mail, code_png
+from app.orders.ledger import Ledger
 from app.orders.service import Orders
 from app.orders.standing.standing import StandingOrders
 from app.orders.timer import Timer
@@ -75,7 +76,7 @@ class Parts:
 
     orders: Orders = field(init=False)
     estimates: Estimates = field(init=False)
-    order_desk: OrderDesk = field(init=False)
+    order_batcher: OrderBatcher = field(init=False)
     standing_orders: StandingOrders = field(init=False)
     timer: Timer = field(init=False)
 
@@ -126,17 +127,18 @@ class Parts:
         self.links = Links(self.database, self.server_key, self.settings, self.clock)
 
     def _add_orders(self) -> None:
-        self.orders = Orders(self.campus, self.settings, self.clock, self.feed, self.server_key, self.sign_in_desk)
-        self.estimates = self.orders.estimates
-        self.order_desk = OrderDesk(self.database, self.orders)
-        self.standing_orders = StandingOrders(self.orders)
+        ledger = Ledger(self.campus, self.settings, self.clock, self.feed)
+        self.orders = Orders.of(ledger, self.server_key, self.sign_in_desk)
+        self.estimates = ledger.estimates
+        self.order_batcher = OrderBatcher(self.database, self.orders.placing)
+        self.standing_orders = StandingOrders(self.orders.placing, self.clock)
         self.timer = Timer(self.database, self.orders, self.standing_orders)
 
     def _add_robots(self) -> None:
         self.enrolment_desk = EnrolmentDesk(self.settings, self.server_key, self.clock)
         self.fleet = Fleet(self.database, self.campus, self.settings, self.clock, self.feed, self.orders)
         self.intake = Intake(self.fleet)
-        self.hand_overs, self.delegating = HandOvers(self.fleet), Delegating(self.fleet)
+        self.hand_overs, self.delegating = HandOvers(self.fleet), Delegating(self.fleet, self.sign_in_desk)
 
     def _add_notifications(self) -> None:
         self.push_key = open_push_key(self.settings.push_key_path)
@@ -166,13 +168,13 @@ class Parts:
         """Say what each change wakes, in this order. Each is called after the commit of the change."""
         learning = self.fleet.learning
         learning.why_none = NoRobotComes(self.fleet).why
-        self.orders.on_change.extend([learning.wake, self.outbox_worker.wake])
+        self.orders.ledger.on_change.extend([learning.wake, self.outbox_worker.wake])
         self.fleet.on_change.extend([learning.wake])
         if self.traffic_desk is not None and self.planner is not None and self.charge_desk is not None:
-            self.orders.on_change.extend([self.traffic_desk.wake, self.charge_desk.wake])
+            self.orders.ledger.on_change.extend([self.traffic_desk.wake, self.charge_desk.wake])
             self.fleet.on_change.extend([self.traffic_desk.wake])
             self.traffic_desk.on_look.extend([self.planner.notice, self.dispatcher.wake_for_robot, self.foreseen.wake])
-        self.orders.on_change.extend([self.dispatcher.wake, self.foreseen.wake])
+        self.orders.ledger.on_change.extend([self.dispatcher.wake, self.foreseen.wake])
         self.fleet.on_change.extend([self.dispatcher.wake_for_robot, self.foreseen.wake])
 
     async def _link_for(self, person: Person, notice: Notice) -> str | None:

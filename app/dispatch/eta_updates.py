@@ -112,7 +112,7 @@ class Foreseen:
         await self._looks.breathe()
         forecast = await self._forecast(robots, stops, now)
         receive = {stop.order_id: stop.id for stop in stops if stop.action == StopAction.RECEIVE}
-        estimates = self.fleet.orders.estimates
+        estimates = self.fleet.orders.ledger.estimates
         under_way = [
             _under_way(estimates, order, robot, forecast.get(receive.get(order.id, "")), now) for order, robot in pairs
         ]
@@ -128,7 +128,7 @@ class Foreseen:
     async def _forecast(
         self, robots: Mapping[str, RobotRow], stops: Sequence[Stop], now: datetime
     ) -> Mapping[str, Interval]:
-        estimates = self.fleet.orders.estimates
+        estimates = self.fleet.orders.ledger.estimates
         if self.desk is None:
             return await by_their_ways(estimates, robots, stops, now, self._rng, self._looks.breathe)
         timetable = self.desk.timetable
@@ -147,13 +147,13 @@ class Foreseen:
     async def _tell_some(self, news: Sequence[UnderWay], now: datetime) -> None:
         async with self.fleet.database.transaction(durable=False) as session:
             for one in sorted(news, key=lambda one: one.order.id):
-                order = await self.fleet.orders.order(session, one.order.id)
+                order = await self.fleet.orders.ledger.order(session, one.order.id)
                 if order.version != one.order.version:
                     continue  # it has moved on, and with that was shown as it is
                 if one.is_news:
-                    await self.fleet.orders.expect(session, order, one.expected)
+                    await self.fleet.orders.ledger.expect(session, order, one.expected)
                 elif self._said.get(order.id) != one.why:
-                    await self.fleet.orders.show(session, order)
+                    await self.fleet.orders.ledger.show(session, order)
                 await self._keep(session, one, now)
 
     async def _keep(self, session: AsyncSession, one: UnderWay, now: datetime) -> None:
@@ -161,7 +161,9 @@ class Foreseen:
         if one.forecast is None or one.told is None or not one.may_be_kept or one.stage in self._kept:
             return
         order, (order_id, is_aboard) = one.order, one.stage
-        by_map = self.fleet.orders.estimates.by_map_under_way(order.load_post, order.to_post, is_aboard=is_aboard)
+        by_map = self.fleet.orders.ledger.estimates.by_map_under_way(
+            order.load_post, order.to_post, is_aboard=is_aboard
+        )
         intervals = _kept_of(one.forecast, one.told, by_map, now)
         await keep_under_way(session, order_id, now, intervals, is_aboard=is_aboard)
         after_commit(session, lambda: self._kept.add(one.stage))

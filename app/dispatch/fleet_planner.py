@@ -40,7 +40,9 @@ class FleetPlanner:
 
     def __init__(self, fleet: Fleet, desk: TrafficDesk, process: PlannerProcess | None = None) -> None:
         self._fleet, self._desk = fleet, desk
-        self._scenes = SceneOfWork(fleet.settings, Charges(fleet.orders.ways, fleet.settings, fleet.spending.rates))
+        self._scenes = SceneOfWork(
+            fleet.settings, Charges(fleet.orders.ledger.ways, fleet.settings, fleet.spending.rates)
+        )
         self._process = process or PlannerProcess()
         self._planned: frozenset[str] = frozenset()
         self._something_new = asyncio.Event()

@@ -134,7 +134,7 @@ async def _change_mission(
     await session.flush()
     for order_id in given:
         own.add(order_id)
-        await fleet.orders.move(session, order_id, OrderState.ASSIGNED, Word(By.DISPATCHER, robot=name))
+        await fleet.orders.ledger.move(session, order_id, OrderState.ASSIGNED, Word(By.DISPATCHER, robot=name))
         log.info("assigned", order=order_id, robot=name)
     await tell_mission(session, fleet, robot, mission)
 
@@ -166,10 +166,10 @@ def _stop(mission: MissionRow, new: NewStop, key: str, position: int, wait_limit
 
 async def _take(session: AsyncSession, fleet: Fleet, order_id: str) -> None:
     """Its robot is told to let it go, and answers; until then no other robot fetches it."""
-    order = await fleet.orders.order(session, order_id)
+    order = await fleet.orders.ledger.order(session, order_id)
     order.reassign_requested_at, order.let_go_by = fleet.clock.utc(), order.robot
     log.info("taken_from", order=order_id, robot=order.robot)
-    await fleet.orders.note(session, order_id, REASSIGNED, Word(By.DISPATCHER))
+    await fleet.orders.ledger.note(session, order_id, REASSIGNED, Word(By.DISPATCHER))
 
 
 def _by_robot(given: Mapping[str, str]) -> dict[str, list[str]]:

@@ -12,6 +12,7 @@ from typing import Final, Protocol
 from app.core.polling import LONGEST_REST_S, REST
 from app.dispatch.situation import Todo, look_for_work
 from app.models import MissionRow, RobotRow
+from app.orders.custody.by_hand import is_taken_out_by_hand
 from app.robots.commands import ask, new_command_id, unanswered
 from app.robots.mission_updates import tell_mission
 from app.robots.service import Fleet
@@ -99,12 +100,12 @@ class Dispatcher:
 
     async def _tell_to_drop(self, order_id: str) -> None:
         async with self._fleet.database.transaction() as session:
-            order = await self._fleet.orders.order(session, order_id)
+            order = await self._fleet.orders.ledger.order(session, order_id)
             robot = await session.get(RobotRow, order.let_go_by or "", with_for_update=True)
             order.let_go_by = None
             if robot is not None:
                 # What a person has taken out by hand, the robot only has to forget.
-                by_hand = await self._fleet.orders.is_taken_by_hand(session, order)
+                by_hand = await is_taken_out_by_hand(session, order)
                 drop = Cancel(command_id=new_command_id("cancel"), order_id=order.id, by_hand=by_hand)
                 await ask(session, self._fleet, robot, drop)
 

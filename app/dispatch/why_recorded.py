@@ -33,9 +33,9 @@ async def explain(fleet: Fleet, answers: Iterable[Answer]) -> None:
         return
     async with fleet.database.transaction(durable=False) as session:
         for order_id, answer in sorted(news.items()):
-            order = await fleet.orders.order(session, order_id)
+            order = await fleet.orders.ledger.order(session, order_id)
             if order.state is OrderState.QUEUED:
-                await fleet.orders.explain(session, order, answer.why, expected[order_id])
+                await fleet.orders.ledger.explain(session, order, answer.why, expected[order_id])
 
 
 def _expected(fleet: Fleet, order: Any, answer: Answer) -> Expected | None:
@@ -46,7 +46,7 @@ def _expected(fleet: Fleet, order: Any, answer: Answer) -> Expected | None:
         now, interval = fleet.clock.utc(), around(answer.comes_in_s)
         return now + timedelta(seconds=interval.p10_s), now + timedelta(seconds=interval.p90_s)
     try:
-        window = fleet.orders.window(order.passed_on_at_post or order.from_post, order.to_post)
+        window = fleet.orders.placing.window(order.passed_on_at_post or order.from_post, order.to_post)
     except ServiceError:  # a post that the map has lost since
         return None
     return window.begins_at, window.ends_at

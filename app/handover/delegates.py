@@ -6,6 +6,7 @@ from typing import Final
 from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
+from app.accounts.sign_in.service import SignInDesk
 from app.core.paging import Paging, Sorting
 from app.handover import errors
 from app.handover.notifications import tell_delegate, tell_that_it_is_over
@@ -33,6 +34,7 @@ class Delegating:
     """The delegates of the orders of one campus."""
 
     fleet: Fleet
+    sign_in: SignInDesk
 
     async def page_of(
         self, session: AsyncSession, person: Person, order_id: str, page: Paging
@@ -45,7 +47,7 @@ class Delegating:
     async def name(self, session: AsyncSession, person: Person, order_id: str, wish: NewDelegate) -> Delegate:
         """Give somebody a code of their own, by mail if there is an address. Raises UnknownOrder, NotYoursToDelegate,
         TooLateToDelegate, TooManyDelegates, AddressNotAllowed."""
-        order, role = await self.fleet.orders.theirs(session, person, order_id)
+        order, role = await self.fleet.orders.ledger.theirs(session, person, order_id)
         purpose = purpose_to_delegate(order, role, Purpose(wish.purpose) if wish.purpose else None)
         if len([one for one in await delegates_of(session, [order]) if one.revoked_at is None]) >= MOST:
             raise errors.TooManyDelegates(f"There are {MOST} delegates already. Revoke one first.")
@@ -61,18 +63,18 @@ class Delegating:
         session.add(row)
         await session.flush()
         if wish.email is not None:
-            await tell_delegate(session, self.fleet.orders, order, row, person)
+            await tell_delegate(session, self.fleet.orders.ledger, self.sign_in, order, row, person)
         await self._tell(session, order, DELEGATE_NAMED, _word(role, person, wish.name))
         return row
 
     async def revoke(self, session: AsyncSession, person: Person, order_id: str, delegate_id: str) -> None:
         """Take a code back: at once if the robot can be reached, else when it is back. Raises UnknownOrder,
         UnknownDelegate."""
-        order, role = await self.fleet.orders.theirs(session, person, order_id)
+        order, role = await self.fleet.orders.ledger.theirs(session, person, order_id)
         row = await self._delegate(session, order, role, delegate_id)
         if row.revoked_at is None:
             row.revoked_at = self.fleet.clock.utc()
-            await tell_that_it_is_over(session, self.fleet.orders, order, row)
+            await tell_that_it_is_over(session, self.fleet.orders.ledger, order, row)
             await self._tell(session, order, DELEGATE_REVOKED, _word(role, person, row.name))
 
     async def code(self, session: AsyncSession, person: Person, order_id: str, delegate_id: str) -> HandoverCode:
@@ -85,10 +87,10 @@ class Delegating:
 
     async def view(self, session: AsyncSession, delegate: Person, order_id: str) -> OrderView:
         """The order as a delegate of it may see it. Raises UnknownOrder."""
-        order, orders = await find_order(session, order_id), self.fleet.orders
+        order, ledger = await find_order(session, order_id), self.fleet.orders.ledger
         code = code_for(order, delegate, await delegates_of(session, [order]))
         facts = (await load_facts(session, [order]))[0]
-        return delegates_view(facts, code.purpose if code else None, orders.campus, orders.settings, orders.clock.utc())
+        return delegates_view(facts, code.purpose if code else None, ledger.campus, ledger.settings, ledger.clock.utc())
 
     async def _delegate(self, session: AsyncSession, order: Order, role: MyRole, delegate_id: str) -> Delegate:
         row = await session.get(Delegate, delegate_id)
@@ -98,7 +100,7 @@ class Delegating:
 
     async def _tell(self, session: AsyncSession, order: Order, kind: str, word: Word) -> None:
         await session.flush()
-        await self.fleet.orders.note(session, order.id, kind, word)
+        await self.fleet.orders.ledger.note(session, order.id, kind, word)
         if order.robot is not None and order.state is not OrderState.QUEUED and order.state not in ENDED:
             robot = await session.get_one(RobotRow, order.robot, with_for_update=True)
             codes = await self.fleet.orders.verifiers(session, order)

@@ -6,39 +6,41 @@ from typing import Final
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.accounts.errors import AddressNotAllowed
-from app.accounts.sign_in.service import find_person, may_be_sent_mail
+from app.accounts.sign_in.service import SignInDesk, find_person, may_be_sent_mail
 from app.models import Delegate, NoticeKind, Order, Person
 from app.notifications.service import tell, withdraw
+from app.orders.ledger import Ledger
 from app.orders.notifications import return_post_of, title_of
-from app.orders.service import Orders
 from app.orders.transitions import ENDED
 from protocol.parts import Purpose
 
 OVER: Final = NoticeKind.DELEGATION_OVER
 
 
-async def tell_delegate(session: AsyncSession, orders: Orders, order: Order, row: Delegate, named_by: Person) -> None:
+async def tell_delegate(
+    session: AsyncSession, ledger: Ledger, sign_in: SignInDesk, order: Order, row: Delegate, named_by: Person
+) -> None:
     """Mail a delegate their code and a link to the order. Raises AddressNotAllowed."""
     email = row.email or ""
-    if await find_person(session, email) is None and not may_be_sent_mail(email, orders.settings):
-        domains = ", ".join(orders.settings.allowed_domains)
+    if await find_person(session, email) is None and not may_be_sent_mail(email, ledger.settings):
+        domains = ", ".join(ledger.settings.allowed_domains)
         raise AddressNotAllowed(f"Nobody here has the address {email}. New addresses are those of {domains}.")
-    person = await orders.desk.person(session, email, row.named_at)
+    person = await sign_in.person(session, email, row.named_at)
     code = {"delegate_id": row.id, "purpose": row.purpose, "named_by": named_by.name}
-    await _tell(session, orders, order, row, person, NoticeKind.DELEGATED, code)
+    await _tell(session, ledger, order, row, person, NoticeKind.DELEGATED, code)
 
 
-async def tell_that_it_is_over(session: AsyncSession, orders: Orders, order: Order, row: Delegate) -> None:
+async def tell_that_it_is_over(session: AsyncSession, ledger: Ledger, order: Order, row: Delegate) -> None:
     """What has not gone out yet never does; whoever may have their code already hears that it is worthless."""
     person = await find_person(session, row.email) if row.email else None
     was_told = person is not None and await withdraw(session, person.id, _key(row, NoticeKind.DELEGATED))
     if person is not None and was_told and order.state not in ENDED:
-        await _tell(session, orders, order, row, person, OVER, {})
+        await _tell(session, ledger, order, row, person, OVER, {})
 
 
 async def _tell(
     session: AsyncSession,
-    orders: Orders,
+    ledger: Ledger,
     order: Order,
     row: Delegate,
     person: Person,
@@ -48,7 +50,7 @@ async def _tell(
     facts = {
         "sender": (await session.get_one(Person, order.sender_id)).name,
         "recipient": (await session.get_one(Person, order.recipient_id)).name,
-        "post": title_of(post_of(order, Purpose(row.purpose)), orders.campus),
+        "post": title_of(post_of(order, Purpose(row.purpose)), ledger.campus),
     }
     await tell(
         session,
@@ -57,7 +59,7 @@ async def _tell(
         order_id=order.id,
         kind=kind,
         facts={**facts, **more},
-        now=orders.clock.utc(),
+        now=ledger.clock.utc(),
     )
 
 

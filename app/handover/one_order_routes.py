@@ -117,7 +117,7 @@ async def linked_hand_over(
 async def linked_not_now(link: Link, links: LinksDep, orders: OrdersDep, session: SessionDep) -> OrderView:
     """Say that nobody can take the mail now: the robot brings it back."""
     guest = await links.open(session, link.token)
-    return await orders.not_now(session, guest.person, guest.order_id)
+    return await orders.returning.not_now(session, guest.person, guest.order_id)
 
 
 @router.post("/delegate", status_code=201, responses=NAMED)

@@ -59,7 +59,7 @@ class HandOvers:
 
     async def tap(self, session: AsyncSession, person: Person, order_id: str) -> HandoverAsked:
         """The person says that they stand at the robot. Raises UnknownOrder, NotYourTurn and what `_confirm` raises."""
-        order = await self.fleet.orders.order(session, order_id)
+        order = await self.fleet.orders.ledger.order(session, order_id)
         code = code_for(order, person, await delegates_of(session, [order]))
         if code is None and role_in(order, person) is None:
             raise unknown(order_id)
@@ -74,7 +74,7 @@ class HandOvers:
 
         Wrong digits and the lock are returned, not raised: the try must be committed.
         """
-        order = await self.fleet.orders.order(session, order_id)
+        order = await self.fleet.orders.ledger.order(session, order_id)
         delegates = await delegates_of(session, [order])
         if role_in(order, person) is None and code_for(order, person, delegates) is None:
             raise unknown(order_id)
@@ -97,7 +97,7 @@ class HandOvers:
         if lock.wrong_tries < TRIES:
             return errors.WrongDigits(f"These are not the digits. {TRIES - lock.wrong_tries} tries are left.")
         lock.locked_at = self.fleet.clock.utc()
-        await self.fleet.orders.note(session, order.id, LOCKED, word_of(order, person))
+        await self.fleet.orders.ledger.note(session, order.id, LOCKED, word_of(order, person))
         if order.robot is not None:
             sentence = f"{TRIES} wrong digits for order {order.id}: they are locked until a dispatcher releases them"
             await raise_alarm(session, order.robot, LOCKED, sentence, now=lock.locked_at)
@@ -105,12 +105,12 @@ class HandOvers:
 
     async def release_digits(self, session: AsyncSession, dispatcher: Person, order_id: str) -> Order:
         """A dispatcher lets digits be typed again. Raises UnknownOrder."""
-        order, _ = await self.fleet.orders.theirs(session, dispatcher, order_id)
+        order, _ = await self.fleet.orders.ledger.theirs(session, dispatcher, order_id)
         lock = await session.get(DigitLock, order_id, with_for_update=True)
         if lock is not None and lock.wrong_tries:
             lock.wrong_tries, lock.locked_at = 0, None
             word = Word(By.DISPATCHER, person_id=dispatcher.id)
-            await self.fleet.orders.note(session, order_id, "digits_released", word)
+            await self.fleet.orders.ledger.note(session, order_id, "digits_released", word)
             if order.robot is not None:
                 await clear_alarms(session, order.robot, LOCKED, self.fleet.clock.utc())
         return order
@@ -140,7 +140,7 @@ class HandOvers:
                 expires_at=by_its_clock(now + lifetime, robot.clock_off_s),
             )
             asked = await ask(session, self.fleet, robot, wish, person.id)
-            await self.fleet.orders.note(session, order.id, CONFIRM_REQUESTED, word_of(order, person, how))
+            await self.fleet.orders.ledger.note(session, order.id, CONFIRM_REQUESTED, word_of(order, person, how))
         return HandoverAsked(
             order_id=order.id,
             purpose=purpose.value,

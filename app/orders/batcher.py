@@ -16,9 +16,8 @@ from app.accounts.sign_in.service import look_up_people
 from app.core.database.database import Database, write_all
 from app.core.errors import ServiceError
 from app.models import IdempotencyKey, Person
-from app.orders.changes.placing import Draft
-from app.orders.idempotency import Answer, Earlier, earlier_answers, key_row
-from app.orders.service import Orders
+from app.orders.changes.placing import Draft, Placing
+from app.orders.idempotency import Answer, Earlier, Running, earlier_answers, key_row
 from app.orders.views.schemas import NewOrder, OrderView, etag_of
 
 AT_ONCE: Final = 20
@@ -65,11 +64,12 @@ class _Asked:
 
 
 @dataclass
-class OrderDesk:
-    """Where people's requests for orders come in."""
+class OrderBatcher:
+    """The entrance for people's requests to place an order."""
 
     database: Database
-    orders: Orders
+    placing: Placing
+    running: Running = field(default_factory=Running)
     _waiting: list[_Asked] = field(default_factory=list)
     _at_work: asyncio.Task[None] | None = None
 
@@ -78,7 +78,7 @@ class OrderDesk:
 
         Raises StillRunning, KeyReused, and what `Placing.draft` raises.
         """
-        with self.orders.running.only_once(person.id, key):
+        with self.running.only_once(person.id, key):
             asked = _Asked(person, key, wish, asyncio.get_running_loop().create_future())
             self._waiting.append(asked)
             if self._at_work is None:
@@ -113,11 +113,11 @@ class OrderDesk:
 
     async def _in_one_transaction(self, asked: Sequence[_Asked]) -> list[Placed | ServiceError]:
         async with self.database.transaction() as session:
-            earlier = await earlier_answers(session, [one.whose for one in asked], self.orders.clock.utc())
+            earlier = await earlier_answers(session, [one.whose for one in asked], self.placing.ledger.clock.utc())
             known = await look_up_people(session, {address for one in asked for address in one.wish.addresses})
             outcomes = [await self._outcome(session, one, earlier.get(one.whose), known) for one in asked]
             new = [one for one in outcomes if isinstance(one, _New)]
-            await self.orders.write(session, [one.draft for one in new])
+            await self.placing.write(session, [one.draft for one in new])
             await write_all(session, IdempotencyKey, [one.key for one in new])
         return [one.placed if isinstance(one, _New) else one for one in outcomes]
 
@@ -128,12 +128,12 @@ class OrderDesk:
             if earlier is not None:
                 answer = earlier.answer_to(asked.wish)
                 return Placed(OrderView.model_validate(answer.body), answer.headers, again=True)
-            return self._new(asked, await self.orders.draft(session, asked.person, asked.wish, known))
+            return self._new(asked, await self.placing.draft(session, asked.person, asked.wish, known))
         except ServiceError as refusal:
             return refusal
 
     def _new(self, asked: _Asked, draft: Draft) -> _New:
-        view = self.orders.first_view(draft, asked.person)
+        view = self.placing.first_view(draft, asked.person)
         headers = {"Location": f"/api/v1/orders/{view.id}", "ETag": etag_of(view)}
         answer = Answer(headers, view.model_dump(mode="json"))
         key = key_row(*asked.whose, asked.wish, answer, draft.facts.order.created_at)

@@ -13,15 +13,12 @@ from typing import Any, Final
 from sqlalchemy import insert
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.accounts.sign_in.service import SignInDesk
 from app.core.database.database import after_commit, connection_of
-from app.core.server_key import ServerKey
 from app.core.settings import Settings
 from app.models import Order, OrderEvent, OrderState, Person, Role
 from app.models.orders.order_events import MOVED
 from app.notifications.service import tell_all
 from app.orders import errors
-from app.orders.idempotency import Running
 from app.orders.nearness import is_near
 from app.orders.notifications import TOLD, facts_of, notices_about
 from app.orders.transitions import NEVER_LEFT_ITS_SENDER, By, is_allowed, is_old_news
@@ -51,16 +48,16 @@ class Word:
 
 @dataclass(frozen=True)
 class Ledger:
-    """The orders of one campus. `on_change` is called with an order's id after the commit of each change."""
+    """States and events of the orders of one campus. Each kind of change (`changes/`) has it as a part.
+
+    `on_change` is called with an order's id after the commit of each change.
+    """
 
     campus: CampusMap
     settings: Settings
     clock: Clock
     feed: Feed
-    key: ServerKey
-    desk: SignInDesk
     on_change: list[Callable[[str], None]] = field(default_factory=list)
-    running: Running = field(default_factory=Running)
 
     @cached_property
     def ways(self) -> Ways:
@@ -210,6 +207,10 @@ class Ledger:
     def view_of(self, facts: OrderFacts, role: MyRole, person_id: str) -> OrderView:
         """The order as it is now, for one person in one role."""
         return order_view(facts, role, person_id, self.campus, self.settings, self.clock.utc())
+
+    async def view(self, session: AsyncSession, order: Order, role: MyRole, person: Person) -> OrderView:
+        """Return the order as it is after a change, for the person who has made it."""
+        return self.view_of((await load_facts(session, [order]))[0], role, person.id)
 
     def changed(self, order_id: str) -> None:
         """Wake whoever waits for changes of orders. After the commit."""

@@ -1,16 +1,20 @@
-"""What can be done with an order, put together: each module beside this one is one kind of doing."""
+"""The orders of one campus, composed: the ledger, and one part for each kind of change."""
 
 from dataclasses import dataclass
 
 from sqlmodel.ext.asyncio.session import AsyncSession
 
+from app.accounts.sign_in.service import SignInDesk
+from app.core.server_key import ServerKey
 from app.models import Order, Person
 from app.orders.changes.cancelling import Cancelling
+from app.orders.changes.intervening import Intervening
 from app.orders.changes.passing_on import PassingOn
 from app.orders.changes.placing import Placing
+from app.orders.changes.returning import Returning
 from app.orders.changes.waiting import Waiting
 from app.orders.custody.codes import verifiers
-from app.orders.ledger import Word, unknown
+from app.orders.ledger import Ledger, Word, unknown
 from app.orders.views.schemas import OrderView
 from app.orders.views.views import load_facts, view_for
 from protocol.to_robot import Verifier
@@ -19,18 +23,42 @@ __all__ = ["Orders", "Word"]
 
 
 @dataclass(frozen=True)
-class Orders(Placing, Cancelling, PassingOn, Waiting):
-    """The orders of one campus."""
+class Orders:
+    """The orders of one campus. `key` derives their hand-over codes."""
+
+    ledger: Ledger
+    key: ServerKey
+    placing: Placing
+    waiting: Waiting
+    returning: Returning
+    cancelling: Cancelling
+    intervening: Intervening
+    passing_on: PassingOn
+
+    @classmethod
+    def of(cls, ledger: Ledger, key: ServerKey, sign_in: SignInDesk) -> "Orders":
+        """Compose the parts on one ledger."""
+        returning = Returning(ledger)
+        return cls(
+            ledger,
+            key,
+            placing=Placing(ledger, sign_in),
+            waiting=Waiting(ledger),
+            returning=returning,
+            cancelling=Cancelling(ledger, returning),
+            intervening=Intervening(ledger, returning),
+            passing_on=PassingOn(ledger),
+        )
 
     async def view(self, session: AsyncSession, person: Person, order_id: str) -> OrderView:
-        """One order as this person sees it. Raises UnknownOrder, for what is not theirs too."""
+        """Return one order as this person sees it. Raises UnknownOrder, also for an order of others."""
         order = await session.get(Order, order_id)  # to look at: readers lock nothing
-        facts = await load_facts(session, [order]) if order is not None else []
-        view = view_for(person, facts[0], self.campus, self.settings, self.clock.utc()) if facts else None
+        facts, ledger = await load_facts(session, [order]) if order is not None else [], self.ledger
+        view = view_for(person, facts[0], ledger.campus, ledger.settings, ledger.clock.utc()) if facts else None
         if view is None:
             raise unknown(order_id)
         return view
 
     async def verifiers(self, session: AsyncSession, *orders: Order) -> tuple[Verifier, ...]:
-        """What a robot needs to check the codes of these orders, delegates' too, with no network."""
+        """Return what a robot needs to check the codes of these orders, delegates' too, with no network."""
         return await verifiers(session, self.key, orders)

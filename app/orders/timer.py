@@ -63,9 +63,9 @@ class Timer:
 
     async def tick(self) -> None:
         """Everything that is due now, once."""
-        if holds_on(self.orders.clock):
+        if holds_on(self.orders.ledger.clock):
             return  # what is done here is done for good
-        now = self.orders.clock.utc()
+        now = self.orders.ledger.clock.utc()
         async with self.database.reading() as session:
             expired = (await session.exec(select(Order.id).where(self._waits_too_long(now)).limit(AT_ONCE))).all()
             late = (await session.exec(select(Order.id).where(self._is_late(now)).limit(AT_ONCE))).all()
@@ -80,10 +80,10 @@ class Timer:
                 await self.standing.make_next(session, standing_id)
         self._looked_at = now
         for order_id in begun:
-            self.orders.changed(order_id)
+            self.orders.ledger.changed(order_id)
 
     def _waits_too_long(self, now: datetime) -> ColumnElement[bool]:
-        since = now - timedelta(seconds=self.orders.settings.queue_limit_s)
+        since = now - timedelta(seconds=self.orders.ledger.settings.queue_limit_s)
         begun = or_(col(Order.not_before).is_(None), col(Order.not_before) < since)
         return and_(col(Order.state) == OrderState.QUEUED, col(Order.created_at) < since, begun)
 
@@ -100,23 +100,23 @@ class Timer:
 
     async def _expire(self, order_id: str) -> None:
         async with self.database.transaction() as session:
-            order = await self.orders.order(session, order_id)
+            order = await self.orders.ledger.order(session, order_id)
             if order.state is OrderState.QUEUED:  # else a robot has come after all
-                await self.orders.move(session, order_id, OrderState.EXPIRED, Word(By.TIMER, reason=NOBODY_CAME))
+                await self.orders.ledger.move(session, order_id, OrderState.EXPIRED, Word(By.TIMER, reason=NOBODY_CAME))
 
     async def _tell_of_delay(self, order_id: str) -> None:
         """With what is expected now. Where nothing newer was worked out, as if it were fetched from here on: rather too
         late than wrong again. Where no time is known, without one: the next that is known is a new promise."""
         async with self.database.transaction() as session:
-            order = await self.orders.order(session, order_id)
-            now = self.orders.clock.utc()
+            order = await self.orders.ledger.order(session, order_id)
+            now = self.orders.ledger.clock.utc()
             if order.state in NOT_ON_ITS_WAY or order.window_to is None or order.window_to >= self._late_since(now):
                 return  # it has moved on, or another process has told of it
             self._promise_anew(order, now)
             order.delayed_at = now
-            await self.orders.note(session, order_id, DELAYED, Word(By.TIMER))
+            await self.orders.ledger.note(session, order_id, DELAYED, Word(By.TIMER))
             facts = (await load_facts(session, [order]))[0]
-            gaps = facts_of(order, facts.people, self.orders.campus, self.orders.settings, now)
+            gaps = facts_of(order, facts.people, self.orders.ledger.campus, self.orders.ledger.settings, now)
             await tell_all(session, notices_of_delay(order, gaps, facts.events))
 
     def _promise_anew(self, order: Order, now: datetime) -> None:
@@ -126,4 +126,4 @@ class Timer:
             return
         promise(order, None, now)
         with suppress(ServiceError):  # a post that the map has lost since: nothing is known any more
-            promise(order, self.orders.window(order.load_post, order.to_post), now)
+            promise(order, self.orders.placing.window(order.load_post, order.to_post), now)

@@ -99,7 +99,7 @@ class Fleet:
     @cached_property
     def learning(self) -> Learning:
         """Return what is learned from robots of how long things take."""
-        return Learning(self.database, self.orders.estimates, self.clock)
+        return Learning(self.database, self.orders.ledger.estimates, self.clock)
 
     @cached_property
     def spending(self) -> Spending:

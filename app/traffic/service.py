@@ -101,7 +101,7 @@ class TrafficDesk:
             call()
 
     def _new_timetable(self) -> Timetable:
-        return Timetable(self._fleet.campus, self._fleet.settings, estimates=self._fleet.orders.estimates)
+        return Timetable(self._fleet.campus, self._fleet.settings, estimates=self._fleet.orders.ledger.estimates)
 
     def _vanished(self, picture: Picture, now: datetime) -> frozenset[str]:
         """Silent for long, and not at home: without network robots are for minutes, with a flat battery for good."""

@@ -223,7 +223,9 @@ class Mailroom:
     async def _move(self, order_id: str, to: OrderState, by: By, known: dict[str, Any]) -> bool:
         by = By.DISPATCHER if to is OrderState.ASSIGNED else by
         async with self.app.state.parts.database.transaction() as session:
-            moved: bool = await self.app.state.parts.orders.move(session, order_id, to, Word(by, robot="r1", **known))
+            moved: bool = await self.app.state.parts.orders.ledger.move(
+                session, order_id, to, Word(by, robot="r1", **known)
+            )
             return moved
 
     def send_mails(self) -> None:

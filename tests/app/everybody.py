@@ -187,7 +187,7 @@ class Everybody:
         orders = self.app.state.parts.orders
         wish = NewOrder(from_post="post1", to_post="post4", recipient=recipient)
         order_id = await placed(orders, session, sender, wish)
-        await orders.move(session, order_id, OrderState.ASSIGNED, Word(By.DISPATCHER, robot="r1"))
+        await orders.ledger.move(session, order_id, OrderState.ASSIGNED, Word(By.DISPATCHER, robot="r1"))
         return order_id
 
 

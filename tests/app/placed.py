@@ -10,6 +10,6 @@ from app.orders.views.schemas import NewOrder
 
 async def placed(orders: Orders, session: AsyncSession, person: Person, wish: NewOrder) -> str:
     """Its id."""
-    draft = await orders.draft(session, person, wish, await look_up_people(session, wish.addresses))
-    await orders.write(session, [draft])
+    draft = await orders.placing.draft(session, person, wish, await look_up_people(session, wish.addresses))
+    await orders.placing.write(session, [draft])
     return draft.facts.order.id

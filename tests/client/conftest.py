@@ -57,7 +57,7 @@ class Campus:
         for one in states:
             word = Word(By.DISPATCHER if one == "assigned" else By.ROBOT, robot="r1")
             async with state.database.transaction() as session:
-                await state.orders.move(session, order_id, OrderState(one), word)
+                await state.orders.ledger.move(session, order_id, OrderState(one), word)
 
 
 @pytest.fixture

@@ -87,8 +87,8 @@ class Scene:
                 not_before=self.clock.utc() + timedelta(hours=2) if what == "Books" else None,
                 priority=Priority.LOW if what == "Exam sheets" else Priority.NORMAL,
             )
-            draft = await self.state.orders.draft(session, person, wish, {person.email: person})
-            await self.state.orders.write(session, [draft])
+            draft = await self.state.orders.placing.draft(session, person, wish, {person.email: person})
+            await self.state.orders.placing.write(session, [draft])
             order_id = draft.facts.order.id
             await self._go(session, order_id, robot, _way_to(to))
             order = await session.get_one(Order, order_id)
@@ -102,8 +102,8 @@ class Scene:
             person = await self.state.sign_in_desk.person(session, "ada.lovelace@campus.example", self.clock.utc())
             known = {person.email: person}
             wish = NewOrder(from_post="post1", to_post="post4", recipient=person.email, not_before=later)
-            drafts = [await self.state.orders.draft(session, person, wish, known) for _ in range(count)]
-            await self.state.orders.write(session, drafts)
+            drafts = [await self.state.orders.placing.draft(session, person, wish, known) for _ in range(count)]
+            await self.state.orders.placing.write(session, drafts)
         return [draft.facts.order.id for draft in drafts]
 
     async def lets_wait(self, robot: str, from_post: str, to_post: str, for_robot: str, minutes: float) -> None:
@@ -118,7 +118,7 @@ class Scene:
     async def _go(self, session: Any, order_id: str, robot: str | None, way: Sequence[str]) -> None:
         for state in way:
             by = By.DISPATCHER if state == "assigned" else By.ROBOT
-            await self.state.orders.move(
+            await self.state.orders.ledger.move(
                 session, order_id, OrderState(state), Word(by, robot=robot, robot_at=self.clock.utc())
             )
 
@@ -127,10 +127,10 @@ class Scene:
         now = self.clock.utc()
         async with self.state.database.transaction() as session:
             reason = "The lid does not close."
-            await self.state.orders.move(
+            await self.state.orders.ledger.move(
                 session, ids[0], OrderState.ATTENTION, Word(By.ROBOT, robot="r1", reason=reason)
             )
-            await self.state.orders.note(session, ids[1], "digits_locked", Word(By.RECIPIENT))
+            await self.state.orders.ledger.note(session, ids[1], "digits_locked", Word(By.RECIPIENT))
             session.add(DigitLock(order_id=ids[1], wrong_tries=5, locked_at=now))
             at_post = (await session.get_one(RobotRow, "r1")).post
             session.add(Alarm(robot="r1", name="stall", reason=reason, post=at_post, at=now - timedelta(minutes=3)))

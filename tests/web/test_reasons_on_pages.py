@@ -48,8 +48,10 @@ async def has_gone_through(scene: Scene, order_id: str, robot: str, reasons: lis
 
 async def stops(scene: Scene, order_id: str, word: Word) -> None:
     async with scene.state.database.transaction() as session:
-        await scene.state.orders.move(session, order_id, OrderState.ASSIGNED, Word(By.DISPATCHER, robot=word.robot))
-        await scene.state.orders.move(session, order_id, OrderState.ATTENTION, word)
+        await scene.state.orders.ledger.move(
+            session, order_id, OrderState.ASSIGNED, Word(By.DISPATCHER, robot=word.robot)
+        )
+        await scene.state.orders.ledger.move(session, order_id, OrderState.ATTENTION, word)
 
 
 async def texts(page: Page, selector: str) -> list[str]:

@@ -44,7 +44,7 @@ class NearestRobots:
 
     def __init__(self, fleet: Fleet) -> None:
         self._fleet = fleet
-        self._ways = fleet.orders.ways
+        self._ways = fleet.orders.ledger.ways
         self._charges = Charges(self._ways, fleet.settings, fleet.spending.rates)
         self.left = 0
         self.own: set[str] = set()
@@ -84,7 +84,7 @@ class NearestRobots:
 
     async def _give(self, session: AsyncSession, order_id: str, robot: str) -> None:
         self.own.add(order_id)
-        await self._fleet.orders.move(session, order_id, OrderState.ASSIGNED, Word(By.DISPATCHER, robot=robot))
+        await self._fleet.orders.ledger.move(session, order_id, OrderState.ASSIGNED, Word(By.DISPATCHER, robot=robot))
         log.info("assigned", order=order_id, robot=robot)
 
     async def _assign_what_can_be(

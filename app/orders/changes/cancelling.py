@@ -1,5 +1,6 @@
 """Cancelling: at once, on the word of the robot that is on its way, or, with the mail aboard, by calling it back."""
 
+from dataclasses import dataclass
 from typing import Final
 
 from sqlmodel.ext.asyncio.session import AsyncSession
@@ -7,39 +8,42 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 from app.models import Order, OrderState, Person
 from app.orders import errors
 from app.orders.changes.returning import Returning
-from app.orders.ledger import Word
+from app.orders.ledger import Ledger, Word
 from app.orders.transitions import ENDED, ROBOT_COMING, By
 from app.orders.views.schemas import OrderView
-from app.orders.views.views import MyRole, is_cancel_under_way, is_cancellable, load_facts
+from app.orders.views.views import MyRole, is_cancel_under_way, is_cancellable
 
 CANCEL_REQUESTED: Final = "cancel_requested"
 
 
-class Cancelling(Returning):
-    """What ends an order before it is delivered."""
+@dataclass(frozen=True)
+class Cancelling:
+    """End an order before it is delivered."""
+
+    ledger: Ledger
+    returning: Returning
 
     async def cancel(self, session: AsyncSession, person: Person, order_id: str, if_match: str) -> OrderView:
         """Cancel at once, or ask the robot to let go, or to bring the mail back; until it answers the order goes on.
 
         Raises UnknownOrder, OrderChanged, NotCancellable.
         """
-        order, role = await self.theirs(session, person, order_id, if_match)
+        order, role = await self.ledger.theirs(session, person, order_id, if_match)
         if not is_cancel_under_way(order):
             if not is_cancellable(order, role):
                 raise errors.NotCancellable(_why_not_cancellable(order, role))
             await self._cancel(session, order, Word(By(role), person_id=person.id))
-        facts = (await load_facts(session, [order]))[0]
-        return self.view_of(facts, role, person.id)
+        return await self.ledger.view(session, order, role, person)
 
     async def _cancel(self, session: AsyncSession, order: Order, word: Word) -> None:
         if order.state is OrderState.QUEUED:
-            await self.move(session, order.id, OrderState.CANCELLED, word)
+            await self.ledger.move(session, order.id, OrderState.CANCELLED, word)
         elif order.state in ROBOT_COMING:
-            order.cancel_requested_at, order.cancel_requested_by = self.clock.utc(), word.by
+            order.cancel_requested_at, order.cancel_requested_by = self.ledger.clock.utc(), word.by
             order.let_go_by = order.robot
-            await self.note(session, order.id, CANCEL_REQUESTED, word)
+            await self.ledger.note(session, order.id, CANCEL_REQUESTED, word)
         else:
-            await self.call_back(session, order, word)
+            await self.returning.call_back(session, order, word)
 
 
 def _why_not_cancellable(order: Order, role: MyRole) -> str:

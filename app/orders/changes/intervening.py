@@ -1,24 +1,30 @@
 """What a dispatcher does when something is stuck, or is wanted otherwise than the rules would have it."""
 
+from dataclasses import dataclass
 from typing import Final, Literal
 
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.models import Evidence, Handover, Order, OrderState, Person, Priority, RobotRow
+from app.models import Handover, Order, OrderState, Person, Priority, RobotRow
 from app.orders import errors, stops
 from app.orders.changes.returning import Returning
+from app.orders.custody.by_hand import taken_out_by_hand
 from app.orders.custody.codes import Holder
-from app.orders.custody.unproven import claim_of_handing_out, is_true, last_handover, was_aboard, was_never_aboard
-from app.orders.ledger import Word
+from app.orders.custody.unproven import (
+    claim_of_handing_out,
+    is_true,
+    robot_with_mail,
+    was_aboard,
+    was_never_aboard,
+)
+from app.orders.ledger import Ledger, Word
 from app.orders.transitions import ENDED, MAIL_ABOARD, ROBOT_COMING, By
 from app.orders.views.schemas import OrderView
-from app.orders.views.views import load_facts
 from protocol.parts import Purpose, StopAction
 
 WayOut = Literal["resume", "returning", "held", "queued", "cancelled", "handed_over"]
 PRIORITY_CHANGED: Final = "priority_changed"
 REASSIGNED: Final = "reassigned"
-BY_HAND: Final = "dispatcher"
 TAKEN_OUT: Final = "taken_out"
 """By hand, of mail whose order had ended already: the order stays as it ended."""
 DESTINATION: Final = {
@@ -29,16 +35,20 @@ DESTINATION: Final = {
 }
 
 
-class Intervening(Returning):
-    """On a dispatcher's word. The routes let nobody else in."""
+@dataclass(frozen=True)
+class Intervening:
+    """Change an order on a dispatcher's request. The routes check the role."""
+
+    ledger: Ledger
+    returning: Returning
 
     async def stop_for_attention(
         self, session: AsyncSession, person: Person, order_id: str, reason: str, if_match: str = ""
     ) -> OrderView:
         """A person has to see to it: what its robot does not say any more is decided by hand."""
-        order = await self._theirs(session, person, order_id, if_match)
-        await self.move(session, order.id, OrderState.ATTENTION, _word(person, reason))
-        return await self._shown(session, order, person)
+        order, _ = await self.ledger.theirs(session, person, order_id, if_match)
+        await self.ledger.move(session, order.id, OrderState.ATTENTION, _word(person, reason))
+        return await self.ledger.view(session, order, "dispatcher", person)
 
     async def resolve(
         self, session: AsyncSession, person: Person, order_id: str, to: WayOut, reason: str | None, if_match: str = ""
@@ -48,13 +58,13 @@ class Intervening(Returning):
 
         Raises UnknownOrder, OrderChanged, TransitionRefused, NothingToResume, NothingClaimed.
         """
-        order = await self._theirs(session, person, order_id, if_match)
+        order, _ = await self.ledger.theirs(session, person, order_id, if_match)
         before = order.state_before_attention
         if before is None:
             raise errors.TransitionRefused(f"Order {order.id} is {order.state}: it needs no attention.")
         word = _word(person, reason)
         await _WAYS_OUT[to](self, session, order, before, word)
-        return await self._shown(session, order, person)
+        return await self.ledger.view(session, order, "dispatcher", person)
 
     async def _resume(self, session: AsyncSession, order: Order, before: OrderState, word: Word) -> None:
         left = await stops.stops_of_order(session, order.id, order.robot or "")
@@ -62,95 +72,76 @@ class Intervening(Returning):
             raise errors.NothingToResume("Its robot does not come for it any more. Queue the order again.")
         if not left:  # the robot has given up; with the mail aboard it can be sent once more
             action = DESTINATION[before]
-            post = order.to_post if action is StopAction.RECEIVE else self.return_post(order)
-            await self.send(session, order, action, post)
+            post = order.to_post if action is StopAction.RECEIVE else self.returning.return_post(order)
+            await self.returning.send(session, order, action, post)
         await self._found_aboard(session, order, before)
-        await self.move(session, order.id, before, word)
+        await self.ledger.move(session, order.id, before, word)
 
     async def _found_aboard(self, session: AsyncSession, order: Order, before: OrderState) -> None:
         """On the word of whoever decides what becomes of it."""
         if before in MAIL_ABOARD:
-            await was_aboard(session, order.id, self.clock.utc())
+            await was_aboard(session, order.id, self.ledger.clock.utc())
 
     async def _handed_over(self, session: AsyncSession, order: Order, before: OrderState, word: Word) -> None:
         """Whoever should have it was asked, and has it."""
         claim = await claim_of_handing_out(session, order.id)
         if claim is None:
             raise errors.NothingClaimed("Its robot does not say that the mail is out.")
-        await is_true(session, claim, self.clock.utc())
-        await self.move(session, order.id, _where_it_went(order, claim), word)
+        await is_true(session, claim, self.ledger.clock.utc())
+        await self.ledger.move(session, order.id, _where_it_went(order, claim), word)
 
     async def _return(self, session: AsyncSession, order: Order, before: OrderState, word: Word) -> None:
         await self._found_aboard(session, order, before)
-        await self.bring_back(session, order)
-        await self.move(session, order.id, OrderState.RETURNING, word)
+        await self.returning.bring_back(session, order)
+        await self.ledger.move(session, order.id, OrderState.RETURNING, word)
 
     async def _hold(self, session: AsyncSession, order: Order, before: OrderState, word: Word) -> None:
         if before in MAIL_ABOARD:
             await self.take_into_hands(session, order, word)
         else:  # of what was passed on: the mailroom has it already
             order.let_go_by = order.robot
-            await self.move(session, order.id, OrderState.HELD, word)
+            await self.ledger.move(session, order.id, OrderState.HELD, word)
 
     async def _queue(self, session: AsyncSession, order: Order, before: OrderState, word: Word) -> None:
-        was_a_claim = await was_never_aboard(session, order.id, self.clock.utc())
+        was_a_claim = await was_never_aboard(session, order.id, self.ledger.clock.utc())
         if before in MAIL_ABOARD and not was_a_claim:
             raise errors.TransitionRefused(f"Robot {order.robot} has the mail of order {order.id}: pass it on.")
         order.let_go_by, order.avoided_robot = order.robot, order.robot
-        await self.move(session, order.id, OrderState.QUEUED, word)
+        await self.ledger.move(session, order.id, OrderState.QUEUED, word)
 
     async def _cancel_by_hand(self, session: AsyncSession, order: Order, before: OrderState, word: Word) -> None:
         order.let_go_by = order.robot
-        await self.move(session, order.id, OrderState.CANCELLED, word)
+        await self.ledger.move(session, order.id, OrderState.CANCELLED, word)
 
     async def hold(
         self, session: AsyncSession, person: Person, order_id: str, reason: str | None, if_match: str = ""
     ) -> OrderView:
         """Somebody of the mailroom has taken the mail out of the robot by hand. Raises TransitionRefused."""
-        order = await self._theirs(session, person, order_id, if_match)
+        order, _ = await self.ledger.theirs(session, person, order_id, if_match)
         await self.take_into_hands(session, order, _word(person, reason))
-        return await self._shown(session, order, person)
+        return await self.ledger.view(session, order, "dispatcher", person)
 
     async def take_into_hands(self, session: AsyncSession, order: Order, word: Word) -> None:
         """Custody by a dispatcher's word, the only one that no robot has written; the robot is told to forget it."""
         if order.state is OrderState.HELD:
             return  # the mailroom has it already
-        if order.state in ENDED and await self.robot_with_mail(session, order) is None:
+        if order.state in ENDED and await robot_with_mail(session, order) is None:
             raise errors.TransitionRefused(f"Order {order.id} is {order.state}, and no robot has its mail.")
-        await was_aboard(session, order.id, self.clock.utc())
+        await was_aboard(session, order.id, self.ledger.clock.utc())
         if order.robot is not None:
             order.let_go_by = order.robot
-            session.add(self._taken_by_hand(order, word))
+            post, now = self.returning.return_post(order), self.ledger.clock.utc()
+            session.add(taken_out_by_hand(order, f"held-{order.id}", post, word.person_id, now))
         if order.state in ENDED:
-            await self.note(session, order.id, TAKEN_OUT, word)
+            await self.ledger.note(session, order.id, TAKEN_OUT, word)
         else:
-            await self.move(session, order.id, OrderState.HELD, word)
-
-    async def is_taken_by_hand(self, session: AsyncSession, order: Order) -> bool:
-        """Whether the mail is out on a dispatcher's word: the robot that had it does not know."""
-        last = await last_handover(session, order.id)
-        return last is not None and last.how == BY_HAND
-
-    def _taken_by_hand(self, order: Order, word: Word) -> Handover:
-        return Handover(
-            order_id=order.id,
-            stop_id=f"held-{order.id}"[:64],
-            purpose=Purpose.RETURN,
-            robot=order.robot or "",
-            post=self.return_post(order),
-            how=BY_HAND,
-            evidence=Evidence.DISPATCHER,
-            holder="mailroom",
-            person_id=word.person_id,
-            robot_at=self.clock.utc(),
-            at=self.clock.utc(),
-        )
+            await self.ledger.move(session, order.id, OrderState.HELD, word)
 
     async def reassign(
         self, session: AsyncSession, person: Person, order_id: str, robot: str | None, if_match: str = ""
     ) -> OrderView:
         """Another robot fetches it: this one if named, else any other. Raises NotReassignable, UnknownRobotWanted."""
-        order = await self._theirs(session, person, order_id, if_match)
+        order, _ = await self.ledger.theirs(session, person, order_id, if_match)
         if order.state is not OrderState.QUEUED and order.state not in ROBOT_COMING:
             raise errors.NotReassignable(f"The order is {order.state}: only mail that is not aboard can change robots.")
         if robot is not None and await session.get(RobotRow, robot) is None:
@@ -158,28 +149,21 @@ class Intervening(Returning):
         order.wanted_robot = robot
         order.avoided_robot = order.robot if robot is None else None
         if order.state in ROBOT_COMING and order.robot != robot:
-            order.reassign_requested_at, order.let_go_by = self.clock.utc(), order.robot
-        await self.note(session, order.id, REASSIGNED, _word(person, f"to {robot}" if robot else None))
-        return await self._shown(session, order, person)
+            order.reassign_requested_at, order.let_go_by = self.ledger.clock.utc(), order.robot
+        await self.ledger.note(session, order.id, REASSIGNED, _word(person, f"to {robot}" if robot else None))
+        return await self.ledger.view(session, order, "dispatcher", person)
 
     async def prioritise(
         self, session: AsyncSession, person: Person, order_id: str, priority: Priority, if_match: str = ""
     ) -> OrderView:
         """Fetch it sooner, or later, than others. Raises TransitionRefused for an order that has ended."""
-        order = await self._theirs(session, person, order_id, if_match)
+        order, _ = await self.ledger.theirs(session, person, order_id, if_match)
         if order.state in ENDED:
             raise errors.TransitionRefused(f"Order {order.id} is {order.state}: its priority means nothing any more.")
         if order.priority is not priority:
             order.priority = priority
-            await self.note(session, order.id, PRIORITY_CHANGED, _word(person, priority))
-        return await self._shown(session, order, person)
-
-    async def _theirs(self, session: AsyncSession, person: Person, order_id: str, if_match: str) -> Order:
-        return (await self.theirs(session, person, order_id, if_match))[0]
-
-    async def _shown(self, session: AsyncSession, order: Order, person: Person) -> OrderView:
-        facts = (await load_facts(session, [order]))[0]
-        return self.view_of(facts, "dispatcher", person.id)
+            await self.ledger.note(session, order.id, PRIORITY_CHANGED, _word(person, priority))
+        return await self.ledger.view(session, order, "dispatcher", person)
 
 
 _WAYS_OUT: Final = {

@@ -4,21 +4,25 @@ A robot that can carry its mail no further (flat, jammed, cut off from the recip
 there another robot carries it on: the same order, with the same codes, and one more link in its chain of custody.
 """
 
+from dataclasses import dataclass
+
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.models import Evidence, Handover, Order, OrderState, Person, RobotRow
+from app.models import OrderState, Person, RobotRow
 from app.orders import errors
-from app.orders.changes.intervening import BY_HAND, Intervening
+from app.orders.custody.by_hand import taken_out_by_hand
 from app.orders.custody.unproven import was_aboard
-from app.orders.ledger import Word
+from app.orders.ledger import Ledger, Word
 from app.orders.transitions import CARRIED, By
 from app.orders.views.schemas import OrderView
 from app.orders.window import arrival_window, promise
-from protocol.parts import Purpose
 
 
-class PassingOn(Intervening):
-    """On a dispatcher's word. The routes let nobody else in."""
+@dataclass(frozen=True)
+class PassingOn:
+    """Pass mail on to another robot, on a dispatcher's request. The routes check the role."""
+
+    ledger: Ledger
 
     async def pass_on(
         self,
@@ -31,21 +35,22 @@ class PassingOn(Intervening):
     ) -> OrderView:
         """Somebody of the mailroom has taken the mail out at this post (None: where its robot was seen last); another
         robot fetches it there. Raises UnknownOrder, OrderChanged, NothingToPassOn, UnknownPost, SamePost."""
-        order = await self._theirs(session, person, order_id, if_match)
+        order, _ = await self.ledger.theirs(session, person, order_id, if_match)
         if (order.state_before_attention or order.state) not in CARRIED or order.robot is None:
             raise errors.NothingToPassOn(f"The order is {order.state}: no robot is bringing its mail to the recipient.")
         post = self._known(post or await self._seen_at(session, order.robot), order.robot)
         if post == order.to_post:
             raise errors.SamePost("The mail is at its recipient's post: there is no way left to carry it.")
         word = Word(By.DISPATCHER, person_id=person.id, post=post, reason=reason)
-        await was_aboard(session, order.id, self.clock.utc())
-        session.add(self._taken_out(order, post, word))
+        now = self.ledger.clock.utc()
+        await was_aboard(session, order.id, now)
+        session.add(taken_out_by_hand(order, f"passed-on-{order.version}-{order.id}", post, person.id, now))
         order.passed_on_at_post = post
-        promise(order, arrival_window(self.estimates, post, order.to_post, self.clock.utc()), self.clock.utc())
+        promise(order, arrival_window(self.ledger.estimates, post, order.to_post, now), now)
         order.let_go_by = order.avoided_robot = order.robot
         order.wanted_robot = None
-        await self.move(session, order.id, OrderState.QUEUED, word)
-        return await self._shown(session, order, person)
+        await self.ledger.move(session, order.id, OrderState.QUEUED, word)
+        return await self.ledger.view(session, order, "dispatcher", person)
 
     async def _seen_at(self, session: AsyncSession, robot: str) -> str | None:
         row = await session.get(RobotRow, robot)
@@ -54,23 +59,6 @@ class PassingOn(Intervening):
     def _known(self, post: str | None, robot: str) -> str:
         if post is None:
             raise errors.UnknownPost(f"Robot {robot} has been seen nowhere yet: say at which post the mail is.")
-        if post not in self.campus.posts:
+        if post not in self.ledger.campus.posts:
             raise errors.UnknownPost(f"There is no post {post!r} on this campus.")
         return post
-
-    def _taken_out(self, order: Order, post: str, word: Word) -> Handover:
-        """From here on the mailroom answers for it, on the dispatcher's word."""
-        now = self.clock.utc()
-        return Handover(
-            order_id=order.id,
-            stop_id=f"passed-on-{order.version}-{order.id}"[:64],
-            purpose=Purpose.RETURN,
-            robot=order.robot or "",
-            post=post,
-            how=BY_HAND,
-            evidence=Evidence.DISPATCHER,
-            holder="mailroom",
-            person_id=word.person_id,
-            robot_at=now,
-            at=now,
-        )

@@ -7,7 +7,7 @@ from typing import Any
 
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.accounts.sign_in.service import look_up_people, may_be_sent_mail
+from app.accounts.sign_in.service import SignInDesk, look_up_people, may_be_sent_mail
 from app.core.database.database import new_row, row_of, write_all
 from app.core.errors import Unprocessable
 from app.eta.records import promise_row
@@ -44,14 +44,18 @@ class Draft:
     forecast: Mapping[str, Any] | None
 
 
-class Placing(Ledger):
-    """What begins an order's life."""
+@dataclass(frozen=True)
+class Placing:
+    """Begin an order's life."""
+
+    ledger: Ledger
+    sign_in: SignInDesk
 
     def window(self, from_post: str, to_post: str, not_before: datetime | None = None) -> Window:
         """When mail should arrive that is fetched from now, or later. Raises UnknownPost, SamePost, NoWay."""
-        begins_at = max(self.clock.utc(), not_before or self.clock.utc())
+        begins_at = max(self.ledger.clock.utc(), not_before or self.ledger.clock.utc())
         try:
-            window = arrival_window(self.estimates, from_post, to_post, begins_at)
+            window = arrival_window(self.ledger.estimates, from_post, to_post, begins_at)
         except UnknownPost as error:
             raise errors.UnknownPost(str(error)) from None
         except NoRoute as error:
@@ -72,7 +76,7 @@ class Placing(Ledger):
     def first_view(self, draft: Draft, person: Person) -> OrderView:
         """A new order as it is answered to whoever has placed it."""
         role: MyRole = "sender" if draft.facts.order.placed_by_id is None else "dispatcher"
-        return self.view_of(draft.facts, role, person.id)
+        return self.ledger.view_of(draft.facts, role, person.id)
 
     async def parties(self, session: AsyncSession, person: Person, wish: Wish) -> Parties:
         """Who sends what `person` orders. Raises UnknownRecipient, UnknownSender, ForDispatchers."""
@@ -107,8 +111,8 @@ class Placing(Ledger):
         standing_order_id: str | None = None,
         occurs_on: str | None = None,
     ) -> Draft:
-        now = self.clock.utc()
-        lifetime = timedelta(seconds=self.settings.handover_code_lifetime_s)
+        now = self.ledger.clock.utc()
+        lifetime = timedelta(seconds=self.ledger.settings.handover_code_lifetime_s)
         order_id = new_id()
         row = {
             "id": order_id,
@@ -135,7 +139,7 @@ class Placing(Ledger):
 
     def _expectation(self, window: Window, now: datetime) -> dict[str, Any]:
         """The window, promised and expected; while no robot can come nothing is promised, and the reason is said."""
-        reason = self.estimates.ahead.reason if window.since <= now else None
+        reason = self.ledger.estimates.ahead.reason if window.since <= now else None
         times = (None, None) if reason else (window.begins_at, window.ends_at)
         return {
             **dict(zip(("window_from", "window_to"), times, strict=True)),
@@ -151,7 +155,7 @@ class Placing(Ledger):
         # Everything that there is to know of it is at hand: nothing is read again.
         people = {one.id: one for one in (parties.sender, parties.recipient, person)}
         facts = OrderFacts(order, [row_of(OrderEvent, event)], people, None)
-        return Draft(facts, row, event, self.notices(facts), forecast)
+        return Draft(facts, row, event, self.ledger.notices(facts), forecast)
 
     async def write(self, session: AsyncSession, drafts: Sequence[Draft]) -> None:
         """Write new orders down, tell their people, and publish them after the commit."""
@@ -160,16 +164,16 @@ class Placing(Ledger):
         await write_all(session, ForecastRow, [one.forecast for one in drafts if one.forecast is not None])
         await tell_all(session, [notice for one in drafts for notice in one.notices])
         for one in drafts:
-            self.publish(session, one.facts)
+            self.ledger.publish(session, one.facts)
 
     def _check_known(self, email: str, known: Mapping[str, Person], unknown: type[Unprocessable]) -> None:
-        if email not in known and not may_be_sent_mail(email, self.settings):
-            domains = ", ".join(self.settings.allowed_domains)
+        if email not in known and not may_be_sent_mail(email, self.ledger.settings):
+            domains = ", ".join(self.ledger.settings.allowed_domains)
             raise unknown(f"Nobody here has the address {email}. New addresses are those of {domains}.")
 
     async def _somebody(self, session: AsyncSession, email: str, known: dict[str, Person]) -> Person:
         if email not in known:
-            known[email] = await self.desk.person(session, email, self.clock.utc())
+            known[email] = await self.sign_in.person(session, email, self.ledger.clock.utc())
         return known[email]
 
 

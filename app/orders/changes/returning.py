@@ -3,6 +3,7 @@
 The robot is asked by an update of its mission; until it says that it has turned, the order goes on as before.
 """
 
+from dataclasses import dataclass
 from datetime import timedelta
 from typing import Final
 
@@ -10,57 +11,54 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.models import Order, Person
 from app.orders import errors, stops
-from app.orders.custody.unproven import last_handover
+from app.orders.custody.unproven import robot_with_mail
 from app.orders.ledger import Ledger, Word
 from app.orders.transitions import CARRIED, ENDED, TURNED_BACK, By
 from app.orders.views.schemas import OrderView
-from app.orders.views.views import load_facts
 from maps import shortest_route
-from protocol.parts import Purpose, StopAction
+from protocol.parts import StopAction
 
 RETURN_REQUESTED: Final = "return_requested"
 
 
-class Returning(Ledger):
-    """What sends mail back that is aboard."""
+@dataclass(frozen=True)
+class Returning:
+    """Send mail back that is aboard."""
+
+    ledger: Ledger
 
     def return_post(self, order: Order) -> str:
         """Where this mail goes if it is not taken: to its sender, or to the nearest mailroom if so set."""
         if order.return_post is not None:
             return order.return_post
-        mailrooms = [post.name for post in self.campus.posts.values() if post.mailroom]
-        if self.settings.undelivered_to == "sender" or not mailrooms:
+        mailrooms = [post.name for post in self.ledger.campus.posts.values() if post.mailroom]
+        if self.ledger.settings.undelivered_to == "sender" or not mailrooms:
             return order.from_post
-        return min(mailrooms, key=lambda post: (shortest_route(self.campus, order.to_post, post).length_m, post))
+        return min(mailrooms, key=lambda post: (shortest_route(self.ledger.campus, order.to_post, post).length_m, post))
 
     async def recall(self, session: AsyncSession, person: Person, order_id: str, if_match: str = "") -> OrderView:
         """Sender or dispatcher want the mail back that is aboard. Raises UnknownOrder, OrderChanged, NotRecallable."""
-        order, role = await self.theirs(session, person, order_id, if_match)
+        order, role = await self.ledger.theirs(session, person, order_id, if_match)
         if role == "recipient":
             raise errors.NotRecallable("Only the sender can call the mail back. You can say that it does not suit now.")
         await self.call_back(session, order, Word(By(role), person_id=person.id))
-        return self.view_of((await load_facts(session, [order]))[0], role, person.id)
+        return await self.ledger.view(session, order, role, person)
 
     async def call_back(self, session: AsyncSession, order: Order, word: Word) -> None:
         """Raises NotRecallable; asked for once."""
-        if order.state in ENDED and (robot := await self.robot_with_mail(session, order)):
+        if order.state in ENDED and (robot := await robot_with_mail(session, order)):
             if not await stops.stops_of_order(session, order.id, robot):
                 await self.ask_back(session, order, word)
             return
         if order.state not in CARRIED | TURNED_BACK:
             raise errors.NotRecallable(f"The order is {order.state}: there is no mail aboard that could turn back.")
         if order.state in CARRIED and order.return_requested_at is None:
-            order.cancel_requested_at, order.cancel_requested_by = self.clock.utc(), word.by
+            order.cancel_requested_at, order.cancel_requested_by = self.ledger.clock.utc(), word.by
             await self.ask_back(session, order, word)
-
-    async def robot_with_mail(self, session: AsyncSession, order: Order) -> str | None:
-        """Which robot has the mail of an order by its chain of custody, whatever the order's state says."""
-        last = await last_handover(session, order.id)
-        return last.robot if last is not None and last.purpose == Purpose.LOAD else None
 
     async def not_now(self, session: AsyncSession, person: Person, order_id: str, if_match: str = "") -> OrderView:
         """The recipient cannot take it now: it goes back. Raises UnknownOrder, OrderChanged, NotRecallable."""
-        order, role = await self.theirs(session, person, order_id, if_match)
+        order, role = await self.ledger.theirs(session, person, order_id, if_match)
         if role == "sender" or order.state not in CARRIED | TURNED_BACK:
             raise errors.NotRecallable(
                 f"The order is {order.state}: its recipient says “not now” to mail that is aboard."
@@ -68,13 +66,13 @@ class Returning(Ledger):
         if order.state in CARRIED and order.return_requested_at is None:
             word = Word(By(role), person_id=person.id, reason="The recipient cannot take it now.")
             await self.ask_back(session, order, word)
-        return self.view_of((await load_facts(session, [order]))[0], role, person.id)
+        return await self.ledger.view(session, order, role, person)
 
     async def ask_back(self, session: AsyncSession, order: Order, word: Word) -> None:
         """Give the robot the way back instead of the way to the recipient."""
-        order.return_requested_at = self.clock.utc()
+        order.return_requested_at = self.ledger.clock.utc()
         await self.bring_back(session, order)
-        await self.note(session, order.id, RETURN_REQUESTED, word)
+        await self.ledger.note(session, order.id, RETURN_REQUESTED, word)
 
     async def bring_back(self, session: AsyncSession, order: Order) -> None:
         """The stop where this mail is given back, on the mission of the robot that has it."""
@@ -84,6 +82,6 @@ class Returning(Ledger):
     async def send(self, session: AsyncSession, order: Order, action: StopAction, post: str) -> None:
         """The mail that is aboard goes to `post` now. However old its codes are: who waits there has to be able to
         take it."""
-        now, lifetime = self.clock.utc(), timedelta(seconds=self.settings.handover_code_lifetime_s)
+        now, lifetime = self.ledger.clock.utc(), timedelta(seconds=self.ledger.settings.handover_code_lifetime_s)
         order.codes_expire_at = max(order.codes_expire_at, now + lifetime)
-        await stops.bring(session, order, action, post, self.settings.wait_limit_s, now)
+        await stops.bring(session, order, action, post, self.ledger.settings.wait_limit_s, now)

@@ -1,5 +1,6 @@
 """How long the robot waits: whom it waits for may ask for a little more, a dispatcher for as much as is needed."""
 
+from dataclasses import dataclass
 from datetime import timedelta
 from typing import Final
 
@@ -12,7 +13,7 @@ from app.orders.ledger import Ledger, Word
 from app.orders.stops import stops_of_order, wait_anew
 from app.orders.transitions import By
 from app.orders.views.schemas import OrderView
-from app.orders.views.views import MyRole, load_facts
+from app.orders.views.views import MyRole
 
 WAIT_EXTENDED: Final = "wait_extended"
 WAITS_FOR: Final = {
@@ -26,20 +27,23 @@ EXTENSIONS: Final = 2
 """And so often."""
 
 
-class Waiting(Ledger):
-    """What prolongs a wait."""
+@dataclass(frozen=True)
+class Waiting:
+    """Prolong a wait."""
+
+    ledger: Ledger
 
     async def extend_wait(
         self, session: AsyncSession, person: Person, order_id: str, extend_s: float | None, if_match: str = ""
     ) -> OrderView:
         """The robot waits longer where it is. Raises UnknownOrder, OrderChanged, NotWaiting, WaitedLongEnough."""
-        order, role = await self.theirs(session, person, order_id, if_match)
+        order, role = await self.ledger.theirs(session, person, order_id, if_match)
         if WAITS_FOR.get(order.state) != role and role != "dispatcher":
             raise errors.NotWaiting(f"The order is {order.state}: the robot is not waiting for you.")
         await self._check_share(session, order, role, extend_s)
         await self._extend(session, order, extend_s or EXTENSION_S)
-        await self.note(session, order.id, WAIT_EXTENDED, Word(By(role), person_id=person.id))
-        return self.view_of((await load_facts(session, [order]))[0], role, person.id)
+        await self.ledger.note(session, order.id, WAIT_EXTENDED, Word(By(role), person_id=person.id))
+        return await self.ledger.view(session, order, role, person)
 
     async def _check_share(self, session: AsyncSession, order: Order, role: MyRole, extend_s: float | None) -> None:
         if role == "dispatcher":
@@ -60,6 +64,6 @@ class Waiting(Ledger):
         waiting = await stops_of_order(session, order.id, order.robot or "")
         if order.wait_until is None or not waiting or waiting[0].arrived_at is None:
             raise errors.NotWaiting(f"The order is {order.state}: no robot is waiting.")
-        now = self.clock.utc()
+        now = self.ledger.clock.utc()
         order.wait_until = max(order.wait_until, now) + timedelta(seconds=extend_s)
         await wait_anew(session, waiting[0], (order.wait_until - now).total_seconds())

@@ -11,7 +11,7 @@ from sqlalchemy import ColumnElement
 from sqlmodel import and_, col, or_, select, update
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.models import Alarm, Evidence, Handover, Settled
+from app.models import Alarm, Evidence, Handover, Order, Settled
 from protocol.parts import Purpose
 
 CLAIMED: Final = "handover_claimed"
@@ -40,6 +40,12 @@ async def last_handover(session: AsyncSession, order_id: str) -> Handover | None
     """The newest link of the chain of custody: it tells who has the mail now."""
     newest = select(Handover).where(Handover.order_id == order_id, _COUNTS).order_by(col(Handover.id).desc()).limit(1)
     return (await session.exec(newest)).first()
+
+
+async def robot_with_mail(session: AsyncSession, order: Order) -> str | None:
+    """Return the robot that has the mail of an order by its chain of custody, whatever the order's state says."""
+    last = await last_handover(session, order.id)
+    return last.robot if last is not None and _is_load(last) else None
 
 
 async def claim_of_handing_out(session: AsyncSession, order_id: str) -> Handover | None:

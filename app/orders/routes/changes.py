@@ -116,25 +116,25 @@ class PriorityChange(Body):
 @router.post("/orders/{order_id}/recall", responses=_answers(errors.NotRecallable))
 async def recall_order(asked: ByParty) -> OrderView:
     """Call mail back that is aboard. It turns round on the robot's word; until then the order goes on."""
-    return asked.tagged(await asked.orders.recall(*asked.of, asked.if_match))
+    return asked.tagged(await asked.orders.returning.recall(*asked.of, asked.if_match))
 
 
 @router.post("/orders/{order_id}/not-now", responses=_answers(errors.NotRecallable))
 async def say_not_now(asked: ByParty) -> OrderView:
     """Say as the recipient that it does not suit now. The mail goes back, on the robot's word."""
-    return asked.tagged(await asked.orders.not_now(*asked.of, asked.if_match))
+    return asked.tagged(await asked.orders.returning.not_now(*asked.of, asked.if_match))
 
 
 @router.post("/orders/{order_id}/wait", responses=_answers(errors.NotWaiting, errors.WaitedLongEnough))
 async def extend_wait(asked: ByParty, longer: LongerWait) -> OrderView:
     """Let the robot wait longer. The person it waits for may ask a few times, a dispatcher for as much as is needed."""
-    return asked.tagged(await asked.orders.extend_wait(*asked.of, longer.extend_s, asked.if_match))
+    return asked.tagged(await asked.orders.waiting.extend_wait(*asked.of, longer.extend_s, asked.if_match))
 
 
 @dispatch_router.post("/orders/{order_id}/attention", responses=_answers(errors.TransitionRefused))
 async def stop_order_for_attention(asked: ByDispatcher, attention: Attention) -> OrderView:
     """Take an order out of its robot's hands, as far as words go. What becomes of it is decided by `resolve`."""
-    return asked.tagged(await asked.orders.stop_for_attention(*asked.of, attention.reason, asked.if_match))
+    return asked.tagged(await asked.orders.intervening.stop_for_attention(*asked.of, attention.reason, asked.if_match))
 
 
 @dispatch_router.post(
@@ -143,13 +143,15 @@ async def stop_order_for_attention(asked: ByDispatcher, attention: Attention) ->
 )
 async def resolve_order(asked: ByDispatcher, resolution: Resolution) -> OrderView:
     """Decide what becomes of an order that needed attention."""
-    return asked.tagged(await asked.orders.resolve(*asked.of, resolution.to, resolution.reason, asked.if_match))
+    return asked.tagged(
+        await asked.orders.intervening.resolve(*asked.of, resolution.to, resolution.reason, asked.if_match)
+    )
 
 
 @dispatch_router.post("/orders/{order_id}/hold", responses=_answers(errors.TransitionRefused))
 async def hold_order(asked: ByDispatcher, into_hands: IntoHands) -> OrderView:
     """Say that the mail was taken out of the robot by hand and is held in the mailroom."""
-    return asked.tagged(await asked.orders.hold(*asked.of, into_hands.reason, asked.if_match))
+    return asked.tagged(await asked.orders.intervening.hold(*asked.of, into_hands.reason, asked.if_match))
 
 
 @dispatch_router.post(
@@ -158,7 +160,9 @@ async def hold_order(asked: ByDispatcher, into_hands: IntoHands) -> OrderView:
 )
 async def pass_order_on(asked: ByDispatcher, passing_on: PassingOn) -> OrderView:
     """Say that the mail was taken out of its robot at a post, for another robot to carry it on from there."""
-    return asked.tagged(await asked.orders.pass_on(*asked.of, passing_on.post, passing_on.reason, asked.if_match))
+    return asked.tagged(
+        await asked.orders.passing_on.pass_on(*asked.of, passing_on.post, passing_on.reason, asked.if_match)
+    )
 
 
 @dispatch_router.post(
@@ -166,10 +170,10 @@ async def pass_order_on(asked: ByDispatcher, passing_on: PassingOn) -> OrderView
 )
 async def reassign_order(asked: ByDispatcher, reassignment: Reassignment) -> OrderView:
     """Let another robot fetch the mail. The one that is on its way lets go on its own word."""
-    return asked.tagged(await asked.orders.reassign(*asked.of, reassignment.robot, asked.if_match))
+    return asked.tagged(await asked.orders.intervening.reassign(*asked.of, reassignment.robot, asked.if_match))
 
 
 @dispatch_router.put("/orders/{order_id}/priority", responses=_answers(errors.TransitionRefused))
 async def prioritise_order(asked: ByDispatcher, wish: PriorityChange) -> OrderView:
     """Fetch an order sooner than others, or later."""
-    return asked.tagged(await asked.orders.prioritise(*asked.of, wish.priority, asked.if_match))
+    return asked.tagged(await asked.orders.intervening.prioritise(*asked.of, wish.priority, asked.if_match))

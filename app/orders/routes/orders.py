@@ -16,7 +16,7 @@ from app.core.settings import CampusDep, SettingsDep
 from app.core.texts.reasons import words_of
 from app.models import Order, Person
 from app.orders import errors
-from app.orders.batcher import OrderDesk
+from app.orders.batcher import OrderBatcher
 from app.orders.custody.codes import code_svg
 from app.orders.service import Orders
 from app.orders.views.schemas import Estimate, NewOrder, OrderPage, OrderView, PostName, WindowView, etag_of
@@ -49,7 +49,7 @@ CHANGED = {**answering(200, "ETag"), **problems(errors.UnknownOrder, errors.NotC
 
 
 OrdersDep = Annotated[Orders, part(Orders)]
-OrderDeskDep = Annotated[OrderDesk, part(OrderDesk)]
+OrderBatcherDep = Annotated[OrderBatcher, part(OrderBatcher)]
 
 
 @router.get("/estimate", responses=problems(errors.UnknownPost, errors.SamePost, errors.NoWay))
@@ -57,9 +57,9 @@ async def estimate(
     user: CurrentUser, orders: OrdersDep, campus: CampusDep, from_post: PostName, to_post: PostName
 ) -> Estimate:
     """When mail would arrive if it were ordered now."""
-    window = orders.window(from_post, to_post)
+    window = orders.placing.window(from_post, to_post)
     length_m = shortest_route(campus, from_post, to_post).length_m
-    reason = orders.estimates.ahead.reason
+    reason = orders.ledger.estimates.ahead.reason
     return Estimate(
         window=WindowView.of(window),
         length_m=round(length_m, 2),
@@ -75,11 +75,11 @@ async def place_order(
     wish: NewOrder,
     idempotency_key: Annotated[str, Header(pattern=r"^[!-~]+$", max_length=255)],
     user: Annotated[Person, per_person(Door.ORDERS)],
-    desk: OrderDeskDep,
+    batcher: OrderBatcherDep,
     response: Response,
 ) -> OrderView:
     """Place an order. The same key and body again give the first answer again, with `Idempotency-Replayed: true`."""
-    placed = await desk.place(user, idempotency_key, wish)
+    placed = await batcher.place(user, idempotency_key, wish)
     response.headers.update({**placed.headers, REPLAYED: "true"} if placed.again else placed.headers)
     return placed.view
 
@@ -96,10 +96,10 @@ async def list_orders(
     search: Annotated[SearchText, Query(description=SEARCHED)] = "",
 ) -> OrderPage:
     """This person's orders, newest first; a dispatcher's `all` is everybody's. `state` and `search` narrow it down."""
-    walks = Looked(role, state, search.strip()).walks(user, orders.campus)
+    walks = Looked(role, state, search.strip()).walks(user, orders.ledger.campus)
     rows, following = await page.of_any(session, walks, NEWEST_FIRST)
-    facts = await load_facts(session, rows)
-    views = [view_for(user, one, orders.campus, orders.settings, orders.clock.utc()) for one in facts]
+    facts, ledger = await load_facts(session, rows), orders.ledger
+    views = [view_for(user, one, ledger.campus, ledger.settings, ledger.clock.utc()) for one in facts]
     return OrderPage(items=[view for view in views if view], next=following)
 
 
@@ -141,6 +141,6 @@ async def cancel_order(
     if_match: Annotated[str, Header(max_length=200)] = "",
 ) -> OrderView:
     """Cancel, at once or (with a robot on its way) as soon as the robot answers."""
-    view = await orders.cancel(session, user, order_id, if_match)
+    view = await orders.cancelling.cancel(session, user, order_id, if_match)
     response.headers["ETag"] = etag_of(view)
     return view

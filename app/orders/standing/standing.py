@@ -17,10 +17,10 @@ from sqlmodel.sql.expression import SelectOfScalar
 from app.core.errors import ServiceError
 from app.models import Order, Person, Role, StandingOrder
 from app.orders import errors
-from app.orders.changes.placing import Parties
-from app.orders.service import Orders
+from app.orders.changes.placing import Parties, Placing
 from app.orders.standing.recurrence import Recurrence, day_of, next_after
 from app.orders.views.schemas import NewStandingOrder, Somebody, StandingOrderView, Wish
+from protocol.clock import Clock
 from protocol.ids import new_id
 
 log = structlog.get_logger(__name__)
@@ -32,13 +32,14 @@ GRACE: Final = timedelta(hours=6)
 class StandingOrders:
     """The standing orders of one campus."""
 
-    orders: Orders
+    placing: Placing
+    clock: Clock
 
     async def create(self, session: AsyncSession, person: Person, wish: NewStandingOrder) -> StandingOrderView:
         """Raises UnknownPost, SamePost, NoWay, UnknownRecipient, UnknownSender, ForDispatchers."""
-        self.orders.window(wish.from_post, wish.to_post)
-        parties = await self.orders.parties(session, person, wish)
-        now = self.orders.clock.utc()
+        self.placing.window(wish.from_post, wish.to_post)
+        parties = await self.placing.parties(session, person, wish)
+        now = self.clock.utc()
         row = StandingOrder(
             id=new_id(),
             sender_id=parties.sender.id,
@@ -76,7 +77,7 @@ class StandingOrders:
     async def pause(self, session: AsyncSession, person: Person, standing_id: str) -> StandingOrderView:
         """No more orders until it is resumed. Raises UnknownStandingOrder, StandingOrderEnded."""
         row = await self._lasting(session, person, standing_id)
-        row.paused_at, row.next_at = row.paused_at or self.orders.clock.utc(), None
+        row.paused_at, row.next_at = row.paused_at or self.clock.utc(), None
         return (await self.views(session, [row]))[0]
 
     async def resume(self, session: AsyncSession, person: Person, standing_id: str) -> StandingOrderView:
@@ -84,23 +85,23 @@ class StandingOrders:
         row = await self._lasting(session, person, standing_id)
         if row.paused_at is not None:
             row.paused_at = row.why = None
-            _plan(row, self.orders.clock.utc())
+            _plan(row, self.clock.utc())
         return (await self.views(session, [row]))[0]
 
     async def end(self, session: AsyncSession, person: Person, standing_id: str) -> StandingOrderView:
         """For good; the orders that it has made stay as they are. Raises UnknownStandingOrder."""
         row = await self._theirs(session, person, standing_id)
-        row.ended_at, row.next_at = row.ended_at or self.orders.clock.utc(), None
+        row.ended_at, row.next_at = row.ended_at or self.clock.utc(), None
         return (await self.views(session, [row]))[0]
 
     async def due(self, session: AsyncSession) -> list[str]:
         """Which have come round."""
-        wanted = select(StandingOrder.id).where(col(StandingOrder.next_at) <= self.orders.clock.utc())
+        wanted = select(StandingOrder.id).where(col(StandingOrder.next_at) <= self.clock.utc())
         return list((await session.exec(wanted.order_by(col(StandingOrder.next_at), col(StandingOrder.id)))).all())
 
     async def make_next(self, session: AsyncSession, standing_id: str) -> str | None:
         """The order of this occurrence; None if it is too late for it, or was made before. Then the next is planned."""
-        now = self.orders.clock.utc()
+        now = self.clock.utc()
         row = await session.get_one(StandingOrder, standing_id, with_for_update=True)
         if row.next_at is None or row.next_at > now:
             return None
@@ -124,9 +125,9 @@ class StandingOrders:
             priority=row.priority,
         )
         try:
-            facts = await self.orders.place(session, parties, wish, row, day.isoformat())
+            facts = await self.placing.place(session, parties, wish, row, day.isoformat())
         except ServiceError as problem:  # the map has changed, say: whoever made it has to look
-            row.paused_at, row.next_at, row.why = self.orders.clock.utc(), None, problem.sentence[:500]
+            row.paused_at, row.next_at, row.why = self.clock.utc(), None, problem.sentence[:500]
             log.warning("standing order paused", standing_order=row.id, problem=problem.code)
             return None
         return facts.order.id

@@ -32,13 +32,13 @@ async def follow_answer(report: Report, answer: CommandAnswer) -> None:
     elif command.kind == "confirm" and command.order_id is not None and not answer.accepted:
         # The person who tapped reads it on their page; no other has to look.
         word = report.word(answer.happened_at, None, answer.reason)
-        await report.orders.note(report.session, command.order_id, "confirm_refused", word)
+        await report.orders.ledger.note(report.session, command.order_id, "confirm_refused", word)
     elif not answer.accepted:
         await _refused(report, answer)
 
 
 async def _let_go(report: Report, answer: CommandAnswer, order_id: str) -> None:
-    order = await report.orders.order(report.session, order_id)
+    order = await report.orders.ledger.order(report.session, order_id)
     is_theirs = order.robot == report.robot
     if answer.accepted:
         await drop_stops(report, order_id)
@@ -49,7 +49,9 @@ async def _let_go(report: Report, answer: CommandAnswer, order_id: str) -> None:
             await drop_order(report, order, report.word(answer.happened_at, None, answer.reason))
     elif is_theirs and order.cancel_requested_at is not None and order.state in CARRIED:
         # The wish came too late to leave the mail where it was: now it is brought back.
-        await report.orders.ask_back(report.session, order, Word(By.ROBOT, robot=report.robot, reason=answer.reason))
+        await report.orders.returning.ask_back(
+            report.session, order, Word(By.ROBOT, robot=report.robot, reason=answer.reason)
+        )
     else:
         order.reassign_requested_at = None
         for stop in await stops_of_order(report.session, order_id, report.robot):

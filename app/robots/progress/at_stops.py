@@ -56,7 +56,7 @@ async def _accepted(report: Report, mission: MissionRow, progress: Progress) -> 
     mission.accepted_at = mission.accepted_at or report.now
     mission.accepted_update = max(mission.accepted_update, getattr(progress, "update", None) or 1)
     for order_id in await orders_to_return(report.session, mission.id, mission.accepted_update):
-        order = await report.orders.order(report.session, order_id)
+        order = await report.orders.ledger.order(report.session, order_id)
         if order.robot == report.robot and order.state in MAIL_ABOARD:
             await start_returning(report, order, progress)
 
@@ -102,12 +102,12 @@ async def _come_along(report: Report, progress: Progress, stop: StopRow, order_i
         if action is StopAction.RETURN and progress.post:
             stop.post = progress.post
     if action is StopAction.RETURN:
-        order = await report.orders.order(report.session, order_id)
+        order = await report.orders.ledger.order(report.session, order_id)
         order.return_post = stop.post
     word = report.word(progress.happened_at, progress.post, progress.reason)
     await report.along(order_id, AT_STOP.get((progress.step, action), ()), word, until)
     if (progress.step, action) == (Step.PASSED, StopAction.LOAD):
-        await report.orders.come_nearer(report.session, order_id, progress.post)
+        await report.orders.ledger.come_nearer(report.session, order_id, progress.post)
 
 
 async def _not_loaded(report: Report, progress: Progress, mission: MissionRow, order_id: str) -> None:
@@ -115,7 +115,7 @@ async def _not_loaded(report: Report, progress: Progress, mission: MissionRow, o
 
     Nothing came aboard, so nothing is left to do for this order.
     """
-    order = await report.orders.order(report.session, order_id)
+    order = await report.orders.ledger.order(report.session, order_id)
     to, reason = OrderState.EXPIRED, progress.reason
     if order.cancel_requested_at is not None:  # as wished, whatever the robot answers later
         to = OrderState.CANCELLED
@@ -129,19 +129,19 @@ async def _not_loaded(report: Report, progress: Progress, mission: MissionRow, o
 
 async def _not_taken(report: Report, progress: Progress, mission: MissionRow, order_id: str) -> None:
     """The robot brings the mail back by itself, when it has done what else it was to do."""
-    order = await report.orders.order(report.session, order_id)
-    order.return_post = report.orders.return_post(order)
+    order = await report.orders.ledger.order(report.session, order_id)
+    order.return_post = report.orders.returning.return_post(order)
     word = report.word(progress.happened_at, progress.post, progress.reason)
     await report.along(order_id, (OrderState.RETURNING,), word)
 
 
 async def _not_taken_back(report: Report, progress: Progress, mission: MissionRow, order_id: str) -> None:
     """After a stop of ours the robot tries once more by itself; after its own it goes home with the mail."""
-    order = await report.orders.order(report.session, order_id)
+    order = await report.orders.ledger.order(report.session, order_id)
     if is_own(mission.id) and order.state not in ENDED:  # of what has ended the robot's fault tells people
         sentence = f"Nobody took the mail back ({progress.reason}). It is still in robot {report.robot}."
         word = report.word(progress.happened_at, progress.post, sentence)
-        await report.orders.move(report.session, order_id, OrderState.ATTENTION, word)
+        await report.orders.ledger.move(report.session, order_id, OrderState.ATTENTION, word)
 
 
 _GiveUp = Callable[[Report, Progress, MissionRow, str], Awaitable[None]]

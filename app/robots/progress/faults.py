@@ -39,7 +39,7 @@ async def follow_fault(report: Report, fault: Fault) -> None:
     if fault.name in NEEDS_A_PERSON:
         for order in await report.aboard(*MAIL_ABOARD):
             word = report.word(fault.happened_at, fault.post, fault.reason)
-            await report.orders.move(report.session, order.id, OrderState.ATTENTION, word)
+            await report.orders.ledger.move(report.session, order.id, OrderState.ATTENTION, word)
 
 
 async def _over(report: Report, fault: Fault) -> None:
@@ -54,4 +54,4 @@ async def _over(report: Report, fault: Fault) -> None:
     for order in await report.aboard(OrderState.ATTENTION):
         if order.why in reasons and order.state_before_attention is not None:
             word = report.word(fault.happened_at, fault.post, fault.reason)
-            await report.orders.move(report.session, order.id, order.state_before_attention, word)
+            await report.orders.ledger.move(report.session, order.id, order.state_before_attention, word)

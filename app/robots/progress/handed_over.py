@@ -49,7 +49,7 @@ async def follow_receipt(report: Report, receipt: HandoverReceipt) -> None:
     stop, mission = await _stop(report, receipt)
     if await _is_receipted(report, receipt):
         return
-    order = await report.orders.order(report.session, receipt.order_id)
+    order = await report.orders.ledger.order(report.session, receipt.order_id)
     handover = await judged(report, order, mission, receipt)
     if handover is None:
         return  # it counts for nothing: custody does not move
@@ -74,10 +74,10 @@ async def _settle(report: Report, receipt: HandoverReceipt, handover: Handover) 
 async def _let_somebody_ask(report: Report, receipt: HandoverReceipt) -> None:
     """No person is told that they have it. An order that has ended or was given to another stays as it is: the alarm
     rings all the same."""
-    order = await report.orders.order(report.session, receipt.order_id)
+    order = await report.orders.ledger.order(report.session, receipt.order_id)
     if order.robot == report.robot and order.state in MAIL_ABOARD:
         word = report.word(receipt.happened_at, receipt.post, NOT_PROVED)
-        await report.orders.move(report.session, order.id, OrderState.ATTENTION, word)
+        await report.orders.ledger.move(report.session, order.id, OrderState.ATTENTION, word)
 
 
 async def _drop_the_rest(report: Report, receipt: HandoverReceipt) -> None:
@@ -112,7 +112,7 @@ async def _stop(report: Report, receipt: HandoverReceipt) -> tuple[StopRow, Miss
 async def _move(report: Report, receipt: HandoverReceipt, *, quietly: bool) -> None:
     """The order follows its mail. An order that has ended otherwise stays ended, and a person has to look. `quietly`:
     people are told nothing that is not known."""
-    order = await report.orders.order(report.session, receipt.order_id)
+    order = await report.orders.ledger.order(report.session, receipt.order_id)
     if order.robot not in (None, report.robot):
         order.let_go_by = order.robot  # it was given to another, but this one had the mail already
     word = report.word(receipt.happened_at, receipt.post)
@@ -133,7 +133,7 @@ async def _loaded_too_late(report: Report, order: Order, receipt: HandoverReceip
     order.robot = report.robot
     if order.let_go_by == report.robot:
         order.let_go_by = None  # it cannot drop what it has
-    await report.orders.ask_back(report.session, order, word)
+    await report.orders.returning.ask_back(report.session, order, word)
 
 
 async def _contradiction(report: Report, receipt: HandoverReceipt, state: OrderState) -> None:

@@ -70,7 +70,7 @@ async def own_stop(report: Report, mission: MissionRow, order: Order, position: 
     if stop is None:
         stop = StopRow(id=stop_id, mission_id=mission.id, position=position, post="", action=StopAction.RETURN)
     stop.mission_id, stop.position, stop.order_id = mission.id, position, order.id
-    stop.post = report.orders.return_post(order)
+    stop.post = report.orders.returning.return_post(order)
     stop.departed_at = stop.arrived_at = stop.done_at = stop.gave_up_at = stop.dropped_at = None
     report.session.add(stop)
     await report.session.flush()
@@ -79,7 +79,7 @@ async def own_stop(report: Report, mission: MissionRow, order: Order, position: 
 
 async def start_returning(report: Report, order: Order, progress: Progress) -> None:
     """The robot says that the mail is on its way back."""
-    order.return_post = report.orders.return_post(order)
+    order.return_post = report.orders.returning.return_post(order)
     word = report.word(progress.happened_at, progress.post, progress.reason)
     await report.along(order.id, (OrderState.RETURNING,), word)
 
@@ -98,7 +98,7 @@ async def drop_order(report: Report, order: Order, word: Word) -> None:
     """The robot has let go of an order that it had not loaded: cancelled if that was wished, else it waits again."""
     wished = order.cancel_requested_at is not None
     to = OrderState.CANCELLED if wished else OrderState.QUEUED
-    await report.orders.move(report.session, order.id, to, word)
+    await report.orders.ledger.move(report.session, order.id, to, word)
 
 
 async def drop_stops(report: Report, order_id: str) -> None:
@@ -152,7 +152,7 @@ async def _left_undone(report: Report, stop: StopRow, progress: Progress) -> Non
         return
     word = report.word(progress.happened_at, progress.post, NOT_REPORTED)
     if order.state in MAIL_ABOARD:
-        await report.orders.move(report.session, order.id, OrderState.ATTENTION, word)
+        await report.orders.ledger.move(report.session, order.id, OrderState.ATTENTION, word)
     elif order.state in ROBOT_COMING:
         await drop_order(report, order, word)
 

@@ -110,7 +110,7 @@ class _Judge:
         told = await self._session.get(MissionRow, receipt.mission_id) if receipt.mission_id else None
         missions = (self.mission, told)
         evidence, problem = evidence_of(report.orders.key, self.robot, receipt, missions, code, command)
-        ways, clock = report.orders.ways, report.orders.clock
+        ways, clock = report.orders.ledger.ways, report.orders.ledger.clock
         if problem is None and await is_too_fast(self._session, ways, clock, self.robot, receipt, report.now):
             return Evidence.CLAIMED, "too_fast"
         return evidence, problem

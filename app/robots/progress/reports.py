@@ -61,16 +61,16 @@ class Report:
         has not any more: what becomes of that is for the person to say who has asked. `quietly`: no person is told of
         the last state.
         """
-        order = await self.orders.order(self.session, order_id)
+        order = await self.orders.ledger.order(self.session, order_id)
         before = order.state_before_attention
         if before is not None and await claim_of_handing_out(self.session, order_id):
             return
         goes_on = order.state not in states and states and not is_old_news(order.state, states[-1], before)
         if before is not None and goes_on:
-            await self.orders.move(self.session, order_id, before, word, quietly=before is not states[-1])
+            await self.orders.ledger.move(self.session, order_id, before, word, quietly=before is not states[-1])
         if order.state in states:
             states = states[states.index(order.state) :]
         for state in states:
             last = state is states[-1]
             until = wait_until if last else None
-            await self.orders.move(self.session, order_id, state, word, until, quietly=quietly and last)
+            await self.orders.ledger.move(self.session, order_id, state, word, until, quietly=quietly and last)

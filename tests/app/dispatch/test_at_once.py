@@ -64,7 +64,7 @@ async def test_a_corridor_is_granted_as_it_is_asked_for_unless_it_is_closed(
 async def test_an_order_that_a_robot_has_is_expected_when_its_shortest_way_ends(
     service: Service, clock: SteppedClock
 ) -> None:
-    robot, estimates = PlayedRobot(clock), service.app.state.parts.orders.estimates
+    robot, estimates = PlayedRobot(clock), service.app.state.parts.estimates
     teach(estimates, clock.utc())
     async with robot.connected(service.url, await service.enrol("r1")):
         await robot.greet("post5", home="post5")

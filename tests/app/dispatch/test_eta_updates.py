@@ -59,7 +59,7 @@ async def robot(service: Service, clock: SteppedClock) -> AsyncIterator[PlayedRo
 async def can_come(service: Service) -> bool:
     """What was learned of it is known to those who promise."""
     await service.app.state.parts.fleet.learning.look()
-    return service.app.state.parts.orders.estimates.ahead.reason is None
+    return service.app.state.parts.estimates.ahead.reason is None
 
 
 async def given(service: Service, robot: PlayedRobot) -> tuple[str, Mission]:
@@ -79,7 +79,7 @@ async def given(service: Service, robot: PlayedRobot) -> tuple[str, Mission]:
 async def test_an_order_that_a_robot_has_is_expected_when_its_way_ends(
     service: Service, robot: PlayedRobot, clock: SteppedClock
 ) -> None:
-    teach(service.app.state.parts.orders.estimates, clock.utc())
+    teach(service.app.state.parts.estimates, clock.utc())
     order_id, _ = await given(service, robot)
     campus = service.app.state.parts.campus
     ways = shortest_route(campus, "post5", "post1").posts[1:], shortest_route(campus, "post1", "post4").posts[1:]

@@ -65,7 +65,7 @@ async def waits_because(service: Service, order_id: str, sentence: str) -> None:
 async def change(service: Service, order_id: str, **values: object) -> None:
     state = service.app.state.parts
     async with state.database.transaction() as session:
-        order = await state.orders.order(session, order_id)
+        order = await state.orders.ledger.order(session, order_id)
         for name, value in values.items():
             setattr(order, name, value)
     state.dispatcher.wake()

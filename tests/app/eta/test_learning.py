@@ -32,7 +32,7 @@ CORRIDOR_S, HANDED_OVER_S = 40.0, 25.0
 
 
 def estimates_of(service: Service) -> Estimates:
-    estimates: Estimates = service.app.state.parts.orders.estimates
+    estimates: Estimates = service.app.state.parts.estimates
     return estimates
 
 
@@ -118,7 +118,7 @@ async def test_what_a_robot_waited_before_it_was_let_in_or_stood_at_a_stop_is_no
 
 
 def test_the_more_wait_the_later_it_is_said_to_come(mailroom: Mailroom, sender: Browser) -> None:
-    estimates: Estimates = mailroom.app.state.parts.orders.estimates
+    estimates: Estimates = mailroom.app.state.parts.estimates
     now = mailroom.app.state.parts.clock.utc()
     comes_s = []
     for orders in (0, 3, 12):
@@ -142,7 +142,7 @@ def test_office_hours_are_the_campuss_own() -> None:
 def test_those_who_look_after_robots_see_how_good_it_is_and_so_does_prometheus(
     sender: Browser, mailroom: Mailroom, nobody: TestClient
 ) -> None:
-    estimates: Estimates = mailroom.app.state.parts.orders.estimates
+    estimates: Estimates = mailroom.app.state.parts.estimates
     mailroom.call(make_dispatcher, mailroom.app)
     seen = sender.get("/api/v1/estimates").json()
     assert (seen["assumed"], seen["inside_meant"]) == (True, 0.8)

@@ -33,7 +33,7 @@ async def kept(service: Service, number: int) -> list[ForecastUnderWayRow]:
 async def given(service: Service, robot: PlayedRobot) -> tuple[str, Mission]:
     async def can_come() -> bool:
         await service.app.state.parts.fleet.learning.look()
-        return service.app.state.parts.orders.estimates.ahead.reason is None
+        return service.app.state.parts.estimates.ahead.reason is None
 
     await until(can_come)
     order_id = await service.order("post1", "post4")
@@ -44,7 +44,7 @@ async def test_what_is_told_first_and_after_loading_is_kept_scored_and_learned_f
     settings: Settings, clock: SteppedClock, robot: PlayedRobot
 ) -> None:
     async with serving(settings, clock) as service:
-        estimates = service.app.state.parts.orders.estimates
+        estimates = service.app.state.parts.estimates
         teach(estimates, clock.utc())
         async with robot.connected(service.url, await service.enrol("r1")):
             await robot.greet("post5", home="post5")
@@ -67,7 +67,7 @@ async def test_what_is_told_first_and_after_loading_is_kept_scored_and_learned_f
         assert [score and score.count for score in scores.values()] == [1, 2]
         errors = {basis: told.calibration for basis, told in estimates.told.items()}
     async with serving(settings, clock) as service:
-        again = service.app.state.parts.orders.estimates.told
+        again = service.app.state.parts.estimates.told
         assert {basis: told.score() for basis, told in again.items()} == scores
         assert {basis: told.calibration for basis, told in again.items()} == errors
 
@@ -76,7 +76,7 @@ async def test_a_forecast_is_put_right_by_what_came_of_earlier_ones(
     service: Service, clock: SteppedClock, robot: PlayedRobot
 ) -> None:
     """Robots always came later than the timetable had it, by four of the widths that it gave."""
-    estimates = service.app.state.parts.orders.estimates
+    estimates = service.app.state.parts.estimates
     teach(estimates, clock.utc())
     for _ in range(200):
         estimates.told[Basis.UNDER_WAY].arrived(RAW, TOLD, BY_MAP, RAW.p50_s + 4 * (RAW.p90_s - RAW.p50_s))

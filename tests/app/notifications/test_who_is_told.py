@@ -36,7 +36,7 @@ async def told(office: Office) -> dict[str, list[str]]:
 
 async def says(office: Office, by: By, order_id: str, to: str) -> None:
     async with office.state.database.transaction() as session:
-        await office.state.orders.move(session, order_id, OrderState(to), Word(by, robot="r1"))
+        await office.state.orders.ledger.move(session, order_id, OrderState(to), Word(by, robot="r1"))
 
 
 async def test_mail_that_is_taken(office: Office) -> None:

@@ -25,6 +25,7 @@ from app.dispatch.planner_process import PlannerProcess
 from app.dispatch.service import Dispatcher
 from app.models import MessageToRobot, Order, OrderState, Person, RobotRow, Role
 from app.orders.custody.codes import Holder, codes_of
+from app.orders.ledger import Ledger
 from app.orders.service import Orders
 from app.orders.standing.standing import StandingOrders
 from app.orders.timer import Timer
@@ -158,7 +159,7 @@ class World:
         self.start_service()
         async with self.database.transaction() as session:
             for name in ("sender", "recipient", "dispatcher"):
-                person = await self.orders.desk.person(session, f"{name}@campus.example", self.clock.utc())
+                person = await self.sign_in.person(session, f"{name}@campus.example", self.clock.utc())
                 self.people[name] = person
             set_roles(self.people["dispatcher"], {Role.DISPATCHER}, set())
             for name, post in (("r1", "post5"), ("r2", "post2")):
@@ -181,18 +182,18 @@ class World:
         key = ServerKey(b"k" * 32)
         self.database = Database(self.settings.url_of_database)
         feed = LocalFeed()
-        desk = SignInDesk(self.settings, key, open_mailer(self.settings))
-        self.orders = Orders(TRACK, self.settings, self.clock, feed, key, desk)
+        self.sign_in = SignInDesk(self.settings, key, open_mailer(self.settings))
+        self.orders = Orders.of(Ledger(TRACK, self.settings, self.clock, feed), key, self.sign_in)
         self.fleet = Fleet(self.database, TRACK, self.settings, self.clock, feed, self.orders)
         self.intake = Intake(self.fleet)
         self.desk = TrafficDesk(self.fleet) if self.settings.traffic == "timetable" else None
         self.planner = FleetPlanner(self.fleet, self.desk, PlansHere()) if self.desk is not None else None
         self.dispatcher = Dispatcher(self.fleet, self.planner or NearestRobots(self.fleet))
-        self.timer = Timer(self.database, self.orders, StandingOrders(self.orders))
-        self.orders.on_change.append(self.dispatcher.wake)
+        self.timer = Timer(self.database, self.orders, StandingOrders(self.orders.placing, self.clock))
+        self.orders.ledger.on_change.append(self.dispatcher.wake)
         self.fleet.on_change.append(self.dispatcher.wake_for_robot)
         if self.desk is not None and self.planner is not None:
-            self.orders.on_change.append(self.desk.wake)
+            self.orders.ledger.on_change.append(self.desk.wake)
             self.fleet.on_change.append(self.desk.wake)
             self.desk.on_look.append(self.planner.notice)
 

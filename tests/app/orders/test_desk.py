@@ -11,7 +11,7 @@ from sqlmodel import select
 from app.accounts.sign_in.service import set_roles
 from app.core.errors import ServiceError
 from app.models import Person, Role
-from app.orders.batcher import AT_ONCE, OrderDesk, Placed
+from app.orders.batcher import AT_ONCE, OrderBatcher, Placed
 from app.orders.errors import KeyReused, StillRunning, UnknownPost, UnknownRecipient, UnknownSender
 from app.orders.views.schemas import NewOrder
 from tests.app.conftest import RECIPIENT, SENDER, Browser, Mailroom, sqlite_alone
@@ -24,7 +24,7 @@ class Crowd:
 
     def __init__(self, app: FastAPI, mailroom: Mailroom) -> None:
         self._app, self._mailroom = app, mailroom
-        self.desk: OrderDesk = app.state.parts.order_desk
+        self.desk: OrderBatcher = app.state.parts.order_batcher
         self.begun = 0
 
     def people(self) -> dict[str, Person]:
@@ -171,7 +171,7 @@ def test_whoever_hangs_up_while_they_wait_has_ordered_once_whatever_they_ask_nex
     assert len(sender.get("/api/v1/orders").json()["items"]) == 1
 
 
-async def both(desk: OrderDesk, *asked: tuple[Person, str, NewOrder]) -> list[Placed]:
+async def both(desk: OrderBatcher, *asked: tuple[Person, str, NewOrder]) -> list[Placed]:
     return list(await asyncio.gather(*(desk.place(*one) for one in asked)))
 
 

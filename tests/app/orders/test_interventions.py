@@ -135,7 +135,7 @@ async def arrive(app: FastAPI, order_id: str) -> None:
 
     async with app.state.parts.database.transaction() as session:
         word, until = Word(By.ROBOT, robot="r1"), app.state.parts.clock.utc() + timedelta(seconds=600)
-        await app.state.parts.orders.move(session, order_id, OrderState.AT_RECIPIENT, word, until)
+        await app.state.parts.orders.ledger.move(session, order_id, OrderState.AT_RECIPIENT, word, until)
 
 
 def test_another_robot_fetches_what_a_dispatcher_gives_to_it(

@@ -34,10 +34,10 @@ async def two_on_one_way(world: World) -> tuple[str, str]:
 
 async def test_an_update_that_crosses_with_an_answer_does_not_give_again_what_was_to_be_dropped(world: World) -> None:
     aboard, waiting = await two_on_one_way(world)
-    await world.change(world.orders.cancel, "sender", waiting, "")
+    await world.change(world.orders.cancelling.cancel, "sender", waiting, "")
     await world.dispatch()
     await world.hear("r1")
-    await world.change(world.orders.recall, "sender", aboard)
+    await world.change(world.orders.returning.recall, "sender", aboard)
     await world.goes_on("r1")
     assert await world.state(waiting) is S.CANCELLED
     await Record(world).check()
@@ -68,8 +68,8 @@ async def test_who_has_fetched_the_mail_is_its_robot_though_it_was_given_to_anot
 async def test_a_robot_that_comes_where_it_was_to_go_before_turns_no_mail_round_again(world: World) -> None:
     order_id = await world.place("post3", "post5")
     await world.goes_on("r1", "sender", "sets out")
-    await world.change(world.orders.stop_for_attention, "dispatcher", order_id, "It is not heard of.")
-    await world.change(world.orders.resolve, "dispatcher", order_id, "returning", None)
+    await world.change(world.orders.intervening.stop_for_attention, "dispatcher", order_id, "It is not heard of.")
+    await world.change(world.orders.intervening.resolve, "dispatcher", order_id, "returning", None)
     world.act("r1", "arrives")
     await world.speak("r1")
     assert await world.state(order_id) is S.RETURNING
@@ -80,9 +80,9 @@ async def test_a_robot_that_comes_where_it_was_to_go_before_turns_no_mail_round_
 
 async def test_an_answer_that_comes_again_drops_nothing_that_was_given_since(world: World) -> None:
     _, waiting = await two_on_one_way(world)
-    await world.change(world.orders.reassign, "dispatcher", waiting, None)
+    await world.change(world.orders.intervening.reassign, "dispatcher", waiting, None)
     await world.goes_on("r1")
-    await world.change(world.orders.reassign, "dispatcher", waiting, "r1")
+    await world.change(world.orders.intervening.reassign, "dispatcher", waiting, "r1")
     await world.goes_on("r1")
     assert await world.state(waiting) is S.ASSIGNED
     (answer,) = (one for one in world.robots["r1"].said if isinstance(one.happened, CommandAnswer))
@@ -146,7 +146,7 @@ async def test_an_update_that_crosses_with_the_robots_own_way_back_is_what_it_do
     await world.goes_on("r1", "sender")
     world.act("r1", "no way")
     world.act("r1", "")  # it has finished, and goes back by itself
-    await world.change(world.orders.recall, "sender", order_id)
+    await world.change(world.orders.returning.recall, "sender", order_id)
     await world.goes_on("r1")
     await Record(world).check()
     await world.goes_on("r1", *ALL_DONE)
@@ -159,8 +159,8 @@ async def given_to_r2(world: World, order_id: str) -> None:
     """By a dispatcher, while r1 is out of network."""
     await world.set_online("r1", False)
     await world.set_online("r2", True)
-    await world.change(world.orders.stop_for_attention, "dispatcher", order_id, "It is not heard of.")
-    await world.change(world.orders.resolve, "dispatcher", order_id, "queued", None)
+    await world.change(world.orders.intervening.stop_for_attention, "dispatcher", order_id, "It is not heard of.")
+    await world.change(world.orders.intervening.resolve, "dispatcher", order_id, "queued", None)
 
 
 @pytest.mark.parametrize("end", ["delivered", "returned", "held", "cancelled", "expired"])
@@ -169,13 +169,13 @@ async def test_what_has_ended_has_ended_for_everybody(world: World, end: str) ->
     assert await world.state(order_id) == end
     orders, before = world.orders, await everything(world)
     wishes = (
-        (orders.stop_for_attention, "It does not move."),
-        *((orders.resolve, to, None) for to in ("resume", "returning", "held", "queued", "cancelled")),
-        (orders.hold, None),
-        (orders.reassign, "r2"),
-        (orders.recall,),
-        (orders.cancel, ""),
-        (orders.extend_wait, None),
+        (orders.intervening.stop_for_attention, "It does not move."),
+        *((orders.intervening.resolve, to, None) for to in ("resume", "returning", "held", "queued", "cancelled")),
+        (orders.intervening.hold, None),
+        (orders.intervening.reassign, "r2"),
+        (orders.returning.recall,),
+        (orders.cancelling.cancel, ""),
+        (orders.waiting.extend_wait, None),
     )
     for what, *arguments in wishes:
         with suppress(ServiceError):  # refused, or granted because it is so already
@@ -187,13 +187,13 @@ async def test_what_has_ended_has_ended_for_everybody(world: World, end: str) ->
 async def ended(world: World, end: str) -> str:
     order_id = await world.place("post3", "post5")
     if end == "cancelled":
-        await world.change(world.orders.cancel, "sender", order_id, "")
+        await world.change(world.orders.cancelling.cancel, "sender", order_id, "")
     elif end == "expired":
         await world.goes_on("r1", "nobody comes")
     elif end == "delivered":
         await world.goes_on("r1", *ALL_DONE)
     else:
         await world.goes_on("r1", "sender")
-        await world.change(world.orders.recall, "sender", order_id)
+        await world.change(world.orders.returning.recall, "sender", order_id)
         await world.goes_on("r1", {"held": "mailroom", "returned": "sender"}[end])
     return order_id

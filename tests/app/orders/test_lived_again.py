@@ -33,7 +33,7 @@ def test_mail_that_was_passed_on_may_be_delivered_after_its_order_has_ended() ->
     life.a_robot_hears(robot=order.robot, count=4)
     life.the_network_comes_and_goes(robot=order.robot, online=False)
     life.a_dispatcher_stops_an_order(number=0, so_far=None)
-    assert life.tries(life.world.orders.resolve, "dispatcher", order.id, "held", "It is in the mailroom.")
+    assert life.tries(life.world.orders.intervening.resolve, "dispatcher", order.id, "held", "It is in the mailroom.")
     for luck in ("arrives", "mailroom", "arrives", "recipient"):
         life.a_robot_acts(robot=order.robot, luck=luck)
     life.the_network_comes_and_goes(robot=order.robot, online=True)

@@ -135,24 +135,32 @@ class LivesOfOrders(RuleBasedStateMachine):
 
     def asks(self, number: int, wish: tuple[str, str]) -> None:
         who, what = wish
-        arguments = {"cancel": ("",), "extend_wait": (None,)}.get(what, ())
-        self.tries(getattr(self.world.orders, what), who, self.order(number), *arguments)
+        orders = self.world.orders
+        change, *arguments = {
+            "cancel": (orders.cancelling.cancel, ""),
+            "recall": (orders.returning.recall,),
+            "not_now": (orders.returning.not_now,),
+            "extend_wait": (orders.waiting.extend_wait, None),
+        }[what]
+        self.tries(change, who, self.order(number), *arguments)
 
     @rule(number=ORDER, to=st.sampled_from(("resume", "returning", "queued", "cancelled")))
     def a_dispatcher_decides(self, number: int, to: str) -> None:
         waiting = [one.id for one in self.run(self.world.rows(Order, state=S.ATTENTION))]
         order_id = sorted(waiting)[number % len(waiting)] if waiting else self.order(number)
-        self.tries(self.world.orders.resolve, "dispatcher", order_id, to, "decided")
+        self.tries(self.world.orders.intervening.resolve, "dispatcher", order_id, to, "decided")
 
     @rule(number=ORDER, so_far=SO_FAR)
     def a_dispatcher_stops_an_order(self, number: int, so_far: str | None) -> None:
         self.an_order_comes(number, so_far)
-        self.tries(self.world.orders.stop_for_attention, "dispatcher", self.order(number), "It does not move.")
+        self.tries(
+            self.world.orders.intervening.stop_for_attention, "dispatcher", self.order(number), "It does not move."
+        )
 
     @rule(number=ORDER, robot=ROBOTS | st.none(), so_far=SO_FAR)
     def a_dispatcher_reassigns(self, number: int, robot: str | None, so_far: str | None) -> None:
         self.an_order_comes(number, so_far)
-        self.tries(self.world.orders.reassign, "dispatcher", self.order(number), robot)
+        self.tries(self.world.orders.intervening.reassign, "dispatcher", self.order(number), robot)
 
     @rule(number=ORDER, so_far=SO_FAR, luck=st.lists(LUCK, max_size=3), comes_back=st.booleans())
     def a_robot_is_given_up_on_and_goes_on(
@@ -161,10 +169,12 @@ class LivesOfOrders(RuleBasedStateMachine):
         """A dispatcher gives its order to another, while it does what it was told."""
         self.an_order_comes(number, so_far)
         (order,) = self.run(self.world.rows(Order, id=self.order(number)))
-        if order.robot is None or not self.tries(self.world.orders.stop_for_attention, "dispatcher", order.id, "Lost."):
+        if order.robot is None or not self.tries(
+            self.world.orders.intervening.stop_for_attention, "dispatcher", order.id, "Lost."
+        ):
             return
         self.run(self.world.set_online(order.robot, False))
-        self.tries(self.world.orders.resolve, "dispatcher", order.id, "queued", None)
+        self.tries(self.world.orders.intervening.resolve, "dispatcher", order.id, "queued", None)
         self.an_order_comes(number, "it sets out")
         for one in luck:
             self.world.act(order.robot, one)
@@ -174,7 +184,7 @@ class LivesOfOrders(RuleBasedStateMachine):
 
     @rule(number=ORDER, priority=st.sampled_from(Priority))
     def a_dispatcher_prioritises(self, number: int, priority: Priority) -> None:
-        self.tries(self.world.orders.prioritise, "dispatcher", self.order(number), priority)
+        self.tries(self.world.orders.intervening.prioritise, "dispatcher", self.order(number), priority)
 
     @rule(number=ORDER)
     def a_dispatcher_takes_mail_out_by_hand(self, number: int) -> None:
@@ -184,9 +194,9 @@ class LivesOfOrders(RuleBasedStateMachine):
         if self.world.where[order_id] not in self.world.robots or state not in {S.ATTENTION, S.AT_RETURN, *ENDED}:
             return
         if state is not S.ATTENTION:
-            done = self.tries(self.world.orders.hold, "dispatcher", order_id, "fetched")
+            done = self.tries(self.world.orders.intervening.hold, "dispatcher", order_id, "fetched")
         else:
-            done = self.tries(self.world.orders.resolve, "dispatcher", order_id, "held", "fetched")
+            done = self.tries(self.world.orders.intervening.resolve, "dispatcher", order_id, "held", "fetched")
         if done:
             self.world.where[order_id] = "mailroom"
 
@@ -197,7 +207,7 @@ class LivesOfOrders(RuleBasedStateMachine):
         order_id = self.order(number)
         if self.world.where[order_id] not in self.world.robots:
             return
-        if self.tries(self.world.orders.pass_on, "dispatcher", order_id, post, "its robot is flat"):
+        if self.tries(self.world.orders.passing_on.pass_on, "dispatcher", order_id, post, "its robot is flat"):
             self.world.where[order_id] = "mailroom"
 
     @rule(robot=ROBOTS)
@@ -360,7 +370,9 @@ class LivesOfOrders(RuleBasedStateMachine):
         for order in orders.values():
             if order.state is S.ATTENTION:
                 to = "returning" if order.state_before_attention in MAIL_ABOARD else "queued"
-                await self.world.change(self.world.orders.resolve, "dispatcher", order.id, to, "so that it ends")
+                await self.world.change(
+                    self.world.orders.intervening.resolve, "dispatcher", order.id, to, "so that it ends"
+                )
 
     async def all_is_done(self) -> bool:
         orders, missions = await self.world.rows(Order), await self.world.rows(MissionRow)

@@ -19,7 +19,7 @@ async def test_mail_that_a_dispatcher_sends_back_can_be_taken_however_old_its_co
     world.clock.advance(WEEK_S)
     await world.goes_on("r1", *["sender"] * 6)
     assert await world.state(order_id) is OrderState.ATTENTION, "all codes were too old"
-    await world.change(world.orders.resolve, "dispatcher", order_id, "returning", "Once more.")
+    await world.change(world.orders.intervening.resolve, "dispatcher", order_id, "returning", "Once more.")
     await world.goes_on("r1", *["sender"] * 6)
     assert await world.state(order_id) is OrderState.RETURNED
     assert world.where[order_id] == "sender"
@@ -31,7 +31,7 @@ async def test_mail_that_a_dispatcher_sends_on_can_be_taken_however_old_its_code
     await world.goes_on("r1", "sender", "no way")
     world.clock.advance(WEEK_S)
     await world.goes_on("r1", *["sender"] * 6)
-    await world.change(world.orders.resolve, "dispatcher", order_id, "resume", "Once more.")
+    await world.change(world.orders.intervening.resolve, "dispatcher", order_id, "resume", "Once more.")
     await world.goes_on("r1", *["sender"] * 6)
     assert await world.state(order_id) is OrderState.RETURNED
 
@@ -42,9 +42,9 @@ async def test_an_order_that_a_robot_dropped_and_is_given_again_is_fetched(world
     second = await world.place("post3", "post4")
     await world.goes_on("r1")
     assert await world.state(second) is OrderState.ASSIGNED, "it goes along"
-    await world.change(world.orders.reassign, "dispatcher", second, None)
+    await world.change(world.orders.intervening.reassign, "dispatcher", second, None)
     await world.goes_on("r1")
-    await world.change(world.orders.reassign, "dispatcher", second, "r1")
+    await world.change(world.orders.intervening.reassign, "dispatcher", second, "r1")
     await world.goes_on("r1", *["sender"] * 6)
     await Record(world).check()
     assert [await world.state(one) for one in (first, second)] == [OrderState.DELIVERED] * 2
@@ -65,8 +65,8 @@ async def loaded_too_late(world: World) -> str:
     order_id = await world.place("post3", "post5")
     await world.goes_on("r1", "arrives")
     await world.set_online("r1", False)
-    await world.change(world.orders.stop_for_attention, "dispatcher", order_id, "It is not heard of.")
-    await world.change(world.orders.resolve, "dispatcher", order_id, "cancelled", None)
+    await world.change(world.orders.intervening.stop_for_attention, "dispatcher", order_id, "It is not heard of.")
+    await world.change(world.orders.intervening.resolve, "dispatcher", order_id, "cancelled", None)
     world.act("r1", "sender")
     await world.set_online("r1", True)
     await world.speak("r1")
@@ -109,11 +109,11 @@ async def given_back_by_one_and_offered_to_another(world: World) -> str:
     order_id = await world.place("post3", "post5")
     await world.goes_on("r1", "arrives")
     await world.set_online("r1", False)
-    await world.change(world.orders.stop_for_attention, "dispatcher", order_id, "It is not heard of.")
-    await world.change(world.orders.resolve, "dispatcher", order_id, "queued", None)
+    await world.change(world.orders.intervening.stop_for_attention, "dispatcher", order_id, "It is not heard of.")
+    await world.change(world.orders.intervening.resolve, "dispatcher", order_id, "queued", None)
     await world.set_online("r2", True)
     await world.goes_on("r2", "sender")
-    await world.change(world.orders.recall, "sender", order_id)
+    await world.change(world.orders.returning.recall, "sender", order_id)
     await world.goes_on("r2", *["sender"] * 4)
     assert await world.state(order_id) is OrderState.RETURNED
     return order_id
@@ -152,7 +152,7 @@ async def test_mail_that_was_given_back_loaded_again_and_delivered_unheard_is_wi
 
 async def test_mail_of_an_order_that_has_ended_is_taken_out_by_hand_and_its_robot_is_free(world: World) -> None:
     order_id = await loaded_too_late(world)
-    await world.change(world.orders.hold, "dispatcher", order_id, "Fetched at the post.")
+    await world.change(world.orders.intervening.hold, "dispatcher", order_id, "Fetched at the post.")
     world.where[order_id] = "mailroom"
     await world.goes_on("r1")
     await world.goes_on("r1")
@@ -165,7 +165,7 @@ async def test_mail_of_an_order_that_has_ended_is_taken_out_by_hand_and_its_robo
     assert await world.rows(MissionRow, state="active") == []
     await Record(world).check()
     with pytest.raises(TransitionRefused, match="no robot has its mail"):
-        await world.change(world.orders.hold, "dispatcher", order_id, "Once more.")
+        await world.change(world.orders.intervening.hold, "dispatcher", order_id, "Once more.")
     another = await world.place("post3", "post5")
     await world.goes_on("r1", *["sender"] * 6)
     assert await world.state(another) is OrderState.DELIVERED
@@ -176,8 +176,8 @@ async def test_mail_of_an_order_that_has_ended_is_brought_again_when_it_is_calle
     for _ in range(3):
         await world.goes_on("r1", *["nobody comes"] * 6)
     assert world.where[order_id] == "r1"
-    await world.change(world.orders.recall, "dispatcher", order_id)
-    await world.change(world.orders.recall, "dispatcher", order_id)
+    await world.change(world.orders.returning.recall, "dispatcher", order_id)
+    await world.change(world.orders.returning.recall, "dispatcher", order_id)
     for _ in range(3):
         await world.goes_on("r1", *["sender"] * 6)
     assert world.where[order_id] == "sender"
@@ -192,7 +192,7 @@ async def test_two_mails_that_should_not_be_aboard_ring_apart_until_each_is_out(
     async with world.database.transaction() as session:
         await raise_alarm(session, "r1", "custody_contradicts_order", "Order another is cancelled. But …", now=now)
     assert [alarm.name for alarm in await world.rows(Alarm, cleared_at=None)] == ["custody_contradicts_order"] * 2
-    await world.change(world.orders.hold, "dispatcher", one, None)
+    await world.change(world.orders.intervening.hold, "dispatcher", one, None)
     world.where[one] = "mailroom"
     await world.goes_on("r1")
     (left,) = await world.rows(Alarm, cleared_at=None)
@@ -204,7 +204,7 @@ async def test_a_mission_whose_mail_is_out_before_it_is_told_is_over(world: Worl
     await world.recall("r1")
     await world.hear("r1")
     world.clock.advance(1.0)
-    await world.change(world.orders.resolve, "dispatcher", order_id, "returning", "Once more.")
+    await world.change(world.orders.intervening.resolve, "dispatcher", order_id, "returning", "Once more.")
     for _ in range(3):
         world.act("r1", "sender")
     await world.goes_on("r1")

@@ -93,7 +93,7 @@ def test_after_a_day_a_key_is_forgotten(sender: Browser, clock: SteppedClock) ->
 
 
 def test_a_key_whose_first_request_still_runs_is_told_so(app: FastAPI, sender: Browser) -> None:
-    running: Running = app.state.parts.orders.running
+    running: Running = app.state.parts.order_batcher.running
     person_id = sender.get("/api/v1/me").json()["id"]
     with running.only_once(person_id, "k1"):
         assert refused(sender.order("k1")) == (409, "still_running")

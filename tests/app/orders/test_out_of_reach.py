@@ -13,7 +13,7 @@ async def test_a_robot_that_is_asked_too_late_to_wait_longer_does_not_go_back_fo
     await world.hear("r1")
     world.act("r1", "arrives")
     await world.speak("r1")
-    await world.change(world.orders.extend_wait, "sender", order_id, None)
+    await world.change(world.orders.waiting.extend_wait, "sender", order_id, None)
     await world.dispatch()
     for _ in range(6):
         world.act("r1", "sender")

@@ -66,7 +66,7 @@ def test_two_that_look_at_once_and_a_restart_make_no_order_twice(
     assert len(made) == 1
     mailroom.call(as_if_it_had_not_been_planned_on)
     state = app.state.parts
-    anew = Timer(state.database, state.orders, StandingOrders(state.orders))
+    anew = Timer(state.database, state.orders, StandingOrders(state.orders.placing, state.clock))
     mailroom.call(anew.tick)
     assert [order["id"] for order in orders_of(sender)] == made
 

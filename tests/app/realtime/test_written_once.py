@@ -57,15 +57,15 @@ async def _told_of_a_row_that_was_undone(app: FastAPI, order_id: str) -> list[by
         person = await state.sign_in_desk.person(session, SENDER, state.clock.utc())
     with state.feed.listening(person) as queue:
         async with state.database.transaction() as session:
-            await state.orders.note(session, order_id, "wait_extended", Word(By.SENDER, person_id=person.id))
-            order = await state.orders.order(session, order_id)
+            await state.orders.ledger.note(session, order_id, "wait_extended", Word(By.SENDER, person_id=person.id))
+            order = await state.orders.ledger.order(session, order_id)
             with pytest.raises(ZeroDivisionError):
                 async with savepoint(session):
                     order.why = "undone"
                     await session.flush()
                     1 / 0  # noqa: B018
         async with state.database.transaction() as session:
-            await state.orders.note(session, order_id, "wait_extended", Word(By.SENDER, person_id=person.id))
+            await state.orders.ledger.note(session, order_id, "wait_extended", Word(By.SENDER, person_id=person.id))
         with pytest.raises(DetachedInstanceError):
             _ = order.why
         return [queue.get_nowait().wire for _ in range(queue.qsize())]

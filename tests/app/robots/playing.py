@@ -77,7 +77,7 @@ class Service:
         state = self.app.state.parts
         async with state.database.transaction() as session:
             sender = await state.sign_in_desk.person(session, "sender@campus.example", state.clock.utc())
-            await state.orders.cancel(session, sender, order_id, "")
+            await state.orders.cancelling.cancel(session, sender, order_id, "")
 
     async def rows(self, table: type[SQLModel], **wanted: object) -> list[Any]:
         async with self.app.state.parts.database.reading() as session:

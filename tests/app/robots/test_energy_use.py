@@ -65,7 +65,7 @@ async def test_after_a_restart_a_robot_that_spends_more_than_others_is_known_and
         assert learned.stretches > 10
         assert abs(learned.standing - THIRSTY) < 0.2
         assert fleet.spending.rates["new"] == usual_rates()
-        charges = Charges(fleet.orders.ways, settings, fleet.spending.rates)
+        charges = Charges(fleet.orders.ledger.ways, settings, fleet.spending.rates)
         order = WaitingOrder("o", "post1", "post4")
         needed = {
             name: charges.verdict(IdleRobot(name, "post5", 0.9), 0.9, order).needed for name in fleet.spending.rates

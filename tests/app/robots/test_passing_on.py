@@ -1,6 +1,7 @@
 """Mail that changes robots half way: one order, two legs, and the mailroom's hands between them."""
 
 from collections.abc import Iterator
+from operator import attrgetter
 
 import pytest
 
@@ -36,9 +37,8 @@ class Mailroom:
         state = self.service.app.state.parts
         try:
             async with state.database.transaction() as session:
-                return str(
-                    (await getattr(state.orders, what)(session, await self.person(session), order_id, *words)).state
-                )
+                change = attrgetter(what)(state.orders)
+                return str((await change(session, await self.person(session), order_id, *words)).state)
         except ServiceError as refused:
             return refused.code
 
@@ -53,7 +53,7 @@ class Mailroom:
         state = self.service.app.state.parts
         async with state.database.transaction() as session:
             (facts,) = await load_facts(session, [await session.get_one(Order, order_id)])
-            view = view_for(await self.person(session), facts, state.orders.campus, state.settings, state.clock.utc())
+            view = view_for(await self.person(session), facts, state.campus, state.settings, state.clock.utc())
             return [(one.holder, one.name) for one in view.custody]
 
     async def code(self, order_id: str) -> str:
@@ -91,12 +91,14 @@ async def test_what_one_robot_cannot_carry_on_another_does_and_the_chain_has_no_
     order_id = await service.order()
     async with robot.connected(service.url, tokens["r1"]):
         await robot.greet("post1")
-        assert await mailroom.does("pass_on", order_id, POST, None) == "nothing_to_pass_on", "it is with its sender"
+        assert await mailroom.does("passing_on.pass_on", order_id, POST, None) == "nothing_to_pass_on", (
+            "it is with its sender"
+        )
         await loads(robot)
         await service.reaches(order_id, "carrying")
-        assert await mailroom.does("pass_on", order_id, "attic", None) == "unknown_post"
-        assert await mailroom.does("pass_on", order_id, "post4", None) == "same_post"
-        assert await mailroom.does("pass_on", order_id, POST, "Its battery is flat.") == "queued"
+        assert await mailroom.does("passing_on.pass_on", order_id, "attic", None) == "unknown_post"
+        assert await mailroom.does("passing_on.pass_on", order_id, "post4", None) == "same_post"
+        assert await mailroom.does("passing_on.pass_on", order_id, POST, "Its battery is flat.") == "queued"
         dropped = (await robot.hear("cancel")).body
         assert isinstance(dropped, Cancel)
         assert (dropped.order_id, dropped.by_hand) == (order_id, True), "it is to forget what it has not"
@@ -128,19 +130,21 @@ async def test_mail_that_waits_for_its_second_leg_ends_in_the_mailrooms_hands(
     async with robot.connected(service.url, await service.enrol("r1")):
         await robot.greet("post1")
         await loads(robot)
-        assert await mailroom.does("stop_for_attention", order_id, "It does not move.") == "attention"
-        assert await mailroom.does("resolve", order_id, "queued", None) == "transition_refused", "its mail is aboard"
-        assert await mailroom.does("pass_on", order_id, POST, None) == "queued"
-        assert await mailroom.does("pass_on", order_id, POST, None) == "nothing_to_pass_on"
+        assert await mailroom.does("intervening.stop_for_attention", order_id, "It does not move.") == "attention"
+        assert await mailroom.does("intervening.resolve", order_id, "queued", None) == "transition_refused", (
+            "its mail is aboard"
+        )
+        assert await mailroom.does("passing_on.pass_on", order_id, POST, None) == "queued"
+        assert await mailroom.does("passing_on.pass_on", order_id, POST, None) == "nothing_to_pass_on"
     state = service.app.state.parts
     if ends == "its sender cancels":
         await service.cancel(order_id)
     async with state.database.transaction() as session:
         if ends == "nobody fetches it":
             word = Word(By.TIMER, reason="Nobody came.")
-            await state.orders.move(session, order_id, OrderState.EXPIRED, word)
+            await state.orders.ledger.move(session, order_id, OrderState.EXPIRED, word)
         elif ends == "the robot on its way lets go":
             for to, by in ((OrderState.ASSIGNED, By.DISPATCHER), (OrderState.CANCELLED, By.ROBOT)):
-                await state.orders.move(session, order_id, to, Word(by, robot="r2"))
+                await state.orders.ledger.move(session, order_id, to, Word(by, robot="r2"))
     assert str((await service.row(Order, id=order_id)).state) == "held"
     assert (await mailroom.links(order_id))[-1] == ("mailroom", None)

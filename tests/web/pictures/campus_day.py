@@ -89,7 +89,7 @@ class CampusDay(Scene):
             self.ids[name] = await self.is_ordered(*wish)
             return
         async with self.state.database.transaction() as session:
-            await self.state.orders.move(session, self.ids[name], OrderState(state), self._word(state, robot))
+            await self.state.orders.ledger.move(session, self.ids[name], OrderState(state), self._word(state, robot))
 
     async def is_ordered(self, sender: str, recipient: str, from_post: str, to_post: str, what: str | None) -> str:
         """Its id."""
@@ -102,8 +102,8 @@ class CampusDay(Scene):
         )
         async with self.state.database.transaction() as session:
             person = await self.state.sign_in_desk.person(session, f"{sender}@campus.example", MOMENT)
-            draft = await self.state.orders.draft(session, person, wish, {person.email: person})
-            await self.state.orders.write(session, [draft])
+            draft = await self.state.orders.placing.draft(session, person, wish, {person.email: person})
+            await self.state.orders.placing.write(session, [draft])
         return str(draft.facts.order.id)
 
     def _word(self, state: str, robot: str | None) -> Word:
