@@ -13,7 +13,7 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 from app.dispatch.open_work import OpenWork, OrderNow, StopNow, look_at_work
 from app.models import MissionRow, OrderState, RobotRow, StopRow
 from app.orders.changes.intervening import REASSIGNED
-from app.orders.service import Word
+from app.orders.service import Actor
 from app.orders.stops import stops_left
 from app.orders.transitions import By
 from app.robots.mission_updates import tell_mission
@@ -134,7 +134,7 @@ async def _change_mission(
     await session.flush()
     for order_id in given:
         own.add(order_id)
-        await fleet.orders.ledger.move(session, order_id, OrderState.ASSIGNED, Word(By.DISPATCHER, robot=name))
+        await fleet.orders.ledger.move(session, order_id, OrderState.ASSIGNED, Actor(By.DISPATCHER, robot=name))
         log.info("assigned", order=order_id, robot=name)
     await tell_mission(session, fleet, robot, mission)
 
@@ -169,7 +169,7 @@ async def _take(session: AsyncSession, fleet: Fleet, order_id: str) -> None:
     order = await fleet.orders.ledger.order(session, order_id)
     order.reassign_requested_at, order.let_go_by = fleet.clock.utc(), order.robot
     log.info("taken_from", order=order_id, robot=order.robot)
-    await fleet.orders.ledger.note(session, order_id, REASSIGNED, Word(By.DISPATCHER))
+    await fleet.orders.ledger.note(session, order_id, REASSIGNED, Actor(By.DISPATCHER))
 
 
 def _by_robot(given: Mapping[str, str]) -> dict[str, list[str]]:

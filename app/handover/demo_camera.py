@@ -1,4 +1,4 @@
-"""Demonstration only: somebody at the page holds their code to the simulated robot's camera."""
+"""Demonstration only: a person at the page holds their code to the simulated robot's camera."""
 
 import asyncio
 import json
@@ -50,13 +50,13 @@ class Shown(BaseModel):
     "/demo/camera", status_code=202, responses=problems(NotADemonstration, DoorClosed, UnknownOrder, NoCodeForYou)
 )
 async def show_code(
-    wish: ShowCode, user: CurrentUser, hand_overs: HandOversDep, session: ReadingDep, settings: SettingsDep
+    request: ShowCode, user: CurrentUser, hand_overs: HandOversDep, session: ReadingDep, settings: SettingsDep
 ) -> Shown:
     """Hold this person's own code of an order to the camera of the simulated robot."""
     if settings.demo_door is None:
         raise NotADemonstration("This is no demonstration: hold your code to the robot's camera yourself.")
-    code = await hand_overs.my_code(session, user, wish.order_id)
-    order = await session.get_one(Order, wish.order_id)
+    code = await hand_overs.my_code(session, user, request.order_id)
+    order = await session.get_one(Order, request.order_id)
     await knock(_door_of(settings.demo_door, order.robot), {"do": "show_code", "text": code.text(hand_overs.key)})
     return Shown(purpose=code.purpose)
 
@@ -66,12 +66,12 @@ def _door_of(door: Path, robot: str | None) -> Path:
     return door / (robot or "") if door.is_dir() else door
 
 
-async def knock(door: Path, wish: dict[str, Any]) -> dict[str, Any]:
-    """One wish to the simulated world (a Unix socket, JSON lines), and its answer. Raises DoorClosed."""
+async def knock(door: Path, request: dict[str, Any]) -> dict[str, Any]:
+    """One request to the simulated world (a Unix socket, JSON lines), and its answer. Raises DoorClosed."""
     try:
         async with asyncio.timeout(ANSWER_LIMIT_S):
             reader, writer = await asyncio.open_unix_connection(door)
-            writer.write(json.dumps(wish).encode() + b"\n")
+            writer.write(json.dumps(request).encode() + b"\n")
             await writer.drain()
             answer: dict[str, Any] = json.loads(await reader.readline())
             writer.close()

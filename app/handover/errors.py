@@ -1,4 +1,4 @@
-"""What a hand-over can be refused for.
+"""Refusals of hand-overs.
 
 NotFound      └── UnknownDelegate
 Forbidden     └── NotYoursToDelegate
@@ -35,7 +35,7 @@ class WrongDigits(Unprocessable):
 
 
 class NotYourTurn(Conflict):
-    """It is somebody else's turn to hand over, or nobody's."""
+    """It is another person's turn to hand over, or no hand-over is due."""
 
     code = "not_your_turn"
 
@@ -47,7 +47,7 @@ class RobotNotThere(Conflict):
 
 
 class RobotOffline(Conflict):
-    """What is tapped does not reach the robot. The QR code works without network."""
+    """A tap does not reach the robot. The QR code works without network."""
 
     code = "robot_offline"
 

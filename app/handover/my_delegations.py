@@ -1,4 +1,4 @@
-"""Whom somebody has named to hand over in their place, over all their orders that go on."""
+"""The delegates that one person has named, over all their open orders."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -20,19 +20,19 @@ NEWEST_FIRST: Final = Sorting("my delegates", col(Delegate.named_at), col(Delega
 TO_LOAD: Final = (OrderState.QUEUED, OrderState.ATTENTION, *sorted(ROBOT_COMING))
 """Where a code to load is good, or may be again: out of attention an order may go back into the queue."""
 TO_COME: Final = (((Purpose.LOAD,), TO_LOAD), ((Purpose.RECEIVE, Purpose.RETURN), OPEN))
-"""What somebody may be named for, and the states before it is over."""
+"""The purposes of delegates, and the states before each is over."""
 
 
 @dataclass(frozen=True)
-class Named:
-    """A delegate, for which order, and as what whoever named them sees it."""
+class NamedDelegate:
+    """A delegate, the order, and the role in it of the person who named them."""
 
     delegate: Delegate
     facts: OrderFacts
     role: MyRole
 
 
-async def named_by(session: AsyncSession, person: Person, page: Paging) -> tuple[list[Named], str | None]:
+async def named_by(session: AsyncSession, person: Person, page: Paging) -> tuple[list[NamedDelegate], str | None]:
     """Those whose code is good still, newest first: one page of them, and the cursor of the next. Raises BadCursor."""
     walks = [_named(person, purposes, states) for purposes, states in TO_COME]
     rows, following = await page.of_any(session, walks, NEWEST_FIRST)
@@ -42,12 +42,12 @@ async def named_by(session: AsyncSession, person: Person, page: Paging) -> tuple
     return list(_seen(rows, facts, person)), following
 
 
-def _seen(rows: Iterable[Delegate], facts: dict[str, OrderFacts], person: Person) -> Iterable[Named]:
-    """Who has lost a role may no longer see whom they have named by it."""
+def _seen(rows: Iterable[Delegate], facts: dict[str, OrderFacts], person: Person) -> Iterable[NamedDelegate]:
+    """Leave out delegates named by a role that the person has lost."""
     for row in rows:
         role = role_in(facts[row.order_id].order, person)
         if role is not None and may_see(row, role):
-            yield Named(row, facts[row.order_id], role)
+            yield NamedDelegate(row, facts[row.order_id], role)
 
 
 def _named(person: Person, purposes: tuple[Purpose, ...], states: tuple[OrderState, ...]) -> SelectOfScalar[Delegate]:

@@ -1,4 +1,4 @@
-"""What somebody who was named is told, by mail and wherever else they want it: their code, and when it is over."""
+"""Notifications to delegates, by mail and their other channels: their code, and its end."""
 
 from collections.abc import Mapping
 from typing import Final
@@ -17,7 +17,7 @@ from protocol.parts import Purpose
 OVER: Final = NoticeKind.DELEGATION_OVER
 
 
-async def tell_delegate(
+async def notify_delegate(
     session: AsyncSession, ledger: Ledger, sign_in: SignInDesk, order: Order, row: Delegate, named_by: Person
 ) -> None:
     """Mail a delegate their code and a link to the order. Raises AddressNotAllowed."""
@@ -30,8 +30,8 @@ async def tell_delegate(
     await _tell(session, ledger, order, row, person, NoticeKind.DELEGATED, code)
 
 
-async def tell_that_it_is_over(session: AsyncSession, ledger: Ledger, order: Order, row: Delegate) -> None:
-    """What has not gone out yet never does; whoever may have their code already hears that it is worthless."""
+async def notify_revoked(session: AsyncSession, ledger: Ledger, order: Order, row: Delegate) -> None:
+    """Withdraw the notice of a code if it has not gone out; else notify the delegate that the code is worthless."""
     person = await find_person(session, row.email) if row.email else None
     was_told = person is not None and await withdraw(session, person.id, _key(row, NoticeKind.DELEGATED))
     if person is not None and was_told and order.state not in ENDED:

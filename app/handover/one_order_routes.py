@@ -1,4 +1,4 @@
-"""One order for whoever came by the link in their mail: no account, no cookie, everything by POST.
+"""One order for a visitor by the link in their mail: no account, no cookie, everything by POST.
 
 The link opens this one order, as its recipient sees it (or a delegate: where it is, and their code), and nothing else.
 """
@@ -29,7 +29,7 @@ Token = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9_-]{43}$")]
 
 
 class Link(BaseModel):
-    """What stands behind the # of the link."""
+    """The part of the link behind its #."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -43,7 +43,7 @@ class LinkedHandOver(HandOverWish):
 
 
 class LinkedDelegate(NewDelegate):
-    """Somebody who takes the mail instead."""
+    """The person who takes the mail instead."""
 
     token: Token
 
@@ -60,7 +60,7 @@ class LinkedCode(BaseModel):
 
 
 class LinkedDelegateView(BaseModel):
-    """Who was named, and the code to be passed on to them."""
+    """The new delegate, and the code to be passed on to them."""
 
     delegate: DelegateView
     code: LinkedCode
@@ -105,12 +105,12 @@ async def linked_code(
 
 @router.post("/handover", status_code=202, dependencies=[per_host(Door.DIGITS)], responses=ASKED)
 async def linked_hand_over(
-    wish: LinkedHandOver, links: LinksDep, hand_overs: HandOversDep, database: DatabaseDep
+    request: LinkedHandOver, links: LinksDep, hand_overs: HandOversDep, database: DatabaseDep
 ) -> HandoverAsked:
     """Ask the robot that waits to hand over; 202: it is asked, and its receipt tells whether it has."""
     async with database.reading() as session:
-        guest = await links.open(session, wish.token)
-    return await hand_over(guest.order_id, wish, guest.person, hand_overs, database)
+        guest = await links.open(session, request.token)
+    return await hand_over(guest.order_id, request, guest.person, hand_overs, database)
 
 
 @router.post("/not-now", responses=problems(NotRecallable, UnknownOrder))
@@ -123,7 +123,7 @@ async def linked_not_now(link: Link, links: LinksDep, orders: OrdersDep, session
 @router.post("/delegate", status_code=201, responses=NAMED)
 async def linked_delegate(
     *,
-    wish: LinkedDelegate,
+    request: LinkedDelegate,
     links: LinksDep,
     delegating: DelegatingDep,
     hand_overs: HandOversDep,
@@ -131,8 +131,8 @@ async def linked_delegate(
     response: Response,
 ) -> LinkedDelegateView:
     """Name somebody who takes the mail instead, with a code of their own, which is shown here once."""
-    guest = await links.open(session, wish.token)
-    named = NewDelegate(name=wish.name, email=wish.email, purpose=wish.purpose)
+    guest = await links.open(session, request.token)
+    named = NewDelegate(name=request.name, email=request.email, purpose=request.purpose)
     row = await delegating.name(session, guest.person, guest.order_id, named)
     code = await delegating.code(session, guest.person, guest.order_id, row.id)
     response.headers.update(NOT_KEPT)

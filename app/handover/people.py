@@ -1,4 +1,4 @@
-"""Who may hand over now: pure decisions on an order, its delegates and a person."""
+"""The right to hand over now: pure decisions on an order, its delegates and a person."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Final
@@ -7,7 +7,7 @@ from app.handover import errors
 from app.models import Delegate, Order, OrderState, Person, Role
 from app.orders.custody.codes import TURNS, HandoverCode, Holder, codes_of, mailrooms_turn, turn_of
 from app.orders.transitions import ENDED, NOTHING_ABOARD
-from app.orders.views.views import THEIRS, MyRole
+from app.orders.views.views import HANDOVER_PURPOSES, MyRole
 from protocol.parts import Purpose
 
 WAITS: Final[Mapping[OrderState, Purpose]] = {
@@ -36,16 +36,16 @@ def codes_by_digits(order: Order, delegates: Iterable[Delegate]) -> Sequence[Han
 
 
 def check_waits(order: Order) -> Purpose:
-    """What the robot waits for. Raises RobotNotThere."""
+    """Return what the robot waits for. Raises RobotNotThere."""
     if order.state not in WAITS:
         raise errors.RobotNotThere("The robot does not wait for a hand-over of this order now.")
     return WAITS[order.state]
 
 
-def purpose_to_delegate(order: Order, role: MyRole, wished: Purpose | None) -> Purpose:
-    """What a new delegate is for. Raises NotYoursToDelegate, TooLateToDelegate."""
-    purpose = wished or THEIRS[role][0]
-    if purpose not in THEIRS[role]:
+def purpose_to_delegate(order: Order, role: MyRole, requested: Purpose | None) -> Purpose:
+    """Return the purpose of a new delegate. Raises NotYoursToDelegate, TooLateToDelegate."""
+    purpose = requested or HANDOVER_PURPOSES[role][0]
+    if purpose not in HANDOVER_PURPOSES[role]:
         raise errors.NotYoursToDelegate("The sender names who loads or takes back, the recipient who receives.")
     loading_is_over = order.state not in NOTHING_ABOARD or order.is_passed_on
     if order.state in ENDED or (purpose is Purpose.LOAD and loading_is_over):
@@ -55,4 +55,4 @@ def purpose_to_delegate(order: Order, role: MyRole, wished: Purpose | None) -> P
 
 def may_see(delegate: Delegate, role: MyRole) -> bool:
     """Sender and recipient see whom they may name themselves."""
-    return Purpose(delegate.purpose) in THEIRS[role]
+    return Purpose(delegate.purpose) in HANDOVER_PURPOSES[role]

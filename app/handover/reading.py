@@ -1,4 +1,4 @@
-"""An order as somebody may look at it: read without a lock, for what changes nothing."""
+"""Orders read without a lock, for requests that change nothing."""
 
 from sqlmodel.ext.asyncio.session import AsyncSession
 
@@ -15,8 +15,8 @@ async def find_order(session: AsyncSession, order_id: str) -> Order:
     return order
 
 
-async def theirs(session: AsyncSession, person: Person, order_id: str) -> tuple[Order, MyRole]:
-    """An order that this person may see, and as what they do. Raises UnknownOrder."""
+async def visible_order(session: AsyncSession, person: Person, order_id: str) -> tuple[Order, MyRole]:
+    """Return an order that this person may see, and their role in it. Raises UnknownOrder."""
     order = await find_order(session, order_id)
     role = role_in(order, person)
     if role is None:

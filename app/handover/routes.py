@@ -85,7 +85,7 @@ async def my_code_picture(
 
 @router.post("/orders/{order_id}/handover", status_code=202, dependencies=[per_host(Door.DIGITS)], responses=ASKED)
 async def hand_over(
-    order_id: OrderId, wish: HandOverWish, user: CurrentUser, hand_overs: HandOversDep, database: DatabaseDep
+    order_id: OrderId, request: HandOverWish, user: CurrentUser, hand_overs: HandOversDep, database: DatabaseDep
 ) -> HandoverAsked:
     """Ask the robot that waits to hand over: by a tap of whoever's turn it is, or by the digits of a code.
 
@@ -93,8 +93,8 @@ async def hand_over(
     `handover_requested` is null again.
     """
     async with database.transaction() as session:
-        if wish.digits:
-            done = await hand_overs.type_digits(session, user, order_id, wish.digits)
+        if request.digits:
+            done = await hand_overs.type_digits(session, user, order_id, request.digits)
         else:
             done = await hand_overs.tap(session, user, order_id)
     if isinstance(done, ServiceError):
@@ -131,14 +131,14 @@ async def my_delegates(user: CurrentUser, page: PageDep, session: ReadingDep) ->
 async def name_delegate(
     *,
     order_id: OrderId,
-    wish: NewDelegate,
+    request: NewDelegate,
     user: CurrentUser,
     delegating: DelegatingDep,
     session: SessionDep,
     response: Response,
 ) -> DelegateView:
     """Name somebody who hands over instead, with a code of their own."""
-    row = await delegating.name(session, user, order_id, wish)
+    row = await delegating.name(session, user, order_id, request)
     response.headers["Location"] = f"/api/v1/orders/{order_id}/delegates/{row.id}/code"
     return DelegateView.of(row)
 

@@ -9,12 +9,12 @@ from app.accounts.schemas import Email
 from app.core.paging import PageOf
 from app.core.server_key import ServerKey
 from app.core.text_lines import Name
-from app.handover.my_delegations import Named
+from app.handover.my_delegations import NamedDelegate
 from app.handover.notifications import post_of
 from app.models import Delegate, OrderState
 from app.orders.custody.codes import HandoverCode
 from app.orders.views.schemas import Somebody
-from app.orders.views.views import MyRole, somebody
+from app.orders.views.views import MyRole, person_view
 from protocol.parts import Purpose
 
 PurposeName = Literal["load", "receive", "return"]
@@ -43,7 +43,7 @@ class CodeView(BaseModel):
 
 
 class HandOverWish(BaseModel):
-    """Hand over now. Without digits it is a tap of whoever's turn it is."""
+    """Hand over now. Without digits it is a tap of the person whose turn it is."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -63,7 +63,7 @@ class HandoverAsked(BaseModel):
 
 
 class NewDelegate(BaseModel):
-    """Somebody who hands over instead of the sender or the recipient. `purpose` follows from who names them."""
+    """A person who hands over instead of the sender or the recipient. `purpose` follows from the one who names them."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -73,7 +73,7 @@ class NewDelegate(BaseModel):
 
 
 class DelegateView(BaseModel):
-    """Somebody who was named; `revoked_at` null: their code is good still."""
+    """A delegate; `revoked_at` null: their code is good still."""
 
     id: str
     name: str
@@ -88,12 +88,12 @@ class DelegateView(BaseModel):
 
 
 class Delegates(PageOf[DelegateView]):
-    """Who was named for an order, as far as one may see them, oldest first."""
+    """The delegates of an order that the caller may see, oldest first."""
 
 
 class MyDelegateView(BaseModel):
-    """Somebody whom the caller has named, whose code is good until `expires_at`: the `post` where they meet the robot,
-    and for which order."""
+    """A delegate of the caller, whose code is good until `expires_at`: the `post` where they meet the robot, and the
+    order."""
 
     id: str
     name: str
@@ -110,7 +110,7 @@ class MyDelegateView(BaseModel):
     my_role: MyRole
 
     @classmethod
-    def of(cls, named: Named) -> "MyDelegateView":
+    def of(cls, named: NamedDelegate) -> "MyDelegateView":
         row, order = named.delegate, named.facts.order
         return cls(
             **DelegateView.of(row).model_dump(exclude={"revoked_at"}),
@@ -119,8 +119,8 @@ class MyDelegateView(BaseModel):
             order_id=order.id,
             state=order.state,
             description=order.description,
-            sender=somebody(named.facts.sender),
-            recipient=somebody(named.facts.recipient),
+            sender=person_view(named.facts.sender),
+            recipient=person_view(named.facts.recipient),
             my_role=named.role,
         )
 

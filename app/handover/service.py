@@ -1,4 +1,4 @@
-"""What people can do about a hand-over. A tap is a wish: it reaches the robot as a command, and its receipt decides."""
+"""Hand-overs by people. A tap is a request: it reaches the robot as a command, and its receipt decides."""
 
 import hmac
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ from app.models import DigitLock, Order, Person, RobotRow
 from app.orders.custody.codes import CONFIRM_LIFETIME_S, HandoverCode, delegates_of
 from app.orders.errors import NoCodeForYou
 from app.orders.ledger import unknown
-from app.orders.service import Word
+from app.orders.service import Actor
 from app.orders.transitions import By
 from app.orders.views.views import CONFIRM_REQUESTED, role_in
 from app.robots.alarms import clear_alarms, raise_alarm
@@ -53,7 +53,7 @@ class HandOvers:
         return code
 
     async def is_locked(self, session: AsyncSession, order_id: str) -> bool:
-        """Whether the digits of this order open nothing until somebody releases them."""
+        """Return whether the digits of this order are locked until a dispatcher releases them."""
         lock = await session.get(DigitLock, order_id)
         return lock is not None and lock.locked_at is not None
 
@@ -70,7 +70,7 @@ class HandOvers:
     async def type_digits(
         self, session: AsyncSession, person: Person, order_id: str, digits: str
     ) -> HandoverAsked | errors.WrongDigits | errors.DigitsLocked:
-        """Somebody who sees the order types the digits of a code. Raises UnknownOrder and what `_confirm` raises.
+        """Check digits typed by a person who sees the order. Raises UnknownOrder and what `_confirm` raises.
 
         Wrong digits and the lock are returned, not raised: the try must be committed.
         """
@@ -97,7 +97,7 @@ class HandOvers:
         if lock.wrong_tries < TRIES:
             return errors.WrongDigits(f"These are not the digits. {TRIES - lock.wrong_tries} tries are left.")
         lock.locked_at = self.fleet.clock.utc()
-        await self.fleet.orders.ledger.note(session, order.id, LOCKED, word_of(order, person))
+        await self.fleet.orders.ledger.note(session, order.id, LOCKED, actor_of(order, person))
         if order.robot is not None:
             sentence = f"{TRIES} wrong digits for order {order.id}: they are locked until a dispatcher releases them"
             await raise_alarm(session, order.robot, LOCKED, sentence, now=lock.locked_at)
@@ -105,12 +105,12 @@ class HandOvers:
 
     async def release_digits(self, session: AsyncSession, dispatcher: Person, order_id: str) -> Order:
         """A dispatcher lets digits be typed again. Raises UnknownOrder."""
-        order, _ = await self.fleet.orders.ledger.theirs(session, dispatcher, order_id)
+        order, _ = await self.fleet.orders.ledger.visible_order(session, dispatcher, order_id)
         lock = await session.get(DigitLock, order_id, with_for_update=True)
         if lock is not None and lock.wrong_tries:
             lock.wrong_tries, lock.locked_at = 0, None
-            word = Word(By.DISPATCHER, person_id=dispatcher.id)
-            await self.fleet.orders.ledger.note(session, order_id, "digits_released", word)
+            actor = Actor(By.DISPATCHER, person_id=dispatcher.id)
+            await self.fleet.orders.ledger.note(session, order_id, "digits_released", actor)
             if order.robot is not None:
                 await clear_alarms(session, order.robot, LOCKED, self.fleet.clock.utc())
         return order
@@ -118,7 +118,7 @@ class HandOvers:
     async def _confirm(
         self, session: AsyncSession, order: Order, person: Person, code: HandoverCode, how: How
     ) -> HandoverAsked:
-        """Ask the robot to hand over; once, until it answers or the wish is too old.
+        """Ask the robot to hand over; once, until it answers or the request is too old.
 
         Raises RobotNotThere, CodesExpired, RobotOffline, RobotTakesNoTaps.
         """
@@ -130,7 +130,7 @@ class HandOvers:
         earlier = await unanswered(session, robot=robot.name, kind="confirm", order_id=order.id)
         asked = next((one for one in earlier if one.asked_at + lifetime > now), None)
         if asked is None:
-            wish = Confirm(
+            request = Confirm(
                 command_id=new_command_id("confirm"),
                 order_id=order.id,
                 purpose=purpose,
@@ -139,8 +139,8 @@ class HandOvers:
                 # It is the robot that judges whether this came too late.
                 expires_at=by_its_clock(now + lifetime, robot.clock_off_s),
             )
-            asked = await ask(session, self.fleet, robot, wish, person.id)
-            await self.fleet.orders.ledger.note(session, order.id, CONFIRM_REQUESTED, word_of(order, person, how))
+            asked = await ask(session, self.fleet, robot, request, person.id)
+            await self.fleet.orders.ledger.note(session, order.id, CONFIRM_REQUESTED, actor_of(order, person, how))
         return HandoverAsked(
             order_id=order.id,
             purpose=purpose.value,
@@ -158,8 +158,8 @@ class HandOvers:
         return robot
 
 
-def word_of(order: Order, person: Person, reason: str | None = None) -> Word:
-    """On whose word something is written down: somebody who was named speaks for who named them."""
+def actor_of(order: Order, person: Person, reason: str | None = None) -> Actor:
+    """Return the actor of an event: a delegate acts for the person who named them."""
     role = role_in(order, person)
     by = By(role) if role else (By.RECIPIENT if WAITS.get(order.state) is Purpose.RECEIVE else By.SENDER)
-    return Word(by, person_id=person.id, reason=reason)
+    return Actor(by, person_id=person.id, reason=reason)

@@ -1,7 +1,7 @@
 """Places orders: those that are asked for at the same time together, in one transaction with few statements for all.
 
-A statement for many takes hardly longer than for one. Nobody waits for company: what comes while one round is written
-is the next round. Each is refused alone; if a round fails as a whole, each of its orders is tried by itself.
+A statement for many takes hardly longer than for one. No request waits for others: what comes while one round is
+written is the next round. Each is refused alone; if a round fails as a whole, each of its orders is tried by itself.
 """
 
 import asyncio
@@ -25,7 +25,7 @@ AT_ONCE: Final = 20
 
 @dataclass(frozen=True)
 class Placed:
-    """What is answered; `again`: to a request that was answered before."""
+    """The answer; `again`: to a request that was answered before."""
 
     view: OrderView
     headers: Mapping[str, str]
@@ -34,7 +34,7 @@ class Placed:
 
 @dataclass(frozen=True)
 class _New:
-    """What is to be written of one order, and what is answered then."""
+    """The rows of one new order, and the answer to its request."""
 
     draft: Draft
     key: Mapping[str, Any]
@@ -42,12 +42,12 @@ class _New:
 
 
 @dataclass(frozen=True)
-class _Asked:
-    """One request, and who waits for its outcome."""
+class _PendingRequest:
+    """One request, and the future that its caller awaits."""
 
     person: Person
     key: str
-    wish: NewOrder
+    request: NewOrder
     outcome: asyncio.Future[Placed]
 
     @property
@@ -55,7 +55,7 @@ class _Asked:
         return self.person.id, self.key
 
     def end(self, outcome: Placed | Exception) -> None:
-        if self.outcome.done():  # whoever asked waits no longer
+        if self.outcome.done():  # the caller waits no longer
             return
         if isinstance(outcome, Exception):
             self.outcome.set_exception(outcome)
@@ -70,16 +70,16 @@ class OrderBatcher:
     database: Database
     placing: Placing
     running: Running = field(default_factory=Running)
-    _waiting: list[_Asked] = field(default_factory=list)
+    _waiting: list[_PendingRequest] = field(default_factory=list)
     _at_work: asyncio.Task[None] | None = None
 
-    async def place(self, person: Person, key: str, wish: NewOrder) -> Placed:
-        """Once for each key. It is done even if whoever asked is cancelled meanwhile: their key tells what came of it.
+    async def place(self, person: Person, key: str, request: NewOrder) -> Placed:
+        """Place an order once for each key, even if the caller is cancelled meanwhile: its key tells the outcome.
 
         Raises StillRunning, KeyReused, and what `Placing.draft` raises.
         """
         with self.running.only_once(person.id, key):
-            asked = _Asked(person, key, wish, asyncio.get_running_loop().create_future())
+            asked = _PendingRequest(person, key, request, asyncio.get_running_loop().create_future())
             self._waiting.append(asked)
             if self._at_work is None:
                 # Without the first one's context: the request's number in the log would be wrong for the others.
@@ -87,18 +87,18 @@ class OrderBatcher:
             return await asked.outcome
 
     async def _work(self) -> None:
-        asked: Sequence[_Asked] = ()
+        asked: Sequence[_PendingRequest] = ()
         try:
             while self._waiting:
                 asked, self._waiting = self._waiting[:AT_ONCE], self._waiting[AT_ONCE:]
                 await self._place(asked)
         finally:
             self._at_work = None
-            for one in (*asked, *self._waiting):  # cut off: nobody shall wait for ever
+            for one in (*asked, *self._waiting):  # cut off: no caller waits for ever
                 one.outcome.cancel()
             self._waiting = []
 
-    async def _place(self, asked: Sequence[_Asked]) -> None:
+    async def _place(self, asked: Sequence[_PendingRequest]) -> None:
         try:
             outcomes = await self._in_one_transaction(asked)
         except Exception as error:
@@ -111,10 +111,10 @@ class OrderBatcher:
             for one, outcome in zip(asked, outcomes, strict=True):
                 one.end(outcome)
 
-    async def _in_one_transaction(self, asked: Sequence[_Asked]) -> list[Placed | ServiceError]:
+    async def _in_one_transaction(self, asked: Sequence[_PendingRequest]) -> list[Placed | ServiceError]:
         async with self.database.transaction() as session:
             earlier = await earlier_answers(session, [one.whose for one in asked], self.placing.ledger.clock.utc())
-            known = await look_up_people(session, {address for one in asked for address in one.wish.addresses})
+            known = await look_up_people(session, {address for one in asked for address in one.request.addresses})
             outcomes = [await self._outcome(session, one, earlier.get(one.whose), known) for one in asked]
             new = [one for one in outcomes if isinstance(one, _New)]
             await self.placing.write(session, [one.draft for one in new])
@@ -122,19 +122,19 @@ class OrderBatcher:
         return [one.placed if isinstance(one, _New) else one for one in outcomes]
 
     async def _outcome(
-        self, session: AsyncSession, asked: _Asked, earlier: Earlier | None, known: dict[str, Person]
+        self, session: AsyncSession, asked: _PendingRequest, earlier: Earlier | None, known: dict[str, Person]
     ) -> Placed | _New | ServiceError:
         try:
             if earlier is not None:
-                answer = earlier.answer_to(asked.wish)
+                answer = earlier.answer_to(asked.request)
                 return Placed(OrderView.model_validate(answer.body), answer.headers, again=True)
-            return self._new(asked, await self.placing.draft(session, asked.person, asked.wish, known))
+            return self._new(asked, await self.placing.draft(session, asked.person, asked.request, known))
         except ServiceError as refusal:
             return refusal
 
-    def _new(self, asked: _Asked, draft: Draft) -> _New:
+    def _new(self, asked: _PendingRequest, draft: Draft) -> _New:
         view = self.placing.first_view(draft, asked.person)
         headers = {"Location": f"/api/v1/orders/{view.id}", "ETag": etag_of(view)}
         answer = Answer(headers, view.model_dump(mode="json"))
-        key = key_row(*asked.whose, asked.wish, answer, draft.facts.order.created_at)
+        key = key_row(*asked.whose, asked.request, answer, draft.facts.order.created_at)
         return _New(draft, key, Placed(view, headers))

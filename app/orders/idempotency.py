@@ -26,9 +26,9 @@ KEPT = timedelta(hours=24)
 TWICE: Final = "The first request with this Idempotency-Key is still running. Ask again in a moment."
 
 
-def body_hash(wish: NewOrder) -> str:
-    """The same for the same wish, however its JSON is spaced or ordered."""
-    return sha256(wish.model_dump_json().encode()).hexdigest()
+def body_hash(request: NewOrder) -> str:
+    """Return the same hash for the same request, however its JSON is spaced or ordered."""
+    return sha256(request.model_dump_json().encode()).hexdigest()
 
 
 class Running:
@@ -52,7 +52,7 @@ class Running:
 
 @dataclass(frozen=True)
 class Answer:
-    """What was answered the first time."""
+    """The first answer."""
 
     headers: Mapping[str, str]
     body: Mapping[str, Any]
@@ -65,15 +65,15 @@ class Earlier:
     hash_of_body: str
     answer: Answer
 
-    def answer_to(self, wish: NewOrder) -> Answer:
-        """The same as then. Raises KeyReused for another wish."""
-        if self.hash_of_body != body_hash(wish):
+    def answer_to(self, request: NewOrder) -> Answer:
+        """Return the earlier answer. Raises KeyReused for another request."""
+        if self.hash_of_body != body_hash(request):
             raise KeyReused("This Idempotency-Key belongs to another order. Take a new key for a new order.")
         return self.answer
 
 
 async def earlier_answers(session: AsyncSession, keys: Sequence[Key], now: datetime) -> dict[Key, Earlier]:
-    """What was answered to these before, if anything."""
+    """Return the earlier answers to these requests."""
     connection = await connection_of(session)
     people, names = {person for person, _ in keys}, {name for _, name in keys}
     rows = await connection.execute(_KEPT, {"people": list(people), "names": list(names)})
@@ -82,19 +82,19 @@ async def earlier_answers(session: AsyncSession, keys: Sequence[Key], now: datet
         if (row.person_id, row.key) not in keys:
             continue  # of another who calls theirs the same
         if row.created_at < now - KEPT:
-            # Whoever keeps house deletes the others, which stand in nobody's way.
+            # The retention job deletes the others.
             await connection.execute(_FORGOTTEN, {"person": row.person_id, "name": row.key})
         else:
             earlier[row.person_id, row.key] = Earlier(row.body_hash, Answer(row.headers, row.answer))
     return earlier
 
 
-def key_row(person_id: str, key: str, wish: NewOrder, answer: Answer, now: datetime) -> dict[str, Any]:
-    """What is kept, to be written with the order itself."""
+def key_row(person_id: str, key: str, request: NewOrder, answer: Answer, now: datetime) -> dict[str, Any]:
+    """Return the row to write with the order itself."""
     return {
         "person_id": person_id,
         "key": key,
-        "body_hash": body_hash(wish),
+        "body_hash": body_hash(request),
         "status": 201,
         "headers": answer.headers,
         "answer": answer.body,

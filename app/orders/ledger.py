@@ -1,7 +1,7 @@
-"""The book of orders: every change is written down once and told. The only place that changes an order's state.
+"""The ledger of orders, the only place that changes their state: each change is recorded once, then published.
 
-A change is one transaction: row, event, notices; said aloud after the commit. Version and number of the event are one
-and the same, so that whoever knows the one knows the other.
+A change is one transaction: row, event, notices; published after the commit. An order's version is the number of its
+newest event.
 """
 
 from collections.abc import Callable
@@ -20,7 +20,7 @@ from app.models.orders.order_events import MOVED
 from app.notifications.service import tell_all
 from app.orders import errors
 from app.orders.nearness import is_near
-from app.orders.notifications import TOLD, facts_of, notices_about
+from app.orders.notifications import NOTIFICATION_RULES, facts_of, notices_about
 from app.orders.transitions import NEVER_LEFT_ITS_SENDER, By, is_allowed, is_old_news
 from app.orders.views.schemas import OrderView
 from app.orders.views.views import MyRole, OrderFacts, load_facts, order_view, role_in
@@ -35,8 +35,8 @@ Expected = tuple[datetime, datetime]
 
 
 @dataclass(frozen=True)
-class Word:
-    """On whose word an order moves, and what is known of it: `robot_at` is the robot's own time of it."""
+class Actor:
+    """The origin of a change, and what is known of it: `robot_at` is the robot's own time of it."""
 
     by: By
     person_id: str | None = None
@@ -61,27 +61,27 @@ class Ledger:
 
     @cached_property
     def ways(self) -> Ways:
-        """How far it is on this campus."""
+        """Return the distances on this campus."""
         return Ways(self.campus)
 
     @cached_property
     def estimates(self) -> Estimates:
-        """How long things take on this campus, as far as it was learned."""
+        """Return the learned durations of this campus."""
         settings = self.settings
         speed_m_s, handover_s = settings.assumed_speed_m_s, settings.assumed_handover_s
         return Estimates(self.ways, speed_m_s, handover_s, settings.zone, settings.hours_of_offices)
 
     async def order(self, session: AsyncSession, order_id: str) -> Order:
-        """The row, which nobody else changes: writers take turns. Raises UnknownOrder."""
+        """Return the row for a change: writers take turns. Raises UnknownOrder."""
         order = await session.get(Order, order_id)
         if order is None:
             raise unknown(order_id)
         return order
 
-    async def theirs(
+    async def visible_order(
         self, session: AsyncSession, person: Person, order_id: str, if_match: str = ""
     ) -> tuple[Order, MyRole]:
-        """An order that this person may see, and as what they do. Raises UnknownOrder, OrderChanged."""
+        """Return an order that this person may see, and their role in it. Raises UnknownOrder, OrderChanged."""
         order = await self.order(session, order_id)
         role = role_in(order, person)
         if role is None:
@@ -95,7 +95,7 @@ class Ledger:
         session: AsyncSession,
         order_id: str,
         to: OrderState,
-        word: Word,
+        actor: Actor,
         wait_until: datetime | None = None,
         *,
         quietly: bool = False,
@@ -103,33 +103,33 @@ class Ledger:
         """Take an order to its next state; False if this has happened before and nothing changes.
 
         A robot repeats itself after a lost acknowledgement, and may tell late what others told already: what lies
-        behind the order is no news on a robot's word. `wait_until` is how long the robot waits there; `quietly`: nobody
+        behind the order is no news from a robot. `wait_until` is how long the robot waits there; `quietly`: no person
         gets a notice of it, since more follows at once. Raises UnknownOrder, TransitionRefused.
         """
         order = await self.order(session, order_id)
         if order.is_passed_on and to in NEVER_LEFT_ITS_SENDER:
             to = OrderState.HELD  # by the mailroom, which has it
-        if order.state is to or (word.by is By.ROBOT and is_old_news(order.state, to, order.state_before_attention)):
+        if order.state is to or (actor.by is By.ROBOT and is_old_news(order.state, to, order.state_before_attention)):
             return False
         before = order.state_before_attention
-        if not is_allowed(order.state, to, word.by, before, is_passed_on=order.is_passed_on):
-            raise errors.TransitionRefused(f"Order {order.id} is {order.state}: {word.by} cannot make it {to}.")
+        if not is_allowed(order.state, to, actor.by, before, is_passed_on=order.is_passed_on):
+            raise errors.TransitionRefused(f"Order {order.id} is {order.state}: {actor.by} cannot make it {to}.")
         order.state_before_attention = order.state if to is OrderState.ATTENTION else None
         order.state = to
-        order.robot = word.robot or order.robot
-        order.why = word.reason if to is OrderState.ATTENTION else None
+        order.robot = actor.robot or order.robot
+        order.why = actor.reason if to is OrderState.ATTENTION else None
         order.wait_until = wait_until
         if to is OrderState.QUEUED:
-            _begin_anew(order)
-        await self._write(session, order, MOVED, word, quietly=quietly)
+            _reset_requests(order)
+        await self._write(session, order, MOVED, actor, quietly=quietly)
         return True
 
-    async def note(self, session: AsyncSession, order_id: str, kind: str, word: Word) -> None:
+    async def note(self, session: AsyncSession, order_id: str, kind: str, actor: Actor) -> None:
         """Write down what happened to an order without changing its state, such as `wait_extended`, and publish it.
 
         Raises UnknownOrder.
         """
-        await self._write(session, await self.order(session, order_id), kind, word)
+        await self._write(session, await self.order(session, order_id), kind, actor)
 
     async def explain(self, session: AsyncSession, order: Order, why: str, expected: Expected | None) -> None:
         """Say in words why an order waits, and with it when it is expected. Changes nothing else."""
@@ -147,32 +147,32 @@ class Ledger:
         await self.show(session, order)
 
     async def show(self, session: AsyncSession, order: Order) -> None:
-        """To pages alone: who waits for changes of orders has nothing to do because of it."""
+        """Publish to pages alone, without calling `on_change`."""
         if self.feed.is_heard:
             self._publish_views(session, (await load_facts(session, [order]))[0])
         else:
             after_commit(session, self.feed.pass_over)
 
     async def _write(
-        self, session: AsyncSession, order: Order, kind: str, word: Word, *, quietly: bool = False
+        self, session: AsyncSession, order: Order, kind: str, actor: Actor, *, quietly: bool = False
     ) -> None:
         order.version += 1
         order.updated_at = self.clock.utc()
-        await (await connection_of(session)).execute(_NEW_EVENT, event_row(order, kind, word))
-        is_told = kind == MOVED and order.state in TOLD and not quietly
-        if not is_told and not self.feed.is_heard:  # all that has been is looked up for somebody who reads it
+        await (await connection_of(session)).execute(_NEW_EVENT, event_row(order, kind, actor))
+        is_told = kind == MOVED and order.state in NOTIFICATION_RULES and not quietly
+        if not is_told and not self.feed.is_heard:  # nothing is loaded without a reader
             after_commit(session, self.feed.pass_over)
             after_commit(session, partial(self.changed, order.id))
             return
         facts = (await load_facts(session, [order]))[0]
         if is_told:
-            await self._tell(session, facts, word.post)
+            await self._tell(session, facts, actor.post)
         self.publish(session, facts)
 
-    async def come_nearer(self, session: AsyncSession, order_id: str, post: str | None) -> None:
-        """The robot passes a post on its way to the sender, who is told once it is near. Raises UnknownOrder."""
+    async def notify_when_near(self, session: AsyncSession, order_id: str, post: str | None) -> None:
+        """Notify the sender once the robot, which passes a post, is near. Raises UnknownOrder."""
         order = await self.order(session, order_id)
-        if self._is_near(order, post):
+        if self._is_robot_near(order, post):
             await self._tell(session, (await load_facts(session, [order]))[0], post)
             after_commit(session, partial(self.changed, order_id))
 
@@ -180,20 +180,20 @@ class Ledger:
         await tell_all(session, self.notices(facts, robot_at))
 
     def notices(self, facts: OrderFacts, robot_at: str | None = None) -> list[dict[str, Any]]:
-        """What its people are to be told of the state that an order is in now."""
+        """Return the notices for sender and recipient of the order's present state."""
         order = facts.order
         robot_at = robot_at or (facts.robot.post if facts.robot else None)
-        nearby = self._is_near(order, robot_at)
+        nearby = self._is_robot_near(order, robot_at)
         gaps = facts_of(order, facts.people, self.campus, self.settings, self.clock.utc())
         return notices_about(order, gaps, facts.events, nearby, self.clock.utc())
 
-    def _is_near(self, order: Order, robot_at: str | None) -> bool:
+    def _is_robot_near(self, order: Order, robot_at: str | None) -> bool:
         return order.state is OrderState.TO_SENDER and is_near(
             self.ways, robot_at, order.load_post, self.settings.assumed_speed_m_s
         )
 
     def publish(self, session: AsyncSession, facts: OrderFacts) -> None:
-        """To sender, recipient and dispatchers, each as they may see it, and to whoever waits for changes."""
+        """Publish to sender, recipient and dispatchers, each as they may see it, and call `on_change`."""
         self._publish_views(session, facts)
         after_commit(session, partial(self.changed, facts.order.id))
 
@@ -205,7 +205,7 @@ class Ledger:
         self._publish_view(session, for_all, role=Role.DISPATCHER, except_for=frozenset(mine))
 
     def view_of(self, facts: OrderFacts, role: MyRole, person_id: str) -> OrderView:
-        """The order as it is now, for one person in one role."""
+        """Return the order as it is now, for one person in one role."""
         return order_view(facts, role, person_id, self.campus, self.settings, self.clock.utc())
 
     async def view(self, session: AsyncSession, order: Order, role: MyRole, person: Person) -> OrderView:
@@ -213,7 +213,7 @@ class Ledger:
         return self.view_of((await load_facts(session, [order]))[0], role, person.id)
 
     def changed(self, order_id: str) -> None:
-        """Wake whoever waits for changes of orders. After the commit."""
+        """Call `on_change`. After the commit."""
         for call in self.on_change:
             call(order_id)
 
@@ -229,8 +229,8 @@ class Ledger:
         after_commit(session, lambda: self.feed.publish(happening))
 
 
-def _begin_anew(order: Order) -> None:
-    """Back in the queue: what was wished of the robot that it had is over."""
+def _reset_requests(order: Order) -> None:
+    """Clear the requests to the robot that it had: it is back in the queue."""
     order.robot = None
     order.cancel_requested_at = order.cancel_requested_by = None
     order.return_requested_at = order.reassign_requested_at = None
@@ -239,25 +239,25 @@ def _begin_anew(order: Order) -> None:
 _NEW_EVENT: Final = insert(OrderEvent)
 
 
-def event_row(order: Order, kind: str, word: Word) -> dict[str, Any]:
-    """What has just happened to `order`, as its timeline tells it."""
+def event_row(order: Order, kind: str, actor: Actor) -> dict[str, Any]:
+    """Return the event of what has just happened to `order`."""
     return {
         "order_id": order.id,
         "seq": order.version,
         "state": order.state,
         "kind": kind,
         "at": order.updated_at,
-        "by": word.by,
-        "person_id": word.person_id,
-        "robot": word.robot,
-        "robot_at": word.robot_at,
-        "post": word.post,
-        "reason": word.reason,
+        "by": actor.by,
+        "person_id": actor.person_id,
+        "robot": actor.robot,
+        "robot_at": actor.robot_at,
+        "post": actor.post,
+        "reason": actor.reason,
     }
 
 
 def unknown(order_id: str) -> errors.UnknownOrder:
-    """The same sentence for what is not there and for what is not theirs."""
+    """Return the same error for a missing order and for an order of others."""
     return errors.UnknownOrder(f"There is no order {order_id} among yours.")
 
 

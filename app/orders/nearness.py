@@ -1,4 +1,4 @@
-"""Whether the robot that fetches mail is near its sender, told from the posts that it passes."""
+"""Nearness of the robot that fetches mail to its sender, by the posts that it passes."""
 
 import math
 from typing import Final

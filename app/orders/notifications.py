@@ -1,4 +1,4 @@
-"""Who is told what, at which state of an order."""
+"""Notifications by state of an order: one table."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -20,8 +20,8 @@ RECIPIENT: Final = By.RECIPIENT
 
 
 @dataclass(frozen=True)
-class Telling:
-    """One person is told one thing, if it concerns them as things stand; `when_near`: not before the robot is."""
+class NotificationRule:
+    """One notification to one person, if it concerns them; `when_near`: not before the robot is near."""
 
     who: By
     kind: NoticeKind
@@ -29,8 +29,10 @@ class Telling:
     when_near: bool = False
 
 
-def _both(kind: NoticeKind, concerns: Callable[[Order], bool] = lambda order: True) -> tuple[Telling, Telling]:
-    return Telling(SENDER, kind, concerns), Telling(RECIPIENT, kind, concerns)
+def _both(
+    kind: NoticeKind, concerns: Callable[[Order], bool] = lambda order: True
+) -> tuple[NotificationRule, NotificationRule]:
+    return NotificationRule(SENDER, kind, concerns), NotificationRule(RECIPIENT, kind, concerns)
 
 
 def _is_with_its_sender(order: Order) -> bool:
@@ -50,33 +52,36 @@ def _comes_to_the_sender(order: Order) -> bool:
 
 
 def _was_aboard(order: Order) -> bool:
-    """Before that a recipient has not been told of anything that could be late or go wrong."""
+    """Return whether the recipient was notified already of what could be late or go wrong."""
     return (order.state_before_attention or order.state) in MAIL_ABOARD
 
 
-TOLD: Final[Mapping[OrderState, tuple[Telling, ...]]] = {
-    OrderState.QUEUED: (Telling(SENDER, NoticeKind.ACCEPTED),),
-    OrderState.TO_SENDER: (Telling(SENDER, NoticeKind.ROBOT_NEAR, _is_with_its_sender, when_near=True),),
-    OrderState.AT_SENDER: (Telling(SENDER, NoticeKind.ROBOT_HERE, _is_with_its_sender),),
-    OrderState.CARRYING: (Telling(RECIPIENT, NoticeKind.ON_ITS_WAY),),
-    OrderState.AT_RECIPIENT: (Telling(RECIPIENT, NoticeKind.ROBOT_HERE_FOR_YOU),),
+NOTIFICATION_RULES: Final[Mapping[OrderState, tuple[NotificationRule, ...]]] = {
+    OrderState.QUEUED: (NotificationRule(SENDER, NoticeKind.ACCEPTED),),
+    OrderState.TO_SENDER: (NotificationRule(SENDER, NoticeKind.ROBOT_NEAR, _is_with_its_sender, when_near=True),),
+    OrderState.AT_SENDER: (NotificationRule(SENDER, NoticeKind.ROBOT_HERE, _is_with_its_sender),),
+    OrderState.CARRYING: (NotificationRule(RECIPIENT, NoticeKind.ON_ITS_WAY),),
+    OrderState.AT_RECIPIENT: (NotificationRule(RECIPIENT, NoticeKind.ROBOT_HERE_FOR_YOU),),
     OrderState.DELIVERED: _both(NoticeKind.DELIVERED),
     OrderState.RETURNING: (
         *_both(NoticeKind.NOT_TAKEN, _was_not_taken),
         *_both(NoticeKind.CALLED_BACK, _was_called_back),
     ),
-    # In the mailroom somebody of the mailroom takes it out.
-    OrderState.AT_RETURN: (Telling(SENDER, NoticeKind.AT_RETURN, _comes_to_the_sender),),
+    # In the mailroom its staff take it out.
+    OrderState.AT_RETURN: (NotificationRule(SENDER, NoticeKind.AT_RETURN, _comes_to_the_sender),),
     OrderState.RETURNED: _both(NoticeKind.RETURNED),
     OrderState.HELD: _both(NoticeKind.HELD),
-    OrderState.CANCELLED: (Telling(SENDER, NoticeKind.CANCELLED),),
-    OrderState.EXPIRED: (Telling(SENDER, NoticeKind.EXPIRED),),
+    OrderState.CANCELLED: (NotificationRule(SENDER, NoticeKind.CANCELLED),),
+    OrderState.EXPIRED: (NotificationRule(SENDER, NoticeKind.EXPIRED),),
     OrderState.ATTENTION: (
-        Telling(SENDER, NoticeKind.ATTENTION),
-        Telling(RECIPIENT, NoticeKind.ATTENTION, _was_aboard),
+        NotificationRule(SENDER, NoticeKind.ATTENTION),
+        NotificationRule(RECIPIENT, NoticeKind.ATTENTION, _was_aboard),
     ),
 }
-LATE: Final = (Telling(SENDER, NoticeKind.DELAYED), Telling(RECIPIENT, NoticeKind.DELAYED, _was_aboard))
+LATE: Final = (
+    NotificationRule(SENDER, NoticeKind.DELAYED),
+    NotificationRule(RECIPIENT, NoticeKind.DELAYED, _was_aboard),
+)
 
 ONCE: Final = frozenset(
     {
@@ -92,7 +97,7 @@ ONCE: Final = frozenset(
 
 
 def round_of(events: Sequence[OrderEvent]) -> int:
-    """How often the order has begun, or stopped for somebody to see to it: after that, people are told anew."""
+    """Return how often the order was queued or needed attention: after each, people are notified anew."""
     again = (OrderState.QUEUED, OrderState.ATTENTION)
     return sum(event.state in again and event.kind == MOVED for event in events)
 
@@ -104,23 +109,23 @@ def notices_about(
     is_near: bool = False,
     now: datetime | None = None,
 ) -> list[dict[str, Any]]:
-    """What is to be told of the state that `order` is in now; `events` are all it has been through, `is_near`: its
+    """Return the notices of the state that `order` is in now; `events` are its history, `is_near`: its
     robot is near the sender. `now`: if that is not when the order changed."""
-    tellings = [one for one in TOLD.get(order.state, ()) if is_near or not one.when_near]
-    return _notices(tellings, order, facts, round_of(events), now or order.updated_at)
+    rules = [one for one in NOTIFICATION_RULES.get(order.state, ()) if is_near or not one.when_near]
+    return _notices(rules, order, facts, round_of(events), now or order.updated_at)
 
 
 def notices_of_delay(order: Order, facts: Mapping[str, str], events: Sequence[OrderEvent]) -> list[dict[str, Any]]:
-    """Its window is later than what people were told; once in each round."""
+    """Return the notices of a window later than people were told; once in each round."""
     return _notices(LATE, order, facts, round_of(events), order.updated_at)
 
 
 def _notices(
-    tellings: Sequence[Telling], order: Order, facts: Mapping[str, str], round_: int, now: datetime
+    rules: Sequence[NotificationRule], order: Order, facts: Mapping[str, str], round_: int, now: datetime
 ) -> list[dict[str, Any]]:
     ids = {SENDER: order.sender_id, RECIPIENT: order.recipient_id}
     notices = []
-    for one in tellings:
+    for one in rules:
         if one.concerns(order):
             occasion = f".{round_}" if round_ > 1 and one.kind not in ONCE else ""
             key = f"{order.id}.{one.kind}{occasion}"
@@ -131,7 +136,7 @@ def _notices(
 def facts_of(
     order: Order, people: Mapping[str, Person], campus: CampusMap, settings: Settings, now: datetime
 ) -> dict[str, str]:
-    """What fills the gaps of a notice's text; never a code, and no times while none are known."""
+    """Return what fills the gaps of a notice's text; never a code, and no times while none are known."""
     expected = expected_of(order, now)
     times = dict(zip(TIMES, expected, strict=True)) if expected else {}
     return {

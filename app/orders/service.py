@@ -14,12 +14,12 @@ from app.orders.changes.placing import Placing
 from app.orders.changes.returning import Returning
 from app.orders.changes.waiting import Waiting
 from app.orders.custody.codes import verifiers
-from app.orders.ledger import Ledger, Word, unknown
+from app.orders.ledger import Actor, Ledger, unknown
 from app.orders.views.schemas import OrderView
 from app.orders.views.views import load_facts, view_for
 from protocol.to_robot import Verifier
 
-__all__ = ["Orders", "Word"]
+__all__ = ["Actor", "Orders"]
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,7 @@ Wanted = TypeVar("Wanted")
 
 
 def is_own(mission_id: str) -> bool:
-    """Whether the robot gave this mission to itself, to bring mail back (decision 0017)."""
+    """Return whether the robot gave this mission to itself, to bring mail back (decision 0017)."""
     return mission_id.startswith(OWN_PREFIX)
 
 
@@ -49,12 +49,12 @@ async def stops_left(session: AsyncSession, mission_id: str) -> Sequence[StopRow
 
 
 async def is_anything_left(session: AsyncSession, mission_id: str) -> bool:
-    """Whether a mission has stops that are not over."""
+    """Return whether a mission has stops that are not over."""
     return (await session.exec(_ANY_LEFT, params={"mission_id": mission_id})).first() is not None
 
 
 async def orders_to_return(session: AsyncSession, mission_id: str, up_to: int) -> Sequence[str]:
-    """Whose mail a mission brings back, as of its update number `up_to`."""
+    """Return the orders whose mail a mission brings back, as of its update number `up_to`."""
     if any(isinstance(row, StopRow) for row in (*session.dirty, *session.new)):
         await session.flush()
     rows = await (await connection_of(session)).execute(_TO_RETURN, {"mission_id": mission_id, "up_to": up_to})
@@ -62,13 +62,13 @@ async def orders_to_return(session: AsyncSession, mission_id: str, up_to: int) -
 
 
 async def active_mission(session: AsyncSession, robot: str) -> MissionRow | None:
-    """What this robot is to do now, if anything."""
+    """Return the robot's active mission, if any."""
     wanted = select(MissionRow).where(MissionRow.robot == robot, MissionRow.state == MissionState.ACTIVE)
     return (await session.exec(wanted.order_by(col(MissionRow.created_at).desc()))).first()
 
 
 async def stops_of_order(session: AsyncSession, order_id: str, robot: str) -> Sequence[StopRow]:
-    """What this robot still has to do for an order, in order."""
+    """Return the robot's open stops for an order, in their sequence."""
     active = select(StopRow).join(MissionRow).where(MissionRow.state == MissionState.ACTIVE, MissionRow.robot == robot)
     theirs = _not_over(active.where(StopRow.order_id == order_id)).order_by(col(StopRow.position))
     return (await session.exec(theirs)).all()
@@ -117,8 +117,8 @@ async def _end_of(session: AsyncSession, mission: MissionRow) -> int:
     return 0 if position is None else position + 1
 
 
-async def wait_anew(session: AsyncSession, stop: StopRow, wait_limit_s: float) -> None:
-    """The robot waits this long at a stop, from when it takes the update on."""
+async def restart_wait(session: AsyncSession, stop: StopRow, wait_limit_s: float) -> None:
+    """Let the robot wait this long at a stop, from when it takes the update on."""
     mission = await session.get_one(MissionRow, stop.mission_id, with_for_update=True)
     stop.wait_limit_s = wait_limit_s
     mission.update_number += 1

@@ -1,6 +1,6 @@
-"""What time alone decides: orders that wait too long expire, late ones are told of, standing orders come round.
+"""Changes by time alone: orders that wait too long expire, delays are reported, standing orders recur.
 
-Each thing is a transaction of its own that looks again before it acts, so that the service may stop at any moment.
+Each change is a transaction of its own that checks again before it acts, so that the service may stop at any moment.
 """
 
 import asyncio
@@ -17,7 +17,7 @@ from app.core.errors import ServiceError
 from app.core.trusted_clock import holds_on
 from app.models import Order, OrderState
 from app.notifications.service import tell_all
-from app.orders.ledger import Word
+from app.orders.ledger import Actor
 from app.orders.notifications import facts_of, notices_of_delay
 from app.orders.service import Orders
 from app.orders.standing.standing import StandingOrders
@@ -26,10 +26,10 @@ from app.orders.views.estimate import expected_of
 from app.orders.views.views import load_facts
 from app.orders.window import promise
 
-LOOK_EVERY_S: Final = 1.0
+POLL_EVERY_S: Final = 1.0
 """Real seconds."""
 AT_ONCE: Final = 50
-NOBODY_CAME: Final = "No robot has fetched it in time."
+NOT_FETCHED_IN_TIME: Final = "No robot has fetched it in time."
 DELAYED: Final = "delayed"
 NOT_ON_ITS_WAY: Final = ENDED | {OrderState.ATTENTION}
 """What waits for a dispatcher is late for a reason that its people have been told."""
@@ -46,7 +46,7 @@ class Timer:
     standing: StandingOrders
     _woken: asyncio.Event = field(default_factory=asyncio.Event)
     _stopping: bool = False
-    _looked_at: datetime | None = None
+    _polled_at: datetime | None = None
 
     def stop(self) -> None:
         """End `run` after what it is doing."""
@@ -58,11 +58,11 @@ class Timer:
         while not self._stopping:
             await self.tick()
             with suppress(TimeoutError):
-                async with asyncio.timeout(LOOK_EVERY_S):
+                async with asyncio.timeout(POLL_EVERY_S):
                     await self._woken.wait()
 
     async def tick(self) -> None:
-        """Everything that is due now, once."""
+        """Do everything that is due now, once."""
         if holds_on(self.orders.ledger.clock):
             return  # what is done here is done for good
         now = self.orders.ledger.clock.utc()
@@ -74,11 +74,11 @@ class Timer:
         for order_id in expired:
             await self._expire(order_id)
         for order_id in late:
-            await self._tell_of_delay(order_id)
+            await self._report_delay(order_id)
         for standing_id in due:
             async with self.database.transaction() as session:
                 await self.standing.make_next(session, standing_id)
-        self._looked_at = now
+        self._polled_at = now
         for order_id in begun:
             self.orders.ledger.changed(order_id)
 
@@ -94,32 +94,37 @@ class Timer:
         return now - DELAYED_AFTER
 
     def _begins(self, now: datetime) -> ColumnElement[bool]:
-        """Left for later, and this is later: dispatch has to look."""
-        before = self._looked_at or now
+        """Select orders whose `not_before` has just passed: dispatch has to poll."""
+        before = self._polled_at or now
         return and_(col(Order.state) == OrderState.QUEUED, col(Order.not_before) > before, col(Order.not_before) <= now)
 
     async def _expire(self, order_id: str) -> None:
         async with self.database.transaction() as session:
             order = await self.orders.ledger.order(session, order_id)
             if order.state is OrderState.QUEUED:  # else a robot has come after all
-                await self.orders.ledger.move(session, order_id, OrderState.EXPIRED, Word(By.TIMER, reason=NOBODY_CAME))
+                await self.orders.ledger.move(
+                    session, order_id, OrderState.EXPIRED, Actor(By.TIMER, reason=NOT_FETCHED_IN_TIME)
+                )
 
-    async def _tell_of_delay(self, order_id: str) -> None:
-        """With what is expected now. Where nothing newer was worked out, as if it were fetched from here on: rather too
-        late than wrong again. Where no time is known, without one: the next that is known is a new promise."""
+    async def _report_delay(self, order_id: str) -> None:
+        """Report a delay with the window expected now.
+
+        Without a newer estimate, as if it were fetched from here on: rather too late than wrong again. Where no time is
+        known, without one: the next known is a new promise.
+        """
         async with self.database.transaction() as session:
             order = await self.orders.ledger.order(session, order_id)
             now = self.orders.ledger.clock.utc()
             if order.state in NOT_ON_ITS_WAY or order.window_to is None or order.window_to >= self._late_since(now):
                 return  # it has moved on, or another process has told of it
-            self._promise_anew(order, now)
+            self._renew_promise(order, now)
             order.delayed_at = now
-            await self.orders.ledger.note(session, order_id, DELAYED, Word(By.TIMER))
+            await self.orders.ledger.note(session, order_id, DELAYED, Actor(By.TIMER))
             facts = (await load_facts(session, [order]))[0]
             gaps = facts_of(order, facts.people, self.orders.ledger.campus, self.orders.ledger.settings, now)
             await tell_all(session, notices_of_delay(order, gaps, facts.events))
 
-    def _promise_anew(self, order: Order, now: datetime) -> None:
+    def _renew_promise(self, order: Order, now: datetime) -> None:
         expected = expected_of(order, now)
         if expected is not None or order.expected_to is None:
             order.window_from, order.window_to = expected or (None, None)

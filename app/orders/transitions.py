@@ -1,4 +1,4 @@
-"""Which state of an order may follow which, and on whose word. Whatever is not here is refused by name.
+"""Transitions between the states of an order, and who may cause them. All others are refused.
 
 queued → assigned → to_sender → at_sender → carrying → at_recipient → delivered
    │                               │            └───────────┴→ returning → at_return → returned | held | delivered
@@ -6,7 +6,7 @@ queued → assigned → to_sender → at_sender → carrying → at_recipient �
 queued | assigned | to_sender | at_sender → cancelled
 assigned | to_sender | at_sender → queued (the robot was told to let go)
 a fault → attention → the state it left
-                    → queued | cancelled (nothing aboard), returning | held (mail aboard), on a dispatcher's word
+                    → queued | cancelled (nothing aboard), returning | held (mail aboard), by a dispatcher
                     → delivered | returned (mail that its robot says is out, and a dispatcher has asked)
 carrying | at_recipient | attention → queued (passed on: the mailroom has it, another robot carries it further)
   and what was passed on ends held, where another order would be cancelled or expire
@@ -20,7 +20,7 @@ from app.models import OrderState
 
 
 class By(StrEnum):
-    """On whose word. `dispatcher` is a person of that role or the service's own dispatch."""
+    """Actors. `dispatcher` is a person of that role or the service's own dispatch."""
 
     SENDER = "sender"
     RECIPIENT = "recipient"
@@ -33,7 +33,7 @@ S = OrderState
 SENDER, RECIPIENT, ROBOT, DISPATCHER, TIMER = By.SENDER, By.RECIPIENT, By.ROBOT, By.DISPATCHER, By.TIMER
 FAULT: Final = {S.ATTENTION: {ROBOT, DISPATCHER}}
 LET_GO: Final = {S.QUEUED: {ROBOT}, S.CANCELLED: {ROBOT, DISPATCHER}, S.HELD: {ROBOT, DISPATCHER}}
-"""From the moment a robot is on its way a wish takes effect on its word: it drops the order, whatever for."""
+"""From the moment a robot is on its way a request takes effect when it confirms: it drops the order."""
 PASSED_ON: Final = {S.QUEUED: {DISPATCHER}}
 
 TRANSITIONS: Final[Mapping[OrderState, Mapping[OrderState, set[By]]]] = {
@@ -89,7 +89,7 @@ BY_THE_WAY: Final = frozenset({S.QUEUED, S.CANCELLED, S.EXPIRED, S.ATTENTION})
 
 
 def is_old_news(state: OrderState, to: OrderState, before_attention: OrderState | None = None) -> bool:
-    """Whether a robot that says `to` speaks of what lies behind the order."""
+    """Return whether a robot that reports `to` reports a state that the order has left behind."""
     here = before_attention or state
     if to in BY_THE_WAY or to in ENDED:
         return False
@@ -104,7 +104,7 @@ def is_allowed(
     *,
     is_passed_on: bool = False,
 ) -> bool:
-    """Whether `to` may follow `state` on the word of `by`; `before_attention` is where a fault struck, if one did.
+    """Return whether `by` may move `state` to `to`; `before_attention` is where a fault struck, if one did.
     `is_passed_on`: one robot has carried it, and another carries it further.
 
     Back to the state that was left: a dispatcher who has looked says so, or the robot, which has gone on by itself.

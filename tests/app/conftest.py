@@ -20,7 +20,7 @@ from app.cli.serving import Server, config_of, listen
 from app.composition import create_app
 from app.core.settings import Settings
 from app.models import MissionRow, OrderState, RobotRow
-from app.orders.service import Word
+from app.orders.service import Actor
 from app.orders.transitions import By
 from protocol.clock import SteppedClock
 from tests.app.compiled_once import compile_once
@@ -224,7 +224,7 @@ class Mailroom:
         by = By.DISPATCHER if to is OrderState.ASSIGNED else by
         async with self.app.state.parts.database.transaction() as session:
             moved: bool = await self.app.state.parts.orders.ledger.move(
-                session, order_id, to, Word(by, robot="r1", **known)
+                session, order_id, to, Actor(by, robot="r1", **known)
             )
             return moved
 

@@ -18,7 +18,7 @@ from app.handover.schemas import NewDelegate
 from app.models import Alarm, Notice, OrderState, OutgoingNotice, Person, PersonSession, Role
 from app.notifications.preference_api.devices import add_device, set_webhook
 from app.notifications.preference_api.schemas import NewDevice, SubscriptionKeys
-from app.orders.service import Word
+from app.orders.service import Actor
 from app.orders.transitions import By
 from app.orders.views.schemas import NewOrder, NewStandingOrder
 from app.robots.service import new_token
@@ -187,7 +187,7 @@ class Everybody:
         orders = self.app.state.parts.orders
         wish = NewOrder(from_post="post1", to_post="post4", recipient=recipient)
         order_id = await placed(orders, session, sender, wish)
-        await orders.ledger.move(session, order_id, OrderState.ASSIGNED, Word(By.DISPATCHER, robot="r1"))
+        await orders.ledger.move(session, order_id, OrderState.ASSIGNED, Actor(By.DISPATCHER, robot="r1"))
         return order_id
 
 

@@ -10,7 +10,7 @@ from app.accounts.scopes import Scope
 from app.accounts.tokens import issue_token
 from app.core.settings import Settings
 from app.models import OrderState, RobotRow
-from app.orders.service import Word
+from app.orders.service import Actor
 from app.orders.transitions import By
 from campus_mail_client import AsyncCampusMail
 from protocol.clock import SteppedClock
@@ -55,9 +55,9 @@ class Campus:
     async def move(self, order_id: str, *states: str) -> None:
         state = self.service.app.state.parts
         for one in states:
-            word = Word(By.DISPATCHER if one == "assigned" else By.ROBOT, robot="r1")
+            actor = Actor(By.DISPATCHER if one == "assigned" else By.ROBOT, robot="r1")
             async with state.database.transaction() as session:
-                await state.orders.ledger.move(session, order_id, OrderState(one), word)
+                await state.orders.ledger.move(session, order_id, OrderState(one), actor)
 
 
 @pytest.fixture

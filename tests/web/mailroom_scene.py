@@ -10,7 +10,7 @@ from app.accounts.sign_in.service import set_roles
 from app.composition import create_app
 from app.core.settings import Settings
 from app.models import Alarm, DigitLock, Notice, Order, OrderState, OutgoingNotice, Priority, RobotRow, Role
-from app.orders.service import Word
+from app.orders.service import Actor
 from app.orders.transitions import By
 from app.orders.views.schemas import NewOrder
 from protocol.clock import Clock, RealClock
@@ -119,7 +119,7 @@ class Scene:
         for state in way:
             by = By.DISPATCHER if state == "assigned" else By.ROBOT
             await self.state.orders.ledger.move(
-                session, order_id, OrderState(state), Word(by, robot=robot, robot_at=self.clock.utc())
+                session, order_id, OrderState(state), Actor(by, robot=robot, robot_at=self.clock.utc())
             )
 
     async def everything_goes_wrong(self, ids: Sequence[str]) -> None:
@@ -128,9 +128,9 @@ class Scene:
         async with self.state.database.transaction() as session:
             reason = "The lid does not close."
             await self.state.orders.ledger.move(
-                session, ids[0], OrderState.ATTENTION, Word(By.ROBOT, robot="r1", reason=reason)
+                session, ids[0], OrderState.ATTENTION, Actor(By.ROBOT, robot="r1", reason=reason)
             )
-            await self.state.orders.ledger.note(session, ids[1], "digits_locked", Word(By.RECIPIENT))
+            await self.state.orders.ledger.note(session, ids[1], "digits_locked", Actor(By.RECIPIENT))
             session.add(DigitLock(order_id=ids[1], wrong_tries=5, locked_at=now))
             at_post = (await session.get_one(RobotRow, "r1")).post
             session.add(Alarm(robot="r1", name="stall", reason=reason, post=at_post, at=now - timedelta(minutes=3)))

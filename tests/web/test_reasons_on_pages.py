@@ -7,7 +7,7 @@ from playwright.async_api import Page, expect
 
 from app.core.texts.reasons import in_language, words_of
 from app.models import Alarm, Order, OrderEvent, OrderState, RobotCommand, RobotRow
-from app.orders.service import Word
+from app.orders.service import Actor
 from app.orders.transitions import By
 from tests.app.notifications.every_reason import RAW, every_reason, refusals_of_robots
 from tests.web.mailroom_scene import Campus, Scene
@@ -46,12 +46,12 @@ async def has_gone_through(scene: Scene, order_id: str, robot: str, reasons: lis
             session.add(RobotCommand(command_id=f"{robot}-{n}", robot=robot, reason=refusal, **answered))
 
 
-async def stops(scene: Scene, order_id: str, word: Word) -> None:
+async def stops(scene: Scene, order_id: str, actor: Actor) -> None:
     async with scene.state.database.transaction() as session:
         await scene.state.orders.ledger.move(
-            session, order_id, OrderState.ASSIGNED, Word(By.DISPATCHER, robot=word.robot)
+            session, order_id, OrderState.ASSIGNED, Actor(By.DISPATCHER, robot=actor.robot)
         )
-        await scene.state.orders.ledger.move(session, order_id, OrderState.ATTENTION, word)
+        await scene.state.orders.ledger.move(session, order_id, OrderState.ATTENTION, actor)
 
 
 async def texts(page: Page, selector: str) -> list[str]:
@@ -69,9 +69,9 @@ async def test_every_reason_is_said_in_words_on_every_page(quiet_campus: Campus,
     robot, page = f"r-{language}", dana.page
     ids = [await dana.order(BOB), await dana.order(BOB)]
     await has_gone_through(scene, ids[0], robot, of_orders, rung)
-    await stops(scene, ids[0], Word(By.ROBOT, robot=robot, reason="no_one_came"))
+    await stops(scene, ids[0], Actor(By.ROBOT, robot=robot, reason="no_one_came"))
     me = (await dana.api("/me"))["id"]
-    await stops(scene, ids[1], Word(By.DISPATCHER, person_id=me, robot=robot, reason=TYPED))
+    await stops(scene, ids[1], Actor(By.DISPATCHER, person_id=me, robot=robot, reason=TYPED))
 
     await page.goto(f"/follow.html?order={ids[0]}")
     remarks = await texts(page, ".timeline .remark")

@@ -27,7 +27,7 @@ from app.dispatch.situation import connected_robots, idle_robots, look, tours
 from app.dispatch.why_orders_wait import Answer
 from app.dispatch.why_recorded import explain
 from app.models import MissionRow, Order, OrderState, RobotRow
-from app.orders.service import Word
+from app.orders.service import Actor
 from app.orders.transitions import By
 from app.robots.mission_updates import tell_mission
 from app.robots.service import Fleet
@@ -84,7 +84,7 @@ class NearestRobots:
 
     async def _give(self, session: AsyncSession, order_id: str, robot: str) -> None:
         self.own.add(order_id)
-        await self._fleet.orders.ledger.move(session, order_id, OrderState.ASSIGNED, Word(By.DISPATCHER, robot=robot))
+        await self._fleet.orders.ledger.move(session, order_id, OrderState.ASSIGNED, Actor(By.DISPATCHER, robot=robot))
         log.info("assigned", order=order_id, robot=robot)
 
     async def _assign_what_can_be(

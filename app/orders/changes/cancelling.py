@@ -1,4 +1,4 @@
-"""Cancelling: at once, on the word of the robot that is on its way, or, with the mail aboard, by calling it back."""
+"""Cancelling: at once, when the robot on its way confirms it, or, with the mail aboard, by calling it back."""
 
 from dataclasses import dataclass
 from typing import Final
@@ -8,7 +8,7 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 from app.models import Order, OrderState, Person
 from app.orders import errors
 from app.orders.changes.returning import Returning
-from app.orders.ledger import Ledger, Word
+from app.orders.ledger import Actor, Ledger
 from app.orders.transitions import ENDED, ROBOT_COMING, By
 from app.orders.views.schemas import OrderView
 from app.orders.views.views import MyRole, is_cancel_under_way, is_cancellable
@@ -28,22 +28,22 @@ class Cancelling:
 
         Raises UnknownOrder, OrderChanged, NotCancellable.
         """
-        order, role = await self.ledger.theirs(session, person, order_id, if_match)
+        order, role = await self.ledger.visible_order(session, person, order_id, if_match)
         if not is_cancel_under_way(order):
             if not is_cancellable(order, role):
                 raise errors.NotCancellable(_why_not_cancellable(order, role))
-            await self._cancel(session, order, Word(By(role), person_id=person.id))
+            await self._cancel(session, order, Actor(By(role), person_id=person.id))
         return await self.ledger.view(session, order, role, person)
 
-    async def _cancel(self, session: AsyncSession, order: Order, word: Word) -> None:
+    async def _cancel(self, session: AsyncSession, order: Order, actor: Actor) -> None:
         if order.state is OrderState.QUEUED:
-            await self.ledger.move(session, order.id, OrderState.CANCELLED, word)
+            await self.ledger.move(session, order.id, OrderState.CANCELLED, actor)
         elif order.state in ROBOT_COMING:
-            order.cancel_requested_at, order.cancel_requested_by = self.ledger.clock.utc(), word.by
+            order.cancel_requested_at, order.cancel_requested_by = self.ledger.clock.utc(), actor.by
             order.let_go_by = order.robot
-            await self.ledger.note(session, order.id, CANCEL_REQUESTED, word)
+            await self.ledger.note(session, order.id, CANCEL_REQUESTED, actor)
         else:
-            await self.returning.call_back(session, order, word)
+            await self.returning.call_back(session, order, actor)
 
 
 def _why_not_cancellable(order: Order, role: MyRole) -> str:

@@ -11,8 +11,8 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 from app.models import OrderState, Person, RobotRow
 from app.orders import errors
 from app.orders.custody.by_hand import taken_out_by_hand
-from app.orders.custody.unproven import was_aboard
-from app.orders.ledger import Ledger, Word
+from app.orders.custody.unproven import settle_as_aboard
+from app.orders.ledger import Actor, Ledger
 from app.orders.transitions import CARRIED, By
 from app.orders.views.schemas import OrderView
 from app.orders.window import arrival_window, promise
@@ -33,23 +33,23 @@ class PassingOn:
         reason: str | None,
         if_match: str = "",
     ) -> OrderView:
-        """Somebody of the mailroom has taken the mail out at this post (None: where its robot was seen last); another
+        """Record that the mailroom took the mail out at this post (None: where its robot was seen last); another
         robot fetches it there. Raises UnknownOrder, OrderChanged, NothingToPassOn, UnknownPost, SamePost."""
-        order, _ = await self.ledger.theirs(session, person, order_id, if_match)
+        order, _ = await self.ledger.visible_order(session, person, order_id, if_match)
         if (order.state_before_attention or order.state) not in CARRIED or order.robot is None:
             raise errors.NothingToPassOn(f"The order is {order.state}: no robot is bringing its mail to the recipient.")
         post = self._known(post or await self._seen_at(session, order.robot), order.robot)
         if post == order.to_post:
             raise errors.SamePost("The mail is at its recipient's post: there is no way left to carry it.")
-        word = Word(By.DISPATCHER, person_id=person.id, post=post, reason=reason)
+        actor = Actor(By.DISPATCHER, person_id=person.id, post=post, reason=reason)
         now = self.ledger.clock.utc()
-        await was_aboard(session, order.id, now)
+        await settle_as_aboard(session, order.id, now)
         session.add(taken_out_by_hand(order, f"passed-on-{order.version}-{order.id}", post, person.id, now))
         order.passed_on_at_post = post
         promise(order, arrival_window(self.ledger.estimates, post, order.to_post, now), now)
         order.let_go_by = order.avoided_robot = order.robot
         order.wanted_robot = None
-        await self.ledger.move(session, order.id, OrderState.QUEUED, word)
+        await self.ledger.move(session, order.id, OrderState.QUEUED, actor)
         return await self.ledger.view(session, order, "dispatcher", person)
 
     async def _seen_at(self, session: AsyncSession, robot: str) -> str | None:

@@ -15,9 +15,9 @@ from app.models import ForecastRow, Order, OrderEvent, OrderState, Person, Prior
 from app.models.orders.order_events import MOVED
 from app.notifications.service import tell_all
 from app.orders import errors
-from app.orders.ledger import Ledger, Word, event_row
+from app.orders.ledger import Actor, Ledger, event_row
 from app.orders.transitions import By
-from app.orders.views.schemas import NewOrder, OrderView, Wish
+from app.orders.views.schemas import NewOrder, OrderRequest, OrderView
 from app.orders.views.views import MyRole, OrderFacts
 from app.orders.window import Window, arrival_window
 from maps import NoRoute, UnknownPost
@@ -26,7 +26,7 @@ from protocol.ids import new_id
 
 @dataclass(frozen=True)
 class Parties:
-    """Who sends, who receives, and who ordered it if somebody else did."""
+    """Sender and recipient, and the dispatcher who ordered it, if one did."""
 
     sender: Person
     recipient: Person
@@ -64,48 +64,50 @@ class Placing:
             raise errors.SamePost("From and to are the same post: there is nothing to carry.")
         return window
 
-    async def draft(self, session: AsyncSession, person: Person, wish: NewOrder, known: dict[str, Person]) -> Draft:
-        """What `person` orders; `known` are the people by their addresses, and grow with it.
+    async def draft(self, session: AsyncSession, person: Person, request: NewOrder, known: dict[str, Person]) -> Draft:
+        """Return the order that `person` requests; `known` are people by their addresses, and grow with it.
 
         Raises UnknownPost, SamePost, NoWay, UnknownRecipient, UnknownSender, ForDispatchers.
         """
-        window = self.window(wish.from_post, wish.to_post, wish.not_before)
-        parties = await self._parties(session, person, wish, known)
-        return self._draft(parties, wish, window, wish.not_before)
+        window = self.window(request.from_post, request.to_post, request.not_before)
+        parties = await self._parties(session, person, request, known)
+        return self._draft(parties, request, window, request.not_before)
 
     def first_view(self, draft: Draft, person: Person) -> OrderView:
-        """A new order as it is answered to whoever has placed it."""
+        """Return a new order as its creator sees it."""
         role: MyRole = "sender" if draft.facts.order.placed_by_id is None else "dispatcher"
         return self.ledger.view_of(draft.facts, role, person.id)
 
-    async def parties(self, session: AsyncSession, person: Person, wish: Wish) -> Parties:
-        """Who sends what `person` orders. Raises UnknownRecipient, UnknownSender, ForDispatchers."""
-        return await self._parties(session, person, wish, await look_up_people(session, wish.addresses))
+    async def parties(self, session: AsyncSession, person: Person, request: OrderRequest) -> Parties:
+        """Return the parties of a request by `person`. Raises UnknownRecipient, UnknownSender, ForDispatchers."""
+        return await self._parties(session, person, request, await look_up_people(session, request.addresses))
 
-    async def _parties(self, session: AsyncSession, person: Person, wish: Wish, known: dict[str, Person]) -> Parties:
-        if (wish.on_behalf_of or wish.priority is Priority.HIGH) and not person.has_role(Role.DISPATCHER):
+    async def _parties(
+        self, session: AsyncSession, person: Person, request: OrderRequest, known: dict[str, Person]
+    ) -> Parties:
+        if (request.on_behalf_of or request.priority is Priority.HIGH) and not person.has_role(Role.DISPATCHER):
             raise errors.ForDispatchers("Only a dispatcher orders for somebody else, or with high priority.")
-        self._check_known(wish.recipient, known, errors.UnknownRecipient)
-        if not wish.on_behalf_of or wish.on_behalf_of == person.email:
-            return Parties(person, await self._somebody(session, wish.recipient, known))
-        self._check_known(wish.on_behalf_of, known, errors.UnknownSender)
-        # Both are looked at before either is made: of an order that is refused nobody stays behind.
-        recipient = await self._somebody(session, wish.recipient, known)
-        return Parties(await self._somebody(session, wish.on_behalf_of, known), recipient, person)
+        self._check_known(request.recipient, known, errors.UnknownRecipient)
+        if not request.on_behalf_of or request.on_behalf_of == person.email:
+            return Parties(person, await self._person(session, request.recipient, known))
+        self._check_known(request.on_behalf_of, known, errors.UnknownSender)
+        # Both are checked before either is created: a refused order leaves no new person behind.
+        recipient = await self._person(session, request.recipient, known)
+        return Parties(await self._person(session, request.on_behalf_of, known), recipient, person)
 
     async def place(
-        self, session: AsyncSession, parties: Parties, wish: Wish, standing: StandingOrder, occurs_on: str
+        self, session: AsyncSession, parties: Parties, request: OrderRequest, standing: StandingOrder, occurs_on: str
     ) -> OrderFacts:
         """Write down the order of a standing order and tell its people. Raises UnknownPost, SamePost, NoWay."""
-        window = self.window(wish.from_post, wish.to_post)
-        draft = self._draft(parties, wish, window, standing_order_id=standing.id, occurs_on=occurs_on)
+        window = self.window(request.from_post, request.to_post)
+        draft = self._draft(parties, request, window, standing_order_id=standing.id, occurs_on=occurs_on)
         await self.write(session, [draft])
         return draft.facts
 
     def _draft(
         self,
         parties: Parties,
-        wish: Wish,
+        request: OrderRequest,
         window: Window,
         not_before: datetime | None = None,
         standing_order_id: str | None = None,
@@ -121,10 +123,10 @@ class Placing:
             "sender_id": parties.sender.id,
             "recipient_id": parties.recipient.id,
             "placed_by_id": parties.placed_by.id if parties.placed_by else None,
-            "from_post": wish.from_post,
-            "to_post": wish.to_post,
-            "description": wish.description or None,
-            "priority": wish.priority,
+            "from_post": request.from_post,
+            "to_post": request.to_post,
+            "description": request.description or None,
+            "priority": request.priority,
             "not_before": not_before,
             "standing_order_id": standing_order_id,
             "occurs_on": occurs_on,
@@ -135,7 +137,7 @@ class Placing:
         }
         is_promised = row["window_to"] is not None
         forecast = promise_row(order_id, window.since, window.promise) if is_promised else None
-        return self._with_its_people(row, parties, forecast)
+        return self._with_event_and_notices(row, parties, forecast)
 
     def _expectation(self, window: Window, now: datetime) -> dict[str, Any]:
         """The window, promised and expected; while no robot can come nothing is promised, and the reason is said."""
@@ -149,9 +151,11 @@ class Placing:
             "why": reason,
         }
 
-    def _with_its_people(self, row: Mapping[str, Any], parties: Parties, forecast: Mapping[str, Any] | None) -> Draft:
-        order, (by, person) = new_row(Order, row), _on_whose_word(row, parties)
-        event = event_row(order, MOVED, Word(by, person_id=person.id, post=order.from_post))
+    def _with_event_and_notices(
+        self, row: Mapping[str, Any], parties: Parties, forecast: Mapping[str, Any] | None
+    ) -> Draft:
+        order, (by, person) = new_row(Order, row), _placing_actor(row, parties)
+        event = event_row(order, MOVED, Actor(by, person_id=person.id, post=order.from_post))
         # Everything that there is to know of it is at hand: nothing is read again.
         people = {one.id: one for one in (parties.sender, parties.recipient, person)}
         facts = OrderFacts(order, [row_of(OrderEvent, event)], people, None)
@@ -171,13 +175,13 @@ class Placing:
             domains = ", ".join(self.ledger.settings.allowed_domains)
             raise unknown(f"Nobody here has the address {email}. New addresses are those of {domains}.")
 
-    async def _somebody(self, session: AsyncSession, email: str, known: dict[str, Person]) -> Person:
+    async def _person(self, session: AsyncSession, email: str, known: dict[str, Person]) -> Person:
         if email not in known:
             known[email] = await self.sign_in.person(session, email, self.ledger.clock.utc())
         return known[email]
 
 
-def _on_whose_word(row: Mapping[str, Any], parties: Parties) -> tuple[By, Person]:
+def _placing_actor(row: Mapping[str, Any], parties: Parties) -> tuple[By, Person]:
     if row["standing_order_id"] is not None:
         return By.TIMER, parties.placed_by or parties.sender
     return (By.SENDER, parties.sender) if parties.placed_by is None else (By.DISPATCHER, parties.placed_by)

@@ -1,4 +1,4 @@
-"""How long the robot waits: whom it waits for may ask for a little more, a dispatcher for as much as is needed."""
+"""Longer waits: the person whom the robot waits for may ask for a little more, a dispatcher for any time."""
 
 from dataclasses import dataclass
 from datetime import timedelta
@@ -9,8 +9,8 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.models import Order, OrderEvent, OrderState, Person
 from app.orders import errors
-from app.orders.ledger import Ledger, Word
-from app.orders.stops import stops_of_order, wait_anew
+from app.orders.ledger import Actor, Ledger
+from app.orders.stops import restart_wait, stops_of_order
 from app.orders.transitions import By
 from app.orders.views.schemas import OrderView
 from app.orders.views.views import MyRole
@@ -36,13 +36,13 @@ class Waiting:
     async def extend_wait(
         self, session: AsyncSession, person: Person, order_id: str, extend_s: float | None, if_match: str = ""
     ) -> OrderView:
-        """The robot waits longer where it is. Raises UnknownOrder, OrderChanged, NotWaiting, WaitedLongEnough."""
-        order, role = await self.ledger.theirs(session, person, order_id, if_match)
+        """Let the robot wait longer where it is. Raises UnknownOrder, OrderChanged, NotWaiting, WaitedLongEnough."""
+        order, role = await self.ledger.visible_order(session, person, order_id, if_match)
         if WAITS_FOR.get(order.state) != role and role != "dispatcher":
             raise errors.NotWaiting(f"The order is {order.state}: the robot is not waiting for you.")
         await self._check_share(session, order, role, extend_s)
         await self._extend(session, order, extend_s or EXTENSION_S)
-        await self.ledger.note(session, order.id, WAIT_EXTENDED, Word(By(role), person_id=person.id))
+        await self.ledger.note(session, order.id, WAIT_EXTENDED, Actor(By(role), person_id=person.id))
         return await self.ledger.view(session, order, role, person)
 
     async def _check_share(self, session: AsyncSession, order: Order, role: MyRole, extend_s: float | None) -> None:
@@ -66,4 +66,4 @@ class Waiting:
             raise errors.NotWaiting(f"The order is {order.state}: no robot is waiting.")
         now = self.ledger.clock.utc()
         order.wait_until = max(order.wait_until, now) + timedelta(seconds=extend_s)
-        await wait_anew(session, waiting[0], (order.wait_until - now).total_seconds())
+        await restart_wait(session, waiting[0], (order.wait_until - now).total_seconds())

@@ -47,7 +47,7 @@ CONFIRM_LIFETIME_S: Final = 60.0
 
 
 class Holder(StrEnum):
-    """Whose code it is. The mailroom's is shown by any dispatcher: to take mail back, and to load what it passes on."""
+    """Holders of codes. Any dispatcher shows the mailroom's: to take mail back, and to load what it passes on."""
 
     SENDER = "sender"
     RECIPIENT = "recipient"
@@ -76,11 +76,11 @@ class HandoverCode:
     delegate: Delegate | None = None
 
     def text(self, key: ServerKey) -> str:
-        """What the QR code says."""
+        """Return the text of the QR code."""
         return code_text(key, self.order_id, self.purpose, self._whose)
 
     def sha256(self, key: ServerKey) -> str:
-        """What the robot knows it by."""
+        """Return the hash by which the robot knows the code."""
         return sha256(self.text(key).encode("ascii")).hexdigest()
 
     def digits(self, key: ServerKey) -> str:
@@ -96,8 +96,8 @@ class HandoverCode:
 
 
 def code_text(key: ServerKey, order_id: str, purpose: Purpose, whose: tuple[str, ...] = ()) -> str:
-    """What the QR code says: `CM1:` and 128 bits in hex. `whose`: of a delegate or the mailroom; else sender's and
-    recipient's."""
+    """Return the QR code's text: `CM1:` and 128 bits in hex. `whose`: a delegate or the mailroom; else sender and
+    recipient."""
     return PREFIX + key.derive("hand-over", order_id, purpose, *whose)[:SECRET_BYTES].hex()
 
 
@@ -127,7 +127,7 @@ def codes_of(
 
 
 async def delegates_of(session: AsyncSession, orders: Sequence[Order]) -> Sequence[Delegate]:
-    """Whoever was named for some orders, those revoked too."""
+    """Return the delegates of some orders, revoked ones too."""
     return (await session.exec(_DELEGATES, params={"order_ids": [order.id for order in orders]})).all()
 
 
@@ -140,7 +140,7 @@ _DELEGATES_COLUMNS: Final = _DELEGATES.with_only_columns(*columns_of(Delegate))
 
 
 async def verifiers(session: AsyncSession, key: ServerKey, orders: Sequence[Order]) -> tuple[Verifier, ...]:
-    """What a robot needs to check every code of some orders offline."""
+    """Return what a robot needs to check every code of some orders offline."""
     connection = await connection_of(session)
     named = await connection.execute(_DELEGATES_COLUMNS, {"order_ids": [order.id for order in orders]})
     delegates = [Delegate(**row) for row in named.mappings()]
@@ -152,19 +152,19 @@ async def verifiers(session: AsyncSession, key: ServerKey, orders: Sequence[Orde
 
 
 def turn_of(order: Order, person_id: str) -> Purpose | None:
-    """Which code it is this person's turn to show, if any."""
+    """Return which code it is this person's turn to show, if any."""
     purpose = TURNS.get(order.state)
     if purpose is Purpose.LOAD and order.is_passed_on:
         return None  # the mailroom has it
     if purpose is Purpose.RECEIVE:
         return purpose if person_id == order.recipient_id else None
-    # Whoever placed an order for somebody at their desk loads it for them, too.
+    # The dispatcher who placed an order for a walk-up sender loads it for them, too.
     loads_for_them = purpose is Purpose.LOAD and person_id == order.placed_by_id
     return purpose if person_id == order.sender_id or loads_for_them else None
 
 
 def mailrooms_turn(order: Order) -> Purpose | None:
-    """Whether any dispatcher is to load it: it was passed on, so that the mailroom has it."""
+    """Return LOAD if any dispatcher may load it: it was passed on, so that the mailroom has it."""
     is_theirs = order.is_passed_on and TURNS.get(order.state) is Purpose.LOAD
     return Purpose.LOAD if is_theirs else None
 

@@ -1,6 +1,6 @@
-"""Who had the mail, from when to when, and how each hand-over was confirmed: a chain without gaps.
+"""The chain of custody: holders of the mail without gaps, and how each hand-over was confirmed.
 
-It derives from the receipts of robots alone (and from a dispatcher's word, where mail was fetched by hand), never from
+It derives from the receipts of robots alone (and from a dispatcher's report, for mail fetched by hand), never from
 the order's state. Each hand-over ends one link and begins the next, so that at any time exactly one holds the mail.
 What a robot claims of mail that it says is out stands beside the chain until it is settled, and ends no link.
 """
@@ -21,13 +21,13 @@ SETTLED: Final = "settled"
 
 
 @dataclass(frozen=True)
-class Held:
+class CustodyLink:
     """One link: who held it (sender, robot, recipient, delegate or mailroom), and until when; None: to this day.
 
     `name` is the robot's or the delegate's; of the others there is one each.
 
     `how` tells how they came to have it: code, tap, digits or button by a robot's receipt, `dispatcher` by a
-    dispatcher's word, None for the sender's own. `confirmed_by` is whose code, tap or digits it was
+    dispatcher's report, None for the sender's own. `confirmed_by` is whose code, tap or digits it was
     (`confirmed_by_name`: which delegate's), `signed` whether the robot has signed for it. `evidence` says what all that
     goes by, one of `app.models.Evidence` or SETTLED.
     """
@@ -45,15 +45,15 @@ class Held:
 
 def custody_of(
     order: Order, handovers: Iterable[Handover], delegates: Mapping[str, str] = MappingProxyType({})
-) -> tuple[Held, ...]:
+) -> tuple[CustodyLink, ...]:
     """The links of an order's chain, oldest first; `handovers` in the order in which they were written down,
     `delegates` the names of those who took part, by their ids."""
-    chain, claims = [Held(Holder.SENDER, None, order.created_at, None, None)], []
+    chain, claims = [CustodyLink(Holder.SENDER, None, order.created_at, None, None)], []
     for one in handovers:
         delegate = delegates.get(one.delegate_id or "")
         last, holder = chain[-1], _holder(order, one, delegate)
         at = max(one.robot_at if _is_plausible(one) else one.at, last.since)
-        link = Held(*holder, at, None, one.how, one.holder, one.signature is not None, delegate, _evidence(one))
+        link = CustodyLink(*holder, at, None, one.how, one.holder, one.signature is not None, delegate, _evidence(one))
         if one.evidence == Evidence.CLAIMED:
             link = replace(link, confirmed_by=None, confirmed_by_name=None)
         if is_open_claim_of_handing_out(one):
@@ -70,7 +70,7 @@ def _evidence(one: Handover) -> str:
 
 
 def _holder(order: Order, one: Handover, delegate: str | None) -> tuple[str, str | None]:
-    """Who has it after this hand-over."""
+    """Return the holder after this hand-over, and a robot's or delegate's name."""
     if one.purpose == Purpose.LOAD:
         return ("robot", one.robot)
     if one.holder is not None:
@@ -81,5 +81,5 @@ def _holder(order: Order, one: Handover, delegate: str | None) -> tuple[str, str
 
 
 def _is_plausible(one: Handover) -> bool:
-    """Whether the robot's own time of it can be shown: nothing is reported before it has happened."""
+    """Return whether the robot's own time of it can be shown: nothing is reported before it has happened."""
     return one.robot_at <= one.at

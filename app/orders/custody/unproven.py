@@ -1,7 +1,7 @@
 """Hand-overs that a robot claims and does not prove, and what is found of them.
 
-Mail that is said to have come aboard is the robot's from then on: whoever says so answers for it. Mail that is said to
-be out is the robot's still, until a person or what follows has settled it.
+Mail that a robot reports as aboard is the robot's from then on. Mail that it reports as out is the robot's still, until
+a person or what follows has settled it.
 """
 
 from datetime import datetime
@@ -19,12 +19,12 @@ CLAIMED: Final = "handover_claimed"
 
 
 def counts(one: Handover) -> bool:
-    """Whether the mail is where this hand-over says."""
+    """Return whether the mail is where this hand-over says."""
     return one.evidence != Evidence.CLAIMED or one.settled == Settled.TRUE or (_is_open(one) and _is_load(one))
 
 
 def is_open_claim_of_handing_out(one: Handover) -> bool:
-    """Whether a person still has to find out if the mail is out."""
+    """Return whether a person still has to find out if the mail is out."""
     return one.evidence == Evidence.CLAIMED and _is_open(one) and not _is_load(one)
 
 
@@ -49,34 +49,34 @@ async def robot_with_mail(session: AsyncSession, order: Order) -> str | None:
 
 
 async def claim_of_handing_out(session: AsyncSession, order_id: str) -> Handover | None:
-    """The newest word of a robot that it does not have this mail any more, as long as nothing has settled it."""
+    """Return the newest unsettled claim of a robot that it has handed this mail out."""
     claims = await _open_claims(session, order_id)
     return next((one for one in reversed(claims) if not _is_load(one)), None)
 
 
-async def was_aboard(session: AsyncSession, order_id: str, now: datetime) -> None:
-    """The mail was in its robot until now: who said that it came aboard was right, who said that it went was not."""
+async def settle_as_aboard(session: AsyncSession, order_id: str, now: datetime) -> None:
+    """Settle all claims: the mail was in its robot until now, so it came aboard and did not go out."""
     claims = await _open_claims(session, order_id)
     for one in claims:
         one.settled = Settled.TRUE if _is_load(one) else Settled.FALSE
     if claims:
-        await _silence(session, order_id, now)
+        await _clear_alarms(session, order_id, now)
 
 
-async def was_never_aboard(session: AsyncSession, order_id: str, now: datetime) -> bool:
+async def settle_as_never_aboard(session: AsyncSession, order_id: str, now: datetime) -> bool:
     """It did not come aboard after all, so nor did it come out; False if that it came aboard was not a claim."""
     claims = await _open_claims(session, order_id)
     if not any(_is_load(one) for one in claims):
         return False
     for one in claims:
         one.settled = Settled.FALSE
-    await _silence(session, order_id, now)
+    await _clear_alarms(session, order_id, now)
     return True
 
 
-async def is_true(session: AsyncSession, claim: Handover, now: datetime) -> None:
-    """Somebody has asked, and the mail is out."""
-    await was_aboard(session, claim.order_id, now)
+async def settle_as_true(session: AsyncSession, claim: Handover, now: datetime) -> None:
+    """Settle a claim as true: a dispatcher has asked, and the mail is out."""
+    await settle_as_aboard(session, claim.order_id, now)
     claim.settled = Settled.TRUE
 
 
@@ -86,7 +86,7 @@ async def _open_claims(session: AsyncSession, order_id: str) -> list[Handover]:
     return list((await session.exec(wanted)).all())
 
 
-async def _silence(session: AsyncSession, order_id: str, now: datetime) -> None:
+async def _clear_alarms(session: AsyncSession, order_id: str, now: datetime) -> None:
     ringing = update(Alarm).where(col(Alarm.name) == CLAIMED, col(Alarm.cleared_at).is_(None))
     await session.exec(ringing.where(col(Alarm.reason).contains(order_id, autoescape=True)).values(cleared_at=now))
 

@@ -1,4 +1,4 @@
-"""What people do with an order under way, and dispatchers with one that is stuck."""
+"""Routes that change an order under way: its people's, and dispatchers' for one that is stuck."""
 
 from dataclasses import dataclass
 from typing import Annotated, Final, Literal
@@ -30,8 +30,8 @@ def _answers(*refusals: type[Conflict]) -> dict[int | str, dict[str, object]]:
 
 
 @dataclass(frozen=True)
-class Asked:
-    """What every change of an order comes with."""
+class ChangeRequest:
+    """The arguments of every change of an order."""
 
     order_id: OrderId
     user: CurrentUser
@@ -51,14 +51,14 @@ class Asked:
 
 
 @dataclass(frozen=True)
-class AskedByDispatcher(Asked):
-    """By nobody else."""
+class DispatcherRequest(ChangeRequest):
+    """The arguments of a change that only a dispatcher makes."""
 
     user: Dispatcher
 
 
-ByParty = Annotated[Asked, Depends()]
-ByDispatcher = Annotated[AskedByDispatcher, Depends()]
+ByParty = Annotated[ChangeRequest, Depends()]
+ByDispatcher = Annotated[DispatcherRequest, Depends()]
 
 
 class Body(BaseModel):
@@ -68,7 +68,7 @@ class Body(BaseModel):
 
 
 class LongerWait(Body):
-    """How much longer the robot waits; null: as much as one may ask for at once."""
+    """Extension of the robot's wait; null: as much as one may ask for at once."""
 
     extend_s: Annotated[float, Field(gt=0, le=LONGEST_WAIT_S)] | None = None
 
@@ -80,22 +80,22 @@ class Attention(Body):
 
 
 class Resolution(Body):
-    """What becomes of an order that needed attention: on as before, with mail aboard back or into the mailroom's hands,
+    """Outcome for an order that needed attention: on as before, with mail aboard back or into the mailroom's hands,
     without into the queue again or not at all. `handed_over`: mail that its robot says it has not any more, without a
-    proof, is with whoever should have it, who was asked."""
+    proof, is with the person who should have it, who was asked."""
 
     to: Literal["resume", "returning", "held", "queued", "cancelled", "handed_over"]
     reason: Text | None = None
 
 
 class IntoHands(Body):
-    """Somebody has taken the mail out by hand."""
+    """The mail was taken out by hand."""
 
     reason: Text | None = None
 
 
 class PassingOn(Body):
-    """At which post somebody has taken the mail out of its robot for another one; null: where that was seen last."""
+    """The post where the mail was taken out of its robot for another one; null: where that was seen last."""
 
     post: Annotated[str, StringConstraints(max_length=64, pattern=ONE_LINE)] | None = None
     reason: Text | None = None
@@ -108,7 +108,7 @@ class Reassignment(Body):
 
 
 class PriorityChange(Body):
-    """How much sooner than others it is fetched."""
+    """Priority over other orders."""
 
     priority: Priority
 
@@ -174,6 +174,6 @@ async def reassign_order(asked: ByDispatcher, reassignment: Reassignment) -> Ord
 
 
 @dispatch_router.put("/orders/{order_id}/priority", responses=_answers(errors.TransitionRefused))
-async def prioritise_order(asked: ByDispatcher, wish: PriorityChange) -> OrderView:
+async def prioritise_order(asked: ByDispatcher, request: PriorityChange) -> OrderView:
     """Fetch an order sooner than others, or later."""
-    return asked.tagged(await asked.orders.intervening.prioritise(*asked.of, wish.priority, asked.if_match))
+    return asked.tagged(await asked.orders.intervening.prioritise(*asked.of, request.priority, asked.if_match))

@@ -20,7 +20,7 @@ from app.orders.batcher import OrderBatcher
 from app.orders.custody.codes import code_svg
 from app.orders.service import Orders
 from app.orders.views.schemas import Estimate, NewOrder, OrderPage, OrderView, PostName, WindowView, etag_of
-from app.orders.views.search import Looked, RoleInList, StateInList
+from app.orders.views.search import OrderFilter, RoleInList, StateInList
 from app.orders.views.views import load_facts, view_for
 from maps import shortest_route
 
@@ -72,14 +72,14 @@ async def estimate(
 @router.post("/orders", status_code=201, responses=PLACED)
 async def place_order(
     *,
-    wish: NewOrder,
+    request: NewOrder,
     idempotency_key: Annotated[str, Header(pattern=r"^[!-~]+$", max_length=255)],
     user: Annotated[Person, per_person(Door.ORDERS)],
     batcher: OrderBatcherDep,
     response: Response,
 ) -> OrderView:
     """Place an order. The same key and body again give the first answer again, with `Idempotency-Replayed: true`."""
-    placed = await batcher.place(user, idempotency_key, wish)
+    placed = await batcher.place(user, idempotency_key, request)
     response.headers.update({**placed.headers, REPLAYED: "true"} if placed.again else placed.headers)
     return placed.view
 
@@ -96,7 +96,7 @@ async def list_orders(
     search: Annotated[SearchText, Query(description=SEARCHED)] = "",
 ) -> OrderPage:
     """This person's orders, newest first; a dispatcher's `all` is everybody's. `state` and `search` narrow it down."""
-    walks = Looked(role, state, search.strip()).walks(user, orders.ledger.campus)
+    walks = OrderFilter(role, state, search.strip()).walks(user, orders.ledger.campus)
     rows, following = await page.of_any(session, walks, NEWEST_FIRST)
     facts, ledger = await load_facts(session, rows), orders.ledger
     views = [view_for(user, one, ledger.campus, ledger.settings, ledger.clock.utc()) for one in facts]

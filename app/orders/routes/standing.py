@@ -42,10 +42,10 @@ StandingOrdersDep = Annotated[StandingOrders, part(StandingOrders)]
     responses={**answering(201, "Location"), **problems(*REFUSED)},
 )
 async def place_standing_order(
-    wish: NewStandingOrder, user: CurrentUser, standing: StandingOrdersDep, session: SessionDep, response: Response
+    request: NewStandingOrder, user: CurrentUser, standing: StandingOrdersDep, session: SessionDep, response: Response
 ) -> StandingOrderView:
     """Order something again and again. Each occurrence becomes an order of its own when its time comes."""
-    view = await standing.create(session, user, wish)
+    view = await standing.create(session, user, request)
     response.headers["Location"] = f"/api/v1/standing-orders/{view.id}"
     return view
 

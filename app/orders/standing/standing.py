@@ -19,7 +19,7 @@ from app.models import Order, Person, Role, StandingOrder
 from app.orders import errors
 from app.orders.changes.placing import Parties, Placing
 from app.orders.standing.recurrence import Recurrence, day_of, next_after
-from app.orders.views.schemas import NewStandingOrder, Somebody, StandingOrderView, Wish
+from app.orders.views.schemas import NewStandingOrder, OrderRequest, Somebody, StandingOrderView
 from protocol.clock import Clock
 from protocol.ids import new_id
 
@@ -35,24 +35,24 @@ class StandingOrders:
     placing: Placing
     clock: Clock
 
-    async def create(self, session: AsyncSession, person: Person, wish: NewStandingOrder) -> StandingOrderView:
+    async def create(self, session: AsyncSession, person: Person, request: NewStandingOrder) -> StandingOrderView:
         """Raises UnknownPost, SamePost, NoWay, UnknownRecipient, UnknownSender, ForDispatchers."""
-        self.placing.window(wish.from_post, wish.to_post)
-        parties = await self.placing.parties(session, person, wish)
+        self.placing.window(request.from_post, request.to_post)
+        parties = await self.placing.parties(session, person, request)
         now = self.clock.utc()
         row = StandingOrder(
             id=new_id(),
             sender_id=parties.sender.id,
             recipient_id=parties.recipient.id,
             placed_by_id=parties.placed_by.id if parties.placed_by else None,
-            from_post=wish.from_post,
-            to_post=wish.to_post,
-            description=wish.description or None,
-            priority=wish.priority,
-            weekdays=sorted(set(wish.weekdays)),
-            at=wish.at,
-            zone=wish.zone,
-            until=wish.until.isoformat() if wish.until else None,
+            from_post=request.from_post,
+            to_post=request.to_post,
+            description=request.description or None,
+            priority=request.priority,
+            weekdays=sorted(set(request.weekdays)),
+            at=request.at,
+            zone=request.zone,
+            until=request.until.isoformat() if request.until else None,
             created_at=now,
         )
         _plan(row, now)
@@ -71,7 +71,7 @@ class StandingOrders:
 
     async def view(self, session: AsyncSession, person: Person, standing_id: str) -> StandingOrderView:
         """Raises UnknownStandingOrder."""
-        row = await self._theirs(session, person, standing_id, to_change=False)
+        row = await self._visible_row(session, person, standing_id, to_change=False)
         return (await self.views(session, [row]))[0]
 
     async def pause(self, session: AsyncSession, person: Person, standing_id: str) -> StandingOrderView:
@@ -90,7 +90,7 @@ class StandingOrders:
 
     async def end(self, session: AsyncSession, person: Person, standing_id: str) -> StandingOrderView:
         """For good; the orders that it has made stay as they are. Raises UnknownStandingOrder."""
-        row = await self._theirs(session, person, standing_id)
+        row = await self._visible_row(session, person, standing_id)
         row.ended_at, row.next_at = row.ended_at or self.clock.utc(), None
         return (await self.views(session, [row]))[0]
 
@@ -108,7 +108,7 @@ class StandingOrders:
         day, moment = day_of(_recurrence(row), row.next_at), row.next_at
         _plan(row, moment)
         if now - moment > GRACE:
-            log.warning("standing order missed", standing_order=row.id, day=day.isoformat())
+            log.warning("standing_order_missed", standing_order=row.id, day=day.isoformat())
             return None
         return await self._make(session, row, day)
 
@@ -117,7 +117,7 @@ class StandingOrders:
         if (await session.exec(made)).first() is not None:
             return None
         parties = await self._parties(session, row)
-        wish = Wish.model_construct(
+        request = OrderRequest.model_construct(
             from_post=row.from_post,
             to_post=row.to_post,
             recipient=parties.recipient.email,
@@ -125,14 +125,14 @@ class StandingOrders:
             priority=row.priority,
         )
         try:
-            facts = await self.placing.place(session, parties, wish, row, day.isoformat())
-        except ServiceError as problem:  # the map has changed, say: whoever made it has to look
+            facts = await self.placing.place(session, parties, request, row, day.isoformat())
+        except ServiceError as problem:  # the map has changed, say: its owner has to correct it
             row.paused_at, row.next_at, row.why = self.clock.utc(), None, problem.sentence[:500]
-            log.warning("standing order paused", standing_order=row.id, problem=problem.code)
+            log.warning("standing_order_paused", standing_order=row.id, problem=problem.code)
             return None
         return facts.order.id
 
-    async def _theirs(
+    async def _visible_row(
         self, session: AsyncSession, person: Person, standing_id: str, *, to_change: bool = True
     ) -> StandingOrder:
         row = await session.get(StandingOrder, standing_id, with_for_update=to_change or None)
@@ -141,7 +141,7 @@ class StandingOrders:
         return row
 
     async def _lasting(self, session: AsyncSession, person: Person, standing_id: str) -> StandingOrder:
-        row = await self._theirs(session, person, standing_id)
+        row = await self._visible_row(session, person, standing_id)
         if row.ended_at is not None:
             raise errors.StandingOrderEnded(f"Standing order {standing_id} has ended. Make a new one.")
         return row

@@ -34,7 +34,7 @@ class Expected(BaseModel):
 
 
 class ChargedView(BaseModel):
-    """How much charge a robot that charges is expected to have at about this time. How fast chargers are is assumed."""
+    """The charge that a charging robot is expected to have at about this time. How fast chargers are is assumed."""
 
     ratio: float
     at: datetime
@@ -49,7 +49,7 @@ class BatteryView(BaseModel):
 
 
 class WaitsFor(BaseModel):
-    """The corridor that a robot wishes to enter, the robots that have to go on before, and until about when.
+    """The corridor that a robot waits to enter, the robots that have to go on before, and until about when.
 
     `closed`: by a person, until a person opens it.
     """
@@ -96,13 +96,13 @@ def why_of_robot(robot: RobotRow) -> str | None:
 
 
 def _activity(robot: RobotRow) -> Activity:
-    """Its own word, but that one in its dock that has somewhere to go is not free: it waits to be let out."""
+    """Return its own report, but that one in its dock that has somewhere to go is not free: it waits to be let out."""
     held_up = robot.activity == Activity.IDLE and robot.waits_for is not None
     return Activity.WAITING if held_up else Activity(robot.activity)
 
 
 def robot_view(robot: RobotRow, campus: CampusMap, settings: Settings, now: datetime) -> RobotView:
-    """What is said of a robot to whoever may see it."""
+    """Return a robot as people see it."""
     why = why_of_robot(robot)
     return RobotView(
         name=robot.name,

@@ -11,7 +11,7 @@ from app.core.paging import PageOf
 from app.core.text_lines import Text
 from app.core.texts.reasons import Words
 from app.models import OrderState, Priority
-from app.orders.custody.custody import Held
+from app.orders.custody.custody import CustodyLink
 from app.orders.views.estimate import EstimateView
 from app.orders.views.robot_view import RobotView
 from app.orders.window import Window
@@ -25,8 +25,8 @@ EmailOfSomebody = Annotated[
 LaterMoment = Annotated[AwareDatetime, Field(ge=datetime(2020, 1, 1, tzinfo=UTC), lt=datetime(2100, 1, 1, tzinfo=UTC))]
 
 
-class Wish(BaseModel):
-    """What is to be carried, from where to where and to whom."""
+class OrderRequest(BaseModel):
+    """A request to carry mail: from where to where and to whom."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -43,13 +43,13 @@ class Wish(BaseModel):
         return {self.recipient, self.on_behalf_of or self.recipient}
 
 
-class NewOrder(Wish):
-    """What the order form says."""
+class NewOrder(OrderRequest):
+    """The content of the order form."""
 
     not_before: Annotated[LaterMoment | None, Field(description="Not to be fetched before this.")] = None
 
 
-class NewStandingOrder(Wish):
+class NewStandingOrder(OrderRequest):
     """An order that comes again on some weekdays (0 is Monday) at a local time, until a last local day or for ever."""
 
     weekdays: Annotated[list[Annotated[int, Field(ge=0, le=6)]], Field(min_length=1, max_length=7)]
@@ -129,7 +129,7 @@ class Somebody(BaseModel):
 
 
 class EventView(BaseModel):
-    """One step of the timeline: when by the server, when by the robot, on whose word, where, why.
+    """One step of the timeline: when by the server, when by the robot, by whom, where, why.
 
     `kind` is `moved` for a change of state; any other says what else happened, such as `wait_extended`.
     """
@@ -150,13 +150,13 @@ class CustodyView(BaseModel):
     """One link of the chain of custody: who held the mail, from when to when (null: to this day).
 
     `holder` is sender, robot, recipient, delegate or mailroom, `name` the robot's or the delegate's. `how` says how
-    they came to have it: code, tap, digits or button by a robot's receipt, `dispatcher` by a dispatcher's word, null
+    they came to have it: code, tap, digits or button by a robot's receipt, `dispatcher` by a dispatcher's report, null
     for the sender's own. `confirmed_by` is whose code, tap or digits it was (null for the button), and
     `confirmed_by_name` which delegate's; `signed`: the robot has signed for it, and the signature was checked. A
     delegate of the other side is a delegate without a name.
 
     `evidence` says what the link goes by: `proof` (only the code that was shown gives it), `tap`, `digits`,
-    `dispatcher`, `digest` (weaker: an older robot), `button`, `claimed` (nothing but the robot's word, so that nobody
+    `dispatcher`, `digest` (weaker: an older robot), `button`, `claimed` (nothing but the robot's report, so that nobody
     has confirmed it) or `settled` (claimed, and found true since); null for the sender's own. Who is said to have mail
     that is claimed to be out stands last, while the robot answers for it still.
     """
@@ -174,22 +174,22 @@ class CustodyView(BaseModel):
     evidence: str | None
 
     @classmethod
-    def of(cls, held: Held) -> "CustodyView":
+    def of(cls, link: CustodyLink) -> "CustodyView":
         return cls(
-            holder=held.holder,
-            name=held.name,
-            from_=held.since,
-            to=held.until,
-            how=held.how,
-            confirmed_by=held.confirmed_by,
-            confirmed_by_name=held.confirmed_by_name,
-            signed=held.signed,
-            evidence=held.evidence,
+            holder=link.holder,
+            name=link.name,
+            from_=link.since,
+            to=link.until,
+            how=link.how,
+            confirmed_by=link.confirmed_by,
+            confirmed_by_name=link.confirmed_by_name,
+            signed=link.signed,
+            evidence=link.evidence,
         )
 
 
 class HandoverRequested(BaseModel):
-    """Somebody has tapped or typed digits, and the robot has not answered yet; after `expires_at` it will not."""
+    """A person has tapped or typed digits, and the robot has not answered yet; after `expires_at` it will not."""
 
     how: str
     at: datetime

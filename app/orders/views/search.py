@@ -1,4 +1,4 @@
-"""Which orders a list shows: whose they are, whether they go on, and what somebody looks for.
+"""Filters of order lists: side, state and search text.
 
 What has ended is nearly all that there is, and is walked along an index of its time; what goes on is little, and is
 found by its state.
@@ -23,8 +23,8 @@ FEW: Final = {"open": OPEN, "attention": (OrderState.ATTENTION,)}
 
 
 @dataclass(frozen=True)
-class Looked:
-    """For what somebody looks among the orders that are theirs to see."""
+class OrderFilter:
+    """Filter of the orders that a person may see."""
 
     role: RoleInList
     state: StateInList
@@ -48,11 +48,11 @@ class Looked:
             wanted = wanted.where(col(Order.state).in_(FEW[self.state]))
         elif self.state == "ended":
             wanted = wanted.where(col(Order.state).not_in(OPEN))
-        return wanted.where(_tells_of(self.search, campus, *people)) if self.search else wanted
+        return wanted.where(_matches_text(self.search, campus, *people)) if self.search else wanted
 
 
-def _tells_of(search: str, campus: CampusMap, *people: Any) -> ColumnElement[bool]:
-    """What it is, one of these people, or a post, by the title that people read."""
+def _matches_text(search: str, campus: CampusMap, *people: Any) -> ColumnElement[bool]:
+    """Match the description, one of these people, or a post by its title."""
     found = select(Person.id).where(says(search, Person.name, Person.email))
     sought = search.casefold()
     posts = [post.name for post in campus.posts.values() if sought in f"{post.name}\n{post.title}".casefold()]

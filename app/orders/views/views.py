@@ -27,12 +27,12 @@ from protocol.parts import Purpose
 
 CONFIRM_REQUESTED: Final = "confirm_requested"
 MyRole = Literal["sender", "recipient", "dispatcher"]
-THEIRS: Final[Mapping[MyRole, tuple[Purpose, ...]]] = {
+HANDOVER_PURPOSES: Final[Mapping[MyRole, tuple[Purpose, ...]]] = {
     "sender": (Purpose.LOAD, Purpose.RETURN),
     "recipient": (Purpose.RECEIVE,),
     "dispatcher": tuple(Purpose),
 }
-"""What each may name somebody for (the first is meant if nothing is said), and whose names they see."""
+"""The hand-overs for which each may name delegates (the first by default), and whose names they see."""
 OfOrder = TypeVar("OfOrder", OrderEvent, Handover)
 
 
@@ -106,7 +106,7 @@ def _people_of(order: Order) -> Iterator[str]:
 
 
 async def _handovers(session: AsyncSession, order_ids: Sequence[str]) -> Sequence[Handover]:
-    """Of what has never been loaded there are none to be looked for."""
+    """Return the hand-overs; without a query for what has never been loaded."""
     if not order_ids:
         return ()
     wanted = select(Handover).where(col(Handover.order_id).in_(order_ids)).order_by(col(Handover.id))
@@ -114,7 +114,7 @@ async def _handovers(session: AsyncSession, order_ids: Sequence[str]) -> Sequenc
 
 
 async def _delegates(session: AsyncSession, handovers: Iterable[Handover]) -> Sequence[tuple[str, str, str]]:
-    """Mostly nobody took part who would have to be looked for."""
+    """Return the delegates who took part; mostly there are none, and no query."""
     ids = {one.delegate_id for one in handovers if one.delegate_id}
     if not ids:
         return ()
@@ -130,7 +130,7 @@ _ROBOTS: Final = select(RobotRow).where(col(RobotRow.name).in_(_IDS))
 
 
 def role_in(order: Order, person: Person) -> MyRole | None:
-    """As what this person sees the order; None: not at all."""
+    """Return this person's role in the order; None: they may not see it."""
     if person.id == order.sender_id:
         return "sender"
     if person.id == order.recipient_id:
@@ -162,8 +162,8 @@ def order_view(
         version=order.version,
         from_post=order.from_post,
         to_post=order.to_post,
-        sender=somebody(facts.sender),
-        recipient=somebody(facts.recipient),
+        sender=person_view(facts.sender),
+        recipient=person_view(facts.recipient),
         description=order.description,
         created_at=order.created_at,
         updated_at=order.updated_at,
@@ -184,8 +184,8 @@ def order_view(
         return_post=order.return_post,
         passed_on_at_post=order.passed_on_at_post,
         standing_order_id=order.standing_order_id,
-        placed_by=somebody(facts.people[order.placed_by_id]) if order.placed_by_id else None,
-        custody=[CustodyView.of(held) for held in custody_of(order, facts.handovers, _names_for(role, facts))],
+        placed_by=person_view(facts.people[order.placed_by_id]) if order.placed_by_id else None,
+        custody=[CustodyView.of(link) for link in custody_of(order, facts.handovers, _names_for(role, facts))],
         events=[_event(event, may_read(role, order, event.kind, event.by)) for event in facts.events],
     )
 
@@ -193,7 +193,7 @@ def order_view(
 def delegates_view(
     facts: OrderFacts, turn: Purpose | None, campus: CampusMap, settings: Settings, now: datetime
 ) -> OrderView:
-    """The order for somebody who was named to hand over: where it is and whose, nothing of what it holds or went
+    """Return the order for a delegate: where it is and whose, nothing of what it holds or went
     through, and no `why`, which may be anybody's own words. `turn`: what their code is good for now."""
     whole = order_view(facts, "recipient", "", campus, settings, now)
     return OrderView(
@@ -216,16 +216,18 @@ def delegates_view(
 
 
 def whose_delegates(role: MyRole | None, order: Order) -> tuple[Purpose, ...]:
-    """For what somebody was named whose name this role sees. Whom sender and recipient name is nothing to the other:
-    what they see of them is that it was a delegate."""
+    """Return the purposes of the delegates whose names this role sees.
+
+    Sender and recipient do not see each other's: only that it was a delegate.
+    """
     if role is None:
         return ()
-    return THEIRS["dispatcher" if order.sender_id == order.recipient_id else role]
+    return HANDOVER_PURPOSES["dispatcher" if order.sender_id == order.recipient_id else role]
 
 
 def may_read(role: MyRole | None, order: Order, kind: str, by: str) -> bool:
     """The reason of an event that names a delegate is for those who did so, and for dispatchers."""
-    sees_all = whose_delegates(role, order) == THEIRS["dispatcher"]
+    sees_all = whose_delegates(role, order) == HANDOVER_PURPOSES["dispatcher"]
     return kind not in (DELEGATE_NAMED, DELEGATE_REVOKED) or sees_all or role == by
 
 
@@ -259,12 +261,12 @@ def _handover_requested(events: Sequence[OrderEvent], settings: Settings) -> Han
     return HandoverRequested(how=last.reason or "tap", at=last.at, expires_at=expires_at)
 
 
-def somebody(person: Person) -> Somebody:
+def person_view(person: Person) -> Somebody:
     return Somebody(email=person.email, name=person.name)
 
 
 def _is_typed(event: OrderEvent) -> bool:
-    """What a person of the mailroom has typed is no code, whatever it looks like."""
+    """Return whether a dispatcher typed the reason: then it is no reason code, whatever it looks like."""
     return event.by == By.DISPATCHER and event.person_id is not None
 
 

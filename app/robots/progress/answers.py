@@ -5,7 +5,7 @@ from typing import Final
 from sqlmodel import col, select
 
 from app.models import MissionRow, MissionState, OrderState, RobotCommand, RobotRow
-from app.orders.service import Word
+from app.orders.service import Actor
 from app.orders.stops import is_own, stops_of_order
 from app.orders.transitions import ROBOT_COMING, By
 from app.robots.alarms import CONTRADICTION, clear_alarms, raise_alarm
@@ -31,8 +31,8 @@ async def follow_answer(report: Report, answer: CommandAnswer) -> None:
         await _taken_out(report)
     elif command.kind == "confirm" and command.order_id is not None and not answer.accepted:
         # The person who tapped reads it on their page; no other has to look.
-        word = report.word(answer.happened_at, None, answer.reason)
-        await report.orders.ledger.note(report.session, command.order_id, "confirm_refused", word)
+        actor = report.actor(answer.happened_at, None, answer.reason)
+        await report.orders.ledger.note(report.session, command.order_id, "confirm_refused", actor)
     elif not answer.accepted:
         await _refused(report, answer)
 
@@ -44,13 +44,13 @@ async def _let_go(report: Report, answer: CommandAnswer, order_id: str) -> None:
         await drop_stops(report, order_id)
         # It has nothing of this order any more: what came aboard too late was taken out by hand.
         await clear_alarms(report.session, report.robot, CONTRADICTION, report.now, about=order_id)
-        wished = order.cancel_requested_at or order.reassign_requested_at
-        if is_theirs and order.state in ROBOT_COMING and wished:
-            await drop_order(report, order, report.word(answer.happened_at, None, answer.reason))
+        requested = order.cancel_requested_at or order.reassign_requested_at
+        if is_theirs and order.state in ROBOT_COMING and requested:
+            await drop_order(report, order, report.actor(answer.happened_at, None, answer.reason))
     elif is_theirs and order.cancel_requested_at is not None and order.state in CARRIED:
-        # The wish came too late to leave the mail where it was: now it is brought back.
+        # The request came too late to leave the mail where it was: now it is brought back.
         await report.orders.returning.ask_back(
-            report.session, order, Word(By.ROBOT, robot=report.robot, reason=answer.reason)
+            report.session, order, Actor(By.ROBOT, robot=report.robot, reason=answer.reason)
         )
     else:
         order.reassign_requested_at = None
@@ -84,5 +84,5 @@ async def _recalled(report: Report, answer: CommandAnswer, command: RobotCommand
     )
     for mission in (await report.session.exec(wanted.order_by(col(MissionRow.created_at)))).all():
         if not is_own(mission.id):
-            await let_go_of(report, mission, report.word(answer.happened_at, None, RECALLED))
+            await let_go_of(report, mission, report.actor(answer.happened_at, None, RECALLED))
     await end_what_is_empty(report)

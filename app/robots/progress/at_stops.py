@@ -104,10 +104,10 @@ async def _come_along(report: Report, progress: Progress, stop: StopRow, order_i
     if action is StopAction.RETURN:
         order = await report.orders.ledger.order(report.session, order_id)
         order.return_post = stop.post
-    word = report.word(progress.happened_at, progress.post, progress.reason)
-    await report.along(order_id, AT_STOP.get((progress.step, action), ()), word, until)
+    actor = report.actor(progress.happened_at, progress.post, progress.reason)
+    await report.along(order_id, AT_STOP.get((progress.step, action), ()), actor, until)
     if (progress.step, action) == (Step.PASSED, StopAction.LOAD):
-        await report.orders.ledger.come_nearer(report.session, order_id, progress.post)
+        await report.orders.ledger.notify_when_near(report.session, order_id, progress.post)
 
 
 async def _not_loaded(report: Report, progress: Progress, mission: MissionRow, order_id: str) -> None:
@@ -124,15 +124,15 @@ async def _not_loaded(report: Report, progress: Progress, mission: MissionRow, o
         if order.reassign_requested_at is not None:
             to = OrderState.QUEUED
     await drop_stops(report, order_id)
-    await report.along(order_id, (to,), report.word(progress.happened_at, progress.post, reason))
+    await report.along(order_id, (to,), report.actor(progress.happened_at, progress.post, reason))
 
 
 async def _not_taken(report: Report, progress: Progress, mission: MissionRow, order_id: str) -> None:
     """The robot brings the mail back by itself, when it has done what else it was to do."""
     order = await report.orders.ledger.order(report.session, order_id)
     order.return_post = report.orders.returning.return_post(order)
-    word = report.word(progress.happened_at, progress.post, progress.reason)
-    await report.along(order_id, (OrderState.RETURNING,), word)
+    actor = report.actor(progress.happened_at, progress.post, progress.reason)
+    await report.along(order_id, (OrderState.RETURNING,), actor)
 
 
 async def _not_taken_back(report: Report, progress: Progress, mission: MissionRow, order_id: str) -> None:
@@ -140,8 +140,8 @@ async def _not_taken_back(report: Report, progress: Progress, mission: MissionRo
     order = await report.orders.ledger.order(report.session, order_id)
     if is_own(mission.id) and order.state not in ENDED:  # of what has ended the robot's fault tells people
         sentence = f"Nobody took the mail back ({progress.reason}). It is still in robot {report.robot}."
-        word = report.word(progress.happened_at, progress.post, sentence)
-        await report.orders.ledger.move(report.session, order_id, OrderState.ATTENTION, word)
+        actor = report.actor(progress.happened_at, progress.post, sentence)
+        await report.orders.ledger.move(report.session, order_id, OrderState.ATTENTION, actor)
 
 
 _GiveUp = Callable[[Report, Progress, MissionRow, str], Awaitable[None]]

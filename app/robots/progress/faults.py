@@ -38,8 +38,8 @@ async def follow_fault(report: Report, fault: Fault) -> None:
     await raise_alarm(report.session, report.robot, fault.name, fault.reason, now=report.now, post=fault.post)
     if fault.name in NEEDS_A_PERSON:
         for order in await report.aboard(*MAIL_ABOARD):
-            word = report.word(fault.happened_at, fault.post, fault.reason)
-            await report.orders.ledger.move(report.session, order.id, OrderState.ATTENTION, word)
+            actor = report.actor(fault.happened_at, fault.post, fault.reason)
+            await report.orders.ledger.move(report.session, order.id, OrderState.ATTENTION, actor)
 
 
 async def _over(report: Report, fault: Fault) -> None:
@@ -53,5 +53,5 @@ async def _over(report: Report, fault: Fault) -> None:
         return
     for order in await report.aboard(OrderState.ATTENTION):
         if order.why in reasons and order.state_before_attention is not None:
-            word = report.word(fault.happened_at, fault.post, fault.reason)
-            await report.orders.ledger.move(report.session, order.id, order.state_before_attention, word)
+            actor = report.actor(fault.happened_at, fault.post, fault.reason)
+            await report.orders.ledger.move(report.session, order.id, order.state_before_attention, actor)

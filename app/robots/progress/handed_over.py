@@ -12,9 +12,9 @@ from sqlmodel import select
 from app.core.database.database import savepoint
 from app.models import Evidence, Handover, MissionRow, Order, OrderState, StopRow
 from app.orders.custody.codes import Holder, codes_of, delegates_of
-from app.orders.custody.unproven import last_handover, was_aboard
+from app.orders.custody.unproven import last_handover, settle_as_aboard
 from app.orders.errors import TransitionRefused
-from app.orders.service import Word
+from app.orders.service import Actor
 from app.orders.stops import stops_of_order
 from app.orders.transitions import ENDED, MAIL_ABOARD, TURNED_BACK
 from app.robots.alarms import CONTRADICTION, clear_alarms, raise_alarm
@@ -68,7 +68,7 @@ async def follow_receipt(report: Report, receipt: HandoverReceipt) -> None:
 async def _settle(report: Report, receipt: HandoverReceipt, handover: Handover) -> None:
     """Mail that is proved to have come out was aboard, and had not come out before."""
     if receipt.purpose != Purpose.LOAD and handover.evidence != Evidence.CLAIMED:
-        await was_aboard(report.session, receipt.order_id, report.now)
+        await settle_as_aboard(report.session, receipt.order_id, report.now)
 
 
 async def _let_somebody_ask(report: Report, receipt: HandoverReceipt) -> None:
@@ -76,8 +76,8 @@ async def _let_somebody_ask(report: Report, receipt: HandoverReceipt) -> None:
     rings all the same."""
     order = await report.orders.ledger.order(report.session, receipt.order_id)
     if order.robot == report.robot and order.state in MAIL_ABOARD:
-        word = report.word(receipt.happened_at, receipt.post, NOT_PROVED)
-        await report.orders.ledger.move(report.session, order.id, OrderState.ATTENTION, word)
+        actor = report.actor(receipt.happened_at, receipt.post, NOT_PROVED)
+        await report.orders.ledger.move(report.session, order.id, OrderState.ATTENTION, actor)
 
 
 async def _drop_the_rest(report: Report, receipt: HandoverReceipt) -> None:
@@ -115,25 +115,25 @@ async def _move(report: Report, receipt: HandoverReceipt, *, quietly: bool) -> N
     order = await report.orders.ledger.order(report.session, receipt.order_id)
     if order.robot not in (None, report.robot):
         order.let_go_by = order.robot  # it was given to another, but this one had the mail already
-    word = report.word(receipt.happened_at, receipt.post)
+    actor = report.actor(receipt.happened_at, receipt.post)
     if receipt.purpose == Purpose.LOAD and order.state in ENDED:
-        await _loaded_too_late(report, order, receipt, word)
+        await _loaded_too_late(report, order, receipt, actor)
         return
     states, state = await _states(report, order, receipt), order.state
     try:
         async with savepoint(report.session):
-            await report.along(order.id, states, word, quietly=quietly)
+            await report.along(order.id, states, actor, quietly=quietly)
     except TransitionRefused:
         await _contradiction(report, receipt, state)
 
 
-async def _loaded_too_late(report: Report, order: Order, receipt: HandoverReceipt, word: Word) -> None:
+async def _loaded_too_late(report: Report, order: Order, receipt: HandoverReceipt, actor: Actor) -> None:
     """It is carried for nothing: a person has to know, and the robot brings it back."""
     await _contradiction(report, receipt, order.state)
     order.robot = report.robot
     if order.let_go_by == report.robot:
         order.let_go_by = None  # it cannot drop what it has
-    await report.orders.returning.ask_back(report.session, order, word)
+    await report.orders.returning.ask_back(report.session, order, actor)
 
 
 async def _contradiction(report: Report, receipt: HandoverReceipt, state: OrderState) -> None:

@@ -8,7 +8,7 @@ from sqlmodel import col, select
 
 from app.core.database.database import connection_of
 from app.models import MissionRow, MissionState, Order, OrderState, StopRow
-from app.orders.service import Word
+from app.orders.service import Actor
 from app.orders.stops import OWN_PREFIX, is_anything_left, is_own, stops_left, stops_of_order
 from app.orders.transitions import MAIL_ABOARD, ROBOT_COMING
 from app.robots.errors import UnknownMission
@@ -42,7 +42,7 @@ async def _adopt(report: Report, progress: Progress) -> MissionRow:
     await _end_own(report)
     for before in await _active(report):
         if await _was_begun(report, before):
-            await let_go_of(report, before, report.word(progress.happened_at, progress.post, UNLOADED))
+            await let_go_of(report, before, report.actor(progress.happened_at, progress.post, UNLOADED))
     mission = MissionRow(
         id=progress.mission_id, robot=report.robot, told_update=1, created_at=report.now, accepted_at=report.now
     )
@@ -80,25 +80,25 @@ async def own_stop(report: Report, mission: MissionRow, order: Order, position: 
 async def start_returning(report: Report, order: Order, progress: Progress) -> None:
     """The robot says that the mail is on its way back."""
     order.return_post = report.orders.returning.return_post(order)
-    word = report.word(progress.happened_at, progress.post, progress.reason)
-    await report.along(order.id, (OrderState.RETURNING,), word)
+    actor = report.actor(progress.happened_at, progress.post, progress.reason)
+    await report.along(order.id, (OrderState.RETURNING,), actor)
 
 
-async def let_go_of(report: Report, mission: MissionRow, word: Word) -> None:
+async def let_go_of(report: Report, mission: MissionRow, actor: Actor) -> None:
     """A mission that the robot does not hold any more: what it has not loaded is to be fetched by another."""
     end(report, mission, MissionState.CANCELLED)
     for stop in await stops_left(report.session, mission.id):
         stop.dropped_at = report.now
         order = await report.session.get(Order, stop.order_id) if stop.order_id else None
         if order and order.robot == report.robot and order.state in ROBOT_COMING:
-            await drop_order(report, order, word)
+            await drop_order(report, order, actor)
 
 
-async def drop_order(report: Report, order: Order, word: Word) -> None:
-    """The robot has let go of an order that it had not loaded: cancelled if that was wished, else it waits again."""
-    wished = order.cancel_requested_at is not None
-    to = OrderState.CANCELLED if wished else OrderState.QUEUED
-    await report.orders.ledger.move(report.session, order.id, to, word)
+async def drop_order(report: Report, order: Order, actor: Actor) -> None:
+    """The robot has let go of an order that it had not loaded: cancelled if that was requested, else it waits again."""
+    requested = order.cancel_requested_at is not None
+    to = OrderState.CANCELLED if requested else OrderState.QUEUED
+    await report.orders.ledger.move(report.session, order.id, to, actor)
 
 
 async def drop_stops(report: Report, order_id: str) -> None:
@@ -150,11 +150,11 @@ async def _left_undone(report: Report, stop: StopRow, progress: Progress) -> Non
     order = await report.session.get(Order, stop.order_id) if stop.order_id else None
     if order is None or order.robot != report.robot:
         return
-    word = report.word(progress.happened_at, progress.post, NOT_REPORTED)
+    actor = report.actor(progress.happened_at, progress.post, NOT_REPORTED)
     if order.state in MAIL_ABOARD:
-        await report.orders.ledger.move(report.session, order.id, OrderState.ATTENTION, word)
+        await report.orders.ledger.move(report.session, order.id, OrderState.ATTENTION, actor)
     elif order.state in ROBOT_COMING:
-        await drop_order(report, order, word)
+        await drop_order(report, order, actor)
 
 
 def end(report: Report, mission: MissionRow, state: MissionState) -> None:

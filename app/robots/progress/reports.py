@@ -8,7 +8,7 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.models import Order, OrderState
 from app.orders.custody.unproven import claim_of_handing_out
-from app.orders.service import Orders, Word
+from app.orders.service import Actor, Orders
 from app.orders.transitions import By, is_old_news
 from app.robots.link.clocks import put_right
 
@@ -28,8 +28,8 @@ class Report:
         """A time that the robot tells, by the service's clock."""
         return put_right(at, self.clock_off_s)
 
-    def word(self, robot_at: datetime, post: str | None, reason: str | None = None) -> Word:
-        return Word(By.ROBOT, robot=self.robot, robot_at=self.when(robot_at), post=post, reason=reason)
+    def actor(self, robot_at: datetime, post: str | None, reason: str | None = None) -> Actor:
+        return Actor(By.ROBOT, robot=self.robot, robot_at=self.when(robot_at), post=post, reason=reason)
 
     def until(self, since: datetime, limit_s: float) -> datetime:
         """When a wait ends that the robot says began at `since`; its clock may be wrong, but nothing began later."""
@@ -49,7 +49,7 @@ class Report:
         self,
         order_id: str,
         states: tuple[OrderState, ...],
-        word: Word,
+        actor: Actor,
         wait_until: datetime | None = None,
         *,
         quietly: bool = False,
@@ -67,10 +67,10 @@ class Report:
             return
         goes_on = order.state not in states and states and not is_old_news(order.state, states[-1], before)
         if before is not None and goes_on:
-            await self.orders.ledger.move(self.session, order_id, before, word, quietly=before is not states[-1])
+            await self.orders.ledger.move(self.session, order_id, before, actor, quietly=before is not states[-1])
         if order.state in states:
             states = states[states.index(order.state) :]
         for state in states:
             last = state is states[-1]
             until = wait_until if last else None
-            await self.orders.ledger.move(self.session, order_id, state, word, until, quietly=quietly and last)
+            await self.orders.ledger.move(self.session, order_id, state, actor, until, quietly=quietly and last)

@@ -19,7 +19,7 @@ from tests.app.robots.playing import PlayedRobot, Service, serving
 
 
 class Campus:
-    """A service, a robot with one letter from post1 to post4, and whoever has to do with it."""
+    """A service, a robot with one letter from post1 to post4, and the people of its order."""
 
     def __init__(self, service: Service, robot: PlayedRobot, stack: AsyncExitStack) -> None:
         self.service, self.robot, self._stack = service, robot, stack
@@ -38,7 +38,7 @@ class Campus:
         return self.mission.stops[1]
 
     async def browser(self, name: str, *roles: Role) -> httpx.AsyncClient:
-        """Somebody of the campus, signed in."""
+        """A person of the campus, signed in."""
         state = self.service.app.state.parts
         async with state.database.transaction() as session:
             person = await state.sign_in_desk.person(session, f"{name}@campus.example", state.clock.utc())
@@ -75,7 +75,7 @@ class Campus:
         return (await self.service.states(self.order_id))[-1]
 
     async def kinds(self) -> list[str]:
-        """What else happened to the order than that it moved."""
+        """Return the kinds of the order's events other than moves."""
 
         events = await self.service.rows(OrderEvent, order_id=self.order_id)
         return [event.kind for event in sorted(events, key=lambda one: one.seq) if event.kind != "moved"]

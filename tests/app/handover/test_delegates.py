@@ -1,4 +1,4 @@
-"""Somebody else hands over: named with a code of their own, which can be taken back."""
+"""Delegates hand over with a code of their own, which can be revoked."""
 
 from hashlib import sha256
 from typing import Any
@@ -90,7 +90,7 @@ async def test_a_delegates_name_is_for_the_side_that_named_them_and_for_dispatch
 
 
 async def hands_over(campus: Campus, who: httpx.AsyncClient, name: str, stop: Stop) -> None:
-    """Somebody names this delegate, whose code the robot sees."""
+    """`who` names this delegate, whose code the robot sees."""
     named = await who.post(f"{campus.path}/delegates", json={"name": name})
     theirs = sha256((await who.get(named.headers["Location"][7:])).json()["text"].encode()).hexdigest()
     await campus.robot.ends(await campus.robot.say(campus.robot.receipt(stop, code_sha256=theirs)))

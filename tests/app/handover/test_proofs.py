@@ -46,7 +46,7 @@ async def arrive(campus: Campus) -> None:
 
 
 def made_up(campus: Campus, stop: Stop, **facts: Any) -> Event:
-    """What a stolen robot can say: it has everything it was told, and its key."""
+    """Make up what a stolen robot can report: it has its messages, and its key."""
     assert campus.mission
     receipt = campus.robot.receipt(stop, mission_id=campus.mission.id, number=9, **facts)
     return signed(receipt)
@@ -67,7 +67,7 @@ async def told(campus: Campus) -> set[str]:
 
 
 async def is_claimed(campus: Campus, problem: str) -> None:
-    """Nobody is told that they have it; the robot answers for it, and a person is called."""
+    """No person is notified of receiving it; the robot answers for it, and a person is called."""
     assert await campus.state() == "attention"
     assert "delivered" not in await told(campus)
     *chain, claim = await links(campus)

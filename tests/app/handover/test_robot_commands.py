@@ -1,4 +1,4 @@
-"""What a dispatcher tells robots, and what they see of one: commands and their answers, alarms, a clock that is off."""
+"""A dispatcher's commands to robots and what they see of one: answers, alarms, a clock that is off."""
 
 from datetime import datetime, timedelta
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from app.core.settings import ROOT
 from app.dispatch import choice, held_up, why_orders_wait
 from app.models import OrderState
-from app.orders.timer import NOBODY_CAME
+from app.orders.timer import NOT_FETCHED_IN_TIME
 from app.orders.views import reasons
 from app.robots.progress.answers import RECALLED
 from app.robots.progress.evidence import UNPROVED
@@ -108,7 +108,7 @@ def said(node: ast.AST | None) -> str | None:
 
 def what_the_service_tells() -> Iterator[str]:
     """Of orders, and of messages that it or a robot could not follow."""
-    yield from (NOT_PROVED, NOBODY_CAME, RECALLED, UNLOADED, NOT_REPORTED, "The recipient cannot take it now.")
+    yield from (NOT_PROVED, NOT_FETCHED_IN_TIME, RECALLED, UNLOADED, NOT_REPORTED, "The recipient cannot take it now.")
     yield from told_beside_alarms(ROOT / "app/robots/conversation/intake.py")
     for module in (reasons, held_up, why_orders_wait, choice):
         texts = (value for name, value in vars(module).items() if name.isupper())

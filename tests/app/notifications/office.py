@@ -13,7 +13,7 @@ from app.composition import create_app
 from app.core.http_client import Outside
 from app.core.settings import Settings
 from app.models import OrderState, OutgoingNotice, Person, RobotRow
-from app.orders.service import Word
+from app.orders.service import Actor
 from app.orders.transitions import By
 from app.orders.views.schemas import NewOrder
 from protocol.clock import SteppedClock
@@ -57,7 +57,7 @@ class Office:
                     session.add(RobotRow(name="r1", enrolled_at=self.clock.utc(), server_journal="j1", post="post5"))
                     await session.flush()
                 by = By.DISPATCHER if state == "assigned" else By.ROBOT
-                await self.state.orders.ledger.move(session, order_id, OrderState(state), Word(by, robot="r1"))
+                await self.state.orders.ledger.move(session, order_id, OrderState(state), Actor(by, robot="r1"))
 
     async def settle(self) -> None:
         """Let the worker do everything that is due."""

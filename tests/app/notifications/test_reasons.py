@@ -13,7 +13,7 @@ from app.core.settings import ROOT
 from app.core.texts import LANGUAGES, catalogue
 from app.core.texts.reasons import PREFIXES, in_language, in_words, words_of
 from app.dispatch.choice import IdleRobot, why_nobody_comes
-from app.orders.timer import NOBODY_CAME
+from app.orders.timer import NOT_FETCHED_IN_TIME
 from app.robots.progress.answers import RECALLED
 from app.robots.progress.evidence import UNPROVED
 from app.robots.progress.missions import NOT_REPORTED, UNLOADED
@@ -65,7 +65,7 @@ def test_every_fault_is_known_by_its_name(fault: object) -> None:
 def test_what_the_service_says_of_orders_is_known() -> None:
     idle, low = IdleRobot("r1", "post1", 0.9), IdleRobot("r2", "post1", 0.1)
     said = [why_nobody_comes(robots, connected) for robots, connected in (((), 0), ((), 1), ((low,), 1), ((idle,), 1))]
-    said += [NOBODY_CAME, RECALLED, UNLOADED, NOT_REPORTED, "The recipient cannot take it now."]
+    said += [NOT_FETCHED_IN_TIME, RECALLED, UNLOADED, NOT_REPORTED, "The recipient cannot take it now."]
     assert len(set(said)) == 9
     assert [one for one in said if words_of(one) is None] == []
 

@@ -9,8 +9,8 @@ from sqlmodel import col, select
 
 from app.core.settings import Settings
 from app.models import Notice, NoticeKind, Order, OrderState, Person
-from app.orders.notifications import ONCE, TOLD
-from app.orders.service import Word
+from app.orders.notifications import NOTIFICATION_RULES, ONCE
+from app.orders.service import Actor
 from app.orders.transitions import TRANSITIONS, By
 from protocol.clock import SteppedClock
 from tests.app.conftest import SENDER
@@ -36,7 +36,7 @@ async def told(office: Office) -> dict[str, list[str]]:
 
 async def says(office: Office, by: By, order_id: str, to: str) -> None:
     async with office.state.database.transaction() as session:
-        await office.state.orders.ledger.move(session, order_id, OrderState(to), Word(by, robot="r1"))
+        await office.state.orders.ledger.move(session, order_id, OrderState(to), Actor(by, robot="r1"))
 
 
 async def test_mail_that_is_taken(office: Office) -> None:
@@ -128,10 +128,10 @@ async def test_a_name_with_a_line_of_its_own_writes_no_header(office: Office) ->
 
 
 def test_every_end_and_every_wait_is_told() -> None:
-    untold = set(TRANSITIONS) - set(TOLD)
+    untold = set(TRANSITIONS) - set(NOTIFICATION_RULES)
     assert untold == {OrderState.ASSIGNED}, "the order was accepted; that a robot was chosen concerns nobody"
     ends = {state for state, following in TRANSITIONS.items() if not following}
-    assert {telling.kind for end in ends for telling in TOLD[end]} <= ONCE
-    kinds = {telling.kind for tellings in TOLD.values() for telling in tellings}
+    assert {rule.kind for end in ends for rule in NOTIFICATION_RULES[end]} <= ONCE
+    kinds = {rule.kind for rules in NOTIFICATION_RULES.values() for rule in rules}
     of_delegates = {NoticeKind.DELEGATED, NoticeKind.DELEGATION_OVER}
     assert set(NoticeKind) - kinds == {NoticeKind.DELAYED, NoticeKind.ALARM, *of_delegates}

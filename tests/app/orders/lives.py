@@ -134,7 +134,7 @@ class PlayedRobot:
 
 
 class PlansHere(PlannerProcess):
-    """What the process would do, in so many rounds that the same comes out each time."""
+    """The planner's process in this one, in so many rounds that the same comes out each time."""
 
     async def improved(self, decision: Decision, budget_s: float) -> Decision | None:
         left = iter(range(40))
@@ -178,7 +178,7 @@ class World:
         robot.memory.resume(robot.journal, 1)
 
     def start_service(self) -> None:
-        """All that it knows is in the database: starting it anew is one of the things that happen."""
+        """Start the service, which may happen at any time: all that it knows is in the database."""
         key = ServerKey(b"k" * 32)
         self.database = Database(self.settings.url_of_database)
         feed = LocalFeed()
@@ -319,13 +319,13 @@ class World:
             duties.finish_stop(stop.id)
 
     def _drive(self, robot: PlayedRobot, post: str) -> None:
-        """Nobody gets there in no time."""
+        """Drive there, which takes time."""
         way_m = WAYS.length_m(robot.stands_at or post, post)
         self.clock.advance(way_m / DRIVES_M_S)
         robot.stands_at = post
 
     def _changes_hands(self, robot: PlayedRobot, stop: Any, luck: str) -> bool:
-        """Only what is there can change hands, and only for somebody with the code."""
+        """Only what is there can change hands, and only for a person with the code."""
         purpose, order_id = Purpose(stop.action.value), stop.order_id
         is_passed_on = self.where[order_id] == "mailroom"
         giver = ("mailroom" if is_passed_on else "sender") if purpose is Purpose.LOAD else robot.name
@@ -366,11 +366,11 @@ class World:
         return OrderState((await self.rows(Order, id=order_id))[0].state)
 
     def aboard(self, robot: str) -> set[str]:
-        """Whose mail really is in this robot."""
+        """Return the orders whose mail really is in this robot."""
         return {order_id for order_id, place in self.where.items() if place == robot}
 
     async def everything(self, *tables: type[SQLModel]) -> dict[str, list[str]]:
-        """All rows, to compare."""
+        """Return every row, to compare."""
         async with self.database.reading() as session:
             rows = {table.__name__: (await session.exec(select(table))).all() for table in tables}
         return {name: sorted(repr(row.model_dump()) for row in some) for name, some in rows.items()}

@@ -118,7 +118,7 @@ def test_a_retry_among_new_orders_is_given_its_first_answer(crowd: Crowd) -> Non
 
 
 def test_where_a_round_fails_each_of_its_orders_is_tried_by_itself(crowd: Crowd, sender: Browser) -> None:
-    """A person who was erased just now cannot order any more; whoever orders at the same moment can."""
+    """A person who was erased just now cannot order any more; another who orders at the same moment can."""
     people = crowd.people()
     erased = people[SENDER].model_copy(update={"id": "nobody"})
     wish = NewOrder(from_post="post1", to_post="post4", recipient=RECIPIENT)

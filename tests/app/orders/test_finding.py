@@ -1,4 +1,4 @@
-"""What somebody finds among the orders that are theirs to see."""
+"""Search among the orders that a person may see."""
 
 from typing import Any
 
@@ -13,7 +13,7 @@ ORDERS = "/api/v1/orders"
 
 
 def found(browser: Browser, **asked: Any) -> list[str]:
-    """What the orders hold that are listed, one page after the other."""
+    """Return the descriptions of the listed orders, one page after the other."""
     whats, page = [], browser.get(ORDERS, params={"limit": 2, **asked})
     while True:
         assert page.status_code == 200, page.text

@@ -8,7 +8,7 @@ from fastapi import FastAPI
 from sqlmodel import select
 
 from app.models import Handover, MissionRow, OrderState, StopRow
-from app.orders.service import Word
+from app.orders.service import Actor
 from app.orders.transitions import By
 from tests.app.conftest import STRANGER, Browser, Mailroom, SignedIn
 from tests.app.orders.test_life_of_an_order import WAY, kinds, make_dispatcher, seen
@@ -134,8 +134,8 @@ def test_the_person_that_the_robot_waits_for_may_ask_for_more_time_but_not_for_e
 async def arrive(app: FastAPI, order_id: str) -> None:
 
     async with app.state.parts.database.transaction() as session:
-        word, until = Word(By.ROBOT, robot="r1"), app.state.parts.clock.utc() + timedelta(seconds=600)
-        await app.state.parts.orders.ledger.move(session, order_id, OrderState.AT_RECIPIENT, word, until)
+        actor, until = Actor(By.ROBOT, robot="r1"), app.state.parts.clock.utc() + timedelta(seconds=600)
+        await app.state.parts.orders.ledger.move(session, order_id, OrderState.AT_RECIPIENT, actor, until)
 
 
 def test_another_robot_fetches_what_a_dispatcher_gives_to_it(

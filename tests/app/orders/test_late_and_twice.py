@@ -1,4 +1,4 @@
-"""What robots say late, again, or while something else was decided; and what they are told meanwhile."""
+"""Reports of robots that come late, twice, or after another decision; and the messages to robots meanwhile."""
 
 from contextlib import suppress
 

@@ -1,4 +1,4 @@
-"""Orders for later, for somebody else and with priority; and what time decides of those that wait."""
+"""Orders for later, for another person and with priority; and what time decides of those that wait."""
 
 from typing import Any
 
@@ -26,7 +26,7 @@ def tick(app: FastAPI, mailroom: Mailroom) -> Any:
 
 
 def look_round(app: FastAPI, mailroom: Mailroom) -> None:
-    """There is a robot, but nobody has told dispatch."""
+    """Enrol a robot without waking dispatch."""
     mailroom.call(_put_online, app)
     mailroom.call(app.state.parts.traffic_desk.look_round)
     mailroom.call(app.state.parts.dispatcher.look_round)

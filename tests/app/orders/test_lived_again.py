@@ -1,4 +1,4 @@
-"""What makes lives at random worth their time: one that failed can be lived again, and looked into."""
+"""Replay of random lives: one that failed can be lived again, and examined."""
 
 from app.models import MessageToRobot, Order, OrderState, RobotMessage
 from tests.app.orders.test_lives_at_random import LivesOfOrders

@@ -51,7 +51,7 @@ async def test_an_order_that_a_robot_dropped_and_is_given_again_is_fetched(world
 
 
 async def left_aboard(world: World) -> str:
-    """Mail that nobody took, not even back: it is still in r1, which has nothing to do."""
+    """Mail that neither recipient nor sender took: it is still in r1, which has nothing to do."""
     order_id = await world.place("post3", "post5")
     await world.goes_on("r1", "sender")
     await world.goes_on("r1", *["nobody comes"] * 6)

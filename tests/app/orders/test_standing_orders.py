@@ -22,7 +22,7 @@ def placed(browser: Browser, **changes: Any) -> Any:
 
 @pytest.fixture
 def tick(app: FastAPI, mailroom: Mailroom) -> Any:
-    """What the timer does with each second."""
+    """Do what the timer does each second."""
     return lambda: mailroom.call(app.state.parts.timer.tick)
 
 

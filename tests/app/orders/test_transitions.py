@@ -88,8 +88,8 @@ def test_every_state_can_be_reached_and_every_life_can_end() -> None:
 
 
 def test_only_the_robot_writes_custody() -> None:
-    """Loaded, received and returned are confirmed by the robot's receipt and by nobody else's word; what it claims and
-    does not prove, by whoever has asked (`resolve`, with nothing claimed, refuses)."""
+    """Loaded, received and returned are confirmed by the robot's receipt alone; what it claims and
+    does not prove, by the dispatcher who has asked (`resolve`, with nothing claimed, refuses)."""
     for state, following in TRANSITIONS.items():
         for custody in (S.CARRYING, S.DELIVERED, S.RETURNED):
             word = By.DISPATCHER if state is S.ATTENTION else By.ROBOT

@@ -1,4 +1,4 @@
-"""What holds in the life of every order, whatever happens: looked at after each step of the lives at random."""
+"""Invariants of every order's life, checked after each step of the random lives."""
 
 from collections import Counter
 from itertools import pairwise
@@ -7,7 +7,7 @@ from typing import Any
 from app.models import Handover, MissionRow, Notice, Order, OrderEvent, StopRow
 from app.models import OrderState as S
 from app.orders.custody.custody import custody_of
-from app.orders.notifications import ONCE, TOLD
+from app.orders.notifications import NOTIFICATION_RULES, ONCE
 from app.orders.transitions import MAIL_ABOARD, NOTHING_ABOARD, ROBOT_COMING, By, is_allowed
 from protocol.parts import Purpose
 from tests.app.orders.lives import World
@@ -27,7 +27,11 @@ SURELY_TOLD = {
     S.ATTENTION: {("sender", "attention")},
 }
 SEEN_BY_PEOPLE = ("state", "robot", "priority", "wait_until", "cancel_requested_at", "return_requested_at")
-TELLS = {one.kind: {state for state, told in TOLD.items() if one in told} for told in TOLD.values() for one in told}
+TELLS = {
+    one.kind: {state for state, told in NOTIFICATION_RULES.items() if one in told}
+    for told in NOTIFICATION_RULES.values()
+    for one in told
+}
 
 
 def is_left(stop: StopRow) -> bool:
@@ -35,7 +39,7 @@ def is_left(stop: StopRow) -> bool:
 
 
 class Record:
-    """What the service has written down of a world; it knows what it saw the last time."""
+    """The rows that the service has written of a world, and those of the last check."""
 
     def __init__(self, world: World) -> None:
         self.world = world
@@ -138,14 +142,14 @@ class Record:
 
 
 def ended_with_nothing_aboard(events: list[OrderEvent]) -> bool:
-    """Whether the order ended while no robot had its mail: a load on its last leg came after the end."""
+    """Return whether the order ended while no robot had its mail: a load on its last leg came after the end."""
     states = [one.state for one in events if one.kind == "moved"]
     left = next(one for one in reversed(states) if one not in ENDED | {S.ATTENTION})
     return states[-1] in ENDED and left in NOTHING_ABOARD
 
 
 async def how_it_ended(world: World) -> list[str]:
-    """Orders, what robots still have to do, and what they believe, for whoever has to find out why."""
+    """Orders, what robots still have to do, and what they believe, to find out why a check failed."""
     orders = [(o.id, o.state, o.state_before_attention, o.robot) for o in await world.rows(Order)]
     missions = [one for one in await world.rows(MissionRow) if one.state == "active"]
     stops = [one for one in await world.rows(StopRow) if one.mission_id in {mission.id for mission in missions}]

@@ -9,7 +9,7 @@ from sqlalchemy.orm.exc import DetachedInstanceError
 
 from app.accounts.sign_in.service import make_person
 from app.core.database.database import savepoint
-from app.orders.ledger import Word
+from app.orders.ledger import Actor
 from app.orders.transitions import By
 from app.realtime.feed import Happening, LocalFeed
 from tests.app.conftest import SENDER, Browser, Mailroom
@@ -57,7 +57,7 @@ async def _told_of_a_row_that_was_undone(app: FastAPI, order_id: str) -> list[by
         person = await state.sign_in_desk.person(session, SENDER, state.clock.utc())
     with state.feed.listening(person) as queue:
         async with state.database.transaction() as session:
-            await state.orders.ledger.note(session, order_id, "wait_extended", Word(By.SENDER, person_id=person.id))
+            await state.orders.ledger.note(session, order_id, "wait_extended", Actor(By.SENDER, person_id=person.id))
             order = await state.orders.ledger.order(session, order_id)
             with pytest.raises(ZeroDivisionError):
                 async with savepoint(session):
@@ -65,7 +65,7 @@ async def _told_of_a_row_that_was_undone(app: FastAPI, order_id: str) -> list[by
                     await session.flush()
                     1 / 0  # noqa: B018
         async with state.database.transaction() as session:
-            await state.orders.ledger.note(session, order_id, "wait_extended", Word(By.SENDER, person_id=person.id))
+            await state.orders.ledger.note(session, order_id, "wait_extended", Actor(By.SENDER, person_id=person.id))
         with pytest.raises(DetachedInstanceError):
             _ = order.why
         return [queue.get_nowait().wire for _ in range(queue.qsize())]

@@ -9,7 +9,7 @@ from app.accounts.sign_in.service import set_roles
 from app.core.errors import ServiceError
 from app.models import Notice, Order, OrderState, Person, Role
 from app.orders.custody.codes import Holder, codes_of
-from app.orders.service import Word
+from app.orders.service import Actor
 from app.orders.transitions import By
 from app.orders.views.views import load_facts, view_for
 from protocol.clock import SteppedClock
@@ -141,10 +141,10 @@ async def test_mail_that_waits_for_its_second_leg_ends_in_the_mailrooms_hands(
         await service.cancel(order_id)
     async with state.database.transaction() as session:
         if ends == "nobody fetches it":
-            word = Word(By.TIMER, reason="Nobody came.")
-            await state.orders.ledger.move(session, order_id, OrderState.EXPIRED, word)
+            actor = Actor(By.TIMER, reason="Nobody came.")
+            await state.orders.ledger.move(session, order_id, OrderState.EXPIRED, actor)
         elif ends == "the robot on its way lets go":
             for to, by in ((OrderState.ASSIGNED, By.DISPATCHER), (OrderState.CANCELLED, By.ROBOT)):
-                await state.orders.ledger.move(session, order_id, to, Word(by, robot="r2"))
+                await state.orders.ledger.move(session, order_id, to, Actor(by, robot="r2"))
     assert str((await service.row(Order, id=order_id)).state) == "held"
     assert (await mailroom.links(order_id))[-1] == ("mailroom", None)

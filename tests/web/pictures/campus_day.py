@@ -10,7 +10,7 @@ from sqlmodel import col
 
 from app.accounts.sign_in.service import find_person, set_roles
 from app.models import BatterySample, GrantRow, Notice, OrderState, RobotRow, Role
-from app.orders.service import Word
+from app.orders.service import Actor
 from app.orders.transitions import By
 from app.orders.views.schemas import NewOrder
 from app.robots.service import enrol
@@ -89,7 +89,7 @@ class CampusDay(Scene):
             self.ids[name] = await self.is_ordered(*wish)
             return
         async with self.state.database.transaction() as session:
-            await self.state.orders.ledger.move(session, self.ids[name], OrderState(state), self._word(state, robot))
+            await self.state.orders.ledger.move(session, self.ids[name], OrderState(state), self._actor(state, robot))
 
     async def is_ordered(self, sender: str, recipient: str, from_post: str, to_post: str, what: str | None) -> str:
         """Its id."""
@@ -106,10 +106,10 @@ class CampusDay(Scene):
             await self.state.orders.placing.write(session, [draft])
         return str(draft.facts.order.id)
 
-    def _word(self, state: str, robot: str | None) -> Word:
+    def _actor(self, state: str, robot: str | None) -> Actor:
         if state == "cancelled":
-            return Word(By.SENDER)
-        return Word(By.DISPATCHER if state == "assigned" else By.ROBOT, robot=robot, robot_at=self.time.utc())
+            return Actor(By.SENDER)
+        return Actor(By.DISPATCHER if state == "assigned" else By.ROBOT, robot=robot, robot_at=self.time.utc())
 
     async def _robots(self) -> None:
         async with self.state.database.transaction() as session:
