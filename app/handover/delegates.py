@@ -11,7 +11,6 @@ from app.core.paging import Paging, Sorting
 from app.handover import errors
 from app.handover.notifications import notify_delegate, notify_revoked
 from app.handover.people import code_for, may_see, purpose_to_delegate
-from app.handover.reading import find_order, visible_order
 from app.handover.schemas import NewDelegate
 from app.models import Delegate, Order, OrderState, Person, RobotRow
 from app.models.orders.order_events import DELEGATE_NAMED, DELEGATE_REVOKED
@@ -40,7 +39,7 @@ class Delegating:
         self, session: AsyncSession, person: Person, order_id: str, page: Paging
     ) -> tuple[list[Delegate], str | None]:
         """Those that this person may see, revoked ones too, and the cursor of the next. Raises UnknownOrder."""
-        order, role = await visible_order(session, person, order_id)
+        order, role = await self.fleet.orders.ledger.visible_order(session, person, order_id)
         seen = col(Delegate.purpose).in_(HANDOVER_PURPOSES[role])
         return await page.of(session, select(Delegate).where(Delegate.order_id == order.id, seen), OLDEST_FIRST)
 
@@ -81,7 +80,7 @@ class Delegating:
 
     async def code(self, session: AsyncSession, person: Person, order_id: str, delegate_id: str) -> HandoverCode:
         """Return a delegate's code, for the person who passes it on to them. Raises UnknownOrder, UnknownDelegate."""
-        order, role = await visible_order(session, person, order_id)
+        order, role = await self.fleet.orders.ledger.visible_order(session, person, order_id)
         row = await self._delegate(session, order, role, delegate_id)
         if row.revoked_at is not None or order.state in ENDED:
             raise errors.UnknownDelegate("This code opens nothing any more.")
@@ -89,7 +88,8 @@ class Delegating:
 
     async def view(self, session: AsyncSession, delegate: Person, order_id: str) -> OrderView:
         """The order as a delegate of it may see it. Raises UnknownOrder."""
-        order, ledger = await find_order(session, order_id), self.fleet.orders.ledger
+        ledger = self.fleet.orders.ledger
+        order = await ledger.order(session, order_id)
         code = code_for(order, delegate, await delegates_of(session, [order]))
         facts = (await load_facts(session, [order]))[0]
         return delegates_view(facts, code.purpose if code else None, ledger.campus, ledger.settings, ledger.clock.utc())

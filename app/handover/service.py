@@ -10,7 +10,6 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 from app.core.server_key import ServerKey
 from app.handover import errors
 from app.handover.people import WAITS, check_waits, code_for, codes_by_digits
-from app.handover.reading import find_order
 from app.handover.schemas import HandoverAsked
 from app.models import DigitLock, Order, Person, RobotRow
 from app.orders.custody.codes import CONFIRM_LIFETIME_S, HandoverCode, delegates_of
@@ -44,13 +43,18 @@ class HandOvers:
 
     async def my_code(self, session: AsyncSession, person: Person, order_id: str) -> HandoverCode:
         """The code that it is this person's turn to show. Raises UnknownOrder, NoCodeForYou."""
-        order = await find_order(session, order_id)
-        code = code_for(order, person, await delegates_of(session, [order]))
-        if code is None and role_in(order, person) is None:
-            raise unknown(order_id)
+        _, code = await self._turn(session, person, order_id)
         if code is None:
             raise NoCodeForYou("It is not your turn to show a code for this order.")
         return code
+
+    async def _turn(self, session: AsyncSession, person: Person, order_id: str) -> tuple[Order, HandoverCode | None]:
+        """Return the order and the code that it is this person's turn to show, if any. Raises UnknownOrder."""
+        order = await self.fleet.orders.ledger.order(session, order_id)
+        code = code_for(order, person, await delegates_of(session, [order]))
+        if code is None and role_in(order, person) is None:
+            raise unknown(order_id)
+        return order, code
 
     async def is_locked(self, session: AsyncSession, order_id: str) -> bool:
         """Return whether the digits of this order are locked until a dispatcher releases them."""
@@ -59,10 +63,7 @@ class HandOvers:
 
     async def tap(self, session: AsyncSession, person: Person, order_id: str) -> HandoverAsked:
         """The person says that they stand at the robot. Raises UnknownOrder, NotYourTurn and what `_confirm` raises."""
-        order = await self.fleet.orders.ledger.order(session, order_id)
-        code = code_for(order, person, await delegates_of(session, [order]))
-        if code is None and role_in(order, person) is None:
-            raise unknown(order_id)
+        order, code = await self._turn(session, person, order_id)
         if code is None:
             raise errors.NotYourTurn("It is not your turn to hand over this order.")
         return await self._confirm(session, order, person, code, "tap")

@@ -72,8 +72,8 @@ class Ledger:
         return Estimates(self.ways, speed_m_s, handover_s, settings.zone, settings.hours_of_offices)
 
     async def order(self, session: AsyncSession, order_id: str) -> Order:
-        """Return the row for a change: writers take turns. Raises UnknownOrder."""
-        order = await session.get(Order, order_id)
+        """Return the row. Raises UnknownOrder."""
+        order = await session.get(Order, order_id)  # not locked: writers take turns, and readers change nothing
         if order is None:
             raise unknown(order_id)
         return order
@@ -209,7 +209,7 @@ class Ledger:
         return order_view(facts, role, person_id, self.campus, self.settings, self.clock.utc())
 
     async def view(self, session: AsyncSession, order: Order, role: MyRole, person: Person) -> OrderView:
-        """Return the order as it is after a change, for the person who has made it."""
+        """Return the order with its rows as they are now, for one person in one role."""
         return self.view_of((await load_facts(session, [order]))[0], role, person.id)
 
     def changed(self, order_id: str) -> None:

@@ -14,9 +14,8 @@ from app.orders.changes.placing import Placing
 from app.orders.changes.returning import Returning
 from app.orders.changes.waiting import Waiting
 from app.orders.custody.codes import verifiers
-from app.orders.ledger import Actor, Ledger, unknown
+from app.orders.ledger import Actor, Ledger
 from app.orders.views.schemas import OrderView
-from app.orders.views.views import load_facts, view_for
 from protocol.to_robot import Verifier
 
 __all__ = ["Actor", "Orders"]
@@ -52,12 +51,8 @@ class Orders:
 
     async def view(self, session: AsyncSession, person: Person, order_id: str) -> OrderView:
         """Return one order as this person sees it. Raises UnknownOrder, also for an order of others."""
-        order = await session.get(Order, order_id)  # to look at: readers lock nothing
-        facts, ledger = await load_facts(session, [order]) if order is not None else [], self.ledger
-        view = view_for(person, facts[0], ledger.campus, ledger.settings, ledger.clock.utc()) if facts else None
-        if view is None:
-            raise unknown(order_id)
-        return view
+        order, role = await self.ledger.visible_order(session, person, order_id)
+        return await self.ledger.view(session, order, role, person)
 
     async def verifiers(self, session: AsyncSession, *orders: Order) -> tuple[Verifier, ...]:
         """Return what a robot needs to check the codes of these orders, delegates' too, with no network."""

@@ -32,18 +32,18 @@ NEWEST_FIRST = Sorting("orders", col(Order.created_at), col(Order.id), descendin
 SEARCHED = "Part of the description, of the other side's name or mail address, or of a post's name or title."
 STATES = "`open`: what goes on; `attention`: what of that waits for a dispatcher; `ended`: what goes on no more."
 REPLAYED = "Idempotency-Replayed"
-REFUSED = (
+REFUSED: Final = (
     errors.UnknownPost,
     errors.SamePost,
     errors.NoWay,
     errors.UnknownRecipient,
     errors.UnknownSender,
     errors.ForDispatchers,
-    errors.KeyReused,
+    TooManyRequests,
 )
 PLACED = {
     **answering(201, "Location", "ETag", REPLAYED),
-    **problems(*REFUSED, errors.StillRunning, TooManyRequests),
+    **problems(*REFUSED, errors.KeyReused, errors.StillRunning),
 }
 CHANGED = {**answering(200, "ETag"), **problems(errors.UnknownOrder, errors.NotCancellable, errors.OrderChanged)}
 

@@ -8,11 +8,12 @@ from sqlmodel import col
 from app.accounts.current_user import CurrentUser
 from app.accounts.rate_limits import Door, per_person
 from app.core.database.database import ReadingDep, SessionDep
-from app.core.errors import TooManyRequests, answering, problems
+from app.core.errors import answering, problems
 from app.core.paging import PAGED, PageDep, Sorting
 from app.core.parts import part
 from app.models import StandingOrder
 from app.orders import errors
+from app.orders.routes.orders import REFUSED
 from app.orders.standing.standing import StandingOrders
 from app.orders.views.schemas import NewStandingOrder, StandingOrderPage, StandingOrderView
 
@@ -20,15 +21,6 @@ router = APIRouter(tags=["standing orders"])
 
 StandingOrderId = Annotated[str, Path(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]*$", max_length=64)]
 NEWEST_FIRST: Final = Sorting("standing orders", col(StandingOrder.created_at), col(StandingOrder.id), descending=True)
-REFUSED: Final = (
-    errors.UnknownPost,
-    errors.SamePost,
-    errors.NoWay,
-    errors.UnknownRecipient,
-    errors.UnknownSender,
-    errors.ForDispatchers,
-    TooManyRequests,
-)
 CHANGED: Final = problems(errors.UnknownStandingOrder, errors.StandingOrderEnded)
 
 

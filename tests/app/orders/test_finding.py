@@ -7,7 +7,7 @@ from fastapi import FastAPI
 
 from protocol.clock import SteppedClock
 from tests.app.conftest import RECIPIENT, SENDER, Browser, Mailroom, SignedIn
-from tests.app.orders.test_life_of_an_order import make_dispatcher
+from tests.app.orders.conftest import make_dispatcher
 
 ORDERS = "/api/v1/orders"
 

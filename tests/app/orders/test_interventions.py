@@ -10,15 +10,8 @@ from sqlmodel import select
 from app.models import Handover, MissionRow, OrderState, StopRow
 from app.orders.service import Actor
 from app.orders.transitions import By
-from tests.app.conftest import STRANGER, Browser, Mailroom, SignedIn
-from tests.app.orders.test_life_of_an_order import WAY, kinds, make_dispatcher, seen
-
-
-@pytest.fixture
-def dispatcher(app: FastAPI, signed_in: SignedIn, mailroom: Mailroom) -> Browser:
-    browser = signed_in(STRANGER)
-    mailroom.call(make_dispatcher, app, STRANGER)
-    return browser
+from tests.app.conftest import Browser, Mailroom
+from tests.app.orders.test_life_of_an_order import WAY, kinds, seen
 
 
 @pytest.fixture

@@ -7,17 +7,10 @@ from fastapi import FastAPI
 
 from app.models import RobotRow
 from protocol.clock import SteppedClock
-from tests.app.conftest import SENDER, STRANGER, Browser, Mailroom, SignedIn
-from tests.app.orders.test_life_of_an_order import kinds, make_dispatcher, seen
+from tests.app.conftest import SENDER, STRANGER, Browser, Mailroom
+from tests.app.orders.test_life_of_an_order import kinds, seen
 
 HOUR_S = 3600.0
-
-
-@pytest.fixture
-def dispatcher(app: FastAPI, signed_in: SignedIn, mailroom: Mailroom) -> Browser:
-    browser = signed_in(STRANGER)
-    mailroom.call(make_dispatcher, app, STRANGER)
-    return browser
 
 
 @pytest.fixture

@@ -5,12 +5,12 @@ from typing import Any
 import pytest
 from fastapi import FastAPI
 
-from app.accounts.sign_in.service import find_person, set_roles
-from app.models import OrderEvent, OrderState, Role
+from app.models import OrderEvent, OrderState
 from app.models.orders.order_events import EventsAreAppendOnly
 from app.orders.errors import TransitionRefused
 from app.orders.transitions import By
 from tests.app.conftest import RECIPIENT, SENDER, STRANGER, Browser, Mailroom, Mails, SignedIn
+from tests.app.orders.conftest import make_dispatcher
 
 WAY = ("assigned", "to_sender", "at_sender", "carrying", "at_recipient", "delivered")
 
@@ -172,11 +172,3 @@ def test_nobody_sees_an_order_that_is_not_theirs_unless_dispatcher(
     mailroom.call(make_dispatcher, app, STRANGER)
     assert seen(stranger, order_id)["my_role"] == "dispatcher"
     assert [order["id"] for order in stranger.get("/api/v1/orders").json()["items"]] == [order_id]
-
-
-async def make_dispatcher(app: FastAPI, email: str) -> None:
-
-    async with app.state.parts.database.transaction() as session:
-        person = await find_person(session, email)
-        assert person
-        set_roles(person, {Role.DISPATCHER}, set())
