@@ -35,7 +35,7 @@ class WrongDigits(Unprocessable):
 
 
 class NotYourTurn(Conflict):
-    """It is another person's turn to hand over, or no hand-over is due."""
+    """It is somebody else's turn to hand over, or nobody's."""
 
     code = "not_your_turn"
 
@@ -47,7 +47,7 @@ class RobotNotThere(Conflict):
 
 
 class RobotOffline(Conflict):
-    """A tap does not reach the robot. The QR code works without network."""
+    """What is tapped does not reach the robot. The QR code works without network."""
 
     code = "robot_offline"
 

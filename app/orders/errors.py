@@ -47,13 +47,13 @@ class NoWay(Unprocessable):
 
 
 class UnknownSender(Unprocessable):
-    """The address of `on_behalf_of` is unknown, and its domain is not the campus's."""
+    """Nobody with the address of `on_behalf_of` is known, and its domain is not the campus's."""
 
     code = "unknown_sender"
 
 
 class ForDispatchers(Forbidden):
-    """A member ordered for another person, or with high priority."""
+    """A member ordered for somebody else, or with high priority."""
 
     code = "for_dispatchers"
 
@@ -83,7 +83,7 @@ class UnknownRobotWanted(Unprocessable):
 
 
 class UnknownRecipient(Unprocessable):
-    """This address is unknown, and its domain is not the campus's."""
+    """Nobody with this address is known, and its domain is not the campus's."""
 
     code = "unknown_recipient"
 
@@ -113,7 +113,7 @@ class StillRunning(Conflict):
 
 
 class TransitionRefused(Conflict):
-    """The table of transitions does not allow this step, or not to this actor."""
+    """The table of transitions does not allow this step, or not on this word."""
 
     code = "transition_refused"
 
@@ -149,7 +149,7 @@ class NotReassignable(Conflict):
 
 
 class NothingClaimed(Conflict):
-    """The robot says that it has this mail still, or nothing: there is no claim of it to settle."""
+    """The robot says that it has this mail still, or nothing: there is no word of it to be believed."""
 
     code = "nothing_claimed"
 
