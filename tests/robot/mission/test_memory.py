@@ -210,7 +210,7 @@ def test_a_kill_at_any_moment_loses_nothing_that_was_said_to_be_kept_and_leaves_
             [sys.executable, "-c", HAND_OVER, str(database)],
             stdout=subprocess.PIPE,
             text=True,
-            cwd=Path(__file__).parents[2],
+            cwd=Path(__file__).parents[3],
             env={**os.environ, "PYTHONPATH": "."},
         )
         assert process.stdout is not None
