@@ -58,7 +58,7 @@ def read(text: str) -> Program | None:
 
 
 def reread(program: Program) -> None:
-    """What is printed of a plan is read as the same plan. (Local namespaces have no name that a text could say.)"""
+    """Check that the printed plan is read as the same plan. (Local namespaces have no name that a text could say.)"""
     for plan in program.plans:
         written = str(plan)
         if "#" not in written:

@@ -1,1 +1,1 @@
-"""What the body can do, in the simulated world: python -m benchmarks.body --help."""
+"""Benchmarks of the body in the simulated world: python -m benchmarks.body --help."""

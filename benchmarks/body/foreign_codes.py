@@ -32,7 +32,7 @@ WANTED = (
 
 @dataclass(frozen=True)
 class Showing:
-    """What was shown where, whether people were told of it, and what was wrong afterwards."""
+    """One showing of a code: where, whether people were told of it, and what was wrong afterwards."""
 
     world: str
     seed: int

@@ -1,4 +1,4 @@
-"""What a killed daemon must know: worked out from what both sides said, compared with its disk and with its hello."""
+"""Judge a killed daemon: what it must know by what both sides said, compared with its disk and with its hello."""
 
 from collections import Counter
 from collections.abc import Iterator
@@ -21,22 +21,22 @@ class Facts:
 
     @property
     def told(self) -> dict[int, Part]:
-        """All that the robot ever told, and what it has yet to tell."""
+        """Return everything that the robot ever told, and what it has yet to tell."""
         return self.disk.pending | self.service.told
 
     @property
     def said(self) -> list[Part]:
-        """What of the service's words is on the robot's disk."""
+        """Return the service's messages that are on the robot's disk."""
         return self.service.said[: self.disk.received.seq]
 
 
 def judged_disk(facts: Facts) -> list[str]:
-    """What is wrong with the disk, in sentences."""
+    """Return what is wrong with the disk, in sentences."""
     return [*_journal(facts), *_mission(facts), *_cargo(facts), *_grants(facts)]
 
 
 def judged_hello(facts: Facts, hello: Hello) -> list[str]:
-    """What is wrong with what the restarted daemon says, beside what was on its disk."""
+    """Return what is wrong with what the restarted daemon says, beside what was on its disk."""
     disk = facts.disk
     all_done = disk.mission is not None and disk.mission.next_stop == len(facts.mission.stops)
     pairs = {

@@ -67,7 +67,7 @@ class Mission:
         self._begin_again()
 
     def _begin_again(self) -> None:
-        """What is counted since the last start of the daemon."""
+        """Reset the counts since the last start of the daemon."""
         self._heard_before = len(self.service.heard)
         self._shown_now: set[Purpose] = set()
         self._greeted = False
@@ -132,7 +132,7 @@ class Mission:
         return Facts(self.service, self._mission, remembered(self.robot.data))
 
     async def _start(self, facts: Facts | None) -> None:
-        """Nobody shows a code before the daemon has said what it knows: it must be what was on the disk."""
+        """Show no code before the daemon has said what it knows: it must be what was on the disk."""
         self._begin_again()
         greetings = len(self.service.hellos)
         await self.robot.start()

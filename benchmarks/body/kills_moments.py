@@ -22,11 +22,11 @@ class Scene(Protocol):
         ...
 
     def is_shown(self, purpose: Purpose) -> bool:
-        """Whether somebody has held up this code since the last start."""
+        """Return whether a person has held up this code since the last start."""
         ...
 
     def has_written(self) -> bool:
-        """Whether the daemon's memory was written to since the last time this was asked."""
+        """Return whether the daemon's memory was written to since the last time this was asked."""
         ...
 
 

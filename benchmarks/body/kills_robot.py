@@ -22,7 +22,7 @@ simulated_charger_ma = 60000  # a charge takes minutes and not an hour
 
 @dataclass(frozen=True)
 class Remembered:
-    """What is on the disk of a robot that does not run."""
+    """The disk of a robot that does not run."""
 
     mission: MissionHeld | None
     cargo: tuple[str, ...]
@@ -94,7 +94,7 @@ class Robot:
         return wal.st_size, wal.st_mtime_ns
 
     async def world(self, **request: Any) -> dict[str, Any] | None:
-        """One command to the simulated world; None if nobody is there."""
+        """One command to the simulated world; None if it does not listen."""
         try:
             reader, writer = await asyncio.open_unix_connection(self._door)
             writer.write(json.dumps(request).encode() + b"\n")

@@ -1,7 +1,7 @@
 """The service that a killed robot comes back to. It keeps every word, grants what is claimed, and finds what is wrong.
 
 It judges by what it was told alone: numbers without gaps, no number used twice, no report told twice under another
-number, no corridor given back that was never granted, no hand-over whose code nobody has shown.
+number, no corridor given back that was never granted, no hand-over whose code was never shown.
 """
 
 import asyncio
@@ -71,7 +71,7 @@ class Service(PlayedServer):
                     await self._take(envelope, envelope.seq)
 
     async def _is_lost(self, envelope: Envelope) -> bool:
-        """Whether the network breaks with this message, or has broken before it."""
+        """Return whether the network breaks with this message, or has broken before it."""
         if isinstance(envelope.body, Hello):
             self.broken = False
         elif not self.broken and envelope.seq is not None and self.random.random() < BREAKS_OF_MESSAGES:
@@ -132,7 +132,7 @@ def told_twice(told: dict[int, Part]) -> list[str]:
 
 
 def _once(message: Part) -> Hashable:
-    """What may be told but once, ever."""
+    """Return the key of a message that may be told but once, ever."""
     happened = message.happened if isinstance(message, Event) else None
     match happened:
         case Progress(step=Step.PASSED):

@@ -1,4 +1,4 @@
-"""How well the robot follows a taped line: driven to the end, mean speed, samples lost, speeds on the wire.
+"""Following a taped line: driven to the end, mean speed, samples lost, speeds on the wire.
 
 Tape 24 mm, diodes 18 mm apart, 1 % of the reads of a diode flipped, gaps of 20 mm every 0.6 to 1.4 m, wheels with 60 ms
 lag, ±10 mm/s ripple and 2 % error of their size. The robot is put down on the line at the beginning of a track and has

@@ -113,7 +113,7 @@ class LetterRun:
         self.parts.daemon.close(self._runner.now_s)
 
     def run(self, stop: Callable[[], bool] = lambda: False) -> bool:
-        """Whether `stop` ended it."""
+        """Run; return whether `stop` ended it."""
         self._wanted = stop
         self._runner.run()
         self._runner.restart()
@@ -158,7 +158,7 @@ class LetterRun:
         return self.delivered and self.robot.docked and self.mind.is_quiet
 
     def faults(self, name: str) -> int:
-        """How often people were told that it began."""
+        """Return the number of times people were told that it began."""
         happened = [message.happened for message in self.told if isinstance(message, Event)]
         return sum(isinstance(one, Fault) and one.name == name and not one.cleared for one in happened)
 

@@ -35,7 +35,7 @@ NAMES = tuple(
 
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """What is done to a sheet. A pair is drawn evenly between its two numbers, anew for every frame."""
+    """One way to spoil a sheet. A pair is drawn evenly between its two numbers, anew for every frame."""
 
     name: str
     px_per_module: tuple[float, float] = (5.7, 6.3)

@@ -31,7 +31,7 @@ NEEDLESS, NOT_HOME = 0.03, 0.02
 """Our own bounds, the issue has none. A letter that both people came for, and that was handed over all the same, was
 handed over because the robot could not: one in a hundred may meet two troubles at once (a marker that is torn, and a
 person in the way behind it), more than a few would be a weakness of the product. A robot that does not come home needs
-somebody to fetch it: that must be rarer still."""
+a person to fetch it: that must be rarer still."""
 
 WANTED = tuple(
     wanted

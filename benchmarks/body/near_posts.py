@@ -31,7 +31,7 @@ WANTED = (
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of one letter."""
+    """The outcome of one letter."""
 
     world: str
     seed: int
@@ -74,7 +74,7 @@ def letter(world: str, seed: int, kills: int = KILLS_OF_A_LETTER) -> Outcome:
 
 
 class _Nears:
-    """Whether the robot is as near to the post ahead as was drawn; one post in two is passed.
+    """A condition: the robot is as near to the post ahead as was drawn; one post in two is passed.
 
     Within 30 mm of a post it counts as reached, and is told so.
     """

@@ -64,7 +64,7 @@ def measure(duration_s: float, seed: int) -> dict[str, Any]:
             figures |= {"driven_m": parts.robot.driven_mm / 1000, "loops": _lags(loops, runner)}
             runner.stop()
             running.join()
-        parts.daemon.close(clock.now())  # which ends its world too: nobody may still be stepping it
+        parts.daemon.close(clock.now())  # which ends its world too: no thread may still be stepping it
     figures["worst_lag_p99"] = max(loop["lag_p99_s"] / loop["period_s"] for loop in figures["loops"].values())
     return figures
 

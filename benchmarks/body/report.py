@@ -1,4 +1,4 @@
-"""What a part of the benchmark takes and gives, and how it is judged.
+"""A part of the benchmark: what it takes and gives, and how it is judged.
 
 A part is a module of this package with a function `measure(samples: Samples) -> dict` whose figures are plain JSON, and
 with `WANTED`, what these figures have to be. A figure is named by its path: `lead_60.completed_share`.
@@ -19,7 +19,7 @@ Figures: TypeAlias = Mapping[str, Any]
 
 @dataclass(frozen=True, slots=True)
 class Samples:
-    """How much is measured, and from which seed on: seed number `index` is `first_seed + index`."""
+    """The amount measured, and the first seed: seed number `index` is `first_seed + index`."""
 
     seeds: int = 20
     missions: int = 150
@@ -109,7 +109,7 @@ def aligned(rows: Sequence[tuple[str, ...]]) -> str:
 
 
 def log_to_error_stream() -> None:
-    """What the robot logs is no JSON: call it where a process begins whose output is read."""
+    """Log to the error stream, not as JSON: call it where a process begins whose output is read."""
     structlog.configure(logger_factory=lambda *_: structlog.PrintLogger(sys.stderr))
 
 

@@ -1,4 +1,4 @@
-"""How soon the wheels stop: real time, a real pseudo-terminal, the daemon's own threads, a mind that never rests.
+"""Time until the wheels stop: real time, a real pseudo-terminal, the daemon's own threads, a mind that never rests.
 
 The robot's world lives in a process of its own, so that it does not share the interpreter's lock with the daemon. The
 daemon is put together from its own parts; the mind has a program that computes without pause.
@@ -232,7 +232,7 @@ class Rig:
 
 
 class Broken(Exception):
-    """What a loop dies of."""
+    """The error that a loop dies of."""
 
 
 @contextmanager

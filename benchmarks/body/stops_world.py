@@ -21,7 +21,7 @@ BUMP_S = 0.1
 
 @dataclass
 class Seen:
-    """What happened since `begin`; None: not yet."""
+    """Events since `begin`; None: not yet."""
 
     bump_shown_s: float | None = None
     """Just before the first frame that shows it was written."""

@@ -177,7 +177,7 @@ class Stepped:
 
 
 def beside_mm(line: tuple[Point, ...], point: Point) -> float:
-    """How far the point is from the line, left of it positive."""
+    """Return the distance of the point from the line, left of it positive."""
     return 1000 * min((_beside_m(a, b, point) for a, b in pairwise(line)), key=abs)
 
 

@@ -29,7 +29,7 @@ ON_THE_LINE = "on the line"
 
 @dataclass
 class Crossing:
-    """What became of one turn."""
+    """The outcome of one turn."""
 
     came_from: str
     via: str

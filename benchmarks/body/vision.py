@@ -106,7 +106,7 @@ def _plain(detector: Any) -> Decoder:
 
 
 def timed(decode: Callable[[Frame], tuple[Decoded, ...]], frame: Frame) -> tuple[set[str], float]:
-    """What was read, and processor time in ms: others use the machine too."""
+    """Return what was read, and processor time in ms: others use the machine too."""
     began_s = time.thread_time()
     found = decode(frame)
     return {code.text for code in found}, (time.thread_time() - began_s) * 1000
@@ -178,7 +178,7 @@ def _contact_sheet(path: Path, number: int) -> None:
 
 
 def _parameters(condition: Condition) -> str:
-    """What this condition has that a clean frame has not."""
+    """Return what this condition has that a clean frame has not."""
     clean = CONDITIONS[0]
     names = [name for name in Condition.__slots__ if name not in {"name", "either_way"}]
     own = [name for name in names if getattr(condition, name) != getattr(clean, name)]

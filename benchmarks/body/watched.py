@@ -1,6 +1,6 @@
-"""What it costs a robot's mind to be watched, and not to be: processor time of the mind's thread, in simulated time.
+"""The cost of watching a robot's mind, and of not watching: processor time of the mind's thread, in simulated time.
 
-The same errands twice. What the link's thread does with an insight is measured apart: it stands in nobody's way.
+The same errands twice. What the link's thread does with an insight is measured apart: it delays no other thread.
 """
 
 import time

@@ -31,7 +31,7 @@ class Rule:
 
 @dataclass(frozen=True)
 class Trip:
-    """An order given to a robot. `alone_s`: how long it would take with nobody in the way."""
+    """An order given to a robot. `alone_s`: how long it would take with no other robot in the way."""
 
     order: Order
     robot: str
@@ -50,7 +50,7 @@ class _Idea:
 
 @dataclass
 class Assigning:
-    """Looks after every event whether somebody is free. `refused`: no timetable was found for anybody."""
+    """Looks after every event whether a robot is free. `refused`: no timetable was found for any robot."""
 
     rule: Rule
     demand: Demand
@@ -85,7 +85,7 @@ class Assigning:
         return best.robot
 
     def _pairs(self, world: World, free: Sequence[str]) -> Iterable[tuple[str, Order]]:
-        """What is looked at. An order that has waited too long is the only one."""
+        """Yield the pairs to consider. An order that has waited too long is the only one."""
         waiting = self.demand.waiting
         oldest = min(waiting, key=lambda order: order.placed_s)
         too_old = world.now_s - oldest.placed_s > self.rule.age_limit_s
@@ -126,7 +126,7 @@ class Assigning:
         return found and Timetable(found.journeys, found.cost_s, order)
 
     def _unpaid_s(self, world: World, robot: str, order: Order) -> float:
-        """What the rule does not hold against an order: it is as long as it is."""
+        """Return the time that the rule does not hold against an order: it is as long as it is."""
         carrying_s = world.network.shortest_s[order.start][order.end]
         return carrying_s + (_to_s(world, robot, order) if self.rule.choice == "least delay" else 0.0)
 

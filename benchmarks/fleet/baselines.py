@@ -82,7 +82,8 @@ def measure(samples: Samples) -> dict[str, Any]:
 
 
 def run(job: Job) -> list[float]:
-    """How long each order took from being placed: until it was delivered, or so far. Saturated: of those delivered."""
+    """Return the time of each order from being placed: until it was delivered, or so far. Saturated: of those
+    delivered."""
     ground, until_s = tunnels(BAYS), job.hours * 3600
     posts = len(ground.network.posts)
     demand: Demand = RushHours(posts, job.seed, ORDERS_A_DAY) if job.rush else Saturated(posts, job.seed)

@@ -3,7 +3,7 @@
     python -m benchmarks.fleet campus
 
 Robots are simulated, and so are people, packs, networks and faults; traffic, planner, charging, estimates and protocol
-are the product's own. Robots fall silent in corridors until somebody has looked, stand still for a while, lose their
+are the product's own. Robots fall silent in corridors until a person has looked, stand still for a while, lose their
 network; corridors are closed. Ways have paces of their own, and take 20 % more or less each time.
 """
 
@@ -188,7 +188,7 @@ def _score(truths: Sequence[Truth]) -> dict[str, Any]:
 
 
 def draw(folder: Path, seen: Mapping[str, Seen]) -> None:
-    """How long orders take, what people were told of it, and what is said for that."""
+    """Draw how long orders take, what people were told of it, and what is said for that."""
     from benchmarks.fleet.plots import COLOURS, pyplot_for, save
 
     pyplot = pyplot_for(folder)

@@ -1,4 +1,4 @@
-"""What the simulated service knows of its robots' charge, and what it decides by it: all with `fleet.charging`.
+"""The charge of its robots as the simulated service knows it, and its decisions by it: all with `fleet.charging`.
 
 It knows what robots tell: how full they are, whether they charge, which corridors they have left. Packs, draws and
 noise are not known here.
@@ -35,7 +35,8 @@ LONGEST_DRIVE_S: Final = 8 * 3600.0
 
 
 class Charged(Protocol):
-    """What is known of a robot. `recharging`: its own battery plan has it. `bound_for`: a dock that it was sent to."""
+    """The known charge of a robot. `recharging`: its own battery plan has it. `bound_for`: a dock that it was sent
+    to."""
 
     name: str
     post: str
@@ -104,7 +105,7 @@ class Charges:
     # What is decided.
 
     def verdict(self, robot: Charged, before: Sequence[Goal], more: Sequence[Goal]) -> Verdict:
-        """Whether it may take these goals on, behind those that it has."""
+        """Decide whether it may take these goals on, behind those that it has."""
         goals = (*before, *more)
         work, last = self._work(robot.post, goals), self.ground.network.posts[goals[-1].post]
         if (work + self._to_dock(last)).time_s == inf:
@@ -131,7 +132,7 @@ class Charges:
         return low_s
 
     def goes_on(self, robot: Charged, lane: Lane) -> bool:
-        """Whether it may enter one more corridor, or must go to a dock first."""
+        """Return whether it may enter one more corridor, or must go to a dock first."""
         end = self.ground.network.posts[lane.end]
         charge, leg = self._charge(robot), _drive(lane.travel_s)
         ways = self._ways(end).values()
@@ -140,7 +141,8 @@ class Charges:
         return any(goes_on(charge, leg, way, self.thresholds) for way in ways)
 
     def passes_dock(self, robot: Charged, lane: Lane, goals: Sequence[Goal]) -> bool:
-        """Whether it may leave a post where it could charge now, with work before it that is more than one charge."""
+        """Return whether it may leave a post where it could charge now, with work before it that is more than one
+        charge."""
         post = self.ground.network.posts[lane.start]
         if not self.is_free(post, robot) or not goals or robot.recharging or robot.ratio >= FULL_ENOUGH:
             return True
@@ -148,7 +150,7 @@ class Charges:
         return to_next.time_s == inf or passes_dock(self._charge(robot), to_next, self.thresholds)
 
     def is_free(self, post: str, robot: Charged) -> bool:
-        """Whether there is a dock that no other robot charges in or was sent to."""
+        """Return whether there is a dock that no other robot charges in or was sent to."""
         others = (one for one in self.robots.values() if one is not robot)
         return post in self.ground.chargers and not any(
             post in (one.bound_for, one.post if one.charging else None) for one in others
@@ -165,13 +167,14 @@ class Charges:
         return robot.ratio < self.thresholds.critical + self.rates[robot.name].at_most(_drive(now_s))
 
     def needs_it_more(self, robot: str, other: str) -> bool:
-        """Whether the other leaves its dock to this one for a while: below `low` it would not last until its turn."""
+        """Return whether the other leaves its dock to this one for a while: below `low` it would not last until its
+        turn."""
         ratio = self.robots[robot].ratio
         return ratio < self.thresholds.low and self.robots[other].ratio >= ratio + NEEDS_IT_MORE
 
     def has_enough(self, robot: Charged, goals: Sequence[Goal]) -> bool:
         """Of a robot that was sent to a dock: whether it goes on. With nothing to do it stays until charging gets slow,
-        unless somebody needs a dock more: on its way home it would only spend what the next order waits for."""
+        unless another robot needs a dock more: on its way home it would only spend what the next order waits for."""
         if not goals and not self._is_needed_more(robot):
             return robot.ratio >= self.thresholds.sufficient
         work = self._work(robot.post, goals)

@@ -36,7 +36,7 @@ UNLEARNED: Final = (Step.ACCEPTED, Step.DONE, Step.GAVE_UP)
 
 
 class CustodyError(AssertionError):
-    """Mail changed hands that the service had given to nobody, or to another."""
+    """Mail changed hands that the service had given to no robot, or to another."""
 
 
 @dataclass
@@ -76,7 +76,7 @@ class Core:
     # What people do.
 
     def place(self, start: int, end: int) -> None:
-        """Somebody sends mail from the one post to the other."""
+        """A sender sends mail from the one post to the other."""
         self.dispatch.place(start, end)
 
     def close(self, corridor: str) -> None:
@@ -91,7 +91,7 @@ class Core:
         self._wake(decide=True)
 
     def has_been_looked_for(self, name: str) -> None:
-        """Somebody has found a silent robot and carried it home: nobody is in its corridor any more."""
+        """A person has found a silent robot and carried it home: no robot is in its corridor any more."""
         known = self.robots[name]
         known.held, known.claim, known.lane, known.post, known.passed = {}, None, None, known.home, None
         known.docked, known.frozen, known.stopped = True, False, False
@@ -261,7 +261,7 @@ class Core:
 
     def _follow_own_goal(self, known: Known, claim: Claim) -> None:
         """Where it goes for reasons of its own, as the service has it from claims: it may know of no closed corridor,
-        and is led another way there. What it has claimed so before, and has not gone to, nobody is to wait for."""
+        and is led another way there. What it has claimed so before, and has not gone to, no robot is to wait for."""
         if self.dispatch.goals(known.name) or claim.goal is None:
             self._forget_own_goal(known)
             return
@@ -286,7 +286,7 @@ class Core:
             known.link.to_robot(Detour(claim_id=claim.claim_id, legs=(leg,), reason="Others have to pass."))
 
     def _look_for_bays(self, post: int) -> None:
-        """Independently of whoever has granted it."""
+        """Independently of the code that has granted it."""
         starts = [task.start for task in self.controller.tasks(self.now_s).values()]
         taken = sum(start.post == post and not start.at_home for start in starts)
         if taken > self.ground.network.bays[post]:
@@ -343,7 +343,7 @@ class Core:
         return False
 
     def _breaks_off(self, known: Known) -> None:
-        """What it has to do is late for that, unless it was known before that it is more than one charge."""
+        """Mark its orders as delayed by an unplanned charge, unless it was known to be more than one charge."""
         self.counts["charges_on_the_way"] += 1
         for order in self.dispatch.open.values():
             if order.robot == known.name and order.id not in known.planned:
@@ -389,7 +389,7 @@ class Core:
                 self.controller.give(known.name, goals, self.now_s, rounds=0)
 
     def _top_up(self) -> None:
-        """Whoever has nothing to do fills up, lowest first, where a dock is free or somebody makes room."""
+        """Charge idle robots, lowest first, where a dock is free or another robot makes room."""
         robots = self.robots.values()
         resting = [one for one in robots if not self.dispatch.goals(one.name) and not one.held and one.is_heard]
         standing = {one.post: one.name if one in resting else None for one in robots if one.charging}

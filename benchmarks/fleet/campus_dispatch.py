@@ -1,4 +1,4 @@
-"""Who carries what on the simulated campus: the planner's decisions as missions, in the words of the protocol."""
+"""Dispatch on the simulated campus: the planner's decisions as missions, in the words of the protocol."""
 
 from collections import Counter
 from collections.abc import Iterable, Mapping
@@ -99,14 +99,14 @@ class Dispatch:
         self._foresee()
 
     def _foresee(self) -> None:
-        """What is told first of orders that have a robot now."""
+        """Record what is told first of orders that have a robot now."""
         new = [one for one in self.open.values() if one.robot is not None and one.id not in self._foreseen]
         if new:
             self.told.under_way(new, self.controller, self.robots.values(), is_aboard=False)
             self._foreseen.update(one.id for one in new)
 
     def is_loaded(self, order: Ordered) -> None:
-        """What is told first after that."""
+        """Record what is told first after the mail is aboard."""
         self.told.under_way([order], self.controller, self.robots.values(), is_aboard=True)
 
     def scene(self) -> Scene:
@@ -116,7 +116,7 @@ class Dispatch:
         return scene_of(self.controller, able, orders, self.now_s, Rules(age_limit_s=AGE_LIMIT_S))
 
     def _ahead(self) -> Ahead:
-        """Orders that nobody has fetched, but for the one just placed, for how many robots."""
+        """Orders not fetched yet, but for the one just placed, for how many robots."""
         waiting = sum(1 for one in self.open.values() if not one.loaded) - 1
         return Ahead(waiting, sum(1 for known in self.robots.values() if known.is_heard))
 

@@ -1,6 +1,7 @@
-"""What is true of a simulated campus and told to nobody: paces, people, failures; and who is where.
+"""The hidden truth of a simulated campus: paces, people, failures; and who is where.
 
-Whoever meets another in a corridor, or finds no bay, ends the run. That is looked at here, with nothing of the traffic.
+A robot that meets another in a corridor, or finds no bay, ends the run. That is checked here, with nothing of the
+traffic.
 """
 
 from collections.abc import Callable, Mapping
@@ -29,7 +30,7 @@ BY_HOUR: Final = (0.0,) * 8 + (1.0, 3.0, 3.0, 1.0, 1.0, 1.0, 3.0, 3.0, 1.0) + (0
 
 @dataclass(frozen=True, slots=True)
 class Faults:
-    """`dies`, `stands`: of all ways through a corridor; silent until somebody comes, or told and over after a while.
+    """`dies`, `stands`: of all ways through a corridor; silent until a person comes, or told and over after a while.
     Closed corridors of the whole campus and lost connections of each robot: one in so many seconds."""
 
     dies: float = 0.0
@@ -104,12 +105,13 @@ class Ground:
         self.inside[robot], self.at[robot] = leg, leg.to_post
 
     def has_bay(self, robot: str, post: str) -> bool:
-        """Whether nobody stands where it is to stand. Who was let go, and has not heard it yet, still does."""
+        """Return whether its bay is free. A robot that was let go, and has not heard it yet, still stands in it."""
         others = (other for other, at in self.at.items() if at == post and other != robot and other not in self.inside)
         return not self.takes_bay(robot) or sum(map(self.takes_bay, others)) < self.campus.posts[post].bays
 
     def has_room_at(self, dock: str, robot: str) -> bool:
-        """Whether its charger is free for this robot: whoever was sent there comes before whoever only rests there."""
+        """Return whether its charger is free for this robot: one that was sent there comes before one that only rests
+        there."""
         has, is_sent = self.chargers[dock], self.is_sent(robot, dock)
         if has is None or has == robot:
             there = [other for other, post in self.at.items() if post == dock and other not in self.inside]
@@ -121,13 +123,13 @@ class Ground:
         del self.inside[robot]
 
     def carry(self, robot: str, post: str) -> None:
-        """Somebody takes it there."""
+        """A person takes it there."""
         self.inside.pop(robot, None)
         self.at[robot] = post
 
 
 def with_bays(bays: int) -> CampusMap:
-    """The Carleton tunnels with so many bays at each post: as assumed in the design, until somebody has measured."""
+    """The Carleton tunnels with so many bays at each post: as assumed in the design, until they are measured."""
     campus = builtin_map("carleton")
     return replace(campus, posts={name: replace(post, bays=bays) for name, post in campus.posts.items()})
 

@@ -1,4 +1,4 @@
-"""What the simulated service knows of each robot, from its messages: as `app/robots` has it in the database."""
+"""The simulated service's knowledge of each robot, from its messages: as `app/robots` has it in the database."""
 
 from dataclasses import dataclass, field
 from datetime import datetime

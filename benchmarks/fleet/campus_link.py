@@ -29,7 +29,7 @@ class LostMessageError(AssertionError):
 
 @dataclass
 class End:
-    """What one side keeps: its journal with what was not acknowledged, and what it has had of the other's."""
+    """One end's storage: its journal with what was not acknowledged, and what it has had of the other's."""
 
     journal: str
     accepted: Mapping[str, type[Part]]
@@ -76,7 +76,7 @@ class Link:
                 self._send(end, body, seq, replay=True)
 
     def disconnect(self) -> None:
-        """What is on its way is lost."""
+        """Drop the connection: what is on its way is lost."""
         self.up = False
         self._turn += 1
 

@@ -42,7 +42,7 @@ class Robot:
     """`granted`: corridors that it may enter, the one that it is in first. `recharging`: its own battery plan has it.
     `stranded`: so often its pack was empty away from a dock; `critical`: so often it came below what a real robot
     stops at to be carried (its reflex `battery_critical`), where this one still drives;
-    `before_post`: so often it found somebody in its bay who was let go already."""
+    `before_post`: so often it found a robot in its bay that was let go already."""
 
     name: str
     home: str
@@ -153,7 +153,7 @@ class Robot:
     def _arrive(self, takes_s: float) -> None:
         leg = self.granted[0]
         if not self.ground.has_bay(self.name, leg.to_post):
-            self.before_post += 1  # it stands before whoever is still there
+            self.before_post += 1  # it stands before the robot that is still there
             self._later(PATIENCE_S, partial(self._arrive, takes_s))
             return
         del self.granted[0]
@@ -171,7 +171,7 @@ class Robot:
         self._go_on()
 
     def _stand_still(self, takes_s: float) -> None:
-        """Something is in its way; somebody comes."""
+        """Something is in its way; a person comes."""
         self.stood += 1
         self._tell(Fault(name="stands_still", happened_at=self._now(), reason="Something is on the line."))
         self._show(Activity.STOPPED)
@@ -190,7 +190,7 @@ class Robot:
         self.on_death(self)
 
     def is_brought_home(self) -> None:
-        """Somebody has found it, carried it home and switched it on there; what it carried is still aboard."""
+        """A person has found it, carried it home and switched it on there; what it carried is still aboard."""
         self.ground.carry(self.name, self.home)
         self.granted, self.claim, self.busy, self.is_dead = [], None, False, False
         self.post, self.docked, self._settled_s = self.home, True, self.ground.clock.now_s
@@ -277,7 +277,7 @@ class Robot:
         self.critical += before >= CRITICAL > self.pack.told
         if self.pack.ratio <= EMPTY and not self.is_dead:
             self.stranded += 1
-            self.pack.ratio = 0.5  # somebody puts another pack in
+            self.pack.ratio = 0.5  # a technician puts another pack in
 
     def _tick(self) -> None:
         self._later(TICK_S, self._tick)
@@ -311,7 +311,7 @@ class Robot:
         self._go_on()
 
     def _may_enter(self, message: Grant | Detour) -> None:
-        """What is granted is driven, even if it has asked for another way since: its bay here is another's by now."""
+        """Drive what is granted, even if it has asked for another way since: its bay here is another's by now."""
         self.claim = None
         self.granted += message.legs
         self._leave_dock()

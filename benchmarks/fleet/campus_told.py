@@ -1,4 +1,4 @@
-"""What people are told of their orders, and how true it was: by the service's own estimates, on the traffic's own
+"""ETAs told to people in the simulation, and how true they were: by the service's own estimates, on the traffic's own
 timetable. Corridors and hand-overs are learned from what robots tell."""
 
 from collections.abc import Iterable, Iterator

@@ -1,4 +1,5 @@
-"""Charging, in a campus on which robots run low: nobody may strand, and hardly any order wait for an unplanned charge.
+"""Charging, in a campus on which robots run low: no robot may strand, and hardly any order wait for an unplanned
+charge.
 
     python -m benchmarks.fleet charging
 

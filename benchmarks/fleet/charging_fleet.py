@@ -248,11 +248,11 @@ class FleetRun:
     def _see_if_stranded(self, robot: Robot) -> None:
         if robot.pack.ratio <= EMPTY:
             self.stranded.append(robot.name)
-            robot.pack.ratio = 0.5  # somebody carries it away and brings it back
+            robot.pack.ratio = 0.5  # a person carries it away and brings it back
             self._mark(robot)
 
     def _dock(self, robot: Robot, dock: str) -> bool:
-        """Whoever stands in it with nothing to do, and has more, makes room."""
+        """Dock it; an idle robot in the dock that has more makes room."""
         for other in self.robots.values():
             if other.dock == dock:
                 if not _is_resting(other) or other.pack.told < robot.pack.told + MAKES_ROOM_WITH:

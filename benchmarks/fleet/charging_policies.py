@@ -1,4 +1,4 @@
-"""What decides who works and who charges: `fleet.charging`, and what there was before, to compare it with."""
+"""Policies for who works and who charges: `fleet.charging`, and what there was before, to compare it with."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace

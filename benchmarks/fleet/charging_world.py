@@ -117,7 +117,7 @@ def carleton() -> Campus:
 
 
 class Clockwork:
-    """What happens when, in seconds; tasks say for how long they do something."""
+    """Events by time, in seconds; tasks say for how long they do something."""
 
     def __init__(self) -> None:
         self.now_s, self.events = 0.0, 0

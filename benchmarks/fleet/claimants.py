@@ -1,8 +1,8 @@
 """Robots that know nothing of each other and claim corridor by corridor from the product's traffic controller.
 
-They are late, they fall silent in corridors and at posts and stay there until somebody has looked, they are switched
-off and on; people close corridors for an hour. What happens is looked at here: whoever meets another or finds no bay
-ends the run, and whoever does not move for hours is counted as stuck.
+They are late, they fall silent in corridors and at posts and stay there until a person has looked, they are switched
+off and on; people close corridors for an hour. It is checked here: a robot that meets another or finds no bay
+ends the run, and one that does not move for hours is counted as stuck.
 """
 
 import heapq
@@ -24,7 +24,7 @@ from fleet.schedule.network import Lane
 VANISHED_S: Final = 600.0
 """After so much silence the service freezes what a robot holds."""
 LOOKED_S: Final = 2700.0
-"""So much later somebody has looked, and carried the robot home."""
+"""So much later a person has looked, and carried the robot home."""
 AGAIN_S: Final = 60.0
 """So long a robot waits with another claim when no way is open."""
 STUCK_S: Final = 6 * 3600.0
@@ -32,7 +32,7 @@ STUCK_S: Final = 6 * 3600.0
 
 @dataclass(frozen=True, slots=True)
 class Faults:
-    """How often: of the ways through corridors, of the stops at posts, and by the hour."""
+    """Fault rates: of the ways through corridors, of the stops at posts, and by the hour."""
 
     dies: float = 0.0
     dies_at_a_post: float = 0.0
@@ -67,7 +67,7 @@ class Delivered:
 
 class Campus:
     """`age_limit_s`: an order that has waited so long is the next that is taken. `far`: robots are let into as much of
-    their way as nobody enters before them. `served`: the keys of all goals that
+    their way as no other enters before them. `served`: the keys of all goals that
     are behind their robots."""
 
     def __init__(
@@ -196,7 +196,7 @@ class Campus:
         lane = robot.lane
         assert lane is not None
         if lane.following_s is not None and self._ahead_of(robot, lane):
-            self._later(lane.following_s, partial(self._arrived, robot))  # nobody overtakes
+            self._later(lane.following_s, partial(self._arrived, robot))  # no robot overtakes
             return
         robot.lane, robot.post, robot.busy = None, lane.end, False
         self.controller.cleared(robot.name, *self._ends(lane), self.now_s)
@@ -258,7 +258,7 @@ class Campus:
         self._later(0.0, partial(self._takes_up, robot))
 
     def _takes_up(self, robot: Robot) -> None:
-        """What it carried when it was taken away it still has."""
+        """Take the robot up again: what it carried when it was taken away it still has."""
         forgotten = robot.goals and not self.controller.goals(robot.name)
         if forgotten and not self.controller.give(robot.name, robot.goals, self.now_s, rounds=0):
             self._later(AGAIN_S, partial(self._takes_up, robot))
@@ -267,7 +267,7 @@ class Campus:
             self._go_on(robot)
 
     def _switch_one_off(self) -> None:
-        """Of those that wait for a corridor; somebody takes it away, and brings it to its home an hour later."""
+        """Of those that wait for a corridor; a person takes it away, and brings it to its home an hour later."""
         self._later(self.rng.expovariate(self.faults.switched_off_an_hour / 3600), self._switch_one_off)
         able = [robot for robot in self.robots.values() if robot.claim is not None]
         if able:

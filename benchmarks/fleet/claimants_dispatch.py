@@ -1,4 +1,4 @@
-"""Who carries what on a simulated campus: the nearest order for whoever is free, or the product's planner.
+"""Dispatch on a simulated campus: the nearest order for a free robot, or the product's planner.
 
 Goals have the key of their order: "17 load", "17 give".
 """

@@ -1,4 +1,4 @@
-"""How long a decision takes: the first answer for one event, how well the improvement keeps to its time, and how the
+"""Time of a decision: the first answer for one event, how well the improvement keeps to its time, and how the
 first answer grows with the number of orders."""
 
 from collections.abc import Sequence

@@ -26,7 +26,7 @@ class Demand(Protocol):
         """Orders placed by then are waiting."""
 
     def take(self, order: Order, now_s: float) -> None:
-        """Somebody carries it."""
+        """A robot carries it."""
 
 
 class Saturated:

@@ -2,7 +2,8 @@
 
 Everything is simulated: robots on the Carleton tunnels, demand with two rush hours a day, each corridor with a pace of
 its own that the map does not tell, a robot that stands still in every two hundredth corridor, charges in between.
-Orders are given, first come first served, to whoever will be there first; `fleet.schedule.planning` puts them in.
+Orders are given, first come first served, to the robot that will be there first; `fleet.schedule.planning` puts them
+in.
 """
 
 from collections.abc import Iterator
@@ -80,7 +81,7 @@ class Study:
     # What is planned and forecast.
 
     def place(self, name: str, start: int, end: int) -> None:
-        """One order: told when it is placed, given at once to whoever is likely to have it done first, told then."""
+        """One order: told when it is placed, given at once to the robot likely to have it done first, told then."""
         self.promises.estimates.ahead = Ahead(len(self._not_fetched), len(self.world.robots))
         self.promises.placed(name, self.world.now_s, start, end)
         self._not_fetched.add(name)

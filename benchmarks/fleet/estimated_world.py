@@ -1,4 +1,4 @@
-"""A simulated campus for the study of estimates: robots carry a timetable out in durations that nobody knows before.
+"""A simulated campus for the study of estimates: robots carry a timetable out in durations that are unknown before.
 
 What is true is drawn here: each corridor has a pace of its own, robots fail in corridors, people come sooner in office
 hours. The estimates see what a service would see: when a corridor was entered and left, and a stop begun and done.
@@ -23,7 +23,7 @@ RUSH_H: Final = frozenset({9, 10, 14, 15})
 CHARGE_AFTER_S: Final = 1.5 * HOUR_S
 CHARGE_S: Final = (40 * 60.0, 80 * 60.0)
 FAILS: Final = 1 / 200
-"""Of all entries into a corridor: the robot stands there until somebody has come."""
+"""Of all entries into a corridor: the robot stands there until a person has come."""
 REPAIR_S: Final = 20 * 60.0
 
 
@@ -37,7 +37,7 @@ def is_attended(now_s: float) -> bool:
 
 @dataclass
 class Stop:
-    """One goal: `takes_s` is the truth, told to nobody."""
+    """One goal: `takes_s` is the truth, hidden from the estimates."""
 
     key: str
     kind: Kind | None
@@ -59,7 +59,7 @@ class Robot:
 
 @dataclass
 class Truth:
-    """What durations are drawn from."""
+    """The distributions that durations are drawn from."""
 
     rng: Random
     pace: Mapping[tuple[int, int], float]
@@ -104,7 +104,8 @@ class World:
         self.now_s = to_s
 
     def _true_task(self, robot: Robot) -> Task:
-        """What has begun ends when it does; how long the rest will take is drawn as it may begin."""
+        """Return the true task: what has begun ends when it does; how long the rest will take is drawn as it may
+        begin."""
         goals = []
         for stop in robot.stops:
             if stop.begun_s == inf:

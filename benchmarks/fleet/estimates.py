@@ -1,4 +1,4 @@
-"""Whether people are told the truth: arrivals as the service's own estimates tell them, in a simulated fleet, beside
+"""ETA accuracy: arrivals as the service's own estimates tell them, in a simulated fleet, beside
 those by lengths alone: `placed` with each order, `under_way` once a robot has it, which it has at once here.
 
 The orders of a first time teach and are not scored (`WARM_UP`). "Not corrected" is the simulated plan alone: it does
@@ -35,7 +35,7 @@ Run = dict[Basis, tuple[list[Truth], list[Truth]]]
 
 
 def measure(samples: Samples) -> dict[str, Any]:
-    """All seeds together, and what each had inside."""
+    """Measure all seeds together, and what each had inside."""
     runs = list(samples.each(run, [(seed, DAYS) for seed in samples.some_seeds()]))
     for one in runs:
         say("  " + ", ".join(f"{basis}: {len(told)} orders scored" for basis, (told, _) in one.items()))
@@ -73,7 +73,7 @@ def _figures(truths: Sequence[Truth]) -> dict[str, Any]:
 
 
 def draw(folder: Path, runs: Sequence[tuple[list[Truth], list[Truth]]]) -> None:
-    """How many came inside, of so many orders one after the other."""
+    """Draw the share that came inside, of so many orders one after the other."""
     import matplotlib as mpl
 
     mpl.use("svg")

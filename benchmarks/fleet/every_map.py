@@ -125,8 +125,8 @@ def _take_on(
 
 
 def _comes_to_an_end(network: Network, tasks: Mapping[str, Task], journeys: dict[str, Journey], seen: Seen) -> bool:
-    """Whether robots that keep to the order, however late, all come to the end of their journeys: whoever can enters,
-    and somebody in a corridor arrives when nobody can enter."""
+    """Return whether robots that keep to the order, however late, all come to the end of their journeys: each that can
+    enters, and one in a corridor arrives when none can enter."""
     starts = {robot: task.start for robot, task in tasks.items()}
     while True:
         able = [

@@ -9,7 +9,7 @@ from fleet.schedule.network import Lane, Network, network_of
 from maps import builtin_map
 
 TRAVEL_S: Final = 300.0
-"""Assumed for every corridor of every map: nobody has driven the tunnels yet."""
+"""Assumed for every corridor of every map: the tunnels have not been driven yet."""
 CLEARANCE_S: Final = 0.1
 
 

@@ -36,7 +36,7 @@ class Locks:
         self.delivered = 0
 
     def run(self, until_s: float) -> None:
-        """Raises DeadlockError when nobody can go on."""
+        """Raises DeadlockError when no robot can go on."""
         ends = [(0.0, number) for number in range(len(self._drivers))]
         while self.now_s < until_s:
             waiting = [number for number, driver in enumerate(self._drivers) if driver.busy_until_s <= self.now_s]
@@ -47,11 +47,11 @@ class Locks:
             heapq.heapify(ends)
             if not went:
                 if not ends:
-                    raise DeadlockError(f"nobody can go on at {self.now_s:.0f} s")
+                    raise DeadlockError(f"no robot can go on at {self.now_s:.0f} s")
                 self.now_s = ends[0][0]
 
     def _go_on(self, driver: Driver) -> bool:
-        """Whether it has begun something: a stop, or a way."""
+        """Go on with the robot; return whether it has begun something: a stop, or a way."""
         self._give_back(driver)  # it has arrived
         if not driver.way:
             self._next_way(driver)

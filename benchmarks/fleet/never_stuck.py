@@ -1,8 +1,8 @@
-"""Robots that claim from the product's controller for 100,000 hours: nobody meets or is stuck, no order is forgotten.
+"""Robots that claim from the product's controller for 100,000 hours: none meets or is stuck, no order is forgotten.
 
 Each run is one map with one seed. Ways take 20 % more or less than planned; in half of the runs robots also fall silent
-in corridors and at posts until somebody has looked, are switched off and on, and people close corridors for an hour; in
-half of them, and in half of the others, they are let into as much of their way as nobody enters before them.
+in corridors and at posts until a person has looked, are switched off and on, and people close corridors for an hour; in
+half of them, and in half of the others, they are let into as much of their way as no other enters before them.
 """
 
 from collections.abc import Iterator
@@ -32,7 +32,7 @@ WANTED = [
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """`planner`: the product's planner says who carries what, else the nearest order goes to whoever is free."""
+    """`planner`: the product's planner says who carries what, else the nearest order goes to a free robot."""
 
     ground: str
     robots: int

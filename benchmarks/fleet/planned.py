@@ -89,7 +89,7 @@ class Planning:
             self._fill_up(world, self.demand)
 
     def _route(self, robot: str, task: Task) -> Route:
-        """What is left of its stops: those that have begun are no goals any more."""
+        """Return the rest of its stops: those that have begun are no goals any more."""
         route = self.routes.get(robot, ())
         return route[len(route) - len(task.goals) :]
 

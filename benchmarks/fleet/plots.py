@@ -1,4 +1,4 @@
-"""What a fleet gets done, as SVG."""
+"""The fleet's throughput, as SVG."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What people are told in a simulation, and what came of it: by the service's own estimates (`fleet.eta`), fed and
+"""ETAs told to people in a simulation, and what came of them: by the service's own estimates (`fleet.eta`), fed and
 asked as `app/eta/learning.py` and `app/dispatch/eta_updates.py` do it."""
 
 from collections import defaultdict
@@ -84,7 +84,7 @@ class Promises:
         self._open[order].append(Promise(now_s, Basis.UNDER_WAY, raw, told, by_map))
 
     def foresight(self, stops: Mapping[str, Stop], now_s: float, rng: Random) -> Foresight:
-        """What the service draws for a forecast of its timetable."""
+        """Return what the service draws for a forecast of its timetable."""
         return Foresight(self.estimates, self.network, stops, self.local(now_s), now_s, rng)
 
     def corridor(self, lane: Lane) -> Thing:

@@ -1,4 +1,4 @@
-"""How much of the fleet is simulated."""
+"""The amount of simulation of the fleet."""
 
 import os
 from collections.abc import Callable, Iterable, Iterator

@@ -42,8 +42,8 @@ class Fleet:
     homes: tuple[int, ...]
 
     def places_that_come_home(self) -> Mapping[Places, int]:
-        """All places from which every robot can come home by one move after another, with the number of moves: found
-        backwards from all at home, with nothing of the code that is tested."""
+        """Return the places from which every robot can come home by one move after another, with the number of moves:
+        found backwards from all at home, with nothing of the code that is tested."""
         home = tuple(AT_HOME for _ in self.homes)
         known, ahead = {home: 0}, [home]
         for places in ahead:

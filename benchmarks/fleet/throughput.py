@@ -1,4 +1,4 @@
-"""How much of the work gets done that would be done if robots could pass through each other: tunnels, saturated demand.
+"""Throughput as a share of what robots would do that could pass through each other: tunnels, saturated demand.
 
 Three shares are reported, since each says something else: of first come first served without conflicts; of the same
 rule without conflicts (always the nearest order that waits: the hardest, and what is judged); and of the time of the

@@ -8,7 +8,7 @@ from benchmarks.fleet.grounds import Ground
 
 
 def delivered(ground: Ground, robots: int, seed: int, hours: float, *, nearest: bool, age_limit_s: float = inf) -> int:
-    """How many orders are delivered in so many hours: first come first served, or always the nearest one that waits,
+    """Return the orders delivered in so many hours: first come first served, or always the nearest one that waits,
     unless one has waited too long."""
     way_s = ground.network.shortest_s
     demand = Saturated(len(ground.network.posts), seed)

@@ -1,7 +1,7 @@
 """Robots that carry a timetable out, event by event: ways take as long as they take, the order of entry holds.
 
 Who may enter a corridor is decided by the product's own rule (`fleet.schedule.execution`). What happens is looked at
-here with nothing of it: whoever meets another or finds no bay ends the run.
+here with nothing of it: a robot that meets another or finds no bay ends the run.
 """
 
 import heapq
@@ -18,7 +18,7 @@ from fleet.schedule.planning import Timetable, first_plan
 from fleet.schedule.validation import problems
 
 LATE_S: Final = 5.0
-"""Whoever should have arrived is expected so much later."""
+"""A robot that should have arrived is expected so much later."""
 
 
 class CollisionError(AssertionError):
@@ -26,7 +26,7 @@ class CollisionError(AssertionError):
 
 
 class DeadlockError(AssertionError):
-    """Nobody can go on, and nothing will change that."""
+    """No robot can go on, and nothing will change that."""
 
 
 class InvalidTimetableError(AssertionError):
@@ -67,7 +67,7 @@ class World:
             self._go_on()
             coming_s = self._next_event_s()
             if coming_s == wanted_s == inf and any(len(journey.legs) > 1 for journey in self.journeys.values()):
-                raise DeadlockError(f"nobody can go on at {self.now_s:.0f} s")
+                raise DeadlockError(f"no robot can go on at {self.now_s:.0f} s")
             self.now_s = min(coming_s, max(wanted_s, self.now_s), until_s)
 
     def free(self) -> list[str]:
@@ -79,8 +79,8 @@ class World:
         ]
 
     def known(self) -> tuple[dict[str, Task], dict[str, Journey]]:
-        """What a planner knows: robots in corridors are expected when the map says, late ones soon, and whoever follows
-        a late one not before it."""
+        """Return a planner's knowledge: robots in corridors are expected when the map says, late ones soon, and a
+        robot behind a late one not before it."""
         expected = {robot: replace(task, start=self._expected(task.start)) for robot, task in self.tasks.items()}
         tasks = one_behind_the_other(expected)
         return tasks, retimed(self.network, tasks, self.journeys)
@@ -115,7 +115,7 @@ class World:
             self._serve(robot)
 
     def _serve(self, robot: str) -> None:
-        """What is to be served where it stands is begun."""
+        """Begin what is to be served where it stands."""
         task = self.tasks[robot]
         begun = len(task.goals) - sum(leg.goals for leg in self.journeys[robot].legs[1:])
         if task.start.lane is not None or not begun:
@@ -130,7 +130,7 @@ class World:
         heapq.heappush(self._events, ready_s)
 
     def _go_on(self) -> None:
-        """Everybody who can enters, until nobody can."""
+        """Let every robot enter that can, until none can."""
         starts = {robot: task.start for robot, task in self.tasks.items()}
         able = True
         while able:
@@ -161,7 +161,7 @@ class World:
             self._serve(robot)
 
     def _truly_arrives_s(self, robot: str, leg: Leg) -> float:
-        """Nobody overtakes: who follows arrives behind."""
+        """No robot overtakes: one that follows arrives behind."""
         lane = leg.lane
         assert lane is not None
         arrives_s = self.now_s + lane.travel_s * self.rng.uniform(1 - self.spread, 1 + self.spread)

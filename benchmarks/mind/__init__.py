@@ -1,1 +1,1 @@
-"""How long the mind takes, beside other AgentSpeak interpreters: python -m benchmarks.mind --help."""
+"""The speed of the mind, beside other AgentSpeak interpreters: python -m benchmarks.mind --help."""

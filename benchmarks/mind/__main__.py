@@ -66,7 +66,7 @@ def measure(
 
 
 def _engines(folder: Path, alone: bool) -> tuple[dict[str, Engine], dict[str, str]]:
-    """What can be run here, and for every interpreter what it is or why it is not run."""
+    """Return what can be run here, and for every interpreter what it is or why it is not run."""
     makers: Mapping[str, Callable[[Path], Engine]] = {
         "ours": engines.ours,
         "python-agentspeak": engines.python_agentspeak,

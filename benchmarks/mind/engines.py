@@ -32,13 +32,13 @@ class Engine:
         self._process: subprocess.Popen[str] | None = None
 
     def ask(self, command: str) -> dict[str, Any]:
-        """What the warm worker answers. Raises EngineFailed."""
+        """Ask the warm worker. Raises EngineFailed."""
         if self._process is None:
             self._process = self._start()
         return self._answer(self._process, command)
 
     def ask_afresh(self, command: str) -> dict[str, Any]:
-        """What a worker answers that has just been started. Raises EngineFailed."""
+        """Ask a worker that has just been started. Raises EngineFailed."""
         process = self._start()
         try:
             return self._answer(process, command)

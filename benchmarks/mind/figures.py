@@ -1,4 +1,4 @@
-"""What is measured, and what each figure has to be."""
+"""The figures measured, and their targets."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ ALL = ("ours", "python-agentspeak", "jason")
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
-    """How much is run. Figures of a quick run say that everything works, not how long it takes."""
+    """The amount that is run. Figures of a quick run say that everything works, not how long it takes."""
 
     paper: int = 3_000  # the recorded cycles, once: short rounds, many of them, since others use the machine too
     first: int = 1_000

@@ -136,7 +136,7 @@ class Worker:
         return self._rows[name]
 
     def _inputs(self, name: str, cycles: int) -> list[tuple[frozenset[str], str]]:
-        """A set of its own for every cycle, as a body makes one: nobody may know it again."""
+        """A set of its own for every cycle, as a body makes one: the engine must not recognise it."""
         return [(frozenset(percepts), goal) for percepts, goal in islice(for_ever(self._script_rows(name)), cycles)]
 
 
@@ -148,7 +148,7 @@ def _loop_s(cycle: Cycle, inputs: list[tuple[frozenset[str], str]]) -> float:
 
 
 def _nothing(percepts: frozenset[str], goal: str) -> None:
-    """What the loop around the engine costs."""
+    """Do nothing: the cost that is left is that of the loop around the engine."""
 
 
 def resident_mib(field: str) -> float:

@@ -1,4 +1,4 @@
-"""What is measured: the programs and percepts, written as files that every interpreter reads.
+"""The workloads: the programs and percepts, written as files that every interpreter reads.
 
 A script has one line a cycle: the percepts, separated by spaces, a tabulator, and the goal to achieve, if any.
 """

@@ -30,7 +30,7 @@ FIRST: Final = (
 
 
 class Page(StrEnum):
-    """What is visited. A first visit has an empty browser; a second one is answered by the service worker."""
+    """A page to visit. A first visit has an empty browser; a second one is answered by the service worker."""
 
     ORDER = "order"
     ORDER_AGAIN = "order_again"

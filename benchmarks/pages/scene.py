@@ -1,4 +1,4 @@
-"""What the visited pages show: somebody's letters, and a mailroom at work."""
+"""Contents of the visited pages: a sender's letters, and a mailroom at work."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,7 +18,7 @@ WAITING: Final = 7
 
 @dataclass(frozen=True)
 class Scene:
-    """Who visits: `sender` has earlier orders and one under way, `dispatcher` sees everybody's."""
+    """The visitors: `sender` has earlier orders and one under way, `dispatcher` sees everybody's."""
 
     sender: Account
     colleague: Account

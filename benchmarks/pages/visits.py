@@ -50,7 +50,7 @@ WATCH: Final = """selector => {
 
 @dataclass(frozen=True)
 class Visit:
-    """What it took until the page could be used, and until it was quiet."""
+    """The time until the page could be used, and until it was quiet."""
 
     usable_ms: float
     transferred_kb: float
@@ -129,8 +129,8 @@ async def _slowed(page: Page) -> CDPSession:
 
 
 async def _told(cdp: CDPSession, name: str) -> asyncio.Future[str]:
-    """What the page will say through a function of this name. The page is asked nothing meanwhile: Playwright's own
-    waiting would have the slowed processor read 300 kB of script first."""
+    """Return what the page will say through a function of this name. The page is asked nothing meanwhile: Playwright's
+    own waiting would have the slowed processor read 300 kB of script first."""
     said: asyncio.Future[str] = asyncio.get_running_loop().create_future()
     cdp.on("Runtime.bindingCalled", lambda event: said.done() or said.set_result(event["payload"]))
     await cdp.send("Runtime.enable")

@@ -1,4 +1,4 @@
-"""Who runs: the paper's program with its sensor on the wheel axle or ahead of it, and our own.
+"""The contenders: the paper's program with its sensor on the wheel axle or ahead of it, and our own.
 
 All of them drive the same simulated robot on the paper's test track: from the line before post1, a letter from post1 to
 post4, and a battery that becomes low on the way, as in section 6.3 of the paper.

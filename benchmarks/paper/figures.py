@@ -12,7 +12,7 @@ DAEMON_TICK_MS = 100.0
 
 
 def figures_of(logs: Sequence[Log]) -> dict[str, Any]:
-    """All runs of one contender. Times of missions are of those that were delivered."""
+    """Return the figures of one contender's runs. Times of missions are of those that were delivered."""
     delivered = [log for log in logs if log.delivered]
     driving_s = sum(log.driving_s for log in logs)
     cycles_ms = sorted(ms for log in logs for ms in log.cycle_ms)

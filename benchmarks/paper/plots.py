@@ -53,7 +53,7 @@ def _panels(contenders: Sequence[Contender], height: float) -> tuple[Any, Any]:
 
 
 def _histograms(path: Path, contenders: Sequence[Contender], samples: Mapping[str, Any], name: str, label: str) -> None:
-    """All on the same axes, or they could not be compared; what lies beyond is in the outermost bars."""
+    """Draw all on the same axes, or they could not be compared; what lies beyond is in the outermost bars."""
     figure, axes = _panels(contenders, 3.0)
     low, high = np.quantile(np.concatenate([samples[one.name][name] for one in contenders]), (0.005, 0.995))
     bins = np.linspace(low, max(high, low + 1e-6), 41)
@@ -71,7 +71,8 @@ def _histograms(path: Path, contenders: Sequence[Contender], samples: Mapping[st
 
 
 def _queue(path: Path, contenders: Sequence[Contender], samples: Mapping[str, Any]) -> None:
-    """How long the paper's queue would get here; without it the mind reads the newest view, as old as is said."""
+    """Draw the length that the paper's queue would reach; without it the mind reads the newest view, as old as is
+    said."""
     figure, axes = _panels(contenders, 3.0)
     for axis, contender, colour in zip(axes, contenders, COLOURS, strict=False):
         taken = samples[contender.name]

@@ -1,1 +1,1 @@
-"""How much the service carries, measured from outside: `make bench-service`."""
+"""Load that the service carries, measured from outside: `make bench-service`."""

@@ -1,4 +1,4 @@
-"""What the service is compared with: one endpoint, one durable insert, nothing else.
+"""The baseline for the service: one endpoint, one durable insert, nothing else.
 
 The same framework, server, driver and database settings (write-ahead log, full sync), used as their manuals say.
 `python -m benchmarks.service.bare DATABASE PORT`

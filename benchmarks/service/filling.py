@@ -50,7 +50,7 @@ LIFE: Final = (
 
 @dataclass(frozen=True)
 class Account:
-    """Somebody who is signed in: `cookie` is the secret of the session."""
+    """A person who is signed in: `cookie` is the secret of the session."""
 
     person: Person
     cookie: str

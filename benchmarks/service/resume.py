@@ -42,13 +42,13 @@ def measure(samples: Samples) -> dict[str, Any]:
     for number in range(TIMES):
         with samples.folder() as folder:
 
-            async def somebody(filling: Filling) -> tuple[Account, KnownRobot]:
+            async def one_robot(filling: Filling) -> tuple[Account, KnownRobot]:
                 (account,) = await filling.people(1)
                 (robot,) = await filling.give_missions(await filling.robots(1), account)
                 return account, robot
 
             data = folder / "service"
-            account, known = fill(data, somebody, samples.first_seed + number)
+            account, known = fill(data, one_robot, samples.first_seed + number)
             with service(data) as server, Store(folder / "robot.sqlite") as store:
                 runs.append(asyncio.run(_come_back(samples, server, account, known, store, data)))
         say(f"  page right after {runs[-1]['page_s']:.2f} s, backlog in after {runs[-1]['backlog_s']:.2f} s")
@@ -110,7 +110,7 @@ def _link(server: Server, known: KnownRobot, outbox: Outbox, memory: Memory) -> 
 
 
 def backlog(known: KnownRobot, number: int) -> Iterator[Part]:
-    """What a robot that goes to and fro has to tell: it claims and clears corridors, passes posts, charges."""
+    """Yield what a robot that goes to and fro has to tell: it claims and clears corridors, passes posts, charges."""
     assert known.mission_id is not None
     leg = Leg(from_post="junction", to_post="library")
     begun_at = datetime.now(UTC) - timedelta(seconds=OFFLINE_S)

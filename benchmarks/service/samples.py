@@ -1,4 +1,4 @@
-"""How much is measured, and a room for each part to measure it in."""
+"""The amount measured, and a room for each part to measure it in."""
 
 import asyncio
 import time
@@ -36,7 +36,7 @@ class Samples:
 
 @dataclass
 class Punctuality:
-    """How late the load generator itself was: what it calls slow must be the service's doing and not its own."""
+    """The lateness of the load generator itself: what it calls slow must be the service's doing and not its own."""
 
     late_s: list[float] = field(default_factory=list)
 

@@ -46,7 +46,7 @@ class Server:
         return {"rss_mib": round(kib["VmRSS"] / 1024, 1), "rss_peak_mib": round(kib["VmHWM"] / 1024, 1)}
 
     def processor_s(self) -> float:
-        """How much of its core it has used since its start."""
+        """Return the core time that it has used since its start."""
         fields = Path(f"/proc/{self.process.pid}/stat").read_text().rpartition(")")[2].split()
         return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
@@ -69,7 +69,7 @@ def service(data: Path, **more: str) -> Iterator[Server]:
 
 @contextmanager
 def bare(data: Path) -> Iterator[Server]:
-    """What it is compared with."""
+    """Run the baseline server."""
     data.mkdir(parents=True, exist_ok=True)
     port = free_port()
     command = ["benchmarks.service.bare", str(data / "bare.sqlite"), str(port)]

@@ -10,7 +10,7 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Answer:
-    """What came back."""
+    """One answer of the server."""
 
     status: int
     body: bytes
@@ -20,7 +20,7 @@ class Answer:
 
 
 class Visitor:
-    """Somebody's browser: one connection that is kept open, one request at a time."""
+    """A person's browser: one connection that is kept open, one request at a time."""
 
     def __init__(self, port: int, cookie: str | None = None) -> None:
         self._port = port

@@ -18,7 +18,7 @@ IMPATIENT: Final = 0.2
 
 
 @dataclass
-class Somebody:
+class Person:
     """`http` is their browser."""
 
     url: str
@@ -66,13 +66,13 @@ class Somebody:
 
 @dataclass(frozen=True)
 class Everybody:
-    """Who may stand at a robot."""
+    """People who may stand at a robot."""
 
-    senders: Sequence[Somebody]
-    recipients: Sequence[Somebody]
+    senders: Sequence[Person]
+    recipients: Sequence[Person]
 
     async def show(self, order_id: str, purpose: Purpose) -> str | None:
-        """The code of whoever of them it is whose turn it is."""
+        """Return the code of the person whose turn it is."""
         who = self.recipients if purpose is Purpose.RECEIVE else self.senders
         codes = await asyncio.gather(*(one.code(order_id, purpose) for one in who))
         return next((code for code in codes if code), None)

@@ -20,7 +20,7 @@ from app.models import metadata
 from app.retention.database_checks import problems_of
 from benchmarks.service_kills.judge import Facts, judged, mails_repeated
 from benchmarks.service_kills.mail_server import Mailbox, SpoolFolder, is_sign_in, mail_server
-from benchmarks.service_kills.people import Everybody, Somebody
+from benchmarks.service_kills.people import Everybody, Person
 from benchmarks.service_kills.senders import Sender
 from benchmarks.service_kills.stand_in import StandIn
 from benchmarks.service_kills.victim import Victim
@@ -39,7 +39,7 @@ ORDERLY: Final = (0, -signal.SIGTERM)
 
 @dataclass(frozen=True)
 class Plan:
-    """How much of everything; a seed fixes when the kills come, and the machine what they hit."""
+    """The amount of everything; a seed fixes when the kills come, and the machine what they hit."""
 
     kills: int = 300
     seed: int = 1
@@ -51,7 +51,7 @@ class Plan:
 
 
 async def killed(plan: Plan, folder: Path, say: Callable[[int], None] = lambda kills: None) -> dict[str, Any]:
-    """What came of it: counts, and under `wrong` a sentence for everything that must not be."""
+    """Run and return the result: counts, and under `wrong` a sentence for everything that must not be."""
     with ExitStack() as closing:
         server = closing.enter_context(mail_server()) if plan.with_smtp else None
         mailbox: Mailbox = server or SpoolFolder(folder / "data" / "spool")
@@ -84,7 +84,7 @@ class _Scene:
             Sender(**self._person(f"sender{n}@{DOMAIN}"), recipients=RECIPIENTS, pause_s=plan.order_pause_s)
             for n in range(plan.senders)
         ]
-        self._recipients = [Somebody(**self._person(email)) for email in RECIPIENTS]
+        self._recipients = [Person(**self._person(email)) for email in RECIPIENTS]
         self._robots = self._stand_ins(tokens)
         self._over = False
         self._struck: Counter[str] = Counter()
@@ -173,7 +173,7 @@ class _Scene:
             await asyncio.sleep(0.2)
 
     def _done_and_owed(self) -> tuple[int, int]:
-        """How much is over, and how much somebody still waits for."""
+        """Return the number of orders that are over, and of those that people still wait for."""
         tables = self._tables("orders", "notices", "outbox", "server_outbox")
         is_over = [
             *(row["state"] in ("delivered", "cancelled", "expired") for row in tables["orders"]),

@@ -5,14 +5,14 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
-from benchmarks.service_kills.people import Somebody
+from benchmarks.service_kills.people import Person
 
 POSTS: Final = ("post1", "post2", "post3", "post4")
 
 
 @dataclass
-class Sender(Somebody):
-    """Somebody who sends letters. `acknowledged`: which order each key was answered with."""
+class Sender(Person):
+    """A person who sends letters. `acknowledged`: which order each key was answered with."""
 
     recipients: Sequence[str] = ()
     pause_s: float = 0.0

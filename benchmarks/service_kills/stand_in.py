@@ -1,5 +1,5 @@
 """A stand-in for a robot: it speaks the real protocol on a real WebSocket, and for a drive it waits as long as one
-takes. It hands over for nothing but a code that somebody shows.
+takes. It hands over only for a code that a person shows.
 
 It keeps to the robot's side of the bargain: what it has to say is numbered and said again until it is acknowledged,
 what it is told is taken once. It is never killed, so that its memory is the record to compare the service's with.
@@ -35,7 +35,7 @@ PURPOSES: Final = {
 }
 BATTERY: Final = Battery(ratio=0.9)
 Show = Callable[[str, Purpose], Awaitable[str | None]]
-"""Asks whoever stands there for the code of an order."""
+"""Asks the person at the robot for the code of an order."""
 
 
 @dataclass
@@ -163,7 +163,7 @@ class StandIn:
             case Cancel():
                 await self._let_go(message)
             case _:
-                self.errors.append(f"was told {type_of(message)}, which nobody wished")
+                self.errors.append(f"was told {type_of(message)}, which was never asked for")
 
     async def _let_go(self, wish: Cancel) -> None:
         """The planner gives the order to another robot, unless its mail is aboard by now."""

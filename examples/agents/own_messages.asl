@@ -1,4 +1,4 @@
-// Whoever wants to be asked first has a plan for what is received.
+// An agent that wants to be asked first has a plan for what is received.
 +!kqml_received(Who, achieve, go(P), _) : not charged <- refuse(Who, P).
 +!go(P) <- drive(P).
 

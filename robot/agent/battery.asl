@@ -15,7 +15,7 @@
      !dock;
      release;
      report_charge(charging).
-// No way leads to a dock: it stands where it is in nobody's way, and +nearest_dock begins again.
+// No way leads to a dock: it stands where it blocks no other robot, and +nearest_dock begins again.
 +!charge
   <- !reach_a_post;
      raise_fault(no_dock_open, "no way leads to any dock that is open").
@@ -34,7 +34,7 @@
      .wait(fill(Stop, reached));
      report(done, Stop).
 
-// Somebody pulled the robot out of its dock.
+// A person pulled the robot out of its dock.
 -docked : pursuing(charge) | pursuing(idle) | .desire(fill_up(_)) <- !decide_anew.
 
 +!fulfil(go_home) : home(Post)

@@ -83,7 +83,7 @@ half_way(Purpose) :- (manoeuvring | handing_over) & Purpose \== stand_still.
      rest(10);
      !!decide.
 
-// The watchdog: `watch` changes every half minute. A purpose that nobody pursues any more is taken up again.
+// The watchdog: `watch` changes every half minute. A purpose that no intention pursues any more is taken up again.
 +watch(_) : pursuing(Purpose) & lasting(Purpose).
 +watch(_) : not .desire(pursue(_)) <- .abolish(pursuing(_)); !decide.
 

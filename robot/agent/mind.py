@@ -52,7 +52,7 @@ class Mind:
     silence: LongSilence = field(default_factory=LongSilence)
     cycles: int = 0
     failures: list[str] = field(default_factory=list)
-    """Goals that nobody could help, in words; the newest."""
+    """Goals that failed without a recovery plan, in words; the newest."""
     note: Callable[[str, float, object], None] = lambda kind, at_s, data: None
     """The black box: what changes in the percepts, and each action."""
     _perceived: frozenset[str] = frozenset()
@@ -121,7 +121,7 @@ class Mind:
         for line in outcome.printed:
             self.hands.noted(line)
         for message in outcome.messages:
-            # A robot's agent has nobody to write to: people are told by actions (decision 0016).
+            # A robot's agent has no other agent to write to: people are told by actions (decision 0016).
             told = f"{message.performative} {message.content} to {message.receiver}"
             self.hands.noted(f"{told} reaches nobody: a robot's agent tells people by actions (report, raise_fault)")
             log.warning(
@@ -173,7 +173,7 @@ class Mind:
             duties.report_fault(name, TOLD[name], self.hands.place, cleared=name not in faults)
 
     def _tell_open_way(self) -> None:
-        """A closed corridor is over when its time is, or when somebody says so: then it is tried again."""
+        """A closed corridor is over when its time is, or when a person reports it open: then it is tried again."""
         duties, closed = self.hands.duties, self.hands.navigator.closed
         for name in sorted(closed.over):
             reason, lasts = tried_again(name), bool(closed.names)
@@ -194,7 +194,7 @@ class Mind:
             duties.report_fault(PLACE_UNKNOWN, "It knows where it is again.", navigator.at, cleared=True)
 
     def _stop_or_rearm(self, view: View) -> None:
-        """What the server wants. (The Spot button re-arms in the body itself.)"""
+        """Stop or re-arm as the server asked. (The Spot button re-arms in the body itself.)"""
         duties, body = self.hands.duties, self.hands.body
         if duties.stop_asked:
             body.emergency_stop()

@@ -1,7 +1,7 @@
 // A mission is an ordered list of stops with one id. `next_stop(N)` is perceived: the body remembers how far it has come.
-// Each stop is a purpose: an update that changes what comes after it disturbs nobody at it or on the way there.
+// Each stop is a purpose: an update that changes what comes after it disturbs no stop that is under way.
 // Every report is made once however often a plan makes it, so a stop may be begun again after charging or a restart.
-// Mail that nobody takes, or that is recalled, is a mission too: its stops say `return`.
+// Mail that no recipient takes, or that is recalled, is a mission too: its stops say `return`.
 
 +mission(_, _) <- !decide.
 -mission(_, _) <- !decide.
@@ -19,7 +19,7 @@
 +!serve(_, _, _, Order, _) : cancelled(Order).
 +!serve(_, _, load, Order, _) : carrying(Order).   // loaded just before a power cut
 +!serve(Stop, _, dock, _, _) : fill(Stop, reached) <- report(done, Stop).   // its own battery plan has been faster
-+!serve(_, _, Do, Order, _) : takes_out(Do) & not carrying(Order).   // nobody came to load it
++!serve(_, _, Do, Order, _) : takes_out(Do) & not carrying(Order).   // the sender never came to load it
 +!serve(Stop, Post, Do, Order, Limit_s)
   <- report(departed, Stop);
      !go_to(Post);
@@ -53,7 +53,7 @@ hopeless(no_route).
 +!come_out.
 
 // An errand given by hand: `--achieve 'visit(post4)'`.
-// The goal lasts as long as the errand, and fails with it: whoever gave it is told the truth.
+// The goal lasts as long as the errand, and fails with it: the plan that posted it learns the true end.
 +!visit(Post)[source(user)]
   <- +errand(Post);
      !decide;

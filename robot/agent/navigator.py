@@ -144,7 +144,8 @@ class Navigator(Tracker):
         return tuple(Leg(from_post=here, to_post=post.name) for post, _ in self.campus.neighbours(here))
 
     def turn_rad(self, way: str) -> float:
-        """How far to turn, left is positive: to the corridor of the destination if that lies there, else a quarter.
+        """Return the angle to turn, left is positive: to the corridor of the destination if that lies there, else a
+        quarter.
 
         The paper's program turns left for what lies behind.
         """

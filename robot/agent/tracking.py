@@ -120,8 +120,8 @@ class Tracker:
         return None if turns or is_aslant(post) or post.text not in self.campus.posts else post
 
     def _looks_along(self) -> bool:
-        """Whether it looks the way of its corridor: a search for the line turns it away, and what it sees then lies
-        elsewhere than it seems."""
+        """Return whether it looks the way of its corridor: a search for the line turns it away, and what it sees then
+        lies elsewhere than it seems."""
         place, looks_rad = self._place, self._looks_rad(self._odometry)
         if not isinstance(place, Between) or looks_rad is None:
             return False
@@ -270,7 +270,7 @@ class Tracker:
         self._duties.note_moment(moment)
 
     def _check_way(self) -> None:
-        """Whether it follows the line that it was going to."""
+        """Check that it follows the line that it was going to."""
         place, looks_rad = self._place, self._compass.looks_rad(self._odometry)
         if not isinstance(place, Between) or place.begin_mm is None or place.turned_round or looks_rad is None:
             return
@@ -298,8 +298,8 @@ class Tracker:
         self._arrive(arrived)
 
     def _came_back_otherwise(self, corridor: Corridor, post: str) -> bool:
-        """Whether it is back at the post that it left, and does not look as along the corridor: it has backed up, or
-        never was on that line."""
+        """Return whether it is back at the post that it left, and does not look as along the corridor: it has backed
+        up, or never was on that line."""
         looks_rad = self._looks_rad(self._odometry)
         if post != self._place.here or looks_rad is None:
             return False

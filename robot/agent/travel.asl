@@ -46,7 +46,7 @@
 +!let_pass(_).
 
 // No longer than until a corridor in which it turned back counts as open again. If it takes longer others may pass; but
-// where there is no network it keeps what it was granted, since nobody could grant it anew.
+// where there is no network it keeps what it was granted, since the service could not grant it anew.
 +!wait_for_a_way(Patience_s) : Patience_s > 60 & not fault(link_loss) <- release; rest(Patience_s).
 +!wait_for_a_way(Patience_s) <- rest(Patience_s).
 -closed(_) : .desire(wait_for_a_way(_)) <- !decide_anew.
@@ -103,7 +103,7 @@ closes_the_way(post_missed).
 +!search <- find_line.
 -!search.
 
-// Somebody has carried the robot elsewhere, and a marker told it where: it plans anew from there.
+// A person has carried the robot elsewhere, and a marker told it where: it plans anew from there.
 +moved(_) <- noted_move; !decide_anew.
 
 // It has gone into another corridor than the one it was granted: back at once.

@@ -38,13 +38,13 @@ class ConfigError(Exception):
 
 
 class Section(BaseModel):
-    """Frozen and exact: a key that nobody declared is an error, never ignored."""
+    """Frozen and exact: an undeclared key is an error, never ignored."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
 
 class PerceptMode(StrEnum):
-    """How percepts reach the mind: the newest value of each, or only what arrived since the last cycle."""
+    """The way percepts reach the mind: the newest value of each, or only what arrived since the last cycle."""
 
     LATEST = "latest"
     DRAIN = "drain"
@@ -90,7 +90,7 @@ class CameraSettings(Section):
 
 
 class DriveSettings(Section):
-    """How the base is driven."""
+    """Settings of the base's movement."""
 
     cruise_mm_s: Annotated[float, Field(ge=30.0, le=MAX_WHEEL_SPEED_MM_S)] = Field(
         default=200.0, description="speed on a straight line, mm/s (never below 30: the base misbehaves there)"
@@ -136,7 +136,7 @@ class BatterySettings(Section):
 
 
 class RateSettings(Section):
-    """How often each loop of the daemon runs, per second of its clock."""
+    """Rates of the daemon's loops, per second of its clock."""
 
     base_hz: Rate = Field(default=50.0, description="simulated world and bytes of the base")
     drive_hz: Rate = Field(default=50.0, description="reflexes and skills")

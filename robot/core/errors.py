@@ -1,11 +1,11 @@
 """Errors of the body, each by its name; a message says what, where and the way out.
 
 RobotError
-├── PortAbsent       no such serial port, or nobody may open it
+├── PortAbsent       no such serial port, or no permission to open it
 ├── PortBusy         another program holds the port
 ├── CameraAbsent     no such video device
 ├── BlackBoxUnreadable  a file of the black box is torn or something else
-└── UnknownSkill     somebody asked for a long action that the body does not have
+└── UnknownSkill     a caller asked for a long action that the body does not have
 """
 
 from pathlib import Path

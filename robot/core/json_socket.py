@@ -1,7 +1,7 @@
 """A Unix socket for its owner alone: one JSON object a line in, one out. And the other end of it.
 
 Each visitor has a thread and a time limit, and there are only so many of them: one who says nothing, too much or
-nonsense keeps nobody else from being heard.
+nonsense does not delay the others.
 """
 
 import json

@@ -13,7 +13,7 @@ LOOKS_HZ = 200.0
 
 
 def open_pins(line: LineSettings, pin_factory: Any) -> tuple[Any, ...]:
-    """Left, centre, right; `value` is 1 when the pin is high. Whoever opens them closes them."""
+    """Left, centre, right; `value` is 1 when the pin is high. The caller that opens them closes them."""
     opened: list[Any] = []
     try:
         for pin in (line.left_pin, line.centre_pin, line.right_pin):

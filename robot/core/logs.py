@@ -19,7 +19,7 @@ from robot.core.config import ConfigError
 LONGEST_FILE_BYTES = 1_000_000
 KEPT_FILES = 4
 WAITING_LINES = 1000
-"""For a card that hangs; what comes beyond that is lost, and nobody waits."""
+"""For a card that hangs; what comes beyond that is lost, and no thread waits."""
 CLOSE_WITHIN_S = 3.0
 
 

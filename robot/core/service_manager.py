@@ -15,7 +15,7 @@ import structlog
 
 FEEDS_PER_LIMIT = 4
 LOOK_S = 1.0
-"""How often to look while nobody asks for a watchdog, but wants to know when we are ready."""
+"""Interval of the checks when systemd asks for no watchdog, but wants to know when we are ready."""
 
 log = structlog.get_logger("robot.core.service_manager")
 
@@ -25,7 +25,7 @@ Signs = Mapping[str, object]
 
 @dataclass(frozen=True)
 class ServiceManager:
-    """The socket that systemd listens at; without an address all is said to nobody."""
+    """The socket that systemd listens at; without an address, messages are discarded."""
 
     address: str | None = None
     watchdog_s: float | None = None
@@ -73,7 +73,7 @@ class Watchdog:
 
 
 class SignsOfLife:
-    """A thread of its own that looks at the signs and speaks to systemd; it waits for nobody."""
+    """A thread of its own that looks at the signs and speaks to systemd; it never blocks on another thread."""
 
     def __init__(self, manager: ServiceManager, signs: Callable[[], Signs], saying: Callable[[], str]) -> None:
         """`saying`: one line for `systemctl status`."""

@@ -1,4 +1,4 @@
-"""The last minute of a robot, for whoever asks afterwards why it stood: what the base said and was told, and what was
+"""The last minute of a robot, to find out afterwards why it stood: what the base said and was told, and what was
 decided, perceived and done.
 
     black_box.note("percepts", now, ("+fault(bump)",))         any thread, no disk, no lock
@@ -68,7 +68,8 @@ class BlackBox:
         self._thread: threading.Thread | None = None
 
     def note(self, kind: str, at_s: float, data: object) -> None:
-        """From any thread. `data`: bytes, text, number, or a tuple of these; nobody may change it afterwards."""
+        """From any thread. `data`: bytes, text, number, or a tuple of these; the caller must not change it
+        afterwards."""
         self._ring.append((kind, at_s, data))
 
     def heard(self, data: bytes, now: float) -> None:
@@ -133,7 +134,7 @@ class BlackBox:
                     time.sleep(BREATH_S)
 
     def _forget_old_files(self, folder: Path) -> None:
-        """All but the newest, with room for one more; and what a power cut left half written."""
+        """Delete all but the newest files, with room for one more; and what a power cut left half written."""
         for old in [*sorted(folder.glob("*.jsonl.gz"))[: 1 - KEPT_FILES], *folder.glob("*.part")]:
             with suppress(OSError):
                 old.unlink()

@@ -117,7 +117,7 @@ class DriveLoop:
 
     @property
     def impossible_reads(self) -> int:
-        """Patterns of the diodes so far that no tape makes, for whoever looks after the sensor."""
+        """Patterns of the diodes so far that no tape makes, for the technician who looks after the sensor."""
         return self._sensing.lasting.impossible_reads
 
     # The loop

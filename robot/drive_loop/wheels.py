@@ -42,7 +42,7 @@ class Wheels:
         return self._base.drive(speeds, now)
 
     def take(self, state: BaseState | None, now: float) -> None:
-        """From the firmware, which in Passive docks on, or cleans because somebody pressed Clean."""
+        """From the firmware, which in Passive docks on, or cleans because a person pressed Clean."""
         if not self.own and state is not None:
             self.request(SetMode(Mode.SAFE), now)
 

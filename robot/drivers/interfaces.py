@@ -63,7 +63,7 @@ class ChargingState(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class BaseState:
-    """What one frame of the base said. Counts are encoder counts modulo 65536 as signed numbers; see `odometry`."""
+    """One frame of the base. Counts are encoder counts modulo 65536 as signed numbers; see `odometry`."""
 
     at_s: float
     left_count: int = 0

@@ -1,7 +1,7 @@
-"""A base in real time: a thread of its own listens at the port, and stops the wheels if whoever drives hangs.
+"""A base in real time: a thread of its own listens at the port, and stops the wheels if the drive loop hangs.
 
-It wakes as soon as bytes arrive, so that a frame has its true time, and whoever drives can be woken by it. Whatever is
-sent goes out in the caller's own thread; nobody waits longer for the other than for one read or write of the port,
+It wakes as soon as bytes arrive, so that a frame has its true time, and the drive loop can be woken by it. Whatever is
+sent goes out in the caller's own thread; neither waits longer for the other than for one read or write of the port,
 which take `serial_port.WRITE_TIMEOUT_S` at worst.
 """
 
@@ -38,7 +38,7 @@ class PortThread:
         self._ending = threading.Event()
         self._alarming = False
         self.urgent = threading.Event()
-        """Set when a frame shows a touch, a drop, an edge or a press that the frame before did not: whoever drives
+        """Set when a frame shows a touch, a drop, an edge or a press that the frame before did not: the drive loop
         should look at once, and clears it."""
         self._thread = threading.Thread(target=self._listen, name="base port", daemon=True)
 

@@ -65,7 +65,7 @@ class Rhythm:
 
 @dataclass
 class Newest:
-    """What is never queued: a newer one takes the place of the older. Written by the daemon's thread, read by ours."""
+    """Values that are never queued: a newer one replaces the older. Written by the daemon's thread, read by ours."""
 
     snapshot: Snapshot | None = None
     why: Why | None = None
@@ -115,7 +115,7 @@ class Connection:
     async def greet(self) -> None:
         """Hello, welcome, and both sides know where the other stands."""
         ends = self._ends
-        ends.newest.insight = None  # what was thought before is no news to whoever watches now
+        ends.newest.insight = None  # earlier thoughts are no news to a client that watches now
         received = ends.memory.received()
         facts = {"received": received, "resume_from": ends.outbox.resume_from()}
         await self._send(ends.hello_source().model_copy(update=facts))
@@ -187,7 +187,8 @@ class Connection:
             raise LinkBroken(f"message {seq} came from the server, {self._received_seq + 1} was next")
         self._received_seq = max(self._received_seq, seq)
         if taken.reception is Reception.NEW and taken.refusal is None:
-            # Before anything is sent: if the connection breaks just now, nobody would deliver it until the next start.
+            # Before anything is sent: if the connection breaks just now, it would not be delivered until the next
+            # start.
             self._ends.deliver(Incoming(envelope.body, envelope.journal, seq))
         # Acknowledged after it is on the disk: a crash in between must make the server send it again.
         await self._send(Ack())

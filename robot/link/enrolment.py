@@ -44,8 +44,8 @@ def token_for(code: str, name: str, link: str, public_key: str) -> str:
 
 
 def trusted() -> ssl.SSLContext:
-    """Who this computer trusts, as for the link itself: a campus may have an authority of its own (SSL_CERT_FILE, or
-    the system's store). Httpx would know the public ones alone."""
+    """The authorities that this computer trusts, as for the link itself: a campus may have one of its own
+    (SSL_CERT_FILE, or the system's store). Httpx would know the public ones alone."""
     return ssl.create_default_context()
 
 

@@ -104,7 +104,7 @@ class Link:
         self._newest = Newest()
         self._incoming: deque[Incoming] = deque(memory.unhandled())
         self.on_watch: Callable[[Watch], None] = lambda _: None
-        """Called in the link's thread when somebody at the service looks."""
+        """Called in the link's thread when a person at the service watches."""
         self._ends = Ends(
             *(robot, clock, outbox, memory, hello_source, self._newest, self._deliver, self._rhythm),
             watched=self._watched,
@@ -167,7 +167,8 @@ class Link:
         self.wake()
 
     def incoming(self) -> list[Incoming]:
-        """What came since the last call, each message once per start. Say `memory.handled(it)` when it is done with."""
+        """Return what came since the last call, each message once per start. Say `memory.handled(it)` when it is done
+        with."""
         taken = [self._incoming.popleft() for _ in range(len(self._incoming))]
         if taken:
             self._in_thread(self._room.set)
@@ -177,7 +178,7 @@ class Link:
 
     def _in_thread(self, call: Callable[[], object]) -> None:
         if self._loop is not None:
-            with suppress(RuntimeError):  # the loop has just been closed: nobody is there to be told
+            with suppress(RuntimeError):  # the loop has just been closed: no connection is left to tell
                 self._loop.call_soon_threadsafe(call)
 
     def _deliver(self, incoming: Incoming) -> None:

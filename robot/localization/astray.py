@@ -25,7 +25,7 @@ class Compass:
         self._turned_rad: float | None = None
 
     def set(self, looks_rad: float | None, odometry: Odometry) -> None:
-        """It looks this way (None: nobody knows)."""
+        """It looks this way (None: unknown)."""
         self._turned_rad = None if looks_rad is None else looks_rad - odometry.heading_rad
 
     def confirm(self, looks_rad: float, odometry: Odometry) -> None:

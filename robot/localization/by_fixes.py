@@ -1,4 +1,4 @@
-"""What position sources other than markers tell a robot that does not know where it is."""
+"""Fixes from position sources other than markers, for a robot that does not know where it is."""
 
 from collections.abc import Iterable
 

@@ -51,13 +51,14 @@ class Closed:
         self._keep_all()
 
     def open(self, name: str) -> None:
-        """Somebody has looked. Told to be over even if it was open: whoever says so believed it to be closed."""
+        """A person has looked. Told to be over even if it was open: the person who reports it believed it to be
+        closed."""
         self._since_s.pop(name, None)
         self._told |= {name}
         self._keep_all()
 
     def open_all(self) -> None:
-        """It has waited: whoever stood there may have gone."""
+        """It has waited: the person or thing that stood there may have gone."""
         self._since_s = {}
         self._keep({})
 
@@ -66,7 +67,7 @@ class Closed:
 
 
 def open_way(campus: CampusMap, closed: Closed, wish: OpenWay, looked_s_ago: float) -> str | None:
-    """Do as somebody says who has looked; why not, or None."""
+    """Open a corridor on a person's report; return why not, or None."""
     name = corridor_name(*wish.ends)
     try:
         campus.corridor_named(name)

@@ -11,7 +11,7 @@ PLAIN_TURNS = {"left": math.pi / 2, "right": -math.pi / 2, "behind": math.pi}
 
 
 class Way(StrEnum):
-    """The paper's words for a direction, as somebody on the robot would say them."""
+    """The paper's words for a direction, as seen from the robot."""
 
     FORWARD = "forward"
     LEFT = "left"
@@ -50,7 +50,7 @@ def next_post(campus: CampusMap, post: str, destination: str, avoid: frozenset[s
 def kept_from(
     campus: CampusMap, aside: Leg | None, here: str | None, destination: str | None, avoided: frozenset[str]
 ) -> frozenset[str]:
-    """What is `avoided`, and for a robot that is sent `aside`, straight to its destination, every other corridor here.
+    """Return `avoided`, and for a robot that is sent `aside`, straight to its destination, every other corridor here.
 
     The shortest way there may begin with another corridor, or one with another be as short: that one is not granted.
     """

@@ -17,7 +17,7 @@ from robot.localization.steps import LEFT_MM, corridor_between
 
 SHARE, SLACK_MM = 0.08, 200.0
 """A marker comes so much earlier than the map says at most: calibrated wheels and tape measures err by 3 % and 40 mm
-(`skills/unread_post.py`), wheels that nobody has calibrated for months by twice as much."""
+(`skills/unread_post.py`), wheels not calibrated for months by twice as much."""
 DISTURBED_MM = 200.0
 """Each search and each touch on the way may cost so much of what the wheels count."""
 OWN_POST_MM = 600.0
@@ -134,7 +134,8 @@ def wrong_corridor(campus: CampusMap, place: Between, foreign: Foreign, real_per
 
 
 def agree(campus: CampusMap, first: Foreign, second: Foreign) -> bool:
-    """Whether two foreign markers fit each other: the robot was carried, and has driven from one to the other."""
+    """Return whether two foreign markers fit each other: the robot was carried, and has driven from one to the
+    other."""
     driven_mm = second.travelled_mm - first.travelled_mm
     lengths_mm = [1000 * way.length_m for post, way in campus.neighbours(first.post) if post.name == second.post]
     least_mm = [(1 - AGREE_SHARE) * length_mm - AGREE_MM[0] for length_mm in lengths_mm]

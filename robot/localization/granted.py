@@ -6,8 +6,8 @@ from protocol.parts import Leg
 
 
 def behind(held: Sequence[Leg], here: str, crossed: Leg | None = None) -> tuple[Leg, ...]:
-    """Those that it cannot come to any more by corridors that it holds: whoever waits for them waits for nothing.
-    `crossed`: it has just come through that one."""
+    """Return those that it cannot come to any more by corridors that it holds: a robot that waits for them waits in
+    vain. `crossed`: it has just come through that one."""
     left = [leg for leg in held if leg != crossed]
     ahead = _reached(left, here)
     return tuple(leg for leg in held if leg == crossed or leg.from_post not in ahead)

@@ -10,7 +10,7 @@ from robot.localization.steps import corridor_between
 
 
 class Moment(StrEnum):
-    """What it was about, if a power cut then leaves doubt of its place; written down before it begins."""
+    """The action under way, if a power cut then leaves doubt of its place; written down before it begins."""
 
     TURNING = "turning"
     """At a post: it may look anywhere."""

@@ -82,7 +82,7 @@ def searched(place: AtPost, here_mm: float) -> AtPost:
 
 
 def turned_round(place: Between, here_mm: float) -> Between:
-    """What lay behind lies ahead, as far as it was behind."""
+    """Turn the place round: what lay behind lies ahead, as far as it was behind."""
     begin_mm = ahead_mm = None
     if place.begin_mm is not None:
         ahead_mm = 2 * here_mm - place.begin_mm

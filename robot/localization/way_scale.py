@@ -1,6 +1,6 @@
 """The scale of odometry, real metres per counted metre: learnt from corridor to corridor.
 
-Wheels wear, and nobody calibrates them every month: two per cent is a hand's breadth in a corridor of five metres, too
+Wheels wear, and are not calibrated every month: two per cent is a hand's breadth in a corridor of five metres, too
 much to stop on a post whose marker cannot be read. Where both markers of a corridor were read, the map tells how long
 it was.
 """

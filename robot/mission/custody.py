@@ -87,7 +87,8 @@ class Custody:
         return opening(self._memory.verifiers(), self._memory.loadings(), order_id, purpose, self._utc())
 
     def hand_over(self, place: tuple[Mission, Stop], purpose: Purpose, post: str, proof: Proof) -> bool:
-        """What is aboard, how far the mission is and the receipt, in the caller's transaction; False if it was done."""
+        """Store the cargo, the mission's progress and the receipt, in the caller's transaction; False if it was
+        done."""
         mission, stop = place
         order_id = stop.order_id or ""
         if not self._memory.first_time(mission.id, f"handover:{stop.id}"):
@@ -131,7 +132,7 @@ def opening(
 ) -> tuple[str, ...]:
     """Return the accepted hand-over codes, as SHA-256.
 
-    Mail that is brought back is given to its recipient too, and to whoever shows the code that it was loaded with.
+    Mail that is brought back is given to its recipient too, and to a person who shows the code that it was loaded with.
     """
     fit = {purpose, Purpose.RECEIVE} if purpose is Purpose.RETURN else {purpose}
     codes = [

@@ -1,5 +1,5 @@
-"""Which latched stops hold, in a file of its own: a robot that somebody stopped stays so, even if its mind was dead by
-then and the restart was what somebody tried first.
+"""The latched stops that hold, in a file of its own: a robot that was stopped stays so, even if its mind was dead by
+then and a restart was the first thing tried.
 
 The mind's memory keeps faults, too, together with what was told about them; this is what the body remembers alone.
 """
@@ -28,7 +28,7 @@ class StopMemory:
         self._kept = self.read()
 
     def read(self) -> frozenset[str]:
-        """A file that cannot be understood counts as a stop: somebody has to look anyway."""
+        """A file that cannot be understood counts as a stop: a technician has to look anyway."""
         try:
             names = json.loads(self._path.read_text("utf-8"))
             if not isinstance(names, list):

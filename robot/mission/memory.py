@@ -44,7 +44,7 @@ _LEG: Final = TypeAdapter[Leg | None](Leg | None)
 
 
 class Loading(Part):
-    """Where mail came aboard and by which code: None if nobody was identified (the Spot button)."""
+    """Where mail came aboard and by which code: None if no person was identified (the Spot button)."""
 
     post: str
     code_sha256: str | None = None
@@ -64,7 +64,7 @@ class Incoming:
 
 @dataclass(frozen=True)
 class Taken:
-    """What became of a durable message: was it new, and if the robot could not do as told, why."""
+    """The outcome of a durable message: was it new, and if the robot could not do as told, why."""
 
     reception: Reception
     refusal: MissionConflict | None = None
@@ -102,8 +102,9 @@ class Memory:
         """Take a mission or an update of it; False if it is the one held, or older than that. Raises MissionConflict.
 
         Stops that were done stay done: the next stop is the first whose id has not been passed yet. So do those of a
-        mission that was dropped: without network nobody knew that it was over, and it may have got an update. An order
-        that was cancelled and is named again has been given anew: the server names none that is still to be dropped.
+        mission that was dropped: without network the service did not know that it was over, and it may have got an
+        update. An order that was cancelled and is named again has been given anew: the server names none that is still
+        to be dropped.
         """
         with self._store.transaction() as database:
             held = self.mission()
@@ -309,7 +310,7 @@ class Memory:
             return position
 
     def moment(self) -> str | None:
-        """What it is about that leaves doubt of its place after a power cut (`navigation.remembering.Moment`)."""
+        """The action that leaves doubt of its place after a power cut (`navigation.remembering.Moment`)."""
         return self._read("moment", _WORD, None)
 
     def note_moment(self, moment: str) -> None:
@@ -370,7 +371,7 @@ class Memory:
                 pass
 
     def unhandled(self) -> list[Incoming]:
-        """Messages that were stored and that nobody has acted on yet, in order: after a restart, they come again."""
+        """Messages that were stored and not acted on yet, in order: after a restart, they come again."""
         with self._store.transaction() as database:
             rows = database.execute("SELECT journal, seq, type, body FROM inbox ORDER BY rowid").fetchall()
         return [Incoming(TO_ROBOT[name].model_validate_json(body), journal, seq) for journal, seq, name, body in rows]

@@ -39,7 +39,7 @@ from robot.mission.store import Store
 
 ChargeStep = Literal["low", "charging", "charged"]
 MAIL_ABOARD: Final = "mail_aboard"
-"""The fault of mail that nobody took, not even where it came from."""
+"""The fault of mail that could not be handed over, not even where it came from."""
 
 
 class NoSuchStop(RobotError):
@@ -63,14 +63,14 @@ class Duties:
         self._server, self._mailroom = server, mailroom
         self.custody = Custody(memory, outbox, utc, sign)
         self.rearm_asked = False
-        """Somebody at the service has looked, and lets a stopped robot go again; the mind passes it on."""
+        """A dispatcher has looked, and lets a stopped robot go again; the mind passes it on."""
         self.stop_asked = False
-        """Somebody at the service wants it to stand still at once; the mind passes it on, if the link has not yet."""
+        """The service wants it to stand still at once; the mind passes it on, if the link has not yet."""
         self.open_way: Callable[[OpenWay, float], str | None] = lambda _, __: "This robot has no map yet."
-        """Takes a corridor for open again, which somebody has looked at so many seconds ago; why not, or None. The
+        """Takes a corridor for open again, which a person has looked at so many seconds ago; why not, or None. The
         navigator knows the corridors."""
         self.forget_place_asked = False
-        """Somebody has taken it away, or will: wherever it believed to be does not count; for the navigator."""
+        """A person has taken it away, or will: its last believed place does not count; for the navigator."""
         self.revision = 0
         """Goes up with every change of what is held."""
         self.held = Held()
@@ -83,7 +83,7 @@ class Duties:
 
     @property
     def online(self) -> bool:
-        """Return whether the server can be reached now; a robot that works alone misses nobody."""
+        """Return whether the server can be reached now; a robot that works alone counts as online."""
         return self._server is None or self._server.online
 
     def _changed(self) -> None:
@@ -265,7 +265,7 @@ class Duties:
         self._changed()
 
     def finish_mission(self, mission_id: str, post: str | None) -> None:
-        """All stops are done: say so once, and be free for the next mission. Mail that nobody took is brought back."""
+        """End the mission: say so once, and be free for the next one. Mail that no recipient took is brought back."""
         mission = self.held.mission
         if mission is None or mission.id != mission_id:
             return
@@ -281,7 +281,7 @@ class Duties:
         self._told()
 
     def _tell_not_taken(self, post: str | None) -> None:
-        """Nobody took it back either: people are told which mail it is, and that it is still aboard."""
+        """Report mail that was not taken back either: which mail it is, and that it is still aboard."""
         left = self.memory.cargo()
         if left and MAIL_ABOARD not in self.memory.faults():
             reason = (
@@ -298,8 +298,8 @@ class Duties:
         return self._stop(stop_id)
 
     def loads_nothing_else(self, order_id: str, post: str) -> bool:
-        """Whether no other order is still to be loaded at this post. Its sender may stand there and press a button that
-        does not say whose mail it means."""
+        """Return whether no other order is still to be loaded at this post. Its sender may stand there and press a
+        button that does not say whose mail it means."""
         stops = self.held.mission.stops[self.held.next_stop :] if self.held.mission else ()
         loaded = {one.order_id for one in stops if one.action is StopAction.LOAD and one.post == post}
         return not loaded - {order_id} - self.held.cancelled
@@ -314,7 +314,7 @@ class Duties:
             if not self.custody.hand_over(place, purpose, post, Proof.seen(shown)):
                 return
             if purpose is Purpose.LOAD and self.memory.mission() is None:
-                self._bring_back(place[0])  # dropped while somebody loaded it: it is given back where it stands
+                self._bring_back(place[0])  # dropped while the sender loaded it: it is given back where it stands
         self._told()
         self._tell_taken(post)
 

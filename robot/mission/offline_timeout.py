@@ -17,7 +17,7 @@ class LongSilence:
     """From the start of the daemon until the service has had time to say so. Where it was not long, it is none."""
 
     lasts: bool | None = None
-    """None: nobody has looked yet."""
+    """None: not checked yet."""
     _online_since_s: float | None = None
 
     def look(self, held: Held, utc: datetime, online: bool, now: float) -> bool:

@@ -69,7 +69,7 @@ class Outbox:
             return number
 
     def pending(self, after: int = 0, limit: int = 100) -> Sequence[Kept]:
-        """The messages with a `seq` above `after` that nobody has acknowledged yet, oldest first, at most `limit`."""
+        """The messages with a `seq` above `after` that are not acknowledged yet, oldest first, at most `limit`."""
         with self._store.transaction() as database:
             rows = database.execute(
                 "SELECT seq, type, body FROM outbox WHERE seq > ? ORDER BY seq LIMIT ?", (after, limit)

@@ -38,7 +38,7 @@ class Claims:
         return self.alone or all(leg in self._held().grants for leg in legs)
 
     def may_be_in(self, leg: Leg) -> bool:
-        """Nobody else is let into a corridor that it was granted, whichever way it goes in there."""
+        """No other robot is let into a corridor that it was granted, whichever way it goes in there."""
         return self.alone or any(
             {leg.from_post, leg.to_post} == {one.from_post, one.to_post} for one in self._held().grants
         )
@@ -51,7 +51,7 @@ class Claims:
         if not self._waits or wanted != self._wanted:
             self._wanted, self._claim_id, self._waits = wanted, new_uuid(), True
             self._outbox.put(Claim(claim_id=self._claim_id, legs=wanted, goal=goal))
-            self._denied.clear()  # of older claims, for which nobody waits any more
+            self._denied.clear()  # of older claims, which no action waits for any more
             self._told()
         return self._claim_id
 
@@ -71,7 +71,7 @@ class Claims:
         return denied
 
     def hear(self, answer: Grant | Detour | Deny) -> None:
-        """What the service says. Memory holds what was granted already."""
+        """Apply the service's answer. Memory holds what was granted already."""
         is_asked_for = answer.claim_id == self._claim_id
         if is_asked_for:
             self._waits = False

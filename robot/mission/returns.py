@@ -1,4 +1,4 @@
-"""Bringing mail back: the mission that a robot gives itself when nobody took its mail, or when it is recalled."""
+"""Bringing mail back: the mission that a robot gives itself when its mail was not taken, or when it is recalled."""
 
 from collections.abc import Iterable, Mapping
 from typing import Final
@@ -15,7 +15,7 @@ WAIT_LIMIT_S: Final = 600.0
 def return_mission(
     cargo: Iterable[str], loadings: Mapping[str, Loading], mailroom: str | None, before: Mission | None
 ) -> Mission | None:
-    """Where each item is taken: to the mailroom if there is one, else to where it came aboard; None if nobody knows.
+    """Take each item to the mailroom if there is one, else to where it came aboard; None if that is unknown.
 
     One stop for each order, those of one post together; people get as long as the mission before gave them.
     """

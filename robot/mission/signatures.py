@@ -1,4 +1,4 @@
-"""The robot's own key: receipts are signed with it, so that nobody else can say that mail changed hands.
+"""The robot's own key: receipts are signed with it, so that only this robot can say that it handed mail over.
 
 Ed25519, made at enrolment; the private half never leaves the robot, the service keeps the public one.
 """
@@ -26,7 +26,7 @@ def new_key() -> tuple[str, str]:
 
 
 def signer(path: Path, robot: str) -> Callable[[HandoverReceipt], HandoverReceipt]:
-    """What puts this robot's signature under a receipt. Raises ConfigError."""
+    """Return a function that puts this robot's signature under a receipt. Raises ConfigError."""
     key = _read(path)
 
     def sign(receipt: HandoverReceipt) -> HandoverReceipt:

@@ -97,7 +97,7 @@ class Store:
     def transaction(self) -> Iterator[sqlite3.Connection]:
         """Commit everything or nothing to the disk. Inside another transaction of the same thread it joins that one.
 
-        Raises StorageFull or StorageFailed. A failure inside spoils the whole transaction, and whoever catches it
+        Raises StorageFull or StorageFailed. A failure inside spoils the whole transaction, and a caller that catches it
         half-way gets another at the end: SQLite may already have undone the first half.
         """
         with self._turn, self._named_errors():

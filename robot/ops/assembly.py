@@ -280,7 +280,7 @@ def join(
 
 
 def _put_down(parts: Parts, devices: Devices, simulation: Simulation | None) -> None:
-    """Whoever puts a robot down at POST:TOWARDS tells it so; one that goes on from a saved world knows by itself."""
+    """Tell a robot that is put down at POST:TOWARDS its place; one that goes on from a saved world knows by itself."""
     if simulation and simulation.start and devices.world and not devices.world.restored:
         post, _, towards = simulation.start.partition(":")
         if towards and post != "dock":

@@ -35,7 +35,8 @@ def line_sensor(settings: Settings, factory: Any) -> ThreeDiodes:
 
 
 def real_port(settings: Settings) -> tuple[WakeUpLine, Callable[[], SerialPort]]:
-    """What pulls BRC, and how to open the port; RTS belongs to the port, so that one opens it itself."""
+    """Return the line that pulls BRC, and how to open the port; RTS belongs to the port, so that one opens it
+    itself."""
     if settings.brc == "rts":
         rts = SerialRts(settings.serial_port)
         return rts, rts.open

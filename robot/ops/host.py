@@ -21,7 +21,7 @@ HWMON = Path("/sys/class/hwmon")
 COMMAND = "vcgencmd"
 COMMAND_LIMIT_S = 1.0
 JUMP_S = 2.0
-"""A clock that is kept by NTP is slewed; a step of so much is one that nobody expected."""
+"""A clock that is kept by NTP is slewed; a step of so much is unexpected."""
 DISK_LOW_MB = 100.0
 
 

@@ -140,7 +140,7 @@ class LockstepRunner:
 
 @dataclass
 class Governor:
-    """How fast a shared clock may run, so that the world keeps up with it.
+    """The speed limit of a shared clock, so that the world keeps up with it.
 
     A short lag is made up for by working on; only one that lasts slows the clock down, since other programs on the
     same machine take their turns too. With time to spare the clock goes faster again, up to what was asked.
@@ -170,7 +170,7 @@ class Governor:
 class ThreadedRunner:
     """A thread for each loop. A late loop never runs twice to catch up: the wheels need the present, not the past.
 
-    A thread that hangs keeps nobody: the others end without it, each with its `at_end`.
+    A thread that hangs does not hold up the others: they end without it, each with its `at_end`.
     """
 
     def __init__(self, loops: Sequence[Loop], clock: Clock) -> None:

@@ -52,7 +52,7 @@ class Wish:
 
 
 def clock_for(simulated: bool, path: Path | None, wish: Wish, settings: Settings, closing: ExitStack) -> Clock:
-    """The machine's time; a shared one; or, for a run that ends by itself and meets nobody, as fast as it goes."""
+    """The machine's time; a shared one; or, for a run that ends by itself and meets no other, as fast as it goes."""
     if path:
         try:
             return SharedClock(path)
@@ -99,7 +99,7 @@ def run_once(settings: Settings, clock: Clock, simulation: Simulation | None, wi
 
 
 def _shown_to_watchers(mind: Mind, link: Link, runner: Runner, clock: Clock) -> Callable[[float], None]:
-    """What is done after each tick of the mind for those who watch it from the service."""
+    """Return what runs after each tick of the mind for those who watch it from the service."""
     insights = Insights(mind, link, runner.lags, clock.utc)
     link.on_watch = lambda watch: insights.watch(watch.for_s, watch.whole)
     return insights.look
@@ -122,7 +122,7 @@ def _open_control(path: Path, control: Control) -> JsonSocket:
 
 
 def _check_door(path: Path) -> None:
-    """A path that somebody listens at is taken; one that is left over from a kill is not."""
+    """A path with a listening process is occupied; one that is left over from a kill is not."""
     with socket.socket(socket.AF_UNIX) as probe:
         try:
             probe.connect(str(path))

@@ -63,7 +63,7 @@ class SavedWorld:
             "y_m": pose.y_m,
             "heading_rad": pose.heading_rad,
             "battery_ratio": self._robot.battery.ratio,
-            # Not read again; for whoever looks at how it ended.
+            # Not read again; for a person who looks at how it ended.
             "mode": state["mode"],
             "wheels_mm_s": [round(speed) for speed in state["wheels_mm_s"]],
         }

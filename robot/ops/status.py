@@ -90,7 +90,7 @@ class StatusBoard:
         return {"server": self.server, "state": str(self.link.state), "problem": self.link.problem}
 
     def signs(self) -> dict[str, object]:
-        """What the watchdog looks at: a frame of the base heard, the drive loop and the mind gone on."""
+        """Return the signs that the watchdog checks: a frame of the base heard, the drive loop and the mind gone on."""
         view = self.mind.hands.body.view
         return {
             "serial": view.base.at_s if view.base else None,

@@ -24,7 +24,7 @@ class Lasting:
     constant_mm: float = 0.0
     impossible_mm: float = 0.0
     impossible_reads: int = 0
-    """How often so far, for whoever looks after the sensor."""
+    """The number of times so far, for the technician who looks after the sensor."""
     _reading: LineReading = NOTHING_SEEN
     _travelled_mm: float = 0.0
     _caster_works: bool = False
@@ -43,9 +43,9 @@ class Lasting:
             self.slipping_s += new.at_s - old.at_s
 
     def look(self, reading: LineReading, travelled_mm: float, marker: object, driven: bool = True) -> None:
-        """What the diodes and the camera saw last, and the way so far by the encoders.
+        """Take in what the diodes and the camera saw last, and the way so far by the encoders.
 
-        `driven`: by us. Somebody who pushes the robot across a hall says nothing about its diodes.
+        `driven`: by us. A person who pushes the robot across a hall says nothing about its diodes.
         """
         way_mm = travelled_mm - self._travelled_mm if driven else 0.0
         self._travelled_mm = travelled_mm
@@ -64,7 +64,7 @@ class Lasting:
         self.impossible_mm += way_mm
 
     def start_again(self) -> None:
-        """Somebody has looked and re-armed the robot: what was noticed before does not count any more."""
+        """A person has looked and re-armed the robot: what was noticed before does not count any more."""
         self.standing, self.slipping_s = False, 0.0
         self.constant_mm = self.impossible_mm = 0.0
 

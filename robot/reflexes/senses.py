@@ -23,7 +23,7 @@ class Senses:
     stop_asked: bool = False
     """An emergency stop from the command line, the service or a person's page."""
     rearm: bool = False
-    """Somebody has looked, and lets the robot go again: from anywhere, or by the Spot button, which works when
+    """A person has looked, and lets the robot go again: from anywhere, or by the Spot button, which works when
     everything above is dead. For one tick: a button that is still held must not undo the next stop."""
     own_wheels: bool = True
     """False while the firmware drives (docking touches the dock, which is no accident) or the base rests in Passive."""

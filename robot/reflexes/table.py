@@ -21,7 +21,7 @@ CAMERA_LOST_S = 60.0
 OFFLINE_S = 10.0
 SLIPPING_S = 2.0
 CONSTANT_MM = 3000.0
-"""Nobody drives so straight: the true size of the wheels alone carries the diodes over an edge of the tape before."""
+"""No robot drives so straight: the true size of the wheels alone carries the diodes over an edge of the tape before."""
 BLIND_MM = 15_000.0
 """No line at all for so long: all the rungs of a search together are half as long."""
 IMPOSSIBLE_MM = 300.0
@@ -54,7 +54,7 @@ class Fault:
     after_s: float
     """It must last so long before it counts."""
     clears_s: float | None
-    """It clears so long after the cause has gone; None: only when somebody re-arms the robot."""
+    """It clears so long after the cause has gone; None: only when a person re-arms the robot."""
     stands_within_s: float | None
     """The wheels stand so long after the cause at the latest, run-down included; None: they go on."""
     cleared_by: str
@@ -62,7 +62,7 @@ class Fault:
     told: str
     """What people are told."""
     halts: bool = False
-    """A plan cannot drive out of it: somebody has to see to the robot."""
+    """A plan cannot drive out of it: a technician has to see to the robot."""
     from_firmware: bool = False
     """It also takes the wheels from the firmware when that docks by itself."""
     stays: Callable[[Senses], bool] = _never
@@ -319,6 +319,6 @@ TOLD: Final = {fault.name: fault.told for fault in FAULTS}
 LATCHED: Final = frozenset(fault.name for fault in FAULTS if fault.clears_s is None)
 """Only a person ends these, not even a restart does."""
 HALTING: Final = frozenset(fault.name for fault in FAULTS if fault.halts)
-"""Faults that a plan cannot drive out of: somebody has to see to them."""
+"""Faults that a plan cannot drive out of: a technician has to see to them."""
 STOPPING: Final = frozenset(fault.name for fault in FAULTS if fault.response is Response.STOP)
 REFUSING: Final = frozenset(fault.name for fault in FAULTS if fault.response is Response.REFUSE_FORWARD)

@@ -1,4 +1,4 @@
-"""What a run is measured by: how each letter ended, how long the mission took against what it should take."""
+"""Figures of a run: how each letter ended, how long the mission took against what it should take."""
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
@@ -23,7 +23,7 @@ class Figures:
     mail, `None` unless everything was delivered. `way_m` is the shortest way by the map from the dock through the
     mission's posts in their order, and through every dock at which it charged on the way. `stops_s` is what it stood
     still for others in that time: waiting at a post for a person to hand over and for their hand to leave the box,
-    standing in a dock, and standing in front of somebody in its way. Turns, docking, searches, and waits for grants
+    standing in a dock, and standing in front of a person in its way. Turns, docking, searches, and waits for grants
     or for the network are no stops: they count against the robot.
     """
 

@@ -10,7 +10,7 @@ from robot.scenarios.actors.stand_in import StandIn, Told
 from robot.scenarios.scenario import Expectation
 
 SETTLES_S = 5.0
-"""Somebody who hears a tune reaches into the box; the robot's receipt may be a moment earlier."""
+"""A person who hears a tune reaches into the box; the robot's receipt may be a moment earlier."""
 
 
 NOTICES = frozenset(("marker_unread", "foreign_marker", "link_loss", "clock_jump", "disk_low"))
@@ -25,7 +25,7 @@ class Fate(StrEnum):
     HANDED_OVER = "handed_over"
     """It is where the robot says, and a person knows: the sender has it (still or again), or it is aboard and told."""
     LOST = "lost"
-    """Nobody was told that it will not arrive, or it is not where the robot says."""
+    """The service was not told that it will not arrive, or it is not where the robot says."""
     FALSE = "false"
     """A robot claimed what was not so."""
 

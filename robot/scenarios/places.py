@@ -24,7 +24,7 @@ def is_in(place: Place, campus: CampusMap, x_m: float, y_m: float) -> bool:
 
 
 def post_at(campus: CampusMap, x_m: float, y_m: float, within_m: float = AT_POST_M) -> str | None:
-    """The post at which somebody at this spot stands."""
+    """The post at which a person at this spot stands."""
     near = [(math.dist(post.point, (x_m, y_m)), post.name) for post in campus.posts.values()]
     distance_m, name = min(near)
     return name if distance_m <= within_m else None
@@ -41,7 +41,7 @@ def corridor_at(campus: CampusMap, x_m: float, y_m: float) -> str | None:
 
 
 def stands_at(stander: Stander, campus: CampusMap) -> Point:
-    """Where somebody stands in the way."""
+    """Where a person stands in the way."""
     if stander.at is not None:
         return Point(*stander.at)
     corridor = campus.corridor_named(stander.corridor or "")

@@ -1,4 +1,4 @@
-"""What stands in a scenario file: every key with its meaning. A test compares docs/scenarios.md with it.
+"""The keys of a scenario file, each with its meaning. A test compares docs/scenarios.md with it.
 
 Times are seconds since the start, lengths metres in the map's frame. What `after_post` names counts from the moment in
 which the robot first stands at that post: then `at_s` is so long after it.
@@ -16,7 +16,7 @@ Spot = tuple[float, float]
 
 
 class Table(BaseModel):
-    """Frozen and exact: a key that nobody declared is an error, never ignored."""
+    """Frozen and exact: an undeclared key is an error, never ignored."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
@@ -48,7 +48,7 @@ class RobotRow(Table):
 
 
 class Noise(Table):
-    """How imperfect floor, diodes and wheels are."""
+    """Imperfections of floor, diodes and wheels."""
 
     flip: Share = Field(default=0.0, description="chance that one look of a diode reads the opposite")
     edge_mm: Annotated[float, Field(ge=0, le=10)] = Field(
@@ -85,7 +85,7 @@ class NoNetwork(Place):
 
 
 class Walker(Table):
-    """Somebody who walks along a path and then is gone; stands where a robot is in the way."""
+    """A person who walks along a path and then is gone; stands where a robot is in the way."""
 
     path: tuple[Spot, ...] = Field(min_length=2, description="corners of the way, [[x, y], …]")
     at_s: Seconds = Field(default=0.0, description="when the walk begins")
@@ -94,7 +94,7 @@ class Walker(Table):
 
 
 class Stander(Table):
-    """Somebody (or something) in the way."""
+    """A person (or thing) in the way."""
 
     at: Spot | None = Field(default=None, description="where, [x, y]")
     corridor: str | None = Field(default=None, description="or on the tape of this corridor, as post2-post3")
@@ -118,7 +118,7 @@ class PersonAtPost(Table):
 
 
 class OrderRow(Table):
-    """A letter that somebody wants carried."""
+    """A letter that a sender wants carried."""
 
     id: Name = Field(description="name of the order")
     origin: str = Field(alias="from", description="post of the sender")
@@ -148,7 +148,7 @@ class FaultRow(Timed):
 
 
 class Deed(Timed):
-    """What a person does to a robot."""
+    """One thing that a person does to a robot."""
 
     do: Literal[
         "bump",
@@ -176,7 +176,7 @@ class Deed(Timed):
 
 
 class MessageRow(Timed):
-    """What the service says to a robot."""
+    """One message from the service to a robot."""
 
     say: Literal["pause", "resume", "cancel", "recall", "emergency_stop"] = Field(
         description="pause, resume, cancel, recall or emergency_stop"
@@ -185,7 +185,7 @@ class MessageRow(Timed):
 
 
 class Expectation(Table):
-    """What must hold at the end. Without a list, every order must have been delivered."""
+    """One condition that must hold at the end. Without a list, every order must have been delivered."""
 
     delivered: tuple[str, ...] | None = Field(default=None, description="orders whose mail the recipient must have")
     handed_over: tuple[str, ...] = Field(

@@ -37,7 +37,7 @@ Say = Callable[[float, str, str], None]
 
 
 def silent(_: float, __: str, ___: str) -> None:
-    """Nobody listens."""
+    """No listener."""
 
 
 class Stage:
@@ -217,7 +217,7 @@ class Stage:
         )
 
     def _errors(self) -> list[str]:
-        """What went wrong on the link, and goals of an agent that nobody could help."""
+        """Return what went wrong on the link, and an agent's goals that failed without a recovery plan."""
         link = [f"{name}: {error}" for name, session in self.service.sessions.items() for error in session.errors]
         return [*link, *(f"{actor.name}: {one}" for actor in self.actors for one in actor.parts.mind.failures)]
 

@@ -10,7 +10,7 @@ from robot.scenarios.actors.stand_in import StandIn
 from robot.scenarios.places import corridor_at
 
 NEAR_PERSON_M = 0.6
-"""A robot that stands so near to somebody in its way waits for them."""
+"""A robot that stands so near to a person in its way waits for them."""
 
 
 @dataclass
@@ -22,11 +22,11 @@ class Times:
     search_s: float = 0.0
     """Of these: the line was lost and looked for."""
     handover_s: float = 0.0
-    """It stood at a post where somebody was to come, until they had come."""
+    """It stood at a post where a person was to come, until they had come."""
     dock_s: float = 0.0
     """It stood in a dock."""
     person_s: float = 0.0
-    """It stood before somebody in its way."""
+    """It stood before a person in its way."""
 
     @property
     def stops_s(self) -> float:

@@ -72,7 +72,7 @@ def let_live(robot: SimulatedRobot, clock: RealClock, door: Door | None) -> None
         with life:
             life.wait()
     except WorldStopped as stopped:
-        traceback.print_exception(stopped.__cause__)  # where in the world: it is no mistake of whoever started it
+        traceback.print_exception(stopped.__cause__)  # where in the world: the caller made no mistake
         typer.echo(str(stopped), err=True)
         raise typer.Exit(FAILED) from stopped
     finally:

@@ -134,7 +134,7 @@ class Body:
         return True
 
     def _wanted(self, now: float) -> Wheels:
-        """What the host wants, or the firmware when it drives by itself."""
+        """Return the speeds that the host wants, or the firmware when it drives by itself."""
         interface = self.interface
         if interface.activity is Activity.NONE:
             self._seek = None
@@ -153,7 +153,8 @@ class Body:
         return wheels
 
     def _held(self, x_m: float, y_m: float, ahead_mm: float) -> bool:
-        """Whether something keeps the body from moving there: only what it would move into, so it can back off."""
+        """Return whether something keeps the body from moving there: only what it would move into, so it can back
+        off."""
         heading = self.base.heading_rad
         dock = self._dock
         if dock and dock.held and ahead_mm * math.cos(dock.turned_rad) > 0:
@@ -272,5 +273,5 @@ def _told(so_far: int, more: float) -> tuple[int, float]:
 
 
 def clipped(value: float, low: int, high: int) -> int:
-    """What does not fit into the packet stays at its end."""
+    """Clip to the packet's range: a value that does not fit stays at its end."""
     return min(max(round(value), low), high)

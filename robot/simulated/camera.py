@@ -10,7 +10,7 @@ from robot.simulated.frames import Frame, Renderer, View
 
 SHOWN_FOR_S = 20.0
 STEPS_WITH_IT_M = 0.3
-"""Whoever holds a code up does not run beside a robot that drives away."""
+"""A person who holds a code up does not run beside a robot that drives away."""
 
 
 class SimulatedCamera:
@@ -29,7 +29,7 @@ class SimulatedCamera:
         self.frames_read = 0
 
     def show(self, text: str, for_s: float = SHOWN_FOR_S) -> None:
-        """Somebody holds this text up as a QR code, for so long or until `hide`."""
+        """A person holds this text up as a QR code, for so long or until `hide`."""
         self._shown = (text, self._clock() + for_s, self._view())
 
     def hide(self) -> None:

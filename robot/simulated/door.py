@@ -43,7 +43,7 @@ class Door:
         self._tell = tell or dict
         self._answer_within_s = answer_within_s
         self._waiting: SimpleQueue[_Waiting] = SimpleQueue()
-        # Whoever plays the people may say nothing for hours.
+        # The client that plays the people may say nothing for hours.
         self._socket = JsonSocket(path, self._ask, silent_limit_s=None, name="door")
         robot.before_steps.append(self.serve)
 

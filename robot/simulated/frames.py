@@ -167,7 +167,7 @@ class Renderer:
         part[:] = cv2.add(part, noise, dtype=cv2.CV_8U)
 
     def _soften(self, part: Frame, marker: Marker, view: View) -> None:
-        """What moves while the shutter is open is smeared along the picture's rows."""
+        """Smear what moves while the shutter is open along the picture's rows."""
         distance_m = max(_seen(marker.x_m, marker.y_m, view, self._mount)[0], 0.05)
         px_per_s = self._mount.focal_px * (abs(view.speed_m_s) / distance_m + abs(view.turning_rad_s))
         smear = round(px_per_s * self._mount.exposure_s)
@@ -212,7 +212,7 @@ def sheet_corners(marker: Marker, view: View, mount: CameraMount) -> NDArray[np.
     away_m, right_m = _seen(marker.x_m, marker.y_m, view, mount)
     if not SEEN_FROM_M < away_m < SEEN_TO_M or abs(right_m) > away_m + marker.size_m:
         return None
-    # Facing it, the printed left edge is on the left of somebody who looks at it: along the face, turned right.
+    # Facing it, the printed left edge is on the viewer's left: along the face, turned right.
     face = marker.heading_rad
     if math.cos(face - (view.heading_rad + math.pi / 2)) > -0.1:
         return None

@@ -29,7 +29,7 @@ class Live:
             while not self._stop.wait(PAUSE_S):
                 self._robot.step_until(self._clock.now())
         except Exception as failure:
-            self._failure = failure  # for the thread that waits: nobody asks this one
+            self._failure = failure  # for the thread that waits: no caller asks this one
 
     def stop(self) -> None:
         """End `wait`; a signal handler may call it."""

@@ -17,7 +17,7 @@ BEAM_ENDS_M = 0.002
 
 @dataclass(frozen=True)
 class Person:
-    """Somebody who stands in the way."""
+    """A person who stands in the way."""
 
     x_m: float
     y_m: float

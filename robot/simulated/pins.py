@@ -1,7 +1,7 @@
 """The line sensor's pins: gpiozero's own mock pins, driven by what lies under three diodes.
 
 Three photodiodes in a row, left to right; a pin is low over the tape (prototype: LTH1550-01, GPIO14, 15, 18 on header
-pins 8, 10, 12 for right, centre, left). Spacing and lead are settings of whoever mounts them.
+pins 8, 10, 12 for right, centre, left). Spacing and lead are the technician's settings.
 """
 
 import math

@@ -1,4 +1,4 @@
-"""Somebody pushes a robot over the tape, to and fro, so that each diode meets it."""
+"""A person pushes a robot over the tape, to and fro, so that each diode meets it."""
 
 import math
 from collections.abc import Iterator

@@ -41,7 +41,7 @@ class Options:
 class SimulatedRobot:
     """One robot in a world of its own, or in `world` together with others.
 
-    `clock_now` is the present time of whoever will call `step_until`. The serial port is a pseudo-terminal
+    `clock_now` is the present time of the caller of `step_until`. The serial port is a pseudo-terminal
     (`port_path`, optionally linked from `link`), or with `in_memory` an object (`memory_port()`) for stepped time.
     Same seed, same steps and same inputs give the same outputs. Raises UnknownStart.
     """
@@ -87,7 +87,7 @@ class SimulatedRobot:
 
     @property
     def port_path(self) -> str:
-        """What to give to pyserial."""
+        """The path to give to pyserial."""
         if isinstance(self._line, MemoryLine):
             raise WrongValue("port_path", "in_memory", "a robot with a pseudo-terminal; use memory_port()")
         return self._line.path
@@ -168,7 +168,7 @@ class SimulatedRobot:
         self._renderer.forget_sheets()
 
     def lift(self, on: bool) -> None:
-        """Both wheels hang down, as when somebody picks the robot up."""
+        """Both wheels hang down, as when a person picks the robot up."""
         self.set_fault("wheel_drop_left", on)
         self.set_fault("wheel_drop_right", on)
 
@@ -218,7 +218,8 @@ class SimulatedRobot:
         return self._body.docked
 
     def tunes_since(self, number: int) -> tuple[int, list[tuple[int, ...]]]:
-        """What its speaker has played since the `number` that the last call gave (0 at first), as MIDI numbers."""
+        """Return what its speaker has played since the `number` that the last call gave (0 at first), as MIDI
+        numbers."""
         book = self._body.interface.actuators.songs
         number = min(number, len(book.played))  # a reset forgets all songs
         notes = [tuple(note for note, _ in book.songs.get(song, ())) for song in book.played[number:]]

@@ -1,5 +1,5 @@
-"""How each long action ends: its time limit, what it gives, and by which names it fails. A test holds this against the
-skills themselves; docs and plans of the agent go by it."""
+"""The ends of each long action: its time limit, what it gives, and by which names it fails. A test holds this against
+the skills themselves; docs and plans of the agent go by it."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

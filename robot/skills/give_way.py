@@ -13,12 +13,12 @@ NEAR_SOMETHING_MM_S = 65.0
 bumpers of the simulated world see 120 mm far (docs/safety.md)."""
 MOST_BUMPS = 3
 GIVES_WAY_S = (6.0, 8.0)
-"""How long it waits after each bump but the last, from where the reflex lets it go on: whoever is in the way has heard
+"""How long it waits after each bump but the last, from where the reflex lets it go on: a person in the way has heard
 it and can step aside. The reflex has then stood for 2 s behind the 80 mm that it went back, whatever was ahead."""
 FREE_S = 1.0
 """It goes on before that once nothing has been ahead for so long without a break."""
 SAME_PLACE_MM = 300.0
-"""Touched again within this of the last time by what it has not seen: there is somebody whom it does not see."""
+"""Touched again within this of the last time by what it has not seen: there is a person whom it does not see."""
 
 
 def most_mm_s(view: View) -> float:
@@ -40,7 +40,8 @@ class GiveWay:
         return view.bumps - self._bumps_before >= MOST_BUMPS
 
     def stands(self, view: View, now: float) -> bool:
-        """Whether to wait; asked at every tick in which no reflex holds the wheels, and only while not `blocked`."""
+        """Return whether to wait; asked at every tick in which no reflex holds the wheels, and only while not
+        `blocked`."""
         if view.bumps > self._bumps:
             self._bumped(view, now)
         if now < self._until_s and not (self._trusts_lights and now - view.something_ahead_s >= FREE_S):

@@ -16,7 +16,7 @@ FORGET_WRONG_S = 3.0
 class WaitHandover:
     """Done(shown=the code) when it matches, Done() when Spot was pressed twice; else no_one_came.
 
-    It does not say that a code was right: whoever starts it does, once the hand-over is written down.
+    It does not say that a code was right: the caller does, once the hand-over is written down.
     """
 
     name: ClassVar[str] = "wait_handover"

@@ -1,4 +1,4 @@
-"""What a skill is: a long action under the agent, stepped by the drive loop, that ends done or failed with a reason.
+"""A skill: a long action under the agent, stepped by the drive loop, that ends done or failed with a reason.
 
     body.start(FollowLine(campus, leaving="post1"), now)  -> job id, at once, from any thread
     body.finished()                                       -> [JobEnd(job=1, skill="follow_line", outcome=Done("post2"))]
@@ -101,7 +101,7 @@ BaseRequest = SetMode | SeekDock | Play | ShowLights
 
 @dataclass(frozen=True, slots=True)
 class Running:
-    """Go on. `wheels` None leaves them to the firmware (docking) or to nobody (a skill that does not move)."""
+    """Go on. `wheels` None leaves them to the firmware (docking) or to no one (a skill that does not move)."""
 
     wheels: WheelSpeeds | None = None
     requests: tuple[BaseRequest, ...] = ()
@@ -194,11 +194,11 @@ class Body(Protocol):
         ...
 
     def rearm(self) -> None:
-        """Somebody has looked, and lets a robot go again that was stopped; so does the Spot button on it."""
+        """A person has looked, and lets a robot go again that was stopped; so does the Spot button on it."""
         ...
 
     def link(self, online: bool) -> None:
-        """Whether the service can be reached now. Not called at all by a robot that works alone."""
+        """Tell whether the service can be reached now. Not called at all by a robot that works alone."""
         ...
 
     @property

@@ -98,7 +98,7 @@ class LineEstimate:
         ]
 
     def see(self, reading: LineReading, within_mm: float = math.inf) -> None:
-        """What the diodes say: an edge that has just passed, or a side on which the estimate must not be.
+        """Take in what the diodes say: an edge that has just passed, or a side on which the estimate must not be.
 
         A line farther than `within_mm` from where this one should be is another.
         """

@@ -34,7 +34,7 @@ class Scripted:
     limit_s: float = 60.0
 
     def script(self, view: View) -> Script:
-        """What it does, from the first view on."""
+        """Return the steps, from the first view on."""
         raise NotImplementedError
 
     def start(self, view: View, now: float) -> None:

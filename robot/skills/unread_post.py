@@ -84,7 +84,7 @@ class UnreadPost:
                 self.branch_mm = self._branch_just_passed(at_mm)
 
     def like_branch(self, reading: LineReading) -> bool:
-        """What the diodes read with the line in the middle and its branch beside it."""
+        """Return whether the diodes read as with the line in the middle and its branch beside it."""
         beside = (self._left or self._right) and (reading.left or not self._left) and (reading.right or not self._right)
         return all(reading) or (reading.centre and beside)
 

@@ -1,4 +1,4 @@
-"""What several packages of the robot's tests begin with."""
+"""Fixtures that several packages of the robot's tests share."""
 
 from collections.abc import Iterator
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What the daemon has in its hands at the robot's end of the link. The other end: benchmarks/body/played_server.py."""
+"""The daemon's parts at the robot's end of the link. The other end: benchmarks/body/played_server.py."""
 
 import asyncio
 import time
@@ -23,7 +23,7 @@ MISSION = Mission(id="m1", update=1, stops=(Stop(id="s1", post="post1", action=S
 
 @dataclass
 class Robot:
-    """What the daemon has in its hands."""
+    """The daemon's parts at the robot's end of the link."""
 
     store: Store
     outbox: Outbox

@@ -70,7 +70,7 @@ def claim(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
 
 
 def _give_back(hands: Hands, first: Sequence[Leg], way: Sequence[Leg]) -> None:
-    """What it does not need now, as long as it stands where it is in none of it. Without network it keeps all: no other
+    """Release corridors that it does not need while it stands in none of them. Without network it keeps all: no other
     robot would come to know, and it may be the only way out of there."""
     if hands.navigator.at and hands.duties.online:
         kept = (*first, *_granted_ahead(hands, way), detour(hands))
@@ -82,8 +82,9 @@ def _from_here(hands: Hands, legs: Sequence[Leg]) -> tuple[Leg, ...]:
 
 
 def _granted_ahead(hands: Hands, way: Sequence[Leg]) -> Iterator[Leg]:
-    """What it may drive through from here without a stop. A corridor to which it comes only after others, not granted
-    yet, is not kept: the service thinks the robot in what it holds, and grants it nothing meanwhile."""
+    """Yield the legs that it may drive through from here without a stop. A corridor to which it comes only after
+    others, not granted yet, is not kept: the service thinks the robot in what it holds, and grants it nothing
+    meanwhile."""
     end, granted = hands.navigator.at, hands.duties.held.grants
     for leg in way:
         if leg not in granted or leg.from_post != end:
@@ -126,8 +127,9 @@ def _way(hands: Hands, goal: str) -> tuple[Leg, ...]:
 
 
 def _kept(hands: Hands) -> tuple[Leg, ...]:
-    """What it goes on holding while no way is open. Where another robot is in the way it lets go of everything, so that
-    this one can go on. Where something stands in a corridor it keeps what it has been granted: without network there
+    """Return the corridors that it goes on holding while no way is open. Where another robot is in the way it lets go
+    of everything, so that this one can go on. Where something stands in a corridor it keeps what it has been granted:
+    without network there
     it would never be granted anything again."""
     return () if hands.duties.claims.avoid else hands.duties.held.grants
 

@@ -58,7 +58,7 @@ class Rest:
 
 
 class Wait:
-    """Until a question has an answer; `dropped` is called if nobody wants one any more."""
+    """Until a question has an answer; `dropped` is called if the answer is no longer wanted."""
 
     def __init__(self, ask: Callable[[], Ended | None], dropped: Callable[[], None] = lambda: None) -> None:
         self._ask, self._dropped = ask, dropped

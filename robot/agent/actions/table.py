@@ -153,7 +153,7 @@ def _finish_mission(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
 
 STANDS_FOR_HANDS_S = 5.0
 """So long the robot stands after the tune that says yes, for a person to put mail into its box or to take it out and to
-step back. Assumed: nobody has measured how long people take."""
+step back. Assumed: how long people take has not been measured."""
 
 
 def _wait_handover(hands: Hands, arguments: Sequence[Value], now: float) -> Run:
@@ -162,7 +162,7 @@ def _wait_handover(hands: Hands, arguments: Sequence[Value], now: float) -> Run:
     waiting = Waiting(place, purpose, hands.place or place[1].post)
 
     def promise() -> None:
-        """Written down first, then promised: whoever hears the tune may let go of the mail."""
+        """Written down first, then promised: a person who hears the tune may let go of the mail."""
         hands.body.start(Say("accepted"), now)
 
     def custody(done: Done) -> None:
@@ -171,7 +171,7 @@ def _wait_handover(hands: Hands, arguments: Sequence[Value], now: float) -> Run:
         promise()
 
     def spot_counts() -> bool:
-        """Only loading may be confirmed by the Spot button: it identifies nobody."""
+        """Only loading may be confirmed by the Spot button: it identifies no person."""
         return purpose is Purpose.LOAD and duties.loads_nothing_else(order_id, waiting.post)
 
     skill = WaitHandover(lambda: duties.codes(order_id, purpose), float(limit_s), spot_counts)

@@ -102,7 +102,7 @@ class GrabbingCamera:
         return device
 
     def _grab(self) -> None:
-        """Alone with the device: OpenCV's read may block for ten seconds, and nobody else may free it meanwhile."""
+        """Alone with the device: OpenCV's read may block for ten seconds, and no other thread may free it meanwhile."""
         while not self._closing.is_set():
             if self._device is None:
                 self._reopen()
@@ -149,7 +149,7 @@ class GrabbingCamera:
         return frame is not None, frame
 
     def describe(self) -> CameraState:
-        """What it gives, for people who set it up; the rate is the mean since the start."""
+        """Describe the camera's output, for people who set it up; the rate is the mean since the start."""
         now = time.monotonic()
         rate = self._frames / max(0.001, now - self._since_s)
         height_px, width_px = self._shape

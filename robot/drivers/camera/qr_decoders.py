@@ -60,7 +60,8 @@ STRONG = 20
 
 
 def may_hold_code(grey: Frame) -> bool:
-    """Whether anything in the frame stands out: an empty wall is not searched for codes (0.2 ms instead of 3)."""
+    """Return whether anything in the frame stands out: an empty wall is not searched for codes (0.2 ms instead of
+    3)."""
     cells = cv2.resize(grey, None, fx=1 / CELL_PX, fy=1 / CELL_PX, interpolation=cv2.INTER_AREA)
     steps = cv2.absdiff(cells[:, 1:], cells[:, :-1])
     counts = cv2.calcHist([steps], [0], None, [256], [0, 256]).ravel()

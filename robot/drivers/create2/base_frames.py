@@ -6,7 +6,7 @@ from dataclasses import replace
 from robot.drivers.interfaces import BaseState, ChargingState, Mode
 
 PRESSED_FOR_S = 0.3
-"""A press of a button is shown so long at least: whoever looks ten times a second must see it."""
+"""A press of a button is shown at least so long: a loop that looks ten times a second must see it."""
 BUTTONS = 0b111
 
 
@@ -48,7 +48,7 @@ def state_of(raw: Mapping[str, int], counts: tuple[int, int], mode: Mode, now: f
 
 
 def together(earlier: BaseState | None, later: BaseState) -> BaseState:
-    """The later state, with the touches and buttons of one that nobody has looked at."""
+    """The later state, with the touches and buttons of an earlier one that was never read."""
     if earlier is None:
         return later
     return replace(

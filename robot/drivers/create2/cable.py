@@ -19,7 +19,7 @@ Chunk = Callable[[bytes, float], None]
 
 
 def _nobody(_: bytes, __: float) -> None:
-    """Nobody listens in."""
+    """No listener."""
 
 
 class Cable:
@@ -42,7 +42,7 @@ class Cable:
         return self.port is not None
 
     def read(self, now: float) -> bytes:
-        """What has arrived; opens the port again when it is time to."""
+        """Read the bytes that have arrived; open the port again when it is time to."""
         if self.port is None and not self._reopened(now):
             return b""
         try:
@@ -92,7 +92,7 @@ class Cable:
             self._lose(str(error), now)
 
     def forget(self) -> None:
-        """What still waits is not sent any more."""
+        """Discard the bytes that still wait to be sent."""
         self._outgoing.clear()
 
     def close(self, last: bytes, now: float) -> None:

@@ -59,7 +59,7 @@ class Create2:
 
     @property
     def port(self) -> SerialPort | None:
-        """What bytes are to be waited for at; None while the cable is pulled."""
+        """The port to wait at for bytes; None while the cable is pulled."""
         return self._cable.port
 
     def listen_in(self, heard: Chunk, sent: Chunk) -> None:

@@ -1,7 +1,7 @@
 """The dock's infrared as a position source: on which side of the dock's middle line the robot stands, and how near.
 
-A dock sends two beams that overlap on its middle line, and a force field of about half a metre round itself. Somebody
-who approaches has the green beam on the left and the red one on the right. Characters: the table of IR characters of
+A dock sends two beams that overlap on its middle line, and a force field of about half a metre round itself. A robot
+that approaches has the green beam on the left and the red one on the right. Characters: the table of IR characters of
 the Create 2 notes; two families of docks send the same in different bits.
 """
 
@@ -22,7 +22,7 @@ class Side(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class DockSight:
-    """What one character, or several at once, says. `side` None: the force field alone."""
+    """The meaning of one character, or of several at once. `side` None: the force field alone."""
 
     side: Side | None
     near: bool
@@ -59,7 +59,7 @@ SAME_FOR_S = 1.0
 
 
 def dock_sight(characters: Iterable[int]) -> DockSight | None:
-    """What the receivers see together; None where none sees a dock: remotes and virtual walls are none."""
+    """Combine what the receivers see; None where none sees a dock: remotes and virtual walls are none."""
     bits = [family.bits(character) for character in characters for family in FAMILIES]
     field, green, red = (any(bit) for bit in zip(*bits, strict=True)) if bits else (False, False, False)
     if not (field or green or red):

@@ -5,7 +5,7 @@ from robot.drivers.create2.odometry import counts_between
 FASTEST_COUNTS_S = 700.0
 """300 mm/s: half as much again as the base is ever told, for the time of a silence."""
 SPARE_COUNTS = 120
-"""Within a frame of 15 ms: 3.5 m/s, for somebody who pushes it."""
+"""Within a frame of 15 ms: 3.5 m/s, for a person who pushes it."""
 
 
 class EncoderCounts:

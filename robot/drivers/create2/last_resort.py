@@ -1,4 +1,4 @@
-"""Stopping the base when no daemon does: bytes straight into the port, past whoever holds it.
+"""Stopping the base when no daemon does: bytes straight into the port, past the process that holds it.
 
 A daemon that hangs still holds its lock on the port, and the base drives on, since drive commands latch. So this opens
 the device itself, without asking for the lock. `deploy/stop-base` sends the same bytes from a shell.

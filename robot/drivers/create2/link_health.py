@@ -21,7 +21,7 @@ class LinkHealth:
     silent_s: float = 0.0
     """Since the last frame of the base (or since the daemon started)."""
     down: bool = False
-    """Silent for more than a minute, whatever was tried: somebody has to look. Nothing that the base said before
+    """Silent for more than a minute, whatever was tried: a technician has to look. Nothing that the base said before
     holds any more, its charging least of all."""
     awoken_by: str | None = None
     """Which step of the start ladder ended the last silence."""

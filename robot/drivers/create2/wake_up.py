@@ -51,7 +51,8 @@ class SerialRts:
         return self._port
 
     def low(self, on: bool) -> None:
-        """RTS on is low at the plug. A port without RTS (ENOTTY on a pseudo-terminal) wakes nobody, and is known to."""
+        """RTS on is low at the plug. A port without RTS (ENOTTY on a pseudo-terminal) wakes no base, and is known
+        to."""
         if self._port is None or not self.wired:
             return
         try:

@@ -47,7 +47,7 @@ class LatchedSpeeds:
         return self.still and self._told_to_turn_s is not None and now - self._told_to_turn_s >= STANDING_S
 
     def ask(self, wanted: WheelSpeeds, now: float) -> tuple[WheelSpeeds, bool]:
-        """What can be driven of it, and whether it has to be sent now."""
+        """Return the speeds that can be driven, and whether they have to be sent now."""
         speeds = possible(wanted, self._speed_cap_mm_s)
         self._until_s = now + self._deadline_s
         settled = speeds == self.sent and (now - self._sent_s < REPEAT_S or (speeds.still and self.still))
@@ -75,7 +75,7 @@ class LatchedSpeeds:
         return True
 
     def hand_over(self) -> None:
-        """Somebody else drives, or the base has been stopped by other means."""
+        """Another controller drives, or the base has been stopped by other means."""
         self.started_anew()
         self._until_s = None
 

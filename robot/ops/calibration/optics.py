@@ -1,4 +1,4 @@
-"""The camera's field of view, from one marker at a distance that somebody measured."""
+"""The camera's field of view, from one marker at a measured distance."""
 
 import math
 from collections.abc import Iterable

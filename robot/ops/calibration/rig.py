@@ -19,7 +19,7 @@ class CalibrationFailed(RobotError):
 
 @dataclass(frozen=True)
 class Counts:
-    """What both encoders have counted since the rig was made; forwards is positive."""
+    """Counts of both encoders since the rig was made; forwards is positive."""
 
     left: int = 0
     right: int = 0
@@ -37,7 +37,7 @@ class Counts:
 class Rig:
     """`let_pass(seconds)` waits or steps a simulated world, and says what time it is then.
 
-    Stops for a touch, a drop, a cliff: whoever calibrates stands beside it and forgets his foot.
+    Stops for a touch, a drop, a cliff: the technician stands beside it and may forget a foot in the way.
     """
 
     def __init__(self, base: Base, let_pass: Callable[[float], float]) -> None:

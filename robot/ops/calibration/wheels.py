@@ -1,4 +1,4 @@
-"""Millimetres per count from a way that somebody measures, and the wheel base from full turns over the line."""
+"""Millimetres per count from a way that a technician measures, and the wheel base from full turns over the line."""
 
 import math
 from collections.abc import Callable

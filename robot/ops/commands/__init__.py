@@ -1,1 +1,1 @@
-"""What a maintainer types: one module for each command of `python -m robot`. Only these print."""
+"""The maintainer's commands: one module for each command of `python -m robot`. Only these print."""

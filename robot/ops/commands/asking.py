@@ -1,4 +1,4 @@
-"""What the commands of a maintainer have in common: which robot is meant, and how a command ends that cannot begin."""
+"""Helpers shared by the maintainer's commands: which robot is meant, and how a command ends that cannot begin."""
 
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager
@@ -14,7 +14,7 @@ from robot.simulated import SimulatedWorldError
 
 UNFINISHED, MISUSE = 1, 2
 INSTALLED = Path("/etc/campus-mail/robot.toml")
-"""Where docs/operation.md puts the settings; meant when nobody says otherwise."""
+"""Where docs/operation.md puts the settings; the default of every command."""
 
 OTHER_FOLDER = "Start it (systemctl start campus-mail-robot), or name the folder of one that runs: --data, --config."
 

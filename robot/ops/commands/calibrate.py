@@ -207,13 +207,13 @@ def _ready(config: Any, simulated: bool) -> Settings:
 
 
 def _give_up(problem: Exception) -> NoReturn:
-    """What has to be put right first is told apart from a measurement that failed."""
+    """Exit: a problem to solve first is told apart from a measurement that failed."""
     typer.echo(f"{problem}\nNothing was written.", err=True)
     raise typer.Exit(MISUSE if isinstance(problem, PortAbsent | PortBusy | ConfigError) else UNFINISHED)
 
 
 def _write(config: Any, settings: Settings, found: Found, simulated: bool, yes: bool) -> None:
-    """What a simulated robot is like is no setting of a real one."""
+    """Write the result, but never a simulated robot's values into a real one's settings."""
     path = settings_path(config) or INSTALLED
     for key, new in found.items():
         section, _, name = key.partition(".")

@@ -51,8 +51,8 @@ def logs(
 def _dumped(settings: Settings) -> Path:
     try:
         answer = ask(settings.data / SOCKET_NAME, {"do": "black_box"}, limit_s=15.0)
-    except RobotError as nobody:
-        refuse(f"{nobody} {OTHER_FOLDER}")
+    except RobotError as error:
+        refuse(f"{error} {OTHER_FOLDER}")
     if not answer["ok"]:
         refuse(answer["error"])
     return Path(answer["file"])
@@ -76,7 +76,7 @@ def _shown(file: Path | None, newest: int, follow: bool) -> int:
 
 
 def journal_of(unit: str, newest: int, follow: bool) -> int:
-    """What systemd's journal has of this unit. Where it has nothing, that is said; --follow then waits for more."""
+    """Print systemd's journal of this unit. Where it has nothing, that is said; --follow then waits for more."""
     journalctl = ["journalctl", "--no-pager", "--unit", unit]
     if not shutil.which(journalctl[0]):
         refuse(f"There is no journalctl here, since there is no systemd. {WRITES_ELSEWHERE}")

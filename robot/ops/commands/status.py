@@ -17,8 +17,8 @@ def status(config: ConfigOption = None, data: DataOption = None, as_json: JsonOp
     """
     try:
         told = ask(settings_of(config, data).data / SOCKET_NAME, {"do": "status"})
-    except NobodyAnswers as nobody:
-        typer.echo(f"{nobody} {OTHER_FOLDER}", err=True)
+    except NobodyAnswers as error:
+        typer.echo(f"{error} {OTHER_FOLDER}", err=True)
         raise typer.Exit(UNFINISHED) from None
     print(json.dumps(told) if as_json else "\n".join(lines(told)))
     if told.get("faults"):

@@ -65,6 +65,6 @@ def _asked(settings: Settings, what: str) -> str | None:
     """None when it is done, else what hindered it."""
     try:
         answer = ask(settings.data / SOCKET_NAME, {"do": what})
-    except NobodyAnswers as nobody:
-        return str(nobody)
+    except NobodyAnswers as error:
+        return str(error)
     return None if answer.get("ok") else f"The robot answered: {answer.get('error')}"

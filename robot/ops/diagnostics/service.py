@@ -1,6 +1,6 @@
-"""Who watches, and what they are told: at most twice a second, between two cycles of the mind, never in its way.
+"""Live diagnostics of the mind: at most twice a second, between two of its cycles, never in its way.
 
-While nobody watches, a tick of the mind costs one comparison and the agent has no listener. While somebody does, each
+Without a watcher, a tick of the mind costs one comparison and the agent has no listener. With one, each
 tick may add lines to a bounded list; twice a second they become one insight, which the link takes when it has sent the
 one before. A slow link makes insights rarer, and the oldest lines are dropped; what was dropped is counted.
 """
@@ -52,7 +52,7 @@ class Insights:
         utc: Callable[[], datetime],
         stopwatch: Callable[[], float] = time.monotonic,
     ) -> None:
-        """`stopwatch`: seconds of the machine, since nobody watches faster because a simulated clock runs faster."""
+        """`stopwatch`: seconds of the machine, since no person watches faster because a simulated clock runs faster."""
         self._mind, self._outlet, self._lags = mind, outlet, lags
         self._utc, self._stopwatch = utc, stopwatch
         self._until_s = 0.0
@@ -65,7 +65,7 @@ class Insights:
         self._beliefs: dict[str, None] = {}
 
     def watch(self, for_s: float, whole: bool) -> None:
-        """Somebody looks, for so long."""
+        """Collect insights for a watcher, for so long."""
         self._whole = self._whole or whole
         self._until_s = self._stopwatch() + for_s
 
@@ -128,7 +128,7 @@ class Insights:
         return insight.model_copy(update={"loops": timings(self._lags)})
 
     def _changes(self, whole: bool) -> tuple[tuple[str, ...], tuple[str, ...], int]:
-        """What has come and gone since the last insight, and how many beliefs are not looked at."""
+        """Return what has come and gone since the last insight, and how many beliefs are not looked at."""
         beliefs = self._mind.agent.beliefs
         now = dict.fromkeys(short(str(one)) for one in islice(beliefs, MOST_BELIEFS))
         before, self._beliefs = ({} if whole else self._beliefs), now

@@ -20,7 +20,7 @@ LOW_MV = 13_200
 
 
 def port(patient: Patient) -> Finding:
-    """Check whether the serial port is there, may be opened, and is nobody else's."""
+    """Check whether the serial port is there, may be opened, and is not held by another process."""
     name = patient.settings.serial_port
     if "://" in name:
         return skip(f"{name} is no device of this computer")

@@ -63,7 +63,7 @@ def packages(patient: Patient) -> Finding:
 
 
 def settings(patient: Patient) -> Finding:
-    """What `settings --check` says, map, home dock, agent program and token file included."""
+    """Run `settings --check`, map, home dock, agent program and token file included."""
     try:
         check_settings(patient.settings)
     except (ConfigError, CampusMapError, BdiError) as problem:
@@ -144,7 +144,7 @@ def _throttled(patient: Patient) -> int | None:
 
 
 def _asked(patient: Patient, *command: str) -> str | None:
-    """What a program of this system prints; None where there is none, or where the system is a made-up one."""
+    """Return what a program of this system prints; None where there is none, or where the system is a made-up one."""
     if patient.root.resolve().parent != patient.root.resolve():
         return None
     try:

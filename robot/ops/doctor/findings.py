@@ -57,7 +57,7 @@ class Patient:
     daemon: dict[str, Any] | None = None
     """What a running daemon says of itself; then port, pins and camera are its."""
     push_s: float = 0.0
-    """So long somebody pushes the robot over the tape."""
+    """So long the technician pushes the robot over the tape."""
     patience: float = 1.0
     """Share of the usual time that a device is listened to."""
     tell: Callable[[str], None] = field(default=lambda _: None)

@@ -20,7 +20,7 @@ NO_WAY = "Check the network, the address and the certificate; the robot drives w
 
 
 def token(patient: Patient) -> Finding:
-    """Whether the service lets this robot in. We never say hello: that would take the place of a running daemon."""
+    """Check that the service lets this robot in. We never say hello: that would take the place of a running daemon."""
     url = patient.settings.server
     if url is None:
         return skip("no server is set: this robot works alone")

@@ -1,4 +1,4 @@
-"""A robot of a scenario from the outside: what somebody beside it sees and hears."""
+"""A robot of a scenario from the outside: what a person beside it sees and hears."""
 
 from dataclasses import dataclass, field
 from typing import Final
@@ -33,7 +33,7 @@ class Actor:
     heard: list[str] = field(default_factory=list)
     """Tunes since the last look."""
     carried: bool = False
-    """Somebody has put it somewhere, and it has not come to a post since: it cannot know which corridor it is in."""
+    """A person has put it somewhere, and it has not come to a post since: it cannot know which corridor it is in."""
     _put_down: bool = False
     _songs: int = 0
 
@@ -55,7 +55,7 @@ class Actor:
         self._listen()
 
     def carry(self, pose: Pose) -> None:
-        """Somebody puts it there."""
+        """A person puts it there."""
         self.body.place(pose)
         self.carried = self._put_down = True
 

@@ -22,14 +22,14 @@ NOTICES_AFTER_S: Final = 1.5
 """A robot that has stood for so long is taken to wait."""
 WALKS_UP_S: Final = (1.0, 4.0)
 SHOWS_S, RESTS_S = 8.0, 4.0
-"""Somebody holds a code up for so long, then looks what is the matter; others at the post get their turn."""
+"""A person holds a code up for so long, then looks what is the matter; others at the post get their turn."""
 PRESS_EVERY_S = 0.8
 REACHES_IN_S: Final = (1.0, 3.5)
 """From the tune that says yes until the mail is in the box, or out of it."""
 DRIVES_OFF_S: Final = 3.0
 """A robot that a person attends to may be pushed and go back a hand's breadth; one that rolls for so long leaves."""
 GOES_ROUND_AFTER_S: Final = 4.0
-"""Whoever walks and finds a robot in the way stands so long before going round it."""
+"""A walker who finds a robot in the way stands so long before going round it."""
 ROBOT_M, ROUND_IT_M = 0.174, 0.2
 IN_FRONT_M: Final = 0.12
 """A robot so near has stopped in front of a person."""
@@ -109,7 +109,7 @@ class Handing:
 
     @property
     def shown(self) -> str:
-        """What is held up this time."""
+        """The text that is held up this time."""
         wrong = self.person.shows == "wrong" or (self.person.shows == "wrong_first" and self.tried == 1)
         own = self.letter.load_code if self.gives else self.letter.receive_code
         return self.wrong_code if wrong else own
@@ -137,7 +137,7 @@ class Handing:
             actor.body.hide_code()
 
     def _reach_in(self, actor: Actor, now: float) -> None:
-        """It said yes: in with it, or out. Into a box that rolls away nobody puts anything."""
+        """It said yes: in with it, or out. Into a box that rolls away no person puts anything."""
         if self.reaches_in_s is None or now < self.reaches_in_s or actor.rolls:
             return
         self.reaches_in_s = None
@@ -146,13 +146,13 @@ class Handing:
 
 
 def _busy(actor: Actor) -> bool:
-    """Somebody else is showing something."""
+    """Another person is showing something."""
     return actor.body.camera.shown is not None
 
 
 @dataclass
 class Bystander:
-    """Somebody in the way, as `simulated.obstacles.Obstacle`."""
+    """A person in the way, as `simulated.obstacles.Obstacle`."""
 
     x_m: float
     y_m: float
@@ -195,7 +195,7 @@ class Crowd:
         ]
 
     def _walks(self, number: int, row: Walker, one: Bystander, actors: list[Actor], passed_s: float) -> bool:
-        """Goes on unless a robot is in the way, and then round it after a moment, as people do: whoever walks along the
+        """Goes on unless a robot is in the way, and then round it after a moment, as people do: a walker on the
         tape towards a robot and never gives way would hold up any robot for ever. Gone at the end of the path."""
         if self._last_s < row.at_s or (at := _on_path(row.path, self._walked_m[number])) is None:
             return False
@@ -226,7 +226,7 @@ class Crowd:
 
 
 def _on_path(path: Sequence[tuple[float, float]], walked_m: float) -> tuple[float, float] | None:
-    """Where somebody is after so many metres; None beyond the end."""
+    """Where a walker is after so many metres; None beyond the end."""
     for a, b in pairwise(path):
         length_m = math.dist(a, b)
         if walked_m <= length_m and length_m:

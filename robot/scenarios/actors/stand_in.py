@@ -266,7 +266,7 @@ class StandIn:
 
 
 def _is_free(session: Session) -> bool:
-    """By our record and by its own word: mail that nobody took is brought back by a mission of its own."""
+    """By our record and by its own word: mail that was not taken is brought back by a mission of its own."""
     return session.mission is None and (session.snapshot is None or session.snapshot.mission is None)
 
 

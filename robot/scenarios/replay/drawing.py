@@ -131,7 +131,7 @@ def _covers_dock(circle: dict[str, Any], campus: CampusMap) -> bool:
 
 
 def _stander(random: Random, campus: CampusMap) -> dict[str, Any]:
-    """Not within reach of a turn at a post: whoever stands there would have to be pushed aside."""
+    """Not within reach of a turn at a post: a person who stands there would have to be pushed aside."""
     return {
         "corridor": random.choice(campus.corridors).name,
         "along": random.uniform(0.35, 0.65),

@@ -14,7 +14,7 @@ from robot.simulated.obstacles import BUMPER_RADIUS_M
 WIDTH_PX: Final = 960
 EDGE_M: Final = 0.7
 CARRIED_M: Final = 0.3
-"""Nobody drives as far between two rows: there the way has a gap."""
+"""No robot drives as far between two rows: there the way has a gap."""
 PAPER, TAPE, WAY, ROBOT, PERSON, INK = (
     (247, 250, 251),
     (190, 185, 180),

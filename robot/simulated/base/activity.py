@@ -14,7 +14,7 @@ class Activity(Enum):
 
 @dataclass(frozen=True)
 class Hazards:
-    """What the firmware's own safety looks at."""
+    """Inputs of the firmware's own safety."""
 
     cliff: bool = False
     wheel_drop: bool = False

@@ -53,9 +53,9 @@ def beside(dock: Dock, x_m: float, y_m: float, heading_rad: float) -> Beside:
 
 
 def ir_character(place: Beside) -> int:
-    """What reaches a robot here: 0, or 160 and the bits of force field, green and red buoy.
+    """Return the character that reaches a robot here: 0, or 160 and the bits of force field, green and red buoy.
 
-    Somebody who approaches has the green beam on the left, the red one on the right, both on the middle line.
+    A robot that approaches has the green beam on the left, the red one on the right, both on the middle line.
     """
     before_m = WINDOW_AHEAD_M - place.ahead_m
     off_rad = math.atan2(place.left_m, before_m)

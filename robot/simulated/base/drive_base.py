@@ -116,7 +116,7 @@ class DriveBase:
         self.untold_deg += math.degrees(turn_rad)
 
     def push(self, ahead_mm: float) -> None:
-        """Somebody shoves the robot along its heading."""
+        """A person shoves the robot along its heading."""
         self.left.push(ahead_mm)
         self.right.push(ahead_mm)
         self.move(*self.ahead(ahead_mm, 0.0), ahead_mm, 0.0)

@@ -29,7 +29,7 @@ def wakeup(cause: str, slept_s: float) -> bytes:
 
 
 class BatteryLines:
-    """What a charging robot prints while nobody has started the interface."""
+    """Lines that a charging robot prints before the interface is started."""
 
     def __init__(self) -> None:
         self._last_s: float | None = None

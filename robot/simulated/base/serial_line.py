@@ -31,7 +31,7 @@ class SerialLine(Protocol):
     """The robot's end of the cable."""
 
     def receive(self, baud: int) -> bytes:
-        """What the host has sent since last asked; noise if its speed is not `baud`."""
+        """Return what the host has sent since last asked; noise if its speed is not `baud`."""
         ...
 
     def send(self, data: bytes, baud: int) -> None:
@@ -66,7 +66,7 @@ class PtyLine:
         os.set_blocking(self._master, False)
         self.path = os.ttyname(self._slave)
         if self._link:
-            if self._link.is_symlink():  # of a world that was killed; any other file is somebody's
+            if self._link.is_symlink():  # of a world that was killed; any other file is not ours
                 self._link.unlink()
             self._link.symlink_to(self.path)
 
@@ -110,7 +110,7 @@ def _set_speed(descriptor: int, speed: int) -> None:
 
 
 def garbled(data: bytes, random: Random) -> bytes:
-    """What arrives when the two ends run at different speeds."""
+    """Return the bytes that arrive when the two ends run at different speeds."""
     return random.randbytes(len(data))
 
 
@@ -215,7 +215,7 @@ def spoiled(data: bytes, faults: Faults, random: Random) -> bytes:
 
 
 def thinned(data: bytes, faults: Faults, random: Random) -> bytes:
-    """What reaches the robot: some bytes are lost."""
+    """Return the bytes that reach the robot: some are lost."""
     if not faults.drop_sent_byte:
         return data
     return bytes(byte for byte in data if random.random() >= faults.drop_sent_byte)

@@ -1,4 +1,4 @@
-"""Our agent when the battery is low, when the line is lost, and when somebody stops it."""
+"""Our agent when the battery is low, when the line is lost, and when a person stops it."""
 
 from tests.robot.agent.stage import Stage
 from tests.robot.agent.test_mission import HOME, MISSION, drive

@@ -188,7 +188,7 @@ def test_a_mission_that_comes_in_the_last_moment_of_docking_is_served_before_the
     stage.perceives("docked", "at(post5)")
     stage.fails("follow_line", "docked")
     stage.does("report(arrived,s1)")
-    stage.expect("undock")  # in a dock the base is passive: nobody would hear whether their code was right
+    stage.expect("undock")  # in a dock the base is passive: no person would hear whether their code was right
     stage.perceives(without=("docked",))
     stage.succeeds("undock")
     stage.expect("wait_handover(load,o1,s1,600)")

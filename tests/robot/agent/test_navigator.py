@@ -252,7 +252,7 @@ def test_a_robot_that_turns_round_between_posts_comes_back_to_where_it_was(walk:
     walk.body.rolls(690.0)
     walk.look()
     assert (walk.navigator.at, walk.navigator.corridor) == ("post2", None)
-    assert walk.duties.held.grants == (leg,), "it may wish to go in again, perhaps where nobody can grant it anything"
+    assert walk.duties.held.grants == (leg,), "it may wish to go in again, perhaps where no service can grant it"
     walk.navigator.destination = "post3"
     assert walk.navigator.way() == "behind"
 

@@ -1,4 +1,4 @@
-"""What people read when they ask what the robot is doing and waiting for."""
+"""The sentences that people read when they ask what the robot is doing and waiting for."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace

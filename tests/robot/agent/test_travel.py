@@ -1,4 +1,4 @@
-"""Our agent on its way: what it may enter, what is in its way, and what it does when somebody has carried it off."""
+"""Our agent on its way: what it may enter, what is in its way, and what it does when a person has carried it off."""
 
 import pytest
 

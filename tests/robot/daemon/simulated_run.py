@@ -94,7 +94,7 @@ class SimulatedRun:
         return self.parts.navigator.visited
 
     def is_at(self, post: str) -> bool:
-        """Whether this is the last post reached."""
+        """Return whether this is the last post reached."""
         return self.visited[-1:] == [post]
 
     @property
@@ -102,7 +102,7 @@ class SimulatedRun:
         return self.robot.docked and self.mind.is_quiet
 
     def told(self) -> list[str]:
-        """What the server would hear: `progress arrived`, `handover load`, `charge low` …"""
+        """Return what the server would hear: `progress arrived`, `handover load`, `charge low` …"""
         return [_short(kept.message) for kept in self.duties.outbox.pending(limit=1000)]
 
     def kill(self) -> None:

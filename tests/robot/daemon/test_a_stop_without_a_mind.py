@@ -1,4 +1,4 @@
-"""Somebody stops a robot whose mind is dead, and starts its computer again: it stays stopped until it is re-armed."""
+"""A person stops a robot whose mind is dead, and starts its computer again: it stays stopped until it is re-armed."""
 
 import json
 from pathlib import Path

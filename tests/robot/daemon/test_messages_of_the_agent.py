@@ -1,4 +1,4 @@
-"""A robot's agent lives alone: what it sends to other agents reaches nobody, and the log says so."""
+"""A robot's agent lives alone: what it sends to other agents reaches none, and the log says so."""
 
 from pathlib import Path
 

@@ -26,7 +26,7 @@ def test_a_letter_is_fetched_delivered_and_the_robot_goes_home(run: SimulatedRun
     run.until(lambda: run.waits_for("wait_handover(load"))
     assert run.visited == ["post5", "post3", "post2", "post1"]
     run.passes(10)
-    assert run.waits_for("wait_handover(load"), "nobody has shown a code yet"
+    assert run.waits_for("wait_handover(load"), "no code has been shown yet"
     run.shows(Purpose.RECEIVE)
     run.passes(5)
     assert run.duties.held.cargo == (), "the wrong code opens nothing"
@@ -133,7 +133,7 @@ def test_a_lifted_robot_stands_until_it_is_put_down_and_let_go_and_then_goes_on(
     assert not run.waits_for("follow_line")
     run.robot.lift(False)
     run.passes(5)
-    assert run.mind.hands.view.sent.still, "nobody has let it go yet"
+    assert run.mind.hands.view.sent.still, "no person has let it go yet"
     run.duties.rearm_asked = True
     run.until(lambda: run.is_at("post4"))
 

@@ -1,4 +1,4 @@
-"""The whole robot with our agent when nobody takes the mail, the network is away, the way is closed."""
+"""The whole robot with our agent when no recipient takes the mail, the network is away, the way is closed."""
 
 from pathlib import Path
 

@@ -108,11 +108,11 @@ class Brittle:
 
 
 def test_a_driver_that_breaks_ends_the_loop_and_its_last_word_stops_the_wheels(moving: Moving) -> None:
-    base = Brittle(moving.base, "poll", RuntimeError("a byte that nobody thought of"))
+    base = Brittle(moving.base, "poll", RuntimeError("an unexpected byte"))
     moving.loop = DriveLoop(base, moving.sensor, moving.shape, moving.now)
     moving.sets_off()
     base.broken = True
-    with pytest.raises(RuntimeError, match="nobody thought of"):
+    with pytest.raises(RuntimeError, match="an unexpected byte"):
         moving.tick()
     moving.base.close()  # as the thread of the loop does, whatever ended it
     moving.robot.step_until(moving.now + 0.6)

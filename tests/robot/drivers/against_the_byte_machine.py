@@ -13,7 +13,7 @@ AHEAD = WheelSpeeds(100, 100)
 
 
 class Together:
-    """`run` lets time pass for both; the drive loop's part is played by whoever gives speeds."""
+    """`run` lets time pass for both; the test that gives speeds plays the drive loop's part."""
 
     def __init__(self, start: str = "post1:post2", brc: bool = True, **more: float) -> None:
         self.robot = SimulatedRobot(builtin_map("test_track"), 100.0, start, in_memory=True, **more)  # type: ignore[arg-type]

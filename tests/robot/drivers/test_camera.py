@@ -51,7 +51,7 @@ def test_real_frames_come_out_of_opencv_and_only_the_newest_is_kept(pictures):
         assert camera.read() == (False, None), "none is handed out twice"
         state = camera.describe()
         assert (state.width_px, state.height_px) == (640, 480)
-        assert state.exposure_ms is None, "a file lets nobody set its exposure"
+        assert state.exposure_ms is None, "a file has no exposure to set"
     finally:
         camera.close()
 

@@ -70,7 +70,7 @@ def test_it_starts_with_start_and_the_stream_of_all_packets():
     port = ScriptedPort()
     base = Create2(lambda: port)
     base.poll(0.0)
-    assert port.take() == bytes(40) + START, "zeros fill a command that somebody left half said"
+    assert port.take() == bytes(40) + START, "zeros fill a command that another program left half said"
     base.poll(0.02)
     assert port.take() == b"", "older manuals ask for 20 ms after a change of mode"
     base.poll(0.03)

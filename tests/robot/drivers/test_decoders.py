@@ -1,4 +1,4 @@
-"""What the robot's two decoders read of unkind frames, and what they must never read.
+"""The robot's two decoders: what they read of unkind frames, and what they must never read.
 
 The frames are those of `benchmarks/body/vision.py`, a few of each; the benchmark takes hundreds.
 """

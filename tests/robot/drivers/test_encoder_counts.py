@@ -12,7 +12,7 @@ any_count = st.integers(-32768, 32767)
 
 
 def moved(counts: EncoderCounts, *readings: tuple[int, int], every_s: float = FRAME_S) -> list[int | None]:
-    """What is believed of the left wheel, from the first reading on."""
+    """Return what is believed of the left wheel, from the first reading on."""
     believed = [counts.accept(left, right, number * every_s) for number, (left, right) in enumerate(readings)]
     first = believed[0]
     assert first is not None

@@ -34,7 +34,7 @@ def frame_of(text: str, px_per_module: int = 6, at: tuple[int, int] = (200, 130)
 
 
 def seen_from(ahead_m: float, post: str = "post2") -> Frame:
-    """What the camera sees of post2's marker, `ahead_m` before it is abreast on the way from post1."""
+    """Return what the camera sees of post2's marker, `ahead_m` before it is abreast on the way from post1."""
     robot = SimulatedRobot(TRACK, 0.0, "post1:post2", in_memory=True)
     robot.place(Pose(0.0, 2.3 + ahead_m, -math.pi / 2))
     there_is_one, frame = robot.camera.read()

@@ -86,7 +86,7 @@ def test_the_end_leaves_the_base_in_passive_and_no_thread_behind(driving: OnThre
     driving.until(lambda: driving.robot.state()["mode"] == "passive", 1)
     assert "base port" not in {thread.name for thread in set(threading.enumerate()) - driving.before}
     driving.base.poll(driving.clock.now())
-    assert driving.base.poll(driving.clock.now()) is None, "nobody listens any more"
+    assert driving.base.poll(driving.clock.now()) is None, "no thread listens any more"
 
 
 def test_an_unplugged_cable_is_known_and_stops_nobody(driving: OnThreads) -> None:
@@ -112,7 +112,7 @@ def test_a_cable_that_takes_no_bytes_never_blocks_the_drive_loop_for_long() -> N
         if base.health.problem is not None:
             lost = True
             break
-    assert lost, "what nobody reads fills up"
+    assert lost, "what no thread reads fills up"
     assert "timeout" in str(base.health.problem).lower()
     assert worst_s < 0.1
     base.close()

@@ -96,7 +96,7 @@ noises = st.lists(pieces, max_size=4).map(b"".join)
 
 def sound_frames(stream: bytes) -> int:
     """At how many places one begins. A cut one that what follows makes sound, as happens once in 256 times, is one:
-    nobody could tell by a checksum of one byte."""
+    a checksum of one byte cannot tell."""
     layouts = (oi.FULL_STREAM, oi.WITHOUT_MODE)
     windows = ((layout, stream[at : at + layout.frame_length]) for at in range(len(stream)) for layout in layouts)
     return sum(

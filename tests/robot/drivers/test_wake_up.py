@@ -1,4 +1,4 @@
-"""What can be wired to BRC, and what is known about it."""
+"""The lines that can be wired to BRC, and what is known about them."""
 
 from pathlib import Path
 

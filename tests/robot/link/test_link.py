@@ -302,7 +302,7 @@ class BreakingSocket:
 
 
 async def test_what_was_stored_is_delivered_even_if_it_cannot_be_acknowledged(robot: Robot) -> None:
-    """The server need not send it again, so nobody else would deliver it before the next start."""
+    """The server need not send it again, so it would not be delivered before the next start."""
     delivered: list[Incoming] = []
     hello = Hello(position=Position(), battery=Battery(ratio=0.8), software="0.1.0", map_version="m1")
     ends = Ends("r1", RealClock(), robot.outbox, robot.memory, lambda: hello, Newest(), delivered.append, QUICK)

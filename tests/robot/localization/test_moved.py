@@ -37,7 +37,7 @@ def leave_and_lift(walk: Walk) -> None:
     walk.look()
     walk.body.view = replace(walk.body.view, faults=frozenset({"wheel_drop"}))
     walk.look()
-    assert (walk.navigator.at, walk.navigator.corridor) == (None, None), "in somebody's hands it claims nothing"
+    assert (walk.navigator.at, walk.navigator.corridor) == (None, None), "in a person's hands it claims nothing"
     walk.body.view = replace(walk.body.view, faults=frozenset())
     walk.look()
 

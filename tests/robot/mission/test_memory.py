@@ -1,4 +1,4 @@
-"""What the robot knows after a power cut."""
+"""The robot's memory after a power cut."""
 
 import os
 import random
@@ -73,7 +73,7 @@ def test_the_same_mission_again_changes_nothing_and_an_older_update_neither(stor
 
 
 def test_what_was_done_is_not_done_again_by_an_update_that_comes_when_the_mission_is_over(store: Store) -> None:
-    """Without network nobody knew: an update that lets it wait longer, say, was under way."""
+    """Without network it was unknown: an update that lets it wait longer, say, was under way."""
     memory = Memory(store)
     memory.hold(MISSION)
     for stop in MISSION.stops:
@@ -210,7 +210,7 @@ def test_a_kill_at_any_moment_loses_nothing_that_was_said_to_be_kept_and_leaves_
             [sys.executable, "-c", HAND_OVER, str(database)],
             stdout=subprocess.PIPE,
             text=True,
-            cwd=Path(__file__).parents[2],
+            cwd=Path(__file__).parents[3],
             env={**os.environ, "PYTHONPATH": "."},
         )
         assert process.stdout is not None

@@ -1,4 +1,4 @@
-"""What the robot owes: told once, kept on the disk, answered by name."""
+"""The robot's obligations: told once, kept on the disk, answered by name."""
 
 from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta
@@ -64,7 +64,7 @@ class Desk:
     server: FakeServer
 
     def hears(self, message: Part) -> list[dict[str, Any]]:
-        """What the robot has to say to this message."""
+        """Return what the robot has to say to this message."""
         before = len(self.told())
         self.server.says(message)
         self.duties.take_messages()

@@ -1,4 +1,4 @@
-"""A corridor that the robot took for closed is open again because somebody says so who has looked."""
+"""A corridor that the robot took for closed is open again because a person who has looked says so."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -54,7 +54,7 @@ class Robot:
         self.navigator.closed.close(leg, now_s)
 
     def hears(self, now_s: float, *ends: str, looked_at_s: float | None = None, command_id: str = "c1") -> Any:
-        """What the robot answers; None if it has nothing to say."""
+        """Return what the robot answers; None if it has nothing to say."""
         self.now_s = now_s
         self.navigator.closed.pass_time(now_s)
         (a, b), looked_s = ends, now_s if looked_at_s is None else looked_at_s
@@ -122,7 +122,7 @@ def test_a_corridor_that_its_map_does_not_have_is_refused_by_name(store: Store) 
 
 
 def test_whatever_was_open_already_is_told_to_be_so_once_more(store: Store) -> None:
-    """Its own word that it was over may have been lost with a power cut, and somebody still believes it closed."""
+    """Its own word that it was over may have been lost with a power cut, and a person still believes it closed."""
     robot = Robot(store)
     assert robot.hears(5.0, "post2", "post3").accepted
     assert robot.navigator.closed.over == {"post2-post3"}

@@ -75,7 +75,7 @@ def test_whatever_was_put_and_not_acknowledged_is_pending(steps: list[int | None
         if step is None:
             put += 1
             assert outbox.put(clear("post2")) == put
-        elif step <= put:  # nobody acknowledges what was never sent
+        elif step <= put:  # a message that was never sent is never acknowledged
             acknowledged = max(acknowledged, step)
             outbox.acknowledged(step)
     assert [kept.seq for kept in outbox.pending()] == list(range(acknowledged + 1, put + 1))

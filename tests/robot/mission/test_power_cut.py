@@ -63,7 +63,7 @@ def torn(old: bytes, new: bytes, chance: Random) -> bytes:
 
 
 def cuts(old: Files, new: Files, chance: Random) -> Iterator[Files]:
-    """What SQLite synchronises apart is not torn together: the log's head, its frames, then the database."""
+    """Yield torn files. SQLite synchronises them apart, so one at a time: the log's head, its frames, the database."""
     log = new[1][:LOG_HEAD] + old[1][LOG_HEAD:]
     for _ in range(4):
         yield old[0], torn(log, new[1], chance)

@@ -132,7 +132,7 @@ def test_one_marker_at_a_known_distance_gives_the_field_of_view_within_half_a_pe
 
 
 def lens_to_marker_mm(robot: SimulatedRobot) -> float:
-    """As somebody would measure it: at right angles to the sheet."""
+    """As a technician would measure it: at right angles to the sheet."""
     pose = robot.pose
     left = (-math.sin(pose.heading_rad), math.cos(pose.heading_rad))
     away = [

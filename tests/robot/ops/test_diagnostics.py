@@ -1,4 +1,4 @@
-"""What a robot tells of its mind while somebody watches, and that it tells nothing else."""
+"""Live diagnostics of a robot's mind while a person watches, and silence otherwise."""
 
 import threading
 from collections.abc import Callable, Iterator
@@ -111,7 +111,7 @@ def test_beliefs_are_told_once_and_then_only_what_came_and_went(watched: Watched
     assert believed == {str(belief) for belief in watched.agent.beliefs}
     watched.insights.watch(30.0, whole=True)
     again = watched.lives(0.6)[0]
-    assert (again.number, again.whole, again.went) == (1, True, ()), "for somebody who has just begun to look"
+    assert (again.number, again.whole, again.went) == (1, True, ()), "for a person who has just begun to look"
     assert "mission(m1,1)[source(percept)]" in believed & set(again.came)
 
 
@@ -156,7 +156,7 @@ async def test_the_link_hears_of_a_watch_and_sends_one_insight_after_the_other(
         async with playing() as server, robot.linked(server.url) as link:
             heard: list[Watch] = []
             link.on_watch = heard.append
-            assert not link.has_room_for_insight(), "nobody is there yet"
+            assert not link.has_room_for_insight(), "no service is connected yet"
             await until(lambda: link.online)
             await server.send(Watch(for_s=30.0, whole=True))
             await until(lambda: heard == [Watch(for_s=30.0, whole=True)])

@@ -76,7 +76,7 @@ def write(file: Path, text: str) -> Path:
 
 
 def graded(finding: Finding) -> tuple[Grade, str]:
-    """What is wrong always comes with a way out."""
+    """Return grade and text, after a check that what is wrong comes with a way out."""
     assert bool(finding.way_out) == (finding.grade in {Grade.WARN, Grade.FAIL})
     return finding.grade, f"{finding.said} → {finding.way_out}"
 
@@ -234,7 +234,7 @@ def test_a_running_daemon_keeps_its_devices_and_tells_of_the_base(tmp_path: Path
 
 
 def pushed(world: World, root: Path, for_s: float, **settings: object) -> Finding:
-    """What --push finds while the simulated world shoves its robot to and fro across the tape."""
+    """Return what --push finds while the simulated world shoves its robot to and fro across the tape."""
     return senses.pins(replace(patient(root, world.equipment(), **settings), push_s=for_s))
 
 

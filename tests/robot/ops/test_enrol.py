@@ -1,4 +1,4 @@
-"""Enrolling: a token that the service takes is kept so that nobody else may read it, and one it refuses is not kept."""
+"""Enrolling: an accepted token is kept so that no other user may read it, and a refused one is not kept."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Whoever logs waits for no disk; whoever looks for a log that is not there is told where it may be."""
+"""Logging waits for no disk; a command that misses a log says where it may be."""
 
 import logging
 import shutil

@@ -1,4 +1,4 @@
-"""What systemd hears, over a real datagram socket: ready, alive, ending; and nothing when a part hangs."""
+"""Messages to systemd over a real datagram socket: ready, alive, ending; and nothing when a part hangs."""
 
 import os
 import socket
@@ -127,7 +127,7 @@ def test_without_systemd_nothing_is_said_and_nothing_runs(robot: Robot) -> None:
 
 
 def test_a_manager_that_has_gone_stops_nobody(tmp_path: Path) -> None:
-    ServiceManager(str(tmp_path / "nobody")).say("READY=1")
+    ServiceManager(str(tmp_path / "absent")).say("READY=1")
 
 
 def test_an_abstract_socket_is_found_and_the_limit_read_from_the_environment() -> None:

@@ -107,7 +107,7 @@ def test_when_the_cause_is_gone_it_drives_on_as_soon_as_the_table_says(moving: M
     moving.steps(0.4)
     is_over(moving)
     if name == "line_sensor":
-        moving.robot.push(200.0)  # somebody looks after it, and a diode sees something else
+        moving.robot.push(200.0)  # a technician looks after it, and a diode sees something else
         moving.robot.set_fault("floor_flip", 0.3)
         moving.steps(0.2)
         moving.robot.set_fault("floor_flip", 0.0)
@@ -128,7 +128,7 @@ def test_a_latched_stop_ends_when_somebody_rearms_the_robot_and_not_before(movin
     moving.steps(0.5)
     is_over(moving)
     moving.steps(5.0)
-    assert moving.wheels_stand, "with a hand on the button or a wheel in the air nobody re-arms it"
+    assert moving.wheels_stand, "with a hand on the button or a wheel in the air no person re-arms it"
     moving.robot.press("spot")
     moving.until(lambda: not moving.faults, 1.0)
     moving.until(lambda: not moving.wheels_stand, 2.0)

@@ -1,4 +1,4 @@
-"""What people do to a robot in a scenario: a code shown, the cable pulled and put in again, the base reset, slip."""
+"""People's acts on a robot in a scenario: a code shown, the cable pulled and put in again, the base reset, slip."""
 
 import logging
 from pathlib import Path

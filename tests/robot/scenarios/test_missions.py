@@ -9,7 +9,7 @@ FIRST_SEED = 9001
 WENT_WRONG = (
     ("track", 21000),  # bumped on its way out of the dock, searched in curves, and did not know which way it looked
     ("track", 21039),  # gave back every corridor where there is no network, and could not leave
-    ("tunnels", 20616),  # nobody came where there is no network, and the way back was not granted
+    ("tunnels", 20616),  # no person came where there is no network, and the way back was not granted
     ("tunnels", 20617),  # searched for the line in a turn, and took itself for one that comes back along it
     ("tunnels", 20623),  # rolled on beyond a post while its base did not answer, and backed up
 )

@@ -141,7 +141,7 @@ def test_a_wheel_drop_aborts_the_search_for_the_dock(make):
 
 
 def test_the_beams_say_on_which_side_of_the_dock_a_robot_is(make):
-    """Green is on the left of somebody who comes, red on the right, both on the middle line."""
+    """Green is on the left of a robot that comes, red on the right, both on the middle line."""
     bench = make("dock")
     bench.send(128)
     seen = []

@@ -1,4 +1,4 @@
-"""What the camera sees, judged by the real decoder."""
+"""The camera's picture, judged by the real decoder."""
 
 import math
 import time

@@ -1,4 +1,4 @@
-"""What a simulated world remembers of a robot whose computer was killed."""
+"""A simulated world's memory of a robot whose computer was killed."""
 
 import os
 from collections.abc import Iterator
@@ -44,7 +44,7 @@ def test_a_robot_killed_right_after_a_step_is_where_that_step_ended(
     world = SavedWorld(alive, tmp_path / "world.json")
     alive.push(35)
     world.step_until(STEP_S)
-    found = SavedWorld(again, tmp_path / "world.json")  # nobody has closed the other
+    found = SavedWorld(again, tmp_path / "world.json")  # the other was never closed
     assert found.restored
     assert again.pose.x_m == pytest.approx(alive.pose.x_m, abs=AS_WRITTEN_M)
     assert again.pose.y_m == pytest.approx(alive.pose.y_m, abs=AS_WRITTEN_M)

@@ -265,7 +265,7 @@ def test_bends_worn_tape_and_flipped_reads_do_not_lose_the_line(drive: Make, tmp
 
 
 def heard(robot: Drive, for_s: float) -> list[str]:
-    """What comes out of its speaker in that time, by name."""
+    """Return what comes out of its speaker in that time, by name."""
     names = {tuple(note for note, _ in tune): name for name, tune in TUNES.items()}
     number, found = 0, []
     for _ in range(round(for_s / TICK_S)):

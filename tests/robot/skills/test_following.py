@@ -18,7 +18,7 @@ TRACK = builtin_map("test_track")
 
 
 def without_marker(post: str) -> CampusMap:
-    """Somebody has torn it off."""
+    """A person has torn it off."""
     return replace(TRACK, posts=TRACK.posts | {post: replace(TRACK.post(post), markers=())})
 
 

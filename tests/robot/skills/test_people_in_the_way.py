@@ -13,7 +13,7 @@ from tests.robot.skills.track import Drive
 
 TRACK = builtin_map("test_track")
 AHEAD_M = 0.7
-"""From the axle to the middle of whoever stands in the way: a third of a metre to the touch."""
+"""From the axle to the middle of a person in the way: a third of a metre to the touch."""
 REFLEX_S = 3.4
 """Until the reflex lets it go on: 3 s after the touch, which ends soon after it begins to go back."""
 WAITS_S = (6.0, 8.0)

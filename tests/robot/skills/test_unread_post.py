@@ -1,4 +1,4 @@
-"""Posts whose marker nobody can read: what the tape shows tells where they are, better than the map and worn wheels."""
+"""Posts with an unreadable marker: what the tape shows tells where they are, better than the map and worn wheels."""
 
 from collections.abc import Callable
 from dataclasses import replace

@@ -44,7 +44,7 @@ const last_s = Math.max(1, ...[...tracks.values()].flatMap((track) => track.stat
 const isLoud = (text) => /fault|failed|gave_up|somebody|service:/.test(text) && !/ over$/.test(text);
 let chosen = head.robots[0], now_s = 0;
 
-// Between two states a robot moves evenly, unless somebody carried it.
+// Between two states a robot moves evenly, unless a person carried it.
 const CARRIED_M = 0.3;
 function poseAt(states, time) {
   const number = indexAt(states, time), before = states[Math.max(0, number)], after = states[number + 1];

@@ -29,7 +29,7 @@ def test_while_something_stands_in_its_way_it_keeps_what_it_was_granted(bench: B
     assert bench.result("claim(post4)") == "way_closed"
     assert bench.duties.held.grants == (TO_POST3, TO_POST4)
     bench.result("reopen")
-    assert bench.result("claim(post4)") is None, "it may go in again with nobody to ask"
+    assert bench.result("claim(post4)") is None, "it may go in again with no service to ask"
 
 
 def test_while_another_robot_is_in_its_way_it_lets_go_of_everything(bench: Bench) -> None:

@@ -1,4 +1,4 @@
-"""What the mind is shown."""
+"""The percepts of the mind."""
 
 from dataclasses import replace
 
