@@ -8,7 +8,7 @@ from typer.core import TyperGroup
 
 HELP = """Campus Mail: the service.
 
-Everything is set by environment variables (CAMPUS_MAIL_…, docs/service.md); commands work beside a running service,
+Everything is set by environment variables (CAMPUS_MAIL_…, docs/reference/service.md); commands work beside a running service,
 but for `restore`. Exit status: 0 done, 1 looked and found something wrong, 2 could not be done, and why is on stderr.
 """
 COMMANDS: Final = {

@@ -1,4 +1,4 @@
-"""The tables of docs/api.md that follow from the API document: every error, every operation."""
+"""The tables of docs/reference/api.md that follow from the API document: every error, every operation."""
 
 from pathlib import Path
 from typing import Any, Final
@@ -6,11 +6,11 @@ from typing import Any, Final
 from app.http.api_document import all_codes, operations
 
 HEAD: Final = "| request | name | | opened by |\n|---|---|---|---|\n"
-PAGE: Final = Path(__file__).parents[1] / "docs" / "api.md"
+PAGE: Final = Path(__file__).parents[1] / "docs" / "reference" / "api.md"
 
 
 def page(openapi: dict[str, Any]) -> str:
-    """docs/api.md with its tables as they are now."""
+    """docs/reference/api.md with its tables as they are now."""
     text = PAGE.read_text()
     for name, table in (("errors", _errors()), ("operations", _operations(openapi))):
         begin, end = f"<!-- {name}: make client -->\n", f"<!-- end of {name} -->\n"

@@ -5,7 +5,7 @@ models.py             a pydantic class for each schema
 problems.py           an exception for each code that an answer can carry
 async_operations.py   a method for each operation
 operations.py, client.py   the same without `await`, made of the files for those who do
-docs/api.md           its tables of errors and operations
+docs/reference/api.md           its tables of errors and operations
 """
 
 import json

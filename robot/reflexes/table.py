@@ -1,6 +1,6 @@
 """The fault table: what is wrong, what the body does at once, what clears it, and what people are told.
 
-The agent perceives each as `fault(name)`, and `halted` while one of those with `halts` lasts. docs/safety.md shows the
+The agent perceives each as `fault(name)`, and `halted` while one of those with `halts` lasts. docs/reference/faults.md shows the
 same table to people; a test compares the two.
 """
 

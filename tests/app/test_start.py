@@ -197,14 +197,14 @@ def test_a_server_key_that_others_can_read_is_refused(tmp_path: Path) -> None:
 
 
 def test_every_setting_is_described_in_the_docs() -> None:
-    page = (ROOT / "docs" / "service.md").read_text()
+    page = (ROOT / "docs" / "reference" / "service.md").read_text()
     for name, field in Settings.model_fields.items():
         assert field.description, name
         assert f"`CAMPUS_MAIL_{name.upper()}`" in page, name
 
 
 def test_every_command_is_described_in_the_docs() -> None:
-    page = (ROOT / "docs" / "service.md").read_text()
+    page = (ROOT / "docs" / "reference" / "service.md").read_text()
     for words in ("demo letter", "demo fleet", *(f"app {one}" for one in ("serve", "migrate", *_subcommands()))):
         assert f"`python -m {words}" in page or f"`{words.removeprefix('app ')}" in page, words
 

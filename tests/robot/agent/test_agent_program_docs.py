@@ -5,7 +5,7 @@ from pathlib import Path
 from robot.agent.actions.table import ACTIONS, PAPER_ACTIONS, Action
 from robot.agent.perception.percepts import PERCEPTS, Percept
 
-PAGE = Path(__file__).parents[3] / "docs" / "agent-program.md"
+PAGE = Path(__file__).parents[3] / "docs" / "reference" / "agent-program.md"
 
 
 def row(*cells: str) -> str:
@@ -35,5 +35,5 @@ def test_the_actions_of_the_page_are_those_of_the_code() -> None:
 
 
 def test_every_file_of_the_program_is_on_the_page() -> None:
-    files = [path.name for path in (PAGE.parents[1] / "robot" / "agent").glob("*.asl")]
+    files = [path.name for path in (PAGE.parents[2] / "robot" / "agent").glob("*.asl")]
     assert [name for name in files if f"| `{name}` |" not in PAGE.read_text("utf-8")] == []

@@ -9,7 +9,7 @@ from robot.__main__ import cli
 from robot.ops.doctor.table import CHECKS
 
 ROOT = Path(__file__).parents[3]
-ROBOT, OPERATION, WIRING = ((ROOT / "docs" / name).read_text() for name in ("robot.md", "operation.md", "wiring.md"))
+ROBOT, OPERATION, WIRING = ((ROOT / "docs" / name).read_text() for name in ("reference/robot.md", "how-to/install-a-robot.md", "how-to/wire-a-robot.md"))
 COMMANDS = typer.main.get_command(cli).commands  # type: ignore[attr-defined]
 
 

@@ -20,7 +20,7 @@ from robot.simulated.__main__ import cli, let_live
 from robot.simulated.door import COMMANDS
 
 ROOT = Path(__file__).parents[3]
-PAGE = (ROOT / "docs" / "simulated-world.md").read_text(encoding="utf-8")
+PAGE = (ROOT / "docs" / "reference" / "simulated-world.md").read_text(encoding="utf-8")
 COMMAND = [sys.executable, "-m", "robot.simulated"]
 
 
