@@ -1,4 +1,4 @@
-"""What stands in a scenario file: every key with its meaning. A test compares docs/how-to/write-a-scenario.md with it.
+"""What stands in a scenario file: every key with its meaning. docs/reference/scenario-keys.md is made of it.
 
 Times are seconds since the start, lengths metres in the map's frame. What `after_post` names counts from the moment in
 which the robot first stands at that post: then `at_s` is so long after it.

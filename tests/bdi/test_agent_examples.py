@@ -16,7 +16,8 @@ EXAMPLES = sorted([*AGENTS.glob("*.asl"), *(AGENTS / "contract_net").glob("*.asl
 TESTED = [path for path in EXAMPLES if "prints" in path.read_text()]
 DOCS = ROOT / "docs"
 PAGE = (DOCS / "explanation" / "agentspeak.md").read_text()
-SESSIONS = re.findall(r"```console\n\$ (.*)\n([\s\S]*?)```", (DOCS / "how-to" / "debug-an-agent-program.md").read_text())
+TOOLS = (DOCS / "how-to" / "debug-an-agent-program.md").read_text()
+SESSIONS = re.findall(r"```console\n\$ (.*)\n([\s\S]*?)```", TOOLS)
 PIECES = re.findall(r"```python\n([\s\S]*?)```", (DOCS / "how-to" / "embed-an-agent.md").read_text())
 
 
