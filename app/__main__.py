@@ -8,8 +8,9 @@ from typer.core import TyperGroup
 
 HELP = """Campus Mail: the service.
 
-Everything is set by environment variables (CAMPUS_MAIL_…, docs/service.md); commands work beside a running service,
-but for `restore`. Exit status: 0 done, 1 looked and found something wrong, 2 could not be done, and why is on stderr.
+Everything is set by environment variables (CAMPUS_MAIL_…, docs/reference/settings.md); commands work beside a running
+service, but for `restore`. Exit status: 0 done, 1 looked and found something wrong, 2 could not be done, and why is on
+stderr.
 """
 COMMANDS: Final = {
     "serve": ("serve:serve", "Serve pages and API until Ctrl-C or SIGTERM."),

@@ -1,11 +1,10 @@
 """`make client` writes what follows from the service's OpenAPI document, and a client for programs that do not await.
-`--document` prints that document instead.
+`--document` prints that document instead, `--errors` every error code with its status and meaning.
 
 models.py             a pydantic class for each schema
 problems.py           an exception for each code that an answer can carry
 async_operations.py   a method for each operation
 operations.py, client.py   the same without `await`, made of the files for those who do
-docs/api.md           its tables of errors and operations
 """
 
 import json
@@ -26,7 +25,6 @@ sys.path[:0] = [str(Path(__file__).parents[1])]
 from app.composition import create_app  # noqa: E402
 from app.core.settings import Settings  # noqa: E402
 from app.http.api_document import all_codes, operations  # noqa: E402  # the checkout is on the path only now
-from client import api_tables  # noqa: E402  # the checkout is on the path only now
 from protocol.clock import RealClock  # noqa: E402
 
 PACKAGE: Final = Path(__file__).parent / "campus_mail_client"
@@ -298,6 +296,8 @@ if __name__ == "__main__":
     if sys.argv[1:] == ["--document"]:
         sys.stdout.write(json.dumps(openapi, indent=2) + "\n")
         sys.exit()
+    if sys.argv[1:] == ["--errors"]:
+        sys.stdout.write(json.dumps(all_codes()) + "\n")
+        sys.exit()
     for file_name, content in made_files(openapi).items():
         (PACKAGE / file_name).write_text(content)
-    api_tables.PAGE.write_text(api_tables.page(openapi))

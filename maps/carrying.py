@@ -8,7 +8,7 @@ from maps.campus_map import CampusMap, Corridor, Post
 from maps.problem import Problem, error, warning
 
 ASSUMED_SPEED_M_S: Final = 0.15
-"""What robots drove on straight tape in the simulated world (docs/measured.md), and a little less."""
+"""What robots drove on straight tape in the simulated world (docs/reference/measurements.md), and a little less."""
 
 
 @dataclass(frozen=True)

@@ -119,4 +119,4 @@ def _broken_shape(path: Path, error: ValidationError) -> MapError:
     first, others = error.errors()[0], error.error_count() - 1
     place = ".".join(str(part + 1) if isinstance(part, int) else part for part in first["loc"]) or "file"
     more = f" (and {others} more like this)" if others else ""
-    return MapError(str(path), place, first["msg"] + more, "docs/maps.md describes the format.")
+    return MapError(str(path), place, first["msg"] + more, "docs/reference/maps.md describes the format.")

@@ -23,7 +23,7 @@ Json = dict[str, Any]
 DESCRIPTION: Final = """\
 One WebSocket per robot, opened by the robot and signed in with its token. Tunnels have patches without network, so the
 connection is expected to be away for minutes: durable messages are numbered, kept on disk and sent until they are
-acknowledged. What that means, how a connection begins, close codes and error codes are in `docs/protocol.md`.
+acknowledged. What that means, how a connection begins, close codes and error codes are in `docs/reference/protocol.md`.
 """
 
 

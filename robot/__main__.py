@@ -16,7 +16,7 @@ The run of the paper's section 6.3:  python -m robot --simulated --agent mail.as
 --achieve 'collectAndDeliverMail(post1,post4)'; with --battery 0.26 it becomes low on the way.
 """
 EPILOG = f"""{EXAMPLES}
-A real one:  python -m robot run --config robot.toml; docs/robot.md lists every setting.
+A real one:  python -m robot run --config robot.toml; docs/reference/settings.md lists every setting.
 
 Exit status of every command: 0 done, 1 not done, 2 something to put right first, which is named.
 """

@@ -111,14 +111,14 @@ def test_every_package_has_its_layers_written_down():
 
 
 def test_the_glossary_defines_no_word_twice():
-    glossary = (CHECKOUT / "docs/glossary.md").read_text(encoding="utf-8")
+    glossary = (CHECKOUT / "docs/reference/glossary.md").read_text(encoding="utf-8")
     words = [word for word in re.findall(r"^\| ([^|]+?) \|", glossary, re.MULTILINE) if word not in ("word", "---")]
     assert len(words) > 80
     assert sorted(word for word in words if words.count(word) > 1) == []
 
 
 def test_no_test_patches_a_module_of_ours():
-    """docs/architecture.md says so; what belongs to the system may be watched, as the writes of `os`."""
+    """docs/explanation/architecture.md says so; what belongs to the system may be watched, as the writes of `os`."""
     patched = {
         (path.name, target)
         for path in tracked("tests/**/*.py")

@@ -24,7 +24,7 @@ def serve(
     """Serve pages and API until Ctrl-C or SIGTERM. The database is made or brought up to date first.
 
     One process serves a campus: robots' sockets, event streams and rate limits live in its memory, and one dispatcher
-    assigns. What it was measured to carry is in docs/measured.md.
+    assigns. What it was measured to carry is in docs/reference/measurements.md.
     """
     from app.cli.serving import serve as serve_until_stopped
 

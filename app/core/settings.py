@@ -46,7 +46,7 @@ SMTP_PORTS: Final = {"starttls": 587, "tls": 465, "none": 25}
 
 
 class Settings(BaseSettings):
-    """The service's settings; `docs/service.md` lists them for people."""
+    """The service's settings; `docs/reference/settings.md` lists them for people."""
 
     # What does not fit is not repeated: it may be a secret.
     model_config = SettingsConfigDict(

@@ -34,8 +34,8 @@ Codes = Mapping[str, str]
 METHODS: Final = ("get", "post", "put", "patch", "delete")
 
 DESCRIPTION: Final = """
-Everything that people and programs do with Campus Mail. `docs/api.md` explains the conventions: signing in, pages of
-lists, versions, repeated requests, streams, errors.
+Everything that people and programs do with Campus Mail. `docs/reference/api.md` explains the conventions: signing in,
+pages of lists, versions, repeated requests, streams, errors.
 
 Any answer may be a problem document (RFC 9457) whose `code` never changes; each operation lists its own. Besides them:
 404 `not_found` for a path that is not there, 405 `method_not_allowed`, 500 `unforeseen` for a mistake of ours.
@@ -53,7 +53,7 @@ TAGS: Final[Mapping[str, str]] = {
     "notices": "What a person was told, and where they want to be told.",
     "outbox": "For dispatchers: notices that a channel has not taken yet, and the mails in the spool.",
     "live": "Changes as they happen, as server-sent events.",
-    "robots": "Where the robots were last seen and what they are doing. Their own link is `docs/protocol.md`.",
+    "robots": "Where the robots were last seen and what they are doing. Their link: `docs/reference/protocol.md`.",
     "upkeep": "For maintainers: watching what a robot senses and thinks.",
     "enrolment": "How a robot becomes known: one-time codes, its key, its tokens.",
     "demo": "Only while a demonstration runs: the simulated robot's camera.",

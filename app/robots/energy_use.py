@@ -19,7 +19,7 @@ from fleet.charging.history import Driven, Sample, learned_from
 from maps import CampusMap
 
 DRIVES_M_S: Final = 0.2
-"""The robots' usual setting `motion.speed_mm_s` (docs/robot.md); `assumed_speed_m_s` has their waits in it."""
+"""The robots' usual `drive.cruise_mm_s` (docs/reference/settings.md); `assumed_speed_m_s` has their waits in it."""
 REMEMBERED: Final = 5000
 """Latest samples of a robot: some days, if it is on all the time."""
 LEARN_EVERY_S: Final = 600.0

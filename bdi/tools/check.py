@@ -83,7 +83,7 @@ def _found(path: Path, declared: list[str] | None, compatible: bool) -> list[Fin
     try:
         Agent(program)
     except AgentSpeakError as error:
-        advice = "docs/agentspeak-reference.md lists what there is"
+        advice = "docs/reference/agentspeak.md lists what there is"
         found.insert(0, Finding("refused", Severity.ERROR, error.place, error.problem, advice))
     return found
 

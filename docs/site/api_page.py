@@ -1,4 +1,4 @@
-"""The API as a page: each operation with what it takes and answers, then the types."""
+"""The API as a page: error codes, each operation with what it takes and answers, then the types."""
 
 import json
 import subprocess
@@ -13,11 +13,20 @@ Node: TypeAlias = Mapping[str, Any]
 
 
 def api() -> str:
-    """Return every operation of the service and every type of its API document."""
-    command = [sys.executable, "client/make_client.py", "--document"]
-    document = json.loads(subprocess.run(command, cwd=CHECKOUT, check=True, capture_output=True).stdout)
+    """Return every error code, operation and type of the API document."""
+    document = _told("--document")
     text = "# API operations\n\nThis page is generated from the OpenAPI document of the service.\n\n"
-    return text + "".join(_operations(document)) + "".join(_types(document))
+    return text + _errors() + "".join(_operations(document)) + "".join(_types(document))
+
+
+def _told(option: str) -> Any:
+    command = [sys.executable, "client/make_client.py", option]
+    return json.loads(subprocess.run(command, cwd=CHECKOUT, check=True, capture_output=True).stdout)
+
+
+def _errors() -> str:
+    rows = [f"| `{code}` | {status} | {_cell(meaning)} |\n" for code, (status, meaning) in _told("--errors").items()]
+    return "## Error codes\n\n| `code` | status | meaning |\n|---|---|---|\n" + "".join(rows) + "\n"
 
 
 def _operations(document: Node) -> Iterator[str]:

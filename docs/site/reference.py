@@ -1,9 +1,10 @@
 """The reference pages that follow from the code. Each is one function, in the table at the end."""
 
 import inspect
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from html import unescape
-from typing import Any, Final, get_args
+from pathlib import Path
+from typing import Any, Final
 
 import typer
 from pydantic import BaseModel
@@ -20,8 +21,9 @@ from app.core.settings import Settings as ServiceSettings
 from bdi.builtin import STANDARD
 from bdi.builtin.table import Definition
 from docs.site.api_page import api
+from docs.site.robot_pages import percepts_and_actions, robot_settings, scenario_keys, simulated_faults
+from docs.site.staging import CHECKOUT
 from protocol.__main__ import messages_as_markdown
-from robot.core.config import Settings as RobotSettings
 
 COMMANDS: Final[Mapping[str, typer.Typer]] = {
     "app": service.app,
@@ -43,28 +45,19 @@ def settings() -> str:
     text += "## The service\n\nEnvironment variables.\n\n| variable | default | meaning |\n|---|---|---|\n"
     for name, field in ServiceSettings.model_fields.items():
         text += _row(f"CAMPUS_MAIL_{name.upper()}", field)
-    text += "\n## A robot\n\nKeys of its settings file (TOML). `python -m robot settings` prints a complete file.\n\n"
-    text += "| key | default | meaning |\n|---|---|---|\n"
-    return text + "".join(_row(key, field) for key, field in _leaves(RobotSettings))
-
-
-def _leaves(section: type[BaseModel], prefix: str = "") -> Iterator[tuple[str, FieldInfo]]:
-    for name, field in section.model_fields.items():
-        kinds = [kind for kind in (field.annotation, *get_args(field.annotation)) if isinstance(kind, type)]
-        inner = next((kind for kind in kinds if issubclass(kind, BaseModel)), None)
-        if inner:
-            yield from _leaves(inner, f"{prefix}{name}.")
-        else:
-            yield prefix + name, field
+    return text + robot_settings()
 
 
 def _row(name: str, field: FieldInfo) -> str:
     value = field.get_default(call_default_factory=True)
-    default = "" if value is None or value in ("", ()) else f"`{_as_text(value)}`"
+    shown = "" if value is None or value == () else _as_text(value)
+    default = f"`{shown}`" if shown else ""
     return f"| `{name}` | {default} | {_cell(field.description or '')} |\n"
 
 
 def _as_text(value: Any) -> str:
+    if isinstance(value, Path) and value.is_relative_to(CHECKOUT):
+        return str(value.relative_to(CHECKOUT))
     if isinstance(value, tuple):
         return ", ".join(_as_text(one) for one in value)
     if isinstance(value, BaseModel):
@@ -125,4 +118,7 @@ PAGES: Final[Mapping[str, Callable[[], str]]] = {
     "messages.md": messages,
     "internal-actions.md": internal_actions,
     "commands.md": commands,
+    "percepts-and-actions.md": percepts_and_actions,
+    "scenario-keys.md": scenario_keys,
+    "simulated-faults.md": simulated_faults,
 }

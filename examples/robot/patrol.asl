@@ -2,7 +2,7 @@
 //
 //   python -m robot --simulated --agent examples/robot/patrol.asl --percepts latest --start post2:post1 --achieve patrol
 //
-// The actions and percepts are those of docs/agent-program.md.
+// The actions and percepts are those of docs/reference/agent-program.md.
 
 rounds(3).
 

@@ -1,7 +1,7 @@
 """The fault table: what is wrong, what the body does at once, what clears it, and what people are told.
 
-The agent perceives each as `fault(name)`, and `halted` while one of those with `halts` lasts. docs/safety.md shows the
-same table to people; a test compares the two.
+The agent perceives each as `fault(name)`, and `halted` while one of those with `halts` lasts. A test compares the table
+with docs/reference/faults.md.
 """
 
 from collections.abc import Callable

@@ -51,7 +51,7 @@ def _named(source: str, error: ValidationError) -> ScenarioError:
     key = ".".join(str(part + 1) if isinstance(part, int) else str(part) for part in first["loc"])
     if first["type"] != "extra_forbidden":
         return ScenarioError(
-            source, key, first["msg"].removeprefix("Value error, "), "docs/scenarios.md lists every key."
+            source, key, first["msg"].removeprefix("Value error, "), "docs/reference/scenario-keys.md lists every key."
         )
     plain = ".".join(str(part) for part in first["loc"] if not isinstance(part, int))
     nearest = get_close_matches(plain, sorted(keys()), n=1, cutoff=0.4)

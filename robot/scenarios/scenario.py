@@ -1,4 +1,4 @@
-"""The keys of a scenario file, each with its meaning. A test compares docs/scenarios.md with it.
+"""The keys of a scenario file, each with its meaning; docs/reference/scenario-keys.md is made of it.
 
 Times are seconds since the start, lengths metres in the map's frame. What `after_post` names counts from the moment in
 which the robot first stands at that post: then `at_s` is so long after it.

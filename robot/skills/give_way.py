@@ -10,7 +10,7 @@ from robot.skills.interfaces import View
 
 NEAR_SOMETHING_MM_S = 65.0
 """A touch at this speed is a nudge; from cruising it is reached within 40 mm, and the light
-bumpers of the simulated world see 120 mm far (docs/safety.md)."""
+bumpers of the simulated world see 120 mm far (docs/explanation/safety.md)."""
 MOST_BUMPS = 3
 GIVES_WAY_S = (6.0, 8.0)
 """How long it waits after each bump but the last, from where the reflex lets it go on: a person in the way has heard

@@ -28,7 +28,7 @@ def test_service_backup_and_commands_have_the_same_secrets() -> None:
     handed_over = "LoadCredential=campus_mail:/etc/campus-mail/secrets"
     for name in ("campus-mail.service", "campus-mail-backup.service"):
         assert handed_over in (DEPLOY / name).read_text().splitlines()
-    assert f"--property={handed_over}" in (ROOT / "docs" / "service-operation.md").read_text()
+    assert f"--property={handed_over}" in (ROOT / "docs" / "how-to" / "install-the-service.md").read_text()
 
 
 def test_no_proxy_shows_the_figures_or_holds_back_an_event() -> None:

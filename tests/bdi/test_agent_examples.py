@@ -15,9 +15,10 @@ AGENTS = ROOT / "examples" / "agents"
 EXAMPLES = sorted([*AGENTS.glob("*.asl"), *(AGENTS / "contract_net").glob("*.asl")])
 TESTED = [path for path in EXAMPLES if "prints" in path.read_text()]
 DOCS = ROOT / "docs"
-PAGE = (DOCS / "agentspeak.md").read_text()
-SESSIONS = re.findall(r"```console\n\$ (.*)\n([\s\S]*?)```", (DOCS / "agentspeak-tools.md").read_text())
-PIECES = re.findall(r"```python\n([\s\S]*?)```", (DOCS / "agentspeak-python.md").read_text())
+PAGE = (DOCS / "explanation" / "agentspeak.md").read_text()
+TOOLS = (DOCS / "how-to" / "debug-an-agent-program.md").read_text()
+SESSIONS = re.findall(r"```console\n\$ (.*)\n([\s\S]*?)```", TOOLS)
+PIECES = re.findall(r"```python\n([\s\S]*?)```", (DOCS / "how-to" / "embed-an-agent.md").read_text())
 
 
 @pytest.mark.parametrize("path", TESTED, ids=lambda path: path.name)
@@ -53,4 +54,4 @@ def test_the_pieces_of_python_run_one_after_the_other(monkeypatch: pytest.Monkey
     names: dict[str, Any] = {}
     assert PIECES
     for piece in PIECES:
-        exec(compile(piece, "docs/agentspeak-python.md", "exec"), names)  # noqa: S102 -- our own page
+        exec(compile(piece, "docs/how-to/embed-an-agent.md", "exec"), names)  # noqa: S102 -- our own page

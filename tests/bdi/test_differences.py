@@ -1,4 +1,4 @@
-"""Differences from Jason, as docs/agentspeak.md lists them: every row has a program that shows our behaviour.
+"""Differences from Jason, as docs/reference lists them: every row has a program that shows our behaviour.
 
 A row without a program, a program without a row, or a behaviour that has changed fails: then either the page or the
 interpreter has to be put right.
@@ -15,7 +15,7 @@ from tests.bdi.differences import SHOWN
 for _module in ("agents", "builtins", "goals", "limits", "mistakes", "modules", "refused", "text", "world"):
     import_module(f"tests.bdi.differences.{_module}")
 
-PAGE = Path(__file__).parents[2] / "docs" / "agentspeak.md"
+PAGE = Path(__file__).parents[2] / "docs" / "reference" / "agentspeak-differences.md"
 ROW = re.compile(r"^\| `([\w-]+)` \|(.*)\|$", re.MULTILINE)
 
 

@@ -1,4 +1,4 @@
-"""docs/agentspeak-reference.md against the interpreter: nothing is missing, nothing is invented."""
+"""docs/reference/agentspeak.md against the interpreter: nothing is missing, nothing is invented."""
 
 import re
 from pathlib import Path
@@ -11,8 +11,9 @@ from bdi.builtin.kinds import counts
 from bdi.reasoning.performatives import PERFORMATIVES
 
 ROOT = Path(__file__).parents[2]
-PAGE = (ROOT / "docs" / "agentspeak-reference.md").read_text()
-DIFFERENCES = (ROOT / "docs" / "agentspeak.md").read_text().partition("## What differs from Jason")[2]
+REFERENCE = ROOT / "docs" / "reference"
+PAGE = (REFERENCE / "agentspeak.md").read_text()
+DIFFERENCES = (REFERENCE / "agentspeak-differences.md").read_text().partition("## What differs from Jason")[2]
 CODE = re.compile(r"`([^`]+)`")
 STATUS = re.compile(r"same|ours|differs: ([\w-]+)|not supported: .+")
 CELLS = re.compile(r"(?<!\\)\|")

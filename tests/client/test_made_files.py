@@ -38,13 +38,6 @@ def test_what_is_committed_is_what_the_document_makes(maker: ModuleType, openapi
         assert (maker.PACKAGE / name).read_text() == text, f"{name}: run make client"
 
 
-def test_the_page_lists_every_error_and_every_operation_as_they_are(maker: ModuleType, openapi: Any) -> None:
-    page = maker.api_tables.PAGE.read_text()
-    assert page == maker.api_tables.page(openapi), "run make client"
-    assert "| `unknown_post` | 422 |" in page
-    assert "| `POST /orders` | `place_order` |" in page
-
-
 def test_every_operation_is_a_method_of_both_clients(maker: ModuleType, openapi: Any) -> None:
     named = {operation["operationId"] for _, _, operation in maker._for_programs(openapi)} - maker.BY_HAND
     assert len(named) > 25

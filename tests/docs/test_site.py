@@ -43,6 +43,7 @@ def test_the_reference_lists_everything_that_the_code_has():
     names = [*reference.STANDARD.actions, *reference.STANDARD.functions]
     assert pages["internal-actions.md"].count("\n| `") == len(names)
     assert "\n### POST /api/v1/orders\n" in pages["api-operations.md"]
+    assert "\n| `unknown_post` | 422 |" in pages["api-operations.md"]
     assert "\n### NewOrder\n" in pages["api-operations.md"]
     assert all(f"\n## `python -m {package}`\n" in pages["commands.md"] for package in reference.COMMANDS)
 

@@ -1,4 +1,4 @@
-"""docs/maps.md and examples/maps say what is so."""
+"""docs/reference/maps.md and examples/maps say what is so."""
 
 import re
 
@@ -7,7 +7,7 @@ from maps.campus_map import FOLDER, MARKER_BEFORE_POST_M, MARKER_BESIDE_LINE_M
 from maps.check import check_file
 from maps.map_file import CorridorRow, MapFile, PostRow, load_map_file
 
-PAGE = (FOLDER.parent / "docs/maps.md").read_text(encoding="utf-8")
+PAGE = (FOLDER.parent / "docs/reference/maps.md").read_text(encoding="utf-8")
 EXAMPLES = FOLDER.parent / "examples/maps"
 
 

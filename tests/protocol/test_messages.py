@@ -23,7 +23,7 @@ from protocol.proofs import ShownCode
 from protocol.to_server import HandoverReceipt
 
 ROOT = Path(__file__).parents[2]
-PAGE = ROOT / "docs" / "protocol.md"
+PAGE = ROOT / "docs" / "reference" / "protocol.md"
 EVERY = {**TO_SERVER, **TO_ROBOT}
 FILES = sorted(EXAMPLES.glob("*.json"))
 TEXTS = {path.stem: path.read_text() for path in FILES}

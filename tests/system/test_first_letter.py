@@ -81,7 +81,7 @@ def test_half_a_minute_without_network_and_the_letter_is_delivered_all_the_same(
 
 
 def test_a_robot_killed_while_carrying_knows_what_it_carries_and_delivers(rig: Rig) -> None:
-    """In the first half of a corridor. What is not mended yet: docs/robot.md, "Killed just before a post"."""
+    """In the first half of a corridor. What is not mended yet: docs/explanation/driving.md, "After a power cut"."""
     letter = Letter(rig)
     letter.load()
     wait_for("the corridor from post2", lambda: "follow_line" in rig.log("robot").partition("turn(left)")[2] or None)

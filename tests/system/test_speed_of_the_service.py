@@ -1,7 +1,7 @@
 """The service takes no more processor time than it did, beside two yardsticks of the machine from the same run.
 
 `benchmarks/service/kept_ratios.json` says what it took, and at which commit. Write it anew, on a machine with nothing
-else to do, by the command in `docs/service.md`.
+else to do, by the command in `docs/how-to/measure.md`.
 """
 
 import json

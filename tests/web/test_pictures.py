@@ -41,6 +41,7 @@ def test_the_gallery_has_every_picture_and_no_other_and_stays_small():
     assert set(files) == set(names), "`make screenshots` takes them"
     assert max(files.values()) < LARGEST_BYTES
     assert sum(files.values()) < ALL_BYTES
-    shown = {name for page in ("docs/pages.md", "README.md") for name in SHOWN.findall((ROOT / page).read_text())}
+    pages = ("docs/reference/pages.md", "README.md")
+    shown = {name for page in pages for name in SHOWN.findall((ROOT / page).read_text())}
     assert shown <= set(files)
     assert {name.rsplit("-", 2)[0] for name in shown} == {picture.name for picture in PICTURES}

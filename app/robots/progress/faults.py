@@ -24,7 +24,7 @@ NEEDS_A_PERSON: Final = frozenset(
         "stuck",
     }
 )
-"""The robot's faults (docs/safety.md) that it does not get out of by itself; what passes is no person's delay."""
+"""The robot's faults (docs/reference/faults.md) that it does not recover from by itself; the others delay no person."""
 
 
 async def follow_fault(report: Report, fault: Fault) -> None:

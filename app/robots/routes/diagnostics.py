@@ -86,4 +86,4 @@ async def robot_battery(
 
 
 LOW_RATIO: Final = 0.25
-"""The robots' usual setting `battery.low_ratio` (docs/robot.md)."""
+"""The robots' usual setting `battery.low_ratio` (docs/reference/settings.md)."""

@@ -47,7 +47,7 @@ async def traffic(user: CurrentUser, session: ReadingDep) -> Traffic:
 
 @router.websocket("/robots/link")
 async def robot_link(socket: WebSocket, fleet: FleetDep, intake: IntakeDep) -> None:
-    """The link of one robot (docs/protocol.md), signed in by its token."""
+    """The link of one robot (docs/reference/protocol.md), signed in by its token."""
     async with fleet.database.reading() as session:
         token = await token_of(session, socket.headers.get("Authorization"))
     await socket.accept()

@@ -14,7 +14,7 @@ from robot.simulated import SimulatedWorldError
 
 UNFINISHED, MISUSE = 1, 2
 INSTALLED = Path("/etc/campus-mail/robot.toml")
-"""Where docs/operation.md puts the settings; the default of every command."""
+"""Where docs/how-to/install-a-robot.md puts the settings; the default of every command."""
 
 OTHER_FOLDER = "Start it (systemctl start campus-mail-robot), or name the folder of one that runs: --data, --config."
 

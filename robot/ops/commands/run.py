@@ -26,7 +26,7 @@ SIMULATED_LINE_HZ = 50.0
 
 
 def run(  # typer reads the options from here
-    config: Annotated[Path | None, typer.Option(help="Settings (TOML); docs/robot.md lists every key.")] = None,
+    config: Annotated[Path | None, typer.Option(help="Settings (TOML); docs/reference/settings.md lists all.")] = None,
     simulated: Annotated[bool, typer.Option("--simulated", help="A simulated body in a simulated tunnel.")] = False,
     campus: Annotated[str | None, typer.Option("--map", help="A built-in map by name, or a map file.")] = None,
     name: Annotated[str | None, typer.Option(help="The robot's name, as the service knows it.")] = None,

@@ -152,5 +152,6 @@ def wake_up(patient: Patient) -> Finding:
     line.low(False)
     port.close()
     if not line.wired:
-        return warn(f"no pulse can be sent over {patient.settings.brc}", "Wire BRC (docs/wiring.md), or set brc.")
+        way_out = "Wire BRC (docs/how-to/wire-a-robot.md), or set brc."
+        return warn(f"no pulse can be sent over {patient.settings.brc}", way_out)
     return ok(f"over {patient.settings.brc}; let it sleep once (five minutes off the dock) to see that it wakes")

@@ -127,7 +127,7 @@ def supply(patient: Patient) -> Finding:
     if bits is None:
         return skip("this computer does not tell")
     said = ", ".join(words for bit, words in THROTTLED.items() if bits >> bit & 1)
-    way_out = "Give the computer 5.1 V and 3 A of its own (docs/wiring.md), and air."
+    way_out = "Give the computer 5.1 V and 3 A of its own (docs/how-to/wire-a-robot.md), and air."
     if bits & NOW:
         return fail(said, way_out)
     return warn(said, way_out) if said else ok("never too little voltage, never too hot")

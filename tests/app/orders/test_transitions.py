@@ -127,7 +127,7 @@ def test_what_lies_behind_an_order_is_old_news_and_what_lies_ahead_is_not() -> N
 
 
 def table_of_the_docs() -> str:
-    """The table of transitions as docs/orders.md shows it."""
+    """The table of transitions as docs/reference/orders.md shows it."""
     rows = [
         f"| {state} | {', '.join(f'{to} ({_words(by)})' for to, by in following.items()) or 'an end'} |"
         for state, following in TRANSITIONS.items()
@@ -140,4 +140,4 @@ def _words(by: set[By]) -> str:
 
 
 def test_the_docs_show_the_table_as_it_is() -> None:
-    assert table_of_the_docs() in (Path(__file__).parents[3] / "docs" / "orders.md").read_text()
+    assert table_of_the_docs() in (Path(__file__).parents[3] / "docs" / "reference" / "orders.md").read_text()

@@ -1,4 +1,4 @@
-"""Programs that show what differs from Jason, by the row of docs/agentspeak.md that says it. See test_differences."""
+"""Programs that show what differs from Jason, by the row of docs/reference/agentspeak-differences.md."""
 
 from collections.abc import Callable, Iterable
 

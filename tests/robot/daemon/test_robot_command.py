@@ -31,7 +31,7 @@ def write(path: Path, text: str) -> str:
 
 def test_help_shows_the_papers_run_and_where_the_settings_are_described() -> None:
     said = " ".join(CliRunner().invoke(cli, ["--help"]).output.split())
-    for needed in ("collectAndDeliverMail(post1,post4)", "docs/robot.md", "--simulated", "Exit status"):
+    for needed in ("collectAndDeliverMail(post1,post4)", "docs/reference/settings.md", "--simulated", "Exit status"):
         assert needed in said
 
 

@@ -43,7 +43,7 @@ CAUSES: dict[str, tuple[Change, Change]] = {
     "emergency_stop": (lambda robot: robot.robot.press("clean"), _nothing),
     "wheel_drop": (lambda robot: robot.robot.lift(True), lambda robot: robot.robot.lift(False)),
     "cliff": (lambda robot: robot.robot.cliff(True), lambda robot: robot.robot.cliff(False)),
-    # Its words are lost, it hears ours: one that hears nothing goes on as it was told last (docs/safety.md).
+    # Its words are lost, it hears ours: one that hears nothing goes on as told last (docs/explanation/safety.md).
     "base_silent": switch("drop_byte", 1.0, 0.0),
     "agent_silent": (_dies, _lives),
     "over_current": switch("over_current"),

@@ -1,4 +1,4 @@
-"""docs/safety.md shows people the same table that the robot obeys."""
+"""docs/reference/faults.md shows people the same table that the robot obeys."""
 
 from pathlib import Path
 
@@ -6,7 +6,7 @@ import pytest
 
 from robot.reflexes import FAULTS, Fault
 
-PAGE = (Path(__file__).parents[3] / "docs" / "safety.md").read_text("utf-8")
+PAGE = (Path(__file__).parents[3] / "docs" / "reference" / "faults.md").read_text("utf-8")
 
 
 def row_of(fault: Fault) -> str:
@@ -18,7 +18,7 @@ def row_of(fault: Fault) -> str:
 
 @pytest.mark.parametrize("fault", FAULTS, ids=lambda fault: fault.name)
 def test_each_row_of_the_table_is_on_the_page_as_it_is(fault: Fault) -> None:
-    assert row_of(fault) in PAGE.splitlines(), f"docs/safety.md must have this row:\n{row_of(fault)}"
+    assert row_of(fault) in PAGE.splitlines(), f"docs/reference/faults.md must have this row:\n{row_of(fault)}"
 
 
 def test_the_page_has_no_row_that_the_robot_does_not_know() -> None:

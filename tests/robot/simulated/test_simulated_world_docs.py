@@ -13,6 +13,7 @@ import serial
 import typer
 from typer.testing import CliRunner
 
+from docs.site.robot_pages import simulated_faults
 from maps import builtin_map
 from protocol.clock import RealClock
 from robot.simulated import SWITCHES, SimulatedRobot
@@ -20,13 +21,13 @@ from robot.simulated.__main__ import cli, let_live
 from robot.simulated.door import COMMANDS
 
 ROOT = Path(__file__).parents[3]
-PAGE = (ROOT / "docs" / "simulated-world.md").read_text(encoding="utf-8")
+PAGE = (ROOT / "docs" / "reference" / "simulated-world.md").read_text(encoding="utf-8")
 COMMAND = [sys.executable, "-m", "robot.simulated"]
 
 
 @pytest.mark.parametrize("name", [*SWITCHES, *COMMANDS])
 def test_the_page_describes_every_switch_and_door_command(name):
-    assert re.search(rf"^\| `{name}` \|", PAGE, re.MULTILINE)
+    assert re.search(rf"^\| `{name}` \|", PAGE + simulated_faults(), re.MULTILINE)
 
 
 def test_the_pages_example_runs(capsys):

@@ -18,7 +18,7 @@ const MOST_LINES = 2_000;
 const MOST_CHANGES = 200;
 /** An hour, at two a second. */
 const MOST_KEPT = 7_200;
-/** Of the file that is downloaded (docs/pages.md). */
+/** Of the file that is downloaded (docs/explanation/pages.md). */
 const FORMAT = 1;
 
 export class DiagnosticsRun {
