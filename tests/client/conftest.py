@@ -14,6 +14,16 @@ from app.orders.service import Actor
 from app.orders.transitions import By
 from campus_mail_client import AsyncCampusMail
 from protocol.clock import SteppedClock
+from tests.app.conftest import (  # noqa: F401  # fixtures
+    clock,
+    database_url,
+    mails,
+    nobody,
+    pages,
+    postgresql,
+    settings,
+    sqlite_at_head,
+)
 from tests.app.robots.playing import Service, serving
 
 SENDER, RECIPIENT = "sender@campus.example", "recipient@campus.example"
@@ -61,7 +71,7 @@ class Campus:
 
 
 @pytest.fixture
-async def campus(settings: Settings, clock: SteppedClock) -> AsyncIterator[Campus]:
+async def campus(settings: Settings, clock: SteppedClock) -> AsyncIterator[Campus]:  # noqa: F811
     async with serving(settings, clock) as service:
         yield Campus(service)
 

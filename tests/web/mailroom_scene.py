@@ -58,7 +58,7 @@ class Scene:
             data=service.folder, public_url=service.url, pages=service.folder / "none", map=campus, time_zone=zone
         )
         self.clock = clock or RealClock()
-        self.state = create_app(settings, self.clock).state
+        self.state = create_app(settings, self.clock).state.parts
 
     async def make_dispatcher(self, email: str) -> None:
         """For tests of what dispatchers see; a maintainer would do it over HTTP."""

@@ -82,9 +82,9 @@ def test_priority_is_a_head_start_so_that_nobody_waits_for_ever() -> None:
     nine = datetime(2026, 1, 5, 9, tzinfo=UTC)
     later = nine + timedelta(minutes=29)
     much_later = nine + timedelta(minutes=31)
-    assert counts_since(later, Priority.HIGH, 1800) < counts_since(nine, Priority.NORMAL, 1800)
-    assert counts_since(much_later, Priority.HIGH, 1800) > counts_since(nine, Priority.NORMAL, 1800)
-    assert counts_since(nine, Priority.LOW, 1800) > counts_since(later, Priority.NORMAL, 1800)
+    assert counts_since(later, Priority.HIGH) < counts_since(nine, Priority.NORMAL)
+    assert counts_since(much_later, Priority.HIGH) > counts_since(nine, Priority.NORMAL)
+    assert counts_since(nine, Priority.LOW) > counts_since(later, Priority.NORMAL)
 
 
 posts = st.sampled_from(sorted(MAP.posts))

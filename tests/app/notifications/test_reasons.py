@@ -25,7 +25,7 @@ from robot.agent.actions.corridors import CLOSED_BY, turned_back
 from robot.reflexes import FAULTS
 from tests.app.notifications.every_reason import RAW, every_reason, told_beside_alarms
 
-REASONS_OF_ROBOTS = ROOT / "robot" / "reasons.py"
+REASONS_OF_ROBOTS = ROOT / "robot" / "agent" / "reasons.py"
 
 
 def sentences_in(file: Path) -> Iterator[str]:
