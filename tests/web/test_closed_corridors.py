@@ -37,7 +37,7 @@ async def test_a_corridor_that_a_robot_found_closed_is_open_again_when_somebody_
     await press(page, r"Acknowledge\W+Robot")  # and goes there to look
     await expect(page.get_by_text(f"Acknowledged: {in_words}")).to_be_visible()
     await press(page, rf"Post 3 – Post 4 is open\W+{robot.name}")
-    await expect(page.get_by_role("button", name="Yes, reopen")).to_be_focused()
+    await expect(page.get_by_role("button", name="Yes, it is open")).to_be_focused()
     await dana.assert_accessible()
     await page.keyboard.press("Enter")
     wish = (await robot.hear("open_way")).body

@@ -95,9 +95,9 @@ async def test_somebody_signs_in_sends_a_letter_follows_it_cancels_it_and_settle
     await keys.type("Fran")
     await expect(heading).to_have_text("Réglages")
     assert await keys.here() == "Langue"
-    await keys.to("Remise, E-mail")
+    await keys.to("Livrée, E-mail")
     await keys.press("Space")
-    await expect(page.get_by_role("checkbox", name="Remise, E-mail")).not_to_be_checked()
+    await expect(page.get_by_role("checkbox", name="Livrée, E-mail")).not_to_be_checked()
 
 
 async def test_a_dispatcher_orders_for_somebody_pauses_a_robot_acts_on_an_order_and_prints_by_keys(visit, campus):

@@ -236,11 +236,11 @@ async def test_a_command_to_a_robot_that_was_refused_is_given_at_one_tap(quiet_c
         await press(page, "Pause")
         await page.get_by_label("Reason").fill("A parade")
         await dana.end_sessions()
-        await page.get_by_role("button", name="Pause").click()
+        await page.get_by_role("button", name="Pause", exact=True).last.click()
         await expect(dialog_on(page)).to_be_visible()
     await sign_in_over(page, dana)
     await expect(page.get_by_label("Reason")).to_have_value("A parade")
-    await page.get_by_role("button", name="Pause").click()
+    await page.get_by_role("button", name="Pause", exact=True).last.click()
     assert (await robot.hear("pause")).body.reason == "A parade"
 
 

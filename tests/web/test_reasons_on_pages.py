@@ -83,7 +83,7 @@ async def test_every_reason_is_said_in_words_on_every_page(quiet_campus: Campus,
     await expect(page.locator(".timeline .remark")).to_have_text(TYPED)
 
     await page.goto("/mailroom.html")
-    alarms = await texts(page, f".wrongs li.alarm:has-text('{robot}') .what span")
+    alarms = await texts(page, f".issues li.alarm:has-text('{robot}') .what span")
     told = " ".join(alarms)
     assert [one for one in rung if shown(language, one).lower() not in told.lower()] == []
     assert RAW.findall(told) == []

@@ -121,11 +121,11 @@ async def test_a_maintainer_watches_a_driving_robot_holds_the_view_filters_and_t
     await expect(page.get_by_text(re.compile(r"Paused; [2-9]\d* new reports"))).to_be_visible()
     assert await trace.get_by_role("listitem").first.inner_text() == newest
     await trace.get_by_label("Filter log").fill("LINE(")
-    await expect(trace.get_by_text(re.compile(r"^\d+ of \d+ lines"))).to_be_visible()
+    await expect(trace.get_by_text(re.compile(r"^\d+ of \d+ entries"))).to_be_visible()
     texts = await trace.get_by_role("listitem").all_inner_texts()
     assert texts
     assert all("line(" in text for text in texts)
-    await trace.get_by_label("What", exact=True).select_option("forgot")
+    await trace.get_by_label("Type", exact=True).select_option("forgot")
     assert all("forgot" in text for text in await trace.get_by_role("listitem").all_inner_texts())
     await page.get_by_role("button", name="Resume updates").click()
     await expect(page.get_by_text("Live from the robot")).to_be_visible()
@@ -161,7 +161,7 @@ async def test_on_a_small_phone_in_french_and_for_a_dispatcher_without_the_mind(
     await expect(marc.page.get_by_role("heading", name="Croyances")).to_be_visible()
     await expect(marc.page.get_by_role("img", name=re.compile("^De "))).to_be_visible()
     await expect(marc.page.get_by_role("button", name="Pause", exact=True)).to_have_count(0)
-    await marc.page.get_by_text(re.compile("^Tout \\(")).click()
+    await marc.page.get_by_text(re.compile("^Tout afficher \\(")).click()
     await assert_fits_and_is_accessible(marc.page)
     await marc.assert_accessible()
     await give_roles(tunnel, marc.email, Role.DISPATCHER)

@@ -40,12 +40,12 @@ async def test_language_name_post_and_notices_are_changed_and_kept(visit):
     await expect(page.get_by_role("navigation", name="Pages").get_by_role("link", name="Mon courrier")).to_be_visible()
 
     notices = page.get_by_role("region", name="Notifications")
-    await notices.get_by_role("checkbox", name="Remise, E-mail").uncheck()
+    await notices.get_by_role("checkbox", name="Livrée, E-mail").uncheck()
     await expect(notices.get_by_role("status")).to_have_text("Enregistré")
     assert await page.evaluate(NO_OVERFLOW)
     await ada.assert_accessible()
     await page.reload()
-    await expect(page.get_by_role("checkbox", name="Remise, E-mail")).not_to_be_checked()
+    await expect(page.get_by_role("checkbox", name="Livrée, E-mail")).not_to_be_checked()
     person = await ada.api("/me")
     assert (person["name"], person["language"], person["usual_post"]) == ("Augusta Ada King", "fr", "post2")
 

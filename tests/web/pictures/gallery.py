@@ -53,8 +53,8 @@ PICTURES: Final = (
     Picture("robots", MIRA, "/robots.html", ROWS),
     Picture("robot", MIRA, "/robots.html?robot=r1", ".curve .charge"),
     Picture("order-offline", ADA, "/", "[name=from_post]", doings.order_without_network),
-    Picture("mailroom-trouble", DANA, "/mailroom.html", ".wrongs li:nth-child(5)", scene=Scene.TROUBLE),
-    Picture("wall", DANA, "/mailroom.html?wall", ".wrongs li:nth-child(5)", scene=Scene.TROUBLE),
+    Picture("mailroom-trouble", DANA, "/mailroom.html", ".issues li:nth-child(5)", scene=Scene.TROUBLE),
+    Picture("wall", DANA, "/mailroom.html?wall", ".issues li:nth-child(5)", scene=Scene.TROUBLE),
     Picture("robot-faults", MIRA, "/robots.html?robot=r1", "robot-faults li", scene=Scene.TROUBLE),
     Picture("robot-mind", MIRA, "/robots.html?robot=r5", "robot-diagnostics", doings.come_to_the_mind, Scene.MIND),
 )
