@@ -17,13 +17,22 @@ settings.register_profile("campus_mail", deadline=None, print_blob=True)
 settings.load_profile("campus_mail")
 
 NOT_RUN = pytest.StashKey[int]()
+PLAIN = [
+    *structlog.get_config()["processors"][:-1],
+    structlog.dev.ConsoleRenderer(exception_formatter=structlog.dev.plain_traceback),
+]
 ALONE_IN = ("robot", "system")
 """CI looks for tests that run alone in these folders only: to collect all the others takes ten seconds."""
 
 
 @pytest.fixture(autouse=True)
 def logs_of_its_own() -> Iterator[None]:
-    """A command that a test runs within its own process configures the logs of that process."""
+    """A command that a test runs within its own process configures the logs of that process.
+
+    Tracebacks are plain: with all local variables, as structlog prints them by default, one takes a minute of the
+    whole service.
+    """
+    structlog.configure(processors=PLAIN)
     yield
     structlog.reset_defaults()
 

@@ -26,7 +26,16 @@ CLOSE_WITHIN_S = 3.0
 def configure_logs(path: Path | None) -> None:
     """For the whole process. Raises ConfigError when the file cannot be opened; stdout stays free for --json."""
     if path is None:
-        structlog.configure(logger_factory=lambda *_: structlog.PrintLogger(sys.stderr))
+        structlog.configure(
+            processors=[
+                structlog.contextvars.merge_contextvars,
+                structlog.processors.add_log_level,
+                structlog.processors.TimeStamper(fmt="%Y-%m-%d %H:%M:%S", utc=False),
+                # structlog's own choice prints all local variables: tokens too, and it takes seconds of a drive loop.
+                structlog.dev.ConsoleRenderer(exception_formatter=structlog.dev.plain_traceback),
+            ],
+            logger_factory=lambda *_: structlog.PrintLogger(sys.stderr),
+        )
         return
     logger = logging.getLogger("robot")
     for old in tuple(logger.handlers):

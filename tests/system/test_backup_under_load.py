@@ -17,7 +17,7 @@ import pytest
 from app.cli.administration import enrol
 from app.core.settings import Settings
 from benchmarks.service_kills.mail_server import SpoolFolder
-from benchmarks.service_kills.people import Everybody, Somebody
+from benchmarks.service_kills.people import Everybody, Person
 from benchmarks.service_kills.senders import Sender
 from benchmarks.service_kills.stand_in import StandIn
 from benchmarks.service_kills.victim import CHECKOUT, Victim
@@ -50,7 +50,7 @@ async def test_a_backup_under_load_restores_to_a_sound_database_that_a_service_s
         Sender(victim.url, f"sender{n}@campus.example", Random(n), browsers[n], recipients=(BOB,), pause_s=0.01)
         for n in range(SENDERS)
     ]
-    bob = Somebody(victim.url, BOB, Random(SENDERS), browsers[-1])
+    bob = Person(victim.url, BOB, Random(SENDERS), browsers[-1])
     ways, show = Ways(read_map(victim.map_file)), Everybody(senders, [bob]).show
     robot = StandIn("r1", token, victim.link_url, "post5", ways, Random(1), show)
 

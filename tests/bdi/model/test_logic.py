@@ -52,6 +52,8 @@ def asked(name: str, args: Sequence[Term], facts: list[Fact], trail: Trail) -> I
     choices = [QUESTIONS[name](args, facts, trail)] if name in QUESTIONS else members(args)
     for value, wanted in choices:
         if unify(wanted, value, trail):
+            for variable in trail[mark:]:
+                variables_in(variable)  # without end where X = f(X), and told in `meant`
             yield
         undo(trail, mark)
 
@@ -219,7 +221,7 @@ def meant(formula: str, agent: Agent, given: dict[str, str] | None = None) -> li
     try:
         for _ in answers(term, facts_of(agent), trail):
             found.append({name: shown(each) for name, each in zip("XYZ", wanted, strict=True)})
-    except RecursionError:  # X = f(X), in some way or other
+    except RecursionError:  # X = f(X), in some way or other: terms without an end mean nothing
         reject()
     return found
 

@@ -6,11 +6,12 @@ import threading
 from pathlib import Path
 
 import pytest
+import structlog
 import typer
 from typer.testing import CliRunner
 
 from robot.__main__ import cli
-from robot.core.logs import WAITING_LINES, WrittenElsewhere
+from robot.core.logs import WAITING_LINES, WrittenElsewhere, configure_logs
 from robot.ops.commands.logs import journal_of
 
 
@@ -53,3 +54,18 @@ def test_a_log_file_that_is_not_there_yet_is_named(tmp_path: Path) -> None:
     (tmp_path / "robot.toml").write_text(f'log_file = "{tmp_path / "robot.log"}"\n')
     shown = CliRunner().invoke(cli, ["logs", "--config", str(tmp_path / "robot.toml"), "--data", str(tmp_path)])
     assert (shown.exit_code, f"{tmp_path / 'robot.log'} (the setting log_file)" in shown.stderr) == (2, True)
+
+
+def test_a_traceback_in_the_terminal_shows_no_local_variable(capsys: pytest.CaptureFixture[str]) -> None:
+    structlog.reset_defaults()  # as a process starts
+    configure_logs(None)
+    token = "a-secret-of-the-robot"
+    try:
+        raise RuntimeError(f"{len(token)} characters refused")
+    except RuntimeError:
+        structlog.get_logger("robot").exception("sign_in_failed", robot="r1")
+    printed = capsys.readouterr()
+    assert "sign_in_failed" in printed.err
+    assert "RuntimeError: 21 characters refused" in printed.err
+    assert token not in printed.err
+    assert printed.out == ""
