@@ -117,7 +117,7 @@ def app(settings: Settings, clock: SteppedClock) -> FastAPI:
 
 
 @pytest.fixture
-def nobody(app: FastAPI) -> Iterator[TestClient]:
+def anonymous(app: FastAPI) -> Iterator[TestClient]:
     """A browser in which nobody is signed in."""
     with TestClient(app, base_url=HERE, raise_server_exceptions=False) as client:
         yield client
@@ -167,12 +167,12 @@ SignedIn = Callable[[str], Browser]
 
 
 @pytest.fixture
-def signed_in(app: FastAPI, nobody: TestClient, mails: Mails) -> SignedIn:
+def signed_in(app: FastAPI, anonymous: TestClient, mails: Mails) -> SignedIn:
     """Sign somebody in, as they would do it: ask for a code, read the mail, type the code."""
 
     def sign_in(email: str) -> Browser:
         browser = Browser(app)
-        browser.portal = nobody.portal  # one event loop for all: the service is one process
+        browser.portal = anonymous.portal  # one event loop for all: the service is one process
         assert browser.post("/api/v1/sign-in/codes", json={"email": email}).status_code == 202
         answer = browser.post("/api/v1/sign-in", json={"email": email, "code": mails.newest_code(email)})
         assert answer.status_code == 200, answer.text
@@ -243,8 +243,8 @@ class Mailroom:
 
 
 @pytest.fixture
-def mailroom(app: FastAPI, nobody: TestClient) -> Mailroom:
-    return Mailroom(app, nobody)
+def mailroom(app: FastAPI, anonymous: TestClient) -> Mailroom:
+    return Mailroom(app, anonymous)
 
 
 @dataclass(frozen=True)
@@ -256,14 +256,14 @@ class Served:
 
 
 @pytest.fixture
-def served(app: FastAPI, nobody: TestClient) -> Iterator[Served]:
+def served(app: FastAPI, anonymous: TestClient) -> Iterator[Served]:
     """The real server, in the loop of the test client, which runs the lifespan already."""
     config = config_of(app)
     config.lifespan = "off"
     server = Server(app, config)
-    assert nobody.portal is not None
+    assert anonymous.portal is not None
     with listen("127.0.0.1", 0) as listening:
-        serving = nobody.portal.start_task_soon(server.serve, [listening])
+        serving = anonymous.portal.start_task_soon(server.serve, [listening])
         yield Served(f"http://127.0.0.1:{listening.getsockname()[1]}", server)
         server.should_exit = True
         serving.result(10)

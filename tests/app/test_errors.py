@@ -23,8 +23,10 @@ from tests.app.conftest import Browser, sqlite_alone
         ("GET", "/api/v1/me", 401, "not_signed_in"),
     ],
 )
-def test_what_is_not_there_is_a_problem_too(nobody: TestClient, method: str, path: str, status: int, code: str) -> None:
-    answer = nobody.request(method, path)
+def test_what_is_not_there_is_a_problem_too(
+    anonymous: TestClient, method: str, path: str, status: int, code: str
+) -> None:
+    answer = anonymous.request(method, path)
     assert answer.headers["content-type"] == PROBLEM_JSON
     problem = answer.json()
     assert (answer.status_code, problem["status"], problem["code"]) == (status, status, code)
@@ -39,30 +41,30 @@ def test_what_is_not_there_is_a_problem_too(nobody: TestClient, method: str, pat
         ("/api/v1/me", "GET, PATCH"),
     ],
 )
-def test_allow_says_what_the_document_says(nobody: TestClient, path: str, allowed: str) -> None:
-    answer = nobody.options(path)
+def test_allow_says_what_the_document_says(anonymous: TestClient, path: str, allowed: str) -> None:
+    answer = anonymous.options(path)
     assert (answer.status_code, set(answer.headers["Allow"].split(", "))) == (405, set(allowed.split(", ")))
 
 
-def test_what_does_not_fit_is_named_by_its_field_and_not_repeated(nobody: TestClient) -> None:
-    answer = nobody.post("/api/v1/sign-in", json={"email": "ann@campus.example", "code": "sesame-1234"})
+def test_what_does_not_fit_is_named_by_its_field_and_not_repeated(anonymous: TestClient) -> None:
+    answer = anonymous.post("/api/v1/sign-in", json={"email": "ann@campus.example", "code": "sesame-1234"})
     problem = answer.json()
     assert (answer.status_code, problem["code"]) == (422, "invalid_request")
     assert [error["field"] for error in problem["errors"]] == ["code"]
     assert "sesame" not in answer.text
 
 
-def test_a_body_that_is_no_json_is_a_problem(nobody: TestClient) -> None:
-    answer = nobody.post("/api/v1/sign-in", content="{", headers={"Content-Type": "application/json"})
+def test_a_body_that_is_no_json_is_a_problem(anonymous: TestClient) -> None:
+    answer = anonymous.post("/api/v1/sign-in", content="{", headers={"Content-Type": "application/json"})
     assert (answer.status_code, answer.json()["code"]) == (400, "malformed_body")
 
 
-def test_what_nobody_foresaw_is_a_problem_without_its_inside(app: FastAPI, nobody: TestClient) -> None:
+def test_what_nobody_foresaw_is_a_problem_without_its_inside(app: FastAPI, anonymous: TestClient) -> None:
     async def broken() -> None:
         raise RuntimeError("the inside")
 
     app.add_api_route("/broken", broken)
-    answer = nobody.get("/broken")
+    answer = anonymous.get("/broken")
     assert (answer.status_code, answer.json()["code"]) == (500, "unforeseen")
     assert "inside" not in answer.text
 
@@ -87,9 +89,9 @@ def test_while_the_database_cannot_be_written_people_are_asked_to_try_again(
     assert len(sender.get("/api/v1/orders").json()["items"]) == 1
 
 
-def test_who_is_nobody_is_told_how_to_say_who_they_are(nobody: TestClient) -> None:
-    assert nobody.get("/api/v1/orders").headers["WWW-Authenticate"] == "Bearer"
-    wrong = nobody.get("/api/v1/orders", headers={"Authorization": "Bearer cmp_00000000_wrong"})
+def test_who_is_nobody_is_told_how_to_say_who_they_are(anonymous: TestClient) -> None:
+    assert anonymous.get("/api/v1/orders").headers["WWW-Authenticate"] == "Bearer"
+    wrong = anonymous.get("/api/v1/orders", headers={"Authorization": "Bearer cmp_00000000_wrong"})
     assert wrong.headers["WWW-Authenticate"] == 'Bearer error="invalid_token"'
 
 
@@ -98,11 +100,11 @@ def closed_routes(app: FastAPI) -> list[tuple[str, str]]:
     return [(method.upper(), path) for method, path, operation in operations(app.openapi()) if "security" in operation]
 
 
-def test_every_route_that_is_not_open_wants_somebody_signed_in(app: FastAPI, nobody: TestClient) -> None:
+def test_every_route_that_is_not_open_wants_somebody_signed_in(app: FastAPI, anonymous: TestClient) -> None:
     closed = closed_routes(app)
     assert len(closed) > 30
     for method, path in closed:
-        answer = nobody.request(method, path.replace("{order_id}", "o1"), headers={"Idempotency-Key": "k"})
+        answer = anonymous.request(method, path.replace("{order_id}", "o1"), headers={"Idempotency-Key": "k"})
         assert (answer.status_code, answer.json()["code"]) == (401, "not_signed_in"), (method, path)
 
 
@@ -115,8 +117,8 @@ def test_every_route_that_changes_something_wants_our_own_page(app: FastAPI, sen
         assert (answer.status_code, answer.json()["code"]) == (403, "cross_site"), (method, path)
 
 
-def test_pages_run_no_script_but_their_own(nobody: TestClient) -> None:
-    answer = nobody.get("/")
+def test_pages_run_no_script_but_their_own(anonymous: TestClient) -> None:
+    answer = anonymous.get("/")
     policy = answer.headers["content-security-policy"]
     assert "script-src 'self' 'sha256-" in policy
     assert "unsafe-inline" not in policy
@@ -124,17 +126,17 @@ def test_pages_run_no_script_but_their_own(nobody: TestClient) -> None:
     assert answer.headers["x-content-type-options"] == "nosniff"
 
 
-def test_the_service_says_how_it_is(nobody: TestClient) -> None:
-    assert nobody.get("/healthz").json() == {"status": "ok"}
-    assert nobody.get("/readyz").json() == {"status": "ready"}
-    assert nobody.get("/version").json()["version"] == nobody.get("/api/v1/about").json()["version"]
+def test_the_service_says_how_it_is(anonymous: TestClient) -> None:
+    assert anonymous.get("/healthz").json() == {"status": "ok"}
+    assert anonymous.get("/readyz").json() == {"status": "ready"}
+    assert anonymous.get("/version").json()["version"] == anonymous.get("/api/v1/about").json()["version"]
 
 
-def test_a_page_learns_what_the_map_is(nobody: TestClient) -> None:
-    campus = nobody.get("/api/v1/map").json()
+def test_a_page_learns_what_the_map_is(anonymous: TestClient) -> None:
+    campus = anonymous.get("/api/v1/map").json()
     assert {"post1", "post4"} <= {post["name"] for post in campus["posts"]}
     assert all(len(corridor["tape"]) >= 2 for corridor in campus["corridors"])
-    assert nobody.get("/api/v1/about").json()["demo"] is False
+    assert anonymous.get("/api/v1/about").json()["demo"] is False
 
 
 def test_without_a_demonstration_there_is_no_camera(sender: Browser) -> None:

@@ -34,8 +34,8 @@ class Watcher(TestClient):
 
 
 @pytest.fixture
-def watcher(app: FastAPI, nobody: TestClient) -> Watcher:
-    return Watcher(app, nobody)
+def watcher(app: FastAPI, anonymous: TestClient) -> Watcher:
+    return Watcher(app, anonymous)
 
 
 def test_orders_robots_and_notices_are_counted(
@@ -99,8 +99,10 @@ def test_what_is_gone_is_not_counted_any_more(watcher: Watcher, sender: Browser,
     assert ("campus_mail_orders", "queued") not in watcher.figures()
 
 
-def test_the_door_is_open_to_this_machine_alone_and_not_through_a_proxy(watcher: Watcher, nobody: TestClient) -> None:
-    assert nobody.get("/metrics").json()["code"] == "metrics_not_for_you"
+def test_the_door_is_open_to_this_machine_alone_and_not_through_a_proxy(
+    watcher: Watcher, anonymous: TestClient
+) -> None:
+    assert anonymous.get("/metrics").json()["code"] == "metrics_not_for_you"
     for name in ("X-Forwarded-For", "X-Forwarded-Proto", "Forwarded", "Via"):
         assert watcher.get("/metrics", headers={name: "1.1 proxy"}).status_code == 403, name
 

@@ -36,7 +36,7 @@ def held_lock(settings: Settings) -> Iterator[None]:
 
 
 @pytest.fixture
-def script(sender: Browser, nobody: TestClient) -> dict[str, str]:
+def script(sender: Browser, anonymous: TestClient) -> dict[str, str]:
     """The headers of a script that may read."""
     made = sender.post("/api/v1/tokens", json={"name": "reader", "scopes": ["orders:read"], "days": 7})
     assert made.status_code == 201, made.text
@@ -50,7 +50,7 @@ def seen_at(browser: Browser) -> str:
 
 @pytest.mark.parametrize("fault", ["full disk", "held lock"])
 def test_who_reads_is_answered_at_once_and_readiness_tells(
-    fault: str, settings: Settings, clock: SteppedClock, sender: Browser, script: dict[str, str], nobody: TestClient
+    fault: str, settings: Settings, clock: SteppedClock, sender: Browser, script: dict[str, str], anonymous: TestClient
 ) -> None:
     clock.advance(SEEN_EVERY.total_seconds())  # so that it is time to note that they are here
     opened = seen_at(sender)
@@ -58,14 +58,14 @@ def test_who_reads_is_answered_at_once_and_readiness_tells(
     with no_room(settings.data) if fault == "full disk" else held_lock(settings):
         begun_s = time.monotonic()
         answers = {path: sender.get(path).status_code for path in READ}
-        answers["script"] = nobody.get("/api/v1/orders", headers=script).status_code
+        answers["script"] = anonymous.get("/api/v1/orders", headers=script).status_code
         took_s = time.monotonic() - begun_s
-        ready = nobody.get("/readyz")
+        ready = anonymous.get("/readyz")
     assert set(answers.values()) == {200}, answers
     assert took_s < WAIT_S
     assert (ready.status_code, ready.json()["code"]) == (503, "not_ready")
     assert ("full" in ready.json()["detail"]) if fault == "full disk" else ("locked" in ready.json()["detail"])
-    assert nobody.get("/readyz").json() == {"status": "ready"}, "as soon as there is room"
+    assert anonymous.get("/readyz").json() == {"status": "ready"}, "as soon as there is room"
     while seen_at(sender) == opened:
         time.sleep(0.01)
 

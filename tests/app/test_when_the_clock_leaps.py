@@ -43,10 +43,10 @@ def app(settings: Settings, machine: Machine) -> FastAPI:
 
 
 @pytest.fixture
-def sender(app: FastAPI, nobody: TestClient, mailroom: Mailroom) -> Browser:
+def sender(app: FastAPI, anonymous: TestClient, mailroom: Mailroom) -> Browser:
     """Signed in without a mail."""
     browser = Browser(app)
-    browser.portal = nobody.portal
+    browser.portal = anonymous.portal
     browser.cookies["session"] = mailroom.call(_session_of, app, SENDER)
     return browser
 
@@ -157,9 +157,9 @@ async def _wait_for_tries(app: FastAPI, tries: int) -> None:
     raise AssertionError("it was not tried again")
 
 
-def test_who_watches_sees_the_leap(nobody: TestClient, app: FastAPI, machine: Machine) -> None:
+def test_who_watches_sees_the_leap(anonymous: TestClient, app: FastAPI, machine: Machine) -> None:
     watcher = TestClient(app, base_url=HERE, client=("127.0.0.1", 50000))
-    watcher.portal = nobody.portal
+    watcher.portal = anonymous.portal
 
     def figures() -> tuple[float, float]:
         families = text_string_to_metric_families(watcher.get("/metrics").text)

@@ -15,10 +15,10 @@ from app.orders.transitions import By
 from campus_mail_client import AsyncCampusMail
 from protocol.clock import SteppedClock
 from tests.app.conftest import (  # noqa: F401  # fixtures
+    anonymous,
     clock,
     database_url,
     mails,
-    nobody,
     pages,
     postgresql,
     settings,

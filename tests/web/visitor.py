@@ -16,7 +16,7 @@ from tests.web.service import ROOT, Service
 # Browsers write every refused request to the console. A page asks who is signed in, and for their orders, before it
 # knows whether a person is signed in: this refusal is by design.
 REFUSED = re.compile(r"Failed to load resource: the server responded with a status of 4\d\d")
-NOBODY = re.compile(r"Failed to load resource: the server responded with a status of 401")
+UNAUTHORIZED = re.compile(r"Failed to load resource: the server responded with a status of 401")
 WHO_AM_I = "/api/v1/me"
 ORDERS = re.compile(r"/api/v1/orders(/[\w-]+)?")
 NO_WORKER = "Service Worker registration blocked by Playwright"
@@ -72,8 +72,8 @@ class Visitor:
     def _hear(self, message: ConsoleMessage) -> None:
         path = re.sub(r"^https?://[^/]+", "", message.location["url"]).partition("?")[0]
         expected = path in self.refusals_expected and REFUSED.match(message.text)
-        expected = expected or (ORDERS.fullmatch(path) and NOBODY.match(message.text))
-        expected = expected or (self.loses_session and NOBODY.match(message.text))
+        expected = expected or (ORDERS.fullmatch(path) and UNAUTHORIZED.match(message.text))
+        expected = expected or (self.loses_session and UNAUTHORIZED.match(message.text))
         expected = expected or (self.loses_answers and "net::ERR_" in message.text)
         expected = expected or message.text == NO_WORKER
         if message.type in ("error", "warning") and not expected:

@@ -46,15 +46,15 @@ def said(answer: Any) -> tuple[int, str]:
 
 
 def test_the_mail_to_somebody_outside_holds_a_link_to_their_order(
-    nobody: TestClient, sender: Browser, mailroom: Mailroom, mails: Mails
+    anonymous: TestClient, sender: Browser, mailroom: Mailroom, mails: Mails
 ) -> None:
     order_id = on_its_way(sender, mailroom, OUTSIDE)
     token = link_in(mails.to(OUTSIDE)[0])
-    opened = nobody.post(ORDER, json={"token": token})
+    opened = anonymous.post(ORDER, json={"token": token})
     assert opened.status_code == 200
     assert (opened.json()["id"], opened.json()["my_role"]) == (order_id, "recipient")
-    assert nobody.get("/api/v1/orders", headers={"Authorization": f"Bearer {token}"}).status_code == 401
-    assert nobody.get("/api/v1/orders", headers={"Cookie": f"session={token}"}).status_code == 401
+    assert anonymous.get("/api/v1/orders", headers={"Authorization": f"Bearer {token}"}).status_code == 401
+    assert anonymous.get("/api/v1/orders", headers={"Cookie": f"session={token}"}).status_code == 401
 
 
 def test_each_order_has_its_own_link_and_every_mail_about_it_the_same(
@@ -69,22 +69,24 @@ def test_each_order_has_its_own_link_and_every_mail_about_it_the_same(
 
 
 def test_a_wrong_or_old_link_opens_nothing(
-    nobody: TestClient, sender: Browser, mailroom: Mailroom, mails: Mails, clock: SteppedClock
+    anonymous: TestClient, sender: Browser, mailroom: Mailroom, mails: Mails, clock: SteppedClock
 ) -> None:
     on_its_way(sender, mailroom, OUTSIDE)
     token = link_in(mails.to(OUTSIDE)[0])
-    assert said(nobody.post(ORDER, json={"token": "A" * 43})) == (401, "link_refused")
-    assert nobody.post(ORDER, json={"token": token[:-1]}).status_code == 422
-    assert nobody.get(ORDER, params={"token": token}).status_code == 405, "it acts by POST alone: scanners open links"
+    assert said(anonymous.post(ORDER, json={"token": "A" * 43})) == (401, "link_refused")
+    assert anonymous.post(ORDER, json={"token": token[:-1]}).status_code == 422
+    assert anonymous.get(ORDER, params={"token": token}).status_code == 405, (
+        "it acts by POST alone: scanners open links"
+    )
     clock.advance(14 * 86400)
-    assert said(nobody.post(ORDER, json={"token": token})) == (401, "link_refused")
+    assert said(anonymous.post(ORDER, json={"token": token})) == (401, "link_refused")
 
 
-def test_another_site_cannot_use_a_link_and_neither_does_plain_http(app: FastAPI, nobody: TestClient) -> None:
+def test_another_site_cannot_use_a_link_and_neither_does_plain_http(app: FastAPI, anonymous: TestClient) -> None:
     wish = {"token": "A" * 43}
-    assert said(nobody.post(ORDER, json=wish, headers={"Origin": "https://evil.example"})) == (403, "cross_site")
+    assert said(anonymous.post(ORDER, json=wish, headers={"Origin": "https://evil.example"})) == (403, "cross_site")
     remote = TestClient(app, base_url="http://mail.campus.example")
-    remote.portal = nobody.portal
+    remote.portal = anonymous.portal
     assert said(remote.post(ORDER, json=wish)) == (403, "https_required")
 
 
@@ -100,19 +102,19 @@ def test_whoever_has_an_account_signs_in_and_gets_no_link(
     assert "follow.html" in body.get_content()
 
 
-def test_somebody_outside_can_be_sent_mail_and_still_not_sign_in(nobody: TestClient, sender: Browser) -> None:
+def test_somebody_outside_can_be_sent_mail_and_still_not_sign_in(anonymous: TestClient, sender: Browser) -> None:
     assert sender.order(recipient=OUTSIDE).status_code == 201
-    assert said(nobody.post("/api/v1/sign-in/codes", json={"email": OUTSIDE})) == (422, "address_not_allowed")
+    assert said(anonymous.post("/api/v1/sign-in/codes", json={"email": OUTSIDE})) == (422, "address_not_allowed")
 
 
 def test_by_the_link_a_guest_gets_their_code_names_somebody_else_and_says_not_now(
-    nobody: TestClient, sender: Browser, mailroom: Mailroom, mails: Mails
+    anonymous: TestClient, sender: Browser, mailroom: Mailroom, mails: Mails
 ) -> None:
     order_id = on_its_way(sender, mailroom, OUTSIDE)
     link = {"token": link_in(mails.to(OUTSIDE)[0])}
 
     def act(what: str, **wish: str) -> Any:
-        return nobody.post(f"/api/v1/link/{what}", json={**link, **wish})
+        return anonymous.post(f"/api/v1/link/{what}", json={**link, **wish})
 
     code = act("code")
     assert code.headers["Cache-Control"] == "no-store"
@@ -127,16 +129,16 @@ def test_by_the_link_a_guest_gets_their_code_names_somebody_else_and_says_not_no
 
 
 def test_wrong_digits_by_a_link_count_as_anybodys(
-    nobody: TestClient, sender: Browser, mailroom: Mailroom, mails: Mails
+    anonymous: TestClient, sender: Browser, mailroom: Mailroom, mails: Mails
 ) -> None:
     order_id = on_its_way(sender, mailroom, OUTSIDE)
     mailroom.move(order_id, "at_recipient")
     link = {"token": link_in(mails.to(OUTSIDE)[0])}
-    right = nobody.post("/api/v1/link/code", json=link).json()["digits"]
+    right = anonymous.post("/api/v1/link/code", json=link).json()["digits"]
     wrong = f"{(int(right) + 1) % 10**6:06d}"
-    tries = [nobody.post("/api/v1/link/handover", json={**link, "digits": wrong}) for _ in range(5)]
+    tries = [anonymous.post("/api/v1/link/handover", json={**link, "digits": wrong}) for _ in range(5)]
     assert [said(one)[1] for one in tries] == ["wrong_digits"] * 4 + ["digits_locked"]
-    assert nobody.post("/api/v1/link/code", json=link).json()["digits_locked"] is True
+    assert anonymous.post("/api/v1/link/code", json=link).json()["digits_locked"] is True
 
 
 LINKED = {"outside": True, "porter": True, SENDER: False, "signed in": False, "stranger": False, "let go": False}

@@ -78,32 +78,34 @@ def changed(address: str, **changes: str) -> str:
     return urlunsplit(parts._replace(query=urlencode({**dict(parse_qsl(parts.query)), **changes})))
 
 
-def test_somebody_signs_in_at_the_campus_and_is_known_again(nobody: TestClient, campus: Campus) -> None:
-    address = start(nobody)
+def test_somebody_signs_in_at_the_campus_and_is_known_again(anonymous: TestClient, campus: Campus) -> None:
+    address = start(anonymous)
     asked = parse_qs(urlsplit(address).query)
     assert asked["code_challenge_method"] == ["S256"]
     assert len(asked["code_challenge"][0]) == 43
-    assert come_back(nobody, campus.sign_in(address, "ada")) == "/"
-    me = nobody.get("/api/v1/me").json()
+    assert come_back(anonymous, campus.sign_in(address, "ada")) == "/"
+    me = anonymous.get("/api/v1/me").json()
     assert (me["email"], me["name"], me["roles"]) == ("ada.king@campus.example", "Ada Lovelace", ["member"])
     campus.knows("ada", **{**ADA, "email": "ada.lovelace@campus.example"})
-    assert come_back(nobody, campus.sign_in(start(nobody), "ada")) == "/"
-    assert nobody.get("/api/v1/me").json()["id"] == me["id"], "by issuer and subject, whatever becomes of the address"
+    assert come_back(anonymous, campus.sign_in(start(anonymous), "ada")) == "/"
+    assert anonymous.get("/api/v1/me").json()["id"] == me["id"], (
+        "by issuer and subject, whatever becomes of the address"
+    )
 
 
 def test_whoever_signed_in_by_mail_before_is_the_same_person(
-    app: FastAPI, nobody: TestClient, signed_in: SignedIn, campus: Campus
+    app: FastAPI, anonymous: TestClient, signed_in: SignedIn, campus: Campus
 ) -> None:
     by_mail = signed_in("ada.king@campus.example").get("/api/v1/me").json()
-    come_back(nobody, campus.sign_in(start(nobody), "ada"))
-    assert nobody.get("/api/v1/me").json() == {**by_mail, "name": "Ada Lovelace"}, "a better name than our guess"
+    come_back(anonymous, campus.sign_in(start(anonymous), "ada"))
+    assert anonymous.get("/api/v1/me").json() == {**by_mail, "name": "Ada Lovelace"}, "a better name than our guess"
 
 
-def test_a_name_from_the_campus_is_one_printable_line(nobody: TestClient, campus: Campus) -> None:
+def test_a_name_from_the_campus_is_one_printable_line(anonymous: TestClient, campus: Campus) -> None:
     paragraph = "Eve\r\n\r\nYour account ends today.\u2028\u202e" + "https://evil.example/ " * 10
     campus.knows("eve", **{**ADA, "email": "eve@campus.example", "name": paragraph})
-    assert come_back(nobody, campus.sign_in(start(nobody), "eve")) == "/"
-    name = nobody.get("/api/v1/me").json()["name"]
+    assert come_back(anonymous, campus.sign_in(start(anonymous), "eve")) == "/"
+    name = anonymous.get("/api/v1/me").json()["name"]
     assert name == "Eve Your account ends today. https://evil.example/ https://evil.example/ https:/"
     assert (len(name), name.isprintable()) == (80, True)
 
@@ -116,59 +118,59 @@ class TestAHostThatIsFlooded:
         )
 
     def test_keeps_nobody_out_of_a_browser_where_they_have_signed_in(
-        self, app: FastAPI, nobody: TestClient, campus: Campus
+        self, app: FastAPI, anonymous: TestClient, campus: Campus
     ) -> None:
-        come_back(nobody, campus.sign_in(start(nobody), "ada"))
+        come_back(anonymous, campus.sign_in(start(anonymous), "ada"))
         other = TestClient(app, base_url=HERE)
-        other.portal = nobody.portal
+        other.portal = anonymous.portal
         assert [other.get(START, follow_redirects=False).status_code for _ in range(3)] == [303, 303, 429]
-        assert come_back(nobody, campus.sign_in(start(nobody), "ada")) == "/"
+        assert come_back(anonymous, campus.sign_in(start(anonymous), "ada")) == "/"
 
 
-def test_a_wrong_state_is_refused(app: FastAPI, nobody: TestClient, campus: Campus) -> None:
-    back = campus.sign_in(start(nobody), "ada")
+def test_a_wrong_state_is_refused(app: FastAPI, anonymous: TestClient, campus: Campus) -> None:
+    back = campus.sign_in(start(anonymous), "ada")
     other = TestClient(app, base_url=HERE)
-    other.portal = nobody.portal
+    other.portal = anonymous.portal
     assert come_back(other, back) == problem("wrong_state"), "a browser that was not sent there"
-    assert come_back(nobody, changed(back, state="x")) == problem("wrong_state")
-    assert come_back(nobody, back) == problem("wrong_state"), "an attempt is one attempt"
-    assert nobody.get("/api/v1/me").status_code == 401
+    assert come_back(anonymous, changed(back, state="x")) == problem("wrong_state")
+    assert come_back(anonymous, back) == problem("wrong_state"), "an attempt is one attempt"
+    assert anonymous.get("/api/v1/me").status_code == 401
 
 
-def test_an_attempt_is_good_for_ten_minutes(nobody: TestClient, campus: Campus, clock: SteppedClock) -> None:
-    back = campus.sign_in(start(nobody), "ada")
+def test_an_attempt_is_good_for_ten_minutes(anonymous: TestClient, campus: Campus, clock: SteppedClock) -> None:
+    back = campus.sign_in(start(anonymous), "ada")
     clock.advance(600)
-    assert come_back(nobody, back) == problem("wrong_state")
+    assert come_back(anonymous, back) == problem("wrong_state")
 
 
-def test_a_cookie_that_was_made_elsewhere_is_refused(nobody: TestClient, campus: Campus) -> None:
-    back = campus.sign_in(start(nobody), "ada")
-    made_up = nobody.cookies["oidc"].rsplit(".", 1)[0] + ".AAAA"
-    nobody.cookies.clear()
-    nobody.cookies.set("oidc", made_up)
-    assert come_back(nobody, back) == problem("wrong_state")
+def test_a_cookie_that_was_made_elsewhere_is_refused(anonymous: TestClient, campus: Campus) -> None:
+    back = campus.sign_in(start(anonymous), "ada")
+    made_up = anonymous.cookies["oidc"].rsplit(".", 1)[0] + ".AAAA"
+    anonymous.cookies.clear()
+    anonymous.cookies.set("oidc", made_up)
+    assert come_back(anonymous, back) == problem("wrong_state")
 
 
-def test_a_token_with_another_nonce_is_refused(nobody: TestClient, campus: Campus) -> None:
-    back = campus.sign_in(changed(start(nobody), nonce="another"), "ada")
-    assert come_back(nobody, back) == problem("oidc_untrusted")
+def test_a_token_with_another_nonce_is_refused(anonymous: TestClient, campus: Campus) -> None:
+    back = campus.sign_in(changed(start(anonymous), nonce="another"), "ada")
+    assert come_back(anonymous, back) == problem("oidc_untrusted")
 
 
-def test_a_code_of_another_client_or_none_at_all_is_refused(nobody: TestClient, campus: Campus) -> None:
-    back = campus.sign_in(changed(start(nobody), client_id="somebody-else"), "ada")
-    assert come_back(nobody, back) == problem("oidc_refused")
-    back = campus.sign_in(start(nobody), "ada")
-    assert come_back(nobody, changed(back, code="")) == problem("oidc_refused")
+def test_a_code_of_another_client_or_none_at_all_is_refused(anonymous: TestClient, campus: Campus) -> None:
+    back = campus.sign_in(changed(start(anonymous), client_id="somebody-else"), "ada")
+    assert come_back(anonymous, back) == problem("oidc_refused")
+    back = campus.sign_in(start(anonymous), "ada")
+    assert come_back(anonymous, changed(back, code="")) == problem("oidc_refused")
 
 
-def test_a_code_is_good_once(nobody: TestClient, campus: Campus) -> None:
-    address = start(nobody)
-    cookie = nobody.cookies["oidc"]
+def test_a_code_is_good_once(anonymous: TestClient, campus: Campus) -> None:
+    address = start(anonymous)
+    cookie = anonymous.cookies["oidc"]
     back = campus.sign_in(address, "ada")
-    assert come_back(nobody, back) == "/"
-    nobody.cookies.clear()
-    nobody.cookies.set("oidc", cookie)
-    assert come_back(nobody, back) == problem("oidc_refused")
+    assert come_back(anonymous, back) == "/"
+    anonymous.cookies.clear()
+    anonymous.cookies.set("oidc", cookie)
+    assert come_back(anonymous, back) == problem("oidc_refused")
 
 
 @pytest.mark.parametrize(
@@ -182,23 +184,23 @@ def test_a_code_is_good_once(nobody: TestClient, campus: Campus) -> None:
     ],
 )
 def test_only_verified_addresses_of_our_domains_get_in(
-    nobody: TestClient, campus: Campus, claims: dict[str, Any], code: str
+    anonymous: TestClient, campus: Campus, claims: dict[str, Any], code: str
 ) -> None:
     campus.knows("doubtful", **claims)
-    assert come_back(nobody, campus.sign_in(start(nobody), "doubtful")) == problem(code)
-    assert nobody.get("/api/v1/me").status_code == 401
+    assert come_back(anonymous, campus.sign_in(start(anonymous), "doubtful")) == problem(code)
+    assert anonymous.get("/api/v1/me").status_code == 401
 
 
-def test_a_provider_that_is_not_there_is_a_problem_and_no_crash(nobody: TestClient, app: FastAPI) -> None:
+def test_a_provider_that_is_not_there_is_a_problem_and_no_crash(anonymous: TestClient, app: FastAPI) -> None:
     with listen("127.0.0.1", 0) as gone:
         port = gone.getsockname()[1]
     app.state.parts.provider.settings = app.state.parts.settings.model_copy(
         update={"oidc_issuer": f"http://127.0.0.1:{port}"}
     )
-    assert start(nobody) == problem("provider_failed")
+    assert start(anonymous) == problem("provider_failed")
 
 
-def test_where_none_is_set_up_there_is_no_campus_sign_in(nobody: TestClient, app: FastAPI) -> None:
+def test_where_none_is_set_up_there_is_no_campus_sign_in(anonymous: TestClient, app: FastAPI) -> None:
     app.state.parts.provider.settings = app.state.parts.settings.model_copy(update={"oidc_issuer": ""})
-    refused = nobody.get(START)
+    refused = anonymous.get(START)
     assert (refused.status_code, refused.json()["code"]) == (404, "no_campus_sign_in")

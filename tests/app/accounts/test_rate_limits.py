@@ -40,17 +40,17 @@ def test_changes_are_counted_per_person(sender: Browser, recipient: Browser) -> 
     assert recipient.patch("/api/v1/me", json={"language": "fr"}).status_code == 200
 
 
-def test_knocking_at_the_door_is_counted_per_address_that_it_comes_from(nobody: TestClient) -> None:
-    answers = [nobody.post(CODES, json={"email": f"p{number}@campus.example"}) for number in range(9)]
+def test_knocking_at_the_door_is_counted_per_address_that_it_comes_from(anonymous: TestClient) -> None:
+    answers = [anonymous.post(CODES, json={"email": f"p{number}@campus.example"}) for number in range(9)]
     assert [answer.status_code for answer in answers[:8]] == [202] * 8
     assert_slowed(answers[8])
 
 
-def test_whoever_guesses_digits_links_or_enrolment_codes_is_slowed_down(sender: Browser, nobody: TestClient) -> None:
+def test_whoever_guesses_digits_links_or_enrolment_codes_is_slowed_down(sender: Browser, anonymous: TestClient) -> None:
     digits = f"/api/v1/orders/{sender.order().json()['id']}/handover"
     guess = {"name": "r9", "code": "AAAA-AAAA-AAAA", "public_key": "A" * 43}
-    doors = ((sender, digits, {"digits": "000000"}), (nobody, "/api/v1/link/order", {"token": "A" * 43}))
-    for who, path, wish in (*doors, (nobody, "/api/v1/robots/enrol", guess)):
+    doors = ((sender, digits, {"digits": "000000"}), (anonymous, "/api/v1/link/order", {"token": "A" * 43}))
+    for who, path, wish in (*doors, (anonymous, "/api/v1/robots/enrol", guess)):
         first = [who.post(path, json=wish).status_code for _ in range(2)]
         assert 429 not in first, path
         assert_slowed(who.post(path, json=wish))

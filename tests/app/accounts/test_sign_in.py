@@ -17,10 +17,10 @@ def code_of(answer: object) -> str:
     return answer.json()["code"]  # type: ignore[attr-defined]
 
 
-def test_a_person_signs_in_with_the_code_from_their_mail(nobody: TestClient, mails: Mails) -> None:
-    assert nobody.post(CODES, json={"email": "Ada.King@Campus.Example"}).status_code == 202
+def test_a_person_signs_in_with_the_code_from_their_mail(anonymous: TestClient, mails: Mails) -> None:
+    assert anonymous.post(CODES, json={"email": "Ada.King@Campus.Example"}).status_code == 202
     code = mails.newest_code("ada.king@campus.example")
-    person = nobody.post(SIGN_IN, json={"email": "ada.king@campus.example", "code": code})
+    person = anonymous.post(SIGN_IN, json={"email": "ada.king@campus.example", "code": code})
     assert person.status_code == 200
     assert person.json()["name"] == "Ada King"
     assert person.json()["roles"] == ["member"]
@@ -28,12 +28,12 @@ def test_a_person_signs_in_with_the_code_from_their_mail(nobody: TestClient, mai
     assert cookie.startswith("session=")
     assert "HttpOnly" in cookie
     assert "SameSite=lax" in cookie
-    assert nobody.get("/api/v1/me").json() == person.json() | {"unread_notices": 0}
+    assert anonymous.get("/api/v1/me").json() == person.json() | {"unread_notices": 0}
 
 
-def test_on_https_the_cookie_belongs_to_this_host_alone(app: FastAPI, nobody: TestClient, mails: Mails) -> None:
+def test_on_https_the_cookie_belongs_to_this_host_alone(app: FastAPI, anonymous: TestClient, mails: Mails) -> None:
     secure = TestClient(app, base_url="https://mail.campus.example")
-    secure.portal = nobody.portal
+    secure.portal = anonymous.portal
     secure.post(CODES, json={"email": SENDER})
     answer = secure.post(SIGN_IN, json={"email": SENDER, "code": mails.newest_code(SENDER)})
     assert answer.headers["set-cookie"].startswith("__Host-session=")
@@ -41,57 +41,57 @@ def test_on_https_the_cookie_belongs_to_this_host_alone(app: FastAPI, nobody: Te
     assert secure.get("/api/v1/me").status_code == 200
 
 
-def test_plain_http_from_another_machine_is_refused(app: FastAPI, nobody: TestClient) -> None:
+def test_plain_http_from_another_machine_is_refused(app: FastAPI, anonymous: TestClient) -> None:
     remote = TestClient(app, base_url="http://mail.campus.example")
-    remote.portal = nobody.portal
+    remote.portal = anonymous.portal
     answer = remote.post(CODES, json={"email": SENDER})
     assert (answer.status_code, code_of(answer)) == (403, "https_required")
 
 
 def test_somebody_who_was_sent_something_first_is_spoken_to_as_their_browser_does_from_then_on(
-    nobody: TestClient, sender: Browser, mails: Mails
+    anonymous: TestClient, sender: Browser, mails: Mails
 ) -> None:
     sender.order(recipient="bob@campus.example")
     languages = []
     for wanted in ("fr-CA,fr;q=0.9", "en"):
-        nobody.post(CODES, json={"email": "bob@campus.example"})
+        anonymous.post(CODES, json={"email": "bob@campus.example"})
         wish = {"email": "bob@campus.example", "code": mails.newest_code("bob@campus.example")}
-        languages.append(nobody.post(SIGN_IN, json=wish, headers={"Accept-Language": wanted}).json()["language"])
+        languages.append(anonymous.post(SIGN_IN, json=wish, headers={"Accept-Language": wanted}).json()["language"])
     assert languages == ["fr", "fr"], "the first sign-in settles it, not whichever machine comes later"
 
 
-def test_an_address_of_another_domain_gets_no_code(nobody: TestClient, mails: Mails) -> None:
-    answer = nobody.post(CODES, json={"email": "eve@elsewhere.example"})
+def test_an_address_of_another_domain_gets_no_code(anonymous: TestClient, mails: Mails) -> None:
+    answer = anonymous.post(CODES, json={"email": "eve@elsewhere.example"})
     assert (answer.status_code, code_of(answer)) == (422, "address_not_allowed")
     assert mails.to("eve@elsewhere.example") == []
 
 
-def test_a_wrong_code_is_refused_and_five_of_them_use_the_code_up(nobody: TestClient, mails: Mails) -> None:
-    nobody.post(CODES, json={"email": SENDER})
+def test_a_wrong_code_is_refused_and_five_of_them_use_the_code_up(anonymous: TestClient, mails: Mails) -> None:
+    anonymous.post(CODES, json={"email": SENDER})
     right = mails.newest_code(SENDER)
     wrong = f"{(int(right) + 1) % 10**8:08d}"
-    refusals = [code_of(nobody.post(SIGN_IN, json={"email": SENDER, "code": wrong})) for _ in range(6)]
+    refusals = [code_of(anonymous.post(SIGN_IN, json={"email": SENDER, "code": wrong})) for _ in range(6)]
     assert refusals == ["wrong_code"] * 5 + ["code_expired"]
-    assert code_of(nobody.post(SIGN_IN, json={"email": SENDER, "code": right})) == "code_expired"
+    assert code_of(anonymous.post(SIGN_IN, json={"email": SENDER, "code": right})) == "code_expired"
 
 
-def test_a_code_is_good_once(nobody: TestClient, mails: Mails) -> None:
-    nobody.post(CODES, json={"email": SENDER})
+def test_a_code_is_good_once(anonymous: TestClient, mails: Mails) -> None:
+    anonymous.post(CODES, json={"email": SENDER})
     wish = {"email": SENDER, "code": mails.newest_code(SENDER)}
-    assert nobody.post(SIGN_IN, json=wish).status_code == 200
-    assert code_of(nobody.post(SIGN_IN, json=wish)) == "code_expired"
+    assert anonymous.post(SIGN_IN, json=wish).status_code == 200
+    assert code_of(anonymous.post(SIGN_IN, json=wish)) == "code_expired"
 
 
-def test_a_code_is_good_for_ten_minutes(nobody: TestClient, mails: Mails, clock: SteppedClock) -> None:
-    nobody.post(CODES, json={"email": SENDER})
+def test_a_code_is_good_for_ten_minutes(anonymous: TestClient, mails: Mails, clock: SteppedClock) -> None:
+    anonymous.post(CODES, json={"email": SENDER})
     clock.advance(600)
-    answer = nobody.post(SIGN_IN, json={"email": SENDER, "code": mails.newest_code(SENDER)})
+    answer = anonymous.post(SIGN_IN, json={"email": SENDER, "code": mails.newest_code(SENDER)})
     assert (answer.status_code, code_of(answer)) == (401, "code_expired")
 
 
-def another_browser(app: FastAPI, nobody: TestClient) -> TestClient:
+def another_browser(app: FastAPI, anonymous: TestClient) -> TestClient:
     browser = TestClient(app, base_url=HERE)
-    browser.portal = nobody.portal
+    browser.portal = anonymous.portal
     return browser
 
 
@@ -101,34 +101,34 @@ def asked(browser: TestClient, mails: Mails) -> dict[str, str]:
     return {"email": SENDER, "code": mails.newest_code(SENDER)}
 
 
-def test_the_last_three_codes_count_until_one_is_used(nobody: TestClient, mails: Mails) -> None:
-    wishes = [asked(nobody, mails) for _ in range(4)]
-    assert code_of(nobody.post(SIGN_IN, json=wishes[0])) == "wrong_code"
-    assert nobody.post(SIGN_IN, json=wishes[1]).status_code == 200
-    assert [code_of(nobody.post(SIGN_IN, json=wish)) for wish in wishes] == ["code_expired"] * 4
-    assert nobody.post(SIGN_IN, json=asked(nobody, mails)).status_code == 200
+def test_the_last_three_codes_count_until_one_is_used(anonymous: TestClient, mails: Mails) -> None:
+    wishes = [asked(anonymous, mails) for _ in range(4)]
+    assert code_of(anonymous.post(SIGN_IN, json=wishes[0])) == "wrong_code"
+    assert anonymous.post(SIGN_IN, json=wishes[1]).status_code == 200
+    assert [code_of(anonymous.post(SIGN_IN, json=wish)) for wish in wishes] == ["code_expired"] * 4
+    assert anonymous.post(SIGN_IN, json=asked(anonymous, mails)).status_code == 200
 
 
-def test_wrong_tries_use_up_all_codes_of_a_browser(nobody: TestClient, mails: Mails) -> None:
-    wishes = [asked(nobody, mails) for _ in range(2)]
+def test_wrong_tries_use_up_all_codes_of_a_browser(anonymous: TestClient, mails: Mails) -> None:
+    wishes = [asked(anonymous, mails) for _ in range(2)]
     wrong = {"email": SENDER, "code": f"{(int(wishes[0]['code']) + int(wishes[1]['code']) + 1) % 10**8:08d}"}
     assert wrong["code"] not in {wish["code"] for wish in wishes}
-    assert [code_of(nobody.post(SIGN_IN, json=wrong)) for _ in range(6)] == ["wrong_code"] * 5 + ["code_expired"]
-    assert [code_of(nobody.post(SIGN_IN, json=wish)) for wish in wishes] == ["code_expired"] * 2
+    assert [code_of(anonymous.post(SIGN_IN, json=wrong)) for _ in range(6)] == ["wrong_code"] * 5 + ["code_expired"]
+    assert [code_of(anonymous.post(SIGN_IN, json=wish)) for wish in wishes] == ["code_expired"] * 2
 
 
 def test_a_code_is_good_in_the_browser_that_asked_for_it_and_no_other_one_uses_it_up(
-    app: FastAPI, nobody: TestClient, mails: Mails
+    app: FastAPI, anonymous: TestClient, mails: Mails
 ) -> None:
-    wish = asked(nobody, mails)
-    stranger = another_browser(app, nobody)
+    wish = asked(anonymous, mails)
+    stranger = another_browser(app, anonymous)
     assert [code_of(stranger.post(SIGN_IN, json=wish)) for _ in range(6)] == ["code_expired"] * 6
     theirs = asked(stranger, mails)
     wrong = {"email": SENDER, "code": f"{(int(theirs['code']) + 1) % 10**8:08d}"}
     assert [code_of(stranger.post(SIGN_IN, json=wrong)) for _ in range(6)][-1] == "code_expired"
     assert [stranger.post(CODES, json={"email": SENDER}).status_code for _ in range(10)] == [202] * 9 + [429]
-    assert nobody.post(SIGN_IN, json=wish).status_code == 200, "asked before all that"
-    late = another_browser(app, nobody)
+    assert anonymous.post(SIGN_IN, json=wish).status_code == 200, "asked before all that"
+    late = another_browser(app, anonymous)
     assert late.post(SIGN_IN, json=asked(late, mails)).status_code == 200, "and after it"
 
 
@@ -139,14 +139,14 @@ class TestManyNewBrowsers:
 
     @pytest.mark.parametrize("settings", ["sign_in_codes_per_host", "new_browser_codes_per_address"], indirect=True)
     def test_are_slowed_down_together_but_not_who_has_signed_in_before(
-        self, app: FastAPI, nobody: TestClient, mails: Mails
+        self, app: FastAPI, anonymous: TestClient, mails: Mails
     ) -> None:
-        assert nobody.post(SIGN_IN, json=asked(nobody, mails)).status_code == 200
-        assert nobody.delete("/api/v1/session", headers={"Sec-Fetch-Site": "same-origin"}).status_code == 204
-        strangers = [another_browser(app, nobody).post(CODES, json={"email": SENDER}) for _ in range(3)]
+        assert anonymous.post(SIGN_IN, json=asked(anonymous, mails)).status_code == 200
+        assert anonymous.delete("/api/v1/session", headers={"Sec-Fetch-Site": "same-origin"}).status_code == 204
+        strangers = [another_browser(app, anonymous).post(CODES, json={"email": SENDER}) for _ in range(3)]
         assert [answer.status_code for answer in strangers] == [202, 202, 429]
-        assert nobody.post(SIGN_IN, json=asked(nobody, mails)).status_code == 200
-        assert nobody.post(CODES, json={"email": "other@campus.example"}).status_code == 202, "another address"
+        assert anonymous.post(SIGN_IN, json=asked(anonymous, mails)).status_code == 200
+        assert anonymous.post(CODES, json={"email": "other@campus.example"}).status_code == 202, "another address"
 
 
 class TestAHostThatIsFlooded:
@@ -157,34 +157,34 @@ class TestAHostThatIsFlooded:
         )
 
     def test_keeps_nobody_out_of_a_browser_where_they_have_signed_in(
-        self, app: FastAPI, nobody: TestClient, mails: Mails
+        self, app: FastAPI, anonymous: TestClient, mails: Mails
     ) -> None:
-        assert nobody.post(SIGN_IN, json=asked(nobody, mails)).status_code == 200
-        assert nobody.delete("/api/v1/session", headers={"Sec-Fetch-Site": "same-origin"}).status_code == 204
-        stranger = another_browser(app, nobody)
+        assert anonymous.post(SIGN_IN, json=asked(anonymous, mails)).status_code == 200
+        assert anonymous.delete("/api/v1/session", headers={"Sec-Fetch-Site": "same-origin"}).status_code == 204
+        stranger = another_browser(app, anonymous)
         guess = {"email": "eve@campus.example", "code": "00000000"}
         assert [stranger.post(SIGN_IN, json=guess).status_code for _ in range(5)] == [401] * 4 + [429]
-        assert nobody.post(SIGN_IN, json=asked(nobody, mails)).status_code == 200
-        assert [nobody.post(SIGN_IN, json=guess).status_code for _ in range(5)] == [401] * 4 + [429], "its own count"
+        assert anonymous.post(SIGN_IN, json=asked(anonymous, mails)).status_code == 200
+        assert [anonymous.post(SIGN_IN, json=guess).status_code for _ in range(5)] == [401] * 4 + [429], "its own count"
 
     def test_is_not_passed_by_with_a_cookie_of_ones_own_making(
-        self, app: FastAPI, nobody: TestClient, mails: Mails
+        self, app: FastAPI, anonymous: TestClient, mails: Mails
     ) -> None:
-        assert nobody.post(SIGN_IN, json=asked(nobody, mails)).status_code == 200
-        secret, _, seal = nobody.cookies["browser"].partition(".")
+        assert anonymous.post(SIGN_IN, json=asked(anonymous, mails)).status_code == 200
+        secret, _, seal = anonymous.cookies["browser"].partition(".")
         assert seal, "sealed"
         guess = {"email": "eve@campus.example", "code": "00000000"}
         for cookie in (f"{'A' * 43}.{seal}", f"{secret}.{'A' * 43}", f"{secret}.é", secret, "", "."):
-            forged = another_browser(app, nobody)
+            forged = another_browser(app, anonymous)
             forged.post(SIGN_IN, json=guess, headers={"Cookie": f"browser={cookie}".encode()})
-        assert another_browser(app, nobody).post(SIGN_IN, json=guess).status_code == 429
+        assert another_browser(app, anonymous).post(SIGN_IN, json=guess).status_code == 429
 
 
-def test_asking_too_often_for_codes_is_slowed_down(nobody: TestClient) -> None:
-    answers = [nobody.post(CODES, json={"email": SENDER}) for _ in range(11)]
+def test_asking_too_often_for_codes_is_slowed_down(anonymous: TestClient) -> None:
+    answers = [anonymous.post(CODES, json={"email": SENDER}) for _ in range(11)]
     assert [answer.status_code for answer in answers] == [202] * 10 + [429]
     assert int(answers[-1].headers["Retry-After"]) > 0
-    assert nobody.post(CODES, json={"email": "other@campus.example"}).status_code == 202
+    assert anonymous.post(CODES, json={"email": "other@campus.example"}).status_code == 202
 
 
 def test_a_session_ends_by_signing_out(sender: Browser) -> None:
@@ -241,6 +241,6 @@ async def _person(app: FastAPI, email: str) -> Person | None:
         return await find_person(session, email)
 
 
-def test_the_mail_is_written_in_the_browsers_language(signed_in: SignedIn, nobody: TestClient, mails: Mails) -> None:
-    nobody.post(CODES, json={"email": SENDER}, headers={"Accept-Language": "fr-CA,fr;q=0.9,en;q=0.5"})
+def test_the_mail_is_written_in_the_browsers_language(signed_in: SignedIn, anonymous: TestClient, mails: Mails) -> None:
+    anonymous.post(CODES, json={"email": SENDER}, headers={"Accept-Language": "fr-CA,fr;q=0.9,en;q=0.5"})
     assert mails.to(SENDER)[0]["Subject"] == "Votre code de connexion à Campus Mail"

@@ -140,7 +140,7 @@ def test_office_hours_are_the_campuss_own() -> None:
 
 
 def test_those_who_look_after_robots_see_how_good_it_is_and_so_does_prometheus(
-    sender: Browser, mailroom: Mailroom, nobody: TestClient
+    sender: Browser, mailroom: Mailroom, anonymous: TestClient
 ) -> None:
     estimates: Estimates = mailroom.app.state.parts.estimates
     mailroom.call(make_dispatcher, mailroom.app)
@@ -161,7 +161,7 @@ def test_those_who_look_after_robots_see_how_good_it_is_and_so_does_prometheus(
     (way,) = seen["durations"]
     assert (way["from_post"], way["to_post"], way["seen"]) == ("post1", "post2", 1)
     here = TestClient(mailroom.app, base_url=HERE, client=("127.0.0.1", 50000))
-    here.portal = nobody.portal
+    here.portal = anonymous.portal
     figures = here.get("/metrics").text
     assert 'campus_mail_estimates_scored{basis="placed"} 3.0' in figures
     assert 'campus_mail_estimates_median_error_ratio{basis="placed",by="told"} 0.3333' in figures

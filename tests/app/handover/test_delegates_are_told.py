@@ -48,7 +48,7 @@ def order_id(sender: Browser, mailroom: Mailroom) -> str:
 
 
 def test_a_delegate_is_mailed_their_own_code_and_a_link_that_opens_where_it_is_and_nothing_else(
-    nobody: TestClient, sender: Browser, mailroom: Mailroom, mails: Mails, order_id: str
+    anonymous: TestClient, sender: Browser, mailroom: Mailroom, mails: Mails, order_id: str
 ) -> None:
     named = name(sender, order_id)
     mailroom.send_mails()
@@ -61,15 +61,15 @@ def test_a_delegate_is_mailed_their_own_code_and_a_link_that_opens_where_it_is_a
     assert mail["Subject"] == "You were named for mail from Sender"
     assert "Sender asked you to meet the robot at Post 1" in text_of(mail)
     link = link_in(mail)
-    seen = nobody.post("/api/v1/link/order", json=link).json()
+    seen = anonymous.post("/api/v1/link/order", json=link).json()
     assert (seen["id"], seen["my_role"], seen["my_code"], seen["state"]) == (order_id, "delegate", None, "queued")
     assert (seen["sender"], seen["recipient"]["email"]) == ({"email": "", "name": "Sender"}, "")
     assert (seen["description"], seen["events"], seen["custody"]) == (None, [], [])
     mailroom.move(order_id, "assigned", "to_sender", "at_sender")
-    assert nobody.post("/api/v1/link/order", json=link).json()["my_code"] == "load"
-    assert nobody.post("/api/v1/link/code", json=link).json()["text"] == theirs["text"]
+    assert anonymous.post("/api/v1/link/order", json=link).json()["my_code"] == "load"
+    assert anonymous.post("/api/v1/link/code", json=link).json()["text"] == theirs["text"]
     for what, more in (("not-now", {}), ("delegate", {"name": "Another"})):
-        answer = nobody.post(f"/api/v1/link/{what}", json={**link, **more})
+        answer = anonymous.post(f"/api/v1/link/{what}", json={**link, **more})
         assert (answer.status_code, answer.json()["code"]) == (404, "unknown_order"), what
 
 
@@ -80,7 +80,7 @@ WHERE_IT_IS = {
 
 
 def test_why_it_waits_is_not_for_a_delegate_who_is_shown_what_is_listed_and_no_more(
-    nobody: TestClient, sender: Browser, mailroom: Mailroom, mails: Mails, order_id: str
+    anonymous: TestClient, sender: Browser, mailroom: Mailroom, mails: Mails, order_id: str
 ) -> None:
     """A dispatcher's sentence and a robot's own may name anybody."""
     name(sender, order_id)
@@ -89,7 +89,7 @@ def test_why_it_waits_is_not_for_a_delegate_who_is_shown_what_is_listed_and_no_m
     mailroom.call(_says_why, mailroom)
     mailroom.move(order_id, "assigned", "to_sender", "attention", reason="Somebody holds it back.")
     assert sender.get(f"/api/v1/orders/{order_id}").json()["why"] == "Somebody holds it back."
-    answer = nobody.post("/api/v1/link/order", json=link_in(mail))
+    answer = anonymous.post("/api/v1/link/order", json=link_in(mail))
     assert {field for field, shown in answer.json().items() if shown} == WHERE_IT_IS
     assert answer.json()["robot"]["name"] == "r1"
     for hidden in ("holds it back", "wheel", "gift", "@"):
@@ -102,7 +102,7 @@ async def _says_why(mailroom: Mailroom) -> None:
 
 
 def test_when_they_are_not_needed_any_more_they_are_told_and_the_link_opens_nothing(
-    nobody: TestClient, sender: Browser, mailroom: Mailroom, mails: Mails, order_id: str
+    anonymous: TestClient, sender: Browser, mailroom: Mailroom, mails: Mails, order_id: str
 ) -> None:
     named = name(sender, order_id)
     mailroom.send_mails()
@@ -110,26 +110,26 @@ def test_when_they_are_not_needed_any_more_they_are_told_and_the_link_opens_noth
     assert [sender.delete(path).status_code for _ in range(2)] == [204, 204]
     mailroom.send_mails()
     first, over = about_mail(mails)
-    refused = nobody.post("/api/v1/link/order", json=link_in(first))
+    refused = anonymous.post("/api/v1/link/order", json=link_in(first))
     assert (refused.status_code, refused.json()["code"]) == (401, "link_refused")
     assert over["Subject"] == "You are not needed any more for mail from Sender"
     assert "http" not in text_of(over), "there is nothing for them to open"
     assert list(over.iter_attachments()) == []
     name(sender, order_id)
-    assert nobody.post("/api/v1/link/order", json=link_in(first)).status_code == 200, "named again"
+    assert anonymous.post("/api/v1/link/order", json=link_in(first)).status_code == 200, "named again"
 
 
 def test_a_link_is_good_when_the_robot_comes_however_long_before_somebody_was_named(
-    nobody: TestClient, sender: Browser, mailroom: Mailroom, mails: Mails
+    anonymous: TestClient, sender: Browser, mailroom: Mailroom, mails: Mails
 ) -> None:
     later_id = sender.order(not_before="2026-01-31T09:00:00Z").json()["id"]
     name(sender, later_id)
     mailroom.send_mails()
     (mail,) = about_mail(mails)
     mailroom.app.state.parts.clock.advance(26.5 * 86400)
-    assert nobody.post("/api/v1/link/order", json=link_in(mail)).json()["my_role"] == "delegate"
+    assert anonymous.post("/api/v1/link/order", json=link_in(mail)).json()["my_role"] == "delegate"
     mailroom.app.state.parts.clock.advance(30 * 86400)
-    assert nobody.post("/api/v1/link/order", json=link_in(mail)).status_code == 401, "for ever it is not"
+    assert anonymous.post("/api/v1/link/order", json=link_in(mail)).status_code == 401, "for ever it is not"
 
 
 def test_a_code_that_is_taken_back_before_its_mail_is_out_is_mailed_to_nobody(
@@ -155,20 +155,20 @@ def test_a_code_that_is_taken_back_before_its_mail_is_out_is_mailed_to_nobody(
 
 
 def test_a_recipient_without_account_names_somebody_by_their_own_link_who_is_mailed_too(
-    nobody: TestClient, sender: Browser, mailroom: Mailroom, mails: Mails, order_id: str
+    anonymous: TestClient, sender: Browser, mailroom: Mailroom, mails: Mails, order_id: str
 ) -> None:
     mailroom.move(order_id, "assigned", "to_sender", "at_sender", "carrying")
     mailroom.send_mails()
     link = link_in(about_mail(mails, RECIPIENT)[0])
-    named = nobody.post("/api/v1/link/delegate", json={**link, "name": "Porter", "email": PORTER})
+    named = anonymous.post("/api/v1/link/delegate", json={**link, "name": "Porter", "email": PORTER})
     mailroom.send_mails()
     (mail,) = about_mail(mails)
     (picture,) = mail.iter_attachments()
     assert picture.get_payload(decode=True) == code_png(named.json()["code"]["text"])
     assert "at Post 4" in text_of(mail)
-    seen = nobody.post("/api/v1/link/order", json=link_in(mail)).json()
+    seen = anonymous.post("/api/v1/link/order", json=link_in(mail)).json()
     assert (seen["my_role"], seen["my_code"]) == ("delegate", "receive")
-    assert nobody.post("/api/v1/link/order", json=link).json()["my_role"] == "recipient"
+    assert anonymous.post("/api/v1/link/order", json=link).json()["my_role"] == "recipient"
 
 
 def test_a_delegate_with_an_account_has_it_in_their_inbox_in_their_language_and_may_mute_the_mail(

@@ -112,14 +112,14 @@ def test_reading_a_notice_lowers_the_count_and_only_for_oneself(sender: Browser,
     assert sender.get("/api/v1/me").json()["unread_notices"] == 0
 
 
-def test_somebody_who_reads_french_is_told_in_french(nobody: TestClient, mails: Mails, mailroom: Mailroom) -> None:
+def test_somebody_who_reads_french_is_told_in_french(anonymous: TestClient, mails: Mails, mailroom: Mailroom) -> None:
     speaks_french = {"Accept-Language": "fr-CA,fr;q=0.9"}
-    nobody.headers.update({"Sec-Fetch-Site": "same-origin", **speaks_french})
-    nobody.post("/api/v1/sign-in/codes", json={"email": SENDER})
-    nobody.post("/api/v1/sign-in", json={"email": SENDER, "code": mails.newest_code(SENDER)})
+    anonymous.headers.update({"Sec-Fetch-Site": "same-origin", **speaks_french})
+    anonymous.post("/api/v1/sign-in/codes", json={"email": SENDER})
+    anonymous.post("/api/v1/sign-in", json={"email": SENDER, "code": mails.newest_code(SENDER)})
     wish = {"from_post": "post1", "to_post": "post4", "recipient": "bob@campus.example"}
-    nobody.post("/api/v1/orders", json=wish, headers={"Idempotency-Key": "k"})
-    assert nobody.get("/api/v1/notices").json()["items"][0]["title"].startswith("Commande acceptée")
+    anonymous.post("/api/v1/orders", json=wish, headers={"Idempotency-Key": "k"})
+    assert anonymous.get("/api/v1/notices").json()["items"][0]["title"].startswith("Commande acceptée")
     mailroom.send_mails()
     assert about_the_order(mails)[0]["Subject"].startswith("Commande acceptée")
 

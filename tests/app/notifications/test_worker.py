@@ -11,10 +11,10 @@ from app.notifications.delivery.worker import OutboxWorker
 
 @pytest.mark.parametrize("steps_between", range(6))
 def test_it_ends_when_it_is_cancelled_just_after_it_was_woken(
-    app: FastAPI, nobody: TestClient, steps_between: int
+    app: FastAPI, anonymous: TestClient, steps_between: int
 ) -> None:
     """A service that stops right after an order must stop: there the two come within a few steps of the event loop."""
-    portal = nobody.portal
+    portal = anonymous.portal
     assert portal is not None
     state = app.state.parts
     worker = OutboxWorker(state.database, state.feed, state.clock, state.outbox_worker.channels)

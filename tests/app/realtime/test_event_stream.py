@@ -204,7 +204,7 @@ def test_a_listener_that_is_too_slow_is_let_go_and_the_others_hear_on() -> None:
 
 
 def test_after_the_commit_and_not_before_a_change_is_told(
-    app: FastAPI, sender: Browser, mailroom: Mailroom, nobody: object
+    app: FastAPI, sender: Browser, mailroom: Mailroom, anonymous: object
 ) -> None:
     feed: LocalFeed = app.state.parts.feed
     before = feed.last_id

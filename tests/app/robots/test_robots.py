@@ -23,8 +23,8 @@ from tests.app.robots.playing import PlayedRobot, Service
 ROOT = Path(__file__).parents[3]
 
 
-def test_robots_are_for_people_who_are_signed_in(nobody: TestClient) -> None:
-    answer = nobody.get("/api/v1/robots")
+def test_robots_are_for_people_who_are_signed_in(anonymous: TestClient) -> None:
+    answer = anonymous.get("/api/v1/robots")
     assert (answer.status_code, answer.json()["code"]) == (401, "not_signed_in")
 
 

@@ -32,12 +32,12 @@ HIDDEN = [
 
 @pytest.mark.parametrize("address", HIDDEN)
 def test_an_address_that_hides_another_is_refused_wherever_one_is_typed(
-    nobody: TestClient, sender: Browser, mails: Mails, address: str
+    anonymous: TestClient, sender: Browser, mails: Mails, address: str
 ) -> None:
     mailed = len(list(mails.folder.iterdir()))
     order_id = sender.order().json()["id"]
     answers = [
-        nobody.post("/api/v1/sign-in/codes", json={"email": address}),
+        anonymous.post("/api/v1/sign-in/codes", json={"email": address}),
         sender.order(recipient=address),
         sender.post(f"/api/v1/orders/{order_id}/delegates", json={"name": "Dee", "email": address}),
         sender.request("PUT", f"/api/v1/me/contacts/{quote(address, safe='')}", json={"label": "Ada"}),

@@ -35,10 +35,10 @@ def policy_of(headers: Headers) -> dict[str, str]:
 
 
 @pytest.fixture
-def secure(app: FastAPI, nobody: TestClient) -> TestClient:
+def secure(app: FastAPI, anonymous: TestClient) -> TestClient:
     """A browser that came over https."""
     browser = TestClient(app, base_url="https://mail.campus.example")
-    browser.portal = nobody.portal
+    browser.portal = anonymous.portal
     return browser
 
 
@@ -77,9 +77,9 @@ def test_a_part_of_a_page_is_short_of_words_but_never_taken_for_something_else(
     assert {"Content-Security-Policy", "Permissions-Policy"}.isdisjoint(headers)
 
 
-def test_without_https_nobody_is_told_to_insist_on_it(nobody: TestClient) -> None:
+def test_without_https_nobody_is_told_to_insist_on_it(anonymous: TestClient) -> None:
     """It would lock a developer out of their own localhost."""
-    assert "Strict-Transport-Security" not in nobody.get("/healthz").headers
+    assert "Strict-Transport-Security" not in anonymous.get("/healthz").headers
 
 
 def test_no_script_of_a_page_stands_in_it_but_the_import_maps_that_the_policy_names() -> None:

@@ -74,7 +74,7 @@ def test_no_text_of_any_request_takes_more_than_one_printable_line(app: FastAPI)
 
 
 def test_what_people_are_called_has_eighty_characters_and_stays_on_its_line(
-    sender: Browser, nobody: TestClient
+    sender: Browser, anonymous: TestClient
 ) -> None:
     order_id = sender.order().json()["id"]
     places = (
@@ -98,10 +98,10 @@ def test_what_people_are_called_has_eighty_characters_and_stays_on_its_line(
         assert sender.order(**wish).status_code == 422
 
 
-def test_a_long_address_makes_no_long_name(nobody: TestClient, mails: Mails) -> None:
+def test_a_long_address_makes_no_long_name(anonymous: TestClient, mails: Mails) -> None:
     email = f"{'long.' * 30}name@campus.example"
-    nobody.post("/api/v1/sign-in/codes", json={"email": email})
-    person = nobody.post("/api/v1/sign-in", json={"email": email, "code": mails.newest_code(email)}).json()
+    anonymous.post("/api/v1/sign-in/codes", json={"email": email})
+    person = anonymous.post("/api/v1/sign-in", json={"email": email, "code": mails.newest_code(email)}).json()
     assert len(person["name"]) <= 80
     assert person["name"].startswith("Long Long")
 

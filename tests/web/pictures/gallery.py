@@ -28,18 +28,18 @@ class Picture:
     scene: Scene = Scene.DAY
 
 
-ADA, NEWCOMER, NOBODY, DANA, MIRA = "ada.lovelace", "new.comer", "nobody", "dana.desk", "mira.klein"
+ADA, NEWCOMER, ANONYMOUS, DANA, MIRA = "ada.lovelace", "new.comer", "anonymous", "dana.desk", "mira.klein"
 ROWS: Final = "main li"
 
 PICTURES: Final = (
-    Picture("sign-in", NOBODY, "/", "input[type=email]"),
+    Picture("sign-in", ANONYMOUS, "/", "input[type=email]"),
     Picture("first-help", NEWCOMER, "/", ".first-steps li"),
     Picture("order", ADA, "/", "[name=from_post]", doings.fill_in_the_order),
     Picture("order-placed", ADA, "/follow.html?order={placed}", ".standing h1"),
     Picture("follow", ADA, "/follow.html?order={driving}", ".standing h1"),
     Picture("hand-over", ADA, "/follow.html?order={handover}", ".qr"),
     Picture("delivered", ADA, "/follow.html?order={week_1}", ".standing h1"),
-    Picture("one-order", NOBODY, "{guest_link}", ".qr"),
+    Picture("one-order", ANONYMOUS, "{guest_link}", ".qr"),
     Picture("mail", ADA, "/mail.html", ROWS),
     Picture("mail-empty", NEWCOMER, "/mail.html", ".empty"),
     Picture("notices", ADA, "/notices.html", ROWS),

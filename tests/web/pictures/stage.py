@@ -46,13 +46,13 @@ class Stage:
     _known: dict[tuple[str, str], Visitor] = field(default_factory=dict)
 
     async def visitor(self, who: str, on: str) -> Visitor:
-        """A visitor at a screen, signed in unless called "nobody"; the same one when asked for again."""
+        """A visitor at a screen, signed in unless called "anonymous"; the same one when asked for again."""
         if (who, on) not in self._known:
             options = {"locale": "en-CA", "timezone_id": ZONE, "service_workers": "block", "reduced_motion": "reduce"}
             options |= screen(self.playwright, on) | self.context
             visitor = Visitor(self.browser, self.service, f"{who}@campus.example", options)
             await self._people.enter_async_context(visitor)
-            self._known[who, on] = visitor if who == "nobody" else await visitor.sign_in()
+            self._known[who, on] = visitor if who == "anonymous" else await visitor.sign_in()
         return self._known[who, on]
 
     async def leave(self) -> None:

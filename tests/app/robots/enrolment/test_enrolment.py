@@ -45,8 +45,8 @@ def new_code(maintainer: Browser, name: str = "r7") -> str:
     return str(answer.json()["code"])
 
 
-def enrol(nobody: TestClient, code: str, name: str = "r7", key: str = KEY) -> httpx2.Response:
-    return nobody.post("/api/v1/robots/enrol", json={"name": name, "code": code, "public_key": key})
+def enrol(anonymous: TestClient, code: str, name: str = "r7", key: str = KEY) -> httpx2.Response:
+    return anonymous.post("/api/v1/robots/enrol", json={"name": name, "code": code, "public_key": key})
 
 
 def whose(app: FastAPI, mailroom: Mailroom, token: str) -> str | None:
@@ -64,13 +64,13 @@ def problem(answer: httpx2.Response) -> tuple[int, str]:
 
 
 def test_a_code_brings_a_token_once_and_the_robots_key_is_known(
-    app: FastAPI, maintainer: Browser, nobody: TestClient, mailroom: Mailroom
+    app: FastAPI, maintainer: Browser, anonymous: TestClient, mailroom: Mailroom
 ) -> None:
     code = new_code(maintainer)
-    answer = enrol(nobody, code.lower().replace("-", " "))
+    answer = enrol(anonymous, code.lower().replace("-", " "))
     assert (answer.status_code, answer.json()["name"]) == (201, "r7")
     assert whose(app, mailroom, answer.json()["token"]) == "r7"
-    assert problem(enrol(nobody, code)) == (401, "no_enrolment_code"), "it is used"
+    assert problem(enrol(anonymous, code)) == (401, "no_enrolment_code"), "it is used"
 
     async def look() -> tuple[Any, Any]:
         async with app.state.parts.database.reading() as session:
@@ -82,23 +82,23 @@ def test_a_code_brings_a_token_once_and_the_robots_key_is_known(
 
 
 def test_a_wrong_code_takes_a_try_and_after_five_the_right_one_is_worthless(
-    maintainer: Browser, nobody: TestClient
+    maintainer: Browser, anonymous: TestClient
 ) -> None:
     code = new_code(maintainer)
     for _ in range(5):
-        assert problem(enrol(nobody, "AAAA-AAAA")) == (401, "wrong_enrolment_code")
-    assert problem(enrol(nobody, code)) == (401, "no_enrolment_code")
+        assert problem(enrol(anonymous, "AAAA-AAAA")) == (401, "wrong_enrolment_code")
+    assert problem(enrol(anonymous, code)) == (401, "no_enrolment_code")
 
 
 def test_a_code_is_good_for_its_own_robot_for_a_while_and_until_the_next_is_made(
-    maintainer: Browser, nobody: TestClient, clock: SteppedClock, settings: Settings
+    maintainer: Browser, anonymous: TestClient, clock: SteppedClock, settings: Settings
 ) -> None:
     code = new_code(maintainer)
-    assert problem(enrol(nobody, code, name="r8")) == (401, "no_enrolment_code")
+    assert problem(enrol(anonymous, code, name="r8")) == (401, "no_enrolment_code")
     newer = new_code(maintainer)
-    assert problem(enrol(nobody, code)) == (401, "wrong_enrolment_code")
+    assert problem(enrol(anonymous, code)) == (401, "wrong_enrolment_code")
     clock.advance(CODE_LIFETIME_S)
-    assert problem(enrol(nobody, newer)) == (401, "no_enrolment_code")
+    assert problem(enrol(anonymous, newer)) == (401, "no_enrolment_code")
 
 
 class TestOfTheDoor:
@@ -110,29 +110,29 @@ class TestOfTheDoor:
             update={"rate_limits": settings.rate_limits | {"enrolment_tries_per_host": "3 per 15 minutes"}}
         )
 
-    def test_too_many_tries_from_one_address_are_refused(self, maintainer: Browser, nobody: TestClient) -> None:
+    def test_too_many_tries_from_one_address_are_refused(self, maintainer: Browser, anonymous: TestClient) -> None:
         code = new_code(maintainer)
         for _ in range(3):
-            enrol(nobody, "AAAA-AAAA")
-        answer = enrol(nobody, code)
+            enrol(anonymous, "AAAA-AAAA")
+        answer = enrol(anonymous, code)
         assert problem(answer) == (429, "too_many_requests")
         assert int(answer.headers["Retry-After"]) > 0
 
 
 def test_a_robot_that_enrols_again_has_a_new_key_and_its_old_token_is_worthless(
-    app: FastAPI, maintainer: Browser, nobody: TestClient, mailroom: Mailroom
+    app: FastAPI, maintainer: Browser, anonymous: TestClient, mailroom: Mailroom
 ) -> None:
-    old = enrol(nobody, new_code(maintainer)).json()["token"]
+    old = enrol(anonymous, new_code(maintainer)).json()["token"]
     code = new_code(maintainer)
     assert whose(app, mailroom, old) == "r7", "until somebody comes with the code"
-    new = enrol(nobody, code, key=base64.b64encode(bytes(32)).decode()).json()["token"]
+    new = enrol(anonymous, code, key=base64.b64encode(bytes(32)).decode()).json()["token"]
     assert (whose(app, mailroom, old), whose(app, mailroom, new)) == (None, "r7")
 
 
 def test_tokens_are_listed_by_their_prefix_and_taken_back(
-    app: FastAPI, maintainer: Browser, nobody: TestClient, mailroom: Mailroom
+    app: FastAPI, maintainer: Browser, anonymous: TestClient, mailroom: Mailroom
 ) -> None:
-    token = enrol(nobody, new_code(maintainer)).json()["token"]
+    token = enrol(anonymous, new_code(maintainer)).json()["token"]
     (listed,) = maintainer.get("/api/v1/robots/r7/tokens").json()["items"]
     assert token.split("_")[1] == listed["prefix"]
     assert not listed["used_at"] and not listed["revoked_at"]
@@ -146,11 +146,11 @@ def test_tokens_are_listed_by_their_prefix_and_taken_back(
 
 @pytest.mark.parametrize("key", ["", "AAAA", "not base64!"])
 def test_a_key_that_is_none_is_refused_before_the_code_is_used(
-    maintainer: Browser, nobody: TestClient, key: str
+    maintainer: Browser, anonymous: TestClient, key: str
 ) -> None:
     code = new_code(maintainer)
-    assert problem(enrol(nobody, code, key=key)) == (422, "invalid_request")
-    assert enrol(nobody, code).status_code == 201
+    assert problem(enrol(anonymous, code, key=key)) == (422, "invalid_request")
+    assert enrol(anonymous, code).status_code == 201
 
 
 def test_the_commands_print_a_code_list_tokens_by_prefix_and_take_one_back(
