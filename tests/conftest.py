@@ -1,4 +1,4 @@
-"""What all tests share: hypothesis without a stop-watch, and the browser, or a plain word that there is none."""
+"""Fixtures that all tests share: hypothesis without a stop-watch, and the browser, or a word that there is none."""
 
 import gc
 import os
@@ -38,7 +38,7 @@ def logs_of_its_own() -> Iterator[None]:
 
 
 def pytest_collection_finish() -> None:
-    """What was imported stays: a fifth of the time of all tests went into looking through it for garbage."""
+    """Freeze the modules imported so far: garbage collection took a fifth of all tests' time."""
     gc.collect()
     gc.freeze()
 

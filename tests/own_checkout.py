@@ -29,5 +29,5 @@ def make(checkout: Path, *words: str, **environment: str) -> subprocess.Complete
 
 
 def sentences(finished: subprocess.CompletedProcess[str]) -> list[str]:
-    """What was said of the error, without make's own line."""
+    """Return the lines of the error, without make's own."""
     return [line for line in finished.stderr.splitlines() if not line.startswith("make: ***")]

@@ -104,7 +104,7 @@ def test_a_file_can_be_read_in_one_sitting():
 
 
 def test_every_package_has_its_layers_written_down():
-    """A module that nobody placed in the order of its package must fail `make check`."""
+    """A module without a place in the order of its package must fail `make check`."""
     config = tomllib.loads((CHECKOUT / "pyproject.toml").read_text())["tool"]["importlinter"]
     layered = {c["containers"][0] for c in config["contracts"] if c.get("exhaustive") and len(c["containers"]) == 1}
     assert set(config["root_packages"]) <= layered

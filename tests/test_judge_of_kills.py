@@ -39,7 +39,7 @@ def loaded(folder: Path, then: Forgets = lambda memory, outbox: None) -> Facts:
         duties.report(Step.ARRIVED, "s1", "post1")
         duties.handed_over((LETTER, LOAD), Purpose.LOAD, "post1", ShownCode("a" * 64, b"key"))
         told = {kept.seq: kept.message for kept in outbox.pending()}
-        outbox.put(Claim(claim_id="c2", legs=(OTHER_LEG,)))  # which nobody has heard yet
+        outbox.put(Claim(claim_id="c2", legs=(OTHER_LEG,)))  # which the server has not heard yet
         outbox.acknowledged(1)
         then(memory, outbox)
     return Facts(Service(said=[LETTER, GRANT], told=told, taken=2), LETTER, remembered(folder))

@@ -1,4 +1,4 @@
-"""What may be shipped under our licence: the pages that say so, and the check of what is installed beside us."""
+"""Files that may be shipped under our licence: the pages that say so, and the check of what is installed beside us."""
 
 import json
 import os

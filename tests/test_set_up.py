@@ -1,4 +1,4 @@
-"""What runs is fetched apart from what tests need, and what keeps set-up from its work is one sentence."""
+"""Packages to run are fetched apart from those that tests need, and an error in set-up is one sentence."""
 
 import os
 import re
@@ -42,7 +42,7 @@ def read_only() -> Iterator[Path]:
 
 @pytest.mark.parametrize("verb", ["demo", "setup-robot", "test"])
 def test_a_checkout_that_cannot_be_written_to_is_one_sentence(read_only: Path, verb: str) -> None:
-    # Permissions do not stop root: it looks as somebody else.
+    # Permissions do not stop root: make runs as another user.
     as_somebody = {"user": NOBODY, "group": NOBODY, "extra_groups": []} if os.geteuid() == 0 else {}
     finished = subprocess.run(  # type: ignore[call-overload]
         ["make", verb],
@@ -102,7 +102,7 @@ def test_without_a_network_it_says_so_after_one_try(tmp_path: Path, closing_inde
 
 
 def planned(tmp_path: Path, verb: str) -> str:
-    """What `make` would do in a new checkout."""
+    """Return the steps that `make` would run in a new checkout."""
     return make(copied_to(tmp_path / "checkout"), "--dry-run", verb).stdout
 
 

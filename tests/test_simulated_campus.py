@@ -43,7 +43,7 @@ def test_the_same_seed_is_the_same_campus() -> None:
 
 @pytest.mark.parametrize(("seed", "days"), [(5, 0.8), (301, 12.2)])
 def test_who_has_made_room_in_a_dock_does_not_wait_there_until_the_pack_is_empty(seed: int, days: float) -> None:
-    """It did, in these: in a bay that others had to pass, or with nobody who sent it elsewhere."""
+    """It did, in these: in a bay that others had to pass, or with no controller that sent it elsewhere."""
     run = CampusRun(seed, FLEETS["two_items_each"], FAULTS)
     run.run(days)
     assert [robot.stranded for robot in run.robots.values()] == [0, 0, 0, 0]

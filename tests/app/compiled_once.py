@@ -6,7 +6,7 @@ from sqlalchemy import Connection, Engine, event
 
 
 class CompiledOnce(dict[Any, Any]):
-    """What SQLAlchemy keeps compiled statements in, by dialect and driver: each engine has a dialect of its own."""
+    """A cache of SQLAlchemy's compiled statements by dialect and driver: each engine has a dialect of its own."""
 
     def get(self, key: Any, default: Any = None) -> Any:
         return super().get(_by_driver(key), default)

@@ -118,13 +118,13 @@ def app(settings: Settings, clock: SteppedClock) -> FastAPI:
 
 @pytest.fixture
 def anonymous(app: FastAPI) -> Iterator[TestClient]:
-    """A browser in which nobody is signed in."""
+    """A browser that is not signed in."""
     with TestClient(app, base_url=HERE, raise_server_exceptions=False) as client:
         yield client
 
 
 class Mails:
-    """What lies in the spool folder."""
+    """The mails in the spool folder."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -149,7 +149,7 @@ def mails(settings: Settings) -> Mails:
 
 
 class Browser(TestClient):
-    """Somebody's browser: requests come from our own page."""
+    """One person's browser: requests come from our own page."""
 
     def __init__(self, app: FastAPI) -> None:
         super().__init__(app, base_url=HERE, headers={"Sec-Fetch-Site": "same-origin"}, raise_server_exceptions=False)
@@ -168,7 +168,7 @@ SignedIn = Callable[[str], Browser]
 
 @pytest.fixture
 def signed_in(app: FastAPI, anonymous: TestClient, mails: Mails) -> SignedIn:
-    """Sign somebody in, as they would do it: ask for a code, read the mail, type the code."""
+    """Sign a person in, as they would do it: ask for a code, read the mail, type the code."""
 
     def sign_in(email: str) -> Browser:
         browser = Browser(app)

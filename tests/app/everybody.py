@@ -60,7 +60,7 @@ def _flat(routes: list[BaseRoute], prefix: str = "") -> Iterator[tuple[BaseRoute
 
 @dataclass(frozen=True)
 class Scene:
-    """One knock: the headers of whoever knocks, and what stands in the gaps of paths."""
+    """One request: the caller's headers, and the values for the gaps in paths."""
 
     headers: dict[str, str]
     places: dict[str, str]
@@ -76,7 +76,7 @@ class Everybody:
     _places: dict[str, str] = field(default_factory=lambda: dict(FIXED))
 
     def scene(self, who: str, gaps: Iterable[str] = ("order_id",), anew: bool = False) -> Scene:
-        """What fills the gaps is made when it is first asked for, and `anew` for what may change it."""
+        """Return a caller's headers and paths. Gaps are filled when first asked for, `anew` if they may change."""
         known = who in self._headers_of and self._places.keys() >= set(gaps)
         if anew or not known:
             self.mailroom.call(self._set, who, list(gaps), anew)
@@ -84,7 +84,7 @@ class Everybody:
         return Scene(headers, dict(self._places))
 
     def fresh_scene(self, who: str) -> Scene:
-        """With a way in that nobody else has."""
+        """Return a scene with credentials that no other scene uses."""
         return self.scene(who, (), anew=True)
 
     async def _set(self, who: str, gaps: list[str], anew: bool) -> None:
@@ -100,7 +100,7 @@ class Everybody:
             self._places["link"] = await self._mailed_link()
 
     async def _mailed_link(self) -> str:
-        """What stands behind the # of the link to an order, in the mail to its recipient without account."""
+        """Return the part behind the # of an order's link, from the mail to its recipient without account."""
         async with self.app.state.parts.database.transaction() as session:
             sender, guest = [await self._person(session, email, set()) for email in (PEOPLE["sender"][0], GUEST)]
             order_id = await self._order(session, sender, GUEST)

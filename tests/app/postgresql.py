@@ -84,7 +84,7 @@ class PostgreSQL:
         return name
 
     def drop(self, database: str) -> None:
-        """Whoever is still connected is cut off."""
+        """Drop a database; clients that are still connected are cut off."""
         self.say(f"DROP DATABASE {database} WITH (FORCE)")
 
     def restart(self, away_s: float = 0.0) -> None:

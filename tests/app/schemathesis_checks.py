@@ -1,4 +1,4 @@
-"""What schemathesis is to check besides its own checks, and who knocks at doors that shut behind them.
+"""Checks for schemathesis besides its own, and callers for routes that end their session.
 
 Its command loads this file too (SCHEMATHESIS_HOOKS).
 """
@@ -32,7 +32,7 @@ def the_code_is_documented(ctx: Any, response: Any, case: Any) -> None:
 
 
 def own_session(case: Any) -> dict[str, str]:
-    """Who signs out does so in a session of their own, so that the others' go on."""
+    """Return a session of its own for a sign-out, so that the others' go on."""
     ends = case.operation.definition.raw.get("operationId") in ENDS_SESSIONS
     return {"Cookie": f"session={SESSIONS.pop()}"} if ends and SESSIONS else {}
 

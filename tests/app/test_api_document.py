@@ -156,7 +156,7 @@ def test_no_text_that_a_request_may_hold_has_a_zero_byte_which_one_of_the_databa
 
 
 def texts_in(schema: dict[str, Any], document: dict[str, Any]) -> Iterator[dict[str, Any]]:
-    """All schemas of texts that something of this schema may hold."""
+    """Yield the schemas of texts that something of this schema may hold."""
     if "$ref" in schema:
         schema = document["components"]["schemas"][schema["$ref"].rpartition("/")[2]]
     if schema.get("type") == "string":

@@ -1,4 +1,4 @@
-"""schemathesis finds no answer that the API document does not promise, whoever asks.
+"""schemathesis finds no answer that the API document does not promise, for any caller.
 
 A short run each time; `make fuzz-api` takes minutes, with every phase and everybody. The stream has tests of its own.
 """
@@ -28,7 +28,7 @@ CHECKOUT = Path(__file__).parents[2]
 NEVER_ENDS = "/api/v1/live"
 LONG_S = os.environ.get("CAMPUS_MAIL_FUZZ_S", "")
 SCRIPTS = ("orders:read notices:write", " ".join(Scope))
-"""Tokens of somebody with every role: by their scopes."""
+"""Tokens of a person with every role: by their scopes."""
 WHO = ("stranger", "sender", "dispatcher", "maintainer", *SCRIPTS)
 AT_BROWSER = frozenset(WHO[1:4])
 QUIET: dict[str, Any] = {
@@ -54,7 +54,7 @@ def everybody(app: FastAPI, mailroom: Mailroom) -> Everybody:
 
 @pytest.fixture
 def sessions_to_end(everybody: Everybody) -> Iterator[list[str]]:
-    """Of somebody else, for routes that end sessions."""
+    """Sessions of another person, for routes that end sessions."""
     cookies = [everybody.fresh_scene("member").headers["Cookie"].partition("=")[2] for _ in range(20)]
     schemathesis_checks.SESSIONS.extend(cookies)
     yield cookies

@@ -81,7 +81,7 @@ def nginx(folder: Path, service: str, port: int) -> list[str]:
         assert shipped in site
         site = site.replace(shipped, here)
     (folder / "site.conf").write_text(site)
-    # Who is root gives nginx's workers away, and nobody else can look into a folder of the tests.
+    # As root nginx gives its workers to another user, who cannot look into a folder of the tests.
     user = "user root; " if os.geteuid() == 0 else ""
     (folder / "nginx.conf").write_text(user + NGINX.format(folder=folder))
     return ["-p", str(folder), "-c", str(folder / "nginx.conf")]
@@ -152,7 +152,7 @@ def sign_in(browser: httpx.Client, front: Front) -> None:
 
 
 def follows_at_once(browser: httpx.Client) -> None:
-    """What happens is on the page when it happens, not when a proxy has a buffer full."""
+    """An event is on the page when it happens, not when a proxy has a buffer full."""
     with browser.stream("GET", "/api/v1/live") as stream:
         assert stream.headers["content-type"].startswith("text/event-stream")
         pieces = stream.iter_text()

@@ -1,4 +1,4 @@
-"""What is kept of what was sent compressed."""
+"""The cache of compressed answers."""
 
 import gzip
 from pathlib import Path
@@ -21,7 +21,7 @@ def pages(tmp_path: Path) -> Compressed:
 
 
 async def test_a_file_is_kept_once_however_its_path_is_spelled(pages: Compressed) -> None:
-    """Else whoever spells it anew each time would have the service compress its best, and keep all of it."""
+    """Else a client that spells it anew each time would have the service compress its best, and keep all of it."""
     for path in SPELLINGS:
         assert gzip.decompress(await answered(pages, path)).decode() == FILE
     assert len(pages.kept) == 1

@@ -1,4 +1,4 @@
-"""The links of a demonstration sign somebody in; no other service has such a door, and no other machine may use it."""
+"""The links of a demonstration sign a person in; no other service has such a link, and no other machine may use it."""
 
 from pathlib import Path
 from typing import Any
@@ -23,7 +23,7 @@ def link(settings: Settings) -> str:
 
 
 def opened(settings: Settings, link: str, host: str = HERE, **client: Any) -> Response:
-    """The answer to somebody who follows the link."""
+    """The answer to a browser that follows the link."""
     app = create_app(settings, SteppedClock())
     with TestClient(app, base_url=host, client=client.get("client", ("127.0.0.1", 50000))) as browser:
         return browser.get(link, follow_redirects=False)

@@ -1,4 +1,4 @@
-"""What is shipped to run the service: units that systemd takes, proxies that pass on what they must."""
+"""Files shipped to run the service: units that systemd takes, proxies that pass on what they must."""
 
 import shutil
 import subprocess

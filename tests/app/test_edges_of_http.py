@@ -1,4 +1,4 @@
-"""What strangers may throw at the service, and what pages and streams look like on the wire."""
+"""Malformed requests that strangers may send, and the form of pages and streams on the wire."""
 
 import base64
 import gzip

@@ -96,7 +96,7 @@ def test_who_is_nobody_is_told_how_to_say_who_they_are(anonymous: TestClient) ->
 
 
 def closed_routes(app: FastAPI) -> list[tuple[str, str]]:
-    """Those of which the document says that somebody has to be signed in."""
+    """Return the routes that need a signed-in person, as the document says."""
     return [(method.upper(), path) for method, path, operation in operations(app.openapi()) if "security" in operation]
 
 

@@ -1,4 +1,4 @@
-"""What has not changed is not sent again, and who changes an order can say which version they mean."""
+"""Unchanged data is not sent again, and a client that changes an order can say which version it means."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""Writers who wait for each other share a commit: nobody is told before it, and what fails is undone alone."""
+"""Writers who wait for each other share a commit: no writer is told before it, and what fails is undone alone."""
 
 import asyncio
 import signal

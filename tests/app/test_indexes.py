@@ -1,4 +1,4 @@
-"""What is asked all the time walks along an index, so that it takes no longer with a long history than with none."""
+"""Frequent queries walk along an index, so that they take no longer with a long history than with none."""
 
 import re
 from collections.abc import Iterator

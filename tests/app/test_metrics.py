@@ -1,4 +1,4 @@
-"""What somebody who watches over the service is shown, and who else is shown nothing."""
+"""The metrics that a monitoring system reads, and the clients that are refused."""
 
 import json
 import logging

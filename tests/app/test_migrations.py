@@ -24,7 +24,7 @@ from tests.app.conftest import ON_POSTGRESQL
 from tests.app.first_letter import ROWS
 
 RELEASED = {"0001": ROWS}
-"""Every schema that somebody may have, and what such a database holds. A release adds its line here."""
+"""Every schema that a running service may have, and what such a database holds. A release adds its line here."""
 REWRITTEN = {("outbox", "next_try_at")}
 """Columns that mean something else today: what was sent has no next try."""
 

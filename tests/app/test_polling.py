@@ -7,7 +7,7 @@ from app.core.polling import REST, Looks
 
 
 async def taken(looks: Looks, took_s: float, woken_every_s: float, for_s: float) -> int:
-    """How many looks are begun while something changes all the time."""
+    """Return the number of looks that are begun while something changes all the time."""
     begun = 0
 
     async def look() -> None:

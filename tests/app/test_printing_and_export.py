@@ -1,4 +1,4 @@
-"""What the mailroom takes out of the service: a table of orders for a spreadsheet, marker sheets for the printer."""
+"""Exports for the mailroom: a table of orders for a spreadsheet, marker sheets for the printer."""
 
 import csv
 import io

@@ -25,7 +25,7 @@ from tests.app.everybody import PEOPLE, Everybody, routes_of
 
 
 class Line(NamedTuple):
-    """Status codes, and scopes: "" if nobody is asked who they are, "none" if no token opens it."""
+    """Status codes, and scopes: "" if the route needs no sign-in, "none" if no token opens it."""
 
     stranger: int
     member: int
@@ -97,7 +97,7 @@ LINES: Final[dict[tuple[str, str], Line]] = {
     ("GET", "/api/v1/people"): Line(401, 403, 403, 403, 200, 200, "contacts:read"),
     ("PUT", "/api/v1/people/{person_id}/roles/{role}"): maintainers("none"),
     ("DELETE", "/api/v1/people/{person_id}/roles/{role}"): maintainers("none"),
-    # By the link that the order's recipient was mailed, whoever brings it.
+    # By the link that the order's recipient was mailed, whatever client brings it.
     ("POST", "/api/v1/link/order"): OPEN,
     ("POST", "/api/v1/link/code"): Line(404, 404, 404, 404, 404, 404, ""),  # not their turn yet
     ("POST", "/api/v1/link/handover"): Line(409, 409, 409, 409, 409, 409, ""),
@@ -171,7 +171,7 @@ LINES: Final[dict[tuple[str, str], Line]] = {
     ("POST", "/api/v1/corridors/{corridor}/open"): dispatchers("dispatch"),
     ("GET", "/api/v1/alarms"): Line(401, 403, 403, 403, 200, 200, "dispatch"),
     ("POST", "/api/v1/alarms/{alarm_id}/acknowledge"): Line(401, 403, 403, 403, 200, 200, "dispatch"),
-    # Nobody has a code; the token is one of the robot's.
+    # No caller has a code; the token is one of the robot's.
     ("POST", "/api/v1/robots/enrol"): Line(401, 401, 401, 401, 401, 401, ""),
     ("POST", "/api/v1/robots/{name}/enrolment-codes"): maintainers("maintain", 201),
     ("GET", "/api/v1/robots/{name}/tokens"): maintainers("maintain"),

@@ -1,4 +1,4 @@
-"""What keeps the service from starting is said in a sentence with a way out, and nothing is half done."""
+"""Errors that keep the service from starting: one sentence with a way out each, and nothing is half done."""
 
 import asyncio
 import logging

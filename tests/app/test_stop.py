@@ -64,7 +64,7 @@ async def _states(settings: Settings) -> Sequence[OrderState]:
 
 
 async def _let_dispatch_wait_for_the_lock(app: FastAPI) -> "asyncio.Task[None]":
-    """A robot is there at last, and somebody else is writing just when dispatch wants to."""
+    """A robot is there at last, and another transaction is writing just when dispatch wants to."""
     await _put(app, online=False)
     while not (timetable := app.state.parts.traffic_desk.timetable) or not timetable.known:
         app.state.parts.traffic_desk.wake()
@@ -80,7 +80,7 @@ async def _let_dispatch_wait_for_the_lock(app: FastAPI) -> "asyncio.Task[None]":
 
     holding = asyncio.create_task(hold())
     await has_begun.wait()
-    # It takes a breath when nobody was free, a longer one where looking took long; then it begins, and waits for us.
+    # It takes a breath when no robot was free, a longer one where looking took long; then it begins, and waits for us.
     await asyncio.sleep(LONGEST_REST_S + 0.3)
     return holding
 

@@ -17,7 +17,7 @@ NINE = datetime(2026, 1, 5, 9, 0, tzinfo=UTC)
 
 @dataclass
 class Machine:
-    """Its two clocks: one that anybody may set, and one that nobody can."""
+    """Its two clocks: one that any user may set, and one that no user can."""
 
     wall_s: float = NINE.timestamp()
     steady_s: float = 1000.0

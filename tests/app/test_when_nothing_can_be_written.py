@@ -1,4 +1,4 @@
-"""A full disk and a lock that another holds: what only reads is answered, and nobody waits for long."""
+"""A full disk and a lock that another holds: requests that only read are answered, and no client waits for long."""
 
 import sqlite3
 import time

@@ -60,7 +60,7 @@ async def _session_of(app: FastAPI, email: str) -> str:
 
 @pytest.fixture
 def column(mailroom: Mailroom) -> Callable[[Any], list[Any]]:
-    """All values of a column, from the database."""
+    """Read a column's values from the database."""
 
     async def read(which: Any) -> list[Any]:
         async with mailroom.app.state.parts.database.reading() as session:
@@ -87,7 +87,7 @@ def test_orders_outlive_a_leap_and_expire_in_their_time(
     time.sleep(2.5)  # real seconds, in which the service's own timer looks twice
     time_acts(mailroom)
     assert column(Order.state) == ["queued"]
-    assert sender.order().status_code == 201, "nobody is signed out, and nothing stands still"
+    assert sender.order().status_code == 201, "no person is signed out, and nothing stands still"
     machine.wall_s -= 3 * DAY_S
     machine.passes(DAY_S - 60)
     time_acts(mailroom)

@@ -40,7 +40,7 @@ class Campus:
         return f"http://127.0.0.1:{self.service.port}"
 
     async def token(self, email: str = SENDER, scopes: set[Scope] | None = None) -> str:
-        """As somebody makes one at a browser: `POST /tokens`."""
+        """Issue a token as a person does at a browser: `POST /tokens`."""
         state = self.service.app.state.parts
         async with state.database.transaction() as session:
             person = await state.sign_in_desk.person(session, email, state.clock.utc())

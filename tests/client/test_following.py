@@ -89,7 +89,7 @@ async def test_one_order_is_followed_through_a_restart_of_the_service_to_its_end
             await until(lambda: states[-1] == "to_sender")
         async with serving(settings, clock) as service:
             campus, wire.target_port = Campus(service), service.port
-            await campus.move(order_id, "at_sender", "carrying")  # while nobody listens
+            await campus.move(order_id, "at_sender", "carrying")  # while no client listens
             await until(lambda: states[-1] == "carrying")
             await campus.move(order_id, "at_recipient", "delivered")
             await following

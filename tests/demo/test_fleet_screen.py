@@ -1,4 +1,4 @@
-"""What the demonstration of a fleet says where there is no terminal to draw a table on."""
+"""The demonstration of a fleet where there is no terminal to draw a table on."""
 
 from dataclasses import replace
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What everybody reads from a map file, and what a broken one is answered with."""
+"""Reading a map file, and the answers to a broken one."""
 
 import math
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""How many robots a map carries, and why: the check says it."""
+"""The number of robots that a map carries, and why: the check says it."""
 
 import json
 from pathlib import Path

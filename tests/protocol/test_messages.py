@@ -92,7 +92,7 @@ def test_messages_are_frozen_and_exact() -> None:
     raw["body"]["colour"] = "red"
     with pytest.raises(MalformedMessage, match=r"claim: colour: Extra inputs are not permitted") as caught:
         parse(json.dumps(raw), TO_SERVER)
-    assert caught.value.seq == raw["seq"], "whoever sent it can find it again"
+    assert caught.value.seq == raw["seq"], "the sender can find it again"
 
 
 @pytest.mark.parametrize(

@@ -8,8 +8,8 @@ import threading
 class CuttableWire:
     """Forwards bytes in both directions until it is cut, the way a tunnel cuts them.
 
-    Nobody is told: connections stay open and nothing passes, in either direction. After `mend` whatever is still open
-    goes on where it stopped.
+    Neither end is told: connections stay open and nothing passes, in either direction. After `mend` whatever is still
+    open goes on where it stopped.
     """
 
     def __init__(self, target_port: int) -> None:

@@ -44,7 +44,7 @@ def wait_for(what: str, look: Callable[[], T | None], limit_s: float = 60.0, eve
 
 
 class Person:
-    """Somebody signed in with a code from their mail."""
+    """A person signed in with a code from their mail."""
 
     def __init__(self, email: str, base_url: str, spool: Path) -> None:
         self.email = email
@@ -113,7 +113,7 @@ class Rig:
         return self
 
     def enrol(self) -> None:
-        """As a maintainer and whoever stands at the robot do it: one makes a code, the other types it."""
+        """Enrol as a maintainer and a technician at the robot do it: one makes a code, the other types it."""
         code = self._command(["app", "robots", "enrol", "r1"], self._service_env())
         ran = self.type_code("r1", code, self.settings_file)
         assert ran.returncode == 0, ran.stderr
@@ -121,7 +121,7 @@ class Rig:
         self.settings_file.write_text(settings.replace(f":{self.port}/", f":{self.wire.port}/"))
 
     def type_code(self, name: str, code: str, settings_file: Path) -> subprocess.CompletedProcess[str]:
-        """What `robot enrol` makes of a code."""
+        """Run `robot enrol` with a code."""
         server = f"ws://127.0.0.1:{self.port}/api/v1/robots/link"
         enrol = [sys.executable, "-m", "robot", "enrol", name, server, "--config", str(settings_file), "--code-stdin"]
         return subprocess.run(enrol, check=False, cwd=ROOT, input=code, capture_output=True, text=True)
@@ -145,14 +145,14 @@ class Rig:
             self.door.unlink(missing_ok=True)
 
     def sign_in(self, email: str) -> Person:
-        """Somebody who reads their code in the spool of mails."""
+        """Sign a person in with the code from the spool of mails."""
         person = Person(email, self.base_url, self.folder / "service" / "spool")
         self.people.append(person)
         person.sign_in()
         return person
 
     def sign_in_as(self, email: str, role: str) -> Person:
-        """Somebody who has been given a role at the service's terminal."""
+        """Sign in a person who has been given a role at the service's terminal."""
         self._command(["app", "people", "role", email, "--add", role], self._service_env())
         return self.sign_in(email)
 
@@ -215,13 +215,13 @@ class Rig:
         return answer
 
     def stands_at(self, x_m: float, y_m: float, within_m: float = 0.4) -> bool:
-        """Whether the simulated robot stands still near a place."""
+        """Return whether the simulated robot stands still near a place."""
         before = self._pose()
         time.sleep(0.2)
         return self.is_near(x_m, y_m, within_m) and self.is_near(*before, within_m=0.005)
 
     def is_near(self, x_m: float, y_m: float, within_m: float = 0.4) -> bool:
-        """Whether the simulated robot is at a place or passes it."""
+        """Return whether the simulated robot is at a place or passes it."""
         here_x_m, here_y_m = self._pose()
         return math.hypot(here_x_m - x_m, here_y_m - y_m) < within_m
 

@@ -77,7 +77,7 @@ async def test_a_backup_under_load_restores_to_a_sound_database_that_a_service_s
         victim.end()
         await asyncio.gather(*(browser.aclose() for browser in browsers))
     everything = {order for sender in senders for order in sender.acknowledged.values()}
-    assert len(everything) > len(before), "nobody ordered while the backup was taken"
+    assert len(everything) > len(before), "no order was placed while the backup was taken"
 
     again = Victim(tmp_path / "again")
     restored = again.folder / "data"

@@ -1,4 +1,4 @@
-"""What a newcomer sees: the demonstration, and the paper's own run."""
+"""A newcomer's first runs: the demonstration, and the paper's own run."""
 
 import json
 import re
@@ -94,7 +94,7 @@ def test_a_link_opens_each_page_as_its_person_and_ctrl_c_ends_it_all_in_three_se
         page.goto(serving_demo.said(rf"{part} +(http://127\.0\.0\.1:\d+/\S+)") or "")
         expect(page.get_by_role("heading", name=heading, exact=True).first).to_be_visible()
         expect(page.locator(".account .address")).to_have_text(f"{part}@campus.example")
-    assert serving_demo.said(r"(Sign-in code for)") is None, "nobody has asked for one"
+    assert serving_demo.said(r"(Sign-in code for)") is None, "no person has asked for one"
     children = psutil.Process(serving_demo.process.pid).children(recursive=True)
     serving_demo.process.send_signal(signal.SIGINT)
     assert serving_demo.process.wait(3) == 0

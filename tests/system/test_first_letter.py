@@ -66,7 +66,7 @@ def test_half_a_minute_without_network_and_the_letter_is_delivered_all_the_same(
     letter = Letter(rig)
     letter.load()
     code = letter.recipient.get(f"/orders/{letter.id}/code")["text"]  # a page loaded before the tunnel
-    # What it was not granted before, nobody grants it without network: it sets out with all its way at once.
+    # A way not granted before is not granted without network: it sets out with all its way at once.
     wait_for("the robot sets out", lambda: not rig.is_near(0.0, 4.0, within_m=0.6))
     rig.wire.cut()
     cut_at_s = time.monotonic()
@@ -74,7 +74,7 @@ def test_half_a_minute_without_network_and_the_letter_is_delivered_all_the_same(
     rig.at_the_door({"do": "show_code", "text": code})
     rig.let_pass(30.0)
     time.sleep(max(0.0, cut_at_s + NOTICED_S - time.monotonic()))
-    assert letter.sender.get(f"/orders/{letter.id}")["state"] == "carrying", "nobody could be told yet"
+    assert letter.sender.get(f"/orders/{letter.id}")["state"] == "carrying", "the service could not be told yet"
     rig.wire.mend()
     order = rig.wait_for_state(letter.sender, letter.id, "delivered")
     letter.assert_delivered_and_each_told_once(order)

@@ -51,7 +51,7 @@ def test_a_letter_goes_by_a_tap_and_six_digits_and_is_stopped_on_the_way_from_th
     assert (still[0]["x_m"], still[0]["y_m"]) == pytest.approx((still[1]["x_m"], still[1]["y_m"]), abs=0.005)
     desk.post("/robots/r1/resume")
 
-    # A robot that stands because somebody stopped it needs attention, until it goes on.
+    # A robot that stands because a person stopped it needs attention, until it goes on.
     wait_for(f"at the recipient\n{rig.log('robot')}", lambda: recipient.get(path)["state"] == "at_recipient", 150.0)
     digits = code_of(recipient, path)["digits"]
     assert desk.post(f"{path}/handover", {"digits": digits}).status_code == 202

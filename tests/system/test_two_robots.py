@@ -1,4 +1,4 @@
-"""Two robots that want to swap places on the track, where nobody can pass: real daemons and the real service."""
+"""Two robots that want to swap places on the track, where neither can pass: real daemons and the real service."""
 
 import json
 import sqlite3
@@ -25,7 +25,7 @@ SECOND_DOCK = "dock = { x_m = 0.0, y_m = 4.5, heading_deg = 90.0 }"
 """The paper's track has one dock, and each robot needs one of its own: another one at the end of the line at post1."""
 BETWEEN = ("post2-post3", "post3-post4")
 ASIDE = {"post1", "post5"}
-"""Beside the line from one end to the other: to which of them somebody goes depends on who asks first."""
+"""Beside the line from one end to the other: to which of them a robot goes depends on which asks first."""
 
 
 class SharedTrack(Rig):
@@ -75,7 +75,7 @@ class SharedTrack(Rig):
         return list(told["posts"])
 
     def know_where_all_are(self) -> bool:
-        """Whether each of them has told the service where it stands."""
+        """Return whether each of them has told the service where it stands."""
         with closing(sqlite3.connect(self.folder / "service" / "campus-mail.sqlite")) as database:
             told = database.execute("SELECT name FROM robots WHERE post IS NOT NULL AND online").fetchall()
         return {name for (name,) in told} == set(ERRANDS)
@@ -97,7 +97,7 @@ def test_two_robots_that_swap_places_pass_each_other_and_come_home(track: Shared
     for name in ERRANDS:
         track.enrol_one(name)
     dispatcher = track.sign_in_as("dan@campus.example", "dispatcher")
-    for corridor in BETWEEN:  # until both are known of: whoever is alone on the line is in nobody's way
+    for corridor in BETWEEN:  # until both are known of: a robot alone on the line is in no other's way
         dispatcher.post(f"/corridors/{corridor}/close", {"reason": "Two robots are put down."}).raise_for_status()
     for name in ERRANDS:
         track.send(name)

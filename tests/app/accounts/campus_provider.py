@@ -40,5 +40,5 @@ def _wait_for(url: str) -> None:
 
 
 def tell_of(issuer: str, subject: str, **claims: Any) -> None:
-    """What the provider is to say of somebody."""
+    """Tell the provider the claims it makes about a person."""
     httpx.put(f"{issuer}/users/{subject}", json=claims).raise_for_status()

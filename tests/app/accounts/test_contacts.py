@@ -1,4 +1,4 @@
-"""The address book: whom somebody exchanged mail with, and whom they saved."""
+"""The address book: people with whom a person exchanged mail, and contacts that they saved."""
 
 from typing import Any
 
@@ -31,7 +31,7 @@ def test_whom_one_exchanged_mail_with_comes_first_and_newest_first(
     assert emails(sender) == [*met, "bob@campus.example"]
     assert emails(sender, limit=2) == met[:2]
     assert book(sender)[0]["last_mail_at"] > book(sender)[1]["last_mail_at"]
-    assert emails(recipient) == [SENDER], "whom one only received from counts too, and nobody else's contacts do"
+    assert emails(recipient) == [SENDER], "whom one only received from counts too, and no other person's contacts do"
 
 
 @pytest.mark.parametrize("limit", [1, 2, 3, 100])
@@ -78,7 +78,7 @@ def test_a_contact_is_saved_with_a_label_and_a_post_found_by_them_and_forgotten(
     (known,) = book(sender, search="aunt")
     assert (known["email"], known["label"], known["post"], known["saved"]) == (RECIPIENT, "Aunt Ada", "post2", True)
     assert emails(sender, search="nobody") == []
-    assert book(recipient)[0]["label"] == "", "a label is nobody else's business"
+    assert book(recipient)[0]["label"] == "", "a label is shown to its author alone"
     unknown = sender.put(f"{CONTACTS}/{RECIPIENT}", json={"post": "post99"})
     assert (unknown.status_code, unknown.json()["code"]) == (422, "unknown_post")
     assert sender.delete(f"{CONTACTS}/{RECIPIENT}").status_code == 204

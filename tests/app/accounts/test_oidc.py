@@ -33,7 +33,7 @@ def settings(settings: Settings, issuer: str) -> Settings:
 
 
 class Campus:
-    """The provider, as somebody's browser and its administrator see it."""
+    """The provider, as a person's browser and its administrator see it."""
 
     def __init__(self, issuer: str) -> None:
         self.issuer = issuer

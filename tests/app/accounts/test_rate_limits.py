@@ -1,4 +1,4 @@
-"""Who knocks too often is told to wait, and for how long; others are not slowed down by it."""
+"""Rate limits: a client that asks too often is told to wait and for how long; other clients are not slowed down."""
 
 from collections.abc import Iterator
 

@@ -1,4 +1,4 @@
-"""Where somebody is signed in: seen in words, ended one by one or all others at once."""
+"""A person's sessions: described in words, ended one by one or all others at once."""
 
 import time
 

@@ -96,7 +96,7 @@ def another_browser(app: FastAPI, anonymous: TestClient) -> TestClient:
 
 
 def asked(browser: TestClient, mails: Mails) -> dict[str, str]:
-    """What signs the sender in, as far as this browser may."""
+    """Return the e-mail address and code that sign the sender in, as far as this browser may."""
     assert browser.post(CODES, json={"email": SENDER}).status_code == 202
     return {"email": SENDER, "code": mails.newest_code(SENDER)}
 

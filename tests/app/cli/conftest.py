@@ -1,4 +1,4 @@
-"""Commands as somebody types them, beside the running service and on its database."""
+"""Commands as an operator types them, beside the running service and on its database."""
 
 import json
 import logging

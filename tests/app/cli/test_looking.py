@@ -1,4 +1,4 @@
-"""What an operator can look at: people, robots, orders, the map."""
+"""The commands with which an operator looks at people, robots, orders and the map."""
 
 import csv
 import io

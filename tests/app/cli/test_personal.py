@@ -1,4 +1,4 @@
-"""What is known of a person is given to them, or taken out."""
+"""A person's data is exported for them, or erased."""
 
 import json
 import zipfile
@@ -97,5 +97,5 @@ def test_the_last_maintainer_cannot_be_erased_and_nobody_by_a_slip(run: Run, sen
 
 
 def test_every_table_that_refers_to_people_has_a_fate() -> None:
-    """Whoever adds a table says what becomes of it when a person is erased."""
+    """Every new table states what becomes of its rows when a person is erased."""
     assert {table.name for table, _ in references_to_people()} == set(FATES)

@@ -30,7 +30,7 @@ def rounds(count: int) -> Callable[[], bool]:
 
 @dataclass
 class Life:
-    """What happens to orders, and what was promised. Raises AssertionError where something is not as it must be."""
+    """The fates of orders, and the times promised. Raises AssertionError where something is not as it must be."""
 
     network: Network
     homes: list[int]

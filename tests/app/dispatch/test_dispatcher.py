@@ -123,7 +123,7 @@ async def test_a_robot_under_way_gets_one_more_order_by_the_next_update_of_its_m
         await robot.report(mission, Step.ARRIVED, load)
         await service.reaches(first, "at_sender")
         second = await service.order("post2", "post3")
-        await waits_because(service, second, "Every robot is busy.")  # somebody is loading: nothing changes meanwhile
+        await waits_because(service, second, "Every robot is busy.")  # the sender is loading: nothing changes meanwhile
         await robot.say(robot.receipt(load))
         update = await robot.mission()
     assert (update.id, update.update) == (mission.id, 2)

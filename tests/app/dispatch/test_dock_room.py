@@ -45,7 +45,7 @@ async def test_it_is_sent_to_park_and_the_other_to_the_dock_once_it_is_free(
         leaves = await rests.mission()
         (park,) = leaves.stops
         assert (park.action, park.order_id) == (StopAction.PARK, None)
-        assert park.post == "post4", "at post1 stands the other, and at post2 and post3 nobody could pass"
+        assert park.post == "post4", "at post1 stands the other, and at post2 and post3 no robot could pass"
         await look(service)
         assert len(await service.rows(MissionRow)) == 1, "the dock is not free yet"
 
@@ -76,7 +76,7 @@ async def test_nobody_leaves_who_has_not_enough_itself(service: Service, clock: 
 async def test_for_a_robot_whose_own_battery_plan_has_taken_over_half_a_charge_is_enough(
     service: Service, clock: SteppedClock
 ) -> None:
-    """It comes in any case. It is not sent, and nobody else is sent to where it goes."""
+    """It comes in any case. It is not sent, and no other robot is sent to where it goes."""
     async with robot(service, clock, "r1", DOCK, 0.6) as rests, robot(service, clock, "r2", "post1", 0.2) as comes:
         await comes.say(
             Snapshot(position=at_post("post1"), activity=Activity.STOPPED, battery=Battery(ratio=0.2, docked=False))

@@ -57,7 +57,7 @@ async def robot(service: Service, clock: SteppedClock) -> AsyncIterator[PlayedRo
 
 
 async def can_come(service: Service) -> bool:
-    """What was learned of it is known to those who promise."""
+    """Return whether promises are based on the durations learned."""
     await service.app.state.parts.fleet.learning.look()
     return service.app.state.parts.estimates.ahead.reason is None
 

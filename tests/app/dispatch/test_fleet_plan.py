@@ -1,4 +1,4 @@
-"""Decisions for the whole fleet: who gets what, what stays as it is, and that nobody is forgotten."""
+"""Decisions for the whole fleet: which robot gets which order, what stays as it is, and that no order is forgotten."""
 
 from dataclasses import replace
 from random import Random

@@ -1,4 +1,4 @@
-"""Of many orders that wait some are looked at: nobody is passed over for long, and nothing near is overlooked."""
+"""Of many waiting orders some are candidates: none is passed over for long, and no near one is overlooked."""
 
 from dataclasses import replace
 

@@ -82,7 +82,7 @@ def test_an_order_that_cannot_be_given_at_the_moment_is_kept_whole() -> None:
 def test_a_decision_that_has_come_too_late_changes_nothing() -> None:
     traffic, one = traffic_on(4), order(0, 1, 2)
     decision = decided(scene_of(traffic, ABLE, {one.id: one}, 0.0))
-    traffic.stands("r0", "p2", 5.0)  # somebody has carried it there
+    traffic.stands("r0", "p2", 5.0)  # a person has carried it there
     assert not adopt(traffic, decision, ABLE, 6.0)
     assert traffic.goals("r0") == ()
 

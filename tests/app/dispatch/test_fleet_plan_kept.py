@@ -1,4 +1,4 @@
-"""What was promised: a timetable that does not hold is never carried out, and small gains move nothing."""
+"""Promises are kept: a timetable that does not hold is never carried out, and small gains change nothing."""
 
 from dataclasses import replace
 from random import Random
@@ -26,7 +26,7 @@ def ring(posts: int) -> Network:
 
 
 def test_a_kept_timetable_through_a_closed_corridor_is_not_carried_out() -> None:
-    """Nobody has told the planner that it is void; it looks."""
+    """The planner is not notified that it is void; it checks."""
     had, new = order(0, 1, 2), order(1, 4, 5)
     robots = {"r0": robot(0, route=had.stops), "r1": robot(4)}
     for orders in ([had], [had, new]):

@@ -1,4 +1,4 @@
-"""Who gets what at first: no order is taken by the robot that is near when another order can spare it less."""
+"""First assignment: the near robot does not take an order when another order can spare it less."""
 
 from dataclasses import replace
 from itertools import combinations_with_replacement

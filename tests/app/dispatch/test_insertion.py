@@ -1,4 +1,4 @@
-"""What a robot takes along: where it fits, never more than it can carry, and only what lies on its way."""
+"""Orders that a robot takes along: where they fit, never more than it can carry, only those on its way."""
 
 from itertools import pairwise, permutations
 

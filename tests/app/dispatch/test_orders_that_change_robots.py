@@ -36,7 +36,7 @@ async def test_it_goes_to_the_better_robot_once_the_first_has_let_it_go(world: W
     first, second = await given(world)
     await world.set_online("r2", True)
     await world.dispatch()
-    assert await robots_of(world, first, second) == ["r1", "r1"], "nobody else fetches it before r1 has answered"
+    assert await robots_of(world, first, second) == ["r1", "r1"], "no other robot fetches it before r1 has answered"
     await world.goes_on("r1")
     await world.dispatch()
     assert await robots_of(world, first, second) == ["r1", "r2"]

@@ -1,4 +1,4 @@
-"""The process that looks for better plans: what it finds is as good as found here, and nobody waits for it in vain."""
+"""The planner process: its plans are as good as those made in the service, and no caller waits for it in vain."""
 
 import os
 import signal

@@ -1,4 +1,4 @@
-"""How long things take, learned from what was seen."""
+"""Durations of legs and services, learned from observations."""
 
 from random import Random
 

@@ -1,4 +1,4 @@
-"""What a plan comes to, with durations that nobody knows before: waits for others and charging are in it."""
+"""The forecast of a plan with durations that are not known beforehand: it includes waits for others and charging."""
 
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""What robots say teaches the service how long things take: people are told, those who look after robots see how good
+"""The service learns durations from robots' reports: people are told, those who look after robots see how good
 it is, and a restart forgets nothing."""
 
 from dataclasses import replace
@@ -126,7 +126,7 @@ def test_the_more_wait_the_later_it_is_said_to_come(mailroom: Mailroom, sender: 
         comes_s.append(estimates.promise(FROM, TO, now).raw.p50_s)
     assert comes_s == sorted(comes_s)
     assert comes_s[2] > 2 * comes_s[0]
-    assert estimates.promise(FROM, TO, now).assumed, "but nobody is told before enough was seen"
+    assert estimates.promise(FROM, TO, now).assumed, "but no person is told before enough was seen"
 
 
 def test_office_hours_are_the_campuss_own() -> None:

@@ -1,4 +1,4 @@
-"""What is told of an order that a robot has is put right by what came of it, and scored apart from what was told when
+"""Estimates of an order under way are corrected by its outcome, and scored apart from those given when
 it was placed; a restart forgets nothing of it."""
 
 from datetime import timedelta

@@ -41,7 +41,7 @@ async def test_a_dispatcher_who_has_looked_tells_the_robot_whose_word_ends_the_a
     answer = CommandAnswer(command_id=wish.command_id, accepted=True, happened_at=campus.robot.clock.utc())
     await campus.robot.ends(await campus.robot.say(Event(happened=answer)))
     await says(campus, tried_again("post2-post3"), cleared=True)
-    assert await closed() == {"post1-post2"}, "nobody has looked there"
+    assert await closed() == {"post1-post2"}, "no person has looked there"
     (seen,) = (await desk.get("/robots/r1/commands")).json()["items"]
     assert (seen["kind"], seen["accepted"]) == ("open_way", True)
     await says(campus, "The robot tries that way again.", cleared=True)

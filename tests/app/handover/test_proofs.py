@@ -167,7 +167,7 @@ async def test_a_load_that_is_only_claimed_goes_on_quietly_and_is_settled_by_a_p
     await begin(campus)
     await campus.robot.ends(await campus.robot.say(made_up(campus, campus.load, how="code")))
     assert await campus.state() == "carrying"
-    assert "on_its_way" not in await told(campus), "nobody knows that it is"
+    assert "on_its_way" not in await told(campus), "the service does not know that it is"
     assert [(one["holder"], one["evidence"]) for one in await links(campus)][1:] == [("robot", "claimed")]
     assert (await campus.service.row(Alarm, name=CLAIMED)).cleared_at is None
     await arrive(campus)

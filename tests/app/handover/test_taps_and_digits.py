@@ -51,7 +51,7 @@ async def test_a_refused_tap_is_on_the_page_and_can_be_tried_again(campus: Campu
     view = (await sender.get(campus.path)).json()
     assert (view["state"], view["handover_requested"]) == ("at_sender", None)
     assert (view["events"][-1]["kind"], view["events"][-1]["reason"]) == ("confirm_refused", "It does not wait.")
-    assert await campus.service.rows(Alarm, name="command_refused") == [], "nobody else has to look"
+    assert await campus.service.rows(Alarm, name="command_refused") == [], "no dispatcher has to look"
     assert (await sender.post(f"{campus.path}/handover", json={})).status_code == 202
     assert (await asked(campus)).command_id != wish.command_id
 

@@ -28,7 +28,7 @@ ROBOT = ROOT / "robot"
 FAILING = {"Ended", "Failed", "WrongArguments"}
 """Calls whose first argument is the atom that says why something failed."""
 RAW = re.compile(r"\b[a-z]+(?:_[a-z0-9]+)+\b|\{\w+\}|\b(?:why|gap|alarm)\.[a-z_.]+")
-"""What nobody should have to read: an atom of several words, a gap, a key."""
+"""Text that no reader should see: an atom of several words, a gap, a key."""
 
 
 @cache
@@ -83,7 +83,7 @@ def what_the_agent_tells() -> Set[str]:
 
 
 def refusals_of_robots() -> Iterator[str]:
-    """What a robot answers to a command that it does not obey."""
+    """Yield the sentences with which a robot refuses a command."""
     for path, names in REFUSING.items():
         for node in ast.walk(ast.parse((ROOT / path).read_text())):
             if isinstance(node, ast.FunctionDef) and node.name in names:

@@ -1,4 +1,4 @@
-"""Whoever dispatches hears of an alarm once, in the inbox and where they wanted it; what is seen to is silent."""
+"""Dispatchers are notified of an alarm once, in the inbox and on their channels; an acknowledged alarm is silent."""
 
 from sqlmodel import col, select
 
@@ -46,7 +46,7 @@ async def test_an_alarm_is_told_to_every_dispatcher_once_while_it_lasts(
         await rings(office)
         assert len(await told(office)) == 2, "it has come back"
         await office.settle()
-        assert await office.sendings("mail") == [], "the page is open where somebody is on duty"
+        assert await office.sendings("mail") == [], "the page is open where a dispatcher is on duty"
 
 
 async def test_who_wants_alarms_by_mail_has_them(settings: Settings, clock: SteppedClock) -> None:

@@ -47,7 +47,7 @@ def free_port() -> int:
 
 
 def ask(client: httpx.Client, method: str, path: str, **wish: Any) -> httpx.Response | None:
-    """None if nobody answers: not up yet, or killed meanwhile."""
+    """None if the service does not answer: not up yet, or killed meanwhile."""
     try:
         return client.request(method, path, **wish)
     except httpx.TransportError:

@@ -25,7 +25,7 @@ from tests.app.notifications.receivers import Received, Receiver, receiving
 
 
 class BrowserKeys:
-    """What a browser makes when it subscribes, and reads its pushes with."""
+    """The keys that a browser makes when it subscribes, and reads its pushes with."""
 
     def __init__(self) -> None:
         self.private = ec.generate_private_key(ec.SECP256R1())

@@ -1,4 +1,4 @@
-"""Why something waits is said in the reader's language, whoever said it first."""
+"""Why something waits is said in the reader's language, whichever part said it first."""
 
 import ast
 import string

@@ -57,7 +57,7 @@ def worker_of(office: Office, *channels: Channel) -> OutboxWorker:
 
 
 async def end_of_sending() -> None:
-    """What is under way gets its turns."""
+    """Give the tasks under way their turns."""
     for _ in range(5):
         await asyncio.sleep(0)
 

@@ -53,12 +53,12 @@ class Service:
 
     @property
     def left(self) -> int:
-        """What its last words say."""
+        """The number of mails left, as the service's last log line says."""
         return int(said(self.log, "the service stops")[0]["sign_in_mails_left"])
 
     @property
     def kept(self) -> int:
-        """What lies in its folder."""
+        """The number of mails in its folder."""
         return len(list((self.folder / "data" / "waiting-mails").glob("*")))
 
 

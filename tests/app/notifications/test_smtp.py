@@ -150,7 +150,7 @@ async def test_what_nobody_takes_for_a_day_is_given_up(smtp: Settings, server: M
             await office.settle()
             clock.advance(DAY_S / 2)
         await office.settle()
-        # Nobody fetches it either, of which its sender is told meanwhile.
+        # It is not fetched either, of which its sender is told meanwhile.
         given_up = (await office.sendings("mail"))[0]
         assert given_up.gave_up_at and given_up.tries == 3
 

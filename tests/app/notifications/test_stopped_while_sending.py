@@ -40,7 +40,7 @@ def serving(data: Path, port: int, webhook: str, log: Path) -> Iterator["subproc
 
 
 def stop(process: "subprocess.Popen[bytes]") -> float:
-    """How long it took."""
+    """Stop the service and return the seconds it took."""
     begun_s = time.monotonic()
     process.send_signal(signal.SIGTERM)
     assert process.wait(60) in (0, -signal.SIGTERM)
@@ -48,7 +48,7 @@ def stop(process: "subprocess.Popen[bytes]") -> float:
 
 
 def left(log: Path) -> int:
-    """What its last words say."""
+    """Return the number of notices left, as the service's last log line says."""
     lines = [json.loads(line) for line in log.read_text().splitlines() if line.startswith("{")]
     (count,) = [line["notices_left"] for line in lines if line["event"] == "the service stops"]
     return int(count)

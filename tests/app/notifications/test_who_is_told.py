@@ -1,4 +1,4 @@
-"""Who is told what, on every way that an order can take: both people where both are concerned, each thing once."""
+"""Recipients of each notification, on every way an order can take: both people where both are concerned, once."""
 
 from collections import Counter
 from collections.abc import AsyncIterator
@@ -129,7 +129,7 @@ async def test_a_name_with_a_line_of_its_own_writes_no_header(office: Office) ->
 
 def test_every_end_and_every_wait_is_told() -> None:
     untold = set(TRANSITIONS) - set(NOTIFICATION_RULES)
-    assert untold == {OrderState.ASSIGNED}, "the order was accepted; that a robot was chosen concerns nobody"
+    assert untold == {OrderState.ASSIGNED}, "the order was accepted; that a robot was chosen concerns neither person"
     ends = {state for state, following in TRANSITIONS.items() if not following}
     assert {rule.kind for end in ends for rule in NOTIFICATION_RULES[end]} <= ONCE
     kinds = {rule.kind for rules in NOTIFICATION_RULES.values() for rule in rules}

@@ -46,7 +46,7 @@ def test_mail_that_a_person_fetched_by_hand_is_held_and_its_custody_says_so(
 ) -> None:
     mailroom.move(order_id, *WAY[:4])
     loaded(app, mailroom, order_id)
-    assert does(dispatcher, order_id, "hold") == "transition_refused", "nobody takes mail out of a robot that drives"
+    assert does(dispatcher, order_id, "hold") == "transition_refused", "no person takes mail out of a robot that drives"
     assert does(dispatcher, order_id, "attention", reason="It stands in the way.") == "attention"
     assert does(dispatcher, order_id, "resolve", to="queued") == "transition_refused", "its mail is aboard"
     assert does(dispatcher, order_id, "resolve", to="held", reason="Fetched.") == "held"

@@ -35,7 +35,7 @@ def test_a_delivered_order_shows_its_whole_way_and_everybody_was_told_once(
     order = seen(sender, order_id)
     assert [event["state"] for event in order["events"]] == ["queued", *WAY]
     assert order["version"] == 7
-    assert order["robot"] is None, "after the delivery nobody needs to know where the robot goes"
+    assert order["robot"] is None, "after the delivery no person needs to know where the robot goes"
     assert kinds(sender) == ["accepted", "delivered", "robot_here", "robot_near"]
     assert kinds(recipient) == ["delivered", "on_its_way", "robot_here_for_you"]
     mailroom.send_mails()

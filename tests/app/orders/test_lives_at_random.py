@@ -106,7 +106,7 @@ class LivesOfOrders(RuleBasedStateMachine):
     @precondition(lambda self: len(self.ids) < ORDERS)
     @rule(number=ORDER)
     def somebody_orders_the_same_way(self, number: int) -> None:
-        """Which goes along with what is on its way already, if nobody else is free."""
+        """Which goes along with what is on its way already, if no other robot is free."""
         (same,) = self.run(self.world.rows(Order, id=self.order(number)))
         self.ids.append(self.run(self.world.place(same.from_post, same.to_post)))
         self.run(self.world.dispatch())

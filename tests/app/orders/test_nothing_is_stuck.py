@@ -82,7 +82,7 @@ async def test_mail_that_came_aboard_when_its_order_had_ended_rings_and_is_broug
     assert "custody_contradicts_order" in await ringing(world)
     for _ in range(3):
         await world.goes_on("r1", *["sender"] * 3)
-    assert world.where[order_id] == "sender", "nobody carried it to its recipient"
+    assert world.where[order_id] == "sender", "no robot carried it to its recipient"
     assert await world.state(order_id) is OrderState.CANCELLED
     assert "custody_contradicts_order" not in await ringing(world)
     assert await world.rows(MissionRow, state="active") == []

@@ -1,4 +1,4 @@
-"""However many pages are open, what happens is put into words once; and never if nobody is there to read it."""
+"""However many pages are open, an event is put into words once; and never if no page is there to read it."""
 
 from collections.abc import ItemsView
 from datetime import UTC, datetime

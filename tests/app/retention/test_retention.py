@@ -1,4 +1,4 @@
-"""What may not be kept goes at its time, not before, and holds nobody up."""
+"""Data that may not be kept is deleted at its time, not before, and no request waits for that."""
 
 import asyncio
 import os

@@ -37,7 +37,7 @@ class Grant:
 
 @dataclass
 class Row:
-    """What the database has of a robot."""
+    """The database's row of a robot."""
 
     post: str
     seen_at: datetime
@@ -51,7 +51,7 @@ class Row:
 
 @dataclass
 class Robot:
-    """What is true of it."""
+    """The true state of a robot."""
 
     name: str
     home: str
@@ -99,7 +99,7 @@ class World:
         line.append((max(last_s, self.now_s + self.rng.uniform(0.0, self.late_s)), act))
 
     def deliver(self) -> None:
-        """What has come by now, in the order in which each robot said it or was told it; the dead wait."""
+        """Deliver the messages due by now, in the order in which each robot sent or was sent them; the dead wait."""
         for robot in self.robots:
             if robot.is_dead:
                 continue
@@ -239,7 +239,7 @@ class World:
             self._clear(robot, ahead)
 
     def _take_back(self, name: str, claim: str) -> None:
-        """What was granted meanwhile is given back as it comes: see `_granted`."""
+        """Withdraw a claim. A grant made meanwhile is given back as it comes: see `_granted`."""
         wish = self.rows[name].wish
         if wish is not None and wish.claim_id == claim:
             self.rows[name].wish = None
@@ -340,7 +340,7 @@ class World:
                     assert follows and other.leg == grant.leg, f"{grant} beside {other}"
 
     def _granted(self, robot: Robot, claim: str, new: list[Grant]) -> None:
-        """What it has taken back meanwhile it gives back. Of several first corridors it takes the one it was told."""
+        """Give back grants of a claim it has taken back. Of several first corridors it takes the one it was told."""
         if robot.asked != claim:
             self._clear(robot, new)
             return

@@ -66,7 +66,7 @@ class Service:
             return await enrol(session, self.app.state.parts.clock, name)
 
     async def order(self, from_post: str = "post1", to_post: str = "post4") -> str:
-        """An order of somebody to somebody."""
+        """Place an order of the sender to the recipient."""
         state = self.app.state.parts
         async with state.database.transaction() as session:
             sender = await state.sign_in_desk.person(session, "sender@campus.example", state.clock.utc())
@@ -88,7 +88,7 @@ class Service:
         return row
 
     async def states(self, order_id: str) -> list[str]:
-        """What the order has been through."""
+        """Return the states that the order has been through."""
         events = await self.rows(OrderEvent, order_id=order_id, kind="moved")
         return [str(event.state) for event in sorted(events, key=lambda event: event.seq)]
 
@@ -253,7 +253,7 @@ class PlayedRobot:
         return self.clock.utc() - timedelta(seconds=late_s)
 
     def codes(self, stop: Stop) -> list[str]:
-        """What opens there, as the server has told."""
+        """Return the codes that open at this stop, as the server has told."""
         for told in reversed([one.body for one in self.heard if isinstance(one.body, Verifiers)]):
             known = [one for one in told.verifiers if one.order_id == stop.order_id]
             if known:

@@ -1,4 +1,4 @@
-"""What a robot asks for on its way, and how much of it it gets at once."""
+"""A robot's requests for corridors on its way, and how much of the way it is granted at once."""
 
 from dataclasses import replace
 

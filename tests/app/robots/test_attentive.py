@@ -1,4 +1,4 @@
-"""Who speaks is there: only robots that say nothing are pinged."""
+"""Messages prove that a robot is there: only robots that say nothing are pinged."""
 
 import asyncio
 from typing import Any

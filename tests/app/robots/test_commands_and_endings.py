@@ -1,4 +1,4 @@
-"""What becomes of an order when it does not go as ordered: cancelled, not fetched, not taken; and of a stolen token."""
+"""Orders that do not go as ordered: cancelled, not fetched, not taken; and a stolen token."""
 
 import socket
 from collections import Counter
@@ -157,7 +157,7 @@ async def test_mail_that_is_called_back_turns_round_when_the_robot_says_so(
 async def test_mail_that_was_called_back_too_late_is_delivered_and_the_robot_free(
     service: Service, robot: PlayedRobot
 ) -> None:
-    """It gave up, and before it heard that the mail was to come back, somebody took it after all."""
+    """It gave up, and before it heard that the mail was to come back, the recipient took it after all."""
     order_id, receive = await carrying(service, robot)
     async with robot.connected(service.url, robot.token):
         await robot.greet()
@@ -182,7 +182,7 @@ async def test_what_an_update_brings_is_not_over_with_a_mission_that_did_not_kno
         update = await robot.mission()
         await robot.report(receive.mission, Step.GAVE_UP, receive.stop, reason="no_one_came")
         await robot.ends(await robot.report(receive.mission, Step.DONE, update=1))
-        assert (await service.states(order_id))[-1] == "returning", "nobody has to look for it"
+        assert (await service.states(order_id))[-1] == "returning", "no person has to look for it"
         await robot.report(update, Step.ACCEPTED, update=2)
         await robot.say(robot.receipt(update.stops[0]))
         await service.reaches(order_id, "returned")
@@ -208,7 +208,7 @@ async def carrying(service: Service, robot: PlayedRobot) -> tuple[str, Ahead]:
 
 
 def own_mission(order_id: str, post: str) -> tuple[Mission, Stop]:
-    """What a robot gives to itself (decision 0017)."""
+    """A mission that a robot gives to itself (decision 0017)."""
     stop = Stop(id=f"return-{order_id}", post=post, action=StopAction.RETURN, order_id=order_id)
     return Mission(id="return-0123456789abcdef", update=1, stops=(stop,)), stop
 

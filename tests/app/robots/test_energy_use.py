@@ -1,4 +1,4 @@
-"""What a robot has spent in this service decides what it is given: learned at the start, from what was kept."""
+"""A robot's measured energy use decides which orders it gets: learned at the start, from kept records."""
 
 from datetime import datetime, timedelta
 

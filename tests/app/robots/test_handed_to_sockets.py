@@ -1,4 +1,4 @@
-"""What is put into the outbox of a robot that is there goes out without being looked for, and nothing out of turn."""
+"""Messages in the outbox of a connected robot are sent without polling, and none out of turn."""
 
 from app.robots.conversation.conversation import MAX_UNACKNOWLEDGED
 from app.robots.service import Fleet, known_robot

@@ -1,4 +1,4 @@
-"""What many robots say is taken in together: in each one's order, and what fails in one of them is that one's alone."""
+"""Messages of many robots are taken in together, in each robot's order; a failure affects one robot alone."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -67,7 +67,7 @@ async def test_a_robot_that_fails_holds_up_nobody(service: Service, clock: Stepp
 
 @contextmanager
 def transactions_of(statement: str) -> Iterator[list[Any]]:
-    """How each transaction was begun in which something was done that begins like this."""
+    """Collect how each transaction was begun that ran a statement beginning like this."""
     begun: list[Any] = []
 
     def note(connection: Any, _cursor: Any, said: str, *_: Any) -> None:

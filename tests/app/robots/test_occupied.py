@@ -1,4 +1,4 @@
-"""Who sees which robot holds which corridor, and hears of it."""
+"""People who see which robot holds which corridor, and are notified of it."""
 
 from collections.abc import AsyncIterator
 
@@ -19,7 +19,7 @@ MAINTAINER = Person(id="mia", email="mia@campus.example", name="Mia", roles=[Rol
 
 @pytest.fixture
 async def with_an_order(service: Service, robot: PlayedRobot) -> AsyncIterator[PlayedRobot]:
-    """The robot is on its way to somebody's mail."""
+    """The robot is on its way to the sender's mail."""
     token = await service.enrol("r1")
     await service.order()
     async with robot.connected(service.url, token):

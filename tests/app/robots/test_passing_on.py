@@ -49,7 +49,7 @@ class Mailroom:
         return person
 
     async def links(self, order_id: str) -> list[tuple[str, str | None]]:
-        """Who has had the mail."""
+        """Return the holders of the mail, in turn."""
         state = self.service.app.state.parts
         async with state.database.transaction() as session:
             (facts,) = await load_facts(session, [await session.get_one(Order, order_id)])

@@ -134,7 +134,7 @@ async def test_two_tokens_are_never_alike(service: Service, clock: SteppedClock)
 
 
 async def test_a_wrong_token_is_refused_while_somebody_writes(service: Service, robot: PlayedRobot) -> None:
-    """Whoever knocks for long must not hold up those who write, nor wait for them."""
+    """A client that tries tokens must not hold up writers, nor wait for them."""
     wrong = f"cmr_00000000_{'x' * 43}"
     async with service.app.state.parts.database.transaction(), asyncio.timeout(5), robot.connected(service.url, wrong):
         assert await robot.close_code() == 4401

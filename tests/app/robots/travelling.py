@@ -20,7 +20,7 @@ UNDERSTANDS = ("confirm", "watch", "open_way", "detour")
 
 @dataclass
 class Track:
-    """Who is where, as a person beside the line would see it."""
+    """The robots' places, as a person beside the line would see them."""
 
     inside: dict[str, str] = field(default_factory=dict)
     at: dict[str, str] = field(default_factory=dict)

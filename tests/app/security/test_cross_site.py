@@ -1,4 +1,4 @@
-"""No page of another site acts with somebody's cookie: every route that changes something, found by itself."""
+"""No page of another site acts with a person's cookie: every route that changes something, found by itself."""
 
 from collections import defaultdict
 from typing import Final
@@ -14,7 +14,7 @@ from tests.app.everybody import Everybody, routes_of
 ELSEWHERE: Final = (
     {"Sec-Fetch-Site": "cross-site"},
     {"Sec-Fetch-Site": "same-site"},  # another host of the campus
-    {"Sec-Fetch-Site": "none"},  # typed into the address bar: nobody posts that way
+    {"Sec-Fetch-Site": "none"},  # typed into the address bar: no person posts that way
     {"Origin": "https://evil.example"},
     {"Origin": "null"},
 )

@@ -1,4 +1,4 @@
-"""What every answer tells browsers to be strict about: pages, the API, problems, and what is not there at all."""
+"""Security headers of every answer: pages, the API, problems, and paths that do not exist."""
 
 import re
 from pathlib import Path
@@ -61,7 +61,7 @@ def test_every_answer_says_what_browsers_must_not_do(secure: TestClient, path: s
     assert headers["X-Content-Type-Options"] == "nosniff"
     assert headers["Cache-Control"] in {"no-cache", "no-store"}
     assert int(re.fullmatch(r"max-age=(\d+).*", headers["Strict-Transport-Security"])[1]) >= 15_768_000  # type: ignore[index]
-    assert "server" not in headers, "which version of what runs here is nobody's business"
+    assert "server" not in headers, "which version of what runs here is not for clients to know"
 
 
 @pytest.mark.parametrize("name", ["a_module.js", "some_style.css"])

@@ -24,7 +24,7 @@ NETWORKS_OF_PYTHON = [
     *ipaddress._IPv4Constants._private_networks,  # type: ignore[attr-defined]
     *ipaddress._IPv6Constants._private_networks,  # type: ignore[attr-defined]
 ]
-"""A second witness, which nobody here has typed."""
+"""A second witness, which no person here has typed."""
 
 INSIDE = [
     "127.0.0.1",
@@ -77,7 +77,7 @@ INSIDE = [
     "2002:5db8:d822::1",
     "3fff::1",
     "3ffe::1",
-    "4000::1",  # given out to nobody
+    "4000::1",  # not given out
 ]
 
 

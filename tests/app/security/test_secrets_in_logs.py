@@ -99,7 +99,7 @@ async def test_no_secret_is_in_the_log(running: Running) -> None:
 
 
 def _core(secret: str) -> str:
-    """Of a token the part that nobody may know: its prefix can be read in lists and logs. Of a key file one line."""
+    """Return a token's secret part: its prefix can be read in lists and logs. Of a key file return one line."""
     line = max(secret.split("\n"), key=len)
     return line.rpartition("_")[2] if line.startswith("cm") else line
 
@@ -152,7 +152,7 @@ async def _robot_takes_the_mail(running: Running, browser: httpx.Client, order_i
 
 
 def _say_secrets_wrongly(browser: httpx.Client, secrets: dict[str, str], order_id: str) -> None:
-    """What people and programs get wrong, with the secret in the wrong place."""
+    """Send requests as people and programs get them wrong, with the secret in the wrong place."""
     everything = " ".join(secrets.values())
     browser.post("/sign-in", content=f'{{"code": "{secrets["sign-in code"]}"')  # no JSON
     browser.post("/sign-in", json={"email": secrets["sign-in code"], "code": secrets["hand-over text"]})
@@ -176,7 +176,7 @@ def _follow_by_link(browser: httpx.Client, mails: Mails, secrets: dict[str, str]
 
 
 def _knock_where_robots_come_in(running: Running) -> None:
-    """With whatever somebody has: uvicorn tells every header of a socket at this level."""
+    """Try every credential: uvicorn tells every header of a socket at this level."""
     link = f"{running.url.replace('http', 'ws')}/api/v1/robots/link"
     ways = [{"Cookie": f"session={running.secrets['cookie']}"}, {"Cookie": f"oidc={running.secrets['link']}"}]
     ways += [{"Authorization": f"Bearer {running.secrets[token]}"} for token in ("script's token", "link", "cookie")]

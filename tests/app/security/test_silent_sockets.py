@@ -1,4 +1,4 @@
-"""Whoever connects and says nothing, or half of something, is cut off; slow but honest clients are not.
+"""A client that connects and says nothing, or half of something, is cut off; slow but honest clients are not.
 
 The service is a real process, once over plain http and once with a certificate of its own.
 """
@@ -68,7 +68,7 @@ class Door:
 
 
 async def _admitted(settings: Settings) -> tuple[str, str]:
-    """A robot's token, and the cookie of somebody's session."""
+    """A robot's token, and the cookie of a person's session."""
     database, clock = Database(settings.url_of_database), RealClock()
     try:
         async with database.transaction() as session:
@@ -192,7 +192,7 @@ def slow(door: Door) -> bytes:
 
 
 def streams(door: Door) -> float:
-    """How long an event stream goes on: as long as somebody listens."""
+    """Return the seconds that an event stream goes on: as long as the client listens."""
     url, begun_s = f"{door.scheme}://127.0.0.1:{door.port}/api/v1/live", time.monotonic()
     name = "__Host-session" if door.trust else "session"
     with httpx.stream(

@@ -98,7 +98,7 @@ async def test_what_a_robot_finds_closed_is_closed_for_all_until_somebody_looks_
 
         await until(is_away)
         await open_it(service)
-        assert await found(service) == [], "a robot that cannot be told keeps nobody else out"
+        assert await found(service) == [], "a robot that cannot be told keeps no other robot out"
 
 
 async def test_everybody_hears_of_it_and_a_corridor_that_is_not_there_is_named(service: Service) -> None:

@@ -28,7 +28,7 @@ async def service(settings: Settings, clock: SteppedClock) -> AsyncIterator[Serv
 
 
 async def taken_out(service: Service, name: str = "r1") -> str:
-    """By somebody who dispatches; the command's id."""
+    """Take a robot out of service as a dispatcher and return the command's id."""
     state = service.app.state.parts
     async with state.database.transaction() as session:
         by = await state.sign_in_desk.person(session, "dan@campus.example", state.clock.utc())
@@ -92,7 +92,7 @@ async def test_who_stands_where_another_wants_to_go_is_named(service: Service, c
             return bool((await service.row(RobotRow, name="r1")).activity == "stopped")
 
         await until(stands)
-        going = asyncio.create_task(second.go_to("post1"))  # home, where it is in nobody's way
+        going = asyncio.create_task(second.go_to("post1"))  # home, where it is in no robot's way
 
         async def waits() -> Any:
             return (await service.row(RobotRow, name="r2")).waits_for

@@ -1,4 +1,4 @@
-"""Robots that share the track: nobody meets anybody, everybody arrives, and who waits knows for whom."""
+"""Robots that share the track: no two meet, all arrive, and a robot that waits knows for which one."""
 
 import asyncio
 from collections.abc import AsyncIterator

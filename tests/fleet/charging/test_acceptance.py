@@ -1,4 +1,4 @@
-"""Who may take on what: only who comes to a dock afterwards without its own battery plan having had to say so."""
+"""Robots that may accept an order: those that reach a dock afterwards without their own battery plan saying so."""
 
 from dataclasses import replace
 

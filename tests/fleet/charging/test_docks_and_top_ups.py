@@ -1,4 +1,4 @@
-"""Docks are fewer than robots: everybody has one in time, and none stands empty while somebody could use it."""
+"""Docks are fewer than robots: each robot has one in time, and none stands empty while a robot could use it."""
 
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta

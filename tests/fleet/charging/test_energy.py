@@ -1,4 +1,4 @@
-"""What a robot spends is learned from what it has spent, and what is promised of it holds."""
+"""A robot's energy use is learned from past use, and predictions of it hold."""
 
 from random import Random
 

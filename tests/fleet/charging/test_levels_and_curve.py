@@ -1,4 +1,4 @@
-"""How full is full enough, and how long it takes to get there."""
+"""The level at which a robot is charged enough, and the time it takes to get there."""
 
 import pytest
 from hypothesis import given

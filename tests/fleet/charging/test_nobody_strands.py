@@ -1,4 +1,4 @@
-"""Simulated days with worn packs, rush hours and closed corridors: nobody is left lying anywhere."""
+"""Simulated days with worn packs, rush hours and closed corridors: no robot is left lying anywhere."""
 
 from benchmarks.fleet.charging import Run, look_at
 

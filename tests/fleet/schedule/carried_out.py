@@ -1,4 +1,4 @@
-"""A small world that carries timetables out: nobody keeps to the times, everybody to the order of entry."""
+"""A small world that carries timetables out: no robot keeps to the times, all keep to the order of entry."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -22,7 +22,7 @@ class World:
     now_s: float = 0.0
 
     def run(self) -> None:
-        """Until nobody has anything to come. Raises AssertionError for a deadlock or a collision."""
+        """Run until no robot has a leg left. Raises AssertionError for a deadlock or a collision."""
         while any(len(journey.legs) > 1 for journey in self.journeys.values()):
             self.step()
         self.now_s = max(task.start.ready_s for task in self.tasks.values())  # the last ones arrive
@@ -64,7 +64,7 @@ class World:
         return len(self.journeys[robot].legs) > 1 and self.tasks[robot].start.ready_s <= self.now_s
 
     def _serve(self) -> None:
-        """Whoever has arrived begins with what is to be served there."""
+        """Begin what is to be served where a robot has arrived."""
         for robot, task in self.tasks.items():
             start = task.start
             if start.lane is not None and start.arrives_s <= self.now_s:
@@ -85,5 +85,5 @@ class World:
             if task.start.lane is not None
         ]
         ahead = [at_s for at_s in (*later, *following) if at_s > self.now_s]
-        assert ahead, "nobody can go on and nothing will change that: a deadlock"
+        assert ahead, "no robot can go on and nothing will change that: a deadlock"
         self.now_s = min(ahead)

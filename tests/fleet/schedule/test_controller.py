@@ -1,4 +1,4 @@
-"""Claims answered: nobody meets anybody, everybody arrives, and what is dead or closed is gone round."""
+"""Claims answered: no two robots meet, all arrive, and robots are rerouted around what is dead or closed."""
 
 import heapq
 from collections.abc import Iterator
@@ -155,7 +155,7 @@ def test_of_what_a_robot_has_begun_only_the_rest_is_counted() -> None:
     assert done_s(120.0) == 110.0 + 60.0 + 200.0 + 60.0
     controller.freeze("r1", 130.0)
     controller.unfreeze("r1", 900.0)
-    assert done_s(920.0) == 900.0 + 60.0 + 200.0 + 60.0, "nobody could do anything while it stood"
+    assert done_s(920.0) == 900.0 + 60.0 + 200.0 + 60.0, "no robot could do anything while it stood"
 
 
 def test_a_robot_that_goes_for_reasons_of_its_own_is_let_in() -> None:
@@ -310,7 +310,7 @@ def test_whatever_is_frozen_or_closed_meanwhile_all_is_served_in_the_end(seed: i
     if closed is not None:
         controller.open(closed, campus.now_s)
     for robot in campus.at:
-        campus.later(robot, 1.0)  # whoever was told that no way is open asks again
+        campus.later(robot, 1.0)  # a robot that was told that no way is open asks again
     assert served + campus.run(at_most=3000) == wanted
 
 

@@ -1,4 +1,4 @@
-"""What a robot stands in that is dead is nobody's: not its bay, not its corridor; what needs neither goes on."""
+"""A dead robot's bay and corridor are unavailable to all; robots that need neither go on."""
 
 from fleet.schedule.controller import Denied, Granted, TrafficController
 from fleet.schedule.journey import Goal

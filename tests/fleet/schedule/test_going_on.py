@@ -1,4 +1,4 @@
-"""Several corridors granted at once: as far as nobody else goes before."""
+"""Several corridors granted at once: as far as no other robot goes before."""
 
 from random import Random
 

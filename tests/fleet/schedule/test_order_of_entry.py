@@ -105,7 +105,7 @@ def test_the_check_wants_the_clearance_in_a_corridor_and_a_bay_left_before_it_is
         early = _moved(found.journeys[second], leg, -0.09)
         if problems(network, tasks, {**found.journeys, second: early}):
             return
-    pytest.fail("nobody is near anybody")
+    pytest.fail("no two robots are near each other")
 
 
 def _moved(journey: Journey, number: int, by_s: float) -> Journey:

@@ -1,4 +1,4 @@
-"""What is free between all that is taken, looked at moment by moment."""
+"""Free times between reservations, checked moment by moment."""
 
 from math import inf
 from random import Random

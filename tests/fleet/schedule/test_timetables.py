@@ -1,4 +1,4 @@
-"""Whoever is sent out comes home: timetables on random maps, looked at by an independent check and carried out by
+"""Every robot that is sent out comes home: timetables on random maps, checked independently and carried out by
 robots that are late."""
 
 from dataclasses import replace

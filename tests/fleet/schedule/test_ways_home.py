@@ -1,4 +1,4 @@
-"""Ways home that nobody is in the way of stay as they were; all others are found again round what is new."""
+"""Ways home that no robot blocks stay as they were; all others are found again round what is new."""
 
 from dataclasses import replace
 from random import Random

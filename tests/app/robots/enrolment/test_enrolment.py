@@ -102,7 +102,7 @@ def test_a_code_is_good_for_its_own_robot_for_a_while_and_until_the_next_is_made
 
 
 class TestOfTheDoor:
-    """Whoever knocks too often has to wait, whatever code they have."""
+    """A client that tries too often has to wait, whatever code it has."""
 
     @pytest.fixture
     def settings(self, settings: Settings) -> Settings:
@@ -124,7 +124,7 @@ def test_a_robot_that_enrols_again_has_a_new_key_and_its_old_token_is_worthless(
 ) -> None:
     old = enrol(anonymous, new_code(maintainer)).json()["token"]
     code = new_code(maintainer)
-    assert whose(app, mailroom, old) == "r7", "until somebody comes with the code"
+    assert whose(app, mailroom, old) == "r7", "until a technician comes with the code"
     new = enrol(anonymous, code, key=base64.b64encode(bytes(32)).decode()).json()["token"]
     assert (whose(app, mailroom, old), whose(app, mailroom, new)) == (None, "r7")
 
