@@ -20,7 +20,7 @@ from packaging.utils import canonicalize_name
 
 from tests.own_checkout import CHECKOUT, copied_to, make, sentences
 
-NOBODY = 65534
+UNPRIVILEGED_ID = 65534
 PROJECT: dict[str, Any] = tomllib.loads((CHECKOUT / "pyproject.toml").read_text())["project"]
 EXTRAS: dict[str, list[str]] = PROJECT["optional-dependencies"]
 
@@ -43,11 +43,13 @@ def read_only() -> Iterator[Path]:
 @pytest.mark.parametrize("verb", ["demo", "setup-robot", "test"])
 def test_a_checkout_that_cannot_be_written_to_is_one_sentence(read_only: Path, verb: str) -> None:
     # Permissions do not stop root: make runs as another user.
-    as_somebody = {"user": NOBODY, "group": NOBODY, "extra_groups": []} if os.geteuid() == 0 else {}
+    as_another_user = (
+        {"user": UNPRIVILEGED_ID, "group": UNPRIVILEGED_ID, "extra_groups": []} if os.geteuid() == 0 else {}
+    )
     finished = subprocess.run(  # type: ignore[call-overload]
         ["make", verb],
         **{"cwd": read_only, "env": {"PATH": os.environ["PATH"]}, "capture_output": True, "text": True},
-        **{"timeout": 60, **as_somebody},
+        **{"timeout": 60, **as_another_user},
         check=False,
     )
     assert finished.returncode != 0

@@ -49,7 +49,7 @@ def test_who_has_made_room_in_a_dock_does_not_wait_there_until_the_pack_is_empty
     assert [robot.stranded for robot in run.robots.values()] == [0, 0, 0, 0]
 
 
-def test_robots_that_meet_and_mail_that_is_nobodys_would_be_seen() -> None:
+def test_robots_that_meet_and_corridors_that_were_not_granted_would_be_seen() -> None:
     ground = Ground(Clockwork(), Random(1), Faults())
     ground.enter("r0", Leg(from_post="uc", to_post="canal"))
     with pytest.raises(CollisionError, match="r1 meets r0 in canal-uc"):

@@ -129,7 +129,7 @@ def test_an_example_is_what_its_schema_says(document: dict[str, Any], name: str)
     assert document["components"]["schemas"][name]["examples"] == list(EXAMPLES[name])
 
 
-def test_whatever_somebody_writes_first_has_an_example(every: list[Operation]) -> None:
+def test_whatever_a_client_writes_first_has_an_example(every: list[Operation]) -> None:
     bodies = {
         operation["requestBody"]["content"]["application/json"]["schema"]["$ref"].rpartition("/")[2]
         for _, _, operation in every

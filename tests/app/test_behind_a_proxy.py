@@ -119,7 +119,7 @@ def is_listening(port: int) -> bool:
 
 
 @sqlite_alone
-async def test_pages_people_streams_and_robots_come_through_and_nobody_says_they_are_somebody_else(
+async def test_pages_people_streams_and_robots_come_through_and_no_client_passes_for_another(
     front: Front,
 ) -> None:
     with front.client() as browser:

@@ -84,7 +84,7 @@ async def test_writers_that_read_first_wait_for_each_other_instead_of_failing(da
         assert (await session.get_one(Person, "0")).name == "0" + 8 * "x"
 
 
-async def test_a_row_that_refers_to_nobody_is_refused(database: Database) -> None:
+async def test_a_row_that_refers_to_no_person_is_refused(database: Database) -> None:
     with pytest.raises(IntegrityError):
         async with database.transaction() as session:
             session.add(PersonSession(token_hash="t", person_id="nobody", created_at=NOW, expires_at=NOW))
@@ -114,7 +114,7 @@ async def test_what_is_written_past_the_session_is_taken_back_with_its_part(data
         assert await session.get(Person, "bob") is None
 
 
-async def test_a_commit_goes_to_its_end_even_if_whoever_makes_it_is_cancelled(database: Database) -> None:
+async def test_a_commit_goes_to_its_end_even_if_its_task_is_cancelled(database: Database) -> None:
     told: list[str] = []
     written: list[str] = []
 

@@ -68,7 +68,7 @@ def test_the_sender_shows_their_own_code(sender: Browser, mailroom: Mailroom, do
     assert sender.get("/api/v1/about").json()["demo"] is True
 
 
-def test_nobody_shows_a_code_out_of_turn(recipient: Browser, mailroom: Mailroom, door: Door, order_id: str) -> None:
+def test_no_person_shows_a_code_out_of_turn(recipient: Browser, mailroom: Mailroom, door: Door, order_id: str) -> None:
     mailroom.move(order_id, "assigned", "to_sender", "at_sender")
     answer = recipient.post("/api/v1/demo/camera", json={"order_id": order_id})
     assert (answer.status_code, answer.json()["code"]) == (404, "no_code")

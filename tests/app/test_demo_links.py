@@ -58,7 +58,7 @@ def test_a_service_that_is_no_demonstration_has_no_such_door(settings: Settings,
     ],
     ids=["from another machine", "by another name", "by another key", "for another person"],
 )
-def test_nobody_is_signed_in_by_what_is_no_link_of_this_demonstration(
+def test_no_person_is_signed_in_by_what_is_no_link_of_this_demonstration(
     demonstration: Settings, link: str, stranger: dict[str, Any]
 ) -> None:
     if key := stranger.pop("key", None):

@@ -59,7 +59,7 @@ def test_a_body_that_is_no_json_is_a_problem(anonymous: TestClient) -> None:
     assert (answer.status_code, answer.json()["code"]) == (400, "malformed_body")
 
 
-def test_what_nobody_foresaw_is_a_problem_without_its_inside(app: FastAPI, anonymous: TestClient) -> None:
+def test_an_unforeseen_error_is_a_problem_without_its_inside(app: FastAPI, anonymous: TestClient) -> None:
     async def broken() -> None:
         raise RuntimeError("the inside")
 
@@ -89,7 +89,7 @@ def test_while_the_database_cannot_be_written_people_are_asked_to_try_again(
     assert len(sender.get("/api/v1/orders").json()["items"]) == 1
 
 
-def test_who_is_nobody_is_told_how_to_say_who_they_are(anonymous: TestClient) -> None:
+def test_a_client_that_is_not_signed_in_is_told_how_to_say_who_they_are(anonymous: TestClient) -> None:
     assert anonymous.get("/api/v1/orders").headers["WWW-Authenticate"] == "Bearer"
     wrong = anonymous.get("/api/v1/orders", headers={"Authorization": "Bearer cmp_00000000_wrong"})
     assert wrong.headers["WWW-Authenticate"] == 'Bearer error="invalid_token"'
@@ -100,7 +100,7 @@ def closed_routes(app: FastAPI) -> list[tuple[str, str]]:
     return [(method.upper(), path) for method, path, operation in operations(app.openapi()) if "security" in operation]
 
 
-def test_every_route_that_is_not_open_wants_somebody_signed_in(app: FastAPI, anonymous: TestClient) -> None:
+def test_every_route_that_is_not_open_wants_a_signed_in_person(app: FastAPI, anonymous: TestClient) -> None:
     closed = closed_routes(app)
     assert len(closed) > 30
     for method, path in closed:

@@ -60,7 +60,7 @@ def test_an_order_that_has_changed_since_is_not_changed_by_mistake(sender: Brows
     assert (answer.status_code, answer.json()["code"]) == (412, "order_changed")
 
 
-def test_a_code_is_kept_by_nobody(sender: Browser, mailroom: Mailroom) -> None:
+def test_a_code_is_kept_by_no_cache(sender: Browser, mailroom: Mailroom) -> None:
     path = sender.order().headers["Location"]
     mailroom.move(path.rpartition("/")[2], "assigned")
     answer = sender.get(f"{path}/code")

@@ -69,7 +69,7 @@ async def test_those_who_write_at_the_same_time_share_a_commit_in_the_order_of_a
     assert await words(database) == [f"w{number}" for number in range(20)]
 
 
-async def test_nobody_goes_on_before_what_they_wrote_is_committed(database: Database) -> None:
+async def test_no_writer_goes_on_before_what_they_wrote_is_committed(database: Database) -> None:
     said: list[str] = []
 
     async def write_and_say() -> None:
@@ -94,7 +94,7 @@ async def test_what_fails_is_undone_alone(database: Database) -> None:
     assert await words(database) == ["one", "two", "three"]
 
 
-async def test_nobody_is_told_of_what_a_full_disk_undid(database: Database) -> None:
+async def test_no_writer_is_told_of_what_a_full_disk_undid(database: Database) -> None:
     """SQLite then undoes the whole transaction, and with it what others wrote before."""
     said: list[str] = []
 
@@ -113,7 +113,7 @@ async def test_nobody_is_told_of_what_a_full_disk_undid(database: Database) -> N
     assert said == await words(database) == ["fourth"]
 
 
-async def test_who_is_cancelled_takes_nobody_with_them(database: Database) -> None:
+async def test_a_cancelled_writer_takes_no_other_with_them(database: Database) -> None:
     """One in the middle of its work, one that was passed the transaction and does not want it any more."""
     never = asyncio.Event()
     tasks = [asyncio.create_task(write(database, word, at)) for word, at in (("one", None), ("two", never))]

@@ -107,7 +107,9 @@ def test_the_door_is_open_to_this_machine_alone_and_not_through_a_proxy(
         assert watcher.get("/metrics", headers={name: "1.1 proxy"}).status_code == 403, name
 
 
-def test_with_a_token_it_is_the_token_that_counts_wherever_somebody_is(settings: Settings, clock: SteppedClock) -> None:
+def test_with_a_token_it_is_the_token_that_counts_wherever_the_client_is(
+    settings: Settings, clock: SteppedClock
+) -> None:
     app = create_app(settings.model_copy(update={"metrics_token": SecretStr(TOKEN)}), clock)
     with TestClient(app, base_url=HERE) as elsewhere:
         here = Watcher(app, elsewhere)

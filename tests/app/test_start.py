@@ -242,7 +242,7 @@ def test_roles_are_given_on_the_command_line(tmp_path: Path, monkeypatch: pytest
 
 
 @pytest.mark.parametrize("address", ["nonsense", "dan@elsewhere.example"])
-def test_nobody_gets_a_role_who_could_never_sign_in(
+def test_no_person_gets_a_role_who_could_never_sign_in(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, address: str
 ) -> None:
     monkeypatch.setenv("CAMPUS_MAIL_DATA", str(tmp_path / "data"))

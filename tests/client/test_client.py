@@ -192,7 +192,7 @@ def test_pauses_double_unless_the_service_names_one(
     assert least_s <= pause_s <= most_s
 
 
-def test_nobody_waits_for_ever() -> None:
+def test_no_client_waits_for_ever() -> None:
     assert Retrying(tries=2).pause_s(2) is None
     assert Retrying().pause_s(1, "3600") is None, "a problem with retry_after_s says so instead"
 

@@ -52,7 +52,7 @@ def test_more_robots_than_homes_or_no_such_map_are_one_sentence(options: tuple[s
     assert said[1].startswith(f"campus-mail: {sentence}")
 
 
-def test_a_letter_begins_beside_every_dock_and_each_goes_to_somebody_else(wide_map: Path) -> None:
+def test_a_letter_begins_beside_every_dock_and_each_goes_to_another_person(wide_map: Path) -> None:
     campus = campus_of(str(wide_map))
     first = list(first_errands(campus))
     assert [campus.offices[errand.sender] for errand in first] == list(campus.homes.values())
@@ -60,7 +60,7 @@ def test_a_letter_begins_beside_every_dock_and_each_goes_to_somebody_else(wide_m
     assert not {campus.offices[errand.recipient] for errand in first} & set(SIX_DOCKS)
 
 
-def test_there_is_somebody_at_every_post_and_a_seed_says_who_sends() -> None:
+def test_there_is_a_person_at_every_post_and_a_seed_says_who_sends() -> None:
     campus = campus_of("carleton")
     assert sorted(campus.offices.values()) == sorted(campus.map.posts)
     assert list(campus.offices) == list(NAMES[: len(campus.offices)])

@@ -26,7 +26,7 @@ DEMO = FleetDemo(
 
 
 @pytest.mark.parametrize("as_json", [False, True])
-def test_the_code_of_somebody_who_signs_in_is_said_on_a_pipe_too(
+def test_the_code_of_a_person_who_signs_in_is_said_on_a_pipe_too(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], as_json: bool
 ) -> None:
     writer = Writer(tmp_path, "mail@campus.example")

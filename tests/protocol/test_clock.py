@@ -92,7 +92,7 @@ def test_records_and_durations_of_a_shared_clock_advance_together(tmp_path: Path
     assert inner_s - 0.01 <= passed_s <= outer_s + 0.01
 
 
-def test_a_clock_that_nobody_made_is_named(tmp_path: Path) -> None:
+def test_a_clock_that_was_never_made_is_named(tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError, match="absent"):
         SharedClock(tmp_path / "absent")
 

@@ -236,7 +236,9 @@ async def is_in(link: Link, state: LinkState) -> bool:
     return link.state is state
 
 
-async def test_a_token_that_nobody_knows_ends_the_link_with_a_reason(settings: Settings, store: Store) -> None:
+async def test_a_token_that_the_service_does_not_know_ends_the_link_with_a_reason(
+    settings: Settings, store: Store
+) -> None:
     nobodys = "cmr_00000000_" + "x" * 43
     async with serving(settings) as (_, port), linked(store, Outbox(store), Memory(store), port, nobodys) as link:
         await until(lambda: is_in(link, LinkState.REFUSED))

@@ -15,7 +15,7 @@ pytestmark = pytest.mark.browser
 MAILROOM = "/mailroom.html"
 
 
-async def test_a_corridor_that_a_robot_found_closed_is_open_again_when_somebody_who_has_looked_says_so(
+async def test_a_corridor_that_a_robot_found_closed_is_open_again_when_a_dispatcher_who_has_looked_says_so(
     quiet_campus, robot, visit
 ):
     dana = await quiet_campus.dispatcher(visit)

@@ -69,7 +69,7 @@ def name_of(person: Visitor) -> str:
     return person.email.partition("@")[0]
 
 
-async def test_whoever_is_not_signed_in(visit, campus):
+async def test_a_person_who_is_not_signed_in(visit, campus):
     ada = await visit(at=campus.service, signed_in=False, reduced_motion="reduce")
     await look_at_all(ada, states.signing_in(ada))
 

@@ -58,7 +58,7 @@ async def test_the_shell_stands_while_what_the_page_shows_is_on_its_way(visit):
     assert NOTICES not in await ada.page.evaluate(ADDRESSES), "how many are unread is said with who is here"
 
 
-async def test_what_ends_an_order_is_fetched_when_somebody_begins_one(visit):
+async def test_what_ends_an_order_is_fetched_when_a_person_begins_one(visit):
     ada = await visit(on="phone")
     await ada.page.goto("/")
     await expect(ada.page.locator(".estimate")).to_contain_text("arrival")

@@ -21,7 +21,7 @@ async def campus(tmp_path_factory: pytest.TempPathFactory) -> AsyncIterator[Camp
         yield campus
 
 
-async def test_somebody_signs_in_sends_a_letter_follows_it_cancels_it_and_settles_their_language_by_keys(
+async def test_a_person_signs_in_sends_a_letter_follows_it_cancels_it_and_settles_their_language_by_keys(
     visit, service
 ):
     ada = await visit("ada.king", signed_in=False, reduced_motion="reduce")
@@ -100,7 +100,7 @@ async def test_somebody_signs_in_sends_a_letter_follows_it_cancels_it_and_settle
     await expect(page.get_by_role("checkbox", name="Livrée, E-mail")).not_to_be_checked()
 
 
-async def test_a_dispatcher_orders_for_somebody_pauses_a_robot_acts_on_an_order_and_prints_by_keys(visit, campus):
+async def test_a_dispatcher_orders_for_a_sender_pauses_a_robot_acts_on_an_order_and_prints_by_keys(visit, campus):
     dana = await campus.staff(visit)
     page, keys = dana.page, Keyboard(dana.page)
     dialog = page.get_by_role("dialog")
@@ -158,7 +158,7 @@ async def test_a_dispatcher_orders_for_somebody_pauses_a_robot_acts_on_an_order_
     await expect(page).to_have_title("printed")
 
 
-async def test_somebody_without_account_sees_their_code_and_says_not_now_by_keys(visit, campus):
+async def test_a_person_without_account_sees_their_code_and_says_not_now_by_keys(visit, campus):
     guest = await visit("grace.hopper", at=campus.service, signed_in=False, reduced_motion="reduce")
     await campus.order_of("bob.martin", guest.email.partition("@")[0], "carrying")
     page, keys = guest.page, Keyboard(guest.page)

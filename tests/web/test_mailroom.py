@@ -114,7 +114,7 @@ async def test_a_robot_is_paused_let_go_on_and_stopped_by_keyboard_alone(quiet_c
     assert heard.reason == "Stopped from the mailroom"
 
 
-async def test_an_order_for_somebody_at_the_desk_is_placed_by_keyboard_and_printed(quiet_campus, visit):
+async def test_an_order_for_a_person_at_the_desk_is_placed_by_keyboard_and_printed(quiet_campus, visit):
     grace = await visit("grace.hill", at=quiet_campus.service)
     bob = await visit("bob.martin", at=quiet_campus.service)
     dana = await quiet_campus.dispatcher(visit)
@@ -242,7 +242,7 @@ async def test_on_a_phone_each_part_of_the_mailroom_is_a_tap_away_however_far_on
     await expect(parts).to_be_hidden()
 
 
-async def test_a_wall_shows_the_campus_at_work_and_nobodys_full_name(busy_campus, visit):
+async def test_a_wall_shows_the_campus_at_work_and_no_full_name(busy_campus, visit):
     dana = await busy_campus.dispatcher(visit, viewport={"width": 1920, "height": 1080})
     page = dana.page
     await page.goto(f"{MAILROOM}?wall")

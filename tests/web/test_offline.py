@@ -189,7 +189,7 @@ async def test_what_is_refused_later_is_said_and_can_be_mended_or_thrown_away(vi
     assert (await ada.api("/orders"))["items"] == []
 
 
-async def test_what_is_kept_is_gone_at_sign_out_and_no_order_is_sent_for_somebody_else(visit, service: Service):
+async def test_what_is_kept_is_gone_at_sign_out_and_no_order_is_sent_for_another_person(visit, service: Service):
     ada = await come_with_worker(visit, "ada.king")
     page = ada.page
     await ada.order("bob.martin@campus.example", what="First")

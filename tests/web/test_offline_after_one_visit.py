@@ -184,7 +184,7 @@ async def test_what_a_link_opened_is_forgotten_when_the_order_has_ended(visit, o
     await of_links(guest.page, 0)
 
 
-async def test_what_a_link_opened_is_gone_when_somebody_signs_in_there(visit, own_service: Service):
+async def test_what_a_link_opened_is_gone_when_a_person_signs_in_there(visit, own_service: Service):
     ada = await visit("ada.king", at=own_service)
     async with delegate_of(ada, visit) as (guest, *_):
         page = guest.page

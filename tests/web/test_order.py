@@ -148,7 +148,7 @@ async def test_an_unknown_recipient_is_refused_at_the_field(visit):
     await expect(recipient).to_be_focused()
 
 
-async def test_an_empty_form_says_what_is_missing_and_asks_nobody(visit):
+async def test_an_empty_form_says_what_is_missing_and_sends_no_request(visit):
     ada = await visit()
     await ada.page.goto("/")
     await send(ada.page)

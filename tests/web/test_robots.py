@@ -225,7 +225,7 @@ async def test_what_was_watched_is_bounded_and_what_is_missing_is_known(tunnel, 
     assert charged == {"times": [[0.3, 0.6], [0.2, 0.3]], "pieces": 2, "some": 5}, "a silence is no line"
 
 
-async def test_whoever_lacks_the_role_is_told_so(tunnel, visit):
+async def test_a_person_who_lacks_the_role_is_told_so(tunnel, visit):
     ada = await visit("ada.king", at=tunnel)
     await ada.page.goto("/robots.html?robot=r1")
     await expect(ada.page.get_by_role("heading", name="You don’t have access to this page")).to_be_visible()

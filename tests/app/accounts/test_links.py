@@ -45,7 +45,7 @@ def said(answer: Any) -> tuple[int, str]:
     return answer.status_code, answer.json()["code"]
 
 
-def test_the_mail_to_somebody_outside_holds_a_link_to_their_order(
+def test_the_mail_to_a_person_outside_holds_a_link_to_their_order(
     anonymous: TestClient, sender: Browser, mailroom: Mailroom, mails: Mails
 ) -> None:
     order_id = on_its_way(sender, mailroom, OUTSIDE)
@@ -90,7 +90,7 @@ def test_another_site_cannot_use_a_link_and_neither_does_plain_http(app: FastAPI
     assert said(remote.post(ORDER, json=wish)) == (403, "https_required")
 
 
-def test_whoever_has_an_account_signs_in_and_gets_no_link(
+def test_a_recipient_with_an_account_signs_in_and_gets_no_link(
     signed_in: SignedIn, sender: Browser, mailroom: Mailroom, mails: Mails
 ) -> None:
     signed_in(RECIPIENT)
@@ -102,12 +102,12 @@ def test_whoever_has_an_account_signs_in_and_gets_no_link(
     assert "follow.html" in body.get_content()
 
 
-def test_somebody_outside_can_be_sent_mail_and_still_not_sign_in(anonymous: TestClient, sender: Browser) -> None:
+def test_a_person_outside_can_be_sent_mail_and_still_not_sign_in(anonymous: TestClient, sender: Browser) -> None:
     assert sender.order(recipient=OUTSIDE).status_code == 201
     assert said(anonymous.post("/api/v1/sign-in/codes", json={"email": OUTSIDE})) == (422, "address_not_allowed")
 
 
-def test_by_the_link_a_guest_gets_their_code_names_somebody_else_and_says_not_now(
+def test_by_the_link_a_guest_gets_their_code_names_a_delegate_and_says_not_now(
     anonymous: TestClient, sender: Browser, mailroom: Mailroom, mails: Mails
 ) -> None:
     order_id = on_its_way(sender, mailroom, OUTSIDE)
@@ -144,7 +144,7 @@ def test_wrong_digits_by_a_link_count_as_anybodys(
 LINKED = {"outside": True, "porter": True, SENDER: False, "signed in": False, "stranger": False, "let go": False}
 
 
-def test_whether_somebody_needs_a_link_is_one_question(
+def test_whether_a_person_needs_a_link_is_one_question(
     app: FastAPI, signed_in: SignedIn, sender: Browser, mailroom: Mailroom
 ) -> None:
     """For each mail there is; only what is not there yet, or too old, is written besides."""

@@ -78,7 +78,7 @@ def changed(address: str, **changes: str) -> str:
     return urlunsplit(parts._replace(query=urlencode({**dict(parse_qsl(parts.query)), **changes})))
 
 
-def test_somebody_signs_in_at_the_campus_and_is_known_again(anonymous: TestClient, campus: Campus) -> None:
+def test_a_person_signs_in_at_the_campus_and_is_known_again(anonymous: TestClient, campus: Campus) -> None:
     address = start(anonymous)
     asked = parse_qs(urlsplit(address).query)
     assert asked["code_challenge_method"] == ["S256"]
@@ -93,7 +93,7 @@ def test_somebody_signs_in_at_the_campus_and_is_known_again(anonymous: TestClien
     )
 
 
-def test_whoever_signed_in_by_mail_before_is_the_same_person(
+def test_a_person_who_signed_in_by_mail_before_is_the_same_person(
     app: FastAPI, anonymous: TestClient, signed_in: SignedIn, campus: Campus
 ) -> None:
     by_mail = signed_in("ada.king@campus.example").get("/api/v1/me").json()
@@ -117,7 +117,7 @@ class TestAHostThatIsFlooded:
             update={"rate_limits": settings.rate_limits | {"sign_in_tries_per_host": "4 per 15 minutes"}}
         )
 
-    def test_keeps_nobody_out_of_a_browser_where_they_have_signed_in(
+    def test_keeps_no_person_out_of_a_browser_where_they_have_signed_in(
         self, app: FastAPI, anonymous: TestClient, campus: Campus
     ) -> None:
         come_back(anonymous, campus.sign_in(start(anonymous), "ada"))

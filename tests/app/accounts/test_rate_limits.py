@@ -46,7 +46,9 @@ def test_knocking_at_the_door_is_counted_per_address_that_it_comes_from(anonymou
     assert_slowed(answers[8])
 
 
-def test_whoever_guesses_digits_links_or_enrolment_codes_is_slowed_down(sender: Browser, anonymous: TestClient) -> None:
+def test_a_client_that_guesses_digits_links_or_enrolment_codes_is_slowed_down(
+    sender: Browser, anonymous: TestClient
+) -> None:
     digits = f"/api/v1/orders/{sender.order().json()['id']}/handover"
     guess = {"name": "r9", "code": "AAAA-AAAA-AAAA", "public_key": "A" * 43}
     doors = ((sender, digits, {"digits": "000000"}), (anonymous, "/api/v1/link/order", {"token": "A" * 43}))

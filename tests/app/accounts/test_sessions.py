@@ -36,7 +36,7 @@ def sessions_of(browser: Browser) -> list[dict[str, object]]:
     return items
 
 
-def test_somebody_sees_where_they_are_signed_in_and_ends_what_they_do_not_know(
+def test_a_person_sees_where_they_are_signed_in_and_ends_what_they_do_not_know(
     signed_in: SignedIn, recipient: Browser, clock: SteppedClock
 ) -> None:
     desk = signed_in(SENDER)
@@ -71,7 +71,7 @@ def test_last_seen_is_some_minutes_behind_and_not_a_write_for_each_request(
     assert seen == clock.utc().isoformat().replace("+00:00", "Z")
 
 
-def test_somebody_changes_their_name_language_and_usual_post(sender: Browser) -> None:
+def test_a_person_changes_their_name_language_and_usual_post(sender: Browser) -> None:
     changed = sender.patch("/api/v1/me", json={"name": " Ada King ", "language": "fr", "usual_post": "post2"})
     assert changed.status_code == 200
     me = sender.get("/api/v1/me").json()

@@ -48,7 +48,7 @@ def test_plain_http_from_another_machine_is_refused(app: FastAPI, anonymous: Tes
     assert (answer.status_code, code_of(answer)) == (403, "https_required")
 
 
-def test_somebody_who_was_sent_something_first_is_spoken_to_as_their_browser_does_from_then_on(
+def test_a_person_who_was_sent_something_first_is_spoken_to_as_their_browser_does_from_then_on(
     anonymous: TestClient, sender: Browser, mails: Mails
 ) -> None:
     sender.order(recipient="bob@campus.example")
@@ -156,7 +156,7 @@ class TestAHostThatIsFlooded:
             update={"rate_limits": settings.rate_limits | {"sign_in_tries_per_host": "6 per 15 minutes"}}
         )
 
-    def test_keeps_nobody_out_of_a_browser_where_they_have_signed_in(
+    def test_keeps_no_person_out_of_a_browser_where_they_have_signed_in(
         self, app: FastAPI, anonymous: TestClient, mails: Mails
     ) -> None:
         assert anonymous.post(SIGN_IN, json=asked(anonymous, mails)).status_code == 200
@@ -210,7 +210,7 @@ def test_a_session_ends_by_itself_after_thirty_days(sender: Browser, clock: Step
         {"Sec-Fetch-Site": ""},
     ],
 )
-def test_another_site_cannot_act_with_somebodys_cookie(sender: Browser, headers: dict[str, str]) -> None:
+def test_another_site_cannot_act_with_a_persons_cookie(sender: Browser, headers: dict[str, str]) -> None:
     answer = sender.post("/api/v1/notices/read", json={"ids": []}, headers=headers)
     assert (answer.status_code, code_of(answer)) == (403, "cross_site")
 

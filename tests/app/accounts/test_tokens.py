@@ -76,7 +76,7 @@ def test_a_token_makes_no_tokens_and_ends_no_sessions(app: FastAPI, sender: Brow
         assert (refused.status_code, refused.json()["code"]) == (403, "not_for_scripts"), path
 
 
-def test_scopes_give_nobody_a_role(app: FastAPI, sender: Browser) -> None:
+def test_scopes_give_no_person_a_role(app: FastAPI, sender: Browser) -> None:
     script = Script(app, sender, issue(sender, "contacts:read", "dispatch", "maintain")["token"])
     refused = script.get("/api/v1/people")
     assert (refused.status_code, refused.json()["code"]) == (403, "role_needed")

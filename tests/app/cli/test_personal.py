@@ -81,7 +81,7 @@ def test_a_delegate_who_is_erased_is_found_nowhere(ask: Ask, sender: Browser, ma
     assert mails.to(wish["email"]) == []
 
 
-def test_nobody_is_erased_while_their_mail_is_under_way(run: Run, sender: Browser, mailroom: Mailroom) -> None:
+def test_no_person_is_erased_while_their_mail_is_under_way(run: Run, sender: Browser, mailroom: Mailroom) -> None:
     order_id = sender.order().json()["id"]
     for email in (SENDER, RECIPIENT):
         refused = run("erase", email, "--yes")
@@ -90,7 +90,7 @@ def test_nobody_is_erased_while_their_mail_is_under_way(run: Run, sender: Browse
     assert sender.get("/api/v1/orders").status_code == 200
 
 
-def test_the_last_maintainer_cannot_be_erased_and_nobody_by_a_slip(run: Run, sender: Browser) -> None:
+def test_the_last_maintainer_cannot_be_erased_and_no_person_by_a_slip(run: Run, sender: Browser) -> None:
     run("people", "role", SENDER, "--add", "maintainer")
     assert "last maintainer" in run("erase", SENDER, "--yes").stderr
     assert "Nothing was erased" in run("erase", SENDER).stderr

@@ -12,7 +12,7 @@ from tests.app.test_when_the_clock_leaps import AWAY, asked, ordered
 
 @sqlite_alone
 @pytest.mark.parametrize("age", [timedelta(days=500), timedelta(days=-1)])
-def test_a_clock_that_no_record_confirms_lets_go_of_nothing_unless_somebody_says_so(
+def test_a_clock_that_no_record_confirms_lets_go_of_nothing_unless_an_operator_says_so(
     settings: Settings, run: Run, age: timedelta
 ) -> None:
     ordered(settings.model_copy(update=AWAY), datetime.now(UTC) - age)

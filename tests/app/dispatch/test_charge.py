@@ -40,7 +40,7 @@ def test_what_is_more_than_one_charge_goes_with_a_robot_that_is_full() -> None:
     assert CHARGES.may_take(robot("r1", 0.96, docked=True, charging=True), LONG)
 
 
-def test_nobody_waits_for_charge_that_will_not_come() -> None:
+def test_no_robot_waits_for_charge_that_will_not_come() -> None:
     """A worn pack whose charger has ended; a robot that has no home to charge at."""
     assert CHARGES.may_take(robot("worn", 0.9, docked=True), LONG)
     homeless = IdleRobot("r1", "canal", 0.7)

@@ -32,7 +32,7 @@ async def resting(service: Service, clock: SteppedClock) -> AsyncIterator[tuple[
         yield robots
 
 
-async def test_one_goes_to_the_only_dock_and_nobody_else_is_sent_there(
+async def test_one_goes_to_the_only_dock_and_no_other_robot_is_sent_there(
     service: Service, resting: tuple[PlayedRobot, PlayedRobot]
 ) -> None:
     for _ in range(2):

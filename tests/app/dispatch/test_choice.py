@@ -56,7 +56,7 @@ def test_a_robot_whose_place_is_not_known_is_the_last_choice_but_a_choice(post: 
     assert choose_robots(waiting, [robot("lost", post)], TRACK) == [Assignment("o", "lost")]
 
 
-def test_nothing_waiting_or_nobody_free_is_nothing_to_do() -> None:
+def test_nothing_waiting_or_no_robot_free_is_nothing_to_do() -> None:
     assert choose_robots([], [robot("r1", "post1")], TRACK) == []
     assert choose_robots([WaitingOrder("o", "post1")], [], TRACK) == []
 
@@ -73,12 +73,12 @@ def test_a_reassigned_order_goes_with_another_robot_or_with_the_one_that_was_nam
     ]
 
 
-def test_an_order_that_waits_for_its_robot_holds_up_nobody() -> None:
+def test_an_order_that_waits_for_its_robot_holds_up_no_other() -> None:
     waiting = [WaitingOrder("picky", "post1", wanted="r9"), WaitingOrder("next", "post1")]
     assert choose_robots(waiting, [robot("r1", "post1")], TRACK) == [Assignment("next", "r1")]
 
 
-def test_priority_is_a_head_start_so_that_nobody_waits_for_ever() -> None:
+def test_priority_is_a_head_start_so_that_no_order_waits_for_ever() -> None:
     nine = datetime(2026, 1, 5, 9, tzinfo=UTC)
     later = nine + timedelta(minutes=29)
     much_later = nine + timedelta(minutes=31)
@@ -96,7 +96,7 @@ fleets = st.lists(
 
 
 @given(st.lists(posts, max_size=5), fleets, st.randoms())
-def test_whoever_is_chosen_is_able_and_nobody_able_is_nearer_however_the_fleet_is_listed(
+def test_the_chosen_robot_is_able_and_no_able_one_is_nearer_however_the_fleet_is_listed(
     from_posts: list[str], fleet: list[IdleRobot], random: Random
 ) -> None:
     waiting = [WaitingOrder(f"o{number}", post) for number, post in enumerate(from_posts)]

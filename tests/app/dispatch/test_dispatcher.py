@@ -60,7 +60,7 @@ async def test_verifiers_come_before_the_mission_that_needs_them(service: Servic
         assert [(one.type, one.seq) for one in robot.heard if one.seq] == [("verifiers", 1), ("mission", 2)]
 
 
-async def test_many_orders_of_one_moment_all_get_a_robot_and_nobody_is_told_that_there_is_none(
+async def test_many_orders_of_one_moment_all_get_a_robot_and_no_sender_is_told_that_there_is_none(
     service: Service, clock: SteppedClock
 ) -> None:
     state, number = service.app.state.parts, 25

@@ -61,13 +61,13 @@ async def test_it_is_sent_to_park_and_the_other_to_the_dock_once_it_is_free(
         assert len(await service.rows(MissionRow)) == 2, "and the first stays where it is"
 
 
-async def test_nobody_leaves_for_one_that_has_hardly_less(service: Service, clock: SteppedClock) -> None:
+async def test_no_robot_leaves_for_one_that_has_hardly_less(service: Service, clock: SteppedClock) -> None:
     async with robot(service, clock, "r1", DOCK, 0.85), robot(service, clock, "r2", "post1", 0.7):
         await look(service)
         assert await service.rows(MissionRow) == []
 
 
-async def test_nobody_leaves_who_has_not_enough_itself(service: Service, clock: SteppedClock) -> None:
+async def test_no_robot_leaves_that_has_not_enough_itself(service: Service, clock: SteppedClock) -> None:
     async with robot(service, clock, "r1", DOCK, 0.6), robot(service, clock, "r2", "post1", 0.3):
         await look(service)
         assert await service.rows(MissionRow) == []

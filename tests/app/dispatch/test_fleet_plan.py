@@ -217,7 +217,7 @@ def test_orders_change_robots_where_that_is_better_for_all() -> None:
     assert after.cost_s < first.cost_s - 1000.0
 
 
-def test_where_no_way_leads_nobody_is_sent_and_everything_else_goes_on() -> None:
+def test_where_no_way_leads_no_robot_is_sent_and_everything_else_goes_on() -> None:
     network = street(4).without({"p3"})
     aboard, unreached, plain = replace(order(0, 0, 3), loaded=True), order(1, 0, 3), order(2, 0, 1)
     robots = {"r0": robot(0, capacity=2, route=(aboard.stops[1], *unreached.stops))}

@@ -41,7 +41,7 @@ def test_a_full_robot_gives_first_and_loads_then() -> None:
     assert carrying.visits == (BRING, LOAD, RECEIVE)
 
 
-def test_where_a_robot_is_nobody_knows_it_goes_to_its_next_stop_first() -> None:
+def test_a_robot_whose_place_is_unknown_goes_to_its_next_stop_first() -> None:
     found = cheapest_insertion(tour(BRING, start=None, aboard=1), LOAD, RECEIVE, 2, TRACK)
     assert found is not None
     assert found.visits[0] is BRING

@@ -45,7 +45,7 @@ async def test_it_goes_to_the_better_robot_once_the_first_has_let_it_go(world: W
     assert (await world.rows(Order, id=second))[0].state is OrderState.DELIVERED
 
 
-async def test_it_stays_where_somebody_has_set_out_for_it(world: World) -> None:
+async def test_it_stays_with_the_robot_that_has_set_out_for_it(world: World) -> None:
     first, second = await given(world)
     await world.goes_on("r1", "sender", "sender", "sets out")
     begun = [order.id for order in await world.rows(Order) if order.state is not OrderState.ASSIGNED]

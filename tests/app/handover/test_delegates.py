@@ -101,7 +101,7 @@ def custody(answer: httpx.Response) -> list[dict[str, Any]]:
     return chain
 
 
-async def test_a_revoked_delegates_code_is_taken_from_the_robot_and_shown_to_nobody(campus: Campus) -> None:
+async def test_a_revoked_delegates_code_is_taken_from_the_robot_and_no_longer_shown(campus: Campus) -> None:
     await campus.waits_for_load()
     sender = await campus.browser("sender")
     own = set(campus.robot.codes(campus.load))
@@ -140,7 +140,7 @@ async def test_a_delegate_with_an_address_of_the_campus_taps_for_themselves_and_
         ("sender", {"name": " "}, 422, "invalid_request"),
     ],
 )
-async def test_each_names_somebody_for_their_own_hand_over(
+async def test_sender_and_recipient_each_name_a_delegate_for_their_own_hand_over(
     campus: Campus, who: str, wish: dict[str, Any], status: int, code: str
 ) -> None:
     await campus.connect()
@@ -160,7 +160,7 @@ async def test_a_delegate_is_seen_by_those_whose_they_are(campus: Campus) -> Non
     assert len((await desk.get(f"{campus.path}/delegates")).json()["items"]) == 1
 
 
-async def test_when_the_mail_is_aboard_nobody_is_named_to_load_it(campus: Campus) -> None:
+async def test_when_the_mail_is_aboard_no_delegate_is_named_to_load_it(campus: Campus) -> None:
     await campus.waits_for_recipient()
     sender = await campus.browser("sender")
     late = await sender.post(f"{campus.path}/delegates", json={"name": "The porter"})

@@ -119,7 +119,7 @@ def test_when_they_are_not_needed_any_more_they_are_told_and_the_link_opens_noth
     assert anonymous.post("/api/v1/link/order", json=link_in(first)).status_code == 200, "named again"
 
 
-def test_a_link_is_good_when_the_robot_comes_however_long_before_somebody_was_named(
+def test_a_link_is_good_when_the_robot_comes_however_long_before_the_delegate_was_named(
     anonymous: TestClient, sender: Browser, mailroom: Mailroom, mails: Mails
 ) -> None:
     later_id = sender.order(not_before="2026-01-31T09:00:00Z").json()["id"]
@@ -132,7 +132,7 @@ def test_a_link_is_good_when_the_robot_comes_however_long_before_somebody_was_na
     assert anonymous.post("/api/v1/link/order", json=link_in(mail)).status_code == 401, "for ever it is not"
 
 
-def test_a_code_that_is_taken_back_before_its_mail_is_out_is_mailed_to_nobody(
+def test_a_code_that_is_taken_back_before_its_mail_is_out_is_not_mailed(
     sender: Browser, mailroom: Mailroom, mails: Mails, order_id: str
 ) -> None:
     mail = next(channel for channel in mailroom.app.state.parts.outbox_worker.channels if channel.name == "mail")
@@ -154,7 +154,7 @@ def test_a_code_that_is_taken_back_before_its_mail_is_out_is_mailed_to_nobody(
     assert [one["Subject"] for one in about_mail(mails)] == ["You are not needed any more for mail from Sender"]
 
 
-def test_a_recipient_without_account_names_somebody_by_their_own_link_who_is_mailed_too(
+def test_a_recipient_without_account_names_a_delegate_by_their_own_link_who_is_mailed_too(
     anonymous: TestClient, sender: Browser, mailroom: Mailroom, mails: Mails, order_id: str
 ) -> None:
     mailroom.move(order_id, "assigned", "to_sender", "at_sender", "carrying")
@@ -190,7 +190,7 @@ def test_a_delegate_with_an_account_has_it_in_their_inbox_in_their_language_and_
     assert len(porter.get("/api/v1/notices").json()["items"]) == 2
 
 
-def test_nobody_outside_the_campus_is_mailed_unless_that_is_allowed_and_without_address_nobody_is(
+def test_no_person_outside_the_campus_is_mailed_unless_that_is_allowed_and_without_address_none_is(
     settings: Settings, sender: Browser, mailroom: Mailroom, mails: Mails, order_id: str
 ) -> None:
     refused = name(sender, order_id, OUTSIDE)

@@ -50,7 +50,7 @@ async def test_a_robot_without_a_key_is_believed_and_shown_as_unsigned(campus: C
     assert await campus.state() == "carrying"
 
 
-async def test_the_button_loads_and_identifies_nobody(campus: Campus) -> None:
+async def test_the_button_loads_and_identifies_no_person(campus: Campus) -> None:
     await campus.waits_for_load()
     await campus.robot.ends(await campus.robot.say(campus.robot.receipt(campus.load, code_sha256=None)))
     written = await campus.service.row(Handover, order_id=campus.order_id)
@@ -83,7 +83,7 @@ async def test_what_proves_nothing_is_written_down_and_rings_and_moves_no_custod
     assert campus.order_id in (await campus.service.row(Alarm, name="receipt_refused")).reason
 
 
-async def test_mail_is_not_received_for_nobodys_code_nor_for_the_senders(campus: Campus) -> None:
+async def test_mail_is_not_received_without_a_code_nor_for_the_senders(campus: Campus) -> None:
     await campus.waits_for_recipient()
     sender_code = campus.robot.codes(campus.load)[0]
     for code in (None, sender_code):

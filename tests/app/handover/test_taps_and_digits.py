@@ -56,7 +56,7 @@ async def test_a_refused_tap_is_on_the_page_and_can_be_tried_again(campus: Campu
     assert (await asked(campus)).command_id != wish.command_id
 
 
-async def test_a_tap_that_nobody_answered_is_asked_again_when_it_is_too_old(
+async def test_a_tap_that_was_not_answered_is_asked_again_when_it_is_too_old(
     campus: Campus, clock: SteppedClock, settings: Settings
 ) -> None:
     await campus.waits_for_load()
@@ -100,7 +100,7 @@ async def test_what_cannot_reach_the_robot_says_that_the_qr_code_works(campus: C
     await until(told_offline)
 
 
-async def test_digits_open_for_whoever_sees_the_order_and_say_whose_they_are(campus: Campus) -> None:
+async def test_digits_open_for_all_who_see_the_order_and_say_whose_they_are(campus: Campus) -> None:
     await campus.waits_for_recipient()
     recipient, dispatcher = await campus.browser("recipient"), await campus.browser("desk", Role.DISPATCHER)
     shown = (await recipient.get(f"{campus.path}/code")).json()

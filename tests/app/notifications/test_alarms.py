@@ -60,7 +60,7 @@ async def test_who_wants_alarms_by_mail_has_them(settings: Settings, clock: Step
         assert "follow.html" not in mail.read_text(), "there is no order to follow"
 
 
-async def test_an_alarm_that_somebody_has_acknowledged_is_silent(settings: Settings, clock: SteppedClock) -> None:
+async def test_an_alarm_that_a_dispatcher_has_acknowledged_is_silent(settings: Settings, clock: SteppedClock) -> None:
     async with running(settings, clock) as office:
         await office.person(DISPATCHER, roles=[Role.MEMBER, Role.DISPATCHER])
         await rings(office)

@@ -171,7 +171,7 @@ async def test_a_device_behind_the_walls_is_never_reached(
         assert "https" in ((await guarded.sending("push")).problem or "")
 
 
-def test_the_key_is_made_once_and_is_nobody_elses(settings: Settings) -> None:
+def test_the_key_is_made_once_and_is_readable_by_its_owner_alone(settings: Settings) -> None:
     path = settings.push_key_path
     first = open_push_key(path)
     assert path.stat().st_mode & 0o777 == 0o600

@@ -90,7 +90,7 @@ def test_a_sentence_within_a_sentence_is_said_in_french_too() -> None:
     )
 
 
-def test_what_nobody_knows_is_shown_as_it_was_said_and_marked() -> None:
+def test_an_unknown_reason_is_shown_as_it_was_said_and_marked() -> None:
     assert words_of("Juggling at post3") is None
     assert in_language("fr", "Juggling at post3") == "« Juggling at post3 » (en anglais)"
     assert in_language("en", "Juggling at post3") == "Juggling at post3"

@@ -142,7 +142,9 @@ async def test_a_server_that_proves_nothing_is_sent_nothing(
     assert server.tries == 0
 
 
-async def test_what_nobody_takes_for_a_day_is_given_up(smtp: Settings, server: MailServer, clock: SteppedClock) -> None:
+async def test_mail_that_is_refused_for_a_day_is_given_up(
+    smtp: Settings, server: MailServer, clock: SteppedClock
+) -> None:
     server.says = ["451 later"] * 20
     async with running(smtp, clock) as office:
         await office.order()
@@ -155,7 +157,7 @@ async def test_what_nobody_takes_for_a_day_is_given_up(smtp: Settings, server: M
         assert given_up.gave_up_at and given_up.tries == 3
 
 
-async def test_a_sign_in_code_goes_by_the_server_too_and_nobody_waits_for_it(
+async def test_a_sign_in_code_goes_by_the_server_too_and_no_request_waits_for_it(
     smtp: Settings, server: MailServer, clock: SteppedClock
 ) -> None:
     server.hangs = True

@@ -48,7 +48,7 @@ async def test_what_comes_while_a_batch_is_written_is_the_next(tmp_path: Path, c
     assert len(mails_in(tmp_path / "made" / "by it")) == 41
 
 
-async def test_whoever_waits_no_longer_stops_nobody_elses_mail(tmp_path: Path, clock: SteppedClock) -> None:
+async def test_a_caller_that_waits_no_longer_stops_no_other_mail(tmp_path: Path, clock: SteppedClock) -> None:
     mailer = SpoolMailer(Spool(tmp_path, FROM))
     impatient = asyncio.create_task(mailer.send(mail("impatient", clock)))
     patient = asyncio.create_task(mailer.send(mail("patient", clock)))

@@ -67,7 +67,7 @@ def test_what_cannot_be_spooled_is_tried_again_later_and_arrives(
     assert stuck().problem is None
 
 
-def test_a_mail_that_cannot_be_made_holds_up_nobody_elses(
+def test_a_mail_that_cannot_be_made_holds_up_no_other(
     app: FastAPI, sender: Browser, mailroom: Mailroom, mails: Mails
 ) -> None:
     mail = next(channel for channel in app.state.parts.outbox_worker.channels if channel.name == "mail")
@@ -112,7 +112,7 @@ def test_reading_a_notice_lowers_the_count_and_only_for_oneself(sender: Browser,
     assert sender.get("/api/v1/me").json()["unread_notices"] == 0
 
 
-def test_somebody_who_reads_french_is_told_in_french(anonymous: TestClient, mails: Mails, mailroom: Mailroom) -> None:
+def test_a_person_who_reads_french_is_told_in_french(anonymous: TestClient, mails: Mails, mailroom: Mailroom) -> None:
     speaks_french = {"Accept-Language": "fr-CA,fr;q=0.9"}
     anonymous.headers.update({"Sec-Fetch-Site": "same-origin", **speaks_french})
     anonymous.post("/api/v1/sign-in/codes", json={"email": SENDER})

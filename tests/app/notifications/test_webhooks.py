@@ -157,7 +157,7 @@ def test_a_webhook_of_the_operators_needs_a_secret(monkeypatch: pytest.MonkeyPat
         load_settings()
 
 
-async def test_a_receiver_that_answers_a_byte_at_a_time_holds_nobody_up() -> None:
+async def test_a_receiver_that_answers_a_byte_at_a_time_holds_no_other_up() -> None:
     """Each byte comes in time, the answer never."""
 
     gone = asyncio.Event()

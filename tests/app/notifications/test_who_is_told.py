@@ -48,7 +48,7 @@ async def test_mail_that_is_taken(office: Office) -> None:
     }
 
 
-async def test_mail_that_nobody_takes_and_its_sender_takes_back_by_a_code_of_its_own(office: Office) -> None:
+async def test_mail_that_no_recipient_takes_and_its_sender_takes_back_by_a_code_of_its_own(office: Office) -> None:
     order_id = await office.order()
     await office.move(order_id, *TO_RECIPIENT, "returning", "at_return", "returned")
     assert (await told(office))["Sender"][3:] == ["not_taken", "at_return", "returned"]
@@ -83,7 +83,7 @@ async def test_trouble_before_the_mail_is_aboard_is_no_recipients_concern(office
     assert await told(office) == {"Sender": ["accepted", "robot_near", "attention"], "Recipient": []}
 
 
-async def test_after_somebody_has_seen_to_it_people_are_told_anew_how_it_goes_on(office: Office) -> None:
+async def test_after_a_dispatcher_has_seen_to_it_people_are_told_anew_how_it_goes_on(office: Office) -> None:
     order_id = await office.order()
     await office.move(order_id, *TO_RECIPIENT, "attention")
     await says(office, By.DISPATCHER, order_id, "at_recipient")
@@ -94,7 +94,7 @@ async def test_after_somebody_has_seen_to_it_people_are_told_anew_how_it_goes_on
     assert kinds == {"on_its_way": 1, "robot_here_for_you": 3, "attention": 2, "delivered": 1}
 
 
-async def test_whatever_a_robot_repeats_nobody_is_told_twice(office: Office) -> None:
+async def test_whatever_a_robot_repeats_no_person_is_told_twice(office: Office) -> None:
     order_id = await office.order()
     for state in (*TO_RECIPIENT, "delivered"):
         for _ in range(3):
@@ -105,7 +105,7 @@ async def test_whatever_a_robot_repeats_nobody_is_told_twice(office: Office) -> 
     assert len(await office.sendings("mail")) == 7
 
 
-async def test_a_notice_that_cannot_be_put_into_words_holds_up_nobody_elses(office: Office) -> None:
+async def test_a_notice_that_cannot_be_put_into_words_holds_up_no_other(office: Office) -> None:
     sender = await office.person(SENDER)
     now = office.clock.utc()
     await office.add(Notice(key="odd", kind=NoticeKind.ACCEPTED, person_id=sender.id, at=now, facts={}))

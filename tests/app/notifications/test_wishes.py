@@ -40,7 +40,7 @@ def test_a_muted_kind_is_in_the_inbox_and_in_no_mail(sender: Browser, mailroom: 
     assert len(subjects(mails)) == 2
 
 
-def test_nobody_mutes_a_robot_that_waits_with_their_mail_everywhere(sender: Browser) -> None:
+def test_no_person_mutes_a_robot_that_waits_with_their_mail_everywhere(sender: Browser) -> None:
     everywhere = {channel: ["robot_here_for_you"] for channel in CHANNELS}
     refused = sender.put("/api/v1/me/notices", json={"muted": everywhere})
     assert (refused.status_code, refused.json()["code"]) == (422, "muted_everywhere")
@@ -56,7 +56,7 @@ def test_nobody_mutes_a_robot_that_waits_with_their_mail_everywhere(sender: Brow
     wishes=st.dictionaries(st.sampled_from(CHANNELS), st.lists(st.sampled_from([str(k) for k in NoticeKind]))),
     reachable=st.sets(st.sampled_from(CHANNELS)).map(lambda some: some | {"mail"}),
 )
-def test_what_must_reach_somebody_takes_some_channel_and_nothing_takes_one_it_is_muted_on(
+def test_what_must_reach_a_person_takes_some_channel_and_nothing_takes_one_it_is_muted_on(
     kind: NoticeKind, wishes: dict[str, list[str]], reachable: set[str]
 ) -> None:
     taken = channels_for(kind, wishes, reachable)
@@ -97,7 +97,9 @@ class TestWithAPushServiceOnThisMachine:
             mailroom.send_mails()
             assert len(push_service.received) == 1
 
-    def test_a_browser_belongs_to_whoever_signed_in_there_last(self, sender: Browser, recipient: Browser) -> None:
+    def test_a_browser_belongs_to_the_person_who_signed_in_there_last(
+        self, sender: Browser, recipient: Browser
+    ) -> None:
         wish = {"endpoint": "http://127.0.0.1:9/shared", "keys": browser_keys()}
         assert sender.post("/api/v1/me/devices", json=wish).status_code == 201
         assert recipient.post("/api/v1/me/devices", json=wish).status_code == 201
@@ -136,7 +138,7 @@ def test_keys_that_no_browser_makes_are_refused(sender: Browser) -> None:
         assert (refused.status_code, refused.json()["code"]) == (422, "bad_subscription")
 
 
-async def test_somebody_without_any_other_channel_left_is_mailed_what_must_reach_them(
+async def test_a_person_without_any_other_channel_left_is_mailed_what_must_reach_them(
     settings: Settings, clock: SteppedClock
 ) -> None:
     """They muted it in mails because their phone had it; then the phone was lost."""

@@ -314,7 +314,7 @@ class World:
         duties.report(Step.ARRIVED, stop.id, stop.post)
         if luck == "arrives":
             return
-        if luck == "nobody comes" or not self._changes_hands(robot, stop, luck):
+        if luck == "no person comes" or not self._changes_hands(robot, stop, luck):
             duties.report(Step.GAVE_UP, stop.id, stop.post, "no_one_came")
             duties.finish_stop(stop.id)
 

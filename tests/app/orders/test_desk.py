@@ -68,7 +68,7 @@ def crowd(app: FastAPI, mailroom: Mailroom, sender: Browser, recipient: Browser)
     return Crowd(app, mailroom)
 
 
-def test_what_cannot_be_delivered_keeps_nobody_else_from_ordering(crowd: Crowd, sender: Browser) -> None:
+def test_what_cannot_be_delivered_keeps_no_other_sender_from_ordering(crowd: Crowd, sender: Browser) -> None:
     answers = crowd.ask({"recipient": RECIPIENT}, {"recipient": RECIPIENT, "to_post": "post9"}, {"recipient": NEWCOMER})
     assert isinstance(answers[1], UnknownPost)
     placed = [one.view for one in answers if isinstance(one, Placed)]
@@ -85,7 +85,7 @@ def test_of_an_order_that_is_refused_nothing_is_kept_nor_its_recipient(crowd: Cr
     assert [one["kind"] for one in sender.get("/api/v1/notices").json()["items"]] == ["accepted"]
 
 
-def test_of_an_order_for_somebody_who_is_not_of_here_its_new_recipient_is_not_kept(crowd: Crowd) -> None:
+def test_of_an_order_for_a_recipient_who_is_not_of_here_its_new_recipient_is_not_kept(crowd: Crowd) -> None:
     crowd.dispatches(SENDER)
     refused, placed = crowd.ask(
         {"recipient": NEWCOMER, "on_behalf_of": "eve@elsewhere.example"},
@@ -154,7 +154,7 @@ def test_a_key_is_one_persons_and_one_request_at_a_time(crowd: Crowd) -> None:
 
 
 @pytest.mark.parametrize(("changes", "expected"), [({}, Placed), ({"description": "Other keys."}, KeyReused)])
-def test_whoever_hangs_up_while_they_wait_has_ordered_once_whatever_they_ask_next(
+def test_a_sender_who_hangs_up_while_they_wait_has_ordered_once_whatever_they_ask_next(
     crowd: Crowd, sender: Browser, changes: dict[str, Any], expected: type
 ) -> None:
     person = crowd.people()[SENDER]

@@ -123,7 +123,7 @@ async def test_a_robot_gives_only_what_it_was_given(world: World) -> None:
     assert await world.state(order_id) is S.AT_SENDER
 
 
-async def test_mail_comes_aboard_once_whoever_says_that_it_has_it_too(world: World) -> None:
+async def test_mail_comes_aboard_once_whichever_robot_says_that_it_has_it_too(world: World) -> None:
     order_id = await world.place("post3", "post5")
     await world.goes_on("r1", "arrives")
     await given_to_r2(world, order_id)
@@ -189,7 +189,7 @@ async def ended(world: World, end: str) -> str:
     if end == "cancelled":
         await world.change(world.orders.cancelling.cancel, "sender", order_id, "")
     elif end == "expired":
-        await world.goes_on("r1", "nobody comes")
+        await world.goes_on("r1", "no person comes")
     elif end == "delivered":
         await world.goes_on("r1", *ALL_DONE)
     else:

@@ -43,7 +43,7 @@ def test_an_order_for_later_is_left_alone_until_then_and_has_its_window_after_it
     assert seen(sender, order["id"])["state"] == "assigned"
 
 
-def test_a_dispatcher_orders_for_whoever_stands_at_the_desk(dispatcher: Browser, sender: Browser) -> None:
+def test_a_dispatcher_orders_for_a_person_at_the_desk(dispatcher: Browser, sender: Browser) -> None:
     answer = dispatcher.order(on_behalf_of=SENDER)
     assert answer.json()["my_role"] == "dispatcher"
     order = seen(sender, answer.json()["id"])
@@ -71,7 +71,7 @@ def test_the_important_is_fetched_first(app: FastAPI, dispatcher: Browser, sende
     assert "queued" in stops, "one robot cannot carry three"
 
 
-def test_an_order_that_nobody_fetched_in_a_day_expires_and_the_sender_is_told(
+def test_an_order_that_no_robot_fetched_in_a_day_expires_and_the_sender_is_told(
     sender: Browser, clock: SteppedClock, tick: Any
 ) -> None:
     order_id = sender.order().json()["id"]

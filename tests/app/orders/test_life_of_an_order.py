@@ -43,7 +43,7 @@ def test_a_delivered_order_shows_its_whole_way_and_everybody_was_told_once(
     assert len(set(subjects)) == 7 - 1 + 1  # seven notices ("delivered" reads the same for both), one sign-in mail
 
 
-def test_a_robot_that_repeats_itself_changes_nothing_and_tells_nobody_again(
+def test_a_robot_that_repeats_itself_changes_nothing_and_notifies_no_person_again(
     sender: Browser, mailroom: Mailroom, order_id: str
 ) -> None:
     mailroom.move(order_id, *WAY[:4])
@@ -160,7 +160,7 @@ def test_while_the_robot_drives_its_order_says_where_it_was_seen(
     assert (robot["name"], robot["online"]) == ("r1", False)
 
 
-def test_nobody_sees_an_order_that_is_not_theirs_unless_dispatcher(
+def test_no_person_sees_an_order_that_is_not_theirs_unless_dispatcher(
     app: FastAPI, sender: Browser, mailroom: Mailroom, signed_in: SignedIn, order_id: str
 ) -> None:
     stranger = signed_in(STRANGER)

@@ -27,17 +27,19 @@ from tests.app.orders.what_holds import ENDED, Record, how_it_ended
 
 POSTS = ("post1", "post2", "post3", "post4", "post5")
 ROBOTS = st.sampled_from(("r1", "r2"))
-LUCK = st.sampled_from(("sets out", "arrives", "no way", "nobody comes", "sender", "sender", "recipient", "mailroom"))
+LUCK = st.sampled_from(
+    ("sets out", "arrives", "no way", "no person comes", "sender", "sender", "recipient", "mailroom")
+)
 WAY = {
     "a robot is told": (),
     "it sets out": ("sets out",),
     "it waits for the sender": ("arrives",),
-    "the sender does not come": ("nobody comes",),
+    "the sender does not come": ("no person comes",),
     "the mail is loaded": ("sender",),
     "it sets out with it": ("sender", "sets out"),
     "it waits for the recipient": ("sender", "arrives"),
-    "the recipient does not come": ("sender", "nobody comes"),
-    "and it goes back": ("sender", "nobody comes", "sets out", "arrives"),
+    "the recipient does not come": ("sender", "no person comes"),
+    "and it goes back": ("sender", "no person comes", "sets out", "arrives"),
 }
 SO_FAR = st.sampled_from((None, *WAY))
 """Most of what can go wrong begins in the middle of a life."""
@@ -92,27 +94,27 @@ class LivesOfOrders(RuleBasedStateMachine):
         self.lasting.enter_context(ids_from(Random(names).randbytes))
         self.run(self.world.begin())
         self.run(self.world.set_online("r2", not alone))
-        self.somebody_orders(from_post, step, so_far)
+        self.a_sender_orders(from_post, step, so_far)
 
     # What people do.
 
     @precondition(lambda self: len(self.ids) < ORDERS)
     @rule(from_post=st.sampled_from(POSTS), step=st.integers(1, 4), so_far=SO_FAR)
-    def somebody_orders(self, from_post: str, step: int, so_far: str | None) -> None:
+    def a_sender_orders(self, from_post: str, step: int, so_far: str | None) -> None:
         to_post = POSTS[(POSTS.index(from_post) + step) % len(POSTS)]
         self.ids.append(self.run(self.world.place(from_post, to_post)))
         self.an_order_comes(0, so_far)
 
     @precondition(lambda self: len(self.ids) < ORDERS)
     @rule(number=ORDER)
-    def somebody_orders_the_same_way(self, number: int) -> None:
+    def a_sender_orders_the_same_way(self, number: int) -> None:
         """Which goes along with what is on its way already, if no other robot is free."""
         (same,) = self.run(self.world.rows(Order, id=self.order(number)))
         self.ids.append(self.run(self.world.place(same.from_post, same.to_post)))
         self.run(self.world.dispatch())
 
     @rule(number=ORDER, wish=WISH, so_far=SO_FAR)
-    def somebody_asks(self, number: int, wish: tuple[str, str], so_far: str | None) -> None:
+    def a_person_asks(self, number: int, wish: tuple[str, str], so_far: str | None) -> None:
         self.an_order_comes(number, so_far)
         self.asks(number, wish)
 

@@ -54,7 +54,7 @@ async def left_aboard(world: World) -> str:
     """Mail that neither recipient nor sender took: it is still in r1, which has nothing to do."""
     order_id = await world.place("post3", "post5")
     await world.goes_on("r1", "sender")
-    await world.goes_on("r1", *["nobody comes"] * 6)
+    await world.goes_on("r1", *["no person comes"] * 6)
     assert await world.state(order_id) is OrderState.ATTENTION
     assert world.robots["r1"].duties.held.mission is None
     return order_id
@@ -89,12 +89,12 @@ async def test_mail_that_came_aboard_when_its_order_had_ended_rings_and_is_broug
     await Record(world).check()
 
 
-async def test_what_nobody_took_back_of_an_order_that_has_ended_is_brought_again_by_a_robot_that_is_recalled(
+async def test_what_was_not_taken_back_of_an_order_that_has_ended_is_brought_again_by_a_robot_that_is_recalled(
     world: World,
 ) -> None:
     order_id = await loaded_too_late(world)
     for _ in range(3):
-        await world.goes_on("r1", *["nobody comes"] * 6)
+        await world.goes_on("r1", *["no person comes"] * 6)
     assert world.where[order_id] == "r1"
     assert {"custody_contradicts_order", "mail_aboard"} <= await ringing(world)
     await world.recall("r1")
@@ -174,7 +174,7 @@ async def test_mail_of_an_order_that_has_ended_is_taken_out_by_hand_and_its_robo
 async def test_mail_of_an_order_that_has_ended_is_brought_again_when_it_is_called_back(world: World) -> None:
     order_id = await loaded_too_late(world)
     for _ in range(3):
-        await world.goes_on("r1", *["nobody comes"] * 6)
+        await world.goes_on("r1", *["no person comes"] * 6)
     assert world.where[order_id] == "r1"
     await world.change(world.orders.returning.recall, "dispatcher", order_id)
     await world.change(world.orders.returning.recall, "dispatcher", order_id)

@@ -32,7 +32,7 @@ class LifeOfAnOrder(RuleBasedStateMachine):
         self.past = [S.QUEUED]
 
     @rule(to=STATES, by=WORDS)
-    def somebody_says(self, to: S, by: By) -> None:
+    def an_actor_says(self, to: S, by: By) -> None:
         if is_allowed(self.state, to, by, self.before_attention, is_passed_on=self.legs > 1):
             if to is S.QUEUED and (self.before_attention or self.state) in MAIL_ABOARD:
                 self.legs += 1
@@ -41,10 +41,10 @@ class LifeOfAnOrder(RuleBasedStateMachine):
             self.past.append(to)
 
     @rule(step=st.integers(0, 9), by=WORDS)
-    def somebody_says_what_may_follow(self, step: int, by: By) -> None:
+    def an_actor_says_what_may_follow(self, step: int, by: By) -> None:
         following = [*TRANSITIONS[self.state], *([self.before_attention] if self.before_attention else [])]
         if following:
-            self.somebody_says(following[step % len(following)], by)
+            self.an_actor_says(following[step % len(following)], by)
 
     @invariant()
     def what_has_ended_stays(self) -> None:

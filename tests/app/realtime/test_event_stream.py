@@ -103,7 +103,7 @@ def test_the_server_ends_within_three_seconds_with_a_stream_open(served: Served,
         assert time.monotonic() - began_s < 3.0
 
 
-def test_a_stream_needs_somebody_signed_in(served: Served) -> None:
+def test_a_stream_needs_a_signed_in_person(served: Served) -> None:
     answer = httpx.get(f"{served.url}/api/v1/live")
     assert (answer.status_code, answer.json()["code"]) == (401, "not_signed_in")
 
@@ -215,7 +215,7 @@ def test_after_the_commit_and_not_before_a_change_is_told(
     assert feed.last_id != before
 
 
-def test_what_changes_after_an_answer_was_read_is_told_to_whoever_listens_since(
+def test_what_changes_after_an_answer_was_read_is_told_to_clients_that_listen_since(
     served: Served, sender: Browser
 ) -> None:
     """A page that is being opened has what it shows before it listens, and has nothing to fetch a second time."""

@@ -232,7 +232,7 @@ def test_what_a_robot_still_has_to_hear_or_to_clear_stays_however_old(kept: Kept
     assert [len(kept.rows(table)) for table in (MessageToRobot, GrantRow, ClaimRow, Alarm)] == [1, 1, 1, 1]
 
 
-def test_much_goes_in_portions_and_somebody_who_writes_comes_in_between(
+def test_much_goes_in_portions_and_another_writer_comes_in_between(
     kept: Kept, mailroom: Mailroom, clock: SteppedClock, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     now, state = clock.utc(), mailroom.app.state.parts

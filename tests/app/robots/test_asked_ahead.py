@@ -52,7 +52,7 @@ def test_a_robot_that_was_silent_and_asks_again_in_the_same_look_is_let_in(setti
     assert list(timetable.verdicts({}, 60.0)) == [MayEnter("r1", WAY)]
 
 
-def test_what_a_robot_may_enter_besides_is_nobody_elses_in_the_same_look(settings: Settings) -> None:
+def test_what_a_robot_may_enter_besides_is_no_other_robots_in_the_same_look(settings: Settings) -> None:
     """It does not know which way it looks, so all that leads away from where it stands is its own."""
     timetable = Timetable(builtin_map("test_track"), settings)
     first = (("post3", "post2"), ("post3", "post4"), ("post3", "post5"))

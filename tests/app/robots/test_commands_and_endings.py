@@ -49,7 +49,7 @@ async def test_a_robot_that_cannot_get_to_the_sender_is_free_and_the_order_says_
     assert (await service.states(order_id))[-2:] == ["to_sender", "attention"]
 
 
-async def test_mail_that_nobody_took_is_brought_back_by_the_robots_own_mission(
+async def test_mail_that_was_not_taken_is_brought_back_by_the_robots_own_mission(
     service: Service, robot: PlayedRobot
 ) -> None:
     order_id, receive = await carrying(service, robot)
@@ -73,7 +73,7 @@ async def test_mail_that_nobody_took_is_brought_back_by_the_robots_own_mission(
     assert (await service.states(order_id))[-4:] == ["at_recipient", "returning", "at_return", "returned"]
 
 
-async def test_mail_that_nobody_takes_back_either_waits_for_a_person(service: Service, robot: PlayedRobot) -> None:
+async def test_mail_that_is_not_taken_back_either_waits_for_a_person(service: Service, robot: PlayedRobot) -> None:
     order_id, receive = await carrying(service, robot)
     async with robot.connected(service.url, robot.token):
         await robot.greet()
@@ -112,7 +112,7 @@ async def test_a_fault_with_mail_aboard_calls_a_person_and_ends_when_it_is_over_
     assert (await told(service, order_id))["delivered"] == 2, "the sender and the recipient"
 
 
-async def test_who_was_told_that_nobody_took_it_is_not_told_so_again_when_it_is_back(
+async def test_who_was_told_that_mail_was_not_taken_is_not_told_so_again_when_it_is_back(
     service: Service, robot: PlayedRobot
 ) -> None:
     order_id, receive = await carrying(service, robot)

@@ -35,7 +35,7 @@ async def test_what_waits_is_taken_in_order_and_acknowledged_together(service: S
         assert kept == list(range(1, 21))
 
 
-async def test_a_robot_that_fails_holds_up_nobody(service: Service, clock: SteppedClock) -> None:
+async def test_a_robot_that_fails_holds_up_no_other(service: Service, clock: SteppedClock) -> None:
     """One speaks of a mission that is not its own, one leaves out a number, one delivers: all at the same moment."""
     good, stranger, gap = (PlayedRobot(clock, name=name, journal=f"journal-{name}") for name in ("r1", "r2", "r3"))
     tokens = [await service.enrol(name) for name in ("r1", "r2", "r3")]

@@ -121,7 +121,7 @@ async def test_what_one_robot_cannot_carry_on_another_does_and_the_chain_has_no_
     assert told.count("robot_here") == 1, "the second robot does not come to the sender"
 
 
-@pytest.mark.parametrize("ends", ["its sender cancels", "nobody fetches it", "the robot on its way lets go"])
+@pytest.mark.parametrize("ends", ["its sender cancels", "no robot fetches it", "the robot on its way lets go"])
 async def test_mail_that_waits_for_its_second_leg_ends_in_the_mailrooms_hands(
     service: Service, mailroom: Mailroom, robot: PlayedRobot, ends: str
 ) -> None:
@@ -140,7 +140,7 @@ async def test_mail_that_waits_for_its_second_leg_ends_in_the_mailrooms_hands(
     if ends == "its sender cancels":
         await service.cancel(order_id)
     async with state.database.transaction() as session:
-        if ends == "nobody fetches it":
+        if ends == "no robot fetches it":
             actor = Actor(By.TIMER, reason="Nobody came.")
             await state.orders.ledger.move(session, order_id, OrderState.EXPIRED, actor)
         elif ends == "the robot on its way lets go":

@@ -133,7 +133,7 @@ async def test_two_tokens_are_never_alike(service: Service, clock: SteppedClock)
     assert len({token.split("_", 2)[2] for token in tokens}) == 20
 
 
-async def test_a_wrong_token_is_refused_while_somebody_writes(service: Service, robot: PlayedRobot) -> None:
+async def test_a_wrong_token_is_refused_while_another_transaction_writes(service: Service, robot: PlayedRobot) -> None:
     """A client that tries tokens must not hold up writers, nor wait for them."""
     wrong = f"cmr_00000000_{'x' * 43}"
     async with service.app.state.parts.database.transaction(), asyncio.timeout(5), robot.connected(service.url, wrong):

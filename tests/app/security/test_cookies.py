@@ -61,7 +61,9 @@ def test_the_cookie_of_the_browser_that_asks_for_a_code_is_as_strict_and_is_not_
     assert SimpleCookie(again.headers["Set-Cookie"])[name].value == cookie.value
 
 
-def test_over_https_a_cookie_without_the_prefix_is_nobodys(app: FastAPI, anonymous: TestClient, mails: Mails) -> None:
+def test_over_https_a_cookie_without_the_prefix_signs_no_person_in(
+    app: FastAPI, anonymous: TestClient, mails: Mails
+) -> None:
     """Another host of the campus can set `session` for the whole domain, but never `__Host-session`."""
     cookie = cookie_of_sign_in(browser_at(SECURE, app, anonymous), mails)
     fooled = browser_at(SECURE, app, anonymous)

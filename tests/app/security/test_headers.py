@@ -77,7 +77,7 @@ def test_a_part_of_a_page_is_short_of_words_but_never_taken_for_something_else(
     assert {"Content-Security-Policy", "Permissions-Policy"}.isdisjoint(headers)
 
 
-def test_without_https_nobody_is_told_to_insist_on_it(anonymous: TestClient) -> None:
+def test_without_https_no_client_is_told_to_insist_on_it(anonymous: TestClient) -> None:
     """It would lock a developer out of their own localhost."""
     assert "Strict-Transport-Security" not in anonymous.get("/healthz").headers
 

@@ -19,7 +19,7 @@ ON = Leg(from_post="post2", to_post="post3")
 NAME = "post2-post3"
 
 
-async def somebody(service: Service) -> Person:
+async def the_dispatcher(service: Service) -> Person:
     state = service.app.state.parts
     async with state.database.transaction() as session:
         person: Person = await state.sign_in_desk.person(session, "dan@campus.example", state.clock.utc())
@@ -27,13 +27,13 @@ async def somebody(service: Service) -> Person:
 
 
 async def close_it(service: Service, name: str = NAME) -> None:
-    by = await somebody(service)
+    by = await the_dispatcher(service)
     async with service.app.state.parts.database.transaction() as session:
         await close(session, service.app.state.parts.fleet, name, "The floor is wet.", by)
 
 
 async def open_it(service: Service) -> None:
-    by = await somebody(service)
+    by = await the_dispatcher(service)
     async with service.app.state.parts.database.transaction() as session:
         await open_again(session, service.app.state.parts.fleet, NAME, by)
 
@@ -63,7 +63,7 @@ async def found(service: Service) -> list[tuple[str, bool, list[str]]]:
         return [(one.corridor, one.by_person, one.robots) for one in (await all_closed(session)).closed]
 
 
-async def test_what_a_robot_finds_closed_is_closed_for_all_until_somebody_looks_and_the_robot_has_heard(
+async def test_what_a_robot_finds_closed_is_closed_for_all_until_a_person_looks_and_the_robot_has_heard(
     settings: Settings, clock: SteppedClock, robot: PlayedRobot
 ) -> None:
     other = PlayedRobot(clock, "r2")
@@ -102,7 +102,7 @@ async def test_what_a_robot_finds_closed_is_closed_for_all_until_somebody_looks_
 
 
 async def test_everybody_hears_of_it_and_a_corridor_that_is_not_there_is_named(service: Service) -> None:
-    with service.app.state.parts.feed.listening(await somebody(service)) as queue:
+    with service.app.state.parts.feed.listening(await the_dispatcher(service)) as queue:
         await close_it(service)
         await close_it(service)
         await open_it(service)

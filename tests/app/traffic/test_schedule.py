@@ -79,7 +79,7 @@ async def test_what_a_robot_has_asked_for_twice_is_not_granted_again_once_it_has
     await until_nothing_is_held(service)
 
 
-async def test_who_takes_back_what_it_waits_for_is_in_nobodys_way(
+async def test_who_takes_back_what_it_waits_for_is_in_no_robots_way(
     service: Service, travellers: tuple[Traveller, Traveller]
 ) -> None:
     first, second = travellers

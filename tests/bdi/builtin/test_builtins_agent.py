@@ -30,12 +30,12 @@ def steps(*lines: str, beliefs: str = "") -> list[str]:
 # ---- beliefs -------------------------------------------------------------------------------------------------------
 
 
-def test_abolish_forgets_whoever_said_it_and_raises_events() -> None:
+def test_abolish_forgets_beliefs_of_every_source_and_raises_events() -> None:
     program = "p(1). p(2)[source(bob)]. q. !g. +!g <- .abolish(p(_)); .count(p(_),N); left(N). -p(X) <- gone(X)."
     assert sorted(run(program)) == ["gone(1)", "gone(2)", "left(0)"]
 
 
-def test_abolish_forgets_all_that_somebody_said() -> None:
+def test_abolish_forgets_all_that_an_agent_said() -> None:
     program = """p(1)[source(bob)]. q[source(bob)]. s::p(1)[source(bob)]. p(2). p(3)[source(bob), source(ann)]. !g.
         +!g <- .abolish(_[source(bob)]); .setof(X, p(X), L); left(L); .count(q, N); q(N); ?s::p(1); done."""
     assert run(program) == ["left([2])", "q(0)", "done"]

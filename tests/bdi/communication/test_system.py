@@ -62,7 +62,7 @@ def acts(system: MultiAgentSystem, rounds: int = 60) -> list[tuple[str, str]]:
 # ---- turns and messages --------------------------------------------------------------------------------------------
 
 
-def test_what_is_sent_in_a_round_is_read_in_the_next_whoever_comes_first() -> None:
+def test_what_is_sent_in_a_round_is_read_in_the_next_whichever_agent_comes_first() -> None:
     hears = "+hello(N)[source(S)] <- heard(N,S)."
     programs = {
         "b": f"{hears} !g. +!g <- .send(a, tell, hello(1)).",
@@ -145,7 +145,7 @@ def test_messages_for_the_outside_are_handed_back() -> None:
     assert system.agents["b"].believes("q[source(a)]")
 
 
-def test_whoever_writes_to_an_agent_can_be_answered() -> None:
+def test_an_agent_can_answer_the_sender_of_a_message() -> None:
     system = system_of({"a": "+!g[source(S)] <- .send(S, tell, done)."})
     outcome = system.round({"a": Stimuli(messages=[Message("phone", "achieve", "g")])})["a"]
     assert [(each.receiver, str(each.content)) for each in outcome.messages] == [("phone", "done")]
@@ -169,7 +169,7 @@ def test_two_agents_of_one_name_are_refused() -> None:
         MultiAgentSystem([agent("a", ""), agent("a", "")])
 
 
-def test_a_system_is_idle_when_nobody_has_anything_to_do_and_no_message_is_under_way() -> None:
+def test_a_system_is_idle_when_no_agent_has_anything_to_do_and_no_message_is_under_way() -> None:
     system = system_of({"b": "+p <- act.", "a": "!g. +!g <- .send(b, tell, p)."})
     states = []
     for _ in range(3):
@@ -249,7 +249,7 @@ def test_an_agent_can_end_its_own_life() -> None:
     assert list(system.agents) == []
 
 
-def test_killing_nobody_fails() -> None:
+def test_killing_an_unknown_agent_fails() -> None:
     assert acts(system_of({"a": "!g. +!g <- .kill_agent(b). -!g <- none."})) == [("a", "none")]
 
 
@@ -261,7 +261,7 @@ def test_what_was_on_its_way_to_a_killed_agent_is_not_lost_in_silence() -> None:
     assert [str(message.content) for message in system.undelivered] == ["p"]
 
 
-def test_whoever_waits_for_the_answer_of_a_killed_agent_fails_at_once() -> None:
+def test_an_agent_that_waits_for_the_answer_of_a_killed_agent_fails_at_once() -> None:
     programs = {
         "bob": "+?secret(X) <- .wait(100000).",
         "ann": "!g. +!g <- .send(bob, askOne, secret(X), A); never. -!g[error(E)] <- sorry(E).",

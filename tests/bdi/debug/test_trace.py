@@ -100,7 +100,7 @@ def test_explaining_changes_nothing() -> None:
     assert any(actions for actions, _ in run(False))
 
 
-def test_changes_of_beliefs_are_told_whoever_makes_them() -> None:
+def test_changes_of_beliefs_are_told_from_any_source() -> None:
     agent = Agent(parse_program("!g. old(1). +!g <- +mine; -old(1)."))
     heard: list[str] = []
     agent.listen(lambda entry: heard.append(str(entry)) if isinstance(entry, Changed) else None)
@@ -134,7 +134,7 @@ def test_a_step_says_where_it_stands() -> None:
     assert str(step) == "1 intention 1: a"
 
 
-def test_nobody_listens_nothing_is_kept() -> None:
+def test_without_a_listener_nothing_is_kept() -> None:
     agent = Agent(parse_program("!g. +!g <- +b; !g."))
     outcomes = [agent.cycle() for _ in range(50)]
     assert all(outcome.trace == () for outcome in outcomes)

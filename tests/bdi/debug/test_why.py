@@ -90,7 +90,7 @@ def test_what_was_given_up_is_forgotten_in_time() -> None:
     assert len(agent.given_up) == 50
 
 
-def test_while_somebody_listens_it_is_said_why_this_plan() -> None:
+def test_while_a_debugger_listens_it_is_said_why_this_plan() -> None:
     program = "!go. at(library). @a +!go : at(uc) <- x. @b +!go : at(P) <- drive(P). @c +!go <- y."
     silent = agent_of(program, 1)
     assert silent.why("go").chosen is None

@@ -64,7 +64,7 @@ def test_beliefs_goals_and_plans_of_a_module_are_no_others() -> None:
     assert sorted(deeds(text)) == ["outside(2)", "react(1)", "react_outside(2)", "show(1)"]
 
 
-def test_what_is_inside_a_term_belongs_to_nobody_unless_it_says_so() -> None:
+def test_what_is_inside_a_term_belongs_to_no_namespace_unless_it_says_so() -> None:
     text = """{begin namespace(a)} b(x, f(y), [z], ::x, ::f(y), default::z)[seen(w)]. !g.
         +!g <- ?b(A,B,C,D,E,F); show(A,B,C,D,E,F); ?b(x,f(y),[z],_,_,z)[seen(w)];
             .print(x, " ", ::x, " ", this_ns). {end}"""
@@ -132,7 +132,7 @@ def test_two_modules_with_a_local_namespace_of_one_name_do_not_meet() -> None:
     assert deeds(text, vault=VAULT, other=other) == ["show(42,[1])"]
 
 
-def test_nobody_finds_a_local_namespace_by_a_variable_or_from_outside() -> None:
+def test_a_local_namespace_is_not_found_by_a_variable_or_from_outside() -> None:
     text = (
         '{include("vault.asl",a)} !go. +!go <- .findall(N, .namespace(N), L); .findall(N, N::secret(_), M); show(L,M).'
     )

@@ -39,7 +39,7 @@ def test_a_sub_plan_reacts_to_a_percept_while_its_goal_is_pursued() -> None:
     assert list(run.under_way) == ["walk(hall)", "look(left)"]
 
 
-def test_nobody_reacts_once_the_goal_is_reached() -> None:
+def test_no_plan_reacts_once_the_goal_is_reached() -> None:
     run = Run(PATROL + "{ +noise(P) <- look(P). }").cycles(3).cycles(3, done="walk(hall)").cycles(4, "noise(left)")
     assert not run.under_way
     assert not run.agent.intentions

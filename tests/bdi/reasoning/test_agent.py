@@ -96,7 +96,7 @@ def test_drop_all_intentions_keeps_the_one_that_says_so() -> None:
     assert [str(action) for outcome in outcomes for action in outcome.actions] == ["dock"]
 
 
-def test_a_goal_that_nobody_rescues_is_reported() -> None:
+def test_a_goal_that_no_plan_rescues_is_reported() -> None:
     agent = agent_of("!g. +!g <- drive; more.")
     drive = agent.cycle().actions[0]
     failure = agent.cycle(finished=[Finished(drive.id, "jammed")]).failures[0]
@@ -208,7 +208,7 @@ def test_a_plan_told_while_an_event_waits_for_its_turn_reacts_to_it() -> None:
     assert [str(action) for _ in range(3) for action in agent.cycle().actions] == ["heard(1)"]
 
 
-def test_events_that_nobody_is_about_do_not_pile_up_behind_an_atomic_plan() -> None:
+def test_events_without_a_plan_do_not_pile_up_behind_an_atomic_plan() -> None:
     agent = agent_of("!g. @g[atomic] +!g <- drive.")
     for at in range(50):
         agent.cycle({f"at({at})"})

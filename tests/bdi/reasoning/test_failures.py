@@ -103,7 +103,7 @@ def test_a_failure_of_the_plan_for_a_failure_goes_to_the_goal_below() -> None:
     assert said(program) == ["r1", "fail_action", "action_failed"]
 
 
-def test_a_goal_that_nobody_rescues_is_given_up_with_the_first_error() -> None:
+def test_a_goal_that_no_plan_rescues_is_given_up_with_the_first_error() -> None:
     assert said("!a. +!a <- !b. +!b <- ?x. -!b : never <- no.") == ["given up: test_goal_failed"]
 
 

@@ -171,7 +171,7 @@ def test_drop_all_intentions_keeps_the_branches_of_the_one_that_says_so() -> Non
     assert run.more(5, "drive") == ["c"]
 
 
-def test_a_time_that_was_dropped_wakes_nobody() -> None:
+def test_a_time_that_was_dropped_wakes_no_intention() -> None:
     """The old wait is over after one second; the new one must not be cut short by it."""
     program = "!g. !s. +!g <- !h; .wait(3000); b. +!h <- .wait(1000). +!s <- .wait(500); .succeed_goal(h)."
     run = Run(program)

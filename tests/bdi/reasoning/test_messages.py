@@ -39,7 +39,7 @@ def test_a_list_is_told_one_by_one() -> None:
     assert agent.ask("p(X)[source(bob)]") == [{"X": 2}, {"X": 1}]
 
 
-def test_nobody_takes_back_what_another_said() -> None:
+def test_no_agent_takes_back_what_another_said() -> None:
     agent = agent_of("")
     told(agent, "tell", "p(1)", sender="ann")
     told(agent, "untell", "p(1)", sender="bob")
@@ -52,7 +52,7 @@ def test_a_signal_is_an_event_and_no_belief() -> None:
     assert not agent.believes("ping(_)")
 
 
-def test_a_goal_is_taken_back_by_whoever_says_so_also_when_its_plan_pursues_it_again() -> None:
+def test_a_goal_is_taken_back_by_any_sender_also_when_its_plan_pursues_it_again() -> None:
     agent = agent_of("+!go(P) <- drive(P); !go(P).")
     drive = told(agent, "achieve", "go(uc)", sender="ann").actions[0]
     agent.cycle(None, (), [Finished(drive.id)])

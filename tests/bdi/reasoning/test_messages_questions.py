@@ -79,7 +79,7 @@ def test_know_how_is_told_as_plans() -> None:
 # ---- asking --------------------------------------------------------------------------------------------------------
 
 
-def test_the_answer_to_a_question_that_nobody_waits_for_is_believed() -> None:
+def test_the_answer_to_a_question_that_no_agent_waits_for_is_believed() -> None:
     agent = agent_of("!g. +!g <- .send(bob, askOne, at(X)); on. +at(X)[source(S)] <- at(X,S).")
     question = agent.cycle().messages[0]
     assert actions(agent, 1) == ["on"]
@@ -187,7 +187,7 @@ def test_plans_told_in_a_list_carry_their_source() -> None:
     assert [str(each.plan.label) for each in agent.library.plans][1:] == ["pa[source(bob)]", "pb[source(bob)]"]
 
 
-def test_nobody_takes_away_a_plan_that_he_did_not_tell() -> None:
+def test_no_agent_takes_away_a_plan_that_it_did_not_tell() -> None:
     agent = agent_of("@own +!a <- own.")
     told(agent, "tellHow", "@hers +!b <- b.", sender="ann")
     for label in ("own", "hers"):

@@ -136,7 +136,7 @@ def test_two_programs_of_one_name_are_two_agents(tmp_path: Path) -> None:
     assert set(stdout.splitlines()) == {"2 a i_am(a)", "2 a_2 i_am(a_2)"}
 
 
-def test_somebody_outside_can_be_written_to_if_named(tmp_path: Path) -> None:
+def test_an_agent_outside_can_be_written_to_if_named(tmp_path: Path) -> None:
     (tmp_path / "a.asl").write_text("!g. +!g <- .send(server, tell, here); a. -!g <- b.")
     assert run(tmp_path / "a.asl").stdout.splitlines() == ["2 b"]
     result = run(tmp_path / "a.asl", "--outside", "server")

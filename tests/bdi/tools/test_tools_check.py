@@ -138,7 +138,7 @@ def test_a_failure_that_no_plan_takes_ends_the_intention_and_check_says_so() -> 
     assert codes(program) == ["open-failure"]
 
 
-def test_a_plan_that_says_whose_goal_it_is_needs_nobody_to_post_it() -> None:
+def test_a_plan_that_says_whose_goal_it_is_needs_no_agent_to_post_it() -> None:
     found = findings_of(parse_program("+!visit(P)[source(user)] <- go(P). +!tour[source(self)] <- go(1)."))
     assert [(each.code, each.place.line, "tour" in each.problem) for each in found] == [("uncalled-plan", 1, True)]
 

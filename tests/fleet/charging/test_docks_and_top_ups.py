@@ -97,12 +97,12 @@ def test_no_dock_is_two_robots_at_the_same_time(robots: list[tuple[float, str | 
         assert one.dock != following.dock or one.until_s <= following.from_s + 1e-6
 
 
-def test_whoever_has_nothing_to_do_charges_lowest_first_at_the_nearest_dock() -> None:
+def test_a_robot_with_nothing_to_do_charges_lowest_first_at_the_nearest_dock() -> None:
     assert moves(need("r1", 0.6), need("r2", 0.4)) == {"r2": "a", "r1": "b"}
     assert moves(need("r1", 0.6), need("r2", 0.4), free="a") == {"r2": "a"}
 
 
-def test_in_busy_hours_nobody_waits_for_the_last_percents_and_in_quiet_ones_everybody_does() -> None:
+def test_in_busy_hours_no_robot_waits_for_the_last_percents_and_in_quiet_ones_all_do() -> None:
     assert moves(need("r1", 0.82)) == {}
     assert moves(need("r1", 0.82), is_quiet=True) == {"r1": "a"}
 
@@ -122,14 +122,14 @@ def test_who_must_charge_soon_sets_out_even_to_a_dock_that_is_taken() -> None:
     assert moves(need("r1", 0.5, dock="a"), need("r2", 0.27, a=NEAR), free="b") == {"r2": "a"}
 
 
-def test_nobody_sets_out_who_would_not_arrive() -> None:
+def test_no_robot_sets_out_that_would_not_arrive() -> None:
     assert moves(need("r1", 0.45, a=Use(900.0, 4500.0))) != {"r1": "b"}
     assert top_ups([need("r1", 0.3, c=NEAR)], planned(need("r1", 0.3, c=NEAR)), {}, THRESHOLDS, Wish(True), 0.0) == [
         Move("r1", "c")
     ]
 
 
-def test_quiet_hours_are_learned_and_nothing_is_quiet_that_nobody_knows() -> None:
+def test_quiet_hours_are_learned_and_nothing_is_quiet_that_was_not_learned() -> None:
     demand = Demand()
     assert not demand.is_quiet(MONDAY)
     for hour in range(24 * 14):

@@ -79,7 +79,7 @@ def test_a_robot_that_was_in_a_corridor_when_all_was_forgotten_is_in_it_still() 
     assert controller.leads("r1") == line(3).lane(1, 0), "home, past the robot that stands there"
 
 
-def test_a_robot_that_goes_for_reasons_of_its_own_may_change_its_mind_and_nobody_waits_for_what_it_wanted() -> None:
+def test_a_robot_that_goes_for_reasons_of_its_own_may_change_its_mind_and_no_robot_waits_for_what_it_wanted() -> None:
     controller = TrafficController(line(4))
     controller.joins("r1", post="b", home="b", at_home=True, now_s=0.0)
     controller.joins("r2", post="d", home="d", at_home=True, now_s=0.0)
@@ -120,7 +120,7 @@ def test_a_closed_corridor_is_gone_round_and_open_again_it_is_used() -> None:
     assert isinstance(controller.claims("r1", "a", "b", 4.0), Granted)
 
 
-def test_whoever_waits_is_told_when_the_way_is_another() -> None:
+def test_a_robot_that_waits_is_told_when_the_way_is_another() -> None:
     controller = TrafficController(triangle())
     controller.joins("r1", post="a", home="a", at_home=True, now_s=0.0)
     controller.joins("r2", post="b", home="b", at_home=True, now_s=0.0)
@@ -167,7 +167,7 @@ def test_a_robot_that_goes_for_reasons_of_its_own_is_let_in() -> None:
     assert isinstance(controller.claims("r1", "b", "c", 101.0), Granted)
 
 
-def test_a_timetable_worked_out_meanwhile_is_taken_if_nobody_went_elsewhere() -> None:
+def test_a_timetable_worked_out_meanwhile_is_taken_if_no_robot_went_elsewhere() -> None:
     controller = two_at_the_ends()
     assert controller.give("r1", [Goal(1, 10.0, key="one")], 0.0)
     tasks, journeys = controller.tasks(0.0), controller.journeys(0.0)

@@ -19,7 +19,7 @@ def test_every_connected_shape_is_looked_at_once(posts: int, shapes: int) -> Non
     assert len(list(connected_maps(posts))) == shapes
 
 
-def test_places_from_which_nobody_comes_home_are_not_looked_at() -> None:
+def test_places_from_which_no_robot_comes_home_are_not_looked_at() -> None:
     """Four robots on a line of single bays, each in the way of those that must pass it: they never come about."""
     line = network_on(4, frozenset({(0, 1), (1, 2), (2, 3)}), (1, 1, 1, 1))
     known = Fleet(line, (3, 3, 0, 0)).places_that_come_home()

@@ -5,7 +5,7 @@ from fleet.schedule.journey import Goal
 from tests.fleet.schedule.test_controller import line
 
 
-def test_a_dead_robot_in_the_only_bay_of_a_post_lets_nobody_pass_and_everybody_is_told() -> None:
+def test_a_dead_robot_in_the_only_bay_of_a_post_lets_no_robot_pass_and_all_are_told() -> None:
     controller = TrafficController(line(4))
     controller.joins("dead", post="b", home="b", at_home=False, now_s=0.0)
     controller.joins("r1", post="d", home="d", at_home=True, now_s=0.0)

@@ -23,7 +23,7 @@ def is_sound(controller: TrafficController, now_s: float) -> bool:
     return problems(controller.network, controller.tasks(now_s), controller.journeys(now_s)) == []
 
 
-def test_whoever_meets_nobody_gets_its_whole_way_and_all_of_it_is_its_own_until_it_is_through() -> None:
+def test_a_robot_that_meets_no_other_gets_its_whole_way_and_all_of_it_is_its_own_until_it_is_through() -> None:
     controller = alone_and_let_in()
     assert [lane.end for lane in controller.goes_on("r1", WAY, 0.0)] == [2, 3]
     assert is_sound(controller, 0.0)
@@ -39,7 +39,7 @@ def test_whoever_meets_nobody_gets_its_whole_way_and_all_of_it_is_its_own_until_
     assert controller.leads("r1") is not None, "home, before the other comes in"
 
 
-def test_only_so_far_is_granted_as_nobody_goes_before() -> None:
+def test_only_so_far_is_granted_as_no_robot_goes_before() -> None:
     controller = TrafficController(line(5, bays=2))
     controller.joins("r1", post="a", home="a", at_home=True, now_s=0.0)
     controller.joins("r2", post="e", home="e", at_home=True, now_s=0.0)
@@ -72,7 +72,7 @@ def test_what_was_granted_before_a_restart_is_held_after_it() -> None:
     assert isinstance(controller.claims("r2", "e", "d", 1.0), Waits)
 
 
-def test_robots_that_go_on_as_far_as_they_may_meet_nobody_and_all_arrive() -> None:
+def test_robots_that_go_on_as_far_as_they_may_never_meet_and_all_arrive() -> None:
     for seed in range(12):
         rng, network = Random(seed), line(6, bays=1 + seed % 2)
         controller, names = TrafficController(network, rng), ["r1", "r2", "r3"]

@@ -26,7 +26,7 @@ def two_that_swap(network: Network) -> tuple[dict[str, Task], Timetable]:
     return tasks, found
 
 
-def test_whoever_is_ready_early_waits_for_whom_the_timetable_lets_go_first() -> None:
+def test_a_robot_that_is_ready_early_waits_for_the_one_the_timetable_lets_go_first() -> None:
     network = two_posts(bays=2)
     tasks, found = two_that_swap(network)
     entries_s = {robot: journey.legs[1].enter_s for robot, journey in found.journeys.items()}
@@ -38,7 +38,7 @@ def test_whoever_is_ready_early_waits_for_whom_the_timetable_lets_go_first() -> 
 
 @settings(max_examples=60)
 @given(st.randoms(use_true_random=False), st.integers(1, 6), st.booleans())
-def test_when_nobody_is_late_nothing_comes_later_than_planned(rng: Random, robots: int, following: bool) -> None:
+def test_when_no_robot_is_late_nothing_comes_later_than_planned(rng: Random, robots: int, following: bool) -> None:
     network = random_network(rng, following=following)
     tasks = random_tasks(rng, network, robots)
     found = planned(rng, network, tasks)
@@ -62,7 +62,7 @@ def test_whatever_gets_better_everybody_stays_in_the_order_in_which_more_is_look
     assert sorted(better.order) == sorted(tasks)
 
 
-def test_whoever_follows_a_late_robot_arrives_behind_it() -> None:
+def test_a_robot_that_follows_a_late_robot_arrives_behind_it() -> None:
     network = two_posts(bays=3, following_s=20.0)
     lane = network.lanes[0][0]
     tasks = {
@@ -86,7 +86,7 @@ def _at(leg: Leg, enter_s: float) -> Leg:
     return leg if leg.lane is None else leg._replace(enter_s=enter_s, arrive_s=enter_s + leg.lane.travel_s)
 
 
-def test_idle_robots_keep_nobody_from_something_better_however_late_it_is() -> None:
+def test_idle_robots_keep_no_robot_from_something_better_however_late_it_is() -> None:
     network, now_s = two_posts(bays=2), 100_000.0
     tasks = {
         "busy": Task(Start(0, True, now_s, 0.0), (Goal(1, 10.0),), 0),
@@ -133,7 +133,7 @@ def test_the_check_wants_a_bay_to_be_left_strictly_before_it_is_entered() -> Non
     assert problems(network, tasks, {"out": leaves}) == ["into has no journey"]
 
 
-def test_nobody_waits_for_a_late_robot_where_another_bay_is_free() -> None:
+def test_no_robot_waits_for_a_late_robot_where_another_bay_is_free() -> None:
     network = street(3, bays=2)
     late, after = Start(1, False, 0.0, 0.0), Start(2, True, 0.0, 0.0)
     tasks = {"late": Task(late, (), 0), "next": Task(after, (Goal(1, 10.0, 300.0),), 2)}

@@ -50,7 +50,7 @@ def within(spans: list[Span], since_s: float, until_s: float) -> bool:
 
 @settings(max_examples=60)
 @given(st.randoms(use_true_random=False), st.sampled_from([None, 2.0]))
-def test_what_is_free_is_what_nobody_has(rng: Random, following_s: float | None) -> None:
+def test_what_is_free_is_what_no_robot_has(rng: Random, following_s: float | None) -> None:
     network = two_posts(following_s)
     taken, there = Taken(network), some_passages(rng, network)
     for robot, (leg, until_s) in there.items():

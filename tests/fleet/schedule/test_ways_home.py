@@ -38,18 +38,18 @@ def two_on_a_street(bays: tuple[int, ...], goal_of_new: int) -> tuple[Journeys, 
     return kept, found.journeys
 
 
-def test_a_way_home_that_nobody_is_in_the_way_of_stays_as_it_was() -> None:
+def test_a_way_home_that_no_robot_is_in_the_way_of_stays_as_it_was() -> None:
     before, after = two_on_a_street((1, 1, 1, 1, 1, 1), goal_of_new=3)
     assert after["old"] == before["old"]
 
 
-def test_a_way_home_is_planned_again_when_somebody_is_going_to_stand_in_it() -> None:
+def test_a_way_home_is_planned_again_when_a_robot_is_going_to_stand_in_it() -> None:
     before, after = two_on_a_street((2, 1, 2, 2, 2, 2), goal_of_new=1)
     assert after["old"].work == before["old"].work
     assert after["old"].way_home != before["old"].way_home
 
 
-def test_a_way_home_past_somebody_is_no_matter_where_there_is_a_bay_for_both() -> None:
+def test_a_way_home_past_a_robot_is_no_matter_where_there_is_a_bay_for_both() -> None:
     before, after = two_on_a_street((2, 2, 2, 2, 2, 2), goal_of_new=1)
     assert after["old"] == before["old"]
 

@@ -3,7 +3,7 @@
 from benchmarks.fleet.charging import Run, look_at
 
 
-def test_nobody_strands_and_no_order_waits_for_a_charge_that_nobody_planned() -> None:
+def test_no_robot_strands_and_no_order_waits_for_a_charge_that_was_not_planned() -> None:
     """Three days; weeks in `make bench-fleet ARGS="charging"`."""
     seen = look_at(Run("predicting", "usual", seed=2, days=3.0))
     assert seen.stranded == 0
