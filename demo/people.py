@@ -40,7 +40,7 @@ def sign_in_code(mail: EmailMessage) -> str | None:
     return found[0] if found and str(mail["Message-ID"]).startswith("<sign-in.") else None
 
 
-class NobodyLooks(DemoFailed):
+class NoCameraError(DemoFailed):
     """The robot's process does not run: there is no camera to show a code to."""
 
 
@@ -81,7 +81,7 @@ class SimulatedPerson:
         return alarms
 
     async def show_code(self, order_id: str) -> None:
-        """Hold one's code to the robot's camera. Raises NobodyLooks."""
+        """Hold one's code to the robot's camera. Raises NoCameraError."""
         await self._ask("POST", "/demo/camera", {"order_id": order_id})
 
     async def robots(self) -> list[dict[str, Any]]:
@@ -96,7 +96,7 @@ class SimulatedPerson:
     async def _ask(self, method: str, path: str, body: Any = None, headers: dict[str, str] | None = None) -> Any:
         answer = await self._answer(method, path, body, headers)
         if answer.is_error:
-            failure = NobodyLooks if answer.json().get("code") == "door_closed" else DemoFailed
+            failure = NoCameraError if answer.json().get("code") == "door_closed" else DemoFailed
             raise failure(f"{method} {path} was refused: {answer.text}")
         return answer.json()
 

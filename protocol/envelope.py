@@ -31,7 +31,7 @@ TO_SERVER: Final[Mapping[str, type[Part]]] = {
     "withdraw": to_server.Withdraw,
     "clear": to_server.Clear,
     "why": to_server.Why,
-    "insight": insight.Insight,
+    "insight": insight.Diagnostics,
     **BOTH_WAYS,
 }
 TO_ROBOT: Final[Mapping[str, type[Part]]] = {

@@ -88,7 +88,7 @@ class Means(Part):
     passed_over: tuple[NotChosen, ...] = ()
 
 
-class IntentionTold(Part):
+class IntentionReport(Part):
     """One intention: `stack` from its first cause down to what it is doing now, and why it does not go on.
 
     `beside` are the intentions that are branches of the same plan.
@@ -125,7 +125,7 @@ class LeftOut(Part):
     intentions: Count = 0
 
 
-class Insight(Part):
+class Diagnostics(Part):
     """Live diagnostics, while a technician watches: at most twice a second, dropped first, never kept.
 
     `number` counts from 1, which has all beliefs in `came` (`whole`); those after it say what `came` and `went` since
@@ -138,7 +138,7 @@ class Insight(Part):
     whole: bool = False
     sensors: Sensors
     loops: tuple[LoopTiming, ...] = ()
-    intentions: tuple[IntentionTold, ...] = ()
+    intentions: tuple[IntentionReport, ...] = ()
     events: tuple[Text, ...] = ()
     came: tuple[Text, ...] = ()
     went: tuple[Text, ...] = ()

@@ -15,7 +15,7 @@ from protocol.proofs import ShownCode
 from protocol.to_robot import Grant, Mission
 from protocol.to_server import Claim, Hello, Step
 from robot.mission.memory import Memory
-from robot.mission.mission import Duties
+from robot.mission.mission import MissionManager
 from robot.mission.outbox import Outbox
 from robot.mission.store import Store
 
@@ -35,9 +35,9 @@ def loaded(folder: Path, then: Forgets = lambda memory, outbox: None) -> Facts:
         memory.resume("server-journal", 1)
         for seq, message in enumerate((LETTER, GRANT), start=1):
             memory.receive(from_server(message, seq))
-        duties = Duties(store, memory, outbox, lambda: AT)
-        duties.report(Step.ARRIVED, "s1", "post1")
-        duties.handed_over((LETTER, LOAD), Purpose.LOAD, "post1", ShownCode("a" * 64, b"key"))
+        missions = MissionManager(store, memory, outbox, lambda: AT)
+        missions.report(Step.ARRIVED, "s1", "post1")
+        missions.handed_over((LETTER, LOAD), Purpose.LOAD, "post1", ShownCode("a" * 64, b"key"))
         told = {kept.seq: kept.message for kept in outbox.pending()}
         outbox.put(Claim(claim_id="c2", legs=(OTHER_LEG,)))  # which the server has not heard yet
         outbox.acknowledged(1)

@@ -16,7 +16,7 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 from app.core.database.database import Database, connection_of
 from app.core.database.deadline import waiting_at_most
 from app.core.errors import DATABASE_AWAY
-from app.core.polling import Looks
+from app.core.polling import PollingLoop
 from app.models import PersonSession, PersonToken
 
 WRITE_EVERY_S: Final = 1.0
@@ -37,25 +37,25 @@ class LastSeen:
     database: Database
     _sessions: dict[int, datetime] = field(default_factory=dict)
     _tokens: dict[str, datetime] = field(default_factory=dict)
-    _looks: Looks = field(default_factory=lambda: Looks(LOOK_AGAIN_S, WRITE_EVERY_S))
+    _polling: PollingLoop = field(default_factory=lambda: PollingLoop(LOOK_AGAIN_S, WRITE_EVERY_S))
 
     def note_session(self, session_id: int, now: datetime) -> None:
         """Record that a browser has used this session."""
         self._sessions[session_id] = now
-        self._looks.wake()
+        self._polling.wake()
 
     def note_token(self, prefix: str, now: datetime) -> None:
         """Record that a script has used this token."""
         self._tokens[prefix] = now
-        self._looks.wake()
+        self._polling.wake()
 
     def stop(self) -> None:
         """End `run` after what it is doing."""
-        self._looks.stop()
+        self._polling.stop()
 
     async def run(self) -> None:
         """Until stopped or cancelled."""
-        async for _ in self._looks.until_stopped():
+        async for _ in self._polling.until_stopped():
             await self._write()
 
     async def _write(self) -> None:

@@ -13,8 +13,8 @@ from app.accounts.rate_limits import Door, per_person_at_browser
 from app.accounts.schemas import (
     AboutMe,
     AddressBook,
+    ContactRequest,
     ContactView,
-    ContactWish,
     Email,
     MyView,
     NewTokenView,
@@ -22,8 +22,8 @@ from app.accounts.schemas import (
     SessionPage,
     SessionView,
     TokenPage,
+    TokenRequest,
     TokenView,
-    TokenWish,
 )
 from app.accounts.search import SearchText
 from app.accounts.sessions.sessions import end_others, end_session, open_sessions
@@ -90,7 +90,13 @@ async def my_contacts(
 
 @address_router.put("/me/contacts/{email}", dependencies=CHANGES, responses=problems(NoSuchPost, 429))
 async def keep_contact(
-    *, email: ContactEmail, wish: ContactWish, user: AtBrowser, session: SessionDep, campus: CampusDep, clock: ClockDep
+    *,
+    email: ContactEmail,
+    wish: ContactRequest,
+    user: AtBrowser,
+    session: SessionDep,
+    campus: CampusDep,
+    clock: ClockDep,
 ) -> ContactView:
     """Save a contact with a label and a post, or change them."""
     _require_post(campus, wish.post)
@@ -133,7 +139,7 @@ async def my_tokens(user: AtBrowser, session: ReadingDep, page: PageDep, clock: 
 
 @router.post("/tokens", status_code=201, dependencies=CHANGES, responses=problems(429))
 async def make_token(
-    wish: TokenWish, user: AtBrowser, session: SessionDep, clock: ClockDep, response: Response
+    wish: TokenRequest, user: AtBrowser, session: SessionDep, clock: ClockDep, response: Response
 ) -> NewTokenView:
     """Make a token for a script: `Authorization: Bearer cmp_…`. It is shown now and never again."""
     row, text = await issue_token(session, user, wish.name, set(wish.scopes), timedelta(days=wish.days), clock.utc())

@@ -101,7 +101,7 @@ class SessionPage(PageOf[SessionView]):
     """Some sessions, newest first."""
 
 
-class TokenWish(BaseModel):
+class TokenRequest(BaseModel):
     """A token for a script of mine."""
 
     model_config = ConfigDict(extra="forbid")
@@ -136,7 +136,7 @@ class TokenPage(PageOf[TokenView]):
     """Some tokens that still open something, newest first."""
 
 
-class ContactWish(BaseModel):
+class ContactRequest(BaseModel):
     """The entry that the address book is to have of a contact."""
 
     model_config = ConfigDict(extra="forbid")

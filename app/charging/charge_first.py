@@ -29,7 +29,7 @@ log = structlog.get_logger(__name__)
 
 @dataclass(frozen=True)
 class ChargeFirst:
-    """Asked by the traffic desk, in the transaction in which it would let the robot in."""
+    """Asked by the traffic service, in the transaction in which it would let the robot in."""
 
     fleet: Fleet
 

@@ -17,7 +17,7 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.charging.dock_room import driving_there, leaving, parking
 from app.charging.free_docks import UNTIL_RATIO, docks_of, taken_docks
-from app.core.polling import Looks
+from app.core.polling import PollingLoop
 from app.dispatch.charge_limits import THRESHOLDS, Charges
 from app.dispatch.open_work import OpenWork, RobotNow, StopNow, look_at_work
 from app.models import MissionRow, Order, RobotRow, StopRow
@@ -29,7 +29,7 @@ from fleet.charging.curve import ASSUMED
 from fleet.charging.demand import Demand
 from fleet.charging.docks import Need, plan_docks
 from fleet.charging.energy import Use
-from fleet.charging.top_ups import Move, Wish, top_ups
+from fleet.charging.top_ups import Move, TopUpPolicy, top_ups
 from protocol.ids import new_id
 from protocol.parts import StopAction
 
@@ -44,25 +44,25 @@ log = structlog.get_logger(__name__)
 
 
 @dataclass
-class ChargeDesk:
-    """Runs in the background of the service, if traffic goes by the timetable."""
+class ChargingService:
+    """Runs in the background of the service, if traffic goes by the schedule."""
 
     fleet: Fleet
     _demand: Demand = field(default_factory=Demand)
     _learned_at: datetime | None = None
-    _looks: Looks = field(default_factory=lambda: Looks(LOOK_EVERY_S, REST_S))
+    _polling: PollingLoop = field(default_factory=lambda: PollingLoop(LOOK_EVERY_S, REST_S))
 
     def wake(self, _changed: str = "") -> None:
         """Poll soon: an order has changed, so that a robot may be needed elsewhere."""
-        self._looks.wake()
+        self._polling.wake()
 
     def stop(self) -> None:
         """End `run` after what it is doing."""
-        self._looks.stop()
+        self._polling.stop()
 
     async def run(self) -> None:
         """Until stopped or cancelled."""
-        async for _ in self._looks.until_stopped():
+        async for _ in self._polling.until_stopped():
             await self.look_round()
 
     async def look_round(self) -> None:
@@ -104,11 +104,11 @@ class ChargeDesk:
         resting = [need for name, need in needs.items() if self._may_be_sent(work.robots[name], work)]
         plan = plan_docks(list(needs.values()), docks, ASSUMED, THRESHOLDS, self.fleet.clock.now())
         here = self._local(now)
-        wish = Wish(self._demand.is_quiet(here), round(self._demand.expected(here)))
+        policy = TopUpPolicy(self._demand.is_quiet(here), round(self._demand.expected(here)))
         in_docks = {need.dock: need.robot for need in resting if need.dock is not None}
         awaited = {dock for name, dock in driving_there(needs.values()).items() if needs[name] not in resting}
         taken = {dock: in_docks.get(dock) for dock in (*taken_docks(work), *awaited)}
-        found = top_ups(resting, plan, taken, THRESHOLDS, wish, self.fleet.clock.now())
+        found = top_ups(resting, plan, taken, THRESHOLDS, policy, self.fleet.clock.now())
         leave = leaving([move for move in found if move.dock in taken], needs, in_docks)
         return [move for move in found if move.dock not in taken], set(leave)
 

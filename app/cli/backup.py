@@ -12,7 +12,7 @@ from sqlalchemy import inspect
 from app.cli.output import AsJson, errors_in_words, say_json
 from app.core.database.database import Database
 from app.core.settings import Settings, load_settings, make_data_folder, open_clock
-from app.retention.backup import Manifest, Wish, back_up
+from app.retention.backup import BackupRequest, Manifest, back_up
 from app.retention.restoring import restore as put_back
 from protocol.software import version
 
@@ -29,10 +29,10 @@ def backup(
     """
     with errors_in_words():
         settings = load_settings()
-        wish = Wish(settings, version(), open_clock(settings).utc(), with_keys)
+        request = BackupRequest(settings, version(), open_clock(settings).utc(), with_keys)
         with Progress(console=Console(stderr=True), transient=True, disable=as_json) as bar:
             task = bar.add_task("copying", total=1.0)
-            manifest = back_up(wish, to.resolve(), lambda part: bar.update(task, completed=part))
+            manifest = back_up(request, to.resolve(), lambda part: bar.update(task, completed=part))
     _tell(to, manifest, as_json)
 
 

@@ -29,7 +29,7 @@ took 6 % of the processor, and each stopped everything for 5 to 40 ms (measured)
 ANOTHER_FOLDER = "Stop that one, or give this one a data folder of its own: CAMPUS_MAIL_DATA."
 
 
-class PortTaken(StartError):
+class PortInUse(StartError):
     """Another program listens on this port."""
 
     def __init__(self, host: str, port: int, verb: str) -> None:
@@ -53,7 +53,7 @@ class Server(uvicorn.Server):
 
 
 def listen(host: str, port: int, verb: str = "serve") -> socket.socket:
-    """A bound socket. Raises PortTaken, or StartError for an address that is not this machine's.
+    """A bound socket. Raises PortInUse, or StartError for an address that is not this machine's.
 
     `verb`: what `make` calls it.
     """
@@ -66,7 +66,7 @@ def listen(host: str, port: int, verb: str = "serve") -> socket.socket:
     except OSError as error:
         listening.close()
         if error.errno == errno.EADDRINUSE:
-            raise PortTaken(host, port, verb) from None
+            raise PortInUse(host, port, verb) from None
         raise StartError(f"Cannot listen on {host} port {port}: {error.strerror}.") from error
     return listening
 

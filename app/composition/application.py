@@ -11,7 +11,7 @@ from app.composition.background import lifespan
 from app.composition.parts import Parts
 from app.core.database.deadline import RequestDeadline
 from app.core.errors import add_error_answers
-from app.core.http_client import Outside
+from app.core.http_client import HttpClient
 from app.core.settings import Settings
 from app.eta import routes as eta_routes
 from app.handover import demo_camera, one_order_routes
@@ -77,8 +77,8 @@ ROUTERS = (
 ROOT_ROUTERS = (about.root_router, asset_links.router, metrics.router)
 
 
-def create_app(settings: Settings, clock: Clock, outside: Outside | None = None) -> FastAPI:
-    """The service, ready to be served; `outside` is given by tests alone. Raises StartError."""
+def create_app(settings: Settings, clock: Clock, http_client: HttpClient | None = None) -> FastAPI:
+    """The service, ready to be served; `http_client` is given by tests alone. Raises StartError."""
     app = DocumentedApi(
         title="Campus Mail",
         summary="Orders, robots and people of a campus.",
@@ -90,7 +90,7 @@ def create_app(settings: Settings, clock: Clock, outside: Outside | None = None)
     )
     app.openapi_version = "3.2.0"  # the first that can describe an event stream
     app.state.parts = parts = Parts(
-        settings, clock, outside or Outside(settings.outside_ports, settings.outside_refused_networks)
+        settings, clock, http_client or HttpClient(settings.outside_ports, settings.outside_refused_networks)
     )
     add_error_answers(app)
     if settings.demo_door is not None:

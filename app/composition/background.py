@@ -58,13 +58,13 @@ def _workers(parts: Parts) -> dict[str, Worker]:
     workers: dict[str, Worker | None] = {
         "dispatch": parts.dispatcher,
         "timer": parts.timer,
-        "retention": parts.housekeeper,
+        "retention": parts.retention_job,
         "last_seen": parts.last_seen,
         "estimates": parts.fleet.learning,
-        "eta_updates": parts.foreseen,
+        "eta_updates": parts.eta_updates,
         "energy_use": parts.fleet.spending,
-        "charging": parts.charge_desk,
-        "traffic": parts.traffic_desk,
+        "charging": parts.charging_service,
+        "traffic": parts.traffic_service,
         "planning": parts.planner,
     }
     return {name: worker for name, worker in workers.items() if worker is not None}

@@ -11,23 +11,23 @@ from app.accounts.last_seen import LastSeen
 from app.accounts.links import Links
 from app.accounts.rate_limits import RateLimits
 from app.accounts.sign_in.oidc import Provider
-from app.accounts.sign_in.service import SignInDesk
+from app.accounts.sign_in.service import SignInService
 from app.charging.charge_first import ChargeFirst
-from app.charging.service import ChargeDesk
+from app.charging.service import ChargingService
 from app.core.database.database import Database
-from app.core.http_client import TIMEOUT_S, Outside, trusted_here
+from app.core.http_client import TIMEOUT_S, HttpClient, trusted_here
 from app.core.mail import Mailer, open_mailer
 from app.core.server_key import ServerKey, open_server_key
 from app.core.settings import Settings, make_data_folder, open_map
 from app.dispatch.at_once.nearest import NearestRobots
-from app.dispatch.eta_updates import Foreseen
+from app.dispatch.eta_updates import EtaUpdates
 from app.dispatch.fleet_planner import FleetPlanner
 from app.dispatch.held_up import NoRobotComes
 from app.dispatch.service import Dispatcher
 from app.handover.delegates import Delegating
 from app.handover.service import HandOvers
 from app.http.metrics import Metrics
-from app.models import Notice, Person
+from app.models import Notification, Person
 from app.notifications.channels.mail import Drawing, MailChannel
 from app.notifications.channels.push import PushChannel
 from app.notifications.channels.webhook import Address, WebhookChannel, secret_bytes
@@ -40,11 +40,11 @@ from app.orders.service import Orders
 from app.orders.standing.standing import StandingOrders
 from app.orders.timer import Timer
 from app.realtime.feed import LocalFeed
-from app.retention.retention_job import Housekeeper
+from app.retention.retention_job import RetentionJob
 from app.robots.conversation.intake import Intake
-from app.robots.enrolment.service import EnrolmentDesk
+from app.robots.enrolment.service import EnrolmentService
 from app.robots.service import Fleet
-from app.traffic.service import TrafficDesk
+from app.traffic.service import TrafficService
 from fleet.eta.arrivals import Estimates
 from maps import CampusMap
 from protocol.clock import Clock
@@ -59,7 +59,7 @@ class Parts:
 
     settings: Settings
     clock: Clock
-    outside: Outside
+    http_client: HttpClient
 
     campus: CampusMap = field(init=False)
     server_key: ServerKey = field(init=False)
@@ -70,7 +70,7 @@ class Parts:
     last_seen: LastSeen = field(init=False)
     rate_limits: RateLimits = field(init=False)
     mailer: Mailer = field(init=False)
-    sign_in_desk: SignInDesk = field(init=False)
+    sign_in_service: SignInService = field(init=False)
     provider: Provider = field(init=False)
     links: Links = field(init=False)
 
@@ -80,7 +80,7 @@ class Parts:
     standing_orders: StandingOrders = field(init=False)
     timer: Timer = field(init=False)
 
-    enrolment_desk: EnrolmentDesk = field(init=False)
+    enrolment_service: EnrolmentService = field(init=False)
     fleet: Fleet = field(init=False)
     intake: Intake = field(init=False)
     hand_overs: HandOvers = field(init=False)
@@ -93,12 +93,12 @@ class Parts:
     """Reaches the address that the operator set, which may be on the campus's own network."""
     outbox_worker: OutboxWorker = field(init=False)
 
-    traffic_desk: TrafficDesk | None = field(init=False, default=None)
+    traffic_service: TrafficService | None = field(init=False, default=None)
     planner: FleetPlanner | None = field(init=False, default=None)
-    charge_desk: ChargeDesk | None = field(init=False, default=None)
+    charging_service: ChargingService | None = field(init=False, default=None)
     dispatcher: Dispatcher = field(init=False)
-    foreseen: Foreseen = field(init=False)
-    housekeeper: Housekeeper = field(init=False)
+    eta_updates: EtaUpdates = field(init=False)
+    retention_job: RetentionJob = field(init=False)
 
     def __post_init__(self) -> None:
         self._add_foundation()
@@ -107,7 +107,7 @@ class Parts:
         self._add_robots()
         self._add_notifications()
         self._add_planning()
-        self.housekeeper = Housekeeper(self.database, self.settings, self.clock)
+        self.retention_job = RetentionJob(self.database, self.settings, self.clock)
         self._connect()
 
     def _add_foundation(self) -> None:
@@ -122,27 +122,27 @@ class Parts:
         self.last_seen = LastSeen(self.database)
         self.rate_limits = RateLimits(self.settings)
         self.mailer = open_mailer(self.settings)
-        self.sign_in_desk = SignInDesk(self.settings, self.server_key, self.mailer)
+        self.sign_in_service = SignInService(self.settings, self.server_key, self.mailer)
         self.provider = Provider(self.settings, self.server_key)
         self.links = Links(self.database, self.server_key, self.settings, self.clock)
 
     def _add_orders(self) -> None:
         ledger = Ledger(self.campus, self.settings, self.clock, self.feed)
-        self.orders = Orders.of(ledger, self.server_key, self.sign_in_desk)
+        self.orders = Orders.of(ledger, self.server_key, self.sign_in_service)
         self.estimates = ledger.estimates
         self.order_batcher = OrderBatcher(self.database, self.orders.placing)
         self.standing_orders = StandingOrders(self.orders.placing, self.clock)
         self.timer = Timer(self.database, self.orders, self.standing_orders)
 
     def _add_robots(self) -> None:
-        self.enrolment_desk = EnrolmentDesk(self.settings, self.server_key, self.clock)
+        self.enrolment_service = EnrolmentService(self.settings, self.server_key, self.clock)
         self.fleet = Fleet(self.database, self.campus, self.settings, self.clock, self.feed, self.orders)
         self.intake = Intake(self.fleet)
-        self.hand_overs, self.delegating = HandOvers(self.fleet), Delegating(self.fleet, self.sign_in_desk)
+        self.hand_overs, self.delegating = HandOvers(self.fleet), Delegating(self.fleet, self.sign_in_service)
 
     def _add_notifications(self) -> None:
         self.push_key = open_push_key(self.settings.push_key_path)
-        self.public_http = self.outside.client()
+        self.public_http = self.http_client.client()
         self.operator_http = httpx.AsyncClient(verify=trusted_here(), timeout=TIMEOUT_S, trust_env=False)
         settings, url = self.settings, self.settings.webhook_url
         secret = settings.webhook_secret.get_secret_value()
@@ -157,12 +157,12 @@ class Parts:
         )
 
     def _add_planning(self) -> None:
-        if self.settings.traffic == "timetable":
-            self.traffic_desk = TrafficDesk(self.fleet, ChargeFirst(self.fleet).sends)
-            self.planner = FleetPlanner(self.fleet, self.traffic_desk)
-            self.charge_desk = ChargeDesk(self.fleet)
+        if self.settings.traffic == "schedule":
+            self.traffic_service = TrafficService(self.fleet, ChargeFirst(self.fleet).sends)
+            self.planner = FleetPlanner(self.fleet, self.traffic_service)
+            self.charging_service = ChargingService(self.fleet)
         self.dispatcher = Dispatcher(self.fleet, self.planner or NearestRobots(self.fleet))
-        self.foreseen = Foreseen(self.fleet, self.traffic_desk)
+        self.eta_updates = EtaUpdates(self.fleet, self.traffic_service)
 
     def _connect(self) -> None:
         """Say what each change wakes, in this order. Each is called after the commit of the change."""
@@ -170,18 +170,20 @@ class Parts:
         learning.why_none = NoRobotComes(self.fleet).why
         self.orders.ledger.on_change.extend([learning.wake, self.outbox_worker.wake])
         self.fleet.on_change.extend([learning.wake])
-        if self.traffic_desk is not None and self.planner is not None and self.charge_desk is not None:
-            self.orders.ledger.on_change.extend([self.traffic_desk.wake, self.charge_desk.wake])
-            self.fleet.on_change.extend([self.traffic_desk.wake])
-            self.traffic_desk.on_look.extend([self.planner.notice, self.dispatcher.wake_for_robot, self.foreseen.wake])
-        self.orders.ledger.on_change.extend([self.dispatcher.wake, self.foreseen.wake])
-        self.fleet.on_change.extend([self.dispatcher.wake_for_robot, self.foreseen.wake])
+        if self.traffic_service is not None and self.planner is not None and self.charging_service is not None:
+            self.orders.ledger.on_change.extend([self.traffic_service.wake, self.charging_service.wake])
+            self.fleet.on_change.extend([self.traffic_service.wake])
+            self.traffic_service.on_look.extend(
+                [self.planner.notice, self.dispatcher.wake_for_robot, self.eta_updates.wake]
+            )
+        self.orders.ledger.on_change.extend([self.dispatcher.wake, self.eta_updates.wake])
+        self.fleet.on_change.extend([self.dispatcher.wake_for_robot, self.eta_updates.wake])
 
-    async def _link_for(self, person: Person, notice: Notice) -> str | None:
+    async def _link_for(self, person: Person, notice: Notification) -> str | None:
         """Return the link that goes with a mail to a person without an account."""
         return await self.links.url_for(person, notice.order_id) if notice.order_id else None
 
-    def _code_picture(self, notice: Notice) -> Drawing | None:
+    def _code_picture(self, notice: Notification) -> Drawing | None:
         """Return the code that goes with a mail, so that it is at hand where there is no network."""
         code = code_in_mail(self.server_key, notice)
         return None if code is None else lambda: (f"{code[0]}-code.png", code_png(code[1]))

@@ -44,7 +44,7 @@ async def resolve(host: str, port: int) -> list[str]:
 
 
 @dataclass(frozen=True)
-class Outside:
+class HttpClient:
     """`ports` and `refused` are the operator's: where else than at 443, and public networks that are refused all the
     same. `allow_private` (any network and port, plain http) is for tests that have a server of their own."""
 
@@ -116,8 +116,8 @@ def _parsed(url: str) -> httpx.URL:
 class _Guarded(httpx.AsyncBaseTransport):
     """Checks each request, and connects to the address that was checked; TLS is for the name, as always."""
 
-    def __init__(self, outside: Outside) -> None:
-        self._outside = outside
+    def __init__(self, http_client: HttpClient) -> None:
+        self._outside = http_client
         # No connection is used twice: it would be known by its address alone, whichever name it was made for.
         limits = httpx.Limits(max_keepalive_connections=0)
         self._wire = httpx.AsyncHTTPTransport(verify=trusted(), trust_env=False, limits=limits)

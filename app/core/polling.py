@@ -14,7 +14,7 @@ LONGEST_REST_S: Final = 1.0
 """Real seconds. A look that had to wait for others took long without having done much."""
 
 
-class Looks:
+class PollingLoop:
     """`async for _ in looks.until_stopped()`: each turn is one look. All times are real seconds, on the event loop.
 
     `again_s`: nothing should be missed between two wakes; if it is after all, it does not wait for ever.

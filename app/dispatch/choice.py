@@ -1,7 +1,7 @@
 """Which robot fetches which order: a pure function of what waits, who is free, and the map.
 
 Thin: who has waited longest first (priority counts like waiting), the nearest idle robot that has the charge for it
-(`charge.py`). Timetables come later behind the same function; what is taken along on the way is `insertion.py`.
+(`charge.py`). Schedules come later behind the same function; what is taken along on the way is `insertion.py`.
 """
 
 from collections import defaultdict

@@ -1,5 +1,5 @@
 """Estimates of orders that a robot has, renewed whenever something is learned on the way, and the reasons for which
-they wait: both go to pages together. The forecast of the timetable is put right by what came of earlier ones; what is
+they wait: both go to pages together. The forecast of the schedule is put right by what came of earlier ones; what is
 told first of an order, and first after its mail was loaded, is kept to learn from.
 
 The promised window is kept beside it and is not made later here: a robot that comes after that is late, and the timer
@@ -18,15 +18,15 @@ from sqlmodel import select as select_rows
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.core.database.database import after_commit, connection_of
-from app.core.polling import Looks
-from app.dispatch.forecasts import Stop, by_their_ways, by_timetable
+from app.core.polling import PollingLoop
+from app.dispatch.forecasts import Stop, by_schedule, by_their_ways
 from app.eta.records import Intervals, keep_under_way
 from app.models import MissionRow, MissionState, Order, OrderState, RobotRow, StopRow
 from app.orders.ledger import Expected
 from app.orders.transitions import MAIL_ABOARD, ROBOT_COMING
 from app.orders.views.reasons import is_held_up, why_it_waits
 from app.robots.service import Fleet
-from app.traffic.service import TrafficDesk
+from app.traffic.service import TrafficService
 from fleet.eta.arrivals import Estimates
 from fleet.eta.calibration import Basis
 from fleet.eta.intervals import Interval
@@ -70,31 +70,31 @@ class UnderWay(NamedTuple):
 
 
 @dataclass
-class Foreseen:
+class EtaUpdates:
     """Runs in the background of the service. `desk`: None where every corridor is granted at once."""
 
     fleet: Fleet
-    desk: TrafficDesk | None
+    desk: TrafficService | None
     _rng: Random = field(default_factory=lambda: Random(0))
     _said: dict[str, str | None] = field(default_factory=dict)
     """The reason of each order, as pages have it."""
     _kept: set[tuple[str, bool]] = field(default_factory=set)
     """Of which stages it is kept what was told."""
-    _looks: Looks = field(
-        default_factory=lambda: Looks(LOOK_AGAIN_S, LEAST_REST_S, rest=REST, longest_rest_s=LONGEST_REST_S)
+    _polling: PollingLoop = field(
+        default_factory=lambda: PollingLoop(LOOK_AGAIN_S, LEAST_REST_S, rest=REST, longest_rest_s=LONGEST_REST_S)
     )
 
     def wake(self, _changed: str = "") -> None:
-        """A robot, an order or the timetable has changed."""
-        self._looks.wake()
+        """A robot, an order or the schedule has changed."""
+        self._polling.wake()
 
     def stop(self) -> None:
         """End `run`."""
-        self._looks.stop()
+        self._polling.stop()
 
     async def run(self) -> None:
         """Until stopped or cancelled."""
-        async for _ in self._looks.until_stopped():
+        async for _ in self._polling.until_stopped():
             await self.look()
 
     async def look(self) -> None:
@@ -109,7 +109,7 @@ class Foreseen:
             return
         robots = {robot.name: robot for _, robot in pairs}
         now = self.fleet.clock.utc()
-        await self._looks.breathe()
+        await self._polling.breathe()
         forecast = await self._forecast(robots, stops, now)
         receive = {stop.order_id: stop.id for stop in stops if stop.action == StopAction.RECEIVE}
         estimates = self.fleet.orders.ledger.estimates
@@ -130,17 +130,17 @@ class Foreseen:
     ) -> Mapping[str, Interval]:
         estimates = self.fleet.orders.ledger.estimates
         if self.desk is None:
-            return await by_their_ways(estimates, robots, stops, now, self._rng, self._looks.breathe)
-        timetable = self.desk.timetable
-        if timetable is None:
+            return await by_their_ways(estimates, robots, stops, now, self._rng, self._polling.breathe)
+        schedule = self.desk.schedule
+        if schedule is None:
             return {}
-        return await by_timetable(estimates, timetable.controller, stops, now, self.fleet.clock.now(), self._rng)
+        return await by_schedule(estimates, schedule.controller, stops, now, self.fleet.clock.now(), self._rng)
 
     async def _tell(self, news: Sequence[UnderWay], now: datetime) -> None:
         """A few in one transaction: what robots report in that time waits for it."""
         for first in range(0, len(news), AT_ONCE):
-            await self._looks.breathe()
-            if self._looks.is_stopped:
+            await self._polling.breathe()
+            if self._polling.is_stopped:
                 return
             await self._tell_some(news[first : first + AT_ONCE], now)
 

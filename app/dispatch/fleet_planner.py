@@ -1,7 +1,7 @@
 """Assignment by the schedule: decided at once for all robots, then improved.
 
-look → decide → write → tell the timetable
-look → decide → improve, in a process of its own → write, if it still holds → tell the timetable
+look → decide → write → tell the schedule
+look → decide → improve, in a process of its own → write, if it still holds → tell the schedule
 """
 
 import asyncio
@@ -18,8 +18,8 @@ from app.dispatch.scene_of_work import SceneOfWork
 from app.dispatch.why_orders_wait import NOT_PLANNED_FOR, answers
 from app.dispatch.why_recorded import explain
 from app.robots.service import Fleet
-from app.traffic.schedule import Timetable
-from app.traffic.service import TrafficDesk
+from app.traffic.schedule import TrafficSchedule
+from app.traffic.service import TrafficService
 from fleet.assignment.adopting import adopt
 from fleet.assignment.deciding import Decision, decide
 
@@ -38,7 +38,7 @@ class FleetPlanner:
 
     It assigns when dispatch asks it to, and runs in the background of the service to find better plans."""
 
-    def __init__(self, fleet: Fleet, desk: TrafficDesk, process: PlannerProcess | None = None) -> None:
+    def __init__(self, fleet: Fleet, desk: TrafficService, process: PlannerProcess | None = None) -> None:
         self._fleet, self._desk = fleet, desk
         self._scenes = SceneOfWork(
             fleet.settings, Charges(fleet.orders.ledger.ways, fleet.settings, fleet.spending.rates)
@@ -54,15 +54,15 @@ class FleetPlanner:
 
     async def assign(self) -> bool:
         """Give waiting orders to robots; whether to look again at once, since what was decided on has changed."""
-        work, timetable = await self._look(), self._desk.timetable
+        work, schedule = await self._look(), self._desk.schedule
         waiting = [order.id for order in work.waiting]
-        decision = self._decide(work, timetable) if timetable is not None and work.connected else None
+        decision = self._decide(work, schedule) if schedule is not None and work.connected else None
         changes = changes_of(work, decision) if decision is not None else None
-        if decision is not None and changes and not await self._carry_out(timetable, decision, changes):
+        if decision is not None and changes and not await self._carry_out(schedule, decision, changes):
             return True
         left = [order for order in waiting if changes is None or order not in changes.given]
         if left:
-            has_news = _has_not_seen(timetable, work)
+            has_news = _has_not_seen(schedule, work)
             told = answers(work, decision, left)
             await explain(self._fleet, [one for one in told if not (has_news and one.why == NOT_PLANNED_FOR)])
         if changes:
@@ -74,11 +74,11 @@ class FleetPlanner:
         async with self._fleet.database.reading() as session:
             return await look_at_work(session, self._fleet.clock.utc())
 
-    def _decide(self, work: OpenWork, timetable: Timetable) -> Decision | None:
+    def _decide(self, work: OpenWork, schedule: TrafficSchedule) -> Decision | None:
         clock = self._fleet.clock
-        return decide(self._scenes.of(work, timetable.controller, clock.utc(), clock.now()))
+        return decide(self._scenes.of(work, schedule.controller, clock.utc(), clock.now()))
 
-    async def _carry_out(self, timetable: Timetable | None, decision: Decision, changes: Changes) -> bool:
+    async def _carry_out(self, schedule: TrafficSchedule | None, decision: Decision, changes: Changes) -> bool:
         """False if it does not hold any more."""
         try:
             async with self._fleet.database.transaction() as session:
@@ -86,18 +86,18 @@ class FleetPlanner:
                     return False
         finally:
             self.own.clear()
-        # Else the timetable finds a way of its own to what robots have now before them, as after a restart.
-        if timetable is not None and timetable is self._desk.timetable and not changes.taken:
-            controller = timetable.controller
-            adopt(controller, decision, timetable.known, self._fleet.clock.now())
+        # Else the schedule finds a way of its own to what robots have now before them, as after a restart.
+        if schedule is not None and schedule is self._desk.schedule and not changes.taken:
+            controller = schedule.controller
+            adopt(controller, decision, schedule.known, self._fleet.clock.now())
         return True
 
     # And better.
 
     def notice(self) -> None:
         """A robot that cannot be planned for any more: what it has not loaded is for others."""
-        timetable = self._desk.timetable
-        planned = frozenset(timetable.controller.tasks(self._fleet.clock.now())) if timetable else self._planned
+        schedule = self._desk.schedule
+        planned = frozenset(schedule.controller.tasks(self._fleet.clock.now())) if schedule else self._planned
         if planned != self._planned:
             self._planned = planned
             self._something_new.set()
@@ -126,18 +126,18 @@ class FleetPlanner:
 
     async def improve(self) -> bool:
         """Look for a better plan within the budget; whether one was found, and could still be carried out."""
-        timetable = self._desk.timetable
-        if timetable is None:
+        schedule = self._desk.schedule
+        if schedule is None:
             return False
         work = await self._look()
-        decision = self._decide(work, timetable)
+        decision = self._decide(work, schedule)
         if decision is None:
             return False
         better = await self._improved(decision)
         changes = changes_of(work, better)
         if not changes or self._stopped.is_set():
             return False
-        is_written = await self._carry_out(timetable, better, changes)
+        is_written = await self._carry_out(schedule, better, changes)
         log.info("improved", is_written=is_written, taken=len(changes.taken), saves_s=decision.cost_s - better.cost_s)
         return is_written
 
@@ -148,9 +148,9 @@ class FleetPlanner:
         return await self._process.improved(decision, PLANNING_BUDGET_S) or decision
 
 
-def _has_not_seen(timetable: Timetable | None, work: OpenWork) -> bool:
+def _has_not_seen(schedule: TrafficSchedule | None, work: OpenWork) -> bool:
     """Tell if a robot has come that the schedule knows from its next poll on, which wakes dispatch: that none can be
     planned for is not so before."""
-    return timetable is not None and any(
-        robot.is_there for name, robot in work.robots.items() if name not in timetable.known
+    return schedule is not None and any(
+        robot.is_there for name, robot in work.robots.items() if name not in schedule.known
     )

@@ -1,4 +1,4 @@
-"""Forecasts of all stops that robots have before them: by the timetable, or, without one, by the way of each robot."""
+"""Forecasts of all stops that robots have before them: by the schedule, or, without one, by the way of each robot."""
 
 import asyncio
 from collections.abc import Awaitable, Callable, Mapping, Sequence
@@ -71,10 +71,10 @@ class Foresight:
         return self.estimates.durations.draw_s(thing, self.rng, over_s) - over_s
 
 
-async def by_timetable(
+async def by_schedule(
     estimates: Estimates, controller: TrafficController, stops: Sequence[Stop], now: datetime, now_s: float, rng: Random
 ) -> dict[str, Interval]:
-    """In how many seconds each stop is reached, by its id; without those that are in no timetable yet."""
+    """In how many seconds each stop is reached, by its id; without those that are in no schedule yet."""
     network, tasks, journeys = controller.network, controller.tasks(now_s), controller.journeys(now_s)
     sees = Foresight(estimates, network, {stop.id: stop for stop in stops}, now, now_s, rng)
     return await asyncio.to_thread(forecast, network, tasks, journeys, now_s, sees.chance())

@@ -15,7 +15,7 @@ from sqlmodel import col
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.core.database.database import Database, after_commit, connection_of, write_all
-from app.core.polling import Looks
+from app.core.polling import PollingLoop
 from app.eta.records import LATEST_PLACED, LATEST_UNDER_WAY, Intervals, intervals_of, told_under_way
 from app.models import DurationRow, ForecastRow, ForecastUnderWayRow, Order, OrderState, RobotRow, StopRow
 from fleet.eta.arrivals import Ahead, Estimates
@@ -75,8 +75,10 @@ class Learning:
     _on_way: dict[str, tuple[str, datetime]] = field(default_factory=dict)
     """The post that each robot passed last, and when, by its clock put right."""
     _let_in: dict[tuple[str, str, str], datetime] = field(default_factory=dict)
-    _looks: Looks = field(
-        default_factory=lambda: Looks(LOOK_EVERY_S, REST_S, rest=REST, longest_rest_s=LOOK_EVERY_S, waits_first=True)
+    _polling: PollingLoop = field(
+        default_factory=lambda: PollingLoop(
+            LOOK_EVERY_S, REST_S, rest=REST, longest_rest_s=LOOK_EVERY_S, waits_first=True
+        )
     )
 
     # At the start, and now and then.
@@ -97,15 +99,15 @@ class Learning:
 
     def wake(self, _changed: str = "") -> None:
         """An order or a robot has changed."""
-        self._looks.wake()
+        self._polling.wake()
 
     def stop(self) -> None:
         """End `run`."""
-        self._looks.stop()
+        self._polling.stop()
 
     async def run(self) -> None:
         """Until stopped or cancelled."""
-        async for _ in self._looks.until_stopped():
+        async for _ in self._polling.until_stopped():
             await self.look()
 
     async def look(self) -> None:

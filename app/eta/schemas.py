@@ -35,7 +35,7 @@ class DurationView(BaseModel):
     p90_s: float
 
 
-class ToldQuality(BaseModel):
+class PromiseQuality(BaseModel):
     """The accuracy of the arrivals of the latest orders, `scored` in number.
 
     `inside_ratio` is how often the robot came between the times that were told, `earlier_ratio` and `later_ratio` how
@@ -51,7 +51,7 @@ class ToldQuality(BaseModel):
     by_map: EstimateError | None
 
     @classmethod
-    def of(cls, score: Score | None) -> "ToldQuality":
+    def of(cls, score: Score | None) -> "PromiseQuality":
         if score is None:
             return cls(scored=0, inside_ratio=None, earlier_ratio=None, later_ratio=None, told=None, by_map=None)
         by_map = EstimateError(median_error_ratio=score.median_error_by_map, pinball_s=score.pinball_by_map_s)
@@ -75,8 +75,8 @@ class EstimateQuality(BaseModel):
 
     assumed: bool
     inside_meant: float
-    placed: ToldQuality
-    under_way: ToldQuality
+    placed: PromiseQuality
+    under_way: PromiseQuality
     durations: list[DurationView]
 
     @classmethod
@@ -85,8 +85,8 @@ class EstimateQuality(BaseModel):
         return cls(
             assumed=estimates.is_assumed,
             inside_meant=round(HIGH - LOW, 2),
-            placed=ToldQuality.of(estimates.told[Basis.PLACED].score()),
-            under_way=ToldQuality.of(estimates.told[Basis.UNDER_WAY].score()),
+            placed=PromiseQuality.of(estimates.told[Basis.PLACED].score()),
+            under_way=PromiseQuality.of(estimates.told[Basis.UNDER_WAY].score()),
             durations=[_view(estimates, thing) for thing in estimates.things()],
         )
 

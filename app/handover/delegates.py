@@ -6,7 +6,7 @@ from typing import Final
 from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.accounts.sign_in.service import SignInDesk
+from app.accounts.sign_in.service import SignInService
 from app.core.paging import Paging, Sorting
 from app.handover import errors
 from app.handover.notifications import notify_delegate, notify_revoked
@@ -33,7 +33,7 @@ class Delegating:
     """The delegates of the orders of one campus."""
 
     fleet: Fleet
-    sign_in: SignInDesk
+    sign_in: SignInService
 
     async def page_of(
         self, session: AsyncSession, person: Person, order_id: str, page: Paging

@@ -6,19 +6,19 @@ from typing import Final
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.accounts.errors import AddressNotAllowed
-from app.accounts.sign_in.service import SignInDesk, find_person, may_be_sent_mail
-from app.models import Delegate, NoticeKind, Order, Person
+from app.accounts.sign_in.service import SignInService, find_person, may_be_sent_mail
+from app.models import Delegate, NotificationKind, Order, Person
 from app.notifications.service import tell, withdraw
 from app.orders.ledger import Ledger
 from app.orders.notifications import return_post_of, title_of
 from app.orders.transitions import ENDED
 from protocol.parts import Purpose
 
-OVER: Final = NoticeKind.DELEGATION_OVER
+OVER: Final = NotificationKind.DELEGATION_OVER
 
 
 async def notify_delegate(
-    session: AsyncSession, ledger: Ledger, sign_in: SignInDesk, order: Order, row: Delegate, named_by: Person
+    session: AsyncSession, ledger: Ledger, sign_in: SignInService, order: Order, row: Delegate, named_by: Person
 ) -> None:
     """Mail a delegate their code and a link to the order. Raises AddressNotAllowed."""
     email = row.email or ""
@@ -27,13 +27,13 @@ async def notify_delegate(
         raise AddressNotAllowed(f"Nobody here has the address {email}. New addresses are those of {domains}.")
     person = await sign_in.person(session, email, row.named_at)
     code = {"delegate_id": row.id, "purpose": row.purpose, "named_by": named_by.name}
-    await _tell(session, ledger, order, row, person, NoticeKind.DELEGATED, code)
+    await _tell(session, ledger, order, row, person, NotificationKind.DELEGATED, code)
 
 
 async def notify_revoked(session: AsyncSession, ledger: Ledger, order: Order, row: Delegate) -> None:
     """Withdraw the notice of a code if it has not gone out; else notify the delegate that the code is worthless."""
     person = await find_person(session, row.email) if row.email else None
-    was_told = person is not None and await withdraw(session, person.id, _key(row, NoticeKind.DELEGATED))
+    was_told = person is not None and await withdraw(session, person.id, _key(row, NotificationKind.DELEGATED))
     if person is not None and was_told and order.state not in ENDED:
         await _tell(session, ledger, order, row, person, OVER, {})
 
@@ -44,7 +44,7 @@ async def _tell(
     order: Order,
     row: Delegate,
     person: Person,
-    kind: NoticeKind,
+    kind: NotificationKind,
     more: Mapping[str, str],
 ) -> None:
     facts = {
@@ -63,7 +63,7 @@ async def _tell(
     )
 
 
-def _key(row: Delegate, kind: NoticeKind) -> str:
+def _key(row: Delegate, kind: NotificationKind) -> str:
     return f"{row.order_id}.{kind}.{row.id}"
 
 

@@ -18,7 +18,7 @@ from app.core.database.database import DatabaseDep, ReadingDep, SessionDep
 from app.core.errors import problems
 from app.core.parts import part
 from app.handover.routes import ASKED, NAMED, NOT_KEPT, DelegatingDep, HandOversDep, hand_over
-from app.handover.schemas import CodeView, DelegateView, HandoverAsked, HandOverWish, NewDelegate, PurposeName
+from app.handover.schemas import CodeView, DelegateView, HandoverAsked, HandoverRequest, NewDelegate, PurposeName
 from app.handover.service import HandOvers
 from app.orders.custody.codes import HandoverCode, code_svg
 from app.orders.errors import NoCodeForYou, NotRecallable, UnknownOrder
@@ -36,7 +36,7 @@ class Link(BaseModel):
     token: Token
 
 
-class LinkedHandOver(HandOverWish):
+class LinkedHandOver(HandoverRequest):
     """Hand over now: a tap, or the digits of a code that is good now."""
 
     token: Token

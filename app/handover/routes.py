@@ -19,7 +19,7 @@ from app.handover.schemas import (
     Delegates,
     DelegateView,
     HandoverAsked,
-    HandOverWish,
+    HandoverRequest,
     MyDelegates,
     MyDelegateView,
     NewDelegate,
@@ -85,7 +85,7 @@ async def my_code_picture(
 
 @router.post("/orders/{order_id}/handover", status_code=202, dependencies=[per_host(Door.DIGITS)], responses=ASKED)
 async def hand_over(
-    order_id: OrderId, request: HandOverWish, user: CurrentUser, hand_overs: HandOversDep, database: DatabaseDep
+    order_id: OrderId, request: HandoverRequest, user: CurrentUser, hand_overs: HandOversDep, database: DatabaseDep
 ) -> HandoverAsked:
     """Ask the robot that waits to hand over: by a tap of whoever's turn it is, or by the digits of a code.
 

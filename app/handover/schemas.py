@@ -13,7 +13,7 @@ from app.handover.my_delegations import NamedDelegate
 from app.handover.notifications import post_of
 from app.models import Delegate, OrderState
 from app.orders.custody.codes import HandoverCode
-from app.orders.views.schemas import Somebody
+from app.orders.views.schemas import PersonView
 from app.orders.views.views import MyRole, person_view
 from protocol.parts import Purpose
 
@@ -42,7 +42,7 @@ class CodeView(BaseModel):
         )
 
 
-class HandOverWish(BaseModel):
+class HandoverRequest(BaseModel):
     """Hand over now. Without digits it is a tap of the person whose turn it is."""
 
     model_config = ConfigDict(extra="forbid")
@@ -105,8 +105,8 @@ class MyDelegateView(BaseModel):
     order_id: str
     state: OrderState
     description: str | None
-    sender: Somebody
-    recipient: Somebody
+    sender: PersonView
+    recipient: PersonView
     my_role: MyRole
 
     @classmethod

@@ -34,14 +34,14 @@ EXAMPLES: Final[Mapping[str, tuple[Mapping[str, Any], ...]]] = {
     "CodeRequest": ({"email": ADA},),
     "SignIn": ({"email": ADA, "code": "20260105"},),
     "AboutMe": ({"name": "Ada King", "language": "fr", "usual_post": "post1"}, {"usual_post": None}),
-    "ContactWish": ({"label": "Ben, registry", "post": "post4"},),
-    "TokenWish": ({"name": "nightly export", "scopes": ["orders:read"], "days": 90},),
+    "ContactRequest": ({"label": "Ben, registry", "post": "post4"},),
+    "TokenRequest": ({"name": "nightly export", "scopes": ["orders:read"], "days": 90},),
     # orders
     "NewOrder": (LETTER, {**LETTER, "not_before": "2026-01-06T08:00:00Z", "priority": "low"}),
     "NewStandingOrder": ({**LETTER, "weekdays": [0, 2, 4], "at": "09:30", "zone": "America/Toronto"},),
     "LongerWait": ({"extend_s": 300},),
     "NewDelegate": ({"name": "Eve Ito", "email": EVE, "purpose": "receive"},),
-    "HandOverWish": ({"digits": ""}, {"digits": "123456"}),
+    "HandoverRequest": ({"digits": ""}, {"digits": "123456"}),
     # by the link in a mail
     "Link": ({"token": TOKEN_OF_A_LINK},),
     "LinkedDelegate": ({"name": "Eve Ito", "email": EVE, "token": TOKEN_OF_A_LINK},),
@@ -59,7 +59,7 @@ EXAMPLES: Final[Mapping[str, tuple[Mapping[str, Any], ...]]] = {
     "ShowCode": ({"order_id": "1f2e3d4c5b6a7988"},),
     # notices; the keys of the browser are those of RFC 8291
     "NoticesRead": ({"ids": [17, 18]},),
-    "Wishes": ({"muted": {"mail": ["robot_near"], "push": []}},),
+    "PreferencesRequest": ({"muted": {"mail": ["robot_near"], "push": []}},),
     "NewWebhook": ({"url": "https://hooks.campus.example/mail"},),
     "NewDevice": (
         {

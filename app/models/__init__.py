@@ -13,9 +13,9 @@ from app.models.accounts.people import Person, Role
 from app.models.accounts.person_tokens import PersonToken
 from app.models.accounts.sessions import PersonSession
 from app.models.accounts.sign_in_codes import SignInCode
-from app.models.notifications.notifications import Notice, NoticeKind
-from app.models.notifications.outbox import OutgoingNotice
-from app.models.notifications.preferences import NoticeWishes, PushSubscription, Webhook
+from app.models.notifications.notifications import Notification, NotificationKind
+from app.models.notifications.outbox import OutgoingNotification
+from app.models.notifications.preferences import NotificationPreferences, PushSubscription, Webhook
 from app.models.orders.delegates import Delegate, DigitLock
 from app.models.orders.handovers import Evidence, Handover, RefusedReceipt, Settled
 from app.models.orders.idempotency_keys import IdempotencyKey
@@ -54,14 +54,14 @@ __all__ = [
     "MessageToRobot",
     "MissionRow",
     "MissionState",
-    "Notice",
-    "NoticeKind",
-    "NoticeWishes",
+    "Notification",
+    "NotificationKind",
+    "NotificationPreferences",
     "Order",
     "OrderEvent",
     "OrderLink",
     "OrderState",
-    "OutgoingNotice",
+    "OutgoingNotification",
     "Person",
     "PersonSession",
     "PersonToken",

@@ -39,7 +39,7 @@ class UtcTime(TypeDecorator[datetime]):
         return None if value is None else value.replace(tzinfo=UTC)
 
 
-class WordOf(TypeDecorator[StrEnum]):
+class EnumColumn(TypeDecorator[StrEnum]):
     """One word of a closed vocabulary, kept as plain text so that a new word needs no migration."""
 
     impl = String(32)

@@ -9,7 +9,7 @@ from typing import Any, Final
 from sqlalchemy import Index, text
 from sqlmodel import SQLModel
 
-from app.models.notifications.notifications import Notice
+from app.models.notifications.notifications import Notification
 from app.models.orders.orders import Order
 from app.models.robots.missions import MissionRow
 from app.models.robots.reservations import ClaimRow, GrantRow
@@ -34,7 +34,7 @@ CLAIMED: Final = ("ix_claims_waiting", ClaimRow, ("robot",), "granted IS NULL")
 HELD: Final = ("ix_grants_held", GrantRow, ("robot", "cleared_at"), None)
 RINGING: Final = ("ix_alarms_ringing", Alarm, ("robot", "cleared_at"), None)
 NAMED: Final = ("ix_alarms_named", Alarm, ("name",), "cleared_at IS NULL")
-UNREAD: Final = ("ix_notices_unread", Notice, ("person_id",), "read_at IS NULL")
+UNREAD: Final = ("ix_notices_unread", Notification, ("person_id",), "read_at IS NULL")
 
 INDEXES: Final = (
     SENT,

@@ -4,7 +4,7 @@ Unprocessable ├── MutedEverywhere
               └── BadSubscription
 NotFound      ├── UnknownDevice
               ├── NoWebhook
-              ├── UnknownSending
+              ├── UnknownDelivery
               └── NotInSpool
 Conflict      └── SentAlready
 """
@@ -36,7 +36,7 @@ class NoWebhook(NotFound):
     code = "no_webhook"
 
 
-class UnknownSending(NotFound):
+class UnknownDelivery(NotFound):
     """Nothing in the outbox has this number."""
 
     code = "unknown_sending"

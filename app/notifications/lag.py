@@ -7,7 +7,7 @@ from datetime import datetime
 from sqlmodel import col, func, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.models import Notice, OutgoingNotice
+from app.models import Notification, OutgoingNotification
 
 
 @dataclass(frozen=True)
@@ -22,15 +22,19 @@ class OutboxLag:
 
 async def outbox_lag(session: AsyncSession, now: datetime) -> OutboxLag:
     """By channel; quick, whatever has been sent before."""
-    owed = col(OutgoingNotice.next_try_at).is_not(None)
-    begun = func.min(col(OutgoingNotice.created_at))
+    owed = col(OutgoingNotification.next_try_at).is_not(None)
+    begun = func.min(col(OutgoingNotification.created_at))
     waiting = await session.exec(
-        select(OutgoingNotice.channel, func.count(), begun).where(owed).group_by(OutgoingNotice.channel)
+        select(OutgoingNotification.channel, func.count(), begun).where(owed).group_by(OutgoingNotification.channel)
     )
     rows = waiting.all()
-    gave_up = select(OutgoingNotice.channel, func.count()).where(col(OutgoingNotice.gave_up_at).is_not(None))
-    given_up = (await session.exec(gave_up.group_by(OutgoingNotice.channel))).all()
-    new = (await session.exec(select(func.count(), func.min(Notice.at)).where(col(Notice.routed_at).is_(None)))).one()
+    gave_up = select(OutgoingNotification.channel, func.count()).where(
+        col(OutgoingNotification.gave_up_at).is_not(None)
+    )
+    given_up = (await session.exec(gave_up.group_by(OutgoingNotification.channel))).all()
+    new = (
+        await session.exec(select(func.count(), func.min(Notification.at)).where(col(Notification.routed_at).is_(None)))
+    ).one()
     oldest = min([at for _, _, at in rows] + ([new[1]] if new[1] else []), default=now)
     return OutboxLag(
         oldest_s=max(0.0, (now - oldest).total_seconds()),

@@ -16,10 +16,10 @@ from sqlmodel import col, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.core.database.database import after_commit, connection_of
-from app.models import Notice, NoticeWishes, OutgoingNotice, Person, PushSubscription, Webhook
+from app.models import Notification, NotificationPreferences, OutgoingNotification, Person, PushSubscription, Webhook
 from app.notifications.preferences import MAIL, PUSH, WEBHOOK, channels_for
-from app.notifications.schemas import NoticeView
-from app.realtime.feed import Feed, Happening
+from app.notifications.schemas import NotificationView
+from app.realtime.feed import Feed, FeedEvent
 
 log = structlog.get_logger(__name__)
 
@@ -31,14 +31,14 @@ Muted = Mapping[str, Sequence[str]]
 Targets = Mapping[tuple[str, str], Sequence[str]]
 """By (person, channel): their devices, their webhook."""
 
-_IS_NEW: Final = col(Notice.routed_at).is_(None)
-_READERS: Final = select(Notice.person_id).where(_IS_NEW)
+_IS_NEW: Final = col(Notification.routed_at).is_(None)
+_READERS: Final = select(Notification.person_id).where(_IS_NEW)
 _NEW: Final[Any] = (
-    select(Notice, Person, NoticeWishes.muted)
-    .join(Person, col(Notice.person_id) == Person.id)
-    .outerjoin(NoticeWishes, col(NoticeWishes.person_id) == Person.id)
+    select(Notification, Person, NotificationPreferences.muted)
+    .join(Person, col(Notification.person_id) == Person.id)
+    .outerjoin(NotificationPreferences, col(NotificationPreferences.person_id) == Person.id)
     .where(_IS_NEW)
-    .order_by(col(Notice.id))
+    .order_by(col(Notification.id))
     .limit(AT_ONCE)
 )
 _TARGETS: Final[Any] = union_all(
@@ -47,15 +47,17 @@ _TARGETS: Final[Any] = union_all(
     ),
     select(literal(WEBHOOK), Webhook.person_id, Webhook.id).where(col(Webhook.person_id).in_(_READERS)),
 )
-_ROUTED: Final = update(Notice).where(col(Notice.id) == bindparam("its_id")).values(routed_at=bindparam("now"))
-_OUTGOING: Final = insert(OutgoingNotice)
+_ROUTED: Final = (
+    update(Notification).where(col(Notification.id) == bindparam("its_id")).values(routed_at=bindparam("now"))
+)
+_OUTGOING: Final = insert(OutgoingNotification)
 
 
 @dataclass(frozen=True)
 class New:
     """A notice that no channel has yet, and its reader; `muted` is None for a reader who has changed nothing."""
 
-    notice: Notice
+    notice: Notification
     person: Person
     muted: Muted | None
 
@@ -93,7 +95,7 @@ def _outgoing(new: New, targets: Targets, *, tell_service: bool) -> Iterator[dic
         yield _sending(new.notice, WEBHOOK, SERVICE)
 
 
-def _sending(notice: Notice, channel: str, target: str | None) -> dict[str, Any]:
+def _sending(notice: Notification, channel: str, target: str | None) -> dict[str, Any]:
     key = ".".join(part for part in (channel, notice.key, notice.person_id, target) if part)
     return {
         "key": key,
@@ -111,8 +113,8 @@ def _tell_pages(session: AsyncSession, feed: Feed, new: New) -> None:
         after_commit(session, feed.pass_over)
         return
     try:
-        view = NoticeView.of(new.notice, new.person.language)
+        view = NotificationView.of(new.notice, new.person.language)
     except KeyError as gap:  # a notice that lacks a fact of its text holds up no other
         log.exception("notice without words", key=new.notice.key, gap=str(gap))
         return
-    after_commit(session, lambda: feed.publish(Happening("notice", view, person_id=new.person.id)))
+    after_commit(session, lambda: feed.publish(FeedEvent("notice", view, person_id=new.person.id)))

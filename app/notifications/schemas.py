@@ -6,28 +6,28 @@ from typing import Annotated
 from pydantic import BaseModel, Field
 
 from app.core.paging import PageOf
-from app.models import Notice, NoticeKind
+from app.models import Notification, NotificationKind
 from app.notifications.wording import body_of, title_of
 
 
-class NoticeView(BaseModel):
+class NotificationView(BaseModel):
     """One notice in the reader's language; an alarm has no order. Never holds a hand-over code."""
 
     id: int
     order_id: str | None
-    kind: NoticeKind
+    kind: NotificationKind
     title: str
     body: str
     at: datetime
     read: bool
 
     @classmethod
-    def of(cls, notice: Notice, language: str) -> "NoticeView":
+    def of(cls, notice: Notification, language: str) -> "NotificationView":
         assert notice.id is not None  # noqa: S101  # flushed rows have one
         return cls(
             id=notice.id,
             order_id=notice.order_id,
-            kind=NoticeKind(notice.kind),
+            kind=NotificationKind(notice.kind),
             title=title_of(notice, language),
             body=body_of(notice, language),
             at=notice.at,
@@ -35,7 +35,7 @@ class NoticeView(BaseModel):
         )
 
 
-class Inbox(PageOf[NoticeView]):
+class Inbox(PageOf[NotificationView]):
     """The newest notices first; `unread` counts all, not only those shown."""
 
     unread: int

@@ -11,11 +11,11 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 from app.accounts.unread import unread_notices
 from app.core.database.database import write_all_once, write_once
 from app.core.paging import Paging, Sorting
-from app.models import Alarm, Notice, NoticeKind, OutgoingNotice, Person, Role
-from app.notifications.schemas import Inbox, NoticeView
+from app.models import Alarm, Notification, NotificationKind, OutgoingNotification, Person, Role
+from app.notifications.schemas import Inbox, NotificationView
 
 COMES_AND_GOES: Final = timedelta(minutes=10)
-NEWEST_FIRST = Sorting("notices", col(Notice.id), descending=True)
+NEWEST_FIRST = Sorting("notices", col(Notification.id), descending=True)
 
 
 async def tell(
@@ -24,7 +24,7 @@ async def tell(
     person: Person,
     key: str,
     order_id: str | None,
-    kind: NoticeKind,
+    kind: NotificationKind,
     facts: Mapping[str, str],
     now: datetime,
 ) -> bool:
@@ -32,16 +32,16 @@ async def tell(
 
     The outbox worker takes it from here to the person's channels (`app.notifications.routing`).
     """
-    return await write_once(session, Notice, notice_row(person.id, key, order_id, kind, facts, now))
+    return await write_once(session, Notification, notice_row(person.id, key, order_id, kind, facts, now))
 
 
 async def tell_all(session: AsyncSession, notices: Sequence[Mapping[str, Any]]) -> None:
     """The same for several of a kind."""
-    await write_all_once(session, Notice, notices)
+    await write_all_once(session, Notification, notices)
 
 
 def notice_row(
-    person_id: str, key: str, order_id: str | None, kind: NoticeKind, facts: Mapping[str, str], now: datetime
+    person_id: str, key: str, order_id: str | None, kind: NotificationKind, facts: Mapping[str, str], now: datetime
 ) -> dict[str, Any]:
     """For those who have several to write."""
     return {"person_id": person_id, "key": key, "order_id": order_id, "kind": kind, "at": now, "facts": dict(facts)}
@@ -49,11 +49,13 @@ def notice_row(
 
 async def withdraw(session: AsyncSession, person_id: str, key: str) -> bool:
     """Send no more of what was told; whether the person may have seen it, so that they have to be told."""
-    notice = (await session.exec(select(Notice).where(Notice.person_id == person_id, Notice.key == key))).first()
+    notice = (
+        await session.exec(select(Notification).where(Notification.person_id == person_id, Notification.key == key))
+    ).first()
     if notice is None:
         return False
-    theirs = col(OutgoingNotice.notice_id) == notice.id
-    await session.exec(delete(OutgoingNotice).where(theirs, col(OutgoingNotice.next_try_at).is_not(None)))
+    theirs = col(OutgoingNotification.notice_id) == notice.id
+    await session.exec(delete(OutgoingNotification).where(theirs, col(OutgoingNotification.next_try_at).is_not(None)))
     if notice.routed_at is None:
         await session.delete(notice)
     return notice.routed_at is not None
@@ -70,7 +72,7 @@ async def tell_dispatchers(session: AsyncSession, alarm: Alarm) -> None:
             person=person,
             key=f"alarm.{alarm.id}",
             order_id=None,
-            kind=NoticeKind.ALARM,
+            kind=NotificationKind.ALARM,
             facts=facts,
             now=alarm.at,
         )
@@ -90,9 +92,11 @@ async def _with_role(session: AsyncSession, role: Role) -> list[Person]:
 
 async def inbox(session: AsyncSession, person: Person, page: Paging) -> Inbox:
     """Return what a person was told, newest first."""
-    notices, following = await page.of(session, select(Notice).where(Notice.person_id == person.id), NEWEST_FIRST)
+    notices, following = await page.of(
+        session, select(Notification).where(Notification.person_id == person.id), NEWEST_FIRST
+    )
     return Inbox(
-        items=[NoticeView.of(notice, person.language) for notice in notices],
+        items=[NotificationView.of(notice, person.language) for notice in notices],
         next=following,
         unread=await unread_notices(session, person.id),
     )
@@ -100,7 +104,7 @@ async def inbox(session: AsyncSession, person: Person, page: Paging) -> Inbox:
 
 async def mark_read(session: AsyncSession, person: Person, ids: list[int], now: datetime) -> None:
     """Mark notices of this person as read; others' stay as they are."""
-    theirs = update(Notice).where(
-        col(Notice.id).in_(ids), col(Notice.person_id) == person.id, col(Notice.read_at).is_(None)
+    theirs = update(Notification).where(
+        col(Notification.id).in_(ids), col(Notification.person_id) == person.id, col(Notification.read_at).is_(None)
     )
     await session.exec(theirs.values(read_at=now))

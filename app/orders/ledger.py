@@ -24,7 +24,7 @@ from app.orders.notifications import NOTIFICATION_RULES, facts_of, notices_about
 from app.orders.transitions import NEVER_LEFT_ITS_SENDER, By, is_allowed, is_old_news
 from app.orders.views.schemas import OrderView
 from app.orders.views.views import MyRole, OrderFacts, load_facts, order_view, role_in
-from app.realtime.feed import Feed, Happening
+from app.realtime.feed import Feed, FeedEvent
 from fleet.eta.arrivals import Estimates
 from maps import CampusMap
 from maps.ways import Ways
@@ -225,7 +225,7 @@ class Ledger:
         role: Role | None = None,
         except_for: frozenset[str] = frozenset(),
     ) -> None:
-        happening = Happening("order", view, person_id, role, except_for)
+        happening = FeedEvent("order", view, person_id, role, except_for)
         after_commit(session, lambda: self.feed.publish(happening))
 
 

@@ -7,7 +7,7 @@ from typing import Any, Final
 
 from app.core.settings import Settings
 from app.core.texts.times import as_fact
-from app.models import NoticeKind, Order, OrderEvent, OrderState, Person
+from app.models import NotificationKind, Order, OrderEvent, OrderState, Person
 from app.models.orders.order_events import MOVED
 from app.notifications.service import notice_row
 from app.notifications.wording import TIMES
@@ -24,13 +24,13 @@ class NotificationRule:
     """One notification to one person, if it concerns them; `when_near`: not before the robot is near."""
 
     who: By
-    kind: NoticeKind
+    kind: NotificationKind
     concerns: Callable[[Order], bool] = lambda order: True
     when_near: bool = False
 
 
 def _both(
-    kind: NoticeKind, concerns: Callable[[Order], bool] = lambda order: True
+    kind: NotificationKind, concerns: Callable[[Order], bool] = lambda order: True
 ) -> tuple[NotificationRule, NotificationRule]:
     return NotificationRule(SENDER, kind, concerns), NotificationRule(RECIPIENT, kind, concerns)
 
@@ -57,40 +57,40 @@ def _was_aboard(order: Order) -> bool:
 
 
 NOTIFICATION_RULES: Final[Mapping[OrderState, tuple[NotificationRule, ...]]] = {
-    OrderState.QUEUED: (NotificationRule(SENDER, NoticeKind.ACCEPTED),),
-    OrderState.TO_SENDER: (NotificationRule(SENDER, NoticeKind.ROBOT_NEAR, _is_with_its_sender, when_near=True),),
-    OrderState.AT_SENDER: (NotificationRule(SENDER, NoticeKind.ROBOT_HERE, _is_with_its_sender),),
-    OrderState.CARRYING: (NotificationRule(RECIPIENT, NoticeKind.ON_ITS_WAY),),
-    OrderState.AT_RECIPIENT: (NotificationRule(RECIPIENT, NoticeKind.ROBOT_HERE_FOR_YOU),),
-    OrderState.DELIVERED: _both(NoticeKind.DELIVERED),
+    OrderState.QUEUED: (NotificationRule(SENDER, NotificationKind.ACCEPTED),),
+    OrderState.TO_SENDER: (NotificationRule(SENDER, NotificationKind.ROBOT_NEAR, _is_with_its_sender, when_near=True),),
+    OrderState.AT_SENDER: (NotificationRule(SENDER, NotificationKind.ROBOT_HERE, _is_with_its_sender),),
+    OrderState.CARRYING: (NotificationRule(RECIPIENT, NotificationKind.ON_ITS_WAY),),
+    OrderState.AT_RECIPIENT: (NotificationRule(RECIPIENT, NotificationKind.ROBOT_HERE_FOR_YOU),),
+    OrderState.DELIVERED: _both(NotificationKind.DELIVERED),
     OrderState.RETURNING: (
-        *_both(NoticeKind.NOT_TAKEN, _was_not_taken),
-        *_both(NoticeKind.CALLED_BACK, _was_called_back),
+        *_both(NotificationKind.NOT_TAKEN, _was_not_taken),
+        *_both(NotificationKind.CALLED_BACK, _was_called_back),
     ),
     # In the mailroom its staff take it out.
-    OrderState.AT_RETURN: (NotificationRule(SENDER, NoticeKind.AT_RETURN, _comes_to_the_sender),),
-    OrderState.RETURNED: _both(NoticeKind.RETURNED),
-    OrderState.HELD: _both(NoticeKind.HELD),
-    OrderState.CANCELLED: (NotificationRule(SENDER, NoticeKind.CANCELLED),),
-    OrderState.EXPIRED: (NotificationRule(SENDER, NoticeKind.EXPIRED),),
+    OrderState.AT_RETURN: (NotificationRule(SENDER, NotificationKind.AT_RETURN, _comes_to_the_sender),),
+    OrderState.RETURNED: _both(NotificationKind.RETURNED),
+    OrderState.HELD: _both(NotificationKind.HELD),
+    OrderState.CANCELLED: (NotificationRule(SENDER, NotificationKind.CANCELLED),),
+    OrderState.EXPIRED: (NotificationRule(SENDER, NotificationKind.EXPIRED),),
     OrderState.ATTENTION: (
-        NotificationRule(SENDER, NoticeKind.ATTENTION),
-        NotificationRule(RECIPIENT, NoticeKind.ATTENTION, _was_aboard),
+        NotificationRule(SENDER, NotificationKind.ATTENTION),
+        NotificationRule(RECIPIENT, NotificationKind.ATTENTION, _was_aboard),
     ),
 }
 LATE: Final = (
-    NotificationRule(SENDER, NoticeKind.DELAYED),
-    NotificationRule(RECIPIENT, NoticeKind.DELAYED, _was_aboard),
+    NotificationRule(SENDER, NotificationKind.DELAYED),
+    NotificationRule(RECIPIENT, NotificationKind.DELAYED, _was_aboard),
 )
 
 ONCE: Final = frozenset(
     {
-        NoticeKind.ACCEPTED,
-        NoticeKind.DELIVERED,
-        NoticeKind.RETURNED,
-        NoticeKind.HELD,
-        NoticeKind.CANCELLED,
-        NoticeKind.EXPIRED,
+        NotificationKind.ACCEPTED,
+        NotificationKind.DELIVERED,
+        NotificationKind.RETURNED,
+        NotificationKind.HELD,
+        NotificationKind.CANCELLED,
+        NotificationKind.EXPIRED,
     }
 )
 """What an order goes through once at most; everything else may happen again in a later round."""

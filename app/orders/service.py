@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.accounts.sign_in.service import SignInDesk
+from app.accounts.sign_in.service import SignInService
 from app.core.server_key import ServerKey
 from app.models import Order, Person
 from app.orders.changes.cancelling import Cancelling
@@ -35,7 +35,7 @@ class Orders:
     passing_on: PassingOn
 
     @classmethod
-    def of(cls, ledger: Ledger, key: ServerKey, sign_in: SignInDesk) -> "Orders":
+    def of(cls, ledger: Ledger, key: ServerKey, sign_in: SignInService) -> "Orders":
         """Compose the parts on one ledger."""
         returning = Returning(ledger)
         return cls(

@@ -31,7 +31,7 @@ COMES_BACK_S: Final = 60.0
 
 
 @dataclass(frozen=True)
-class Happening:
+class FeedEvent:
     """One event of the stream: its name, what becomes its JSON (or what makes that, if anybody listens), and for whom.
 
     `person_id` is the one person it is for; `role` all who have that role, but not those in `except_for` (who are told
@@ -57,7 +57,7 @@ class Numbered:
     """A happening and its place in the stream (`id` of the event); None: it has none, and is not given again."""
 
     id: str | None
-    happening: Happening
+    happening: FeedEvent
 
     @cached_property
     def wire(self) -> bytes:
@@ -91,11 +91,11 @@ class Feed(Protocol):
         """Instead of `publish`, for what was not put together since there was no listener."""
         ...
 
-    def publish(self, happening: Happening) -> None:
+    def publish(self, happening: FeedEvent) -> None:
         """Tell the listeners; never waits. Call it after the commit (`app.core.database.database.after_commit`)."""
         ...
 
-    def whisper(self, happening: Happening, to: Container[str]) -> None:
+    def whisper(self, happening: FeedEvent, to: Container[str]) -> None:
         """Tell those of these people (ids) who listen now. It is not kept, and the first thing to be left out."""
         ...
 
@@ -125,9 +125,9 @@ class LocalFeed:
         self._recent.clear()
         self._count += 1
         if self._listeners:
-            self.publish(Happening("resync", {}))
+            self.publish(FeedEvent("resync", {}))
 
-    def publish(self, happening: Happening) -> None:
+    def publish(self, happening: FeedEvent) -> None:
         self._count += 1
         numbered = Numbered(f"{self._run}-{self._count}", happening)
         self._recent.append(numbered)
@@ -135,7 +135,7 @@ class LocalFeed:
             if happening.is_for(person):
                 self._offer(queue, numbered)
 
-    def whisper(self, happening: Happening, to: Container[str]) -> None:
+    def whisper(self, happening: FeedEvent, to: Container[str]) -> None:
         of_the_moment = Numbered(None, happening)
         for queue, person in self._listeners.items():
             if person.id in to and happening.is_for(person) and queue.qsize() < WHISPERED:

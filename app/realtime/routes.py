@@ -23,7 +23,7 @@ KEEP_ALIVE_S = 15.0
 """Real seconds. A proxy closes what is silent for long."""
 UNBUFFERED = {"Cache-Control": "no-cache", "X-Accel-Buffering": "no"}
 
-TOLD = ("OrderView", "RobotView", "RobotTraffic", "NoticeView", "Watched")
+TOLD = ("OrderView", "RobotView", "RobotTraffic", "NotificationView", "Watched")
 """What the data of the events is, `resync` apart, whose data is empty."""
 EVENT = {
     "type": "object",

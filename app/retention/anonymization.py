@@ -13,11 +13,11 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 from app.models import (
     Delegate,
     Handover,
-    Notice,
+    Notification,
     Order,
     OrderEvent,
     OrderLink,
-    OutgoingNotice,
+    OutgoingNotification,
     Person,
     PersonSession,
     PersonToken,
@@ -46,24 +46,24 @@ async def forget_orders(session: AsyncSession, before: datetime, at_most: int) -
     await session.exec(update(RobotCommand).where(col(RobotCommand.order_id).in_(ids)).values(asked_by_id=None))
     await forget_delegates(session, col(Delegate.order_id).in_(ids), named_by_id=ANONYMOUS)
     await session.exec(delete(OrderLink).where(col(OrderLink.order_id).in_(ids)))
-    await _forget_notices(session, col(Notice.order_id).in_(ids))
+    await _forget_notices(session, col(Notification.order_id).in_(ids))
     return len(ids)
 
 
 async def forget_alarm_notices(session: AsyncSession, before: datetime, at_most: int) -> int:
     """Delete what was told before of alarms: no order takes it along."""
-    old = select(Notice.id).where(col(Notice.order_id).is_(None), col(Notice.at) < before)
+    old = select(Notification.id).where(col(Notification.order_id).is_(None), col(Notification.at) < before)
     ids = list((await session.exec(old.limit(at_most))).all())
     if ids:
-        await _forget_notices(session, col(Notice.id).in_(ids))
+        await _forget_notices(session, col(Notification.id).in_(ids))
     return len(ids)
 
 
 async def _forget_notices(session: AsyncSession, which: ColumnElement[bool]) -> None:
     """Their sendings first, which refer to them."""
-    sent = col(OutgoingNotice.notice_id).in_(select(Notice.id).where(which))
-    await session.exec(delete(OutgoingNotice).where(sent))
-    await session.exec(delete(Notice).where(which))
+    sent = col(OutgoingNotification.notice_id).in_(select(Notification.id).where(which))
+    await session.exec(delete(OutgoingNotification).where(sent))
+    await session.exec(delete(Notification).where(which))
 
 
 async def forget_standing_orders(session: AsyncSession, before: datetime, at_most: int) -> int:

@@ -59,7 +59,7 @@ class Manifest(BaseModel):
 
 
 @dataclass(frozen=True)
-class Wish:
+class BackupRequest:
     """A request for a backup: of what, by which version, when."""
 
     settings: Settings
@@ -68,13 +68,13 @@ class Wish:
     with_keys: bool = True
 
 
-def back_up(wish: Wish, to: Path, progress: Progress) -> Manifest:
+def back_up(request: BackupRequest, to: Path, progress: Progress) -> Manifest:
     """Write the archive whole or not at all, beside a running service. Raises BackupFailed, DatabaseUnusable."""
     if to.exists():
         raise BackupFailed(f"{to} exists already, and no backup is written over. Choose another name.")
     try:
         with tempfile.TemporaryDirectory(prefix=".backup-", dir=to.parent) as folder:
-            manifest = _gather(wish, Path(folder), progress)
+            manifest = _gather(request, Path(folder), progress)
             unfinished = Path(folder) / "archive"
             _pack(Path(folder), [MANIFEST, *(file.name for file in manifest.files)], unfinished)
             unfinished.replace(to)
@@ -84,16 +84,16 @@ def back_up(wish: Wish, to: Path, progress: Progress) -> Manifest:
     return manifest
 
 
-def _gather(wish: Wish, folder: Path, progress: Progress) -> Manifest:
-    name, rows, revision = copy_database(wish.settings, folder, progress)
-    keys = _copy_keys(wish.settings, folder) if wish.with_keys else []
+def _gather(request: BackupRequest, folder: Path, progress: Progress) -> Manifest:
+    name, rows, revision = copy_database(request.settings, folder, progress)
+    keys = _copy_keys(request.settings, folder) if request.with_keys else []
     left_out = {"spool": "mails that were sent", "map": "belongs to the installation, as the settings do"}
-    if not wish.with_keys:
+    if not request.with_keys:
         left_out["keys"] = "as wished; without them no hand-over code that was mailed fits any more"
     manifest = Manifest(
         format=FORMAT,
-        version=wish.version,
-        made_at=wish.now,
+        version=request.version,
+        made_at=request.now,
         revision=revision,
         database="sqlite" if name == SQLITE_COPY else "postgresql",
         rows=rows,

@@ -19,10 +19,10 @@ from app.models import (
     Contact,
     Delegate,
     IdempotencyKey,
-    Notice,
+    Notification,
     Order,
     OrderEvent,
-    OutgoingNotice,
+    OutgoingNotification,
     Person,
     Role,
     SignInCode,
@@ -113,7 +113,7 @@ def _takes_part(person: Person) -> Any:
 async def _forget_what_others_know(session: AsyncSession, person: Person, order_ids: list[str]) -> None:
     """Their name in what others were told, in answers kept for retries, in address books, as a delegate."""
     names = {person.name, person.email}
-    for notice in (await session.exec(select(Notice).where(col(Notice.order_id).in_(order_ids)))).all():
+    for notice in (await session.exec(select(Notification).where(col(Notification.order_id).in_(order_ids)))).all():
         notice.facts = {key: ERASED_NAME if value in names else value for key, value in notice.facts.items()}
     partners = select(Order.sender_id).where(_takes_part(person))
     await session.exec(delete(IdempotencyKey).where(col(IdempotencyKey.person_id).in_(partners)))
@@ -142,8 +142,8 @@ async def _end_standing_orders(session: AsyncSession, person: Person, now: datet
 async def delete_rows(session: AsyncSession, person: Person) -> None:
     """Every way in, every wish, and what they were told."""
     connection = await session.connection()
-    told = select(Notice.id).where(Notice.person_id == person.id)
-    await session.exec(delete(OutgoingNotice).where(col(OutgoingNotice.notice_id).in_(told)))
+    told = select(Notification.id).where(Notification.person_id == person.id)
+    await session.exec(delete(OutgoingNotification).where(col(OutgoingNotification.notice_id).in_(told)))
     for name, fate in FATES.items():
         if fate is Fate.GOES:
             table = metadata.tables[name]

@@ -5,7 +5,7 @@ from datetime import datetime
 from sqlmodel import col, func, select
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.models import Notice, PersonSession, RobotRow, SignInCode
+from app.models import Notification, PersonSession, RobotRow, SignInCode
 
 
 async def last_record(session: AsyncSession) -> datetime | None:
@@ -14,7 +14,7 @@ async def last_record(session: AsyncSession) -> datetime | None:
     newest = [
         (await session.exec(select(at).order_by(number.desc()).limit(1))).first()
         for at, number in (
-            (col(Notice.at), col(Notice.id)),
+            (col(Notification.at), col(Notification.id)),
             (col(PersonSession.created_at), col(PersonSession.id)),
             (col(SignInCode.created_at), col(SignInCode.id)),
         )

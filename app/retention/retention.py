@@ -28,7 +28,7 @@ from app.models import (
     IdempotencyKey,
     MessageToRobot,
     OrderLink,
-    OutgoingNotice,
+    OutgoingNotification,
     PersonSession,
     PersonToken,
     RefusedReceipt,
@@ -91,7 +91,7 @@ RULES: Final = (
     # A corridor is freed by its robot alone, however long that takes.
     Rule("grants", TELEMETRY, rows(GrantRow.cleared_at)),
     Rule("claims", TELEMETRY, rows(ClaimRow.at, only=ANSWERED)),
-    Rule("sendings", TELEMETRY, rows(OutgoingNotice.sent_at, OutgoingNotice.gave_up_at)),
+    Rule("sendings", TELEMETRY, rows(OutgoingNotification.sent_at, OutgoingNotification.gave_up_at)),
     Rule("sign-in codes", TRACES, rows(SignInCode.expires_at)),
     Rule("enrolment codes", TRACES, rows(EnrolmentCode.expires_at)),
     Rule("sessions", TRACES, rows(PersonSession.revoked_at, PersonSession.expires_at)),

@@ -23,7 +23,7 @@ log = structlog.get_logger(__name__)
 
 
 @dataclass
-class Housekeeper:
+class RetentionJob:
     """Runs in the background of the service."""
 
     database: Database

@@ -12,8 +12,8 @@ from typing import Final, Protocol
 from pydantic import BaseModel, Field
 
 from app.models import Role
-from app.realtime.feed import Feed, Happening
-from protocol.insight import Insight
+from app.realtime.feed import Feed, FeedEvent
+from protocol.insight import Diagnostics
 from protocol.to_robot import Watch
 
 HOLDS_S: Final = 30.0
@@ -25,7 +25,7 @@ class Watched(BaseModel):
 
     robot: str
     at: datetime = Field(description="When the service was told, by its own clock.")
-    insight: Insight
+    insight: Diagnostics
 
 
 class Seats(Protocol):
@@ -35,7 +35,7 @@ class Seats(Protocol):
 
 
 @dataclass
-class Watching:
+class LiveDiagnostics:
     """The watchers until when (real seconds), by robot and person."""
 
     seats: Seats
@@ -58,10 +58,10 @@ class Watching:
         watchers = self._at(robot, now_s)
         return Watch(for_s=max(watchers.values()) - now_s, whole=True) if watchers else None
 
-    def show(self, robot: str, insight: Insight, at: datetime) -> None:
+    def show(self, robot: str, insight: Diagnostics, at: datetime) -> None:
         """To those who watch this robot and have the role."""
         if watchers := self._at(robot, self.stopwatch()):
-            happening = Happening("insight", Watched(robot=robot, at=at, insight=insight), role=Role.MAINTAINER)
+            happening = FeedEvent("insight", Watched(robot=robot, at=at, insight=insight), role=Role.MAINTAINER)
             self.feed.whisper(happening, watchers.keys())
 
     def _at(self, robot: str, now_s: float) -> dict[str, float]:

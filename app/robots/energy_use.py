@@ -32,7 +32,7 @@ def usual_rates() -> Rates:
 
 
 @dataclass
-class Spending:
+class EnergyUse:
     """Runs in the background of the service. `rates`: by name, of every robot as it was known at the last look."""
 
     database: Database

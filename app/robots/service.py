@@ -15,14 +15,14 @@ from app.eta.learning import Learning
 from app.models import RobotRow, RobotToken
 from app.orders.service import Orders
 from app.orders.views.robot_view import RobotView, robot_view
-from app.realtime.feed import Feed, Happening
+from app.realtime.feed import Feed, FeedEvent
 from app.robots.battery import BatteryDiary
 from app.robots.corridors import reservations
 from app.robots.corridors.closed_corridors import WAY_BLOCKED
 from app.robots.corridors.closures import tell_of_closed
 from app.robots.corridors.occupied import tell_of_traffic
-from app.robots.diagnostics import Watching
-from app.robots.energy_use import Spending
+from app.robots.diagnostics import LiveDiagnostics
+from app.robots.energy_use import EnergyUse
 from app.robots.errors import RobotExists, RobotNameInvalid, UnknownRobot
 from app.robots.link import outbox
 from app.robots.link.clocks import put_right
@@ -102,14 +102,14 @@ class Fleet:
         return Learning(self.database, self.orders.ledger.estimates, self.clock)
 
     @cached_property
-    def spending(self) -> Spending:
+    def spending(self) -> EnergyUse:
         """Return what is learned from robots of how much charge they need."""
-        return Spending(self.database, self.campus)
+        return EnergyUse(self.database, self.campus)
 
     @cached_property
-    def watching(self) -> Watching:
+    def watching(self) -> LiveDiagnostics:
         """Return the watchers of robots."""
-        return Watching(self.connections, self.feed, time.monotonic)
+        return LiveDiagnostics(self.connections, self.feed, time.monotonic)
 
     async def begin(self) -> None:
         """At the start of the service no robot is connected yet, whatever the last run has left behind."""
@@ -138,8 +138,8 @@ class Fleet:
                     await tell_of_closed(session, self.feed)
                 await self.learning.hear(session, robot.name, message.happened, report.when)
             case Claim() if isinstance(robot, RobotRow):
-                by_timetable = self.settings.traffic == "timetable"
-                reply = await reservations.answer(session, self.campus, robot.name, message, now, by_timetable)
+                by_schedule = self.settings.traffic == "schedule"
+                reply = await reservations.answer(session, self.campus, robot.name, message, now, by_schedule)
                 if isinstance(reply, Grant):
                     self.learning.let_in(robot.name, reply.legs, now)
                 if reply is not None:
@@ -177,7 +177,7 @@ class Fleet:
         alone, since a fleet reports more often than anybody looks."""
         if not self.feed.is_heard:
             return self.feed.pass_over
-        return partial(self.feed.publish, Happening("robot", self.view_of(robot)))
+        return partial(self.feed.publish, FeedEvent("robot", self.view_of(robot)))
 
     def have_spoken(self, session: AsyncSession, robots: Iterable[str]) -> None:
         """After the commit: these robots are as pages know them, but workers that wait for robots poll again."""

@@ -25,11 +25,11 @@ async def take_out(session: AsyncSession, fleet: Fleet, robot: RobotRow, reason:
     """Free whatever it holds, and tell it so, now or when it is back. Raises RobotGoesOn, RobotTooOld."""
     _check(fleet, robot)
     now = fleet.clock.utc()
-    wish = Revoke(command_id=new_command_id(REVOKE), reason=reason)
+    request = Revoke(command_id=new_command_id(REVOKE), reason=reason)
     tell = fleet.connections.is_seated(robot.name)
-    row = await ask(session, fleet, robot, wish, by.id) if tell else note(session, fleet, robot, wish, by.id)
+    row = await ask(session, fleet, robot, request, by.id) if tell else note(session, fleet, robot, request, by.id)
     held = update(GrantRow).where(col(GrantRow.robot) == robot.name, col(GrantRow.cleared_at).is_(None))
-    freed = await session.exec(held.values(cleared_at=now, freed_by=wish.command_id))
+    freed = await session.exec(held.values(cleared_at=now, freed_by=request.command_id))
     await forget_what_waits(session, robot.name, "a person has given its corridors to others")
     robot.taken_out_at, robot.waits_for = now, None
     await clear_alarms(session, robot.name, VANISHED, now)

@@ -33,10 +33,10 @@ async def open_way(
         raise RobotAway(f"Robot {robot.name} has no network just now. {BY_ITSELF}")
     if not fleet.connections.understands(robot.name, OPEN_WAY):
         raise RobotTooOld(f"The software of robot {robot.name} is too old to be told so. {BY_ITSELF}")
-    wish = OpenWay(
+    request = OpenWay(
         command_id=new_command_id("open-way"),
         ends=(way.a, way.b),
         # It is the robot that judges whether it knows better.
         looked_at=by_its_clock(fleet.clock.utc(), robot.clock_off_s),
     )
-    return await ask(session, fleet, robot, wish, dispatcher.id)
+    return await ask(session, fleet, robot, request, dispatcher.id)

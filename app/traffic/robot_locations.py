@@ -1,4 +1,4 @@
-"""Where every robot is and what it wishes, as the database has it: all that the timetable is made from."""
+"""Where every robot is and what it wishes, as the database has it: all that the schedule is made from."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -19,7 +19,7 @@ OF_ITS_OWN: Final = "own"
 
 
 @dataclass(frozen=True)
-class Wish:
+class ReservationRequest:
     """A claim that waits. `first`: the corridors that the robot may enter first; several if it does not know which way
     it looks. `goal`: where it is going to now. `then`: the corridors after the first, as far as there."""
 
@@ -48,7 +48,7 @@ class Hold:
 
 
 @dataclass(frozen=True)
-class Whereabouts:
+class RobotLocation:
     """One robot. `goals`: key and post of all that it has before it, in order. `stopped`: a person or something
     keeps it where it is, and it has said so."""
 
@@ -60,7 +60,7 @@ class Whereabouts:
     online: bool
     holds: tuple[Hold, ...]
     goals: tuple[tuple[str, str], ...]
-    wish: Wish | None
+    request: ReservationRequest | None
     stopped: bool
     heard_at: datetime | None
 
@@ -74,18 +74,18 @@ class Whereabouts:
 
 
 @dataclass(frozen=True)
-class Picture:
+class TrafficSnapshot:
     """A snapshot of the traffic: all robots whose place is known, by name, and the corridors that are closed."""
 
-    robots: Mapping[str, Whereabouts]
+    robots: Mapping[str, RobotLocation]
     closed: frozenset[str]
 
 
-async def look_at_all(session: AsyncSession, campus: CampusMap) -> Picture:
+async def look_at_all(session: AsyncSession, campus: CampusMap) -> TrafficSnapshot:
     """Four questions, whatever the number of robots."""
     placed = select(RobotRow).where(col(RobotRow.post).is_not(None), col(RobotRow.taken_out_at).is_(None))
     rows = (await session.exec(placed.order_by(RobotRow.name))).all()
-    holds, wishes, goals = await _holds(session), await _wishes(session), await _goals(session)
+    holds, wishes, goals = await _holds(session), await _requests(session), await _goals(session)
     closed = await closed_names(session)
     robots = {
         row.name: _whereabouts(
@@ -94,18 +94,18 @@ async def look_at_all(session: AsyncSession, campus: CampusMap) -> Picture:
         for row in rows
         if row.post in campus.posts
     }
-    return Picture(robots, closed)
+    return TrafficSnapshot(robots, closed)
 
 
-async def where_they_left(session: AsyncSession, picture: Picture) -> Picture:
-    """Robots that have left a corridor since they were last seen stand where they left it. For a timetable that is made
+async def where_they_left(session: AsyncSession, picture: TrafficSnapshot) -> TrafficSnapshot:
+    """Robots that have left a corridor since they were last seen stand where they left it. For a schedule that is made
     anew: one that was there at the time has heard of it."""
     left = {row.robot: row for row in (await session.exec(_LAST_LEFT)).all()}
     robots = {name: _where_it_left(one, left.get(name)) for name, one in picture.robots.items()}
     return replace(picture, robots=robots)
 
 
-def _where_it_left(one: Whereabouts, last: GrantRow | None) -> Whereabouts:
+def _where_it_left(one: RobotLocation, last: GrantRow | None) -> RobotLocation:
     if last is None or last.left_at is None or last.cleared_at is None:
         return one
     is_news = one.seen_at is None or one.seen_at < last.cleared_at
@@ -119,13 +119,17 @@ async def left_at(session: AsyncSession, grant_ids: Sequence[int]) -> dict[int, 
 
 
 def _whereabouts(
-    campus: CampusMap, row: RobotRow, holds: tuple[Hold, ...], wish: Wish | None, goals: tuple[tuple[str, str], ...]
-) -> Whereabouts:
+    campus: CampusMap,
+    row: RobotRow,
+    holds: tuple[Hold, ...],
+    request: ReservationRequest | None,
+    goals: tuple[tuple[str, str], ...],
+) -> RobotLocation:
     post = row.post or ""
     home = row.home if row.home in campus.posts else next((dock.name for dock in campus.docks()), None)
     rests = row.activity in (Activity.IDLE, Activity.CHARGING)
     docked = rests if row.docked is None else row.docked
-    return Whereabouts(
+    return RobotLocation(
         robot=row.name,
         post=post,
         seen_at=row.seen_at,
@@ -133,18 +137,20 @@ def _whereabouts(
         at_home=docked and post == home,
         online=row.online,
         holds=holds,
-        goals=_with_its_own(wish, goals),
-        wish=wish,
+        goals=_with_its_own(request, goals),
+        request=request,
         stopped=row.activity == Activity.STOPPED,
         heard_at=row.heard_at,
     )
 
 
-def _with_its_own(wish: Wish | None, goals: tuple[tuple[str, str], ...]) -> tuple[tuple[str, str], ...]:
+def _with_its_own(
+    request: ReservationRequest | None, goals: tuple[tuple[str, str], ...]
+) -> tuple[tuple[str, str], ...]:
     """Put first what it goes to now, whatever its mission says: the robot knows best when it has to charge."""
-    if wish is None or wish.is_for_later or (goals and goals[0][1] == wish.goal):
+    if request is None or request.is_for_later or (goals and goals[0][1] == request.goal):
         return goals
-    return ((OF_ITS_OWN, wish.goal), *goals)
+    return ((OF_ITS_OWN, request.goal), *goals)
 
 
 async def _holds(session: AsyncSession) -> dict[str, list[Hold]]:
@@ -159,14 +165,14 @@ async def _holds(session: AsyncSession) -> dict[str, list[Hold]]:
     return held
 
 
-async def _wishes(session: AsyncSession) -> dict[str, Wish]:
+async def _requests(session: AsyncSession) -> dict[str, ReservationRequest]:
     rows = (
         await session.exec(select(ClaimRow).where(col(ClaimRow.granted).is_(None)).order_by(col(ClaimRow.at)))
     ).all()
-    return {row.robot: _wish(row) for row in rows}
+    return {row.robot: _request(row) for row in rows}
 
 
-def _wish(row: ClaimRow) -> Wish:
+def _request(row: ClaimRow) -> ReservationRequest:
     legs = [(str(leg["from_post"]), str(leg["to_post"])) for leg in row.legs]
     here = legs[0][0]
     first = legs[:1]
@@ -176,7 +182,7 @@ def _wish(row: ClaimRow) -> Wish:
         first.append(leg)
     goal = row.goal or legs[-1][1]
     to_goal = next((number for number, leg in enumerate(legs, start=1) if leg[1] == goal), len(legs))
-    return Wish(row.claim_id, tuple(first), goal, tuple(legs[1:to_goal]) if len(first) == 1 else ())
+    return ReservationRequest(row.claim_id, tuple(first), goal, tuple(legs[1:to_goal]) if len(first) == 1 else ())
 
 
 _LAST_LEFT: Final = (

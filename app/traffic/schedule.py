@@ -1,4 +1,4 @@
-"""Keeps the timetable in step with what the database knows, and says which claims it grants.
+"""Keeps the schedule in step with what the database knows, and says which claims it grants.
 
 In memory, and made anew from one look at the database whenever there is none: after a start of the service, and after
 anything went wrong.
@@ -11,7 +11,7 @@ from itertools import pairwise
 import structlog
 
 from app.core.settings import Settings
-from app.traffic.robot_locations import OF_ITS_OWN, Hold, Picture, Whereabouts
+from app.traffic.robot_locations import OF_ITS_OWN, Hold, RobotLocation, TrafficSnapshot
 from fleet.eta.arrivals import Estimates
 from fleet.schedule.controller import Denied, Granted, TrafficController, Waits
 from fleet.schedule.journey import Goal
@@ -55,7 +55,7 @@ Verdict = MayEnter | HasToWait | Elsewhere
 
 
 @dataclass
-class Timetable:
+class TrafficSchedule:
     """One for a campus. `vanished`: robots that were not heard of for long; they count as standing.
     `estimates`: how long corridors took, as it was known when this was made; without them lengths decide."""
 
@@ -64,7 +64,7 @@ class Timetable:
     vanished: frozenset[str] = frozenset()
     estimates: Estimates | None = None
     controller: TrafficController = field(init=False)
-    _known: dict[str, Whereabouts] = field(default_factory=dict)
+    _known: dict[str, RobotLocation] = field(default_factory=dict)
     _frozen: set[str] = field(default_factory=set)
     _closed: frozenset[str] = frozenset()
 
@@ -72,13 +72,13 @@ class Timetable:
         self.controller = TrafficController(network_for(self.campus, self.settings, self.estimates))
 
     @property
-    def known(self) -> Mapping[str, Whereabouts]:
+    def known(self) -> Mapping[str, RobotLocation]:
         """Every robot as it was told last."""
         return self._known
 
     # What has happened.
 
-    def follow(self, picture: Picture, left_at: Mapping[int, str], now_s: float) -> None:
+    def follow(self, picture: TrafficSnapshot, left_at: Mapping[int, str], now_s: float) -> None:
         """Take over everything that has changed since the last picture."""
         self._follow_closed(picture, now_s)
         for name in self._known.keys() - picture.robots.keys():
@@ -96,7 +96,7 @@ class Timetable:
             self._follow_standing(now, now_s)
             self._follow_goals(now, now_s)
 
-    def _follow_closed(self, picture: Picture, now_s: float) -> None:
+    def _follow_closed(self, picture: TrafficSnapshot, now_s: float) -> None:
         """Take over what people have closed, and what a robot may enter besides the corridor that it is thought to be
         in."""
         self._close_and_open(picture.closed.union(*map(_spare, picture.robots.values())), now_s)
@@ -108,23 +108,23 @@ class Timetable:
             self.controller.open(corridor, now_s)
         self._closed = closed
 
-    def _placed(self, before: Whereabouts | None, now: Whereabouts, left_at: Mapping[int, str]) -> Whereabouts:
+    def _placed(self, before: RobotLocation | None, now: RobotLocation, left_at: Mapping[int, str]) -> RobotLocation:
         """Where it stands: what it says with a `clear` comes before what it is seen to say a moment later."""
         if now.holds:
             return replace(now, post=now.holds[0].from_post)
         if before is not None and before.holds:
             last = before.way[-1]
-            there = now.wish.first[0][0] if now.wish else last.to_post
+            there = now.request.first[0][0] if now.request else last.to_post
             return replace(now, post=left_at.get(last.grant_id, there))
-        if now.wish is not None:
-            return replace(now, post=now.wish.first[0][0])
+        if now.request is not None:
+            return replace(now, post=now.request.first[0][0])
         if before is None:
             return now
         news = now.seen_at is not None and (before.seen_at is None or now.seen_at > before.seen_at)
         return now if news else replace(now, post=before.post)
 
-    def _is_elsewhere(self, before: Whereabouts, now: Whereabouts) -> bool:
-        """Not where the timetable has it."""
+    def _is_elsewhere(self, before: RobotLocation, now: RobotLocation) -> bool:
+        """Not where the schedule has it."""
         if before.home != now.home:
             return True
         was_in, is_in = before.way, now.way
@@ -134,18 +134,18 @@ class Timetable:
             return was_in[-len(is_in) :] != is_in
         return now.post != was_in[-1].to_post
 
-    def _join(self, now: Whereabouts, now_s: float) -> None:
+    def _join(self, now: RobotLocation, now_s: float) -> None:
         post, towards = now.way[0].from_post if now.way else now.post, [hold.to_post for hold in now.way]
         self.controller.joins(now.robot, post=post, home=now.home, at_home=now.at_home, now_s=now_s, towards=towards)
         self._frozen.discard(now.robot)
 
-    def _follow_one(self, before: Whereabouts, now: Whereabouts, now_s: float) -> None:
+    def _follow_one(self, before: RobotLocation, now: RobotLocation, now_s: float) -> None:
         for hold in before.way[: len(before.way) - len(now.way)]:
             self.controller.cleared(now.robot, hold.from_post, hold.to_post, now_s)
         if now.at_home and not now.holds:
             self.controller.docked(now.robot)
 
-    def _follow_goals(self, now: Whereabouts, now_s: float) -> None:
+    def _follow_goals(self, now: RobotLocation, now_s: float) -> None:
         goals = self._wanted(now)
         left = {goal.key for goal in goals}
         for goal in self.controller.goals(now.robot):
@@ -153,9 +153,9 @@ class Timetable:
                 self.controller.served(now.robot, goal.key, now_s)
         known = _places(self.controller.goals(now.robot)) == _places(goals)
         if not known and not self.controller.give(now.robot, goals, now_s):
-            log.warning("no_timetable", robot=now.robot, goals=_places(goals))
+            log.warning("no_schedule", robot=now.robot, goals=_places(goals))
 
-    def _wanted(self, now: Whereabouts) -> tuple[Goal, ...]:
+    def _wanted(self, now: RobotLocation) -> tuple[Goal, ...]:
         number = self.controller.network.number_of
         return tuple(
             Goal(number(post), 0.0 if key == OF_ITS_OWN else self.settings.assumed_handover_s, key=key)
@@ -163,7 +163,7 @@ class Timetable:
             if post in self.campus.posts
         )
 
-    def _follow_standing(self, now: Whereabouts, now_s: float) -> None:
+    def _follow_standing(self, now: RobotLocation, now_s: float) -> None:
         stands = now.stopped or now.robot in self.vanished
         if stands and now.robot not in self._frozen:
             self._frozen.add(now.robot)
@@ -177,18 +177,18 @@ class Timetable:
     def verdicts(self, understood: Mapping[str, bool], now_s: float) -> Iterator[Verdict]:
         """On every claim that waits; granted is at once what may be. `understood`: who knows what a detour is."""
         for name, one in self._known.items():
-            if one.wish is None or one.holds or not one.online or name in self._frozen:
+            if one.request is None or one.holds or not one.online or name in self._frozen:
                 continue
-            if one.wish.is_for_later and one.goals and one.goals[0][1] == one.wish.goal:
+            if one.request.is_for_later and one.goals and one.goals[0][1] == one.request.goal:
                 continue  # first it does there what it has to do
             verdict = self._verdict(one, understood.get(name, False), now_s)
             if isinstance(verdict, MayEnter):
                 self._note_grant(one, verdict, now_s)
             yield verdict
 
-    def _verdict(self, one: Whereabouts, knows_detours: bool, now_s: float) -> Verdict:
-        assert one.wish is not None  # noqa: S101  # only those are asked
-        first = one.wish.first
+    def _verdict(self, one: RobotLocation, knows_detours: bool, now_s: float) -> Verdict:
+        assert one.request is not None  # noqa: S101  # only those are asked
+        first = one.request.first
         leads = self.controller.leads(one.robot)
         leg = self._names(leads) if leads is not None else None
         asked = leg if leg in first else first[0]
@@ -204,18 +204,18 @@ class Timetable:
             if asked not in first:
                 return MayEnter(one.robot, (asked,), aside=True)
             others = tuple(leg for leg in first if leg != asked)
-            ahead = self.controller.goes_on(one.robot, one.wish.then, now_s)
+            ahead = self.controller.goes_on(one.robot, one.request.then, now_s)
             return MayEnter(one.robot, (asked, *others, *map(self._names, ahead)))
         if isinstance(answer, Waits):
             return HasToWait(one.robot, asked, answer.robots, max(0.0, answer.until_s - now_s))
-        before = dict.fromkeys((*self._holders(asked), *self._in_the_way(one, one.wish.goal)))
+        before = dict.fromkeys((*self._holders(asked), *self._in_the_way(one, one.request.goal)))
         return HasToWait(one.robot, asked, tuple(before), None, closed=corridor_name(*asked) in self._closed)
 
     def _holders(self, leg: Leg) -> tuple[str, ...]:
         corridor = corridor_name(*leg)
         return tuple(name for name, one in self._known.items() if any(h.corridor == corridor for h in one.holds))
 
-    def _in_the_way(self, one: Whereabouts, goal: str) -> tuple[str, ...]:
+    def _in_the_way(self, one: RobotLocation, goal: str) -> tuple[str, ...]:
         """Those that stand, until a person lets them go on, in a corridor of its way or in a bay at its end."""
         try:
             way = shortest_route(self.campus, one.post, goal).posts
@@ -234,10 +234,10 @@ class Timetable:
         posts = self.controller.network.posts
         return posts[lane.start], posts[lane.end]
 
-    def _note_grant(self, one: Whereabouts, verdict: MayEnter, now_s: float) -> None:
+    def _note_grant(self, one: RobotLocation, verdict: MayEnter, now_s: float) -> None:
         """As the next picture will have it; what it may enter besides is closed for those who are asked after it."""
         holds = tuple(Hold(*leg) for leg in verdict.legs)
-        noted = replace(one, wish=None, at_home=False, holds=holds)
+        noted = replace(one, request=None, at_home=False, holds=holds)
         self._known[one.robot] = noted
         self._close_and_open(self._closed | _spare(noted), now_s)
 
@@ -246,23 +246,23 @@ def _places(goals: Iterable[Goal]) -> list[tuple[str, int]]:
     return [(goal.key, goal.post) for goal in goals]
 
 
-def _spare(one: Whereabouts) -> frozenset[str]:
+def _spare(one: RobotLocation) -> frozenset[str]:
     return frozenset(hold.corridor for hold in one.holds[len(one.way) :])
 
 
-def _on_its_way(before: Whereabouts | None, now: Whereabouts) -> Whereabouts:
+def _on_its_way(before: RobotLocation | None, now: RobotLocation) -> RobotLocation:
     """A place to which it goes for reasons of its own is where it goes until it is there, asks for another way, or
     takes back what it waited for or was granted."""
     own = before.goals[0] if before and before.goals and before.goals[0][0] == OF_ITS_OWN else None
     is_there = not now.holds and own is not None and now.post == own[1]
-    if before is None or own is None or is_there or now.wish is not None or _gave_up(before, now):
+    if before is None or own is None or is_there or now.request is not None or _gave_up(before, now):
         return now
     return replace(now, goals=(own, *now.goals))
 
 
-def _gave_up(before: Whereabouts, now: Whereabouts) -> bool:
+def _gave_up(before: RobotLocation, now: RobotLocation) -> bool:
     """Nothing is asked for or held any more, and it has not moved."""
-    waited, held = before.wish is not None, bool(before.holds)
+    waited, held = before.request is not None, bool(before.holds)
     return not now.holds and ((waited and not held) or (held and now.post == before.way[0].from_post))
 
 

@@ -1,7 +1,7 @@
-"""Answers the claims of robots by the timetable: at once, or when the corridor is free. Woken after commits.
+"""Answers the claims of robots by the schedule: at once, or when the corridor is free. Woken after commits.
 
 What robots say is written down by the intake; here it is looked at, and what follows is written in one transaction. If
-that fails the timetable is made anew from the database, so that it never knows of a grant that was not given.
+that fails the schedule is made anew from the database, so that it never knows of a grant that was not given.
 """
 
 from collections.abc import Awaitable, Callable, Sequence
@@ -11,13 +11,13 @@ from typing import Final
 import structlog
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.core.polling import Looks
+from app.core.polling import PollingLoop
 from app.models import ClaimRow, GrantRow, RobotRow
 from app.robots.alarms import VANISHED, clear_alarms, raise_alarm
 from app.robots.corridors.occupied import tell_of_traffic
 from app.robots.service import Fleet, known_robot
-from app.traffic.robot_locations import Picture, Whereabouts, left_at, look_at_all, where_they_left
-from app.traffic.schedule import Elsewhere, HasToWait, MayEnter, Timetable, Verdict
+from app.traffic.robot_locations import RobotLocation, TrafficSnapshot, left_at, look_at_all, where_they_left
+from app.traffic.schedule import Elsewhere, HasToWait, MayEnter, TrafficSchedule, Verdict
 from maps import corridor_name
 from protocol.parts import Leg
 from protocol.to_robot import Deny, Detour, Grant
@@ -40,70 +40,70 @@ async def _never(_session: AsyncSession, _robot: RobotRow, _claim: ClaimRow, _le
     return False
 
 
-class TrafficDesk:
-    """Runs in the background of the service, if traffic goes by the timetable."""
+class TrafficService:
+    """Runs in the background of the service, if traffic goes by the schedule."""
 
     def __init__(self, fleet: Fleet, charges_first: ChargesFirst = _never) -> None:
         self._fleet = fleet
-        self._looks = Looks(LOOK_AGAIN_S, REST_S)
-        self._timetable: Timetable | None = None
+        self._polling = PollingLoop(LOOK_AGAIN_S, REST_S)
+        self._schedule: TrafficSchedule | None = None
         self.on_look: list[Callable[[], None]] = []
-        """Called after each look: what has changed is in the timetable."""
+        """Called after each look: what has changed is in the schedule."""
         self._charges_first = charges_first
 
     @property
-    def timetable(self) -> Timetable | None:
+    def schedule(self) -> TrafficSchedule | None:
         """As it was after the last look; None before the first, and after anything went wrong."""
-        return self._timetable
+        return self._schedule
 
     def wake(self, _changed: str = "") -> None:
-        self._looks.wake()
+        self._polling.wake()
 
     def stop(self) -> None:
         """End `run` after what it is doing."""
-        self._looks.stop()
+        self._polling.stop()
 
     async def run(self) -> None:
         """Until stopped or cancelled."""
-        async for _ in self._looks.until_stopped():
+        async for _ in self._polling.until_stopped():
             try:
                 await self.look_round()
             except BaseException:
-                self._timetable = None
+                self._schedule = None
                 raise
 
     async def look_round(self) -> None:
         """Take over what has changed, and answer who can be answered."""
         now, now_s = self._fleet.clock.utc(), self._fleet.clock.now()
-        timetable = self._timetable or self._new_timetable()
+        schedule = self._schedule or self._new_schedule()
         async with self._fleet.database.reading() as session:
             picture = await look_at_all(session, self._fleet.campus)
-            if self._timetable is None:
+            if self._schedule is None:
                 picture = await where_they_left(session, picture)
-            held = [hold.grant_id for one in timetable.known.values() for hold in one.holds]
+            held = [hold.grant_id for one in schedule.known.values() for hold in one.holds]
             left = await left_at(session, held)
-        before, timetable.vanished = timetable.vanished, self._vanished(picture, now)
-        timetable.follow(picture, left, now_s)
+        before, schedule.vanished = schedule.vanished, self._vanished(picture, now)
+        schedule.follow(picture, left, now_s)
         understood = {name: self._fleet.connections.understands(name, DETOUR) for name in picture.robots}
-        verdicts, said = list(timetable.verdicts(understood, now_s)), [True]
-        if verdicts or before != timetable.vanished:
+        verdicts, said = list(schedule.verdicts(understood, now_s)), [True]
+        if verdicts or before != schedule.vanished:
             async with self._fleet.database.transaction() as session:
-                await self._tell_of_vanished(session, picture, before, timetable.vanished, now)
+                await self._tell_of_vanished(session, picture, before, schedule.vanished, now)
                 names = sorted(verdict.robot for verdict in verdicts)  # locked in one order, as all others do
                 rows = {name: await known_robot(session, name, to_change=True) for name in names}
                 said = [
                     await self._say(session, rows[verdict.robot], picture.robots[verdict.robot], verdict, now)
                     for verdict in verdicts
                 ]
-        # What was decided on a claim that is another by now was not said: the timetable must not believe it was.
-        self._timetable = timetable if all(said) else None
+        # What was decided on a claim that is another by now was not said: the schedule must not believe it was.
+        self._schedule = schedule if all(said) else None
         for call in self.on_look:
             call()
 
-    def _new_timetable(self) -> Timetable:
-        return Timetable(self._fleet.campus, self._fleet.settings, estimates=self._fleet.orders.ledger.estimates)
+    def _new_schedule(self) -> TrafficSchedule:
+        return TrafficSchedule(self._fleet.campus, self._fleet.settings, estimates=self._fleet.orders.ledger.estimates)
 
-    def _vanished(self, picture: Picture, now: datetime) -> frozenset[str]:
+    def _vanished(self, picture: TrafficSnapshot, now: datetime) -> frozenset[str]:
         """Silent for long, and not at home: without network robots are for minutes, with a flat battery for good."""
         since = now - timedelta(seconds=self._fleet.settings.vanished_after_s)
         return frozenset(
@@ -113,7 +113,12 @@ class TrafficDesk:
         )
 
     async def _tell_of_vanished(
-        self, session: AsyncSession, picture: Picture, before: frozenset[str], now_gone: frozenset[str], now: datetime
+        self,
+        session: AsyncSession,
+        picture: TrafficSnapshot,
+        before: frozenset[str],
+        now_gone: frozenset[str],
+        now: datetime,
     ) -> None:
         for name in sorted(now_gone - before):
             one = picture.robots[name]
@@ -128,11 +133,11 @@ class TrafficDesk:
     # What is said to robots.
 
     async def _say(
-        self, session: AsyncSession, robot: RobotRow, one: Whereabouts, verdict: Verdict, now: datetime
+        self, session: AsyncSession, robot: RobotRow, one: RobotLocation, verdict: Verdict, now: datetime
     ) -> bool:
         """False if the robot has asked anew meanwhile, or is sent elsewhere: the next look has that."""
-        assert one.wish is not None  # noqa: S101  # there are verdicts on wishes alone
-        claim = await session.get(ClaimRow, (one.robot, one.wish.claim_id), with_for_update=True)
+        assert one.request is not None  # noqa: S101  # there are verdicts on wishes alone
+        claim = await session.get(ClaimRow, (one.robot, one.request.claim_id), with_for_update=True)
         if claim is None or claim.granted is not None:
             return False
         match verdict:

@@ -20,7 +20,7 @@ class Errands:
     def __init__(self, parts: Parts, clock: Clock, seed: int, routes: Iterator[tuple[str, str]] | None = None) -> None:
         """`routes` are the posts of sender and recipient; without them, any two, for ever."""
         assert parts.robot is not None
-        self._robot, self._duties, self._actions = parts.robot, parts.mind.hands.duties, parts.mind.actions
+        self._robot, self._duties, self._actions = parts.robot, parts.mind.hands.missions, parts.mind.actions
         self._clock, self._random = clock, Random(f"{seed}/errands")
         self._routes = _any_two(self._random) if routes is None else routes
         self._codes: dict[str, str] = {}

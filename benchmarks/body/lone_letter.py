@@ -18,7 +18,7 @@ from protocol.to_robot import Grant, Mission, Verifier, Verifiers
 from protocol.to_server import Claim, Clear, Event, Fault, HandoverReceipt
 from robot.core.config import load_settings
 from robot.mission.memory import Incoming
-from robot.mission.mission import Duties
+from robot.mission.mission import MissionManager
 from robot.ops.assembly import Simulation, assemble
 from robot.ops.runners import LockstepRunner
 from robot.scenarios.campus import campus_of
@@ -38,7 +38,7 @@ STOPS = {Purpose.LOAD: StopAction.LOAD, Purpose.RECEIVE: StopAction.RECEIVE}
 class Service:
     """Grants every claim at once; `held` are the corridors that it believes to be the robot's."""
 
-    duties: Duties
+    missions: MissionManager
     held: list[Leg] = field(default_factory=list)
     told: list[Part] = field(default_factory=list)
     online: bool = True
@@ -48,7 +48,7 @@ class Service:
 
     def incoming(self) -> Sequence[Incoming]:
         """Called in every tick of the mind: that is when the robot is heard, too."""
-        for kept in self.duties.outbox.pending(after=self.heard, limit=1000):
+        for kept in self.missions.outbox.pending(after=self.heard, limit=1000):
             self.heard = kept.seq
             self.told.append(kept.message)
             self._hear(kept.message)
@@ -59,7 +59,7 @@ class Service:
         match message:
             case Claim(claim_id=claim_id, legs=legs):
                 self.held += [leg for leg in legs if leg not in self.held]
-                self.duties.memory.grant(legs)
+                self.missions.memory.grant(legs)
                 self._said += 1
                 self._waiting.append(Incoming(Grant(claim_id=claim_id, legs=legs), "service", self._said))
             case Clear(leg=leg):
@@ -98,8 +98,8 @@ class LetterRun:
         assert self.parts.robot is not None
         self.robot, self.mind, self.navigator = self.parts.robot, self.parts.mind, self.parts.navigator
         self.robot.set_fault("slip", self._slip)
-        self._service = Service(self.mind.hands.duties, self._held, self.told, heard=self._heard)
-        self.mind.hands.duties.join(self._service)
+        self._service = Service(self.mind.hands.missions, self._held, self.told, heard=self._heard)
+        self.mind.hands.missions.join(self._service)
         self._runner = LockstepRunner(self.parts.daemon.loops(), self.clock)
         self.parts.daemon.watchers = (self._look,)
 
@@ -122,7 +122,7 @@ class LetterRun:
     def _look(self, now: float) -> None:
         self._judge()
         waited_for = next((one for one in self.mind.actions.under_way if one.startswith("wait_handover(")), None)
-        handing_over = self.mind.hands.duties.custody.handing_over
+        handing_over = self.mind.hands.missions.custody.handing_over
         if waited_for and not handing_over and self.robot.camera.shown is None:
             purpose = Purpose(waited_for.removeprefix("wait_handover(").split(",")[0])
             self.robot.show_code(self._codes.get(purpose, self._codes[Purpose.LOAD]), SHOWN_FOR_S)
@@ -165,7 +165,7 @@ class LetterRun:
     # The letter.
 
     def _give_letter(self) -> None:
-        duties, places = self.mind.hands.duties, self.random.sample(sorted(self.campus.posts), 2)
+        missions, places = self.mind.hands.missions, self.random.sample(sorted(self.campus.posts), 2)
         verifiers = [
             Verifier(
                 order_id="o1",
@@ -175,9 +175,9 @@ class LetterRun:
             )
             for purpose, code in self._codes.items()
         ]
-        duties.memory.keep_verifiers(Verifiers(verifiers=tuple(verifiers)), self.clock.utc())
+        missions.memory.keep_verifiers(Verifiers(verifiers=tuple(verifiers)), self.clock.utc())
         stops = tuple(
             Stop(id=f"s{purpose}", post=post, action=action, order_id="o1", wait_limit_s=1e6)
             for (purpose, action), post in zip(STOPS.items(), places, strict=True)
         )
-        duties.give(Mission(id="m1", update=1, stops=stops))
+        missions.give(Mission(id="m1", update=1, stops=stops))

@@ -13,7 +13,7 @@ from typing import Any, Final
 from benchmarks.body.errands import Errands
 from benchmarks.body.report import Samples, Wanted
 from protocol.clock import SteppedClock
-from protocol.insight import MAX_INSIGHT_BYTES, Insight
+from protocol.insight import MAX_INSIGHT_BYTES, Diagnostics
 from robot.core.config import load_settings
 from robot.ops.assembly import Simulation, assemble
 from robot.ops.diagnostics import Insights
@@ -40,7 +40,7 @@ class Outlet:
     def has_room_for_insight(self) -> bool:
         return True
 
-    def tell_insight(self, insight: Callable[[], Insight]) -> None:
+    def tell_insight(self, insight: Callable[[], Diagnostics]) -> None:
         began_s = time.thread_time()
         self.sizes.append(len(insight().model_dump_json().encode()))
         self.making_s += time.thread_time() - began_s

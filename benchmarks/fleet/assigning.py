@@ -9,7 +9,7 @@ from typing import Final, Literal
 from benchmarks.fleet.demand import HANDLING_S, Demand, Order
 from benchmarks.fleet.world import World
 from fleet.schedule.journey import Goal, Journey, Task
-from fleet.schedule.planning import Timetable, first_plan, improve, insert, plan
+from fleet.schedule.planning import Schedule, first_plan, improve, insert, plan
 
 Choice = Literal["first come", "nearest robot", "optimiser", "optimiser of all", "quickest", "least delay"]
 AGE_LIMIT_S: Final = 6 * 3600.0
@@ -45,12 +45,12 @@ class _Idea:
     robot: str
     order: Order
     tasks: dict[str, Task]
-    timetable: Timetable
+    schedule: Schedule
 
 
 @dataclass
 class Assigning:
-    """Looks after every event whether a robot is free. `refused`: no timetable was found for any robot."""
+    """Looks after every event whether a robot is free. `refused`: no schedule was found for any robot."""
 
     rule: Rule
     demand: Demand
@@ -81,7 +81,7 @@ class Assigning:
         goals = best.tasks[best.robot].goals
         self.trips.append(Trip(best.order, best.robot, world.now_s, _alone_s(world, best.robot, best.order)))
         self.demand.take(best.order, world.now_s)
-        world.give(best.robot, goals, best.timetable, best.tasks)
+        world.give(best.robot, goals, best.schedule, best.tasks)
         return best.robot
 
     def _pairs(self, world: World, free: Sequence[str]) -> Iterable[tuple[str, Order]]:
@@ -119,11 +119,11 @@ class Assigning:
         better = improve(world.network, more, found, self.rng, lambda: next(rounds, None) is not None)
         return _Idea(better.cost_s - self._unpaid_s(world, robot, order), robot, order, more, better)
 
-    def _planned(self, world: World, tasks: dict[str, Task], kept: dict[str, Journey], robot: str) -> Timetable | None:
+    def _planned(self, world: World, tasks: dict[str, Task], kept: dict[str, Journey], robot: str) -> Schedule | None:
         order = (*(name for name in world.order if name != robot), robot)
         found = plan(world.network, tasks, [robot], kept) or plan(world.network, tasks, order)
         found = found or insert(world.network, tasks, kept, robot) or first_plan(world.network, tasks, self.rng)
-        return found and Timetable(found.journeys, found.cost_s, order)
+        return found and Schedule(found.journeys, found.cost_s, order)
 
     def _unpaid_s(self, world: World, robot: str, order: Order) -> float:
         """Return the time that the rule does not hold against an order: it is as long as it is."""

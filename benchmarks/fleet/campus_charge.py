@@ -20,7 +20,7 @@ from fleet.charging.docks import DockPlan, Need, plan_docks
 from fleet.charging.energy import Rates, Use, assumed_rates
 from fleet.charging.history import Driven, Sample, learned_from
 from fleet.charging.levels import Thresholds
-from fleet.charging.top_ups import NEEDS_IT_MORE, Move, Wish, top_ups
+from fleet.charging.top_ups import NEEDS_IT_MORE, Move, TopUpPolicy, top_ups
 from fleet.schedule.journey import Goal
 from fleet.schedule.network import Lane, Network
 
@@ -213,9 +213,9 @@ class Charges:
 
     def moves(self, resting: Sequence[Charged], taken: Mapping[str, str | None], local: datetime) -> list[Move]:
         self.count_hour(local)
-        wish = Wish(self.demand.is_quiet(local), round(self.demand.expected(local, 1)))
+        policy = TopUpPolicy(self.demand.is_quiet(local), round(self.demand.expected(local, 1)))
         needs = [self._need(robot) for robot in resting]
-        return top_ups(needs, self.plan(), taken, self.thresholds, wish, self._now_s)
+        return top_ups(needs, self.plan(), taken, self.thresholds, policy, self._now_s)
 
     def plan(self, instead: Need | None = None) -> DockPlan:
         needs = {robot.name: self._need(robot) for robot in self.robots.values()}

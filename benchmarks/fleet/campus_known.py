@@ -12,7 +12,7 @@ from protocol.to_server import Claim
 
 @dataclass
 class Known:
-    """`claim` waits, for `lane` or for another way that the timetable leads. `held`: corridors that it may be in, with
+    """`claim` waits, for `lane` or for another way that the schedule leads. `held`: corridors that it may be in, with
     the times of their grants; `moved_s`: of the last, `asked_s`: of the first claim after it. `planned`: orders that
     were known to be more than one charge."""
 

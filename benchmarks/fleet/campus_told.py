@@ -1,5 +1,5 @@
 """ETAs told to people in the simulation, and how true they were: by the service's own estimates, on the traffic's own
-timetable. Corridors and hand-overs are learned from what robots tell."""
+schedule. Corridors and hand-overs are learned from what robots tell."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
@@ -67,7 +67,7 @@ class Told:
     def under_way(
         self, orders: Iterable[Ordered], controller: TrafficController, robots: Iterable[Known], *, is_aboard: bool
     ) -> None:
-        """By the timetable as it is now; an order that is in none of its robot's goals is told nothing yet."""
+        """By the schedule as it is now; an order that is in none of its robot's goals is told nothing yet."""
         now_s = self._now_s
         sees = self.promises.foresight({stop.id: stop for stop in _stops(robots)}, now_s, self.rng)
         tasks, journeys = controller.tasks(now_s), controller.journeys(now_s)

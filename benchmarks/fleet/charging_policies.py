@@ -11,7 +11,7 @@ from fleet.charging.demand import Demand
 from fleet.charging.docks import DockPlan, Need, plan_docks
 from fleet.charging.energy import Rates, Use, assumed_rates
 from fleet.charging.levels import Thresholds
-from fleet.charging.top_ups import Move, Wish, top_ups
+from fleet.charging.top_ups import Move, TopUpPolicy, top_ups
 
 SLOW: Final = 1.4
 """Ways are expected to take so many times longer than on the map, with all waits: rather too long."""
@@ -125,9 +125,9 @@ class Predicting:
     def moves(self, resting: Sequence[Robot], taken: Mapping[str, str | None]) -> list[Move]:
         self._count_hour()
         wanted = round(self.demand.expected(self.clock.local, WANTED_HOURS))
-        wish = Wish(self.demand.is_quiet(self.clock.local), wanted)
+        policy = TopUpPolicy(self.demand.is_quiet(self.clock.local), wanted)
         needs = [self._need(robot) for robot in resting]
-        return top_ups(needs, self._plan(), taken, self.thresholds, wish, self.clock.now_s)
+        return top_ups(needs, self._plan(), taken, self.thresholds, policy, self.clock.now_s)
 
     def spent(self, robot: Robot, use: Use, ratio: float) -> None:
         self.rates[robot.name] = self.rates[robot.name].learned(use, ratio)

@@ -229,7 +229,7 @@ class Campus:
         for robot, lane in granted:
             self.look_for_others(robot, lane)
         for robot, answer in answers:
-            if isinstance(answer, Denied):  # the timetable goes another way now
+            if isinstance(answer, Denied):  # the schedule goes another way now
                 robot.claim = None
                 self._go_on(robot)
         for robot in self.robots.values():

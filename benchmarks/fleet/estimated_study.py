@@ -13,7 +13,7 @@ from math import inf
 from random import Random
 from typing import Any, Final
 
-from app.dispatch.forecasts import Stop as Foreseen
+from app.dispatch.forecasts import Stop as EtaUpdates
 from benchmarks.fleet.estimated_world import (
     CHARGE_AFTER_S,
     CHARGE_S,
@@ -37,7 +37,7 @@ from fleet.eta.intervals import Interval
 from fleet.schedule.execution import retimed
 from fleet.schedule.journey import Start
 from fleet.schedule.network import Network, network_of
-from fleet.schedule.planning import Timetable, first_plan, improve, insert, plan
+from fleet.schedule.planning import Schedule, first_plan, improve, insert, plan
 from maps import builtin_map
 from maps.ways import Ways
 from protocol.parts import StopAction
@@ -115,9 +115,9 @@ class Study:
         tasks = self._tasks()
         found = plan(self.network, tasks, [robot], kept) or insert(self.network, tasks, kept, robot)
         found = found or first_plan(self.network, tasks, self.rng)
-        assert found is not None, "there is always a timetable"
+        assert found is not None, "there is always a schedule"
         left = iter(range(ROUNDS))
-        whole = Timetable(found.journeys, found.cost_s, tuple(tasks))
+        whole = Schedule(found.journeys, found.cost_s, tuple(tasks))
         better = improve(self.network, tasks, whole, self.rng, lambda: next(left, None) is not None)
         self.world.journeys = dict(better.journeys)
 
@@ -138,11 +138,11 @@ class Study:
         stops = {stop.key: self._seen(stop, name) for name, robot in robots for stop in robot.stops if stop.kind}
         return forecast(self.network, tasks, journeys, now_s, self.promises.foresight(stops, now_s, self.rng).chance())
 
-    def _seen(self, stop: Stop, robot: str) -> Foreseen:
+    def _seen(self, stop: Stop, robot: str) -> EtaUpdates:
         """As the service has it."""
         order, _, what = stop.key.rpartition(" ")
         arrived_at = None if stop.begun_s == inf else self.promises.local(stop.begun_s)
-        return Foreseen(stop.key, StopAction(what), self.network.posts[stop.post], order, robot, arrived_at)
+        return EtaUpdates(stop.key, StopAction(what), self.network.posts[stop.post], order, robot, arrived_at)
 
 
 def arrivals(rng: Random, days: float) -> Iterator[float]:

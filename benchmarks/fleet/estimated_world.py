@@ -1,4 +1,4 @@
-"""A simulated campus for the study of estimates: robots carry a timetable out in durations that are unknown before.
+"""A simulated campus for the study of estimates: robots carry a schedule out in durations that are unknown before.
 
 What is true is drawn here: each corridor has a pace of its own, robots fail in corridors, people come sooner in office
 hours. The estimates see what a service would see: when a corridor was entered and left, and a stop begun and done.
@@ -84,7 +84,7 @@ Reached = Callable[[str, float], None]
 
 @dataclass
 class World:
-    """The robots, the timetable that they carry out, and who is told of what they do."""
+    """The robots, the schedule that they carry out, and who is told of what they do."""
 
     network: Network
     robots: dict[str, Robot]
@@ -96,7 +96,7 @@ class World:
     now_s: float = 0.0
 
     def advance(self, to_s: float) -> None:
-        """Until then they go on, in the order of the timetable."""
+        """Until then they go on, in the order of the schedule."""
         tasks = {name: self._true_task(robot) for name, robot in self.robots.items()}
         course = retimed(self.network, tasks, self.journeys, lambda _, lane: self.truth.travel_s(lane))
         for name, journey in course.items():

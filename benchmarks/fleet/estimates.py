@@ -2,7 +2,7 @@
 those by lengths alone: `placed` with each order, `under_way` once a robot has it, which it has at once here.
 
 The orders of a first time teach and are not scored (`WARM_UP`). "Not corrected" is the simulated plan alone: it does
-not know of orders to come, for which the timetable is changed; `fleet.eta.calibration` has to make up for it.
+not know of orders to come, for which the schedule is changed; `fleet.eta.calibration` has to make up for it.
 """
 
 from collections.abc import Sequence

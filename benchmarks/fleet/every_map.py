@@ -25,8 +25,8 @@ WANTED = [Wanted(figure, at_most=0) for figure in ("stuck", "invalid", "refused"
 
 @dataclass
 class Seen:
-    """`stuck`: places without a timetable, or from which carrying one out ends before everybody is home; `invalid`:
-    timetables that the independent check refuses; `refused`: goals that could not be taken on."""
+    """`stuck`: places without a schedule, or from which carrying one out ends before everybody is home; `invalid`:
+    schedules that the independent check refuses; `refused`: goals that could not be taken on."""
 
     maps: int = 0
     fleets: int = 0

@@ -1,4 +1,4 @@
-"""Robots without a timetable: they lock corridors and bays as they come to them, or a whole way before they leave."""
+"""Robots without a schedule: they lock corridors and bays as they come to them, or a whole way before they leave."""
 
 import heapq
 from collections import Counter

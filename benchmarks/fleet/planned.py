@@ -12,7 +12,7 @@ from fleet.assignment.deciding import Decision, decide
 from fleet.assignment.improving import improved
 from fleet.assignment.scene import Kept, OpenOrder, RobotAtWork, Route, Routes, Rules, Scene
 from fleet.schedule.journey import Goal, Task
-from fleet.schedule.planning import Timetable
+from fleet.schedule.planning import Schedule
 
 Budget = Callable[[], Callable[[], bool]]
 """Of one improvement: makes what says whether it goes on."""
@@ -31,7 +31,7 @@ class Spent:
 
 @dataclass
 class Planning:
-    """`open`: all orders that are not delivered. `refused`: decisions for which no timetable was found."""
+    """`open`: all orders that are not delivered. `refused`: decisions for which no schedule was found."""
 
     demand: Demand
     rng: Random
@@ -70,7 +70,7 @@ class Planning:
         tasks, journeys = world.known()
         self._note_served(world)
         cost_s = sum(journeys[name].done_s for name, task in tasks.items() if task.goals)
-        kept = Kept({name: task.goals for name, task in tasks.items()}, Timetable(journeys, cost_s, world.order))
+        kept = Kept({name: task.goals for name, task in tasks.items()}, Schedule(journeys, cost_s, world.order))
         robots = {
             name: RobotAtWork(task.start, task.home, self.capacity, self._route(name, task))
             for name, task in tasks.items()
@@ -84,7 +84,7 @@ class Planning:
         for name, task in tasks.items():
             world.tasks[name] = replace(world.tasks[name], goals=task.goals)
         some = next(iter(tasks))
-        world.give(some, tasks[some].goals, decision.timed.timetable, tasks)
+        world.give(some, tasks[some].goals, decision.timed.schedule, tasks)
         if isinstance(self.demand, Saturated):
             self._fill_up(world, self.demand)
 

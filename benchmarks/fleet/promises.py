@@ -84,7 +84,7 @@ class Promises:
         self._open[order].append(Promise(now_s, Basis.UNDER_WAY, raw, told, by_map))
 
     def foresight(self, stops: Mapping[str, Stop], now_s: float, rng: Random) -> Foresight:
-        """Return what the service draws for a forecast of its timetable."""
+        """Return what the service draws for a forecast of its schedule."""
         return Foresight(self.estimates, self.network, stops, self.local(now_s), now_s, rng)
 
     def corridor(self, lane: Lane) -> Thing:

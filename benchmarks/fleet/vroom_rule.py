@@ -2,7 +2,7 @@
 
 What it answers is executed under the same traffic rules as everything else. It minimises driving; each robot is given
 no more than its share of the waiting orders, or it would leave robots idle. A robot that has an order is ready where
-that goes, when the timetable says.
+that goes, when the schedule says.
 """
 
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""Robots that carry a timetable out, event by event: ways take as long as they take, the order of entry holds.
+"""Robots that carry a schedule out, event by event: ways take as long as they take, the order of entry holds.
 
 Who may enter a corridor is decided by the product's own rule (`fleet.schedule.execution`). What happens is looked at
 here with nothing of it: a robot that meets another or finds no bay ends the run.
@@ -14,7 +14,7 @@ from typing import Final
 from fleet.schedule.execution import may_enter, one_behind_the_other, retimed
 from fleet.schedule.journey import Goal, Journey, Leg, Start, Task, ready_after, without_first
 from fleet.schedule.network import Network
-from fleet.schedule.planning import Timetable, first_plan
+from fleet.schedule.planning import Schedule, first_plan
 from fleet.schedule.validation import problems
 
 LATE_S: Final = 5.0
@@ -29,8 +29,8 @@ class DeadlockError(AssertionError):
     """No robot can go on, and nothing will change that."""
 
 
-class InvalidTimetableError(AssertionError):
-    """The independent check refuses a timetable that was made."""
+class InvalidScheduleError(AssertionError):
+    """The independent check refuses a schedule that was made."""
 
 
 @dataclass
@@ -44,7 +44,7 @@ class World:
     spread: float = 0.0
     now_s: float = 0.0
     entries: int = 0
-    timetables: int = 0
+    schedules: int = 0
     served_s: dict[str, float] = field(default_factory=dict)
     tasks: dict[str, Task] = field(init=False)
     journeys: dict[str, Journey] = field(init=False)
@@ -85,14 +85,14 @@ class World:
         tasks = one_behind_the_other(expected)
         return tasks, retimed(self.network, tasks, self.journeys)
 
-    def give(self, robot: str, goals: Iterable[Goal], timetable: Timetable, tasks: Mapping[str, Task]) -> None:
-        """These goals and the timetable that serves them. `tasks`: what it was made for."""
-        broken = problems(self.network, tasks, timetable.journeys)
+    def give(self, robot: str, goals: Iterable[Goal], schedule: Schedule, tasks: Mapping[str, Task]) -> None:
+        """These goals and the schedule that serves them. `tasks`: what it was made for."""
+        broken = problems(self.network, tasks, schedule.journeys)
         if broken:
-            raise InvalidTimetableError(broken[0])
-        self.timetables += 1
+            raise InvalidScheduleError(broken[0])
+        self.schedules += 1
         self.tasks[robot] = replace(self.tasks[robot], goals=tuple(goals))
-        self.journeys, self.order = dict(timetable.journeys), timetable.order
+        self.journeys, self.order = dict(schedule.journeys), schedule.order
         for name in self.tasks:  # another may be served now where it was to come back later
             self._serve(name)
 

@@ -46,12 +46,12 @@ class Contender:
         """The paper's program takes it that the mail is aboard once it has been at the sender's post."""
         if self.program:
             return SENDER in parts.navigator.visited
-        return bool(parts.mind.hands.duties.held.cargo)
+        return bool(parts.mind.hands.missions.held.cargo)
 
     def has_delivered(self, parts: Parts) -> bool:
         if self.program:
             return parts.mind.is_quiet and parts.navigator.visited[-1:] == [RECIPIENT]
-        return parts.mind.hands.duties.held.mission is None and SENDER in parts.navigator.visited
+        return parts.mind.hands.missions.held.mission is None and SENDER in parts.navigator.visited
 
 
 def _one_letter() -> Iterator[tuple[str, str]]:

@@ -36,7 +36,7 @@ class BareOrder(Base):
     created_at: Mapped[datetime] = mapped_column(DateTime())
 
 
-class Wish(BaseModel):
+class OrderRequest(BaseModel):
     from_post: str
     to_post: str
     recipient: str
@@ -67,10 +67,12 @@ def create(database: str) -> FastAPI:
     app = FastAPI(lifespan=lifespan)
 
     @app.post("/api/v1/orders", status_code=201)
-    async def place(wish: Wish) -> Placed:
+    async def place(request: OrderRequest) -> Placed:
         order_id = str(uuid4())
         async with AsyncSession(engine) as session:
-            session.add(BareOrder(id=order_id, created_at=datetime.now(UTC).replace(tzinfo=None), **wish.model_dump()))
+            session.add(
+                BareOrder(id=order_id, created_at=datetime.now(UTC).replace(tzinfo=None), **request.model_dump())
+            )
             await session.commit()
         return Placed(id=order_id)
 

@@ -11,7 +11,7 @@ from typing import Any
 
 from demo.fleet.errands import Errand, address, errands, first_errands
 from demo.fleet.settings import FleetDemo
-from demo.people import NobodyLooks, SimulatedPerson
+from demo.people import NoCameraError, SimulatedPerson
 from demo.settings import MAILROOM, DemoFailed
 from protocol.clock import Clock
 
@@ -155,7 +155,7 @@ class CampusLife:
     async def _show(self, person: SimulatedPerson, order: Order) -> None:
         try:
             await person.show_code(order["id"])
-        except NobodyLooks:
+        except NoCameraError:
             return  # they come again
         except DemoFailed:
             # The robot may have taken the mail since we looked: then there is no code to show any more.

@@ -8,7 +8,7 @@ from fleet.assignment.deciding import Decision
 from fleet.assignment.scene import Kept, OpenOrder, RobotAtWork, Route, Rules, Scene, Stop
 from fleet.schedule.controller import TrafficController
 from fleet.schedule.journey import Goal
-from fleet.schedule.planning import Timetable
+from fleet.schedule.planning import Schedule
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +43,7 @@ def scene_of(
         )
     cost_s = sum(journeys[name].done_s for name, task in tasks.items() if task.goals)
     first_done = tuple(sorted(tasks, key=lambda name: journeys[name].done_s))
-    kept = Kept({name: task.goals for name, task in tasks.items()}, Timetable(journeys, cost_s, first_done))
+    kept = Kept({name: task.goals for name, task in tasks.items()}, Schedule(journeys, cost_s, first_done))
     return Scene(now_s, traffic.network, at_work, orders, kept, rules or Rules())
 
 
@@ -57,7 +57,7 @@ def adopt(traffic: TrafficController, decision: Decision, robots: Iterable[str],
     stays = {stop.goal.key for route in decision.cut_off.values() for stop in route}
     # What it is to do and cannot be planned for at the moment: it keeps it, the other half of an order too.
     stays |= {stop.goal.key for route in decision.routes.values() for stop in route} - given
-    # What is aboard and has no place in the timetable now is not lost either.
+    # What is aboard and has no place in the schedule now is not lost either.
     stays |= {order.give.key for order in decision.scene.orders.values() if order.loaded} - given
     goals = {
         name: (*task.goals, *(goal for goal in traffic.goals(name) if goal.key in stays))
@@ -65,7 +65,7 @@ def adopt(traffic: TrafficController, decision: Decision, robots: Iterable[str],
     }
     for name in set(robots) - goals.keys():
         goals[name] = tuple(goal for goal in traffic.goals(name) if goal.key not in given)
-    return traffic.adopt(goals, timed.timetable, now_s)
+    return traffic.adopt(goals, timed.schedule, now_s)
 
 
 def _served_since(traffic: TrafficController, decision: Decision) -> set[str]:

@@ -35,7 +35,7 @@ def given_at_s(decision: Decision, robots: Iterable[str]) -> dict[str, float]:
 def _free_from(decision: Decision, robots: Iterable[str]) -> dict[str, tuple[float, int]]:
     """When each robot has done what it has, and where."""
     scene, timed = decision.scene, decision.timed
-    served = served_s(timed.tasks, timed.timetable)
+    served = served_s(timed.tasks, timed.schedule)
     free = {}
     for name in robots:
         if name in scene.robots:

@@ -3,16 +3,16 @@ what it is worth to have these orders under way rather than waiting."""
 
 from fleet.assignment.routes import leaves_s, weight_of
 from fleet.assignment.scene import OpenOrder, Route, Routes, Scene
-from fleet.schedule.planning import Tasks, Timetable
+from fleet.schedule.planning import Schedule, Tasks
 
 
-def plan_cost_s(scene: Scene, routes: Routes, tasks: Tasks, timetable: Timetable) -> float:
-    return busy_s(scene, tasks, timetable) + beside_s(scene, routes)
+def plan_cost_s(scene: Scene, routes: Routes, tasks: Tasks, schedule: Schedule) -> float:
+    return busy_s(scene, tasks, schedule) + beside_s(scene, routes)
 
 
-def busy_s(scene: Scene, tasks: Tasks, timetable: Timetable) -> float:
+def busy_s(scene: Scene, tasks: Tasks, schedule: Schedule) -> float:
     """Return the time that the robots work from now on, added up: waiting for each other included."""
-    return timetable.cost_s - scene.now_s * at_work(tasks)
+    return schedule.cost_s - scene.now_s * at_work(tasks)
 
 
 def at_work(tasks: Tasks) -> int:
@@ -20,7 +20,7 @@ def at_work(tasks: Tasks) -> int:
 
 
 def beside_s(scene: Scene, routes: Routes) -> float:
-    """Everything in the cost of a plan that does not depend on the timetable."""
+    """Everything in the cost of a plan that does not depend on the schedule."""
     return sum(route_s(scene, name, route) for name, route in routes.items() if route)
 
 

@@ -1,4 +1,4 @@
-"""A first decision, at once: every order that there is room for has a robot, and the timetable serves them all."""
+"""A first decision, at once: every order that there is room for has a robot, and the schedule serves them all."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -18,7 +18,7 @@ class Decision:
     """An assignment for all robots, in the `scene` without what is no longer right in it.
 
     `choices`: why orders that are new to their robots went to them. `cut_off`: stops that no way leads to, by robot;
-    they are in no route and in no timetable.
+    they are in no route and in no schedule.
     """
 
     scene: Scene
@@ -49,7 +49,7 @@ def decide(scene: Scene) -> Decision | None:
     if timed is None:
         return None
     choices = choices_left((*first.choices, *given.choices), timed.routes)
-    cost_s = plan_cost_s(tidy, timed.routes, timed.tasks, timed.timetable)
+    cost_s = plan_cost_s(tidy, timed.routes, timed.tasks, timed.schedule)
     cut_off = {name: cut for name, robot in scene.robots.items() if (cut := _cut_off(scene, name, robot))}
     return Decision(tidy, timed, cost_s, choices, cut_off)
 

@@ -1,5 +1,5 @@
 """Better decisions, while there is time: other orders for other robots, each tried with the robots favoured in several
-orders, and judged by what the timetable costs everybody.
+orders, and judged by what the schedule costs everybody.
 
 Only what has not begun is moved. What is overdue is never given later than it was to be.
 """
@@ -17,7 +17,7 @@ from fleet.assignment.regret import Choice, choices_left, give_orders
 from fleet.assignment.routes import movable, without
 from fleet.assignment.scene import Route, Scene
 from fleet.assignment.timing import SLACK_S, Timed, in_order, keeps_promises, overdue_s, sound, tasks_of
-from fleet.schedule.planning import Timetable, improve, plan
+from fleet.schedule.planning import Schedule, improve, plan
 
 RESHUFFLES: Final = 6
 """So many orders of robots are tried for each choice of orders."""
@@ -25,7 +25,7 @@ MOST_TAKEN_BACK: Final = 3
 PATIENCE: Final = 60
 """After so many rounds without anything better there is hardly anything to find."""
 LAST_STEP_S: Final = 0.003
-"""Between two looks at the time: one robot planned, or one timetable looked at."""
+"""Between two looks at the time: one robot planned, or one schedule looked at."""
 
 GoOn = Callable[[], bool]
 
@@ -74,12 +74,12 @@ class _Search:
             raise _NoTimeLeftError
 
     def _reshuffle(self) -> None:
-        """The same stops with another timetable."""
+        """The same stops with another schedule."""
         timed, pause = self._best.timed, self._look_at_the_time
         network, rounds = self._scene.network, self._some_rounds()
-        better = improve(network, timed.tasks, timed.timetable, self._rng, rounds, pause=pause)
-        if better is not timed.timetable:
-            self._take_if_better(replace(timed, timetable=better), self._best.choices, 0.0)
+        better = improve(network, timed.tasks, timed.schedule, self._rng, rounds, pause=pause)
+        if better is not timed.schedule:
+            self._take_if_better(replace(timed, schedule=better), self._best.choices, 0.0)
 
     def _some_rounds(self) -> GoOn:
         left = iter(range(RESHUFFLES))
@@ -121,23 +121,23 @@ class _Search:
         return any(now.get(order) != name and had.get(order) == name for order, name in self._had.items())
 
     def _timed(self, routes: dict[str, Route], worth_s: float) -> Timed | None:
-        """The best timetable for these routes, if it makes the whole cheaper."""
+        """The best schedule for these routes, if it makes the whole cheaper."""
         scene, tasks, kept = self._scene, tasks_of(self._scene, routes), self._best.timed
         within_s = self._best.cost_s - worth_s - SLACK_S - beside_s(scene, routes) + scene.now_s * at_work(tasks)
-        found: Timetable | None = None
+        found: Schedule | None = None
         for order in self._orders([name for name in sorted(tasks) if tasks[name].goals != kept.tasks[name].goals]):
             if not self._go_on():
                 break
-            timetable = plan(scene.network, tasks, order, kept.timetable.journeys, within_s, self._look_at_the_time)
-            if timetable is not None:
-                within_s = timetable.cost_s - SLACK_S
-                names = in_order(kept.timetable.order, tasks, order)
-                found = Timetable(timetable.journeys, timetable.cost_s, names)
+            schedule = plan(scene.network, tasks, order, kept.schedule.journeys, within_s, self._look_at_the_time)
+            if schedule is not None:
+                within_s = schedule.cost_s - SLACK_S
+                names = in_order(kept.schedule.order, tasks, order)
+                found = Schedule(schedule.journeys, schedule.cost_s, names)
         return None if found is None else Timed(routes, tasks, found)
 
     def _orders(self, new: Sequence[str]) -> Iterator[Sequence[str]]:
         """First only those with other stops round all others; then more and more are planned again."""
-        others = [name for name in self._best.timed.timetable.order if name not in new]
+        others = [name for name in self._best.timed.schedule.order if name not in new]
         yield new
         for more in range(1, RESHUFFLES):
             together = [*new, *self._rng.sample(others, min(len(others), more))]
@@ -146,16 +146,16 @@ class _Search:
 
     def _take_if_better(self, timed: Timed, choices: tuple[Choice, ...], worth_s: float) -> None:
         best, scene = self._best, self._scene
-        cost_s = plan_cost_s(scene, timed.routes, timed.tasks, timed.timetable)
+        cost_s = plan_cost_s(scene, timed.routes, timed.tasks, timed.schedule)
         if cost_s > best.cost_s - worth_s - SLACK_S or not _keeps_promises(scene, best.timed, timed):
             return
-        if sound(scene, timed.tasks, timed.timetable) is not None:
+        if sound(scene, timed.tasks, timed.schedule) is not None:
             self._best = replace(best, timed=timed, cost_s=cost_s, choices=choices)
 
 
 def _keeps_promises(scene: Scene, before: Timed, after: Timed) -> bool:
-    promised_s = overdue_s(scene, before.tasks, before.timetable)
-    now_s = overdue_s(scene, after.tasks, after.timetable)
+    promised_s = overdue_s(scene, before.tasks, before.schedule)
+    now_s = overdue_s(scene, after.tasks, after.schedule)
     return promised_s.keys() <= now_s.keys() and keeps_promises(promised_s, now_s)
 
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from fleet.schedule.journey import Goal, Start, Task
 from fleet.schedule.network import Network
-from fleet.schedule.planning import Timetable
+from fleet.schedule.planning import Schedule
 
 
 class Stop(NamedTuple):
@@ -75,10 +75,10 @@ class RobotAtWork:
 
 @dataclass(frozen=True, slots=True)
 class Kept:
-    """The timetable that is carried out, from where the robots are now, and the goals that it serves."""
+    """The schedule that is carried out, from where the robots are now, and the goals that it serves."""
 
     goals: Mapping[str, tuple[Goal, ...]]
-    timetable: Timetable
+    schedule: Schedule
 
 
 @dataclass(frozen=True, slots=True)

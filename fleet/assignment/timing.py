@@ -1,4 +1,4 @@
-"""From the stops of all robots to a timetable that serves them, looked at independently before it counts."""
+"""From the stops of all robots to a schedule that serves them, looked at independently before it counts."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -8,7 +8,7 @@ from typing import Final
 
 from fleet.assignment.scene import Kept, Routes, Scene
 from fleet.schedule.journey import Journey, Task
-from fleet.schedule.planning import Tasks, Timetable, first_plan, insert, plan
+from fleet.schedule.planning import Schedule, Tasks, first_plan, insert, plan
 from fleet.schedule.validation import problems
 
 SLACK_S: Final = 1e-3
@@ -17,12 +17,12 @@ SLACK_S: Final = 1e-3
 
 @dataclass(frozen=True, slots=True)
 class Timed:
-    """Routes with the timetable that serves them. `refused`: robots whose new stops found no place in it, so that it
+    """Routes with the schedule that serves them. `refused`: robots whose new stops found no place in it, so that it
     has them do what they did before."""
 
     routes: Routes
     tasks: Tasks
-    timetable: Timetable
+    schedule: Schedule
     refused: frozenset[str] = frozenset()
 
 
@@ -31,21 +31,21 @@ def tasks_of(scene: Scene, routes: Routes) -> dict[str, Task]:
 
 
 def changed(tasks: Tasks, kept: Kept) -> list[str]:
-    """Robots whose goals are not those that the kept timetable serves."""
-    there = kept.timetable.journeys.keys()
+    """Robots whose goals are not those that the kept schedule serves."""
+    there = kept.schedule.journeys.keys()
     return sorted(name for name, task in tasks.items() if name not in there or kept.goals.get(name) != task.goals)
 
 
 def time_first(scene: Scene, routes: Routes) -> Timed | None:
-    """The first timetable for these routes that is found: what is kept stays, and new work is planned round it.
+    """The first schedule for these routes that is found: what is kept stays, and new work is planned round it.
 
     None only if nothing is kept, or if that is void, and not everybody can come home either.
     """
     tasks = tasks_of(scene, routes)
     if scene.kept is not None:
-        timetable = _round_what_is_kept(scene, tasks, scene.kept)
-        if timetable is not None:
-            return Timed(routes, tasks, timetable)
+        schedule = _round_what_is_kept(scene, tasks, scene.kept)
+        if schedule is not None:
+            return Timed(routes, tasks, schedule)
         timed = _one_by_one(scene, routes, scene.kept)
         if timed is not None:
             return timed
@@ -53,23 +53,23 @@ def time_first(scene: Scene, routes: Routes) -> Timed | None:
     return None if anew is None else Timed(routes, tasks, anew)
 
 
-def _round_what_is_kept(scene: Scene, tasks: Tasks, kept: Kept) -> Timetable | None:
+def _round_what_is_kept(scene: Scene, tasks: Tasks, kept: Kept) -> Schedule | None:
     new = changed(tasks, kept)
     if not new:
-        return sound(scene, tasks, of_robots(kept.timetable, tasks))
+        return sound(scene, tasks, of_robots(kept.schedule, tasks))
     # Where there is no room beside what is kept, planning all of it anew hardly ever finds any: in 2 of 674 decisions.
-    found = plan(scene.network, tasks, new, kept.timetable.journeys)
+    found = plan(scene.network, tasks, new, kept.schedule.journeys)
     if found is None or not keeps_promises(_promised_s(scene, tasks, kept), overdue_s(scene, tasks, found)):
         return None
-    order = in_order(kept.timetable.order, tasks, last=new)
-    return sound(scene, tasks, Timetable(found.journeys, found.cost_s, order))
+    order = in_order(kept.schedule.order, tasks, last=new)
+    return sound(scene, tasks, Schedule(found.journeys, found.cost_s, order))
 
 
 def _promised_s(scene: Scene, tasks: Tasks, kept: Kept) -> Mapping[str, float]:
     """Return the times that the kept schedule promises to overdue orders."""
-    there = tasks.keys() & kept.timetable.journeys.keys()
+    there = tasks.keys() & kept.schedule.journeys.keys()
     served = {name: Task(tasks[name].start, kept.goals.get(name, ()), tasks[name].home) for name in there}
-    return overdue_s(scene, served, kept.timetable)
+    return overdue_s(scene, served, kept.schedule)
 
 
 def keeps_promises(promised_s: Mapping[str, float], now_s: Mapping[str, float]) -> bool:
@@ -82,34 +82,34 @@ def _one_by_one(scene: Scene, routes: Routes, kept: Kept) -> Timed | None:
     and would come later by that."""
     new = tasks_of(scene, routes)
     tasks = {name: Task(task.start, kept.goals.get(name, ()), task.home) for name, task in new.items()}
-    timetable = sound(scene, tasks, of_robots(kept.timetable, tasks))
-    if timetable is None:
+    schedule = sound(scene, tasks, of_robots(kept.schedule, tasks))
+    if schedule is None:
         return None
     refused, promised_s = set(), _promised_s(scene, tasks, kept)
     for name in changed(new, kept):
         more = {**tasks, name: new[name]}
-        found = sound(scene, more, insert(scene.network, more, timetable.journeys, name))
+        found = sound(scene, more, insert(scene.network, more, schedule.journeys, name))
         if found is None or not keeps_promises(promised_s, overdue_s(scene, more, found)):
             refused.add(name)
         else:
-            tasks, timetable = more, found
-    return Timed(routes, tasks, timetable, frozenset(refused))
+            tasks, schedule = more, found
+    return Timed(routes, tasks, schedule, frozenset(refused))
 
 
-def sound(scene: Scene, tasks: Tasks, timetable: Timetable | None) -> Timetable | None:
-    """The timetable, if there is nothing wrong with it."""
-    if timetable is None or problems(scene.network, tasks, timetable.journeys):
+def sound(scene: Scene, tasks: Tasks, schedule: Schedule | None) -> Schedule | None:
+    """The schedule, if there is nothing wrong with it."""
+    if schedule is None or problems(scene.network, tasks, schedule.journeys):
         return None
-    return timetable
+    return schedule
 
 
-def of_robots(timetable: Timetable, tasks: Tasks) -> Timetable | None:
+def of_robots(schedule: Schedule, tasks: Tasks) -> Schedule | None:
     """Without robots that have left; None if one that is there has no journey."""
-    if tasks.keys() - timetable.journeys.keys():
+    if tasks.keys() - schedule.journeys.keys():
         return None
-    journeys = {name: timetable.journeys[name] for name in tasks}
+    journeys = {name: schedule.journeys[name] for name in tasks}
     cost_s = sum(journeys[name].done_s for name, task in tasks.items() if task.goals)
-    return Timetable(journeys, cost_s, in_order(timetable.order, tasks))
+    return Schedule(journeys, cost_s, in_order(schedule.order, tasks))
 
 
 def in_order(order: Sequence[str], tasks: Iterable[str], last: Sequence[str] = ()) -> tuple[str, ...]:
@@ -119,9 +119,9 @@ def in_order(order: Sequence[str], tasks: Iterable[str], last: Sequence[str] = (
     return (*known, *sorted(names - set(known) - set(last)), *last)
 
 
-def served_s(tasks: Tasks, timetable: Timetable) -> dict[str, float]:
+def served_s(tasks: Tasks, schedule: Schedule) -> dict[str, float]:
     """When each goal is served, by its key."""
-    return {key: at_s for name, task in tasks.items() for key, at_s in _served(task, timetable.journeys[name])}
+    return {key: at_s for name, task in tasks.items() for key, at_s in _served(task, schedule.journeys[name])}
 
 
 def _served(task: Task, journey: Journey) -> Iterable[tuple[str, float]]:
@@ -133,9 +133,9 @@ def _served(task: Task, journey: Journey) -> Iterable[tuple[str, float]]:
             yield goal.key, now_s
 
 
-def overdue_s(scene: Scene, tasks: Tasks, timetable: Timetable) -> Mapping[str, float]:
+def overdue_s(scene: Scene, tasks: Tasks, schedule: Schedule) -> Mapping[str, float]:
     """When the mail of each order that has waited too long is given, by order."""
     late = {order.give.key: order.id for order in scene.orders.values() if scene.is_overdue(order.id)}
     if not late:
         return {}
-    return {late[key]: at_s for key, at_s in served_s(tasks, timetable).items() if key in late}
+    return {late[key]: at_s for key, at_s in served_s(tasks, schedule).items() if key in late}

@@ -68,7 +68,7 @@ def why_orders_wait(decision: Decision) -> dict[str, Why]:
     looked = _Looked(
         scene,
         decision,
-        served_s(timed.tasks, timed.timetable),
+        served_s(timed.tasks, timed.schedule),
         {name: room(scene, name, route) for name, route in timed.routes.items()},
         decision.robot_of(),
         {order.id: before for before, order in enumerate(waiting_orders(scene, timed.routes))},

@@ -30,7 +30,7 @@ class Move:
 
 
 @dataclass(frozen=True, slots=True)
-class Wish:
+class TopUpPolicy:
     """`is_quiet`: everybody fills up; else only to where charging gets slow, and `wanted` robots with `ready` or more
     stay where they are."""
 
@@ -44,7 +44,7 @@ def top_ups(
     plan: DockPlan,
     taken: Mapping[str, str | None],
     thresholds: Thresholds,
-    wish: Wish,
+    policy: TopUpPolicy,
     now_s: float,
 ) -> list[Move]:
     """Assign idle robots to docks. `taken`: docks that a robot stands in or is on its way to,
@@ -52,7 +52,7 @@ def top_ups(
     docked = {need.dock: need for need in resting if need.dock is not None}
     coming = sorted((need for need in resting if need.dock is None), key=lambda one: (one.charge.ratio, one.robot))
     moves: list[Move] = []
-    for need in _in_need_or_to_spare(coming, plan, thresholds, wish, now_s):
+    for need in _in_need_or_to_spare(coming, plan, thresholds, policy, now_s):
         dock = _dock_for(need, docked, plan, {**taken, **{move.dock: None for move in moves}}, thresholds, now_s)
         if dock is not None:
             moves.append(Move(need.robot, dock))
@@ -85,17 +85,17 @@ def nearest(need: Need, docks: Sequence[str], thresholds: Thresholds) -> str | N
 
 
 def _in_need_or_to_spare(
-    coming: Sequence[Need], plan: DockPlan, thresholds: Thresholds, wish: Wish, now_s: float
+    coming: Sequence[Need], plan: DockPlan, thresholds: Thresholds, policy: TopUpPolicy, now_s: float
 ) -> list[Need]:
-    until = thresholds.full if wish.is_quiet else thresholds.sufficient
-    able = sum(need.charge.ratio >= wish.ready for need in coming)
-    kept = 0 if wish.is_quiet else wish.wanted
+    until = thresholds.full if policy.is_quiet else thresholds.sufficient
+    able = sum(need.charge.ratio >= policy.ready for need in coming)
+    kept = 0 if policy.is_quiet else policy.wanted
     going = []
     for need in coming:
         is_due = _is_due(need, plan, now_s)
         if not is_due and need.charge.ratio >= until - WORTH:
             continue
-        if not is_due and need.charge.ratio >= wish.ready:
+        if not is_due and need.charge.ratio >= policy.ready:
             if able <= kept:
                 continue
             able -= 1

@@ -39,7 +39,7 @@ class Basis(StrEnum):
     PLACED = "placed"
     """How long the parts of an order have lately taken: told when it is placed."""
     UNDER_WAY = "under_way"
-    """The timetable that is carried out: told of an order that a robot has."""
+    """The schedule that is carried out: told of an order that a robot has."""
 
 
 @dataclass

@@ -9,7 +9,7 @@ from fleet.eta.score import Score, ScoreBoard, Truth
 
 @dataclass
 class Told:
-    """One for each `Basis`. How far off an order comes that has its place in the timetable says nothing of one that no
+    """One for each `Basis`. How far off an order comes that has its place in the schedule says nothing of one that no
     robot has yet. Put right together, the one kind is told much too widely and the other too narrowly, and four of five
     is true of neither."""
 

@@ -1,7 +1,7 @@
 """The traffic of a campus as it is now: who stands where, what each is to do, and who may enter which corridor.
 
     controller.joins("r1", post="mailroom", home="mailroom", at_home=True, now_s=0.0)
-    controller.give("r1", [Goal(network.number_of("library"), 60.0)], now_s=0.0)   whether there is a timetable with it
+    controller.give("r1", [Goal(network.number_of("library"), 60.0)], now_s=0.0)   whether there is a schedule with it
     controller.claims("r1", "mailroom", "loeb", now_s=1.0)                         Granted, Waits or Denied
     controller.grants(now_s=9.0)                                                   who waited, and waits no longer
     controller.cleared("r1", "mailroom", "loeb", now_s=301.0)
@@ -21,7 +21,7 @@ from fleet.schedule.execution import caught_up, one_behind_the_other, retimed, w
 from fleet.schedule.journey import Goal, Journey, Start, Task, without_first
 from fleet.schedule.network import Lane, Network
 from fleet.schedule.participant import Participant, is_full, open_network
-from fleet.schedule.planning import Timetable, first_plan, improve, insert, plan, plan_what_can_be
+from fleet.schedule.planning import Schedule, first_plan, improve, insert, plan, plan_what_can_be
 from fleet.schedule.under_way import further, through
 from fleet.schedule.validation import problems
 
@@ -40,7 +40,7 @@ class Granted:
 
 @dataclass(frozen=True)
 class Waits:
-    """Not yet. `robots` have to go on before; `until_s`: about when, by the timetable."""
+    """Not yet. `robots` have to go on before; `until_s`: about when, by the schedule."""
 
     lane: Lane
     robots: tuple[str, ...]
@@ -49,7 +49,7 @@ class Waits:
 
 @dataclass(frozen=True)
 class Denied:
-    """Not this way: the timetable leads over `instead` (None: nowhere, no way is open)."""
+    """Not this way: the schedule leads over `instead` (None: nowhere, no way is open)."""
 
     lane: Lane
     instead: Lane | None
@@ -58,7 +58,7 @@ class Denied:
 Answer = Granted | Waits | Denied
 
 
-class UnsoundTimetable(RuntimeError):
+class UnsoundSchedule(RuntimeError):
     """The search has made what the independent check refuses: a mistake of ours. No robot is let in by it; a caller
     that keeps the controller builds it anew."""
 
@@ -87,7 +87,7 @@ class TrafficController:
         return one_behind_the_other(tasks)
 
     def journeys(self, now_s: float) -> dict[str, Journey]:
-        """The timetable from now on."""
+        """The schedule from now on."""
         return retimed(self._network, self.tasks(now_s), self._journeys)
 
     def goals(self, robot: str) -> tuple[Goal, ...]:
@@ -123,7 +123,7 @@ class TrafficController:
         self._plan_all(now_s)
 
     def give(self, robot: str, goals: Sequence[Goal], now_s: float, rounds: int = ROUNDS) -> bool:
-        """These are its goals from now on, all of them, if there is a timetable with them; else nothing changes. Those
+        """These are its goals from now on, all of them, if there is a schedule with them; else nothing changes. Those
         of a frozen robot are planned for when it goes on."""
         its, before = self._robots[robot], replace(self._robots[robot])
         its.wants(goals, now_s)
@@ -138,15 +138,15 @@ class TrafficController:
             return False
         return True
 
-    def adopt(self, goals: Mapping[str, Sequence[Goal]], timetable: Timetable, now_s: float) -> bool:
+    def adopt(self, goals: Mapping[str, Sequence[Goal]], schedule: Schedule, now_s: float) -> bool:
         """The same for several robots with a schedule that was worked out elsewhere, if it can still be carried out:
         since then robots may have entered corridors, but no others than it says."""
         before = {name: replace(robot) for name, robot in self._robots.items()}
         for name, theirs in goals.items():
             self._robots[name].wants(self._robots[name].as_told(theirs), now_s)
         tasks = self.tasks(now_s)
-        journeys = caught_up(self._network, tasks, timetable.journeys)
-        if journeys is not None and self._takes(tasks, replace(timetable, journeys=journeys)):
+        journeys = caught_up(self._network, tasks, schedule.journeys)
+        if journeys is not None and self._takes(tasks, replace(schedule, journeys=journeys)):
             return True
         self._robots = before
         return False
@@ -242,7 +242,7 @@ class TrafficController:
             self.joins(robot, post=post, home=home, at_home=False, now_s=now_s)
 
     def leads(self, robot: str) -> Lane | None:
-        """The corridor that the timetable has this robot enter next: home, when there is nothing else to do, or aside.
+        """The corridor that the schedule has this robot enter next: home, when there is nothing else to do, or aside.
         None: it stays."""
         journey = self._journeys.get(robot)
         return next((leg.lane for leg in journey.legs[1:] if leg.lane is not None), None) if journey else None
@@ -250,7 +250,7 @@ class TrafficController:
     # How it is done.
 
     def journeys_of_others(self, robot: str, now_s: float) -> dict[str, Journey]:
-        """The timetable from now on without this robot, but with the room that it leaves it to come home. Timed as if
+        """The schedule from now on without this robot, but with the room that it leaves it to come home. Timed as if
         it were not there others might shut it in, and then nothing more could be put in."""
         return {name: journey for name, journey in self.journeys(now_s).items() if name != robot}
 
@@ -323,7 +323,7 @@ class TrafficController:
             self._robots[name].goals_wait = len(task.goals) < len(wanted[name].goals)
             self._robots[name].stays = task.home != wanted[name].home
         if not (self._takes(planned, self._better(planned, found, ROUNDS)) or self._takes(planned, found)):
-            raise UnsoundTimetable("; ".join(problems(self._network, planned, found.journeys)))
+            raise UnsoundSchedule("; ".join(problems(self._network, planned, found.journeys)))
 
     def _try_again(self, now_s: float) -> None:
         """A robot has moved: one that could not be planned for may have a way now."""
@@ -333,12 +333,12 @@ class TrafficController:
             if robot.goals_wait and not robot.frozen:
                 self.give(name, robot.goals, now_s, rounds=0)
 
-    def _better(self, tasks: Mapping[str, Task], found: Timetable, rounds: int) -> Timetable:
+    def _better(self, tasks: Mapping[str, Task], found: Schedule, rounds: int) -> Schedule:
         left = iter(range(rounds))
         return improve(self._network, tasks, found, self._rng, lambda: next(left, None) is not None)
 
-    def _takes(self, tasks: Mapping[str, Task], timetable: Timetable) -> bool:
-        if problems(self._network, tasks, timetable.journeys):
+    def _takes(self, tasks: Mapping[str, Task], schedule: Schedule) -> bool:
+        if problems(self._network, tasks, schedule.journeys):
             return False
-        self._journeys = dict(timetable.journeys)
+        self._journeys = dict(schedule.journeys)
         return True

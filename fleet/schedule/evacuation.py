@@ -1,7 +1,7 @@
 """Every robot home, from wherever it stands: one robot moves at a time, and others step aside.
 
 Slow but complete: where this finds nothing there is nothing. It is asked when planning one robot after the other has
-found no timetable, as may be after a fault in which no older one is left; while one is kept it is never needed.
+found no schedule, as may be after a fault in which no older one is left; while one is kept it is never needed.
 """
 
 import heapq

@@ -1,6 +1,6 @@
-"""Carrying a timetable out: its order counts, not its clock.
+"""Carrying a schedule out: its order counts, not its clock.
 
-At every corridor and at every post robots enter in the order of the timetable. Of all entries to come the earliest can
+At every corridor and at every post robots enter in the order of the schedule. Of all entries to come the earliest can
 always be made: all before it have been made, and what they hold is given back without anybody else's doing. So delays
 never end in a deadlock, they only move the times (`retimed`).
 """

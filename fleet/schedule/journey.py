@@ -29,7 +29,7 @@ class Through(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Start:
-    """Where a robot is, as far as a timetable goes: it stands at a post, or is in a corridor on its way to it.
+    """Where a robot is, as far as a schedule goes: it stands at a post, or is in a corridor on its way to it.
 
     It can leave that post at `ready_s` at the earliest: after its arrival, and after what it has begun to handle there.
     `lane` is the corridor that it is in (None: in none), entered at `entered_s` and left at `arrives_s`. Its bay at the

@@ -1,4 +1,4 @@
-"""The campus as a timetable sees it: posts with bays, and each corridor as two lanes, all by number.
+"""The campus as a schedule sees it: posts with bays, and each corridor as two lanes, all by number.
 
 Numbers instead of names, since a search looks at them some thousand times for one decision.
 """

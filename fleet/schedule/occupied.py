@@ -26,7 +26,7 @@ class Passage(NamedTuple):
     leave_s: float
 
 
-class Taken:
+class Occupied:
     """Mutable: legs are put in and taken out again, and what is free between them is worked out when it is asked."""
 
     def __init__(self, network: Network) -> None:

@@ -20,7 +20,7 @@ class Participant:
     claim: Lane | None = None
     frozen: bool = False
     goals_wait: bool = False
-    """No timetable was found with its goals."""
+    """No schedule was found with its goals."""
     stays: bool = False
     """None was found that leads it home."""
 

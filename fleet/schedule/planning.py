@@ -1,4 +1,4 @@
-"""Timetables for all robots: one after the other, each round those before it; and better ones, by doing some again.
+"""Schedules for all robots: one after the other, each round those before it; and better ones, by doing some again.
 
 A schedule is whole: every journey ends at home. A caller that keeps the one it has until there is a better one always
 has one that can be carried out. First everybody's work is planned, with robots left standing where their work ends, and
@@ -14,7 +14,7 @@ from typing import Final
 from fleet.schedule.evacuation import evacuate
 from fleet.schedule.journey import Journey, Task, standing
 from fleet.schedule.network import Network
-from fleet.schedule.occupied import Taken
+from fleet.schedule.occupied import Occupied
 from fleet.schedule.search import find_work
 from fleet.schedule.ways_home import WaysHome
 
@@ -33,7 +33,7 @@ def no_pause() -> None:
 
 
 @dataclass(frozen=True)
-class Timetable:
+class Schedule:
     """A journey for every robot. `cost_s`: the times at which robots with goals have done them, added up. `order`: in
     which order they were planned, most favoured first; what is better is looked for near it."""
 
@@ -46,7 +46,7 @@ class Timetable:
 class _Attempt:
     network: Network
     tasks: Tasks
-    taken: Taken
+    taken: Occupied
     work: dict[str, Journey] = field(default_factory=dict)
     cost_s: float = 0.0
 
@@ -79,7 +79,7 @@ def plan(
     kept: Journeys | None = None,
     within_s: float = inf,
     pause: Pause = no_pause,
-) -> Timetable | None:
+) -> Schedule | None:
     """The first robot of `order` goes where it likes, each further one round those before it; those that are not in it
     work as they do in `kept`. None if one finds no way, or if it costs `within_s` or more.
     """
@@ -96,10 +96,10 @@ def plan(
         return None
     as_before = {robot: kept[robot] for robot in tasks.keys() - set(order)} if kept else {}
     journeys = WaysHome(network, tasks, attempt.taken, attempt.work, pause).plan(as_before)
-    return None if journeys is None else Timetable(journeys, attempt.cost_s, tuple(order))
+    return None if journeys is None else Schedule(journeys, attempt.cost_s, tuple(order))
 
 
-def insert(network: Network, tasks: Tasks, kept: Journeys, robot: str) -> Timetable | None:
+def insert(network: Network, tasks: Tasks, kept: Journeys, robot: str) -> Schedule | None:
     """One robot's task planned anew round all that the others do, their ways home included.
 
     Found whenever `kept` is whole and a way leads to each goal: when all others are at home nothing is in the way, so
@@ -120,11 +120,11 @@ def insert(network: Network, tasks: Tasks, kept: Journeys, robot: str) -> Timeta
             return None
         journeys[robot] = home
     cost_s = sum(journey.done_s for name, journey in journeys.items() if tasks[name].goals)
-    return Timetable(journeys, cost_s, tuple(sorted(tasks)))
+    return Schedule(journeys, cost_s, tuple(sorted(tasks)))
 
 
-def first_plan(network: Network, tasks: Tasks, rng: Random, tries: int = 20) -> Timetable | None:
-    """Some timetable, with nothing to go by; None if not everybody can come home, or some goal cannot be reached."""
+def first_plan(network: Network, tasks: Tasks, rng: Random, tries: int = 20) -> Schedule | None:
+    """Some schedule, with nothing to go by; None if not everybody can come home, or some goal cannot be reached."""
     order = sorted(tasks)
     for _ in range(tries):
         found = plan(network, tasks, order)
@@ -134,22 +134,22 @@ def first_plan(network: Network, tasks: Tasks, rng: Random, tries: int = 20) -> 
     return _one_after_the_other(network, tasks)
 
 
-def plan_what_can_be(network: Network, tasks: Tasks, rng: Random) -> tuple[Timetable, dict[str, Task]]:
-    """A timetable in any case, and the tasks that it is of: where not all can be done some robots are without goals for
+def plan_what_can_be(network: Network, tasks: Tasks, rng: Random) -> tuple[Schedule, dict[str, Task]]:
+    """A schedule in any case, and the tasks that it is of: where not all can be done some robots are without goals for
     now, and if not everybody comes home some stay where they are."""
     found = first_plan(network, tasks, rng)
     if found is not None:
         return found, dict(tasks)
-    timetable, planned = _home_who_can(network, tasks, rng)
+    schedule, planned = _home_who_can(network, tasks, rng)
     for robot in sorted(tasks):
         more = {**planned, robot: replace(planned[robot], goals=tasks[robot].goals)}
-        with_it = insert(network, more, timetable.journeys, robot) if tasks[robot].goals else None
+        with_it = insert(network, more, schedule.journeys, robot) if tasks[robot].goals else None
         if with_it is not None:
-            timetable, planned = with_it, more
-    return timetable, planned
+            schedule, planned = with_it, more
+    return schedule, planned
 
 
-def _home_who_can(network: Network, tasks: Tasks, rng: Random) -> tuple[Timetable, dict[str, Task]]:
+def _home_who_can(network: Network, tasks: Tasks, rng: Random) -> tuple[Schedule, dict[str, Task]]:
     """Plan for all robots; if that fails, for all but one; if that fails, for none."""
     ways_home = {robot: replace(task, goals=()) for robot, task in tasks.items()}
     all_but_one = ({**ways_home, robot: replace(task, home=None)} for robot, task in ways_home.items())
@@ -159,49 +159,49 @@ def _home_who_can(network: Network, tasks: Tasks, rng: Random) -> tuple[Timetabl
             return found, planned
     still = {robot: replace(task, home=None) for robot, task in ways_home.items()}
     stays = {robot: Journey((standing(task.start),), (), task.start.ready_s) for robot, task in still.items()}
-    return Timetable(stays, 0.0, tuple(sorted(tasks))), still
+    return Schedule(stays, 0.0, tuple(sorted(tasks))), still
 
 
-def _one_after_the_other(network: Network, tasks: Tasks) -> Timetable | None:
+def _one_after_the_other(network: Network, tasks: Tasks) -> Schedule | None:
     """First everybody home; then each robot's work is put in."""
     ways_home = evacuate(network, tasks)
     if ways_home is None:
         return None
     so_far = {robot: Task(task.start, (), task.home) for robot, task in tasks.items()}
-    timetable = Timetable(ways_home, 0.0, tuple(sorted(tasks)))
+    schedule = Schedule(ways_home, 0.0, tuple(sorted(tasks)))
     for robot in sorted(tasks):
         if tasks[robot].goals:
             so_far[robot] = tasks[robot]
-            found = insert(network, so_far, timetable.journeys, robot)
+            found = insert(network, so_far, schedule.journeys, robot)
             if found is None:
                 return None
-            timetable = found
-    return timetable
+            schedule = found
+    return schedule
 
 
 def improve(
     network: Network,
     tasks: Tasks,
-    best: Timetable,
+    best: Schedule,
     rng: Random,
     go_on: Callable[[], bool],
     worth_s: float = WORTH_S,
     pause: Pause = no_pause,
-) -> Timetable:
-    """The best timetable found while it goes on: some robots or all are planned again in another order."""
+) -> Schedule:
+    """The best schedule found while it goes on: some robots or all are planned again in another order."""
     while best.order and go_on():
         order = _another_order(best.order, rng)
         found = plan(network, tasks, order, best.journeys, best.cost_s - worth_s, pause)
         if found is not None:
             left = [robot for robot in best.order if robot not in found.order]
-            best = Timetable(found.journeys, found.cost_s, (*left, *found.order))
+            best = Schedule(found.journeys, found.cost_s, (*left, *found.order))
     return best
 
 
-def _taken_on_the_way(network: Network, tasks: Tasks) -> Taken:
+def _taken_on_the_way(network: Network, tasks: Tasks) -> Occupied:
     """Return what robots hold of the ways to where their journeys begin; it is not planned, and no plan may take it
     out again."""
-    taken = Taken(network)
+    taken = Occupied(network)
     for robot, task in tasks.items():
         for start in task.start.on_the_way():
             taken.hold(f"{robot} on its way", start, start.ready_s)

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from fleet.schedule.journey import Goal, Leg, Start
 from fleet.schedule.network import Lane, Network
-from fleet.schedule.occupied import Span, Taken
+from fleet.schedule.occupied import Occupied, Span
 
 
 class Found(NamedTuple):
@@ -33,7 +33,7 @@ class _Node(NamedTuple):
 
 
 def find_work(
-    network: Network, taken: Taken, start: Start, goals: Sequence[Goal], home: int | None, within_s: float = inf
+    network: Network, taken: Occupied, start: Start, goals: Sequence[Goal], home: int | None, within_s: float = inf
 ) -> Found | None:
     """Find the way that has the last goal done first, and ends where the robot may stay for ever: in a bay that no
     other has asked for, or at home. None if there is none, or none that is done within `within_s`.
@@ -43,7 +43,7 @@ def find_work(
     return _Search(network, taken, goals, home, within_s, may_end_in_a_bay=True).run(start)
 
 
-def find_home(network: Network, taken: Taken, start: Start, home: int) -> Found | None:
+def find_home(network: Network, taken: Occupied, start: Start, home: int) -> Found | None:
     """The way that is home first."""
     return _Search(network, taken, (), home, inf, may_end_in_a_bay=False).run(start)
 
@@ -52,7 +52,7 @@ class _Search:
     def __init__(
         self,
         network: Network,
-        taken: Taken,
+        taken: Occupied,
         goals: Sequence[Goal],
         home: int | None,
         within_s: float,

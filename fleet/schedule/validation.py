@@ -1,6 +1,6 @@
 """Validation of a schedule: rule by rule, with nothing of what made it.
 
-Every timetable is looked at before it counts, so a mistake of the search costs a plan and not a deadlock.
+Every schedule is looked at before it counts, so a mistake of the search costs a plan and not a deadlock.
 """
 
 from collections.abc import Iterator, Mapping, Sequence

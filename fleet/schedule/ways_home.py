@@ -13,7 +13,7 @@ from typing import Final, NamedTuple
 
 from fleet.schedule.journey import Journey, Leg, Start, Task, stays
 from fleet.schedule.network import Network
-from fleet.schedule.occupied import Taken
+from fleet.schedule.occupied import Occupied
 from fleet.schedule.search import find_home
 
 Journeys = Mapping[str, Journey]
@@ -27,7 +27,7 @@ class WaysHome:
 
     network: Network
     tasks: Mapping[str, Task]
-    taken: Taken
+    taken: Occupied
     work: Journeys
     pause: Callable[[], None]
 

@@ -18,12 +18,12 @@ from protocol.to_server import Snapshot, Why
 from robot.agent.actions.actions import Actions
 from robot.agent.actions.corridors import WAY_BLOCKED, detour, tried_again
 from robot.agent.actions.hands import PLACE_UNKNOWN, Hands
-from robot.agent.perception.battery import BatterySense, BatteryWord
+from robot.agent.perception.battery import BatteryLevel, BatterySense
 from robot.agent.perception.percepts import perceive
-from robot.agent.perception.seen import Seen, Whereabouts
+from robot.agent.perception.seen import MapPosition, Seen
 from robot.agent.reasons import LONG_AWAY, reason
 from robot.core.config import PerceptMode, Settings
-from robot.mission.offline_timeout import LongSilence
+from robot.mission.offline_timeout import OfflineTimeout
 from robot.mission.state import REVOKED
 from robot.reflexes import HALTING, LATCHED, TOLD
 from robot.skills.interfaces import View
@@ -49,7 +49,7 @@ class Mind:
     inbox: deque[Message] = field(default_factory=deque)
     """Messages to the agent: one is read in each cycle."""
     battery: BatterySense = field(default_factory=BatterySense)
-    silence: LongSilence = field(default_factory=LongSilence)
+    silence: OfflineTimeout = field(default_factory=OfflineTimeout)
     cycles: int = 0
     failures: list[str] = field(default_factory=list)
     """Goals that failed without a recovery plan, in words; the newest."""
@@ -72,14 +72,14 @@ class Mind:
         view = self.hands.view = self.hands.body.view
         self.hands.navigator.look(view)
         ended = self.actions.finished(now)  # before what the server wants: mail that came aboard cannot be cancelled
-        self.hands.duties.take_messages()
+        self.hands.missions.take_messages()
         if view.base:
             self.battery = self.battery.seen(view.base, self.settings.battery, now)
-        self.hands.body.link(self.hands.duties.online)
+        self.hands.body.link(self.hands.missions.online)
         self._tell_faults(view.faults)
         self._tell_open_way()
         self._follow_revocation(view)
-        self.silence.look(self.hands.duties.held, self.hands.duties.utc(), self.hands.duties.online, now)
+        self.silence.look(self.hands.missions.held, self.hands.missions.utc(), self.hands.missions.online, now)
         self._stop_or_rearm(view)
         self._reason(now, ended)
         self.hands.body.heartbeat(now)
@@ -100,7 +100,7 @@ class Mind:
 
     @property
     def _world_known(self) -> tuple[int, str | None]:
-        return self.hands.duties.revision, self.hands.navigator.destination
+        return self.hands.missions.revision, self.hands.navigator.destination
 
     def _percepts(self, now: float) -> frozenset[str]:
         percepts = perceive(self.seen(now), self.mode, self.settings.mind.age_limit_s)
@@ -140,9 +140,9 @@ class Mind:
     def seen(self, now: float) -> Seen:
         """The moment as perception is shown it."""
         hands, navigator = self.hands, self.hands.navigator
-        where = Whereabouts(
+        where = MapPosition(
             navigator.at,
-            hands.duties.held.position.previous,
+            hands.missions.held.position.previous,
             navigator.destination,
             navigator.way(),
             navigator.rests_at,
@@ -157,57 +157,57 @@ class Mind:
             view=hands.view,
             battery=self.battery,
             where=where,
-            held=hands.duties.held,
+            held=hands.missions.held,
             halting=hands.view.faults & HALTING,
             home=navigator.home,
             nearest_dock=navigator.nearest_dock(),
             watch=int(now // WATCH_S),
             unsure=self.silence.lasts is True,
-            handing_over=hands.duties.custody.handing_over,
+            handing_over=hands.missions.custody.handing_over,
         )
 
     def _tell_faults(self, faults: frozenset[str]) -> None:
         """Those that a restart ended are told to be over, too."""
-        duties = self.hands.duties
-        for name in sorted(faults ^ (duties.held.faults & TOLD.keys())):
-            duties.report_fault(name, TOLD[name], self.hands.place, cleared=name not in faults)
+        missions = self.hands.missions
+        for name in sorted(faults ^ (missions.held.faults & TOLD.keys())):
+            missions.report_fault(name, TOLD[name], self.hands.place, cleared=name not in faults)
 
     def _tell_open_way(self) -> None:
         """A closed corridor is over when its time is, or when a person reports it open: then it is tried again."""
-        duties, closed = self.hands.duties, self.hands.navigator.closed
+        missions, closed = self.hands.missions, self.hands.navigator.closed
         for name in sorted(closed.over):
             reason, lasts = tried_again(name), bool(closed.names)
-            duties.report_one_fault(WAY_BLOCKED, reason, self.hands.place, cleared=True, lasts=lasts)
+            missions.report_one_fault(WAY_BLOCKED, reason, self.hands.place, cleared=True, lasts=lasts)
         closed.note_told()
-        if WAY_BLOCKED in duties.held.faults and not closed.names:  # it was killed before it could tell of each
-            duties.report_fault(WAY_BLOCKED, "The robot tries that way again.", self.hands.place, cleared=True)
+        if WAY_BLOCKED in missions.held.faults and not closed.names:  # it was killed before it could tell of each
+            missions.report_fault(WAY_BLOCKED, "The robot tries that way again.", self.hands.place, cleared=True)
 
     def _follow_revocation(self, view: View) -> None:
         """Its corridors were given to others: it stands until it has found out where it is."""
-        duties, navigator = self.hands.duties, self.hands.navigator
-        if duties.forget_place_asked:
-            duties.forget_place_asked = False
+        missions, navigator = self.hands.missions, self.hands.navigator
+        if missions.forget_place_asked:
+            missions.forget_place_asked = False
             navigator.lose_place(view)
-        elif duties.held.revoked and navigator.is_known:
-            duties.report_fault(REVOKED, "It knows where it is again.", navigator.at, cleared=True)
+        elif missions.held.revoked and navigator.is_known:
+            missions.report_fault(REVOKED, "It knows where it is again.", navigator.at, cleared=True)
         if navigator.is_known and not navigator.doubted:
-            duties.report_fault(PLACE_UNKNOWN, "It knows where it is again.", navigator.at, cleared=True)
+            missions.report_fault(PLACE_UNKNOWN, "It knows where it is again.", navigator.at, cleared=True)
 
     def _stop_or_rearm(self, view: View) -> None:
         """Stop or re-arm as the server asked. (The Spot button re-arms in the body itself.)"""
-        duties, body = self.hands.duties, self.hands.body
-        if duties.stop_asked:
+        missions, body = self.hands.missions, self.hands.body
+        if missions.stop_asked:
             body.emergency_stop()
-        if view.faults & LATCHED and duties.rearm_asked:
+        if view.faults & LATCHED and missions.rearm_asked:
             body.rearm()
-        duties.stop_asked = duties.rearm_asked = False
+        missions.stop_asked = missions.rearm_asked = False
 
     def _tell_why(self) -> None:
         why = (
             LONG_AWAY
             if self.silence.lasts
             else reason(
-                self.actions.under_way, self.hands.view, self.hands.navigator, self.hands.duties, self._is_charging
+                self.actions.under_way, self.hands.view, self.hands.navigator, self.hands.missions, self._is_charging
             )
         )
         if why != self._why:
@@ -218,7 +218,7 @@ class Mind:
     def _is_charging(self) -> bool:
         """In the dock and not full: the trickle that keeps a full battery full is no charging to wait for."""
         base = self.hands.view.heard_base
-        return base is not None and base.charging and self.battery.word is not BatteryWord.FULL
+        return base is not None and base.charging and self.battery.word is not BatteryLevel.FULL
 
     @property
     def _is_docked(self) -> bool:
@@ -232,7 +232,7 @@ class Mind:
 
     def snapshot(self) -> Snapshot:
         """The state as the server is told it."""
-        held = self.hands.duties.held
+        held = self.hands.missions.held
         return Snapshot(
             position=held.position,
             activity=self.activity(),
@@ -244,7 +244,7 @@ class Mind:
     def activity(self) -> Activity:
         """In one word."""
         view = self.hands.view
-        if view.faults & HALTING or self.hands.duties.held.revoked:
+        if view.faults & HALTING or self.hands.missions.held.revoked:
             return Activity.STOPPED
         if view.heard_base and view.heard_base.docked and view.motion is None:
             return Activity.CHARGING if self._is_charging else Activity.IDLE

@@ -16,10 +16,10 @@ from robot.localization.closed import Closed, open_way
 from robot.localization.directions import PLAIN_TURNS, Way, kept_from, next_post, sector
 from robot.localization.docks import nearest_dock, way_out
 from robot.localization.expected import wrong_corridor
-from robot.localization.place import AtPost, Between, Leaving, Looks, Unknown
+from robot.localization.place import AtPost, Between, Facing, Leaving, Unknown
 from robot.localization.remembering import Moment
 from robot.localization.steps import corridor_between, gone_astray, marked, turned_round
-from robot.mission.mission import Duties
+from robot.mission.mission import MissionManager
 from robot.skills.interfaces import View
 
 RESTS_MM = 25.0
@@ -33,11 +33,11 @@ SURELY_PAST_M = 0.3
 class Navigator(Tracker):
     """Place and destination. Told by actions what they are about to do, and by the body what it sees."""
 
-    def __init__(self, campus: CampusMap, home: str | None, duties: Duties, now: float) -> None:
-        super().__init__(campus, home, duties)
+    def __init__(self, campus: CampusMap, home: str | None, missions: MissionManager, now: float) -> None:
+        super().__init__(campus, home, missions)
         self.destination: str | None = None
-        self.closed = Closed(duties.closed_ages_s(), duties.keep_closed, now)
-        duties.open_way = partial(open_way, campus, self.closed)
+        self.closed = Closed(missions.closed_ages_s(), missions.keep_closed, now)
+        missions.open_way = partial(open_way, campus, self.closed)
         self._nearest: tuple[object, str | None] = ((), home)  # asked ten times a second, answered once per post
 
     def look(self, view: View) -> None:
@@ -138,7 +138,7 @@ class Navigator(Tracker):
         """The corridors that it may be in next on the way to a post: every one here while it does not know which way it
         looks. All markers of a post carry the same text, so after a lift only the next post tells. Raises NoRoute."""
         first = self.legs_to(goal)[:1]
-        if not first or self._looks is not None:
+        if not first or self._facing is not None:
             return first
         here = first[0].from_post
         return tuple(Leg(from_post=here, to_post=post.name) for post, _ in self.campus.neighbours(here))
@@ -276,5 +276,5 @@ class Navigator(Tracker):
         facing_rad = self.campus.corridor(post, towards).heading_leaving(post) if towards else None
         now_mm = self._odometry.ahead_mm
         self.campus.post(post)
-        self._place, self._looks = Unknown(), Looks.of(facing_rad, self._odometry)
+        self._place, self._facing = Unknown(), Facing.of(facing_rad, self._odometry)
         self._arrive(AtPost(post, now_mm, now_mm))

@@ -9,7 +9,7 @@ from typing import Final
 from protocol.parts import StopAction
 from protocol.to_server import Why
 from robot.agent.navigator import Navigator
-from robot.mission.mission import Duties
+from robot.mission.mission import MissionManager
 from robot.reflexes import FAULTS, Response
 from robot.skills.interfaces import View
 
@@ -52,19 +52,19 @@ _WAITS: Final[dict[str, Callable[[Navigator], tuple[str, str | None]]]] = {
 }
 
 
-def reason(under_way: Sequence[str], view: View, navigator: Navigator, duties: Duties, charging: bool) -> Why:
+def reason(under_way: Sequence[str], view: View, navigator: Navigator, missions: MissionManager, charging: bool) -> Why:
     """One sentence, the goal behind it, and what it waits for."""
-    stop = duties.held.stop
+    stop = missions.held.stop
     goal = _PURPOSES[stop.action].format(post=stop.post) if stop else None
     for fault in sorted(view.faults & _STAND.keys()):
         return Why(sentence=_STAND[fault], goal=goal, waiting_for="a person" if fault != "bump" else "a free way")
-    if duties.held.revoked or (navigator.doubted and not under_way):
+    if missions.held.revoked or (navigator.doubted and not under_way):
         return Why(sentence=TAKEN_AWAY, goal=goal, waiting_for="a person")
-    if duties.custody.handing_over:
+    if missions.custody.handing_over:
         return Why(sentence=f"Giving people at {navigator.here} a moment to step back", goal=goal)
     if under_way:
         sentence, waiting_for = _of_action(under_way[-1], navigator)
-        if under_way[-1].startswith("claim(") and not duties.online:
+        if under_way[-1].startswith("claim(") and not missions.online:
             # Offline the robot goes on within its grants; the next one can only come when it is reached again.
             sentence, waiting_for = f"Waiting at {navigator.here} for the network", "the network"
         return Why(sentence=sentence, goal=goal, waiting_for=waiting_for)
@@ -72,7 +72,7 @@ def reason(under_way: Sequence[str], view: View, navigator: Navigator, duties: D
         doing = "Charging" if charging else "In its dock"
         waiting_for = "a full battery" if stop and charging else None
         return Why(sentence=f"{doing} at {navigator.here}", goal=goal, waiting_for=waiting_for)
-    return Why(sentence="Paused" if duties.held.paused else "Nothing to do", goal=goal)
+    return Why(sentence="Paused" if missions.held.paused else "Nothing to do", goal=goal)
 
 
 def _of_action(action: str, navigator: Navigator) -> tuple[str, str | None]:

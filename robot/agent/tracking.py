@@ -16,11 +16,11 @@ from robot.localization.docks import dock_post
 from robot.localization.expected import Expected, Foreign, agree, expected, hangs_beside_this_line, is_own
 from robot.localization.facing import facing_by
 from robot.localization.granted import behind
-from robot.localization.place import AtPost, Between, Coming, Leaving, Looks, Place, Unknown
+from robot.localization.place import AtPost, Between, Coming, Facing, Leaving, Place, Unknown
 from robot.localization.remembering import Moment, remembered
 from robot.localization.steps import corridor_between, gone_astray, has_left, has_reached, marked, searched, set_out
 from robot.localization.way_scale import WayScale
-from robot.mission.mission import Duties
+from robot.mission.mission import MissionManager
 from robot.skills.interfaces import View
 
 TURNING = frozenset({"turn", "undock", "find_line"})
@@ -47,7 +47,7 @@ sight, and as far as a base at 200 mm/s rolls in half a second after that."""
 class Tracker:
     """The place as of the last look. What is driven is told by odometry, what is meant by `Navigator`."""
 
-    def __init__(self, campus: CampusMap, home: str | None, duties: Duties) -> None:
+    def __init__(self, campus: CampusMap, home: str | None, missions: MissionManager) -> None:
         self.campus, self.home = campus, home
         self.visited: list[str] = []
         """The posts reached, in order, the newest ones; the same one twice only after another."""
@@ -59,9 +59,9 @@ class Tracker:
         """Where it found itself after it had been moved, until that is noted."""
         self.crossed: tuple[Leg, ...] = ()
         """The corridors that it has come through and not given back, since the service cannot hear of it."""
-        self._duties = duties
-        self._moment = Moment(duties.held.moment) if duties.held.moment else None
-        self._place, self._looks = remembered(campus, duties.held.position, self._moment)
+        self._duties = missions
+        self._moment = Moment(missions.held.moment) if missions.held.moment else None
+        self._place, self._facing = remembered(campus, missions.held.position, self._moment)
         self._odometry = Odometry()
         self._disturbed = self._set_out_disturbed = 0  # by searches and bumps, so far
         self._scale = WayScale()
@@ -100,8 +100,8 @@ class Tracker:
         """Take in what the body sees now."""
         before, self._odometry = self._odometry, view.odometry
         self._disturbed = view.find_line_episodes + view.bumps
-        if view.motion in CURVING and isinstance(self._place, AtPost | Leaving) and self._looks:
-            self._looks = self._looks.curved(before, self._odometry)
+        if view.motion in CURVING and isinstance(self._place, AtPost | Leaving) and self._facing:
+            self._facing = self._facing.curved(before, self._odometry)
         post = self._new_marker(view)
         if view.base and view.base.docked:
             self._stand_in_dock()
@@ -146,7 +146,7 @@ class Tracker:
         if post is None or post.dock is None:
             return
         now_mm = self._odometry.ahead_mm
-        self._looks = Looks.of(post.dock.heading_rad, self._odometry)
+        self._facing = Facing.of(post.dock.heading_rad, self._odometry)
         if isinstance(self._place, AtPost) and self._place.here == post.name:
             self._place = replace(self._place, at_mm=now_mm, docked=True)
             self._compass.set(post.dock.heading_rad, self._odometry)
@@ -167,7 +167,7 @@ class Tracker:
                 was = {post for post in (place.here, place.towards) if post}
         self._place = Unknown(self._place.here, frozenset(was), lifted=True) if keep else Unknown(lifted=True)
         self._note_moment(Moment.LIFTED)
-        self._looks = self._foreign = None
+        self._facing = self._foreign = None
         self._seen_at_s = view.post.at_s if view.post else self._seen_at_s
         self._compass.set(None, view.odometry)
 
@@ -234,7 +234,7 @@ class Tracker:
         unknown = isinstance(place, Unknown)
         put_back = isinstance(place, Unknown) and post in place.was
         self._place = marked(self.campus, place if unknown else Unknown(), post, at_mm, odometry.ahead_mm)
-        self._looks = Looks.of(facing_by(self.campus, post, None if unknown else looks_rad), odometry)
+        self._facing = Facing.of(facing_by(self.campus, post, None if unknown else looks_rad), odometry)
         self._compass.set(None, odometry)
         self._forget_foreign()
         if not put_back:
@@ -294,7 +294,7 @@ class Tracker:
             return
         arrived = AtPost(place.towards, at_mm, now_mm, corridor, by_marker)
         if corridor and not self._came_back_otherwise(corridor, arrived.here):
-            self._looks = Looks.of(corridor.heading_arriving(arrived.here), self._odometry)
+            self._facing = Facing.of(corridor.heading_arriving(arrived.here), self._odometry)
         self._arrive(arrived)
 
     def _came_back_otherwise(self, corridor: Corridor, post: str) -> bool:
@@ -370,8 +370,8 @@ class Tracker:
         return turn_towards_rad(self.campus, looks_rad, self.here, neighbour)
 
     def _looks_rad(self, odometry: Odometry) -> float | None:
-        return self._looks.now_rad(odometry) if self._looks else None
+        return self._facing.now_rad(odometry) if self._facing else None
 
     def _look_along(self, heading_rad: float) -> None:
-        self._looks = Looks.of(heading_rad, self._odometry)
+        self._facing = Facing.of(heading_rad, self._odometry)
         self._compass.confirm(heading_rad, self._odometry)

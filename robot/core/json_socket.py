@@ -28,7 +28,7 @@ Answer = Callable[[Any], dict[str, Any]]
 log = structlog.get_logger("robot.socket")
 
 
-class NobodyAnswers(RobotError):
+class NoAnswer(RobotError):
     """Nothing listens at a socket, or what listens does not answer in time."""
 
     def __init__(self, path: Path, reason: str) -> None:
@@ -143,7 +143,7 @@ def _in_words(error: OSError) -> str:
 
 
 def ask(path: Path, request: dict[str, Any], limit_s: float = 2.0) -> dict[str, Any]:
-    """The answer to one request. Raises NobodyAnswers."""
+    """The answer to one request. Raises NoAnswer."""
     try:
         with socket.socket(socket.AF_UNIX) as connection, _address(path) as address:
             connection.settimeout(limit_s)
@@ -153,9 +153,9 @@ def ask(path: Path, request: dict[str, Any], limit_s: float = 2.0) -> dict[str, 
                 line = file.readline()
         answer: dict[str, Any] = json.loads(line)
     except OSError as error:
-        raise NobodyAnswers(path, _in_words(error)) from None
+        raise NoAnswer(path, _in_words(error)) from None
     except ValueError:
-        raise NobodyAnswers(path, "it hung up") from None
+        raise NoAnswer(path, "it hung up") from None
     return answer
 
 

@@ -19,7 +19,7 @@ from robot.drivers.interfaces import (
     Sighting,
     WheelSpeeds,
 )
-from robot.localization.line_symbol import LineWord
+from robot.localization.line_symbol import BelievedLineSymbol
 from robot.reflexes import Lasting
 
 log = structlog.get_logger("robot.drive")
@@ -40,7 +40,7 @@ class Sensing:
         self.state: BaseState | None = None
         self.odometry = Odometry()
         self.reading = NOTHING_SEEN
-        self.word = LineWord()
+        self.word = BelievedLineSymbol()
         self.post: Sighting | None = None
         self.post_odometry = Odometry()
         self.code: Sighting | None = None

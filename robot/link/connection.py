@@ -16,7 +16,7 @@ from protocol.both_ways import Ack, Error
 from protocol.clock import Clock
 from protocol.envelope import TO_ROBOT, Envelope, parse, type_of
 from protocol.errors import ProtocolError
-from protocol.insight import Insight
+from protocol.insight import Diagnostics
 from protocol.parts import Part, sentence
 from protocol.sequence import Reception
 from protocol.to_robot import Watch, Welcome
@@ -69,7 +69,7 @@ class Newest:
 
     snapshot: Snapshot | None = None
     why: Why | None = None
-    insight: Callable[[], Insight] | None = None
+    insight: Callable[[], Diagnostics] | None = None
     """Made when its turn comes. There is room for the next once it is on its way: a slow link makes them rarer."""
 
     def take(self, news: Snapshot | Why) -> bool:

@@ -30,7 +30,7 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus, WebSocketExce
 from protocol.clock import Clock
 from protocol.envelope import MAX_MESSAGE_BYTES
 from protocol.errors import ProtocolError
-from protocol.insight import Insight
+from protocol.insight import Diagnostics
 from protocol.to_robot import EmergencyStop, Revoke, Watch
 from protocol.to_server import Hello, Snapshot, Why
 from robot.core.errors import RobotError
@@ -161,7 +161,7 @@ class Link:
         """Return whether the server is there and has been sent the one before."""
         return self.online and self._newest.insight is None
 
-    def tell_insight(self, insight: Callable[[], Insight]) -> None:
+    def tell_insight(self, insight: Callable[[], Diagnostics]) -> None:
         """Sent after everything else, and lost with the connection; `insight` is called in the link's thread."""
         self._newest.insight = insight
         self.wake()

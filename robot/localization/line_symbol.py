@@ -34,7 +34,7 @@ OFF_TRACK_AFTER_MM = 80.0
 
 
 @dataclass(frozen=True, slots=True)
-class LineWord:
+class BelievedLineSymbol:
     """The word believed now, and what speaks for another. All distances are odometry's `travelled_mm`."""
 
     word: LineSymbol = LineSymbol.LOST
@@ -48,7 +48,7 @@ class LineWord:
         travelled_mm: float,
         lost_after_mm: float = LOST_AFTER_MM,
         off_track_after_mm: float = OFF_TRACK_AFTER_MM,
-    ) -> "LineWord":
+    ) -> "BelievedLineSymbol":
         """After one more tick. A word holds from its second tick on; `lost` only after some travel without line."""
         new = _BY_READING[reading]
         if new is not self.candidate:

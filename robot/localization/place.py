@@ -119,7 +119,7 @@ Place: TypeAlias = Unknown | AtPost | Leaving | Coming | Between
 
 
 @dataclass(frozen=True, slots=True)
-class Looks:
+class Facing:
     """The way the robot looked, in the map's frame, when odometry's `spot_turn_rad` was read. Turns on the spot are
     added; bends of the line are not, so that it stays what it was at the post."""
 
@@ -127,14 +127,14 @@ class Looks:
     spot_turn_rad: float
 
     @classmethod
-    def of(cls, facing_rad: float | None, odometry: Odometry) -> "Looks | None":
+    def of(cls, facing_rad: float | None, odometry: Odometry) -> "Facing | None":
         """None: not known."""
         return None if facing_rad is None else cls(facing_rad, odometry.spot_turn_rad)
 
-    def curved(self, before: Odometry, now: Odometry) -> "Looks":
+    def curved(self, before: Odometry, now: Odometry) -> "Facing":
         """After a curve that was no bend of a corridor."""
         curves_rad = (now.heading_rad - now.spot_turn_rad) - (before.heading_rad - before.spot_turn_rad)
-        return Looks(self.facing_rad + curves_rad, self.spot_turn_rad)
+        return Facing(self.facing_rad + curves_rad, self.spot_turn_rad)
 
     def now_rad(self, odometry: Odometry) -> float:
         """At posts and on straight corridors."""

@@ -5,7 +5,7 @@ from enum import StrEnum
 from maps import CampusMap
 from protocol import parts
 from robot.drivers.interfaces import Odometry
-from robot.localization.place import AtPost, Between, Leaving, Looks, Place, Unknown
+from robot.localization.place import AtPost, Between, Facing, Leaving, Place, Unknown
 from robot.localization.steps import corridor_between
 
 
@@ -20,7 +20,7 @@ class Moment(StrEnum):
     """In a person's hands, until a marker or a dock has told where it is."""
 
 
-def remembered(campus: CampusMap, position: parts.Position, moment: Moment | None) -> tuple[Place, Looks | None]:
+def remembered(campus: CampusMap, position: parts.Position, moment: Moment | None) -> tuple[Place, Facing | None]:
     """Where the robot was when it was switched off, and how it looked. `towards` was written down before it left or
     turned."""
     post, previous, towards = position.post, position.previous, position.towards
@@ -34,13 +34,13 @@ def remembered(campus: CampusMap, position: parts.Position, moment: Moment | Non
     if towards:
         return _on_its_way(campus, post, towards, doubted=moment is Moment.NEARING)
     facing_rad = came_by.heading_arriving(post) if came_by else None
-    return AtPost(post, 0.0, 0.0, came_by), Looks.of(facing_rad, Odometry())
+    return AtPost(post, 0.0, 0.0, came_by), Facing.of(facing_rad, Odometry())
 
 
-def _on_its_way(campus: CampusMap, post: str, towards: str, doubted: bool) -> tuple[Place, Looks | None]:
+def _on_its_way(campus: CampusMap, post: str, towards: str, doubted: bool) -> tuple[Place, Facing | None]:
     """`towards` may be the same post: it had turned round."""
     corridor = corridor_between(campus, post, towards)
     if corridor is None:
         return Leaving(post, doubted=doubted), None
     facing_rad = corridor.heading_leaving(post)
-    return Between(corridor, post, towards, doubted=doubted), Looks.of(facing_rad, Odometry())
+    return Between(corridor, post, towards, doubted=doubted), Facing.of(facing_rad, Odometry())

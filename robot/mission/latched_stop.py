@@ -20,7 +20,7 @@ FILE_NAME = "stops.json"
 log = structlog.get_logger("robot.drive")
 
 
-class StopMemory:
+class LatchedStop:
     """`keep` is called often and writes on a change only; not by the drive loop, since it waits for the disk."""
 
     def __init__(self, path: Path) -> None:

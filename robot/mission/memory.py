@@ -63,7 +63,7 @@ class Incoming:
 
 
 @dataclass(frozen=True)
-class Taken:
+class ReceptionOutcome:
     """The outcome of a durable message: was it new, and if the robot could not do as told, why."""
 
     reception: Reception
@@ -338,7 +338,7 @@ class Memory:
             self._write("received", _RECEIVED, resumption.received)
             return resumption.lost
 
-    def receive(self, envelope: Envelope) -> Taken:
+    def receive(self, envelope: Envelope) -> ReceptionOutcome:
         """Store a durable message and what follows from it; acknowledge it when this has returned.
 
         Missions, verifiers and grants take effect here and now; every new message also waits in `unhandled`.
@@ -347,14 +347,14 @@ class Memory:
         with self._store.transaction() as database:
             judged = sequence.reception(self.received(), envelope.journal, envelope.seq)
             if judged is not Reception.NEW:
-                return Taken(judged)
+                return ReceptionOutcome(judged)
             self._write("received", _RECEIVED, Received(journal=envelope.journal, seq=envelope.seq))
             if isinstance(envelope.body, Mission) and (refusal := conflict(self.mission(), envelope.body)):
-                return Taken(judged, refusal)
+                return ReceptionOutcome(judged, refusal)
             self._apply(envelope.body, envelope.at)
             row = (envelope.journal, envelope.seq, type_of(envelope.body), envelope.body.model_dump_json())
             database.execute("INSERT INTO inbox VALUES (?, ?, ?, ?)", row)
-            return Taken(judged)
+            return ReceptionOutcome(judged)
 
     def _apply(self, message: Part, at: datetime) -> None:
         match message:

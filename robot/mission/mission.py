@@ -46,7 +46,7 @@ class NoSuchStop(RobotError):
     """A report names a stop that the mission held does not have."""
 
 
-class Duties:
+class MissionManager:
     """The mind's side of memory and outbox. `server` None: the robot works alone and grants itself everything."""
 
     def __init__(

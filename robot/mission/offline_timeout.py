@@ -13,7 +13,7 @@ HEARS_S: Final = 5.0
 
 
 @dataclass
-class LongSilence:
+class OfflineTimeout:
     """From the start of the daemon until the service has had time to say so. Where it was not long, it is none."""
 
     lasts: bool | None = None

@@ -25,9 +25,9 @@ from robot.drivers.interfaces import BodyShape, Camera, Host, LineSensor
 from robot.drivers.port_thread import PortThread
 from robot.link.link import Link
 from robot.mission.latched_stop import FILE_NAME as STOPS
-from robot.mission.latched_stop import StopMemory
+from robot.mission.latched_stop import LatchedStop
 from robot.mission.memory import Memory
-from robot.mission.mission import Duties
+from robot.mission.mission import MissionManager
 from robot.mission.outbox import Outbox
 from robot.mission.signatures import signer
 from robot.mission.store import Store
@@ -250,22 +250,24 @@ def join(
     """Devices, body, duties, navigator, agent: each knows only those before it."""
     shape, now = shape_of(settings), clock.now()
     sign = signer(settings.key_file, settings.name) if settings.key_file else None
-    duties = Duties(store, Memory(store), Outbox(store), clock.utc, mailroom=_mailroom(settings, campus), sign=sign)
+    missions = MissionManager(
+        store, Memory(store), Outbox(store), clock.utc, mailroom=_mailroom(settings, campus), sign=sign
+    )
     black_box = BlackBox(settings.data / "black_box", clock.utc)
     devices.base.listen_in(black_box.heard, black_box.sent)
-    stops = StopMemory(settings.data / STOPS)
+    stops = LatchedStop(settings.data / STOPS)
     drive = DriveLoop(
         devices.base,
         devices.line_sensor,
         shape,
         now,
-        duties.held.faults | stops.read(),
+        missions.held.faults | stops.read(),
         1 / settings.rates.drive_hz,
         black_box,
         (DockInfrared(devices.base),),
     )
-    navigator = Navigator(campus, _home(settings, campus), duties, now)
-    hands = Hands(drive, navigator, duties, settings.drive.cruise_mm_s, settings.drive.turn_mm_s, shape)
+    navigator = Navigator(campus, _home(settings, campus), missions, now)
+    hands = Hands(drive, navigator, missions, settings.drive.cruise_mm_s, settings.drive.turn_mm_s, shape)
     mode = percept_mode(settings)
     mind = Mind(Agent(program, name=settings.name), Actions(hands, table_for(mode)), hands, settings, mode)
     mind.note = black_box.note
@@ -288,18 +290,18 @@ def _put_down(parts: Parts, devices: Devices, simulation: Simulation | None) -> 
 
 
 def _link(settings: Settings, url: str, token: str, clock: Clock, parts: Parts) -> Link:
-    duties = parts.mind.hands.duties
+    missions = parts.mind.hands.missions
     link = Link(
         url=url,
         token=token,
         robot=settings.name,
         clock=clock,
-        outbox=duties.outbox,
-        memory=duties.memory,
+        outbox=missions.outbox,
+        memory=missions.memory,
         hello_source=parts.daemon.hello,
         stop_at_once=parts.daemon.drive.emergency_stop,
     )
-    duties.join(link)
+    missions.join(link)
     parts.mind.said = link.say
     parts.daemon.server = link
     return link

@@ -32,7 +32,7 @@ from robot.drive_loop import DriveLoop
 from robot.drive_loop.black_box import BlackBox
 from robot.drivers.camera.marker_reader import MarkerWatch
 from robot.drivers.interfaces import Base
-from robot.mission.latched_stop import StopMemory
+from robot.mission.latched_stop import LatchedStop
 from robot.ops.host import HostWatch
 from robot.ops.runners import Loop
 
@@ -63,7 +63,7 @@ class BodyWatch:
     """Supervision of the body from outside of the drive loop, since it waits for files."""
 
     host: HostWatch
-    stops: StopMemory
+    stops: LatchedStop
     black_box: BlackBox
 
 

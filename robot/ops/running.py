@@ -32,7 +32,7 @@ from robot.simulated import Door, SimulatedRobot
 log = structlog.get_logger("robot.run")
 
 
-class DoorTaken(RobotError):
+class DoorInUse(RobotError):
     """Another simulated robot listens there."""
 
     def __init__(self, path: Path) -> None:
@@ -40,7 +40,7 @@ class DoorTaken(RobotError):
 
 
 @dataclass(frozen=True)
-class Wish:
+class RunOptions:
     """Options of the command line for this run, beside the settings."""
 
     tell: tuple[str, ...]
@@ -51,7 +51,7 @@ class Wish:
     door: Path | None
 
 
-def clock_for(simulated: bool, path: Path | None, wish: Wish, settings: Settings, closing: ExitStack) -> Clock:
+def clock_for(simulated: bool, path: Path | None, options: RunOptions, settings: Settings, closing: ExitStack) -> Clock:
     """The machine's time; a shared one; or, for a run that ends by itself and meets no other, as fast as it goes."""
     if path:
         try:
@@ -60,26 +60,26 @@ def clock_for(simulated: bool, path: Path | None, wish: Wish, settings: Settings
             raise ConfigError(str(path), "--clock", f"cannot be joined: {error}") from None
     if not simulated:
         return RealClock()
-    if wish.goals and wish.speed is None and settings.server is None:
+    if options.goals and options.speed is None and settings.server is None:
         return SteppedClock()
     folder = closing.enter_context(tempfile.TemporaryDirectory(prefix="campus-mail-clock-"))
-    return SharedClock.create(Path(folder) / "clock", wish.speed or 1.0)
+    return SharedClock.create(Path(folder) / "clock", options.speed or 1.0)
 
 
-def run_once(settings: Settings, clock: Clock, simulation: Simulation | None, wish: Wish) -> bool:
+def run_once(settings: Settings, clock: Clock, simulation: Simulation | None, options: RunOptions) -> bool:
     """Until it is stopped or has finished; whether it did what it was asked."""
     with ExitStack() as closing:
-        if wish.door:
-            _check_door(wish.door)
+        if options.door:
+            _check_door(options.door)
         parts = assemble(settings, clock, simulation)
-        runner = _runner(parts, clock, simulation, wish)
+        runner = _runner(parts, clock, simulation, options)
         closing.callback(lambda: parts.daemon.close(runner.now_s))
-        reporter = _reporter(parts, settings, clock, wish)
-        ending = Ending(parts.mind, wish.goals, clock.now() + wish.limit_s, runner.stop)
+        reporter = _reporter(parts, settings, clock, options)
+        ending = Ending(parts.mind, options.goals, clock.now() + options.limit_s, runner.stop)
         refusal = Refusal(parts.link, runner.stop)
         parts.daemon.watchers = (reporter.look, ending.look, refusal.look)
-        if wish.door and parts.robot:
-            closing.callback(_open_door(parts.robot, wish.door, reporter).close)
+        if options.door and parts.robot:
+            closing.callback(_open_door(parts.robot, options.door, reporter).close)
         board = StatusBoard(
             settings.name, parts.daemon, parts.mind, runner, clock, clock.now(), parts.link, settings.server
         )
@@ -94,7 +94,7 @@ def run_once(settings: Settings, clock: Clock, simulation: Simulation | None, wi
         runner.run()
     if refusal.reason:
         raise LinkError(refusal.reason)
-    _tell_end(reporter, ending, wish)
+    _tell_end(reporter, ending, options)
     return ending.problem is None
 
 
@@ -128,7 +128,7 @@ def _check_door(path: Path) -> None:
             probe.connect(str(path))
         except OSError:
             return
-    raise DoorTaken(path)
+    raise DoorInUse(path)
 
 
 def _told_to_a_person(text: str) -> None:
@@ -140,21 +140,21 @@ def _told_and_logged(text: str) -> None:
     log.info(text.strip())
 
 
-def _reporter(parts: Parts, settings: Settings, clock: Clock, wish: Wish) -> Reporter:
+def _reporter(parts: Parts, settings: Settings, clock: Clock, options: RunOptions) -> Reporter:
     reporter = Reporter(
         parts.mind, parts.robot, clock.now(), _told_to_a_person if settings.log_file is None else _told_and_logged
     )
     parts.mind.hands.noted = reporter.note
-    parts.mind.inbox.extend(messages_from_person(wish.tell, wish.goals))
+    parts.mind.inbox.extend(messages_from_person(options.tell, options.goals))
     return reporter
 
 
-def _runner(parts: Parts, clock: Clock, simulation: Simulation | None, wish: Wish) -> Runner:
+def _runner(parts: Parts, clock: Clock, simulation: Simulation | None, options: RunOptions) -> Runner:
     if simulation is None:
         return ThreadedRunner(parts.daemon.loops(), clock)
     sys.setswitchinterval(SWITCH_INTERVAL_S)  # one thread computes all the time: the link's must get its turn at once
     most = clock.speed if isinstance(clock, SharedClock) else 1.0
-    return LockstepRunner(parts.daemon.loops(), clock, wish.speed or most)
+    return LockstepRunner(parts.daemon.loops(), clock, options.speed or most)
 
 
 def _stop_on_signals(runner: Runner) -> None:
@@ -165,11 +165,11 @@ def _stop_on_signals(runner: Runner) -> None:
         signal.signal(number, stop)
 
 
-def _tell_end(reporter: Reporter, ending: Ending, wish: Wish) -> None:
-    if not wish.goals:
+def _tell_end(reporter: Reporter, ending: Ending, options: RunOptions) -> None:
+    if not options.goals:
         return
     summary = {"done": ending.problem is None, "reason": ending.problem, **reporter.summary()}
-    if wish.as_json:
+    if options.as_json:
         print(json.dumps(summary))
     else:
         for key, value in summary.items():

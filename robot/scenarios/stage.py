@@ -118,7 +118,7 @@ class Stage:
         return {"rates.line_hz": 50.0}
 
     def _link(self, row: RobotRow, parts: Parts) -> SteppedLink:
-        duties, robot = parts.mind.hands.duties, parts.robot
+        missions, robot = parts.mind.hands.missions, parts.robot
 
         def network() -> bool:
             pose = robot.pose if robot else None
@@ -130,13 +130,13 @@ class Stage:
         link = SteppedLink(
             robot=row.name,
             clock=self.clock,
-            outbox=duties.outbox,
-            memory=duties.memory,
+            outbox=missions.outbox,
+            memory=missions.memory,
             hello_source=parts.daemon.hello,
             far=self.service,
             network=network,
         )
-        duties.join(link)
+        missions.join(link)
         parts.mind.said = link.say
         parts.daemon.server = link
         return link

@@ -123,7 +123,7 @@ class Renderer:
     def _marker_frame(self, view: View) -> Frame:
         """Objects farther off are drawn first."""
         frame = self._other(self._walls)
-        in_view: list[tuple[float, Marker, NDArray[np.float32]] | tuple[float, _Somebody, None]] = []
+        in_view: list[tuple[float, Marker, NDArray[np.float32]] | tuple[float, _PersonInView, None]] = []
         for marker in self._markers:
             corners = sheet_corners(marker, view, self._mount)
             if corners is not None:
@@ -133,13 +133,13 @@ class Renderer:
             return frame
         frame = frame.copy()
         for _, thing, place in sorted(in_view, key=lambda one: -one[0]):
-            if isinstance(thing, _Somebody):
+            if isinstance(thing, _PersonInView):
                 self._draw_somebody(frame, thing)
             elif place is not None:
                 self._draw(frame, thing, place, view)
         return frame
 
-    def _draw_somebody(self, frame: Frame, one: "_Somebody") -> None:
+    def _draw_somebody(self, frame: Frame, one: "_PersonInView") -> None:
         """From shoes to beyond the upper edge: the lens is at the height of a knee."""
         part = frame[: one.floor_px, one.left_px : one.right_px]
         if not part.size:
@@ -276,7 +276,7 @@ def _make_dirty(page: Frame, share: float, random: Random) -> None:
 
 
 @dataclass(frozen=True)
-class _Somebody:
+class _PersonInView:
     """A person in the picture: how far away, from which column to which, and where the shoes are."""
 
     away_m: float
@@ -285,7 +285,7 @@ class _Somebody:
     floor_px: int
 
 
-def _people(obstacles: Iterable[Obstacle], view: View, mount: CameraMount) -> Iterator[_Somebody]:
+def _people(obstacles: Iterable[Obstacle], view: View, mount: CameraMount) -> Iterator[_PersonInView]:
     for one in obstacles:
         x_m, y_m, radius_m = one.nearest(view.x_m, view.y_m)
         if not radius_m:  # a wall
@@ -300,7 +300,7 @@ def _people(obstacles: Iterable[Obstacle], view: View, mount: CameraMount) -> It
         )
         if right > 0 and left < mount.width_px:
             floor_px = min(mount.height_px, round(mount.height_px / 2 + mount.focal_px * mount.height_m / away_m))
-            yield _Somebody(away_m - radius_m, max(0, round(left)), min(mount.width_px, round(right)), floor_px)
+            yield _PersonInView(away_m - radius_m, max(0, round(left)), min(mount.width_px, round(right)), floor_px)
 
 
 def _code_picture(modules: NDArray[np.uint8], px_per_module: int, quiet: int) -> Frame:

@@ -15,7 +15,7 @@ from app.accounts.sessions.sessions import new_session
 from app.accounts.sign_in.service import set_roles
 from app.accounts.tokens import issue_token
 from app.handover.schemas import NewDelegate
-from app.models import Alarm, Notice, OrderState, OutgoingNotice, Person, PersonSession, Role
+from app.models import Alarm, Notification, OrderState, OutgoingNotification, Person, PersonSession, Role
 from app.notifications.preference_api.devices import add_device, set_webhook
 from app.notifications.preference_api.schemas import NewDevice, SubscriptionKeys
 from app.orders.service import Actor
@@ -140,8 +140,8 @@ class Everybody:
     async def a_sending(self, session: AsyncSession, sender: Person) -> str:
         """A sending that no channel takes."""
         now, order_id = self.app.state.parts.clock.utc(), await self._order(session, sender, PEOPLE["recipient"][0])
-        notice = (await session.exec(select(Notice.id).where(Notice.order_id == order_id))).one()
-        sending = OutgoingNotice(key=order_id, channel="none", notice_id=notice, created_at=now)
+        notice = (await session.exec(select(Notification.id).where(Notification.order_id == order_id))).one()
+        sending = OutgoingNotification(key=order_id, channel="none", notice_id=notice, created_at=now)
         session.add(sending)
         await session.flush()
         return str(sending.id)
@@ -168,7 +168,7 @@ class Everybody:
 
     async def _person(self, session: AsyncSession, email: str, roles: set[Role]) -> Person:
         parts = self.app.state.parts
-        person: Person = await parts.sign_in_desk.person(session, email, parts.clock.utc())
+        person: Person = await parts.sign_in_service.person(session, email, parts.clock.utc())
         set_roles(person, roles, set(Role) - roles)
         return person
 

@@ -17,7 +17,7 @@ from app.composition import create_app
 from app.core.database.database import Database
 from app.core.database.schema_version import INI, bring_to_head, is_at_head
 from app.core.settings import Settings
-from app.models import Notice, Order, OrderState, OutgoingNotice, metadata
+from app.models import Notification, Order, OrderState, OutgoingNotification, metadata
 from app.retention.database_checks import problems_of
 from protocol.clock import SteppedClock
 from tests.app.conftest import ON_POSTGRESQL
@@ -153,7 +153,7 @@ async def _prepare(settings: Settings) -> None:
 async def _look(app: Any) -> tuple[dict[str, OrderState], int, list[tuple[str, str]]]:
     async with app.state.parts.database.reading() as session:
         orders = {order.id: order.state for order in (await session.exec(select_rows(Order))).all()}
-        outbox = (await session.exec(select_rows(OutgoingNotice))).all()
-        notices = (await session.exec(select_rows(Notice))).all()
+        outbox = (await session.exec(select_rows(OutgoingNotification))).all()
+        notices = (await session.exec(select_rows(Notification))).all()
     unsent = sum(row.sent_at is None and row.gave_up_at is None for row in outbox)
     return orders, unsent, [(notice.person_id, notice.key) for notice in notices]

@@ -3,10 +3,10 @@
 import asyncio
 from itertools import pairwise
 
-from app.core.polling import REST, Looks
+from app.core.polling import REST, PollingLoop
 
 
-async def taken(looks: Looks, took_s: float, woken_every_s: float, for_s: float) -> int:
+async def taken(looks: PollingLoop, took_s: float, woken_every_s: float, for_s: float) -> int:
     """Return the number of looks that are begun while something changes all the time."""
     begun = 0
 
@@ -28,12 +28,12 @@ async def taken(looks: Looks, took_s: float, woken_every_s: float, for_s: float)
 
 async def test_who_is_woken_all_the_time_rests_longer_than_it_looks() -> None:
     took_s, for_s = 0.02, 0.6
-    begun = await taken(Looks(again_s=60, rest_s=0), took_s, 0.001, for_s)
+    begun = await taken(PollingLoop(again_s=60, rest_s=0), took_s, 0.001, for_s)
     assert 2 <= begun <= for_s / (took_s * (1 + REST)) + 1
 
 
 async def test_who_is_not_woken_looks_again_after_a_while() -> None:
-    looks, begun = Looks(again_s=0.01, rest_s=0), 0
+    looks, begun = PollingLoop(again_s=0.01, rest_s=0), 0
     async with asyncio.timeout(30):
         async for _ in looks.until_stopped():
             begun += 1
@@ -43,7 +43,7 @@ async def test_who_is_not_woken_looks_again_after_a_while() -> None:
 
 
 async def test_what_changes_during_a_look_is_seen_by_another() -> None:
-    looks, begun = Looks(again_s=3600, rest_s=0), 0
+    looks, begun = PollingLoop(again_s=3600, rest_s=0), 0
     async with asyncio.timeout(30):
         async for _ in looks.until_stopped():
             begun += 1
@@ -53,7 +53,7 @@ async def test_what_changes_during_a_look_is_seen_by_another() -> None:
 
 async def test_a_long_look_is_spread_out() -> None:
     """Of every stretch of time it takes no more than its share, and not only on the whole."""
-    looks, pieces_s = Looks(again_s=60, rest_s=0, rest=9), list[float]()
+    looks, pieces_s = PollingLoop(again_s=60, rest_s=0, rest=9), list[float]()
     now_s = asyncio.get_running_loop().time
     async with asyncio.timeout(30):
         async for _ in looks.until_stopped():
@@ -66,7 +66,7 @@ async def test_a_long_look_is_spread_out() -> None:
 
 
 async def test_a_look_of_small_pieces_hardly_rests() -> None:
-    looks = Looks(again_s=60, rest_s=0, rest=1_000_000, longest_rest_s=3600)
+    looks = PollingLoop(again_s=60, rest_s=0, rest=1_000_000, longest_rest_s=3600)
     async with asyncio.timeout(30):
         async for _ in looks.until_stopped():
             for _piece in range(3):
@@ -75,7 +75,7 @@ async def test_a_look_of_small_pieces_hardly_rests() -> None:
 
 
 async def test_an_end_waits_for_no_breath() -> None:
-    looks = Looks(again_s=3600, rest_s=0, rest=1_000_000, longest_rest_s=3600)
+    looks = PollingLoop(again_s=3600, rest_s=0, rest=1_000_000, longest_rest_s=3600)
     async with asyncio.timeout(30):
         async for _ in looks.until_stopped():
             asyncio.get_running_loop().call_later(0.05, looks.stop)
@@ -85,7 +85,7 @@ async def test_an_end_waits_for_no_breath() -> None:
 
 
 async def test_an_end_waits_for_no_rest() -> None:
-    looks, begun = Looks(again_s=3600, rest_s=3600), 0
+    looks, begun = PollingLoop(again_s=3600, rest_s=3600), 0
     async with asyncio.timeout(30):
         async for _ in looks.until_stopped():
             begun += 1

@@ -22,7 +22,7 @@ from typer.testing import CliRunner
 
 from app.__main__ import app as commands
 from app.cli.administration import migrate
-from app.cli.serving import PortTaken, listen, serve
+from app.cli.serving import PortInUse, listen, serve
 from app.core.database.database import Database
 from app.core.database.schema_version import INI, DatabaseUnusable, NewerDatabase, bring_to_head, is_at_head
 from app.core.errors import StartError
@@ -151,7 +151,7 @@ def test_a_taken_port_is_named_with_a_way_out_and_nothing_is_made(
 ) -> None:
     with listen("127.0.0.1", 0) as taken:
         port = taken.getsockname()[1]
-        with pytest.raises(PortTaken, match=f"--port {port + 1}"):
+        with pytest.raises(PortInUse, match=f"--port {port + 1}"):
             listen("127.0.0.1", port)
         monkeypatch.setenv("CAMPUS_MAIL_DATA", str(tmp_path / "data"))
         served = CliRunner().invoke(commands, ["serve", "--port", str(port)])

@@ -66,8 +66,8 @@ async def _states(settings: Settings) -> Sequence[OrderState]:
 async def _let_dispatch_wait_for_the_lock(app: FastAPI) -> "asyncio.Task[None]":
     """A robot is there at last, and another transaction is writing just when dispatch wants to."""
     await _put(app, online=False)
-    while not (timetable := app.state.parts.traffic_desk.timetable) or not timetable.known:
-        app.state.parts.traffic_desk.wake()
+    while not (schedule := app.state.parts.traffic_service.schedule) or not schedule.known:
+        app.state.parts.traffic_service.wake()
         await asyncio.sleep(0.02)
     await _put(app, online=True)
     has_begun = asyncio.Event()

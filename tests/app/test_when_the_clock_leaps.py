@@ -18,7 +18,7 @@ from sqlmodel import col, select
 
 from app.composition import create_app
 from app.core.settings import Settings
-from app.models import Order, OutgoingNotice, PersonSession, StandingOrder
+from app.models import Order, OutgoingNotification, PersonSession, StandingOrder
 from protocol.clock import SteppedClock
 from tests.app.conftest import HERE, RECIPIENT, SENDER, Browser, Mailroom, sqlite_alone
 from tests.app.notifications.test_killed_while_sending import free_port
@@ -54,8 +54,8 @@ def sender(app: FastAPI, anonymous: TestClient, mailroom: Mailroom) -> Browser:
 async def _session_of(app: FastAPI, email: str) -> str:
     state = app.state.parts
     async with state.database.transaction() as session:
-        person = await state.sign_in_desk.person(session, email, state.clock.utc())
-        return str(state.sign_in_desk.open_session(session, person, "", state.clock.utc()))
+        person = await state.sign_in_service.person(session, email, state.clock.utc())
+        return str(state.sign_in_service.open_session(session, person, "", state.clock.utc()))
 
 
 @pytest.fixture
@@ -76,7 +76,7 @@ def time_acts(mailroom: Mailroom) -> None:
     """Everything that time alone decides looks once more than it does by itself."""
     state = mailroom.app.state.parts
     mailroom.call(state.timer.tick)
-    mailroom.call(state.housekeeper.keep_house)
+    mailroom.call(state.retention_job.keep_house)
 
 
 def test_orders_outlive_a_leap_and_expire_in_their_time(
@@ -133,7 +133,7 @@ def test_nothing_is_let_go_of_given_up_or_begun_in_a_leap(
     mailroom.call(_try_again, app)
     mailroom.call(_wait_for_tries, app, 2)
     time_acts(mailroom)
-    assert column(OutgoingNotice.gave_up_at) == [None], "its mail server has been away for a minute, not for days"
+    assert column(OutgoingNotification.gave_up_at) == [None], "its mail server has been away for a minute, not for days"
     assert column(StandingOrder.next_at) == planned
     assert len(column(Order.id)) == 1, "none of a standing order came round"
     assert len(column(PersonSession.id)) == 1, "whose lifetime is a month"
@@ -142,7 +142,7 @@ def test_nothing_is_let_go_of_given_up_or_begun_in_a_leap(
 async def _try_again(app: FastAPI) -> None:
     """As a dispatcher does who taps: else it would be minutes until it is tried again."""
     async with app.state.parts.database.transaction() as session:
-        for row in (await session.exec(select(OutgoingNotice))).all():
+        for row in (await session.exec(select(OutgoingNotification))).all():
             row.next_try_at = app.state.parts.clock.utc()
     app.state.parts.outbox_worker.wake()
 
@@ -150,7 +150,7 @@ async def _try_again(app: FastAPI) -> None:
 async def _wait_for_tries(app: FastAPI, tries: int) -> None:
     for _ in range(200):
         async with app.state.parts.database.reading() as session:
-            wanted = select(OutgoingNotice.id).where(col(OutgoingNotice.tries) >= tries)
+            wanted = select(OutgoingNotification.id).where(col(OutgoingNotification.tries) >= tries)
             if (await session.exec(wanted)).all():
                 return
         await asyncio.sleep(0.05)
@@ -194,7 +194,9 @@ def test_after_a_start_far_from_the_newest_record_it_is_waited_and_seen(settings
 async def _found(app: FastAPI) -> tuple[str, bool, int]:
     """The state of the order, whether the first notice of it was given up, and how many sessions are kept."""
     async with app.state.parts.database.reading() as session:
-        gave_up = (await session.exec(select(OutgoingNotice.gave_up_at).order_by(col(OutgoingNotice.id)))).first()
+        gave_up = (
+            await session.exec(select(OutgoingNotification.gave_up_at).order_by(col(OutgoingNotification.id)))
+        ).first()
         sessions = (await session.exec(select(PersonSession.id))).all()
         return str((await session.exec(select(Order.state))).one()), gave_up is not None, len(sessions)
 

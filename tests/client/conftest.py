@@ -43,7 +43,7 @@ class Campus:
         """Issue a token as a person does at a browser: `POST /tokens`."""
         state = self.service.app.state.parts
         async with state.database.transaction() as session:
-            person = await state.sign_in_desk.person(session, email, state.clock.utc())
+            person = await state.sign_in_service.person(session, email, state.clock.utc())
             _, text = await issue_token(
                 session, person, "script", scopes or set(Scope), timedelta(days=1), state.clock.utc()
             )

@@ -70,4 +70,4 @@ def test_the_tunnels_of_a_demonstration_are_a_tenth_as_long_and_its_robots_are_a
     small = find_map(demo.map)
     assert small.corridor("uc", "canal").length_m == pytest.approx(campus.corridor("uc", "canal").length_m / 10)
     assert sorted(demo.homes.values()) == sorted(post.name for post in small.docks())
-    assert demo.service.traffic == "timetable"
+    assert demo.service.traffic == "schedule"

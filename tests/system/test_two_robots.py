@@ -29,7 +29,7 @@ ASIDE = {"post1", "post5"}
 
 
 class SharedTrack(Rig):
-    """A service that goes by the timetable, and robots that are started by the test."""
+    """A service that goes by the schedule, and robots that are started by the test."""
 
     def __enter__(self) -> "SharedTrack":
         at_post1 = 'title = "Post 1"'
@@ -42,7 +42,7 @@ class SharedTrack(Rig):
         return self
 
     def _service_env(self) -> dict[str, str]:
-        return {**super()._service_env(), "CAMPUS_MAIL_TRAFFIC": "timetable", "CAMPUS_MAIL_MAP": str(self.map_file)}
+        return {**super()._service_env(), "CAMPUS_MAIL_TRAFFIC": "schedule", "CAMPUS_MAIL_MAP": str(self.map_file)}
 
     def __exit__(self, *_: object) -> None:
         for person in self.people:

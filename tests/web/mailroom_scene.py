@@ -9,7 +9,7 @@ from sqlmodel import col, select
 from app.accounts.sign_in.service import set_roles
 from app.composition import create_app
 from app.core.settings import Settings
-from app.models import Alarm, DigitLock, Notice, Order, OrderState, OutgoingNotice, Priority, RobotRow, Role
+from app.models import Alarm, DigitLock, Notification, Order, OrderState, OutgoingNotification, Priority, RobotRow, Role
 from app.orders.service import Actor
 from app.orders.transitions import By
 from app.orders.views.schemas import NewOrder
@@ -63,7 +63,7 @@ class Scene:
     async def make_dispatcher(self, email: str) -> None:
         """For tests of what dispatchers see; a maintainer would do it over HTTP."""
         async with self.state.database.transaction() as session:
-            person = await self.state.sign_in_desk.person(session, email, self.clock.utc())
+            person = await self.state.sign_in_service.person(session, email, self.clock.utc())
             set_roles(person, {Role.DISPATCHER}, set())
 
     async def is_busy(self) -> list[str]:
@@ -78,7 +78,7 @@ class Scene:
     async def order(self, *facts: Any, waits_s: float = 0.0) -> str:
         to, robot, sender, recipient, from_post, to_post, what = facts
         async with self.state.database.transaction() as session:
-            person = await self.state.sign_in_desk.person(session, f"{sender}@campus.example", self.clock.utc())
+            person = await self.state.sign_in_service.person(session, f"{sender}@campus.example", self.clock.utc())
             wish = NewOrder(
                 from_post=from_post,
                 to_post=to_post,
@@ -99,7 +99,7 @@ class Scene:
         """So many orders that no robot fetches today. Their ids."""
         later = self.clock.utc() + timedelta(days=1)
         async with self.state.database.transaction() as session:
-            person = await self.state.sign_in_desk.person(session, "ada.lovelace@campus.example", self.clock.utc())
+            person = await self.state.sign_in_service.person(session, "ada.lovelace@campus.example", self.clock.utc())
             known = {person.email: person}
             wish = NewOrder(from_post="post1", to_post="post4", recipient=person.email, not_before=later)
             drafts = [await self.state.orders.placing.draft(session, person, wish, known) for _ in range(count)]
@@ -107,7 +107,7 @@ class Scene:
         return [draft.facts.order.id for draft in drafts]
 
     async def lets_wait(self, robot: str, from_post: str, to_post: str, for_robot: str, minutes: float) -> None:
-        """As the timetable would have it."""
+        """As the schedule would have it."""
         until = self.clock.utc() + timedelta(minutes=minutes)
         async with self.state.database.transaction() as session:
             row = await session.get_one(RobotRow, robot)
@@ -138,9 +138,11 @@ class Scene:
             stopped.activity, stopped.why = "stopped", "Something stands in the robot's way."
             silent = await session.get_one(RobotRow, "r4")
             silent.heard_at = now - timedelta(minutes=12)  # not so long that others go round it
-            notice = (await session.exec(select(Notice).order_by(col(Notice.id)).limit(1))).one()
+            notice = (await session.exec(select(Notification).order_by(col(Notification.id)).limit(1))).one()
             given_up = {"tries": 9, "gave_up_at": now - timedelta(hours=1), "problem": "The mail server said no (550)."}
-            session.add(OutgoingNotice(key="given-up", channel="mail", notice_id=notice.id, created_at=now, **given_up))
+            session.add(
+                OutgoingNotification(key="given-up", channel="mail", notice_id=notice.id, created_at=now, **given_up)
+            )
 
 
 class Campus:

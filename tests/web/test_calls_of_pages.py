@@ -78,7 +78,7 @@ async def of_all_trades(campus: Campus, visit) -> Visitor:
     """A visitor with all roles, who has an order and a notification of it."""
     ada = await visit(at=campus.service)
     async with campus.scene.state.database.transaction() as session:
-        person = await campus.scene.state.sign_in_desk.person(session, ada.email, campus.scene.clock.utc())
+        person = await campus.scene.state.sign_in_service.person(session, ada.email, campus.scene.clock.utc())
         set_roles(person, {Role.DISPATCHER, Role.MAINTAINER}, set())
     return ada
 

@@ -13,7 +13,7 @@ import pytest_asyncio
 from playwright.async_api import expect
 
 from protocol.example_files import EXAMPLES
-from protocol.insight import Insight
+from protocol.insight import Diagnostics
 from protocol.parts import Activity, Battery, Position
 from protocol.to_server import Snapshot, Why
 from tests.app.robots.playing import PlayedRobot
@@ -27,7 +27,7 @@ from tests.web.visitor import Visitor
 
 pytestmark = pytest.mark.browser
 
-INSIGHT = Insight.model_validate(json.loads((EXAMPLES / "insight.json").read_text(encoding="utf-8"))["body"])
+INSIGHT = Diagnostics.model_validate(json.loads((EXAMPLES / "insight.json").read_text(encoding="utf-8"))["body"])
 AWAY, CONNECTED = "r4", "r9"
 
 

@@ -9,7 +9,7 @@ import pytest
 from playwright.async_api import BrowserContext, Page, Request, Route, expect
 
 from app.models import Role
-from protocol.insight import Insight
+from protocol.insight import Diagnostics
 from tests.app.robots.playing import until
 from tests.web.keyboard import press
 from tests.web.service import ROOT
@@ -22,7 +22,7 @@ pytestmark = pytest.mark.browser
 
 TABS = 12
 """Twice as many as a browser keeps connections to one HTTP/1.1 server."""
-INSIGHT = Insight.model_validate_json(
+INSIGHT = Diagnostics.model_validate_json(
     json.dumps(json.loads((ROOT / "protocol/examples/insight.json").read_text(encoding="utf-8"))["body"])
 )
 MAILROOM, ROBOT = 10, 11

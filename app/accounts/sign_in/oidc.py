@@ -30,7 +30,7 @@ from app.accounts.errors import (
     WrongState,
 )
 from app.accounts.schemas import EMAIL
-from app.accounts.sign_in.service import SignInDesk, is_allowed, name_from
+from app.accounts.sign_in.service import SignInService, is_allowed, name_from
 from app.core.http_client import trusted_here
 from app.core.server_key import ServerKey
 from app.core.settings import Settings
@@ -235,7 +235,7 @@ def _claims(said: dict[str, Any]) -> Claims:
     return Claims(str(said["sub"])[:255], email, one_line(str(said.get("name", ""))).strip()[:LONGEST_NAME])
 
 
-async def person_of(session: AsyncSession, desk: SignInDesk, claims: Claims, language: str, now: datetime) -> Person:
+async def person_of(session: AsyncSession, desk: SignInService, claims: Claims, language: str, now: datetime) -> Person:
     """Return the person of these claims: known by issuer and subject, else by the verified address. Raises
     AddressNotAllowed."""
     settings = desk.settings

@@ -12,7 +12,7 @@ from app.accounts.sessions.cookies import set_cookie
 from app.accounts.sessions.same_origin import refuse_other_sites, require_https_or_loopback
 from app.accounts.sessions.sessions import end_session
 from app.accounts.sign_in.browsers import AskingBrowser, Browser, has_signed_in, per_browser, remember
-from app.accounts.sign_in.service import SignInDesk, language_from
+from app.accounts.sign_in.service import SignInService, language_from
 from app.core.database.database import Database, DatabaseDep, SessionDep
 from app.core.errors import problems
 from app.core.parts import part
@@ -29,7 +29,7 @@ async def _door(request: Request) -> None:
     refuse_other_sites(request)
 
 
-DeskDep = Annotated[SignInDesk, part(SignInDesk)]
+DeskDep = Annotated[SignInService, part(SignInService)]
 DOOR = [Depends(_door), per_browser(Door.SIGN_IN)]
 
 

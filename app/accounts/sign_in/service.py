@@ -44,7 +44,7 @@ def name_from(email: str) -> str:
 
 
 @dataclass(frozen=True)
-class SignInDesk:
+class SignInService:
     """Mails codes and opens sessions."""
 
     settings: Settings

@@ -23,7 +23,7 @@ from starlette.requests import HTTPConnection
 from app.core.database import postgresql_driver, sqlite_driver
 from app.core.database.deadline import WAIT_S
 from app.core.database.group_commit import AFTER_COMMIT, CONNECTION, Writers
-from app.core.database.shielded import uncancelled
+from app.core.database.shielded import shielded
 from app.core.errors import StartError
 from app.core.parts import find_part, part
 
@@ -104,7 +104,7 @@ class Database:
         if self.engine.dialect.name == "sqlite":  # does not wait
             await used.close()
         else:
-            await uncancelled(asyncio.ensure_future(used.close()))
+            await shielded(asyncio.ensure_future(used.close()))
 
     @asynccontextmanager
     async def rebuilding(self) -> AsyncIterator[AsyncConnection]:

@@ -24,7 +24,7 @@ from sqlalchemy.ext.asyncio import AsyncConnection, AsyncEngine
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.core.database.deadline import left_s
-from app.core.database.shielded import uncancelled
+from app.core.database.shielded import shielded
 
 log = structlog.get_logger(__name__)
 
@@ -171,7 +171,7 @@ class Writers:
         group, self._group = self._group, None
         assert group is not None, "no transaction is open"  # noqa: S101  # the writer that has the turn has looked
         try:
-            await uncancelled(asyncio.ensure_future(_commit(group)))
+            await shielded(asyncio.ensure_future(_commit(group)))
         except BaseException as error:
             for work in group.works:
                 work.failed(error)

@@ -6,7 +6,7 @@ from typing import TypeVar
 T = TypeVar("T")
 
 
-async def uncancelled(outcome: asyncio.Future[T]) -> T:
+async def shielded(outcome: asyncio.Future[T]) -> T:
     """Wait for it in any case.
 
     What is cancelled half-way in a database costs the connection, and with it what others have written in the same

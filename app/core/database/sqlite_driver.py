@@ -19,7 +19,7 @@ from typing import Any, Final, Self, TypeVar
 import aiosqlite
 
 from app.core.database.deadline import left_s
-from app.core.database.shielded import uncancelled
+from app.core.database.shielded import shielded
 
 T = TypeVar("T")
 
@@ -130,7 +130,7 @@ class Connection(aiosqlite.Connection):
             self._is_asking = False
             breath: asyncio.Future[None] = loop.create_future()
             loop.call_soon(breath.set_result, None)
-            await uncancelled(breath)
+            await shielded(breath)
             self._breathed_at_s = time.monotonic()
         return answer
 
@@ -155,7 +155,7 @@ class Connection(aiosqlite.Connection):
         """Do it in the connection's thread, to its end."""
         outcome: asyncio.Future[T] = asyncio.get_running_loop().create_future()
         self._tx.put_nowait((outcome, lambda: self._now(what)))
-        answer = await uncancelled(outcome)
+        answer = await shielded(outcome)
         self._breathed_at_s = time.monotonic()
         return answer
 

@@ -7,12 +7,12 @@ from typing import Final
 from sqlalchemy import JSON, Index, UniqueConstraint, text
 from sqlmodel import Field, SQLModel
 
-from app.models.columns import UtcTime, WordOf
+from app.models.columns import EnumColumn, UtcTime
 
 NOT_ROUTED: Final = text("routed_at IS NULL")
 
 
-class NoticeKind(StrEnum):
+class NotificationKind(StrEnum):
     """The things that people are told; the words are in the catalogues, under `notice.<kind>`."""
 
     ACCEPTED = "accepted"
@@ -35,7 +35,7 @@ class NoticeKind(StrEnum):
     DELEGATION_OVER = "delegation_over"
 
 
-class Notice(SQLModel, table=True):
+class Notification(SQLModel, table=True):
     """`facts` fill the text's gaps (post titles, names, the window); a hand-over code is never among them.
 
     `key` names the thing that is told: the order, the kind and, for what may happen again after a person had to see to
@@ -53,7 +53,7 @@ class Notice(SQLModel, table=True):
     id: int | None = Field(default=None, primary_key=True)
     key: str = Field(max_length=160)
     order_id: str | None = Field(default=None, foreign_key="orders.id", index=True)
-    kind: NoticeKind = Field(sa_type=WordOf(NoticeKind))
+    kind: NotificationKind = Field(sa_type=EnumColumn(NotificationKind))
     person_id: str = Field(foreign_key="people.id", index=True)
     at: datetime = Field(sa_type=UtcTime)
     facts: dict[str, str] = Field(sa_type=JSON)

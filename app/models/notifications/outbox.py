@@ -12,7 +12,7 @@ DUE: Final = text("next_try_at IS NOT NULL")
 GIVEN_UP: Final = text("gave_up_at IS NOT NULL")
 
 
-class OutgoingNotice(SQLModel, table=True):
+class OutgoingNotification(SQLModel, table=True):
     """`key` names the sending on its channel, so that a second try after a crash is the same sending.
 
     `target` is the device or address of a channel that has several for one person. `next_try_at` is null once it was

@@ -8,7 +8,7 @@ from sqlmodel import Field, SQLModel
 from app.models.columns import UtcTime
 
 
-class NoticeWishes(SQLModel, table=True):
+class NotificationPreferences(SQLModel, table=True):
     """`muted` has the kinds that a person does not want on a channel; what it does not name is at its default.
 
     Who has no row has changed nothing.

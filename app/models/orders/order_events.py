@@ -6,7 +6,7 @@ from typing import Any, Final, NoReturn
 from sqlalchemy import event
 from sqlmodel import Field, SQLModel
 
-from app.models.columns import UtcTime, WordOf
+from app.models.columns import EnumColumn, UtcTime
 from app.models.orders.orders import OrderState
 
 
@@ -30,7 +30,7 @@ class OrderEvent(SQLModel, table=True):
 
     order_id: str = Field(primary_key=True, foreign_key="orders.id")
     seq: int = Field(primary_key=True)
-    state: OrderState = Field(sa_type=WordOf(OrderState))
+    state: OrderState = Field(sa_type=EnumColumn(OrderState))
     kind: str = Field(default=MOVED, max_length=32)
     at: datetime = Field(sa_type=UtcTime)
     robot_at: datetime | None = Field(default=None, sa_type=UtcTime)

@@ -6,7 +6,7 @@ from enum import StrEnum
 from sqlalchemy import UniqueConstraint
 from sqlmodel import Field, SQLModel
 
-from app.models.columns import UtcTime, WordOf
+from app.models.columns import EnumColumn, UtcTime
 
 
 class OrderState(StrEnum):
@@ -52,7 +52,7 @@ class Order(SQLModel, table=True):
     __table_args__ = (UniqueConstraint("standing_order_id", "occurs_on"),)
 
     id: str = Field(primary_key=True, max_length=64)
-    state: OrderState = Field(default=OrderState.QUEUED, sa_type=WordOf(OrderState), index=True)
+    state: OrderState = Field(default=OrderState.QUEUED, sa_type=EnumColumn(OrderState), index=True)
     version: int = 1
     sender_id: str = Field(foreign_key="people.id")
     recipient_id: str = Field(foreign_key="people.id")
@@ -70,7 +70,7 @@ class Order(SQLModel, table=True):
     estimated_at: datetime | None = Field(default=None, sa_type=UtcTime)
     robot: str | None = Field(default=None, foreign_key="robots.name")
     why: str | None = Field(default=None, max_length=500)
-    state_before_attention: OrderState | None = Field(default=None, sa_type=WordOf(OrderState))
+    state_before_attention: OrderState | None = Field(default=None, sa_type=EnumColumn(OrderState))
     cancel_requested_at: datetime | None = Field(default=None, sa_type=UtcTime)
     cancel_requested_by: str | None = Field(default=None, max_length=32)
     return_requested_at: datetime | None = Field(default=None, sa_type=UtcTime)
@@ -78,7 +78,7 @@ class Order(SQLModel, table=True):
     let_go_by: str | None = Field(default=None, max_length=64)
     wanted_robot: str | None = Field(default=None, max_length=64)
     avoided_robot: str | None = Field(default=None, max_length=64)
-    priority: Priority = Field(default=Priority.NORMAL, sa_type=WordOf(Priority))
+    priority: Priority = Field(default=Priority.NORMAL, sa_type=EnumColumn(Priority))
     not_before: datetime | None = Field(default=None, sa_type=UtcTime)
     placed_by_id: str | None = Field(default=None, foreign_key="people.id")
     standing_order_id: str | None = Field(default=None, foreign_key="standing_orders.id")

@@ -5,7 +5,7 @@ from datetime import datetime
 from sqlalchemy import JSON
 from sqlmodel import Field, SQLModel
 
-from app.models.columns import UtcTime, WordOf
+from app.models.columns import EnumColumn, UtcTime
 from app.models.orders.orders import Priority
 
 
@@ -24,7 +24,7 @@ class StandingOrder(SQLModel, table=True):
     from_post: str = Field(max_length=64)
     to_post: str = Field(max_length=64)
     description: str | None = Field(default=None, max_length=500)
-    priority: Priority = Field(default=Priority.NORMAL, sa_type=WordOf(Priority))
+    priority: Priority = Field(default=Priority.NORMAL, sa_type=EnumColumn(Priority))
     weekdays: list[int] = Field(sa_type=JSON)
     at: str = Field(max_length=5)
     zone: str = Field(max_length=64)

@@ -5,7 +5,7 @@ from enum import StrEnum
 
 from sqlmodel import Field, SQLModel
 
-from app.models.columns import UtcTime, WordOf
+from app.models.columns import EnumColumn, UtcTime
 
 
 class MissionState(StrEnum):
@@ -30,7 +30,7 @@ class MissionRow(SQLModel, table=True):
     update_number: int = 1
     told_update: int = 0
     accepted_update: int = 0
-    state: MissionState = Field(default=MissionState.ACTIVE, sa_type=WordOf(MissionState), index=True)
+    state: MissionState = Field(default=MissionState.ACTIVE, sa_type=EnumColumn(MissionState), index=True)
     created_at: datetime = Field(sa_type=UtcTime)
     accepted_at: datetime | None = Field(default=None, sa_type=UtcTime)
     finished_at: datetime | None = Field(default=None, sa_type=UtcTime)

@@ -4,18 +4,18 @@ from dataclasses import dataclass
 from datetime import timedelta
 from typing import Protocol
 
-from app.models import Notice, Person
+from app.models import Notification, Person
 from app.notifications.wording import body_of, title_of
 
 
 @dataclass(frozen=True)
-class Sending:
+class Delivery:
     """One notice to one person on one channel. `key` is the same on every try: a receiver that gets it twice can
     tell."""
 
     key: str
     target: str | None
-    notice: Notice
+    notice: Notification
     person: Person
 
     @property
@@ -50,6 +50,6 @@ class Channel(Protocol):
     @property
     def gives_up_after(self) -> timedelta: ...
 
-    async def send(self, sending: Sending) -> None:
+    async def send(self, sending: Delivery) -> None:
         """Hand it over. Raises NotSent; anything else that is raised is tried again too."""
         ...

@@ -14,32 +14,36 @@ from cryptography.hazmat.primitives.asymmetric import ec
 from sqlmodel import col, delete
 
 from app.core.database.database import Database
-from app.models import NoticeKind, PushSubscription
-from app.notifications.channels.interface import NotSent, Sending
+from app.models import NotificationKind, PushSubscription
+from app.notifications.channels.interface import Delivery, NotSent
 from app.notifications.channels.posting import GONE, post
 from app.notifications.preferences import PUSH
 from app.notifications.push_key import PushKey
 from protocol.clock import Clock
 
-WAITING_ROBOT: Final = frozenset({NoticeKind.ROBOT_HERE, NoticeKind.ROBOT_HERE_FOR_YOU, NoticeKind.AT_RETURN})
-SOON: Final = frozenset({NoticeKind.ROBOT_NEAR, NoticeKind.ATTENTION, NoticeKind.ALARM, NoticeKind.DELAYED})
+WAITING_ROBOT: Final = frozenset(
+    {NotificationKind.ROBOT_HERE, NotificationKind.ROBOT_HERE_FOR_YOU, NotificationKind.AT_RETURN}
+)
+SOON: Final = frozenset(
+    {NotificationKind.ROBOT_NEAR, NotificationKind.ATTENTION, NotificationKind.ALARM, NotificationKind.DELAYED}
+)
 TTL_S: Final[Mapping[str, int]] = {"high": 1800, "normal": 7200, "low": 86400}
 """After that it is told too late to be of use to anybody whose device was off."""
 
 
-def urgency_of(kind: NoticeKind) -> str:
+def urgency_of(kind: NotificationKind) -> str:
     """Return how much of a device's battery it is worth (RFC 8030, 5.3)."""
     if kind in WAITING_ROBOT:
         return "high"
     return "normal" if kind in SOON else "low"
 
 
-def topic_of(sending: Sending) -> str:
+def topic_of(sending: Delivery) -> str:
     """A second try takes the place of the first, if that still waits at the push service."""
     return base64.urlsafe_b64encode(sha256(sending.key.encode()).digest()[:24]).decode()
 
 
-def payload_of(sending: Sending) -> bytes:
+def payload_of(sending: Delivery) -> bytes:
     """Return what the page's worker shows; with the same `tag`, the browser shows it once. Never a hand-over code."""
     notice = sending.notice
     shown = {
@@ -85,7 +89,7 @@ class PushChannel:
     at_once: int = 20
     gives_up_after: timedelta = timedelta(hours=2)
 
-    async def send(self, sending: Sending) -> None:
+    async def send(self, sending: Delivery) -> None:
         subscription = await self._subscription(sending)
         try:
             content = encrypted(payload_of(sending), subscription)
@@ -102,7 +106,7 @@ class PushChannel:
                 again_after_s=answer.again_after_s,
             )
 
-    def _headers(self, sending: Sending, endpoint: str) -> dict[str, str]:
+    def _headers(self, sending: Delivery, endpoint: str) -> dict[str, str]:
         url = httpx.URL(endpoint)
         urgency = urgency_of(sending.notice.kind)
         return {
@@ -116,7 +120,7 @@ class PushChannel:
             "Topic": topic_of(sending),
         }
 
-    async def _subscription(self, sending: Sending) -> PushSubscription:
+    async def _subscription(self, sending: Delivery) -> PushSubscription:
         async with self.database.reading() as session:
             found = await session.get(PushSubscription, sending.target)
         if found is None or found.person_id != sending.person.id:

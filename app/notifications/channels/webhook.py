@@ -18,7 +18,7 @@ from sqlmodel import col, delete
 from app.core.database.database import Database
 from app.core.server_key import ServerKey
 from app.models import Webhook
-from app.notifications.channels.interface import NotSent, Sending
+from app.notifications.channels.interface import Delivery, NotSent
 from app.notifications.channels.posting import Answer, post
 from app.notifications.preferences import WEBHOOK
 from app.notifications.routing import SERVICE
@@ -55,7 +55,7 @@ def signature(secret: bytes, delivery_id: str, at: datetime, body: bytes) -> str
     return "v1," + base64.b64encode(hmac.new(secret, signed, sha256).digest()).decode()
 
 
-def body_of(sending: Sending) -> bytes:
+def body_of(sending: Delivery) -> bytes:
     """Return the body of a delivery; never a hand-over code."""
     notice, person = sending.notice, sending.person
     told = {
@@ -88,10 +88,10 @@ async def deliver(address: Address, key: str, body: bytes, now: datetime) -> Ans
 
 @dataclass
 class WebhookChannel:
-    """`outside` reaches the public network alone; `service` is the address that the operator set, if any."""
+    """`http_client` reaches the public network alone; `service` is the address that the operator set, if any."""
 
     database: Database
-    outside: httpx.AsyncClient
+    http_client: httpx.AsyncClient
     key: ServerKey
     clock: Clock
     service: Address | None = None
@@ -99,7 +99,7 @@ class WebhookChannel:
     at_once: int = 20
     gives_up_after: timedelta = timedelta(days=1)
 
-    async def send(self, sending: Sending) -> None:
+    async def send(self, sending: Delivery) -> None:
         address = await self._address(sending)
         answer = await deliver(address, sending.key, body_of(sending), self.clock.utc())
         if answer.status == GONE and sending.target != SERVICE:
@@ -108,7 +108,7 @@ class WebhookChannel:
         if not answer.is_good:  # the operator of the receiver may mend it
             raise NotSent(f"the receiver answered {answer.status}", again_after_s=answer.again_after_s)
 
-    async def _address(self, sending: Sending) -> Address:
+    async def _address(self, sending: Delivery) -> Address:
         if sending.target == SERVICE:
             if self.service is None:
                 raise NotSent("the service has no webhook any more", for_good=True)
@@ -117,8 +117,8 @@ class WebhookChannel:
             row = await session.get(Webhook, sending.target)
         if row is None or row.person_id != sending.person.id:
             raise NotSent("the webhook was removed", for_good=True)
-        return Address(row.url, secret_bytes(secret_of(self.key, row.id)), self.outside)
+        return Address(row.url, secret_bytes(secret_of(self.key, row.id)), self.http_client)
 
-    async def _forget(self, sending: Sending) -> None:
+    async def _forget(self, sending: Delivery) -> None:
         async with self.database.transaction() as session:
             await session.exec(delete(Webhook).where(col(Webhook.id) == sending.target))

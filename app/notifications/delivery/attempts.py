@@ -10,7 +10,7 @@ from sqlmodel import col
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.core.database.database import connection_of
-from app.models import OutgoingNotice
+from app.models import OutgoingNotification
 from app.notifications.channels.interface import NotSent
 from app.notifications.delivery.due import Due
 
@@ -21,9 +21,9 @@ LONGEST_PAUSE_S: Final = 900.0
 
 # By the key as well: the number of a row that was erased meanwhile may have been given to another.
 _SENT: Final = (
-    update(OutgoingNotice)
-    .where(col(OutgoingNotice.id) == bindparam("its_id"), col(OutgoingNotice.key) == bindparam("its_key"))
-    .values(tries=col(OutgoingNotice.tries) + 1, problem=None, next_try_at=None, sent_at=bindparam("now"))
+    update(OutgoingNotification)
+    .where(col(OutgoingNotification.id) == bindparam("its_id"), col(OutgoingNotification.key) == bindparam("its_key"))
+    .values(tries=col(OutgoingNotification.tries) + 1, problem=None, next_try_at=None, sent_at=bindparam("now"))
 )
 
 
@@ -44,7 +44,7 @@ async def note_not_sent(
 ) -> None:
     """Note what did not go out, each with its pause; `give_up`: after how long, by channel."""
     for due, problem in not_sent:
-        row = await session.get(OutgoingNotice, due.id)
+        row = await session.get(OutgoingNotification, due.id)
         if row is None or row.key != due.sending.key:  # erased meanwhile
             continue
         note(row, problem, now, give_up[due.channel])
@@ -52,7 +52,7 @@ async def note_not_sent(
         log.warning("notice not sent", key=row.key, problem=row.problem, gave_up=gave_up)
 
 
-def note(row: OutgoingNotice, problem: NotSent, now: datetime, gives_up_after: timedelta) -> None:
+def note(row: OutgoingNotification, problem: NotSent, now: datetime, gives_up_after: timedelta) -> None:
     """Note a failed delivery: to be tried again, or given up."""
     row.tries += 1
     row.problem = str(problem)[:500]

@@ -12,26 +12,26 @@ from sqlalchemy import bindparam, literal, select, union
 from sqlmodel import col
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.models import Notice, OutgoingNotice, Person
-from app.notifications.channels.interface import Sending
+from app.models import Notification, OutgoingNotification, Person
+from app.notifications.channels.interface import Delivery
 
 NOT_ROUTED: Final = "not routed"
 """Stands among the channels for notices that none of them has yet."""
 
-_ID: Final = col(OutgoingNotice.id)
-_TARGET: Final = col(OutgoingNotice.target)
-_IS_DUE: Final = col(OutgoingNotice.next_try_at) <= bindparam("now")
-_NEW: Final = select(col(Notice.id)).where(col(Notice.routed_at).is_(None)).exists()
+_ID: Final = col(OutgoingNotification.id)
+_TARGET: Final = col(OutgoingNotification.target)
+_IS_DUE: Final = col(OutgoingNotification.next_try_at) <= bindparam("now")
+_NEW: Final = select(col(Notification.id)).where(col(Notification.routed_at).is_(None)).exists()
 
 _WAITING: Final[Any] = union(
-    select(col(OutgoingNotice.channel)).where(_IS_DUE).distinct(), select(literal(NOT_ROUTED)).where(_NEW)
+    select(col(OutgoingNotification.channel)).where(_IS_DUE).distinct(), select(literal(NOT_ROUTED)).where(_NEW)
 )
 _NEXT: Final[Any] = (
-    select(_ID, col(OutgoingNotice.key), _TARGET, Notice, Person)
-    .select_from(OutgoingNotice)
-    .join(Notice, col(OutgoingNotice.notice_id) == Notice.id)
-    .join(Person, col(Notice.person_id) == Person.id)
-    .where(col(OutgoingNotice.channel) == bindparam("channel"), _IS_DUE)
+    select(_ID, col(OutgoingNotification.key), _TARGET, Notification, Person)
+    .select_from(OutgoingNotification)
+    .join(Notification, col(OutgoingNotification.notice_id) == Notification.id)
+    .join(Person, col(Notification.person_id) == Person.id)
+    .where(col(OutgoingNotification.channel) == bindparam("channel"), _IS_DUE)
     .order_by(_ID)
     .limit(bindparam("places"))
 )
@@ -47,7 +47,7 @@ class Due:
 
     id: int
     channel: str
-    sending: Sending
+    sending: Delivery
 
     @property
     def target(self) -> str | None:
@@ -68,7 +68,7 @@ async def next_of(
         known["ids"] = [one.id for one in busy]
         known["targets"] = [one.target for one in busy if one.target]
     found = await session.exec(_NEXT_BESIDES if busy else _NEXT, params=known)
-    return _one_for_each_target([Due(row_id, channel, Sending(key, *told)) for row_id, key, *told in found])
+    return _one_for_each_target([Due(row_id, channel, Delivery(key, *told)) for row_id, key, *told in found])
 
 
 def _one_for_each_target(found: Sequence[Due]) -> list[Due]:

@@ -14,21 +14,21 @@ from app.core.errors import problems
 from app.core.paging import PAGED, PageDep, PageOf, Sorting
 from app.core.parts import find_part
 from app.core.settings import ClockDep, SettingsDep
-from app.models import Notice, OutgoingNotice, Person
+from app.models import Notification, OutgoingNotification, Person
 from app.notifications import spooled
 from app.notifications.delivery.worker import OutboxWorker
-from app.notifications.errors import NotInSpool, SentAlready, UnknownSending
+from app.notifications.errors import NotInSpool, SentAlready, UnknownDelivery
 from app.notifications.spooled import SpooledMail
 
 router = APIRouter(tags=["outbox"])
 
-NEWEST_FIRST = Sorting("outbox", col(OutgoingNotice.id), descending=True)
+NEWEST_FIRST = Sorting("outbox", col(OutgoingNotification.id), descending=True)
 SendingId = Annotated[int, Path(ge=1, le=2**31 - 1)]
 FileName = Annotated[str, Path(pattern=r"^[A-Za-z0-9_-][A-Za-z0-9._-]*\.eml$", max_length=255)]
 """No file system has longer names."""
 
 
-class SendingView(BaseModel):
+class DeliveryView(BaseModel):
     """A notice that a channel has not taken yet. Without its contents: who is told what is enough to help."""
 
     id: int
@@ -43,12 +43,12 @@ class SendingView(BaseModel):
     problem: str | None
 
     @classmethod
-    def of(cls, row: OutgoingNotice, notice: Notice, person: Person) -> "SendingView":
+    def of(cls, row: OutgoingNotification, notice: Notification, person: Person) -> "DeliveryView":
         told = {"kind": str(notice.kind), "email": person.email, "order_id": notice.order_id}
         return cls.model_validate({**row.model_dump(), **told})
 
 
-class Sendings(PageOf[SendingView]):
+class DeliveryPage(PageOf[DeliveryView]):
     """Newest first."""
 
 
@@ -66,31 +66,31 @@ class SpooledText(SpooledMail):
 
 
 @router.get("/outbox", responses={**PAGED, **problems(400, 401, 403)})
-async def not_sent(user: Dispatcher, session: ReadingDep, page: PageDep, *, given_up: bool = False) -> Sendings:
+async def not_sent(user: Dispatcher, session: ReadingDep, page: PageDep, *, given_up: bool = False) -> DeliveryPage:
     """Notices that have not gone out, or only those that were given up."""
-    waiting = select(OutgoingNotice).where(col(OutgoingNotice.sent_at).is_(None))
+    waiting = select(OutgoingNotification).where(col(OutgoingNotification.sent_at).is_(None))
     if given_up:
-        waiting = waiting.where(col(OutgoingNotice.gave_up_at).is_not(None))
+        waiting = waiting.where(col(OutgoingNotification.gave_up_at).is_not(None))
     rows, following = await page.of(session, waiting, NEWEST_FIRST)
-    notices = select(Notice, Person).join(Person).where(col(Notice.id).in_([row.notice_id for row in rows]))
+    notices = select(Notification, Person).join(Person).where(col(Notification.id).in_([row.notice_id for row in rows]))
     told = {notice.id: (notice, person) for notice, person in (await session.exec(notices)).all()}
-    return Sendings(items=[SendingView.of(row, *told[row.notice_id]) for row in rows], next=following)
+    return DeliveryPage(items=[DeliveryView.of(row, *told[row.notice_id]) for row in rows], next=following)
 
 
-@router.post("/outbox/{sending_id}/retry", status_code=202, responses=problems(401, 403, UnknownSending, SentAlready))
+@router.post("/outbox/{sending_id}/retry", status_code=202, responses=problems(401, 403, UnknownDelivery, SentAlready))
 async def send_again(
     sending_id: SendingId, request: Request, user: Dispatcher, session: SessionDep, clock: ClockDep
-) -> SendingView:
+) -> DeliveryView:
     """Try once more, now: what was given up, or waits for its next try."""
-    row = await session.get(OutgoingNotice, sending_id, with_for_update=True)
+    row = await session.get(OutgoingNotification, sending_id, with_for_update=True)
     if row is None:
-        raise UnknownSending(f"There is nothing with the number {sending_id} in the outbox.")
+        raise UnknownDelivery(f"There is nothing with the number {sending_id} in the outbox.")
     if row.sent_at is not None:
         raise SentAlready("It has gone out already.")
     row.next_try_at, row.gave_up_at = clock.utc(), None
     after_commit(session, find_part(request, OutboxWorker).wake)
-    notice = await session.get_one(Notice, row.notice_id)
-    return SendingView.of(row, notice, await session.get_one(Person, notice.person_id))
+    notice = await session.get_one(Notification, row.notice_id)
+    return DeliveryView.of(row, notice, await session.get_one(Person, notice.person_id))
 
 
 @router.get("/spool", responses=problems(401, 403))

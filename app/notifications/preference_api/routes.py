@@ -9,11 +9,11 @@ from app.accounts.current_user import AtBrowser, CurrentUser
 from app.accounts.rate_limits import Door, per_person_at_browser
 from app.core.database.database import DatabaseDep, ReadingDep, SessionDep
 from app.core.errors import problems
-from app.core.http_client import Outside, TargetRefused
+from app.core.http_client import HttpClient, TargetRefused
 from app.core.parts import part
 from app.core.server_key import ServerKey
 from app.core.settings import ClockDep
-from app.models import NoticeKind, NoticeWishes, Person
+from app.models import NotificationKind, NotificationPreferences, Person
 from app.notifications.channels.webhook import secret_of
 from app.notifications.errors import BadSubscription, MutedEverywhere, NoWebhook, UnknownDevice
 from app.notifications.preference_api import devices
@@ -22,10 +22,10 @@ from app.notifications.preference_api.schemas import (
     NewDevice,
     NewWebhook,
     NewWebhookView,
+    PreferencesRequest,
+    PreferencesView,
     TrialView,
     WebhookView,
-    Wishes,
-    WishesView,
 )
 from app.notifications.preference_api.trial import try_webhook
 from app.notifications.preferences import CHANNELS, MUST_REACH, is_muted_everywhere, muted_of
@@ -40,21 +40,23 @@ DeviceId = Annotated[str, Path(pattern=r"^[0-9a-f]+$", max_length=64)]
 
 
 PushKeyDep = Annotated[PushKey, part(PushKey)]
-OutsideDep = Annotated[Outside, part(Outside)]
+HttpClientDep = Annotated[HttpClient, part(HttpClient)]
 ServerKeyDep = Annotated[ServerKey, part(ServerKey)]
 
 
 @router.get("/me/notices", responses=problems(401, 403))
-async def my_wishes(user: CurrentUser, session: ReadingDep, key: PushKeyDep) -> WishesView:
+async def my_wishes(user: CurrentUser, session: ReadingDep, key: PushKeyDep) -> PreferencesView:
     """Return what this person is told, and where."""
     return await _view(session, user, key)
 
 
 @router.put("/me/notices", responses=problems(401, 403, MutedEverywhere))
-async def change_my_wishes(wish: Wishes, user: CurrentUser, session: SessionDep, key: PushKeyDep) -> WishesView:
+async def change_my_wishes(
+    wish: PreferencesRequest, user: CurrentUser, session: SessionDep, key: PushKeyDep
+) -> PreferencesView:
     """Mute kinds of notices on channels. The language is changed by `PATCH /me`."""
-    row = await session.get(NoticeWishes, user.id)
-    row = row or NoticeWishes(person_id=user.id, muted={})
+    row = await session.get(NotificationPreferences, user.id)
+    row = row or NotificationPreferences(person_id=user.id, muted={})
     chosen: dict[str, list[str]] = {
         channel: sorted({str(kind) for kind in kinds}) for channel, kinds in wish.muted.items()
     }
@@ -67,13 +69,13 @@ async def change_my_wishes(wish: Wishes, user: CurrentUser, session: SessionDep,
     return await _view(session, user, key)
 
 
-async def _view(session: AsyncSession, user: Person, key: PushKey) -> WishesView:
-    wishes = await session.get(NoticeWishes, user.id)
+async def _view(session: AsyncSession, user: Person, key: PushKey) -> PreferencesView:
+    wishes = await session.get(NotificationPreferences, user.id)
     muted = muted_of(wishes.muted if wishes else None)
     hook = await devices.webhook_of(session, user.id)
-    return WishesView(
+    return PreferencesView(
         language=user.language,
-        kinds=list(NoticeKind),
+        kinds=list(NotificationKind),
         must_reach=sorted(MUST_REACH),
         muted={channel: sorted(muted[channel]) for channel in CHANNELS},
         push_key=key.public,
@@ -89,11 +91,11 @@ async def _view(session: AsyncSession, user: Person, key: PushKey) -> WishesView
     responses=problems(401, 403, 429, BadSubscription, TargetRefused),
 )
 async def add_device(
-    wish: NewDevice, user: AtBrowser, database: DatabaseDep, outside: OutsideDep, clock: ClockDep
+    wish: NewDevice, user: AtBrowser, database: DatabaseDep, http_client: HttpClientDep, clock: ClockDep
 ) -> DeviceView:
     """Have notices shown by this browser (Web Push). The same endpoint again takes the place of the first."""
     devices.check_keys(wish.keys)
-    await outside.checked_target(wish.endpoint)  # which may take a while: no transaction is open
+    await http_client.checked_target(wish.endpoint)  # which may take a while: no transaction is open
     async with database.transaction() as session:
         return DeviceView.of(await devices.add_device(session, user, wish, clock.utc()))
 
@@ -109,12 +111,12 @@ async def set_webhook(
     wish: NewWebhook,
     user: AtBrowser,
     database: DatabaseDep,
-    outside: OutsideDep,
+    http_client: HttpClientDep,
     key: ServerKeyDep,
     clock: ClockDep,
 ) -> NewWebhookView:
     """Have each notice posted to an address, signed with the secret of the answer. Another address, another secret."""
-    await outside.checked_target(wish.url)
+    await http_client.checked_target(wish.url)
     async with database.transaction() as session:
         row = await devices.set_webhook(session, user, wish.url, clock.utc())
     return NewWebhookView(url=row.url, created_at=row.created_at, secret=secret_of(key, row.id))
@@ -126,12 +128,12 @@ async def set_webhook(
     responses=problems(401, 403, 429, NoWebhook),
 )
 async def try_my_webhook(
-    user: AtBrowser, database: DatabaseDep, outside: OutsideDep, key: ServerKeyDep, clock: ClockDep
+    user: AtBrowser, database: DatabaseDep, http_client: HttpClientDep, key: ServerKeyDep, clock: ClockDep
 ) -> TrialView:
     """Post something to my webhook now, signed like a notice, and say what it answered."""
     async with database.reading() as session:
         row = await devices.my_webhook(session, user)
-    return await try_webhook(outside, key, row, user, clock.utc())
+    return await try_webhook(http_client, key, row, user, clock.utc())
 
 
 @router.delete("/me/webhook", status_code=204, responses=problems(401, 403, NoWebhook))

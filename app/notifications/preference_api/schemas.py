@@ -6,7 +6,7 @@ from typing import Annotated
 import httpx
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 
-from app.models import NoticeKind, PushSubscription, Webhook
+from app.models import NotificationKind, PushSubscription, Webhook
 from app.notifications.preferences import ChannelName
 
 Url = Annotated[str, StringConstraints(max_length=1000, pattern=r"^[!-~]+$")]
@@ -50,24 +50,24 @@ class TrialView(BaseModel):
     problem: str | None = Field(description="Why there was no answer.")
 
 
-class WishesView(BaseModel):
+class PreferencesView(BaseModel):
     """The preferences of a person. The inbox has everything; `muted` says what a channel does not carry."""
 
     language: str
-    kinds: list[NoticeKind]
-    must_reach: list[NoticeKind] = Field(description="Kinds that cannot be muted on every channel.")
-    muted: dict[ChannelName, list[NoticeKind]]
+    kinds: list[NotificationKind]
+    must_reach: list[NotificationKind] = Field(description="Kinds that cannot be muted on every channel.")
+    muted: dict[ChannelName, list[NotificationKind]]
     push_key: str = Field(description="`applicationServerKey` for a browser that subscribes.")
     devices: list[DeviceView]
     webhook: WebhookView | None
 
 
-class Wishes(BaseModel):
+class PreferencesRequest(BaseModel):
     """Kinds that are not to come on a channel. A channel that is not named stays as it is."""
 
     model_config = ConfigDict(extra="forbid")
 
-    muted: dict[ChannelName, Annotated[list[NoticeKind], Field(max_length=100)]]
+    muted: dict[ChannelName, Annotated[list[NotificationKind], Field(max_length=100)]]
 
 
 class SubscriptionKeys(BaseModel):

@@ -7,7 +7,7 @@ from typing import Any
 
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.accounts.sign_in.service import SignInDesk, look_up_people, may_be_sent_mail
+from app.accounts.sign_in.service import SignInService, look_up_people, may_be_sent_mail
 from app.core.database.database import new_row, row_of, write_all
 from app.core.errors import Unprocessable
 from app.eta.records import promise_row
@@ -49,7 +49,7 @@ class Placing:
     """Begin an order's life."""
 
     ledger: Ledger
-    sign_in: SignInDesk
+    sign_in: SignInService
 
     def window(self, from_post: str, to_post: str, not_before: datetime | None = None) -> Window:
         """When mail should arrive that is fetched from now, or later. Raises UnknownPost, SamePost, NoWay."""

@@ -19,7 +19,7 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.core.database.database import columns_of, connection_of
 from app.core.server_key import ServerKey
-from app.models import Delegate, Notice, NoticeKind, Order, OrderState
+from app.models import Delegate, Notification, NotificationKind, Order, OrderState
 from protocol.parts import Purpose
 from protocol.to_robot import Verifier
 
@@ -38,9 +38,9 @@ TURNS: Final[Mapping[OrderState, Purpose]] = {
     OrderState.AT_RETURN: Purpose.RETURN,
 }
 PURPOSE_OF_NOTICE: Final = {
-    NoticeKind.ROBOT_HERE: Purpose.LOAD,
-    NoticeKind.ROBOT_HERE_FOR_YOU: Purpose.RECEIVE,
-    NoticeKind.AT_RETURN: Purpose.RETURN,
+    NotificationKind.ROBOT_HERE: Purpose.LOAD,
+    NotificationKind.ROBOT_HERE_FOR_YOU: Purpose.RECEIVE,
+    NotificationKind.AT_RETURN: Purpose.RETURN,
 }
 CONFIRM_LIFETIME_S: Final = 60.0
 """A tap or digits at a hand-over are good for so long on their way to the robot."""
@@ -101,11 +101,11 @@ def code_text(key: ServerKey, order_id: str, purpose: Purpose, whose: tuple[str,
     return PREFIX + key.derive("hand-over", order_id, purpose, *whose)[:SECRET_BYTES].hex()
 
 
-def code_in_mail(key: ServerKey, notice: Notice) -> tuple[Purpose, str] | None:
+def code_in_mail(key: ServerKey, notice: Notification) -> tuple[Purpose, str] | None:
     """The code that goes with a notice by mail: what it is for, and what its QR form says."""
     if notice.order_id is None:
         return None
-    if notice.kind is NoticeKind.DELEGATED:
+    if notice.kind is NotificationKind.DELEGATED:
         purpose, whose = Purpose(notice.facts["purpose"]), (Holder.DELEGATE, notice.facts["delegate_id"])
         return purpose, code_text(key, notice.order_id, purpose, whose)
     own = PURPOSE_OF_NOTICE.get(notice.kind)

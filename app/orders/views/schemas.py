@@ -71,8 +71,8 @@ class StandingOrderView(BaseModel):
     id: str
     from_post: str
     to_post: str
-    sender: "Somebody"
-    recipient: "Somebody"
+    sender: "PersonView"
+    recipient: "PersonView"
     description: str | None
     priority: Literal["low", "normal", "high"]
     weekdays: list[int]
@@ -121,7 +121,7 @@ class Estimate(BaseModel):
     reason_words: Words | None = None
 
 
-class Somebody(BaseModel):
+class PersonView(BaseModel):
     """The other person of an order."""
 
     email: str
@@ -210,8 +210,8 @@ class OrderView(BaseModel):
     version: int
     from_post: str
     to_post: str
-    sender: Somebody
-    recipient: Somebody
+    sender: PersonView
+    recipient: PersonView
     description: str | None
     created_at: datetime
     updated_at: datetime
@@ -232,7 +232,7 @@ class OrderView(BaseModel):
     return_post: str | None
     passed_on_at_post: str | None
     standing_order_id: str | None
-    placed_by: Somebody | None
+    placed_by: PersonView | None
     custody: list[CustodyView]
     events: list[EventView]
 

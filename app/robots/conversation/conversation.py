@@ -21,7 +21,7 @@ from app.robots.link.tokens import note_use
 from protocol.both_ways import Ack, Error
 from protocol.envelope import TO_SERVER, Envelope, Head, parse, type_of
 from protocol.errors import ProtocolError
-from protocol.insight import Insight
+from protocol.insight import Diagnostics
 from protocol.parts import Part, sentence
 from protocol.to_robot import Watch
 from protocol.to_server import Hello
@@ -30,7 +30,7 @@ GREETING_LIMIT_S: Final = 10.0
 MAX_UNACKNOWLEDGED: Final = 50
 MAX_IN_HAND: Final = 100
 """Read and not yet on the disk: a robot that says more than that is read no further."""
-OF_THE_MOMENT: Final = (Ack, Insight)
+OF_THE_MOMENT: Final = (Ack, Diagnostics)
 """What says nothing to the disk but what it acknowledges."""
 NO_JOURNAL: Final = "none"
 """On what is said before the handshake: nothing durable, so that it is not read."""
@@ -183,7 +183,7 @@ class Conversation:
             envelope = await self._next()
             if isinstance(envelope.body, Hello) or envelope.journal != self.journal:
                 raise OutOfTurn("a connection has one hello and one journal", envelope.seq)
-            if isinstance(envelope.body, Insight):
+            if isinstance(envelope.body, Diagnostics):
                 self._fleet.watching.show(self.robot, envelope.body, self._fleet.clock.utc())
             if isinstance(envelope.body, OF_THE_MOMENT) and envelope.ack <= self.acknowledged:
                 continue

@@ -12,7 +12,7 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 from app.core.database.database import after_commit
 from app.core.texts.reasons import Words, words_of
 from app.models import Alarm, ClosedCorridor
-from app.realtime.feed import Feed, Happening
+from app.realtime.feed import Feed, FeedEvent
 from app.robots.corridors.closed_corridors import WAY_BLOCKED, closed_corridor
 
 
@@ -78,5 +78,5 @@ async def tell_of_closed(session: AsyncSession, feed: Feed) -> ClosedCorridors:
     """After the commit: pages see it."""
     await session.flush()
     closed = await all_closed(session)
-    after_commit(session, partial(feed.publish, Happening("closed", closed)))
+    after_commit(session, partial(feed.publish, FeedEvent("closed", closed)))
     return closed

@@ -12,12 +12,12 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 from app.core.database.database import after_commit
 from app.models import GrantRow, Order, Person, Role
 from app.orders.transitions import ENDED
-from app.realtime.feed import Feed, Happening
+from app.realtime.feed import Feed, FeedEvent
 
 SEE_ALL = (Role.DISPATCHER, Role.MAINTAINER)
 
 
-class TakenCorridor(BaseModel):
+class OccupiedCorridor(BaseModel):
     """A corridor that a robot may be in, in its direction, since it was let in; until the robot says that it is out."""
 
     robot: str
@@ -30,14 +30,14 @@ class TakenCorridor(BaseModel):
 class Traffic(BaseModel):
     """Every corridor that is taken, by robot, each robot's in the order in which it was granted them."""
 
-    taken: list[TakenCorridor]
+    taken: list[OccupiedCorridor]
 
 
 class RobotTraffic(BaseModel):
     """Every corridor that this robot holds now: it replaces what was known of it."""
 
     robot: str
-    taken: list[TakenCorridor]
+    taken: list[OccupiedCorridor]
 
 
 async def traffic_for(session: AsyncSession, person: Person) -> Traffic:
@@ -58,8 +58,8 @@ async def tell_of_traffic(session: AsyncSession, feed: Feed, robot: str) -> None
     rows = (await session.exec(held.order_by(col(GrantRow.id)))).all()
     news = RobotTraffic(robot=robot, taken=list(_each_once(rows)))
     people = await _people_of(session, robot)
-    theirs = [Happening("traffic", news, person_id=person_id) for person_id in sorted(people)]
-    by_role = [Happening("traffic", news, role=role, except_for=people) for role in SEE_ALL]
+    theirs = [FeedEvent("traffic", news, person_id=person_id) for person_id in sorted(people)]
+    by_role = [FeedEvent("traffic", news, role=role, except_for=people) for role in SEE_ALL]
     for happening in (*theirs, *by_role):
         after_commit(session, partial(feed.publish, happening))
 
@@ -75,14 +75,14 @@ async def _people_of(session: AsyncSession, robot: str) -> frozenset[str]:
     return frozenset(person for pair in (await session.exec(wanted)).all() for person in pair)
 
 
-def _each_once(rows: Iterable[GrantRow]) -> Iterator[TakenCorridor]:
+def _each_once(rows: Iterable[GrantRow]) -> Iterator[OccupiedCorridor]:
     """A corridor that was granted again while it was held is held since the first time."""
     seen = set()
     for row in rows:
         way = (row.robot, row.from_post, row.to_post)
         if way not in seen:
             seen.add(way)
-            yield TakenCorridor(
+            yield OccupiedCorridor(
                 robot=row.robot,
                 corridor=row.corridor,
                 from_post=row.from_post,

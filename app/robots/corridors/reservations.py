@@ -25,7 +25,7 @@ GONE_ON: Final = "the robot is not where this way begins any more"
 
 
 async def answer(
-    session: AsyncSession, campus: CampusMap, robot: str, claim: Claim, now: datetime, by_timetable: bool = False
+    session: AsyncSession, campus: CampusMap, robot: str, claim: Claim, now: datetime, by_schedule: bool = False
 ) -> Grant | Deny | None:
     """Grant a claim (or let it wait), deny what the map does not have; None if it waits, or was answered before."""
     if await session.get(ClaimRow, (robot, claim.claim_id)) is not None:
@@ -33,19 +33,19 @@ async def answer(
     unknown = _unknown(campus, claim.legs)
     reason = f"the map {campus.name} has no corridor {_name(unknown)}" if unknown else None
     legs = [leg.model_dump() for leg in claim.legs]
-    closed = () if by_timetable or unknown else await _closed(session, robot, claim.legs)
+    closed = () if by_schedule or unknown else await _closed(session, robot, claim.legs)
     if closed:
         reason = "this corridor is closed"
     row = ClaimRow(robot=robot, claim_id=claim.claim_id, legs=legs, at=now, goal=claim.goal, reason=reason)
-    row.granted = False if unknown or closed else None if by_timetable else True
-    if by_timetable:
+    row.granted = False if unknown or closed else None if by_schedule else True
+    if by_schedule:
         await forget_what_waits(session, robot, ASKED_ANEW)
     session.add(row)
     if unknown is not None:
         return Deny(claim_id=claim.claim_id, avoid=(unknown,), reason=reason or "")
     if closed:
         return Deny(claim_id=claim.claim_id, avoid=closed, reason=reason or "")
-    if by_timetable:
+    if by_schedule:
         return None
     session.add_all(_grant(robot, claim.claim_id, leg, now) for leg in claim.legs)
     return Grant(claim_id=claim.claim_id, legs=claim.legs)

@@ -17,7 +17,7 @@ from app.core.settings import ClockDep
 from app.models import RobotToken
 from app.robots.enrolment.errors import NoEnrolmentCode, UnknownRobotToken, WrongEnrolmentCode
 from app.robots.enrolment.schemas import Enrolled, Enrolment, EnrolmentCodeView, RobotTokenView
-from app.robots.enrolment.service import EnrolmentDesk
+from app.robots.enrolment.service import EnrolmentService
 from app.robots.errors import RobotNameInvalid, UnknownRobot
 from app.robots.routes.robots import FleetDep, RobotName
 from app.robots.service import known_robot
@@ -33,7 +33,7 @@ async def _door(request: Request) -> None:
     refuse_other_sites(request)
 
 
-DeskDep = Annotated[EnrolmentDesk, part(EnrolmentDesk)]
+DeskDep = Annotated[EnrolmentService, part(EnrolmentService)]
 
 
 class RobotTokenPage(PageOf[RobotTokenView]):

@@ -23,7 +23,7 @@ CODE_LIFETIME_S: Final = 900.0
 
 
 @dataclass(frozen=True)
-class EnrolmentDesk:
+class EnrolmentService:
     """Makes codes and admits the robot that comes with one."""
 
     settings: Settings

@@ -46,35 +46,35 @@ def claim(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
     """Done as soon as the first corridor of the way may be entered: from post to post it is asked again. Done as well
     when the robot has to go elsewhere first, which is then perceived: the service sends it there, or it goes on out of
     a hole in the network by what it was granted."""
-    goal, duties, navigator = str(arguments[0]), hands.duties, hands.navigator
+    goal, missions, navigator = str(arguments[0]), hands.missions, hands.navigator
     closed = _why_no_way(hands, goal)
     way = _kept(hands) if closed else _way(hands, goal)
     first = _from_here(hands, way) if closed else navigator.first_legs(goal)
     _give_back(hands, first, way)
     if closed:
-        duties.claims.avoid = frozenset()  # what was denied may be open by the next time it asks
+        missions.claims.avoid = frozenset()  # what was denied may be open by the next time it asks
         return AtOnce(Ended(closed))
-    claim_id = None if detour(hands) else duties.claims.ask((*first, *way), goal)
+    claim_id = None if detour(hands) else missions.claims.ask((*first, *way), goal)
     asked_s = hands.view.at_s
 
     def ask() -> Ended | None:
         _give_back(hands, first, way)  # it may have been granted what it asked for before it changed its mind
-        if duties.claims.may_enter(first) or detour(hands):
+        if missions.claims.may_enter(first) or detour(hands):
             return DONE
         if leg := _way_out_of_silence(hands, asked_s):
-            duties.claims.turn_aside(leg)
+            missions.claims.turn_aside(leg)
             return DONE
-        return Ended("denied") if claim_id and duties.claims.denial(claim_id) else None
+        return Ended("denied") if claim_id and missions.claims.denial(claim_id) else None
 
-    return Wait(ask, dropped=duties.claims.withdraw)
+    return Wait(ask, dropped=missions.claims.withdraw)
 
 
 def _give_back(hands: Hands, first: Sequence[Leg], way: Sequence[Leg]) -> None:
     """Release corridors that it does not need while it stands in none of them. Without network it keeps all: no other
     robot would come to know, and it may be the only way out of there."""
-    if hands.navigator.at and hands.duties.online:
+    if hands.navigator.at and hands.missions.online:
         kept = (*first, *_granted_ahead(hands, way), detour(hands))
-        hands.duties.claims.clear(leg for leg in hands.duties.held.grants if leg not in kept)
+        hands.missions.claims.clear(leg for leg in hands.missions.held.grants if leg not in kept)
 
 
 def _from_here(hands: Hands, legs: Sequence[Leg]) -> tuple[Leg, ...]:
@@ -85,7 +85,7 @@ def _granted_ahead(hands: Hands, way: Sequence[Leg]) -> Iterator[Leg]:
     """Yield the legs that it may drive through from here without a stop. A corridor to which it comes only after
     others, not granted yet, is not kept: the service thinks the robot in what it holds, and grants it nothing
     meanwhile."""
-    end, granted = hands.navigator.at, hands.duties.held.grants
+    end, granted = hands.navigator.at, hands.missions.held.grants
     for leg in way:
         if leg not in granted or leg.from_post != end:
             return
@@ -95,7 +95,7 @@ def _granted_ahead(hands: Hands, way: Sequence[Leg]) -> Iterator[Leg]:
 
 def detour(hands: Hands) -> Leg | None:
     """The corridor from here that it has to take first, unless the robot knows that to be closed."""
-    leg = hands.duties.held.detour
+    leg = hands.missions.held.detour
     if leg is None or leg.from_post != hands.navigator.at:
         return None
     return None if _is_closed(hands, leg) else leg
@@ -106,7 +106,7 @@ def _way_out_of_silence(hands: Hands, asked_s: float) -> Leg | None:
     come."""
     if "link_loss" not in hands.view.faults or hands.view.at_s - asked_s < AWAITS_NETWORK_S:
         return None
-    unused = tuple(leg for leg in hands.duties.held.grants if leg not in hands.navigator.crossed)
+    unused = tuple(leg for leg in hands.missions.held.grants if leg not in hands.navigator.crossed)
     return next((leg for leg in _from_here(hands, unused) if not _is_closed(hands, leg)), None)
 
 
@@ -117,7 +117,7 @@ def _is_closed(hands: Hands, leg: Leg) -> bool:
 def _way(hands: Hands, goal: str) -> tuple[Leg, ...]:
     """The way to the goal, the rest of the mission and home: a robot without network finishes what it is permitted, and
     comes back to where it can tell of it."""
-    held, navigator = hands.duties.held, hands.navigator
+    held, navigator = hands.missions.held, hands.navigator
     later = [stop.post for stop in (held.mission.stops if held.mission else ())[held.next_stop :]]
     home = [navigator.home] if navigator.home else []
     try:
@@ -131,14 +131,14 @@ def _kept(hands: Hands) -> tuple[Leg, ...]:
     of everything, so that this one can go on. Where something stands in a corridor it keeps what it has been granted:
     without network there
     it would never be granted anything again."""
-    return () if hands.duties.claims.avoid else hands.duties.held.grants
+    return () if hands.missions.claims.avoid else hands.missions.held.grants
 
 
 def release(hands: Hands, _: Sequence[Value], __: float) -> Run:
-    hands.duties.claims.withdraw()
+    hands.missions.claims.withdraw()
     here = hands.navigator.corridor
     inside = {here.from_post, here.to_post} if here else None
-    hands.duties.claims.clear(leg for leg in hands.duties.held.grants if {leg.from_post, leg.to_post} != inside)
+    hands.missions.claims.clear(leg for leg in hands.missions.held.grants if {leg.from_post, leg.to_post} != inside)
     return AtOnce()
 
 
@@ -157,7 +157,7 @@ def mark_blocked(hands: Hands, arguments: Sequence[Value], now: float) -> Run:
     if leg is None:
         return AtOnce(Ended("not_in_a_corridor"))
     if corridor_name(leg.from_post, leg.to_post) not in hands.navigator.closed.names:
-        hands.duties.report_one_fault(WAY_BLOCKED, turned_back(leg, why), hands.place, cleared=False, lasts=True)
+        hands.missions.report_one_fault(WAY_BLOCKED, turned_back(leg, why), hands.place, cleared=False, lasts=True)
     # Last: killed in between, the robot tells after its restart that it tries this way again, and does.
     hands.navigator.closed.close(leg, now)
     return AtOnce()

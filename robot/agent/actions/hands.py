@@ -8,7 +8,7 @@ from maps import CampusMapError
 from protocol.to_server import Step
 from robot.agent.navigator import Navigator
 from robot.drivers.interfaces import BodyShape
-from robot.mission.mission import Duties
+from robot.mission.mission import MissionManager
 from robot.skills.interfaces import Body, View
 
 PLACE_UNKNOWN: Final = "place_unknown"
@@ -21,7 +21,7 @@ class Hands:
 
     body: Body
     navigator: Navigator
-    duties: Duties
+    missions: MissionManager
     cruise_mm_s: float = 120.0
     turn_mm_s: float = 80.0
     shape: BodyShape = field(default_factory=BodyShape)
@@ -37,7 +37,7 @@ class Hands:
     def lose_place(self, error: CampusMapError) -> None:
         """An error of the map that was not foreseen: where the robot believed to be cannot be."""
         self.navigator.lose_place(self.view)
-        self.duties.report_fault(PLACE_UNKNOWN, f"The robot has lost its place on the map: {error}", None)
+        self.missions.report_fault(PLACE_UNKNOWN, f"The robot has lost its place on the map: {error}", None)
 
     def report(self, step: Step, stop_id: str, reason: str | None = None) -> None:
-        self.duties.report(step, stop_id, self.place, reason)
+        self.missions.report(step, stop_id, self.place, reason)

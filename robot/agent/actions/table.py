@@ -60,7 +60,7 @@ def _follow_line(hands: Hands, _: Sequence[Value], now: float) -> Run:
     navigator = hands.navigator
     if navigator.doubted:
         return AtOnce(Ended(PLACE_UNKNOWN))
-    if (deeper := navigator.goes_deeper) and not hands.duties.claims.may_be_in(deeper):
+    if (deeper := navigator.goes_deeper) and not hands.missions.claims.may_be_in(deeper):
         return AtOnce(Ended("not_granted"))
     aslant_rad = navigator.aslant_rad
 
@@ -142,12 +142,12 @@ def _report(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
 
 
 def _finish_stop(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
-    hands.duties.finish_stop(str(arguments[0]))
+    hands.missions.finish_stop(str(arguments[0]))
     return AtOnce()
 
 
 def _finish_mission(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
-    hands.duties.finish_mission(str(arguments[0]), hands.place)
+    hands.missions.finish_mission(str(arguments[0]), hands.place)
     return AtOnce()
 
 
@@ -158,7 +158,7 @@ step back. Assumed: how long people take has not been measured."""
 
 def _wait_handover(hands: Hands, arguments: Sequence[Value], now: float) -> Run:
     purpose, order_id, stop_id, limit_s = Purpose(str(arguments[0])), str(arguments[1]), str(arguments[2]), arguments[3]
-    duties, place = hands.duties, hands.duties.at_stop(stop_id)
+    missions, place = hands.missions, hands.missions.at_stop(stop_id)
     waiting = Waiting(place, purpose, hands.place or place[1].post)
 
     def promise() -> None:
@@ -166,36 +166,36 @@ def _wait_handover(hands: Hands, arguments: Sequence[Value], now: float) -> Run:
         hands.body.start(Say("accepted"), now)
 
     def custody(done: Done) -> None:
-        duties.handed_over(place, purpose, waiting.post, done.shown)
+        missions.handed_over(place, purpose, waiting.post, done.shown)
         waiting.handed_over = True
         promise()
 
     def spot_counts() -> bool:
         """Only loading may be confirmed by the Spot button: it identifies no person."""
-        return purpose is Purpose.LOAD and duties.loads_nothing_else(order_id, waiting.post)
+        return purpose is Purpose.LOAD and missions.loads_nothing_else(order_id, waiting.post)
 
-    skill = WaitHandover(lambda: duties.codes(order_id, purpose), float(limit_s), spot_counts)
-    duties.custody.wait(waiting)
+    skill = WaitHandover(lambda: missions.codes(order_id, purpose), float(limit_s), spot_counts)
+    missions.custody.wait(waiting)
     run: Run = Unless(_one(hands, skill, now, custody), lambda: waiting.handed_over, promise)
     # The network may come back while it stands here, and others wait for what lies behind it.
     run = Meanwhile(run, hands.navigator.give_back_crossed)
-    return ThenRest(run, STANDS_FOR_HANDS_S, lambda: duties.custody.leave(waiting))
+    return ThenRest(run, STANDS_FOR_HANDS_S, lambda: missions.custody.leave(waiting))
 
 
 def _report_charge(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
     step: ChargeStep = next(step for step in get_args(ChargeStep) if step == arguments[0])
     base = hands.view.base
-    hands.duties.report_charge(step, hands.place, (base and base.battery_ratio) or 0.0)
+    hands.missions.report_charge(step, hands.place, (base and base.battery_ratio) or 0.0)
     return AtOnce()
 
 
 def _raise_fault(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
-    hands.duties.report_fault(str(arguments[0]), f"The robot met a problem: {arguments[1]}.", hands.place)
+    hands.missions.report_fault(str(arguments[0]), f"The robot met a problem: {arguments[1]}.", hands.place)
     return AtOnce()
 
 
 def _clear_fault(hands: Hands, arguments: Sequence[Value], _: float) -> Run:
-    hands.duties.report_fault(str(arguments[0]), "It is over.", hands.place, cleared=True)
+    hands.missions.report_fault(str(arguments[0]), "It is over.", hands.place, cleared=True)
     return AtOnce()
 
 

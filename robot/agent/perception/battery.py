@@ -7,7 +7,7 @@ from robot.core.config import BatterySettings
 from robot.drivers.interfaces import BaseState, ChargingState
 
 
-class BatteryWord(StrEnum):
+class BatteryLevel(StrEnum):
     """The paper's words."""
 
     LOW = "low"
@@ -22,7 +22,7 @@ _CHARGER_IS_DONE = frozenset({ChargingState.TRICKLE, ChargingState.WAITING})
 class BatterySense:
     """The word believed now. `done_since_s` is when the charger on the dock began to say that it is done."""
 
-    word: BatteryWord = BatteryWord.OK
+    word: BatteryLevel = BatteryLevel.OK
     ratio: float | None = None
     done_since_s: float | None = None
     weak: bool = False
@@ -30,7 +30,7 @@ class BatterySense:
 
     def has(self, ratio: float) -> bool:
         """So much charge, or as much as the charger gives it."""
-        return self.word is BatteryWord.FULL or (self.ratio is not None and self.ratio >= ratio)
+        return self.word is BatteryLevel.FULL or (self.ratio is not None and self.ratio >= ratio)
 
     def seen(self, base: BaseState, settings: BatterySettings, now: float) -> "BatterySense":
         """After one more frame of the base. A base that does not know its capacity yet changes nothing.
@@ -46,11 +46,11 @@ class BatterySense:
         charger_done = since_s is not None and now - since_s >= settings.full_after_s
         word = _word(self.word, ratio, charger_done, settings)
         enough = settings.start_ratio + (settings.hysteresis_ratio if self.weak else 0.0)
-        return BatterySense(word, ratio, since_s, weak=ratio < enough and word is not BatteryWord.FULL)
+        return BatterySense(word, ratio, since_s, weak=ratio < enough and word is not BatteryLevel.FULL)
 
 
-def _word(before: BatteryWord, ratio: float, charger_done: bool, settings: BatterySettings) -> BatteryWord:
+def _word(before: BatteryLevel, ratio: float, charger_done: bool, settings: BatterySettings) -> BatteryLevel:
     if ratio >= settings.full_ratio or charger_done:
-        return BatteryWord.FULL
-    until = settings.low_ratio + (settings.hysteresis_ratio if before is BatteryWord.LOW else 0.0)
-    return BatteryWord.LOW if ratio < until else BatteryWord.OK
+        return BatteryLevel.FULL
+    until = settings.low_ratio + (settings.hysteresis_ratio if before is BatteryLevel.LOW else 0.0)
+    return BatteryLevel.LOW if ratio < until else BatteryLevel.OK

@@ -8,7 +8,7 @@ from robot.skills.interfaces import View
 
 
 @dataclass(frozen=True)
-class Whereabouts:
+class MapPosition:
     """Where the robot is, in words of the map. `at` is the post it stands at; between posts it is None."""
 
     at: str | None = None
@@ -37,7 +37,7 @@ class Seen:
     at_s: float
     view: View = field(default_factory=View)
     battery: BatterySense = field(default_factory=BatterySense)
-    where: Whereabouts = Whereabouts()
+    where: MapPosition = MapPosition()
     held: Held = field(default_factory=Held)
     halting: frozenset[str] = field(default_factory=frozenset)
     """Those of the active faults that keep the wheels still until a person has seen to them."""

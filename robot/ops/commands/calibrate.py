@@ -9,7 +9,7 @@ import typer
 
 from robot.core.config import ConfigError, Settings
 from robot.core.errors import PortAbsent, PortBusy, RobotError
-from robot.core.json_socket import NobodyAnswers, ask
+from robot.core.json_socket import NoAnswer, ask
 from robot.core.line_pins import open_pins
 from robot.core.settings_file import write_settings
 from robot.drivers.create2.create2 import Create2
@@ -200,7 +200,7 @@ def _ready(config: Any, simulated: bool) -> Settings:
     settings = settings_of(config)
     if simulated:
         return settings
-    with suppress(NobodyAnswers):
+    with suppress(NoAnswer):
         ask(settings.data / SOCKET_NAME, {"do": "status"})
         refuse("The daemon is running and holds the devices: sudo systemctl stop campus-mail-robot")
     return settings

@@ -10,10 +10,10 @@ from typing import Annotated, Any
 import typer
 
 from robot.core.config import ConfigError, Settings, load_settings
-from robot.core.json_socket import NobodyAnswers, ask
+from robot.core.json_socket import NoAnswer, ask
 from robot.ops.commands.asking import UNFINISHED, ConfigOption, JsonOption, refuse, settings_path, simulated_bench
 from robot.ops.control import SOCKET_NAME
-from robot.ops.doctor.findings import Finding, Grade, Patient
+from robot.ops.doctor.findings import Finding, Grade, Subjects
 from robot.ops.doctor.table import examine
 from robot.ops.equipment import Equipment, living_equipment, real_equipment
 
@@ -43,7 +43,7 @@ def doctor(
             if equipment.robot:
                 settings = settings.model_copy(update={"serial_port": equipment.robot.port_path})
             daemon = None if simulated else _daemon(settings)
-            patient = Patient(
+            patient = Subjects(
                 settings, settings_path(config), equipment, root, daemon, PUSH_S if push else 0.0, tell=_tell
             )
             found = list(_told(patient, as_json))
@@ -56,7 +56,7 @@ def _fit(found: list[tuple[str, Finding]]) -> bool:
     return all(finding.grade is not Grade.FAIL for _, finding in found)
 
 
-def _told(patient: Patient, as_json: bool) -> Iterator[tuple[str, Finding]]:
+def _told(patient: Subjects, as_json: bool) -> Iterator[tuple[str, Finding]]:
     for name, finding in examine(patient):
         if not as_json:
             print(f"{finding.grade:5} {name:9} {finding.said}", flush=True)
@@ -76,7 +76,7 @@ def _tell(sentence: str) -> None:
 def _daemon(settings: Settings) -> dict[str, Any] | None:
     try:
         return ask(settings.data / SOCKET_NAME, {"do": "status"})
-    except NobodyAnswers:
+    except NoAnswer:
         return None
 
 

@@ -14,7 +14,7 @@ from robot.core.errors import RobotError
 from robot.core.logs import configure_logs
 from robot.ops.assembly import Simulation
 from robot.ops.commands.asking import UNFINISHED, refuse
-from robot.ops.running import Wish, clock_for, run_once
+from robot.ops.running import RunOptions, clock_for, run_once
 from robot.simulated import SimulatedWorldError
 
 DEFAULT_LIMIT_S = 7200.0
@@ -69,13 +69,13 @@ def run(  # typer reads the options from here
         "mind.program": agent,
         "mind.percepts": percepts,
     }
-    wish = Wish(tuple(tell or ()), tuple(achieve or ()), limit, as_json, speed, door)
+    options = RunOptions(tuple(tell or ()), tuple(achieve or ()), limit, as_json, speed, door)
     with ExitStack() as closing:
         try:
             settings = _settings(config, asked, simulated, battery, closing)
             configure_logs(settings.log_file)
             simulation = _simulation(settings, start, battery, seed) if simulated else None
-            done = run_once(settings, clock_for(simulated, clock, wish, settings, closing), simulation, wish)
+            done = run_once(settings, clock_for(simulated, clock, options, settings, closing), simulation, options)
         except (ConfigError, CampusMapError, BdiError, RobotError, SimulatedWorldError) as problem:
             refuse(str(problem))
     raise typer.Exit(0 if done else UNFINISHED)

@@ -5,7 +5,7 @@ from typing import Any
 
 import typer
 
-from robot.core.json_socket import NobodyAnswers, ask
+from robot.core.json_socket import NoAnswer, ask
 from robot.ops.commands.asking import OTHER_FOLDER, UNFINISHED, ConfigOption, DataOption, JsonOption, settings_of
 from robot.ops.control import SOCKET_NAME
 
@@ -17,7 +17,7 @@ def status(config: ConfigOption = None, data: DataOption = None, as_json: JsonOp
     """
     try:
         told = ask(settings_of(config, data).data / SOCKET_NAME, {"do": "status"})
-    except NobodyAnswers as error:
+    except NoAnswer as error:
         typer.echo(f"{error} {OTHER_FOLDER}", err=True)
         raise typer.Exit(UNFINISHED) from None
     print(json.dumps(told) if as_json else "\n".join(lines(told)))

@@ -6,9 +6,9 @@ import typer
 
 from robot.core.config import Settings
 from robot.core.errors import RobotError
-from robot.core.json_socket import NobodyAnswers, ask
+from robot.core.json_socket import NoAnswer, ask
 from robot.drivers.create2.last_resort import stop_base
-from robot.mission.latched_stop import FILE_NAME, StopMemory
+from robot.mission.latched_stop import FILE_NAME, LatchedStop
 from robot.ops.commands.asking import UNFINISHED, ConfigOption, DataOption, settings_of
 from robot.ops.control import SOCKET_NAME
 
@@ -44,7 +44,7 @@ def stop(config: ConfigOption = None, data: DataOption = None, port: PortOption 
 def _write_down(settings: Settings) -> None:
     """For the next start. Where there is no data folder, no robot has ever run."""
     if settings.data.is_dir():
-        memory = StopMemory(settings.data / FILE_NAME)
+        memory = LatchedStop(settings.data / FILE_NAME)
         memory.keep(memory.read() | {"emergency_stop"})
 
 
@@ -65,6 +65,6 @@ def _asked(settings: Settings, what: str) -> str | None:
     """None when it is done, else what hindered it."""
     try:
         answer = ask(settings.data / SOCKET_NAME, {"do": what})
-    except NobodyAnswers as error:
+    except NoAnswer as error:
         return str(error)
     return None if answer.get("ok") else f"The robot answered: {answer.get('error')}"

@@ -13,7 +13,7 @@ from itertools import islice
 from typing import Final, Protocol
 
 from bdi import TraceEntry
-from protocol.insight import MAX_INSIGHT_BYTES, Insight, IntentionTold, LeftOut, TraceLine
+from protocol.insight import MAX_INSIGHT_BYTES, Diagnostics, IntentionReport, LeftOut, TraceLine
 from robot.agent.mind import Mind
 from robot.ops.diagnostics.senses import sensors, timings
 from robot.ops.diagnostics.thoughts import intention_told, line_told, short
@@ -36,7 +36,7 @@ class Outlet(Protocol):
         """Return whether it is online and has sent the one before."""
         ...
 
-    def tell_insight(self, insight: Callable[[], Insight]) -> None:
+    def tell_insight(self, insight: Callable[[], Diagnostics]) -> None:
         """Sent when its turn comes; `insight` is called in the link's thread."""
         ...
 
@@ -102,7 +102,7 @@ class Insights:
         came, went, unseen = self._changes(whole)
         agent = self._mind.agent
         intentions = [intention_told(agent, one) for one in islice(agent.intentions.values(), MOST_INTENTIONS)]
-        insight = Insight(
+        insight = Diagnostics(
             number=self._number,
             at=self._utc(),
             cycle=agent.cycles,
@@ -121,7 +121,7 @@ class Insights:
         self._dropped = 0
         self._outlet.tell_insight(lambda: within_bounds(self._with_loops(insight)))
 
-    def _with_loops(self, insight: Insight) -> Insight:
+    def _with_loops(self, insight: Diagnostics) -> Diagnostics:
         """In the link's thread, and rarely: thousands of lags are sorted for it."""
         if insight.number % LOOPS_EVERY != 1:
             return insight
@@ -137,7 +137,7 @@ class Insights:
         return tuple(came), tuple(went), max(0, unseen)
 
 
-def within_bounds(insight: Insight) -> Insight:
+def within_bounds(insight: Diagnostics) -> Diagnostics:
     """The same with less in it, if it is too large: the oldest half of the trace, again; then of the intentions, of
     the beliefs. How much is left out is said."""
     while len(insight.model_dump_json().encode()) > MAX_INSIGHT_BYTES:
@@ -145,7 +145,7 @@ def within_bounds(insight: Insight) -> Insight:
     return insight
 
 
-def _with_less(insight: Insight) -> Insight:
+def _with_less(insight: Diagnostics) -> Diagnostics:
     left_out = insight.left_out
     if cut := (len(insight.trace) + 1) // 2:
         less = left_out.model_copy(update={"trace": left_out.trace + cut})
@@ -159,5 +159,5 @@ def _with_less(insight: Insight) -> Insight:
     return insight.model_copy(update={"came": came, "went": went, "left_out": less})
 
 
-def _first(intentions: tuple[IntentionTold, ...], cut: int) -> tuple[IntentionTold, ...]:
+def _first(intentions: tuple[IntentionReport, ...], cut: int) -> tuple[IntentionReport, ...]:
     return intentions[: len(intentions) - cut]

@@ -10,7 +10,7 @@ from bdi.debug.trace import CHOSEN, WOULD_APPLY, brief
 from bdi.language.syntax import BELIEF_ADDED
 from bdi.model.intentions import Intention, branches_of
 from bdi.model.intentions import Means as HeldMeans
-from protocol.insight import Because, IntentionTold, Means, NotChosen, TraceLine
+from protocol.insight import Because, IntentionReport, Means, NotChosen, TraceLine
 
 LONGEST: Final = 300
 LONGEST_SENTENCE: Final = 1000
@@ -24,10 +24,10 @@ def short(text: str, most: int = LONGEST) -> str:
     return text if len(text) <= most else text[: most - 1] + "…"
 
 
-def intention_told(agent: Agent, intention: Intention) -> IntentionTold:
+def intention_told(agent: Agent, intention: Intention) -> IntentionReport:
     """One intention as it stands now."""
     beside = tuple(one.number for one in branches_of(intention) if one is not intention)
-    return IntentionTold(
+    return IntentionReport(
         number=intention.number,
         state="suspended" if intention.suspended else intention.state.name.lower(),
         because=because(explain_intention(agent, intention)),

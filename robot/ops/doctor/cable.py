@@ -9,7 +9,7 @@ from pathlib import Path
 
 from robot.core.errors import PortBusy, RobotError
 from robot.drivers.create2.base_watch import BaseAnswer, watch_base
-from robot.ops.doctor.findings import Finding, Patient, fail, ok, skip, warn
+from robot.ops.doctor.findings import Finding, Subjects, fail, ok, skip, warn
 
 SERIAL_PINS = {"BOARD8", "BOARD10", "GPIO14", "GPIO15", "BCM14", "BCM15"}
 CONSOLES = ("console=serial0", "console=ttyS0", "console=ttyAMA0")
@@ -19,7 +19,7 @@ FEWEST_FRAMES_PER_S, MOST_CORRUPT_SHARE = 60.0, 0.01
 LOW_MV = 13_200
 
 
-def port(patient: Patient) -> Finding:
+def port(patient: Subjects) -> Finding:
     """Check whether the serial port is there, may be opened, and is not held by another process."""
     name = patient.settings.serial_port
     if "://" in name:
@@ -37,7 +37,7 @@ def port(patient: Patient) -> Finding:
     return ok(f"{name} may be opened")
 
 
-def _ports(patient: Patient) -> str:
+def _ports(patient: Subjects) -> str:
     folder = patient.root / "dev"
     found = sorted(str(path) for kind in ("ttyUSB*", "ttyACM*", "ttyAMA*") for path in folder.glob(kind))
     return ", ".join(found) or "none"
@@ -49,7 +49,7 @@ def _way_in(path: Path) -> str:
     return "Install deploy/99-campus-mail.rules, which gives it to the group dialout."
 
 
-def _holders(patient: Patient, path: Path) -> Iterator[str]:
+def _holders(patient: Subjects, path: Path) -> Iterator[str]:
     """Programs that have the device open, as far as we may look."""
     device, ourselves = path.resolve(), str(os.getpid())
     for folder in (patient.root / "proc").glob("[0-9]*"):
@@ -59,7 +59,7 @@ def _holders(patient: Patient, path: Path) -> Iterator[str]:
                 yield f"{(folder / 'comm').read_text().strip()} (process {folder.name})"
 
 
-def latency(patient: Patient) -> Finding:
+def latency(patient: Subjects) -> Finding:
     """The FTDI chip hands its bytes over every 16 ms unless told 1: longer than the base's own 15."""
     name = Path(patient.settings.serial_port).resolve().name
     told = patient.text(f"sys/bus/usb-serial/devices/{name}/latency_timer")
@@ -73,7 +73,7 @@ def latency(patient: Patient) -> Finding:
     )
 
 
-def console(patient: Patient) -> Finding:
+def console(patient: Subjects) -> Finding:
     """Two diodes of the paper's robot hang on GPIO14 and 15, where a Raspberry Pi puts its serial console."""
     if patient.equipment.simulated:
         return skip("simulated diodes hang on no pin of this computer")
@@ -90,7 +90,7 @@ def console(patient: Patient) -> Finding:
     return ok(f"no serial console on {', '.join(ours)}")
 
 
-def base(patient: Patient) -> Finding:
+def base(patient: Subjects) -> Finding:
     """Three seconds of the stream: frames, damage, mode, voltage, charge, firmware."""
     if patient.daemon is not None:
         return _from_daemon(patient.daemon)
@@ -137,7 +137,7 @@ def _from_daemon(told: dict[str, object]) -> Finding:
     return ok(f"the daemon drives it: {base_['mode']}, {battery['voltage_mv']} mV, {base_.get('frames')} frames")
 
 
-def wake_up(patient: Patient) -> Finding:
+def wake_up(patient: Subjects) -> Finding:
     """Check whether a pulse on BRC can be sent. That it arrives shows only when a sleeping base wakes."""
     if patient.daemon is not None:
         return skip("the running daemon holds the port")

@@ -12,7 +12,7 @@ from bdi import BdiError
 from maps import CampusMapError
 from robot.core.config import ConfigError
 from robot.ops.assembly import check_settings
-from robot.ops.doctor.findings import Finding, Patient, fail, ok, skip, warn
+from robot.ops.doctor.findings import Finding, Subjects, fail, ok, skip, warn
 from robot.ops.host import DISK_LOW_MB, THROTTLED_FILE
 
 NEEDED = (
@@ -51,7 +51,7 @@ THROTTLED = {
 NOW = 0b1111
 
 
-def packages(patient: Patient) -> Finding:
+def packages(patient: Subjects) -> Finding:
     """Check whether every Python package that the daemon needs can be found."""
     is_pi = "raspberry pi" in (patient.text(MODEL) or "").lower()
     needed = (*NEEDED, ON_A_PI) if is_pi and not patient.equipment.simulated else NEEDED
@@ -62,7 +62,7 @@ def packages(patient: Patient) -> Finding:
     return ok(f"all {len(needed) + len(BETTER)} there")
 
 
-def settings(patient: Patient) -> Finding:
+def settings(patient: Subjects) -> Finding:
     """Run `settings --check`, map, home dock, agent program and token file included."""
     try:
         check_settings(patient.settings)
@@ -73,7 +73,7 @@ def settings(patient: Patient) -> Finding:
     return ok(f"{patient.source}: robot {patient.settings.name} on map {patient.settings.map}")
 
 
-def disk(patient: Patient) -> Finding:
+def disk(patient: Subjects) -> Finding:
     """Room for the robot's memory, and whether what is written reaches the disk."""
     folder = patient.settings.data
     try:
@@ -92,7 +92,7 @@ def disk(patient: Patient) -> Finding:
     return warn(said, "The card is slow or worn: use another.") if sync_ms > SLOW_SYNC_MS else ok(said)
 
 
-def _sync_ms(patient: Patient) -> float:
+def _sync_ms(patient: Subjects) -> float:
     file = patient.settings.data / ".doctor"
     took_s = []
     try:
@@ -108,7 +108,7 @@ def _sync_ms(patient: Patient) -> float:
     return 1000 * median(took_s)
 
 
-def clock(patient: Patient) -> Finding:
+def clock(patient: Subjects) -> Finding:
     """Codes expire and records are dated: the time of day must be right. A Pi has no clock that runs without power."""
     if (patient.root / "run/systemd/timesync/synchronized").exists():
         return ok("synchronised")
@@ -121,7 +121,7 @@ def clock(patient: Patient) -> Finding:
     return warn("nobody here says whether the clock is synchronised", way_out)
 
 
-def supply(patient: Patient) -> Finding:
+def supply(patient: Subjects) -> Finding:
     """Voltage and heat of the computer, now and since its start."""
     bits = _throttled(patient)
     if bits is None:
@@ -133,7 +133,7 @@ def supply(patient: Patient) -> Finding:
     return warn(said, way_out) if said else ok("never too little voltage, never too hot")
 
 
-def _throttled(patient: Patient) -> int | None:
+def _throttled(patient: Subjects) -> int | None:
     told = patient.text(str(THROTTLED_FILE.relative_to("/")))
     if told is None:
         answer = _asked(patient, "vcgencmd", "get_throttled")
@@ -143,7 +143,7 @@ def _throttled(patient: Patient) -> int | None:
     return None
 
 
-def _asked(patient: Patient, *command: str) -> str | None:
+def _asked(patient: Subjects, *command: str) -> str | None:
     """Return what a program of this system prints; None where there is none, or where the system is a made-up one."""
     if patient.root.resolve().parent != patient.root.resolve():
         return None

@@ -45,7 +45,7 @@ def skip(said: str) -> Finding:
 
 
 @dataclass(frozen=True)
-class Patient:
+class Subjects:
     """The subjects of the checks."""
 
     settings: Settings
@@ -73,4 +73,4 @@ class Patient:
         return None
 
 
-Look = Callable[[Patient], Finding]
+Look = Callable[[Subjects], Finding]

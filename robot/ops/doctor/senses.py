@@ -10,7 +10,7 @@ from robot.core.errors import RobotError
 from robot.core.line_pins import PIN_NAMES, PinWatch, open_pins
 from robot.drivers.camera.qr_decoders import best_decoder
 from robot.drivers.interfaces import Camera, Frame
-from robot.ops.doctor.findings import Finding, Patient, fail, ok, skip, warn
+from robot.ops.doctor.findings import Finding, Subjects, fail, ok, skip, warn
 
 LOOK_S = 1.0
 FEWEST_CHANGES = 2
@@ -21,7 +21,7 @@ FEWEST_FPS = 8.0
 DARK, BRIGHT = 25.0, 235.0
 
 
-def pins(patient: Patient) -> Finding:
+def pins(patient: Subjects) -> Finding:
     """Check whether the diodes can be read; with --push, whether each sees the tape come and go."""
     if patient.daemon is not None:
         return skip("the running daemon holds the pins")
@@ -46,7 +46,7 @@ def _standing(watch: PinWatch) -> Finding:
     return ok(f"{said}; with --push somebody can push the robot over the tape")
 
 
-def _pushed(patient: Patient, watch: PinWatch) -> Finding:
+def _pushed(patient: Subjects, watch: PinWatch) -> Finding:
     if not patient.equipment.simulated:
         patient.tell(f"Push the robot over the tape and back, to and fro, for {patient.push_s:g} s.")
     with patient.equipment.pushed():
@@ -60,7 +60,7 @@ def _pushed(patient: Patient, watch: PinWatch) -> Finding:
     return ok(said)
 
 
-def camera(patient: Patient) -> Finding:
+def camera(patient: Subjects) -> Finding:
     """Check whether it opens, delivers, sees enough light, and reads a marker that is before it."""
     if patient.daemon is not None:
         return skip("the running daemon holds the camera")
@@ -88,7 +88,7 @@ def _frames(device: Camera, patience: float) -> Iterator[tuple[float, Frame]]:
         time.sleep(0.01)
 
 
-def _judged(patient: Patient, frames: list[tuple[float, Frame]]) -> Finding:
+def _judged(patient: Subjects, frames: list[tuple[float, Frame]]) -> Finding:
     if len(frames) < 2:
         return fail("it opens, but delivers no pictures", "Check its cable; is another program using it?")
     rate = (len(frames) - 1) / (frames[-1][0] - frames[0][0])
@@ -109,5 +109,5 @@ def _judged(patient: Patient, frames: list[tuple[float, Frame]]) -> Finding:
     return ok(said)
 
 
-def _seen(patient: Patient, texts: set[str]) -> str:
+def _seen(patient: Subjects, texts: set[str]) -> str:
     return f"reads {', '.join(sorted(texts))}" if texts else "no marker before it (hold one 0.3 m off to see it read)"

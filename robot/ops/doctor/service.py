@@ -9,7 +9,7 @@ from websockets.sync.client import connect
 from maps import CampusMapError, find_map
 from robot.core.config import ConfigError, read_token
 from robot.link.enrolment import trusted
-from robot.ops.doctor.findings import Finding, Patient, fail, ok, skip, warn
+from robot.ops.doctor.findings import Finding, Subjects, fail, ok, skip, warn
 
 LIMIT_S = 5.0
 REFUSAL_WITHIN_S = 1.0
@@ -19,7 +19,7 @@ NEW_TOKEN = "Enrol again: `python -m app robots enrol NAME` at the service, `pyt
 NO_WAY = "Check the network, the address and the certificate; the robot drives within its grants meanwhile."
 
 
-def token(patient: Patient) -> Finding:
+def token(patient: Subjects) -> Finding:
     """Check that the service lets this robot in. We never say hello: that would take the place of a running daemon."""
     url = patient.settings.server
     if url is None:
@@ -54,7 +54,7 @@ def asked(url: str, secret: str) -> Finding:
     return ok(f"{url} takes this robot's token")
 
 
-def map_version(patient: Patient) -> Finding:
+def map_version(patient: Subjects) -> Finding:
     """Check whether robot and service mean the same map: another could send the robot into a wall."""
     url = patient.settings.server
     if url is None:

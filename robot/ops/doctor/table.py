@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from robot.ops.doctor import cable, computer, senses, service
-from robot.ops.doctor.findings import Finding, Look, Patient, fail
+from robot.ops.doctor.findings import Finding, Look, Subjects, fail
 
 CHECKS: tuple[tuple[str, Look], ...] = (
     ("packages", computer.packages),
@@ -23,7 +23,7 @@ CHECKS: tuple[tuple[str, Look], ...] = (
 )
 
 
-def examine(patient: Patient) -> Iterator[tuple[str, Finding]]:
+def examine(patient: Subjects) -> Iterator[tuple[str, Finding]]:
     """One finding for each check; a check that breaks is a finding too, and the others are made."""
     for name, look in CHECKS:
         try:

@@ -3,7 +3,7 @@
 A claim is granted as a whole when none of the posts it touches, nor any on the shortest way from its end to the robot's
 own dock, is reserved by another robot; all of these posts are then reserved for this one until it stands in a dock
 with no corridor left. So every robot that is out has a free way home, no corridor ever holds two, and no two robots
-wait for each other. It costs throughput: the fleet's timetable (another part of the project) does better.
+wait for each other. It costs throughput: the fleet's schedule (another part of the project) does better.
 """
 
 from collections.abc import Iterable

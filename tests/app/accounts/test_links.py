@@ -174,7 +174,7 @@ def test_whether_a_person_needs_a_link_is_one_question(
 
 async def _person(app: FastAPI, email: str) -> Person:
     async with app.state.parts.database.transaction() as session:
-        person: Person = await app.state.parts.sign_in_desk.person(session, email, app.state.parts.clock.utc())
+        person: Person = await app.state.parts.sign_in_service.person(session, email, app.state.parts.clock.utc())
         return person
 
 

@@ -1,4 +1,4 @@
-"""A fleet that lives: orders come, decisions are made, and a small world carries the timetables out, late as ever."""
+"""A fleet that lives: orders come, decisions are made, and a small world carries the schedules out, late as ever."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
@@ -10,7 +10,7 @@ from fleet.assignment.scene import Kept, OpenOrder, RobotAtWork, Route, Rules, S
 from fleet.schedule.execution import retimed
 from fleet.schedule.journey import Goal, Start, Task
 from fleet.schedule.network import Network
-from fleet.schedule.planning import Timetable, first_plan
+from fleet.schedule.planning import Schedule, first_plan
 from fleet.schedule.validation import problems
 from tests.fleet.schedule.carried_out import World
 
@@ -43,13 +43,13 @@ class Life:
     given_s: dict[str, float] = field(default_factory=dict)
     routes: dict[str, Route] = field(default_factory=dict)
     world: World = field(init=False)
-    timetable: Timetable = field(init=False)
+    schedule: Schedule = field(init=False)
 
     def __post_init__(self) -> None:
         tasks = {f"r{n}": Task(Start(home, True, 0.0, 0.0), (), home) for n, home in enumerate(self.homes)}
         found = first_plan(self.network, tasks, Random(0))
         assert found is not None
-        self.timetable = found
+        self.schedule = found
         self.world = World(self.network, tasks, dict(found.journeys), self.rng, slowness=1.5)
         self.routes = dict.fromkeys(tasks, ())
 
@@ -65,9 +65,9 @@ class Life:
         robots = {
             name: RobotAtWork(task.start, task.home, self.capacity, self.routes[name]) for name, task in tasks.items()
         }
-        timetable = Timetable(kept, cost_s, self.timetable.order)
+        schedule = Schedule(kept, cost_s, self.schedule.order)
         goals = {name: task.goals for name, task in tasks.items()}
-        return Scene(now_s, self.network, robots, dict(self.waiting), Kept(goals, timetable), self.rules)
+        return Scene(now_s, self.network, robots, dict(self.waiting), Kept(goals, schedule), self.rules)
 
     def decide(self) -> Decision:
         scene = self.scene()
@@ -77,13 +77,13 @@ class Life:
         for one in (first, best):
             self.check(one)
         assert best.cost_s <= first.cost_s
-        self.timetable, self.routes = best.timed.timetable, dict(best.routes)
-        self.world.tasks, self.world.journeys = dict(best.timed.tasks), dict(best.timed.timetable.journeys)
+        self.schedule, self.routes = best.timed.schedule, dict(best.routes)
+        self.world.tasks, self.world.journeys = dict(best.timed.tasks), dict(best.timed.schedule.journeys)
         return best
 
     def check(self, one: Decision) -> None:
         assert not one.timed.refused
-        assert problems(self.network, one.timed.tasks, one.timed.timetable.journeys) == []
+        assert problems(self.network, one.timed.tasks, one.timed.schedule.journeys) == []
         assert all(one.robot_of()[choice.order] == choice.robot for choice in one.choices)
         placed = [stop.order for route in one.routes.values() for stop in route if stop.change > 0]
         assert len(placed) == len(set(placed)), "an order is with two robots"

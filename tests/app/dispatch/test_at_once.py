@@ -47,7 +47,7 @@ async def test_a_corridor_is_granted_as_it_is_asked_for_unless_it_is_closed(
 ) -> None:
     robot, state = PlayedRobot(clock), service.app.state.parts
     async with state.database.transaction() as session:
-        person = await state.sign_in_desk.person(session, "dan@campus.example", state.clock.utc())
+        person = await state.sign_in_service.person(session, "dan@campus.example", state.clock.utc())
         await close(session, state.fleet, "post2-post3", "The floor is wet.", person)
     async with robot.connected(service.url, await service.enrol("r1")):
         await robot.greet("post1")

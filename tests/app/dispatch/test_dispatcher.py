@@ -73,7 +73,7 @@ async def test_many_orders_of_one_moment_all_get_a_robot_and_no_sender_is_told_t
                 session.add(row)
         await state.fleet.learning.look()
         async with state.database.transaction() as session:
-            sender = await state.sign_in_desk.person(session, "sender@campus.example", clock.utc())
+            sender = await state.sign_in_service.person(session, "sender@campus.example", clock.utc())
             for _ in range(number):
                 wish = NewOrder(from_post="post1", to_post="post4", recipient="recipient@campus.example")
                 await placed(state.orders, session, sender, wish)

@@ -1,4 +1,4 @@
-"""Estimates of orders that a robot has: where the timetable has it there, renewed with each step, and never over."""
+"""Estimates of orders that a robot has: where the schedule has it there, renewed with each step, and never over."""
 
 from collections.abc import AsyncIterator
 from datetime import UTC, datetime, timedelta
@@ -68,8 +68,8 @@ async def given(service: Service, robot: PlayedRobot) -> tuple[str, Mission]:
     await service.reaches(order_id, "assigned")
 
     async def is_planned() -> bool:
-        desk = service.app.state.parts.traffic_desk
-        return desk.timetable is not None and len(desk.timetable.controller.goals("r1")) == 2
+        desk = service.app.state.parts.traffic_service
+        return desk.schedule is not None and len(desk.schedule.controller.goals("r1")) == 2
 
     await until(is_planned)
     await until(lambda: is_not_over(service, order_id, robot.clock))
@@ -173,7 +173,7 @@ async def view(service: Service, order_id: str) -> dict[str, Any]:
         return (await state.orders.view(session, sender, order_id)).model_dump(mode="json", by_alias=True)
 
 
-def test_the_timetable_counts_with_what_corridors_take_and_with_their_lengths_until_that_is_known() -> None:
+def test_the_schedule_counts_with_what_corridors_take_and_with_their_lengths_until_that_is_known() -> None:
     settings, campus = Settings(), builtin_map("test_track")
     estimates = Estimates(Ways(campus), settings.assumed_speed_m_s, settings.assumed_handover_s)
     assert network_for(campus, settings, estimates).lanes == network_for(campus, settings).lanes

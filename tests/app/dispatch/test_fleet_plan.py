@@ -14,7 +14,7 @@ from fleet.schedule.network import Lane, Network
 from fleet.schedule.planning import first_plan
 from fleet.schedule.validation import problems
 from tests.app.dispatch.fleet_life import Life, order, rounds
-from tests.fleet.schedule.test_timetables import random_network
+from tests.fleet.schedule.test_schedules import random_network
 
 
 def street(posts: int, travel_s: float = 100.0, bays: int = 2) -> Network:
@@ -38,11 +38,11 @@ def scene_of(
     now_s: float = 0.0,
     rules: Rules | None = None,
 ) -> Scene:
-    """With the timetable of what the robots have so far."""
+    """With the schedule of what the robots have so far."""
     tasks = {name: one.task(one.route) for name, one in robots.items()}
-    timetable = first_plan(network, tasks, Random(0))
-    assert timetable is not None
-    kept = Kept({name: task.goals for name, task in tasks.items()}, timetable)
+    schedule = first_plan(network, tasks, Random(0))
+    assert schedule is not None
+    kept = Kept({name: task.goals for name, task in tasks.items()}, schedule)
     return Scene(now_s, network, robots, {one.id: one for one in orders}, kept, rules or Rules())
 
 
@@ -88,7 +88,7 @@ def test_no_stop_that_has_begun_is_moved_and_no_mail_changes_robots_in_a_corrido
         name: replace(one, route=before.routes[name], begun=rng.randint(0, len(before.routes[name])))
         for name, one in scene.robots.items()
     }
-    kept = Kept({name: task.goals for name, task in before.timed.tasks.items()}, before.timed.timetable)
+    kept = Kept({name: task.goals for name, task in before.timed.tasks.items()}, before.timed.schedule)
     more = [order(number, *rng.sample(posts, 2), since_s=-9 * 3600.0 * rng.random()) for number in range(10, 15)]
     again = replace(scene, robots=begun, kept=kept, orders={one.id: one for one in (*first, *more)})
     after = improved(decided(again), rng, rounds(20))
@@ -142,8 +142,8 @@ def test_an_overdue_order_is_never_given_later_than_it_was_to_be() -> None:
         after = improved(first, rng, rounds(15))
         for late in orders[:2]:
             name = first.robot_of()[late.id]
-            done_s = first.timed.timetable.journeys[name].done_s
-            assert after.timed.timetable.journeys[after.robot_of()[late.id]].done_s <= done_s + 0.01
+            done_s = first.timed.schedule.journeys[name].done_s
+            assert after.timed.schedule.journeys[after.robot_of()[late.id]].done_s <= done_s + 0.01
 
 
 def test_robots_that_people_want_are_waited_for_and_avoided_ones_do_not_come() -> None:
@@ -177,7 +177,7 @@ def test_an_order_for_later_is_left_until_its_time_and_then_not_fetched_too_earl
     assert decided(scene_of(street(3), robots, [later])).robot_of() == {}
     soon = decided(scene_of(street(3), robots, [later], now_s=4500.0))
     assert soon.robot_of() == {later.id: "r0"}
-    assert soon.timed.timetable.journeys["r0"].done_s >= 5000.0 + 10.0 + 100.0 + 10.0
+    assert soon.timed.schedule.journeys["r0"].done_s >= 5000.0 + 10.0 + 100.0 + 10.0
 
 
 def test_a_robot_gets_only_what_its_charge_lasts_for() -> None:
@@ -222,15 +222,15 @@ def test_where_no_way_leads_no_robot_is_sent_and_everything_else_goes_on() -> No
     aboard, unreached, plain = replace(order(0, 0, 3), loaded=True), order(1, 0, 3), order(2, 0, 1)
     robots = {"r0": robot(0, capacity=2, route=(aboard.stops[1], *unreached.stops))}
     tasks = {"r0": robots["r0"].task(())}
-    timetable = first_plan(network, tasks, Random(0))
-    assert timetable is not None
+    schedule = first_plan(network, tasks, Random(0))
+    assert schedule is not None
     orders = {one.id: one for one in (aboard, unreached, plain)}
-    after = decided(Scene(0.0, network, robots, orders, Kept({"r0": ()}, timetable)))
+    after = decided(Scene(0.0, network, robots, orders, Kept({"r0": ()}, schedule)))
     assert after.robot_of() == {plain.id: "r0"}
     assert [stop.order for stop in after.cut_off["r0"]] == [aboard.id]
 
 
-def test_with_nothing_kept_a_timetable_is_made_anew() -> None:
+def test_with_nothing_kept_a_schedule_is_made_anew() -> None:
     scene = replace(scene_of(street(3), {"r0": robot(0), "r1": robot(2)}, [order(0, 0, 2)]), kept=None)
     assert decided(scene).robot_of() == {"o000": "r0"}
 
@@ -246,5 +246,5 @@ def test_improving_ends_before_its_time_is_over_and_what_was_found_until_then_ho
     in_time = within(0.1, lambda: next(ticks_s))
     after = improved(first, rng, lambda: True, in_time)
     assert 0.09 < next(ticks_s) <= 0.1, "asked again and again, until the first no"
-    assert problems(network, after.timed.tasks, after.timed.timetable.journeys) == []
+    assert problems(network, after.timed.tasks, after.timed.schedule.journeys) == []
     assert after.cost_s <= first.cost_s

@@ -7,7 +7,7 @@ from fleet.assignment.adopting import Able, adopt, scene_of
 from fleet.assignment.scene import OpenOrder
 from fleet.schedule.controller import Denied, Granted, TrafficController
 from fleet.schedule.journey import Goal
-from fleet.schedule.planning import Timetable, first_plan
+from fleet.schedule.planning import Schedule, first_plan
 from fleet.schedule.validation import problems
 from tests.app.dispatch.fleet_life import order
 from tests.app.dispatch.test_fleet_plan import decided, street
@@ -65,7 +65,7 @@ def test_what_a_robot_does_for_reasons_of_its_own_stays_and_so_does_what_no_way_
 
 
 def test_an_order_that_cannot_be_given_at_the_moment_is_kept_whole() -> None:
-    """A dead robot has the only bay where the mail goes: that stop is in no timetable, and is not forgotten."""
+    """A dead robot has the only bay where the mail goes: that stop is in no schedule, and is not forgotten."""
     traffic, one, able = TrafficController(street(4, bays=1)), order(0, 1, 2), {"r0": Able()}
     traffic.joins("r0", post="p0", home="p0", at_home=True, now_s=0.0)
     traffic.give("r0", (one.load, one.give), 0.0)
@@ -87,7 +87,7 @@ def test_a_decision_that_has_come_too_late_changes_nothing() -> None:
     assert traffic.goals("r0") == ()
 
 
-def test_a_timetable_is_looked_at_again_before_it_counts() -> None:
+def test_a_schedule_is_checked_again_before_it_counts() -> None:
     """Between the decision and its coming true a way has been closed, so that it would lead through it."""
     traffic, one = traffic_on(4), order(0, 1, 2)
     decision = decided(scene_of(traffic, ABLE, {one.id: one}, 0.0))
@@ -116,6 +116,6 @@ def test_two_that_were_each_planned_alone_are_not_let_into_each_others_bays() ->
     goals = {name: (one.load, one.give) for name, one in orders.items()}
     both = {name: replace(task, goals=goals[name]) for name, task in tasks.items()}
     assert problems(traffic.network, both, journeys)
-    assert not traffic.adopt(goals, Timetable(journeys, 0.0, ("r0", "r1")), 0.0)
+    assert not traffic.adopt(goals, Schedule(journeys, 0.0, ("r0", "r1")), 0.0)
     assert traffic.goals("r0") == traffic.goals("r1") == ()
     assert problems(traffic.network, traffic.tasks(0.0), traffic.journeys(0.0)) == []

@@ -12,7 +12,7 @@ from fleet.assignment.scene import OpenOrder
 from fleet.schedule.controller import TrafficController
 from fleet.schedule.validation import problems
 from tests.app.dispatch.fleet_life import order
-from tests.fleet.schedule.test_timetables import random_network
+from tests.fleet.schedule.test_schedules import random_network
 
 
 @dataclass

@@ -1,4 +1,4 @@
-"""Promises are kept: a timetable that does not hold is never carried out, and small gains change nothing."""
+"""Promises are kept: a schedule that does not hold is never carried out, and small gains change nothing."""
 
 from dataclasses import replace
 from random import Random
@@ -13,7 +13,7 @@ from fleet.schedule.network import Lane, Network
 from fleet.schedule.validation import problems
 from tests.app.dispatch.fleet_life import order, rounds
 from tests.app.dispatch.test_fleet_plan import decided, robot, scene_of, street
-from tests.fleet.schedule.test_timetables import random_network
+from tests.fleet.schedule.test_schedules import random_network
 
 
 def ring(posts: int) -> Network:
@@ -25,7 +25,7 @@ def ring(posts: int) -> Network:
     return Network(names, (2,) * posts, names, lanes)
 
 
-def test_a_kept_timetable_through_a_closed_corridor_is_not_carried_out() -> None:
+def test_a_kept_schedule_through_a_closed_corridor_is_not_carried_out() -> None:
     """The planner is not notified that it is void; it checks."""
     had, new = order(0, 1, 2), order(1, 4, 5)
     robots = {"r0": robot(0, route=had.stops), "r1": robot(4)}
@@ -34,9 +34,9 @@ def test_a_kept_timetable_through_a_closed_corridor_is_not_carried_out() -> None
         closed = replace(scene, network=scene.network.without({"p1"}))
         kept = scene.kept
         assert kept is not None
-        assert problems(closed.network, {"r0": robots["r0"].task(had.stops)}, {"r0": kept.timetable.journeys["r0"]})
+        assert problems(closed.network, {"r0": robots["r0"].task(had.stops)}, {"r0": kept.schedule.journeys["r0"]})
         for after in (decided(closed), improved(decided(closed), Random(1), rounds(5))):
-            assert problems(closed.network, after.timed.tasks, after.timed.timetable.journeys) == []
+            assert problems(closed.network, after.timed.tasks, after.timed.schedule.journeys) == []
             assert after.robot_of().keys() == {one.id for one in orders}
 
 
@@ -49,13 +49,13 @@ def test_what_is_overdue_is_given_no_later_because_of_what_is_new(rng: Random, r
     first = [order(n, *rng.sample(posts, 2), since_s=-7 * 3600.0 if n % 2 else 0.0) for n in range(robots)]
     scene = scene_of(network, {f"r{n}": robot(rng.choice(posts), capacity=capacity) for n in range(robots)}, first)
     before = decided(scene)
-    promised_s = overdue_s(scene, before.timed.tasks, before.timed.timetable)
-    kept = Kept({name: task.goals for name, task in before.timed.tasks.items()}, before.timed.timetable)
+    promised_s = overdue_s(scene, before.timed.tasks, before.timed.schedule)
+    kept = Kept({name: task.goals for name, task in before.timed.tasks.items()}, before.timed.schedule)
     there = {name: replace(one, route=before.routes[name]) for name, one in scene.robots.items()}
     more = [*first, *(order(number, *rng.sample(posts, 2)) for number in range(10, 10 + robots * capacity))]
     again = Scene(0.0, network, there, {one.id: one for one in more}, kept)
     after = decided(again)
-    now_s = overdue_s(again, after.timed.tasks, after.timed.timetable)
+    now_s = overdue_s(again, after.timed.tasks, after.timed.schedule)
     assert promised_s.keys() <= now_s.keys()
     assert all(now_s[name] <= at_s + 0.01 for name, at_s in promised_s.items())
 

@@ -14,7 +14,7 @@ from fleet.assignment.routes import NO_FIT, Fit, leaves_s, line, orders_of, with
 from fleet.assignment.scene import OpenOrder, Route, Scene, Stop
 from tests.app.dispatch.fleet_life import order
 from tests.app.dispatch.test_fleet_plan import decided, robot, scene_of, street
-from tests.fleet.schedule.test_timetables import random_network
+from tests.fleet.schedule.test_schedules import random_network
 
 
 def test_the_order_that_would_lose_most_is_given_first() -> None:

@@ -43,8 +43,8 @@ async def robots(service: Service, clock: SteppedClock) -> AsyncIterator[tuple[P
 
 
 async def _are_known(service: Service, number: int) -> bool:
-    timetable = service.app.state.parts.traffic_desk.timetable
-    return timetable is not None and len(timetable.known) == number
+    schedule = service.app.state.parts.traffic_service.schedule
+    return schedule is not None and len(schedule.known) == number
 
 
 async def has_robot(service: Service, order_id: str) -> str:
@@ -72,8 +72,8 @@ async def change(service: Service, order_id: str, **values: object) -> None:
 
 
 async def goals(service: Service, robot: str) -> list[str]:
-    timetable = service.app.state.parts.traffic_desk.timetable
-    return [] if timetable is None else [goal.key for goal in timetable.controller.goals(robot)]
+    schedule = service.app.state.parts.traffic_service.schedule
+    return [] if schedule is None else [goal.key for goal in schedule.controller.goals(robot)]
 
 
 async def test_orders_of_one_moment_are_spread_over_the_robots_near_them(
@@ -118,14 +118,14 @@ async def test_more_than_they_can_carry_waits_and_the_important_goes_first(
     assert (await service.row(Order, id=waiting)).state == "queued"
 
 
-async def test_what_is_given_and_not_in_the_timetable_yet_takes_a_place(
+async def test_what_is_given_and_not_in_the_schedule_yet_takes_a_place(
     service: Service, robots: tuple[PlayedRobot, PlayedRobot]
 ) -> None:
     state = service.app.state.parts
     given = await service.order("post1", "post2")
     await robots[0].mission()
     assert len(await until(lambda: goals(service, "r1"))) == 2
-    work, controller = await state.planner._look(), state.traffic_desk.timetable.controller
+    work, controller = await state.planner._look(), state.traffic_service.schedule.controller
     controller.give("r1", (), state.clock.now())
     scene = state.planner._scenes.of(work, controller, state.clock.utc(), state.clock.now())
     assert given not in scene.orders
@@ -145,7 +145,7 @@ async def test_an_order_left_for_later_is_not_fetched_before(
 ) -> None:
     state = service.app.state.parts
     async with state.database.transaction() as session:
-        sender = await state.sign_in_desk.person(session, "sender@campus.example", clock.utc())
+        sender = await state.sign_in_service.person(session, "sender@campus.example", clock.utc())
         in_an_hour = clock.utc() + timedelta(hours=1)
         wish = NewOrder(from_post="post1", to_post="post2", recipient="recipient@campus.example", not_before=in_an_hour)
         later = await placed(state.orders, session, sender, wish)
@@ -202,7 +202,7 @@ async def test_what_was_decided_on_a_world_that_has_changed_is_not_written(
     await until(lambda: _all_have_robots(service))
     planner = state.planner
     work = await planner._look()
-    decision = planner._decide(work, state.traffic_desk.timetable)
+    decision = planner._decide(work, state.traffic_service.schedule)
     assert decision is not None
     turned = {name: tuple(reversed(route)) for name, route in decision.routes.items()}
     changes = changes_of(work, _with_routes(decision, turned))
@@ -223,7 +223,7 @@ async def test_no_mail_is_given_before_it_is_loaded_when_no_way_leads_to_where_i
     await until(lambda: _all_have_robots(service))
     planner = state.planner
     work = await planner._look()
-    decision = planner._decide(work, state.traffic_desk.timetable)
+    decision = planner._decide(work, state.traffic_service.schedule)
     assert decision is not None
     (name,) = {stop.robot for stop in work.of_orders[order_id]}
     load, give = work.of_orders[order_id]

@@ -169,5 +169,5 @@ def test_those_who_look_after_robots_see_how_good_it_is_and_so_does_prometheus(
 
 async def make_dispatcher(app: FastAPI) -> None:
     async with app.state.parts.database.transaction() as session:
-        person = await app.state.parts.sign_in_desk.person(session, SENDER, app.state.parts.clock.utc())
+        person = await app.state.parts.sign_in_service.person(session, SENDER, app.state.parts.clock.utc())
         set_roles(person, {Role.DISPATCHER}, set())

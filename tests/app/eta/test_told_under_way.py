@@ -23,7 +23,7 @@ async def rows(service: Service) -> list[ForecastUnderWayRow]:
 
 async def kept(service: Service, number: int) -> list[ForecastUnderWayRow]:
     async def are_there() -> bool:
-        service.app.state.parts.foreseen.wake()
+        service.app.state.parts.eta_updates.wake()
         return len(await rows(service)) == number
 
     await until(are_there)
@@ -75,7 +75,7 @@ async def test_what_is_told_first_and_after_loading_is_kept_scored_and_learned_f
 async def test_a_forecast_is_put_right_by_what_came_of_earlier_ones(
     service: Service, clock: SteppedClock, robot: PlayedRobot
 ) -> None:
-    """Robots always came later than the timetable had it, by four of the widths that it gave."""
+    """Robots always came later than the schedule had it, by four of the widths that it gave."""
     estimates = service.app.state.parts.estimates
     teach(estimates, clock.utc())
     for _ in range(200):

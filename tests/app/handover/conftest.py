@@ -41,7 +41,7 @@ class Campus:
         """A person of the campus, signed in."""
         state = self.service.app.state.parts
         async with state.database.transaction() as session:
-            person = await state.sign_in_desk.person(session, f"{name}@campus.example", state.clock.utc())
+            person = await state.sign_in_service.person(session, f"{name}@campus.example", state.clock.utc())
             set_roles(person, set(roles), set())
             row, cookie = new_session(person, "", 3600, state.clock.utc())
             session.add(row)

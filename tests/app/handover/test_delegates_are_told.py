@@ -8,7 +8,7 @@ import pytest
 from fastapi.testclient import TestClient
 
 from app.core.settings import Settings
-from app.models import Notice, NoticeKind, RobotRow
+from app.models import Notification, NotificationKind, RobotRow
 from app.orders.custody.codes import code_png
 from tests.app.conftest import RECIPIENT, SENDER, Browser, Mailroom, Mails, SignedIn
 
@@ -138,8 +138,8 @@ def test_a_code_that_is_taken_back_before_its_mail_is_out_is_not_mailed(
     mail = next(channel for channel in mailroom.app.state.parts.outbox_worker.channels if channel.name == "mail")
     whole = mail.code_picture
 
-    def fails_at_first(notice: Notice) -> Any:
-        if notice.kind is not NoticeKind.DELEGATED:
+    def fails_at_first(notice: Notification) -> Any:
+        if notice.kind is not NotificationKind.DELEGATED:
             return whole(notice)
         mail.code_picture = whole
         raise OSError("no picture just now")
@@ -183,7 +183,7 @@ def test_a_delegate_with_an_account_has_it_in_their_inbox_in_their_language_and_
     assert mail["Subject"] == "On vous a désigné·e pour un envoi de Sender"
     (notice,) = porter.get("/api/v1/notices").json()["items"]
     assert (notice["kind"], notice["title"]) == ("delegated", mail["Subject"])
-    porter.put("/api/v1/me/notices", json={"muted": {"mail": [NoticeKind.DELEGATED]}})
+    porter.put("/api/v1/me/notices", json={"muted": {"mail": [NotificationKind.DELEGATED]}})
     name(sender, order_id)
     mailroom.send_mails()
     assert len(about_mail(mails)) == 1

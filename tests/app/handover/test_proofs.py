@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from app.models import Alarm, Handover, Notice, RefusedReceipt, RobotRow, Role
+from app.models import Alarm, Handover, Notification, RefusedReceipt, RobotRow, Role
 from app.robots.service import new_token
 from protocol.clock import SteppedClock
 from protocol.envelope import YOUNGER
@@ -63,7 +63,7 @@ async def links(campus: Campus, who: str = "sender") -> list[dict[str, Any]]:
 
 
 async def told(campus: Campus) -> set[str]:
-    return {str(one.kind) for one in await campus.service.rows(Notice, order_id=campus.order_id)}
+    return {str(one.kind) for one in await campus.service.rows(Notification, order_id=campus.order_id)}
 
 
 async def is_claimed(campus: Campus, problem: str) -> None:

@@ -10,9 +10,9 @@ from fastapi import FastAPI
 from sqlmodel import col, select
 
 from app.composition import create_app
-from app.core.http_client import Outside
+from app.core.http_client import HttpClient
 from app.core.settings import Settings
-from app.models import OrderState, OutgoingNotice, Person, RobotRow
+from app.models import OrderState, OutgoingNotification, Person, RobotRow
 from app.orders.service import Actor
 from app.orders.transitions import By
 from app.orders.views.schemas import NewOrder
@@ -34,7 +34,7 @@ class Office:
 
     async def person(self, email: str, **known: Any) -> Person:
         async with self.state.database.transaction() as session:
-            person: Person = await self.state.sign_in_desk.person(session, email, self.clock.utc())
+            person: Person = await self.state.sign_in_service.person(session, email, self.clock.utc())
             for name, value in known.items():
                 setattr(person, name, value)
             return person
@@ -66,19 +66,25 @@ class Office:
             while await self.state.outbox_worker.has_work():  # noqa: ASYNC110  # the worker rings no bell of ours
                 await asyncio.sleep(0.01)
 
-    async def sendings(self, channel: str) -> list[OutgoingNotice]:
+    async def sendings(self, channel: str) -> list[OutgoingNotification]:
         async with self.state.database.reading() as session:
-            rows = select(OutgoingNotice).where(OutgoingNotice.channel == channel).order_by(col(OutgoingNotice.id))
+            rows = (
+                select(OutgoingNotification)
+                .where(OutgoingNotification.channel == channel)
+                .order_by(col(OutgoingNotification.id))
+            )
             return list((await session.exec(rows)).all())
 
-    async def sending(self, channel: str) -> OutgoingNotice:
+    async def sending(self, channel: str) -> OutgoingNotification:
         (one,) = await self.sendings(channel)
         return one
 
 
 @asynccontextmanager
-async def running(settings: Settings, clock: SteppedClock, outside: Outside | None = None) -> AsyncIterator[Office]:
+async def running(
+    settings: Settings, clock: SteppedClock, http_client: HttpClient | None = None
+) -> AsyncIterator[Office]:
     """From start to stop; again with the same settings, it is a restart."""
-    app = create_app(settings, clock, outside)
+    app = create_app(settings, clock, http_client)
     async with app.router.lifespan_context(app):
         yield Office(app, clock)

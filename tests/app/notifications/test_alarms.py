@@ -3,7 +3,7 @@
 from sqlmodel import col, select
 
 from app.core.settings import Settings
-from app.models import Alarm, Notice, NoticeKind, NoticeWishes, RobotRow, Role
+from app.models import Alarm, Notification, NotificationKind, NotificationPreferences, RobotRow, Role
 from app.notifications.service import tell_dispatchers
 from app.robots.alarms import clear_alarms, raise_alarm
 from protocol.clock import SteppedClock
@@ -23,8 +23,8 @@ async def rings(office: Office, reason: str = "the base does not answer") -> Non
 
 async def told(office: Office) -> list[tuple[str, str]]:
     async with office.state.database.reading() as session:
-        notices = (await session.exec(select(Notice).order_by(col(Notice.id)))).all()
-        return [(one.person_id, one.facts["reason"]) for one in notices if one.kind is NoticeKind.ALARM]
+        notices = (await session.exec(select(Notification).order_by(col(Notification.id)))).all()
+        return [(one.person_id, one.facts["reason"]) for one in notices if one.kind is NotificationKind.ALARM]
 
 
 async def test_an_alarm_is_told_to_every_dispatcher_once_while_it_lasts(
@@ -52,7 +52,7 @@ async def test_an_alarm_is_told_to_every_dispatcher_once_while_it_lasts(
 async def test_who_wants_alarms_by_mail_has_them(settings: Settings, clock: SteppedClock) -> None:
     async with running(settings, clock) as office:
         on_duty = await office.person(DISPATCHER, roles=[Role.MEMBER, Role.DISPATCHER], language="fr")
-        await office.add(NoticeWishes(person_id=on_duty.id, muted={"mail": []}))
+        await office.add(NotificationPreferences(person_id=on_duty.id, muted={"mail": []}))
         await rings(office)
         await office.settle()
         (mail,) = settings.spool_folder.glob("*.eml")

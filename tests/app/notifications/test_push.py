@@ -12,9 +12,9 @@ from cryptography.hazmat.primitives.asymmetric import ec
 from py_vapid import Vapid02
 
 from app.core.errors import StartError
-from app.core.http_client import Outside
+from app.core.http_client import HttpClient
 from app.core.settings import Settings
-from app.models import NoticeKind, PushSubscription
+from app.models import NotificationKind, PushSubscription
 from app.notifications.channels.push import urgency_of
 from app.notifications.delivery.attempts import pause_s
 from app.notifications.push_key import open_push_key
@@ -54,7 +54,7 @@ def push_service() -> Iterator[Receiver]:
 
 @pytest.fixture
 async def office(settings: Settings, clock: SteppedClock) -> AsyncIterator[Office]:
-    async with running(settings, clock, Outside(allow_private=True)) as office:
+    async with running(settings, clock, HttpClient(allow_private=True)) as office:
         yield office
 
 
@@ -188,5 +188,5 @@ def test_the_key_is_made_once_and_is_readable_by_its_owner_alone(settings: Setti
 
 
 def test_a_waiting_robot_is_worth_a_devices_battery() -> None:
-    urgent = {kind for kind in NoticeKind if urgency_of(kind) == "high"}
-    assert urgent == {NoticeKind.ROBOT_HERE, NoticeKind.ROBOT_HERE_FOR_YOU, NoticeKind.AT_RETURN}
+    urgent = {kind for kind in NotificationKind if urgency_of(kind) == "high"}
+    assert urgent == {NotificationKind.ROBOT_HERE, NotificationKind.ROBOT_HERE_FOR_YOU, NotificationKind.AT_RETURN}

@@ -11,8 +11,8 @@ from sqlmodel import delete
 from app.composition import create_app
 from app.core.database.schema_version import bring_to_head
 from app.core.settings import Settings
-from app.models import Notice, OutgoingNotice, Webhook
-from app.notifications.channels.interface import NotSent, Sending
+from app.models import Notification, OutgoingNotification, Webhook
+from app.notifications.channels.interface import Delivery, NotSent
 from app.notifications.delivery.worker import GATHER_S, LONGEST_REST_S, OutboxWorker, rest_s
 from protocol.clock import SteppedClock
 from tests.app.conftest import SENDER
@@ -27,10 +27,10 @@ class Channel:
     at_once: int = 4
     gives_up_after: timedelta = timedelta(days=1)
     refuses: set[str] = field(default_factory=set)
-    given: list[Sending] = field(default_factory=list)
+    given: list[Delivery] = field(default_factory=list)
     gate: asyncio.Event = field(default_factory=asyncio.Event)
 
-    async def send(self, sending: Sending) -> None:
+    async def send(self, sending: Delivery) -> None:
         self.given.append(sending)
         await self.gate.wait()
         if sending.key in self.refuses:
@@ -146,8 +146,8 @@ async def test_what_was_erased_while_it_was_under_way_marks_no_other_as_sent(off
     await worker.work_once()
     await end_of_sending()
     async with office.state.database.transaction() as session:
-        await session.exec(delete(OutgoingNotice))
-        await session.exec(delete(Notice))
+        await session.exec(delete(OutgoingNotification))
+        await session.exec(delete(Notification))
     (other,) = await orders(office, 1)
     await worker.work_once()  # SQLite gives the other's row the number that has become free
     mail.gate.set()
@@ -166,7 +166,7 @@ async def test_one_target_is_sent_one_thing_at_a_time_and_holds_up_no_other(offi
         await office.add(Webhook(id=f"hook{number}", person_id=person.id, url=hook, created_at=now))
     await orders(office, 2)
     about = {"from_post": "a", "to_post": "b", "recipient": "c", "window": "d"}
-    await office.add(Notice(key="last", kind="accepted", person_id=other.id, at=now, facts=about))
+    await office.add(Notification(key="last", kind="accepted", person_id=other.id, at=now, facts=about))
     hooks = Channel("webhook")
     worker = worker_of(office, hooks)
     await worker.work_once()

@@ -162,7 +162,7 @@ async def test_a_sign_in_code_goes_by_the_server_too_and_no_request_waits_for_it
 ) -> None:
     server.hangs = True
     async with running(smtp, clock) as office:
-        desk = office.state.sign_in_desk
+        desk = office.state.sign_in_service
         async with office.state.database.transaction() as session:
             row, code = await desk.make_code(session, RECIPIENT, clock.utc())
         await desk.mail_code(row, code, "fr")

@@ -12,7 +12,7 @@ from sqlmodel import col, select
 from app.core.mail import Mail, Spool
 from app.core.settings import ROOT
 from app.core.texts import LANGUAGES, catalogue
-from app.models import Notice, NoticeKind, OutgoingNotice
+from app.models import Notification, NotificationKind, OutgoingNotification
 from app.notifications.delivery.attempts import LONGEST_PAUSE_S, pause_s
 from protocol.clock import SteppedClock
 from tests.app.conftest import SENDER, Browser, Mailroom, Mails
@@ -31,7 +31,9 @@ def test_a_crash_between_sending_and_noting_it_down_sends_nothing_twice(
 
     async def forget_that_it_was_sent() -> None:
         async with app.state.parts.database.transaction() as session:
-            await session.exec(update(OutgoingNotice).values(sent_at=None, next_try_at=OutgoingNotice.created_at))
+            await session.exec(
+                update(OutgoingNotification).values(sent_at=None, next_try_at=OutgoingNotification.created_at)
+            )
 
     mailroom.call(forget_that_it_was_sent)
     mailroom.send_mails()
@@ -42,13 +44,15 @@ def test_what_cannot_be_spooled_is_tried_again_later_and_arrives(
     app: FastAPI, sender: Browser, mailroom: Mailroom, mails: Mails, clock: SteppedClock
 ) -> None:
 
-    def stuck() -> OutgoingNotice:
-        async def look() -> OutgoingNotice:
+    def stuck() -> OutgoingNotification:
+        async def look() -> OutgoingNotification:
             async with app.state.parts.database.reading() as session:
-                rows = (await session.exec(select(OutgoingNotice).where(col(OutgoingNotice.tries) > 0))).all()
+                rows = (
+                    await session.exec(select(OutgoingNotification).where(col(OutgoingNotification.tries) > 0))
+                ).all()
                 return list(rows)[-1]
 
-        row: OutgoingNotice = mailroom.call(look)
+        row: OutgoingNotification = mailroom.call(look)
         return row
 
     for file in mails.folder.iterdir():
@@ -73,7 +77,7 @@ def test_a_mail_that_cannot_be_made_holds_up_no_other(
     mail = next(channel for channel in app.state.parts.outbox_worker.channels if channel.name == "mail")
     broken: list[str | None] = []
 
-    def picture(notice: Notice) -> None:
+    def picture(notice: Notification) -> None:
         broken.extend([] if broken else [notice.order_id])
         if notice.order_id in broken:
             raise ValueError("no picture")
@@ -137,13 +141,13 @@ def test_every_language_has_the_same_texts_with_the_same_gaps(language: str) -> 
 
 def test_the_service_has_no_text_that_it_does_not_use() -> None:
     code = "".join(file.read_text() for file in (ROOT / "app").rglob("*.py"))
-    kinds = {f"notice.{kind}.{part}" for kind in NoticeKind for part in ("title", "body")}
+    kinds = {f"notice.{kind}.{part}" for kind in NotificationKind for part in ("title", "body")}
     mine = {key for key in catalogue("en") if key.startswith(("email.", "notice."))}
     assert {key for key in mine - kinds if f'"{key}"' not in code} == set()
 
 
 def test_every_kind_of_notice_has_its_words_and_no_title_has_room_for_a_code() -> None:
-    for kind in NoticeKind:
+    for kind in NotificationKind:
         assert {f"notice.{kind}.title", f"notice.{kind}.body"} <= set(catalogue("en"))
         assert gaps(catalogue("en")[f"notice.{kind}.title"]) <= {
             "from_post",

@@ -8,7 +8,7 @@ import pytest
 
 from app.core.settings import Settings
 from app.core.texts.times import as_fact, clock_time
-from app.models import Notice, NoticeKind
+from app.models import Notification, NotificationKind
 from app.notifications.wording import body_of
 from app.orders.views.schemas import NewOrder
 from protocol.clock import SteppedClock
@@ -24,7 +24,7 @@ PEOPLE = {"sender": "Ada", "recipient": "Ben", "from_post": "Post 1", "to_post":
 
 def told(language: str, window_from: str, window_to: str, at: datetime = AT) -> str:
     facts = {**PEOPLE, "window_from": window_from, "window_to": window_to}
-    body = body_of(Notice(key="k", kind=NoticeKind.DELAYED, person_id="p", at=at, facts=facts), language)
+    body = body_of(Notification(key="k", kind=NotificationKind.DELAYED, person_id="p", at=at, facts=facts), language)
     return body.replace("\u00a0", " ")
 
 

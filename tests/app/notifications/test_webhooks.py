@@ -13,7 +13,7 @@ import pytest
 from pydantic import SecretStr
 
 from app.core.errors import StartError
-from app.core.http_client import Outside
+from app.core.http_client import HttpClient
 from app.core.settings import Settings, load_settings
 from app.models import Webhook
 from app.notifications.channels.interface import NotSent
@@ -26,7 +26,7 @@ from tests.app.notifications.office import Office, running
 from tests.app.notifications.receivers import Received, Receiver, receiving
 
 SECRET = "a secret of the operator's own"
-INSIDE = Outside(allow_private=True)
+INSIDE = HttpClient(allow_private=True)
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ import pytest
 from sqlmodel import col, select
 
 from app.core.settings import Settings
-from app.models import Notice, NoticeKind, Order, OrderState, Person
+from app.models import Notification, NotificationKind, Order, OrderState, Person
 from app.orders.notifications import NOTIFICATION_RULES, ONCE
 from app.orders.service import Actor
 from app.orders.transitions import TRANSITIONS, By
@@ -27,7 +27,7 @@ async def office(settings: Settings, clock: SteppedClock) -> AsyncIterator[Offic
 
 async def told(office: Office) -> dict[str, list[str]]:
     async with office.state.database.reading() as session:
-        notices = (await session.exec(select(Notice, Person).join(Person).order_by(col(Notice.id)))).all()
+        notices = (await session.exec(select(Notification, Person).join(Person).order_by(col(Notification.id)))).all()
     kinds: dict[str, list[str]] = {"Sender": [], "Recipient": []}
     for notice, person in notices:
         kinds[person.name].append(str(notice.kind))
@@ -108,7 +108,7 @@ async def test_whatever_a_robot_repeats_no_person_is_told_twice(office: Office) 
 async def test_a_notice_that_cannot_be_put_into_words_holds_up_no_other(office: Office) -> None:
     sender = await office.person(SENDER)
     now = office.clock.utc()
-    await office.add(Notice(key="odd", kind=NoticeKind.ACCEPTED, person_id=sender.id, at=now, facts={}))
+    await office.add(Notification(key="odd", kind=NotificationKind.ACCEPTED, person_id=sender.id, at=now, facts={}))
     await office.order()
     await office.settle()
     odd, good = await office.sendings("mail")
@@ -133,5 +133,5 @@ def test_every_end_and_every_wait_is_told() -> None:
     ends = {state for state, following in TRANSITIONS.items() if not following}
     assert {rule.kind for end in ends for rule in NOTIFICATION_RULES[end]} <= ONCE
     kinds = {rule.kind for rules in NOTIFICATION_RULES.values() for rule in rules}
-    of_delegates = {NoticeKind.DELEGATED, NoticeKind.DELEGATION_OVER}
-    assert set(NoticeKind) - kinds == {NoticeKind.DELAYED, NoticeKind.ALARM, *of_delegates}
+    of_delegates = {NotificationKind.DELEGATED, NotificationKind.DELEGATION_OVER}
+    assert set(NotificationKind) - kinds == {NotificationKind.DELAYED, NotificationKind.ALARM, *of_delegates}

@@ -12,9 +12,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.composition import create_app
-from app.core.http_client import Outside
+from app.core.http_client import HttpClient
 from app.core.settings import Settings
-from app.models import NoticeKind, NoticeWishes
+from app.models import NotificationKind, NotificationPreferences
 from app.notifications.preferences import CHANNELS, MUST_REACH, channels_for
 from protocol.clock import SteppedClock
 from tests.app.conftest import SENDER, Browser, Mailroom, Mails
@@ -52,12 +52,12 @@ def test_no_person_mutes_a_robot_that_waits_with_their_mail_everywhere(sender: B
 
 
 @given(
-    kind=st.sampled_from(list(NoticeKind)),
-    wishes=st.dictionaries(st.sampled_from(CHANNELS), st.lists(st.sampled_from([str(k) for k in NoticeKind]))),
+    kind=st.sampled_from(list(NotificationKind)),
+    wishes=st.dictionaries(st.sampled_from(CHANNELS), st.lists(st.sampled_from([str(k) for k in NotificationKind]))),
     reachable=st.sets(st.sampled_from(CHANNELS)).map(lambda some: some | {"mail"}),
 )
 def test_what_must_reach_a_person_takes_some_channel_and_nothing_takes_one_it_is_muted_on(
-    kind: NoticeKind, wishes: dict[str, list[str]], reachable: set[str]
+    kind: NotificationKind, wishes: dict[str, list[str]], reachable: set[str]
 ) -> None:
     taken = channels_for(kind, wishes, reachable)
     assert set(taken) <= reachable
@@ -79,7 +79,7 @@ class TestWithAPushServiceOnThisMachine:
     @pytest.fixture
     def app(self, settings: Settings, clock: SteppedClock) -> FastAPI:
 
-        return create_app(settings, clock, Outside(allow_private=True))
+        return create_app(settings, clock, HttpClient(allow_private=True))
 
     def test_a_browser_subscribes_is_told_and_ends_it(self, sender: Browser, mailroom: Mailroom) -> None:
         with receiving() as push_service:
@@ -146,7 +146,9 @@ async def test_a_person_without_any_other_channel_left_is_mailed_what_must_reach
     async with running(settings, clock) as office:
         order_id = await office.order()
         recipient = await office.person("recipient@campus.example")
-        await office.add(NoticeWishes(person_id=recipient.id, muted={"mail": ["robot_here_for_you", "on_its_way"]}))
+        await office.add(
+            NotificationPreferences(person_id=recipient.id, muted={"mail": ["robot_here_for_you", "on_its_way"]})
+        )
         await office.move(order_id, "assigned", "to_sender", "at_sender", "carrying", "at_recipient")
         await office.settle()
         kinds = {sending.key.split(".")[2] for sending in await office.sendings("mail") if recipient.id in sending.key}

@@ -14,7 +14,7 @@ from typing import Any
 
 from sqlmodel import SQLModel, col, select
 
-from app.accounts.sign_in.service import SignInDesk, set_roles
+from app.accounts.sign_in.service import SignInService, set_roles
 from app.core.database.database import Database
 from app.core.mail import open_mailer
 from app.core.server_key import ServerKey
@@ -35,7 +35,7 @@ from app.robots.commands import ask, new_command_id
 from app.robots.conversation.intake import Intake
 from app.robots.link import inbox, outbox
 from app.robots.service import Fleet, enrol
-from app.traffic.service import TrafficDesk
+from app.traffic.service import TrafficService
 from fleet.assignment.deciding import Decision
 from fleet.assignment.improving import improved
 from maps import builtin_map
@@ -48,7 +48,7 @@ from protocol.proofs import ShownCode
 from protocol.to_robot import Recall
 from protocol.to_server import Event, Step
 from robot.mission.memory import Incoming, Memory
-from robot.mission.mission import Duties
+from robot.mission.mission import MissionManager
 from robot.mission.outbox import Outbox
 from robot.mission.store import Store
 from tests.app.placed import placed
@@ -78,13 +78,13 @@ class PlayedRobot:
         self.robot = self.name
         store = Store(None)
         self.memory, self.outbox = Memory(store), Outbox(store)
-        self.duties = Duties(store, self.memory, self.outbox, self.clock.utc, self)
+        self.missions = MissionManager(store, self.memory, self.outbox, self.clock.utc, self)
         self.taken_up_to = 0
         self._done = asyncio.Event()
 
     def still_to_do(self) -> set[str]:
         """The stops before it at which there is something to load or to give."""
-        held = self.duties.held
+        held = self.missions.held
         ahead = held.mission.stops[held.next_stop :] if held.mission else ()
         sensible, aboard, over = set(), set(held.cargo), self.memory.done()
         for stop in ahead:
@@ -182,11 +182,11 @@ class World:
         key = ServerKey(b"k" * 32)
         self.database = Database(self.settings.url_of_database)
         feed = LocalFeed()
-        self.sign_in = SignInDesk(self.settings, key, open_mailer(self.settings))
+        self.sign_in = SignInService(self.settings, key, open_mailer(self.settings))
         self.orders = Orders.of(Ledger(TRACK, self.settings, self.clock, feed), key, self.sign_in)
         self.fleet = Fleet(self.database, TRACK, self.settings, self.clock, feed, self.orders)
         self.intake = Intake(self.fleet)
-        self.desk = TrafficDesk(self.fleet) if self.settings.traffic == "timetable" else None
+        self.desk = TrafficService(self.fleet) if self.settings.traffic == "schedule" else None
         self.planner = FleetPlanner(self.fleet, self.desk, PlansHere()) if self.desk is not None else None
         self.dispatcher = Dispatcher(self.fleet, self.planner or NearestRobots(self.fleet))
         self.timer = Timer(self.database, self.orders, StandingOrders(self.orders.placing, self.clock))
@@ -246,7 +246,7 @@ class World:
             facts = {"type": row.type, "robot": name, "journal": robot.journal, "seq": row.seq, "body": message}
             robot.memory.receive(Envelope(**facts, at=self.clock.utc()))
             robot.heard_seq = row.seq
-        robot.duties.take_messages()
+        robot.missions.take_messages()
 
     async def _waiting_for(self, robot: PlayedRobot, count: int) -> list[Any]:
         async with self.database.reading() as session:
@@ -286,14 +286,14 @@ class World:
     def act(self, name: str, luck: str) -> None:
         """One step of what the robot's program does with its next stop."""
         robot = self.robots[name]
-        duties, held = robot.duties, robot.duties.held
+        missions, held = robot.missions, robot.missions.held
         if held.mission is None:
             return
         stop = held.stop
         if stop is None:
-            duties.finish_mission(held.mission.id, None)
+            missions.finish_mission(held.mission.id, None)
         elif stop.order_id in held.cancelled or self._is_pointless(stop, held.cargo):
-            duties.finish_stop(stop.id)
+            missions.finish_stop(stop.id)
         else:
             self._serve(robot, stop, luck)
 
@@ -302,21 +302,21 @@ class World:
         return is_aboard if stop.action is StopAction.LOAD else not is_aboard
 
     def _serve(self, robot: PlayedRobot, stop: Any, luck: str) -> None:
-        duties = robot.duties
-        duties.report(Step.DEPARTED, stop.id, "post3")
+        missions = robot.missions
+        missions.report(Step.DEPARTED, stop.id, "post3")
         if luck == "sets out":
             return
         if luck == "no way":
-            duties.report(Step.GAVE_UP, stop.id, "post3", "no_route")
-            duties.finish_stop(stop.id)
+            missions.report(Step.GAVE_UP, stop.id, "post3", "no_route")
+            missions.finish_stop(stop.id)
             return
         self._drive(robot, stop.post)
-        duties.report(Step.ARRIVED, stop.id, stop.post)
+        missions.report(Step.ARRIVED, stop.id, stop.post)
         if luck == "arrives":
             return
         if luck == "no person comes" or not self._changes_hands(robot, stop, luck):
-            duties.report(Step.GAVE_UP, stop.id, stop.post, "no_one_came")
-            duties.finish_stop(stop.id)
+            missions.report(Step.GAVE_UP, stop.id, stop.post, "no_one_came")
+            missions.finish_stop(stop.id)
 
     def _drive(self, robot: PlayedRobot, post: str) -> None:
         """Drive there, which takes time."""
@@ -329,7 +329,7 @@ class World:
         purpose, order_id = Purpose(stop.action.value), stop.order_id
         is_passed_on = self.where[order_id] == "mailroom"
         giver = ("mailroom" if is_passed_on else "sender") if purpose is Purpose.LOAD else robot.name
-        codes = robot.duties.codes(order_id, purpose)
+        codes = robot.missions.codes(order_id, purpose)
         wanted = {"mailroom": Holder.MAILROOM, "recipient": Holder.RECIPIENT}.get(luck, Holder.SENDER)
         loads = Holder.MAILROOM if is_passed_on else Holder.SENDER
         holder = {Purpose.LOAD: loads, Purpose.RECEIVE: Holder.RECIPIENT}.get(purpose, wanted)
@@ -338,7 +338,7 @@ class World:
         shown = ShownCode.of(code.text(self.orders.key))
         if self.where[order_id] != giver or shown.sha256 not in codes:
             return False
-        robot.duties.handed_over(robot.duties.at_stop(stop.id), purpose, stop.post, shown)
+        robot.missions.handed_over(robot.missions.at_stop(stop.id), purpose, stop.post, shown)
         self.where[order_id] = robot.name if purpose is Purpose.LOAD else str(holder)
         return True
 

@@ -5,7 +5,7 @@ from contextlib import suppress
 import pytest
 
 from app.core.errors import ServiceError
-from app.models import Alarm, Handover, MissionRow, Notice, Order, OrderEvent, RobotCommand, StopRow
+from app.models import Alarm, Handover, MissionRow, Notification, Order, OrderEvent, RobotCommand, StopRow
 from app.models import OrderState as S
 from protocol.parts import Purpose
 from protocol.proofs import ShownCode
@@ -17,7 +17,7 @@ ALL_DONE = ["sender"] * 6
 
 
 async def everything(world: World) -> dict[str, list[str]]:
-    return await world.everything(Order, OrderEvent, Notice, Handover, MissionRow, StopRow, Alarm, RobotCommand)
+    return await world.everything(Order, OrderEvent, Notification, Handover, MissionRow, StopRow, Alarm, RobotCommand)
 
 
 async def two_on_one_way(world: World) -> tuple[str, str]:
@@ -102,7 +102,7 @@ async def test_a_message_that_was_not_acknowledged_comes_again_and_changes_nothi
     order_id = await world.place("post3", "post5")
     await world.goes_on("r1", "sender")
     for is_over in (False, True):
-        world.robots["r1"].duties.report_fault("wheel_drop", "The robot was lifted.", "post3", cleared=is_over)
+        world.robots["r1"].missions.report_fault("wheel_drop", "The robot was lifted.", "post3", cleared=is_over)
     await world.speak("r1", is_heard=False)
     before = await everything(world)
     assert [event.state for event in await world.rows(OrderEvent, order_id=order_id)][-2:] == [S.ATTENTION, S.CARRYING]
@@ -113,10 +113,12 @@ async def test_a_message_that_was_not_acknowledged_comes_again_and_changes_nothi
 async def test_a_robot_gives_only_what_it_was_given(world: World) -> None:
     order_id = await world.place("post3", "post5")
     await world.goes_on("r1", "arrives")
-    duties = world.robots["r1"].duties
-    assert duties.held.mission is not None
-    place = duties.at_stop(duties.held.mission.stops[1].id)
-    duties.handed_over(place, Purpose.RECEIVE, "post5", ShownCode(duties.codes(order_id, Purpose.RECEIVE)[0], b"key"))
+    missions = world.robots["r1"].missions
+    assert missions.held.mission is not None
+    place = missions.at_stop(missions.held.mission.stops[1].id)
+    missions.handed_over(
+        place, Purpose.RECEIVE, "post5", ShownCode(missions.codes(order_id, Purpose.RECEIVE)[0], b"key")
+    )
     await world.speak("r1")
     assert [one.code for one in world.robots["r1"].refused] == ["transition_refused"]
     assert await world.rows(Handover) == []

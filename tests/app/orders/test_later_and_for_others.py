@@ -21,7 +21,7 @@ def tick(app: FastAPI, mailroom: Mailroom) -> Any:
 def look_round(app: FastAPI, mailroom: Mailroom) -> None:
     """Enrol a robot without waking dispatch."""
     mailroom.call(_put_online, app)
-    mailroom.call(app.state.parts.traffic_desk.look_round)
+    mailroom.call(app.state.parts.traffic_service.look_round)
     mailroom.call(app.state.parts.dispatcher.look_round)
 
 

@@ -18,7 +18,7 @@ from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, pr
 from app.cli.administration import migrate
 from app.core.errors import ServiceError
 from app.core.settings import Settings
-from app.models import Alarm, Handover, MissionRow, Notice, Order, OrderEvent, Person, Priority, StopRow
+from app.models import Alarm, Handover, MissionRow, Notification, Order, OrderEvent, Person, Priority, StopRow
 from app.models import OrderState as S
 from app.orders.transitions import MAIL_ABOARD
 from protocol.ids import ids_from
@@ -229,7 +229,9 @@ class LivesOfOrders(RuleBasedStateMachine):
         return True
 
     async def everything(self) -> dict[str, list[str]]:
-        return await self.world.everything(Order, OrderEvent, Notice, Handover, MissionRow, StopRow, Person, Alarm)
+        return await self.world.everything(
+            Order, OrderEvent, Notification, Handover, MissionRow, StopRow, Person, Alarm
+        )
 
     # What time and dispatch do.
 
@@ -313,7 +315,7 @@ class LivesOfOrders(RuleBasedStateMachine):
 
     @rule(robot=ROBOTS, name=st.sampled_from(("wheel_drop", "bump")), is_over=st.booleans())
     def a_robot_has_a_fault(self, robot: str, name: str, is_over: bool) -> None:
-        self.world.robots[robot].duties.report_fault(name, f"It is {name}.", "post3", cleared=is_over)
+        self.world.robots[robot].missions.report_fault(name, f"It is {name}.", "post3", cleared=is_over)
         # Faults may come again: they are no part of what is repeated.
         self.run(self.speak_and_forget(robot))
 
@@ -347,7 +349,7 @@ class LivesOfOrders(RuleBasedStateMachine):
         for robot in self.world.robots.values():
             await self.world.set_online(robot.name, True)
             for fault in ("wheel_drop", "bump"):
-                robot.duties.report_fault(fault, "It is over.", "post3", cleared=True)
+                robot.missions.report_fault(fault, "It is over.", "post3", cleared=True)
         for _ in range(ROUNDS_TO_THE_END):
             await self.one_round()
             if await self.all_is_done():
@@ -367,7 +369,9 @@ class LivesOfOrders(RuleBasedStateMachine):
             assert robot.outbox.waiting() == 0
         orders = {order.id: order for order in await self.world.rows(Order)}
         for robot in self.world.robots.values():
-            if robot.duties.held.mission is None and any(orders[one].state in ENDED for one in robot.duties.held.cargo):
+            if robot.missions.held.mission is None and any(
+                orders[one].state in ENDED for one in robot.missions.held.cargo
+            ):
                 await self.world.recall(robot.name)  # its alarm says that it has mail aboard
         for order in orders.values():
             if order.state is S.ATTENTION:
@@ -379,7 +383,8 @@ class LivesOfOrders(RuleBasedStateMachine):
     async def all_is_done(self) -> bool:
         orders, missions = await self.world.rows(Order), await self.world.rows(MissionRow)
         idle = all(
-            robot.duties.held.mission is None and not robot.duties.held.cargo for robot in self.world.robots.values()
+            robot.missions.held.mission is None and not robot.missions.held.cargo
+            for robot in self.world.robots.values()
         )
         return idle and all(one.state in ENDED for one in orders) and not any(one.state == "active" for one in missions)
 

@@ -56,7 +56,7 @@ async def left_aboard(world: World) -> str:
     await world.goes_on("r1", "sender")
     await world.goes_on("r1", *["no person comes"] * 6)
     assert await world.state(order_id) is OrderState.ATTENTION
-    assert world.robots["r1"].duties.held.mission is None
+    assert world.robots["r1"].missions.held.mission is None
     return order_id
 
 
@@ -147,7 +147,7 @@ async def test_mail_that_was_given_back_loaded_again_and_delivered_unheard_is_wi
     await world.speak("r1")
     await Record(world).check()
     assert await world.state(order_id) is OrderState.RETURNED, "ended means ended"
-    assert world.robots["r1"].duties.held.cargo == ()
+    assert world.robots["r1"].missions.held.cargo == ()
 
 
 async def test_mail_of_an_order_that_has_ended_is_taken_out_by_hand_and_its_robot_is_free(world: World) -> None:
@@ -160,7 +160,7 @@ async def test_mail_of_an_order_that_has_ended_is_taken_out_by_hand_and_its_robo
     (order,) = await world.rows(Order, id=order_id)
     (told,) = [one for one in await world.rows(OrderEvent, order_id=order_id) if one.seq == order.version]
     assert (told.kind, told.reason) == ("taken_out", "Fetched at the post.")
-    assert world.robots["r1"].duties.held.cargo == ()
+    assert world.robots["r1"].missions.held.cargo == ()
     assert await ringing(world) == set()
     assert await world.rows(MissionRow, state="active") == []
     await Record(world).check()

@@ -4,7 +4,7 @@ from collections import Counter
 from itertools import pairwise
 from typing import Any
 
-from app.models import Handover, MissionRow, Notice, Order, OrderEvent, StopRow
+from app.models import Handover, MissionRow, Notification, Order, OrderEvent, StopRow
 from app.models import OrderState as S
 from app.orders.custody.custody import custody_of
 from app.orders.notifications import NOTIFICATION_RULES, ONCE
@@ -50,7 +50,7 @@ class Record:
         orders = await self.world.rows(Order)
         events = await self.world.rows(OrderEvent)
         handovers = await self.world.rows(Handover)
-        notices = await self.world.rows(Notice)
+        notices = await self.world.rows(Notification)
         for order in orders:
             theirs = sorted((one for one in events if one.order_id == order.id), key=lambda one: one.seq)
             passed_on = sorted((one for one in handovers if one.order_id == order.id), key=lambda one: one.id)
@@ -138,7 +138,7 @@ class Record:
             waits = is_untold or robot.outbox.waiting() or any(one.let_go_by == robot.name for one in orders)
             if not waits and not await self.world.unheard(robot):
                 assert robot.still_to_do() == left
-                assert set(robot.duties.held.cargo) == self.world.aboard(robot.name)
+                assert set(robot.missions.held.cargo) == self.world.aboard(robot.name)
 
 
 def ended_with_nothing_aboard(events: list[OrderEvent]) -> bool:
@@ -153,5 +153,5 @@ async def how_it_ended(world: World) -> list[str]:
     orders = [(o.id, o.state, o.state_before_attention, o.robot) for o in await world.rows(Order)]
     missions = [one for one in await world.rows(MissionRow) if one.state == "active"]
     stops = [one for one in await world.rows(StopRow) if one.mission_id in {mission.id for mission in missions}]
-    held = [f"{robot.name}: {robot.duties.held}" for robot in world.robots.values()]
+    held = [f"{robot.name}: {robot.missions.held}" for robot in world.robots.values()]
     return [str(orders), *map(repr, missions), *map(repr, stops), *held]

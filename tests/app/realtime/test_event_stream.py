@@ -12,7 +12,7 @@ from fastapi import FastAPI
 from app.accounts.sign_in.service import find_person, set_roles
 from app.core.settings import Settings
 from app.models import Person, Role
-from app.realtime.feed import REPLAYED, Happening, LocalFeed
+from app.realtime.feed import REPLAYED, FeedEvent, LocalFeed
 from tests.app.conftest import RECIPIENT, SENDER, STRANGER, Browser, Mailroom, Served, SignedIn
 
 ANN = Person(id="ann", email="ann@campus.example", name="Ann", roles=["member"])
@@ -137,8 +137,8 @@ def test_a_stream_ends_when_what_its_person_may_see_has_changed(
             stream.next()
 
 
-def happening(number: int, person: Person | None = None, role: Role | None = None) -> Happening:
-    return Happening("order", {"number": number}, person.id if person else None, role)
+def happening(number: int, person: Person | None = None, role: Role | None = None) -> FeedEvent:
+    return FeedEvent("order", {"number": number}, person.id if person else None, role)
 
 
 def numbers(feed: LocalFeed, person: Person, last_id: str) -> list[object] | None:

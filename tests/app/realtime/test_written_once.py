@@ -11,7 +11,7 @@ from app.accounts.sign_in.service import make_person
 from app.core.database.database import savepoint
 from app.orders.ledger import Actor
 from app.orders.transitions import By
-from app.realtime.feed import Happening, LocalFeed
+from app.realtime.feed import FeedEvent, LocalFeed
 from tests.app.conftest import SENDER, Browser, Mailroom
 
 AT = datetime(2026, 1, 5, 9, 0, tzinfo=UTC)
@@ -29,10 +29,10 @@ class Read(dict[str, int]):
 
 def test_what_happens_is_encoded_once_for_all_listeners() -> None:
     feed, unheard, heard = LocalFeed(), Read(number=1), Read(number=2)
-    feed.publish(Happening("robot", unheard))
+    feed.publish(FeedEvent("robot", unheard))
     people = [make_person(f"p{number}@campus.example", "en", AT) for number in range(3)]
     with feed.listening(people[0]) as first, feed.listening(people[1]) as second, feed.listening(people[2]) as third:
-        feed.publish(Happening("robot", heard))
+        feed.publish(FeedEvent("robot", heard))
         pieces = [queue.get_nowait() for queue in (first, second, third)]
     wires = [piece.wire for piece in pieces if piece is not None]
     assert wires == [f'event: robot\ndata: {{"number": 2}}\nid: {feed.last_id}\n\n'.encode()] * 3
@@ -54,7 +54,7 @@ def test_what_cannot_be_put_into_words_any_more_is_fetched_anew(
 async def _told_of_a_row_that_was_undone(app: FastAPI, order_id: str) -> list[bytes]:
     state = app.state.parts
     async with state.database.transaction() as session:
-        person = await state.sign_in_desk.person(session, SENDER, state.clock.utc())
+        person = await state.sign_in_service.person(session, SENDER, state.clock.utc())
     with state.feed.listening(person) as queue:
         async with state.database.transaction() as session:
             await state.orders.ledger.note(session, order_id, "wait_extended", Actor(By.SENDER, person_id=person.id))

@@ -22,12 +22,12 @@ from app.models import (
     Handover,
     IdempotencyKey,
     MessageToRobot,
-    Notice,
-    NoticeKind,
+    Notification,
+    NotificationKind,
     Order,
     OrderEvent,
     OrderLink,
-    OutgoingNotice,
+    OutgoingNotification,
     Person,
     PersonSession,
     PersonToken,
@@ -40,7 +40,7 @@ from app.models import (
 from app.retention import retention
 from app.retention.database_checks import problems_of
 from app.retention.retention import RULES, retain
-from app.retention.retention_job import Housekeeper
+from app.retention.retention_job import RetentionJob
 from protocol.clock import SteppedClock
 from tests.app.conftest import RECIPIENT, SENDER, Browser, Mailroom
 
@@ -119,7 +119,7 @@ def test_an_order_keeps_its_names_for_400_days_and_its_life_for_ever(
     assert [event.reason for event in kept.rows(OrderEvent) if event.kind == "delegate_named"] == ["Erased"]
     assert [(row.purpose, row.robot, row.person_id) for row in kept.rows(Handover)] == [("load", "r1", None)]
     assert [(row.name, row.named_by_id) for row in kept.rows(Delegate)] == [("Erased", "nobody")]
-    assert kept.rows(Notice) == kept.rows(OutgoingNotice) == []
+    assert kept.rows(Notification) == kept.rows(OutgoingNotification) == []
     assert kept.problems() == []
     assert "orders" not in kept.retain_after(1)
 
@@ -140,9 +140,9 @@ def test_an_order_that_has_not_ended_keeps_everything(kept: Kept, sender: Browse
     assert {person.email for person in kept.rows(Person)} >= {SENDER, RECIPIENT}
 
 
-def alarm_notice(person: str, clock: SteppedClock) -> Notice:
+def alarm_notice(person: str, clock: SteppedClock) -> Notification:
     facts = {"robot": "r1", "reason": "It stands.", "post": ""}
-    return Notice(key="alarm.1", kind=NoticeKind.ALARM, person_id=person, at=clock.utc(), facts=facts)
+    return Notification(key="alarm.1", kind=NotificationKind.ALARM, person_id=person, at=clock.utc(), facts=facts)
 
 
 def technical_rows(clock: SteppedClock, order_id: str, ada: str, notice: int) -> list[SQLModel]:
@@ -152,6 +152,7 @@ def technical_rows(clock: SteppedClock, order_id: str, ada: str, notice: int) ->
     place = {"stop_id": "s1", "purpose": "load", "post": "post1"}
     life: dict[str, Any] = {"created_at": now, "expires_at": now}
     legs = {"corridor": "a-b", "from_post": "a", "to_post": "b"}
+    given_up: dict[str, Any] = {"created_at": now, "next_try_at": None, "gave_up_at": now}
     return [
         Alarm(**robot, name="bumped", reason="…", at=now, cleared_at=now),
         RefusedReceipt(**robot, **place, order_id=order_id, how="code", robot_at=now, at=now, problem="bad_signature"),
@@ -164,7 +165,7 @@ def technical_rows(clock: SteppedClock, order_id: str, ada: str, notice: int) ->
         GrantRow(**robot, **legs, claim_id="c1", granted_at=now, cleared_at=now),
         ClaimRow(**robot, claim_id="c1", legs=[], at=now, granted=False),
         alarm_notice(ada, clock),
-        OutgoingNotice(key="k1", channel="webhook", notice_id=notice, created_at=now, next_try_at=None, gave_up_at=now),
+        OutgoingNotification(key="k1", channel="webhook", notice_id=notice, **given_up),
         SignInCode(email=SENDER, code_hash="h", **life),
         EnrolmentCode(robot="r2", code_hash="h", **life),
         PersonSession(token_hash="h1", person_id=ada, **life),
@@ -181,7 +182,7 @@ def test_everything_technical_goes_when_its_days_are_over_and_not_a_day_before(
 ) -> None:
     mailroom.robot_connects()
     order_id = sender.order().json()["id"]
-    ada, notice = kept.rows(Order)[0].sender_id, kept.rows(Notice)[0].id
+    ada, notice = kept.rows(Order)[0].sender_id, kept.rows(Notification)[0].id
     rows = technical_rows(clock, order_id, ada, notice)
     kept.add(*rows)
     names = {rule.name: rule.days for rule in RULES}
@@ -194,7 +195,7 @@ def test_everything_technical_goes_when_its_days_are_over_and_not_a_day_before(
         due = {name for name, wanted in names.items() if wanted == setting} - {"orders", "people"}
         assert due <= set(done), due - set(done)
         assert not due & set(before), before
-    tables = {type(row) for row in rows} - {StandingOrder, Notice, OutgoingNotice}
+    tables = {type(row) for row in rows} - {StandingOrder, Notification, OutgoingNotification}
     assert {table.__name__: kept.rows(table) for table in tables} == {table.__name__: [] for table in tables}
     (standing,) = kept.rows(StandingOrder)
     assert (standing.sender_id, standing.description) == ("nobody", None)
@@ -207,13 +208,13 @@ def test_what_dispatchers_were_told_of_an_alarm_goes_400_days_after_it(
     now, ada = clock.utc(), kept.rows(Order)[0].sender_id
     of_alarm = alarm_notice(ada, clock)
     kept.add(of_alarm)
-    of_order = {notice.key for notice in kept.rows(Notice)} - {of_alarm.key}
+    of_order = {notice.key for notice in kept.rows(Notification)} - {of_alarm.key}
     assert of_order
     sending = {"channel": "webhook", "created_at": now, "next_try_at": None, "gave_up_at": now}
-    kept.add(OutgoingNotice(key="k1", notice_id=of_alarm.id, **sending))
+    kept.add(OutgoingNotification(key="k1", notice_id=of_alarm.id, **sending))
     assert "notices of alarms" not in kept.retain_after(399.5)
     assert kept.retain_after(1)["notices of alarms"] == 1
-    left = {notice.key for notice in kept.rows(Notice)}
+    left = {notice.key for notice in kept.rows(Notification)}
     assert of_alarm.key not in left
     assert of_order <= left, "those of orders stay as long as their order has names"
     assert kept.problems() == []
@@ -265,9 +266,9 @@ def test_mails_in_the_spool_go_by_the_files_age(kept: Kept, sender: Browser, mai
 
 async def test_the_housekeeper_ends_at_once_when_told_to(mailroom: Mailroom, clock: SteppedClock) -> None:
     state = mailroom.app.state.parts
-    housekeeper = Housekeeper(state.database, state.settings, clock)
-    running = asyncio.create_task(housekeeper.run())
+    retention_job = RetentionJob(state.database, state.settings, clock)
+    running = asyncio.create_task(retention_job.run())
     await asyncio.sleep(0)
-    housekeeper.stop()
+    retention_job.stop()
     async with asyncio.timeout(10):  # it rests for hours
         await running

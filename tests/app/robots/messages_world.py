@@ -1,4 +1,4 @@
-"""Robots that move and say so by messages that come late, the rows that a database would have of them, and a timetable
+"""Robots that move and say so by messages that come late, the rows that a database would have of them, and a schedule
 that is asked about both. What is true and what is known are kept apart: meetings are looked for in the truth.
 """
 
@@ -10,8 +10,8 @@ from itertools import count, pairwise
 from random import Random
 
 from app.core.settings import Settings
-from app.traffic.robot_locations import OF_ITS_OWN, Hold, Picture, Whereabouts, Wish
-from app.traffic.schedule import Elsewhere, Leg, MayEnter, Timetable, Verdict
+from app.traffic.robot_locations import OF_ITS_OWN, Hold, ReservationRequest, RobotLocation, TrafficSnapshot
+from app.traffic.schedule import Elsewhere, Leg, MayEnter, Schedule, Verdict
 from maps import CampusMap, NoRoute, corridor_name, shortest_route
 
 BEGIN = datetime(2026, 1, 1, tzinfo=UTC)
@@ -44,7 +44,7 @@ class Row:
     docked: bool
     online: bool = True
     stopped: bool = False
-    wish: Wish | None = None
+    request: ReservationRequest | None = None
     goals: list[tuple[str, str]] = field(default_factory=list)
     heard_at: datetime = BEGIN
 
@@ -78,7 +78,7 @@ class World:
         self.rows = {robot.name: Row(robot.post, BEGIN, docked=True) for robot in self.robots}
         self.grants: list[Grant] = []
         self.closed: set[str] = set()
-        self.timetable: Timetable | None = None
+        self.schedule: Schedule | None = None
         self.served = self.looks = 0
         self._numbers = count(1)
         self._coming: dict[str, deque[tuple[float, Callable[[], None]]]] = {r.name: deque() for r in self.robots}
@@ -196,9 +196,9 @@ class World:
         if self.rng.random() < 0.1:  # it does not know which way it looks
             others = [(robot.post, post.name) for post, _ in self.campus.neighbours(robot.post)]
             first, then = (*first, *(leg for leg in others if leg != legs[0])), ()
-        wish = Wish(f"c{next(self._numbers)}", first, goal, then)
-        robot.asked = wish.claim_id
-        self._say(robot, lambda: setattr(self.rows[robot.name], "wish", wish))
+        request = ReservationRequest(f"c{next(self._numbers)}", first, goal, then)
+        robot.asked = request.claim_id
+        self._say(robot, lambda: setattr(self.rows[robot.name], "wish", request))
 
     # What goes wrong.
 
@@ -213,7 +213,7 @@ class World:
             self._order,
             self._drop,
             self._close_or_open,
-            self._forget_timetable,
+            self._forget_schedule,
         )
         self.rng.choice(kinds)(robot)
 
@@ -240,9 +240,9 @@ class World:
 
     def _take_back(self, name: str, claim: str) -> None:
         """Withdraw a claim. A grant made meanwhile is given back as it comes: see `_granted`."""
-        wish = self.rows[name].wish
-        if wish is not None and wish.claim_id == claim:
-            self.rows[name].wish = None
+        request = self.rows[name].request
+        if request is not None and request.claim_id == claim:
+            self.rows[name].request = None
 
     def _order(self, robot: Robot) -> None:
         if len(self._goals(robot)) < 3:
@@ -257,8 +257,8 @@ class World:
         corridor = self.rng.choice(self.campus.corridors).name
         self.closed ^= {corridor}
 
-    def _forget_timetable(self, _robot: Robot) -> None:
-        self.timetable = None
+    def _forget_schedule(self, _robot: Robot) -> None:
+        self.schedule = None
 
     def calm(self) -> None:
         """Everything that goes wrong has gone right again."""
@@ -271,33 +271,35 @@ class World:
     # The service.
 
     def look(self) -> None:
-        """As the traffic desk does: follow, ask for verdicts, write them down."""
+        """As the traffic service does: follow, ask for verdicts, write them down."""
         self.looks += 1
         picture = self._picture()
-        timetable = self.timetable
-        if timetable is None:
-            timetable = Timetable(self.campus, self.settings)
+        schedule = self.schedule
+        if schedule is None:
+            schedule = Schedule(self.campus, self.settings)
             picture = replace(picture, robots={name: self._where_left(one) for name, one in picture.robots.items()})
-        held = {hold.grant_id for one in timetable.known.values() for hold in one.holds}
+        held = {hold.grant_id for one in schedule.known.values() for hold in one.holds}
         left = {grant.number: grant.left_at or grant.leg[1] for grant in self.grants if grant.number in held}
-        timetable.vanished = frozenset(name for name, one in picture.robots.items() if self._has_vanished(one))
-        timetable.follow(picture, left, self.now_s)
-        for verdict in list(timetable.verdicts(dict.fromkeys(picture.robots, True), self.now_s)):
+        schedule.vanished = frozenset(name for name, one in picture.robots.items() if self._has_vanished(one))
+        schedule.follow(picture, left, self.now_s)
+        for verdict in list(schedule.verdicts(dict.fromkeys(picture.robots, True), self.now_s)):
             self._write(verdict)
-        self.timetable = timetable
+        self.schedule = schedule
 
-    def _has_vanished(self, one: Whereabouts) -> bool:
+    def _has_vanished(self, one: RobotLocation) -> bool:
         silent_s = (self.now - (one.heard_at or BEGIN)).total_seconds()
         return not one.online and bool(one.holds or not one.at_home) and silent_s > VANISHED_AFTER_S
 
-    def _picture(self) -> Picture:
-        return Picture({robot.name: self._seen_by_the_service(robot) for robot in self.robots}, frozenset(self.closed))
+    def _picture(self) -> TrafficSnapshot:
+        return TrafficSnapshot(
+            {robot.name: self._seen_by_the_service(robot) for robot in self.robots}, frozenset(self.closed)
+        )
 
-    def _seen_by_the_service(self, robot: Robot) -> Whereabouts:
+    def _seen_by_the_service(self, robot: Robot) -> RobotLocation:
         row = self.rows[robot.name]
         holds = tuple(Hold(*g.leg, g.number) for g in self.grants if g.robot == robot.name and g.left_at is None)
-        own = row.wish and not row.wish.is_for_later and not (row.goals and row.goals[0][1] == row.wish.goal)
-        return Whereabouts(
+        own = row.request and not row.request.is_for_later and not (row.goals and row.goals[0][1] == row.request.goal)
+        return RobotLocation(
             robot=robot.name,
             post=row.post,
             seen_at=row.seen_at,
@@ -305,13 +307,13 @@ class World:
             at_home=row.docked and row.post == robot.home,
             online=row.online,
             holds=holds,
-            goals=(((OF_ITS_OWN, row.wish.goal),) if row.wish and own else ()) + tuple(row.goals),
-            wish=row.wish,
+            goals=(((OF_ITS_OWN, row.request.goal),) if row.request and own else ()) + tuple(row.goals),
+            request=row.request,
             stopped=row.stopped,
             heard_at=row.heard_at,
         )
 
-    def _where_left(self, one: Whereabouts) -> Whereabouts:
+    def _where_left(self, one: RobotLocation) -> RobotLocation:
         cleared = [grant for grant in self.grants if grant.robot == one.robot and grant.left_at]
         last = max(cleared, key=lambda grant: grant.cleared_at, default=None)
         is_news = last is not None and (one.seen_at is None or one.seen_at < last.cleared_at)
@@ -320,16 +322,16 @@ class World:
     def _write(self, verdict: Verdict) -> None:
         robot = next(one for one in self.robots if one.name == verdict.robot)
         row = self.rows[robot.name]
-        claim = row.wish.claim_id if row.wish else ""
+        claim = row.request.claim_id if row.request else ""
         match verdict:
             case MayEnter(legs=legs):
                 new = [Grant(next(self._numbers), robot.name, leg) for leg in legs]
                 self._check(new)
                 self.grants += new
-                row.wish = None
+                row.request = None
                 self._send(self._answers[robot.name], lambda: self._granted(robot, claim, new))
             case Elsewhere(leg=leg):
-                row.wish = None
+                row.request = None
                 self._send(self._answers[robot.name], lambda: self._denied(robot, claim, leg))
 
     def _check(self, new: list[Grant]) -> None:

@@ -18,7 +18,7 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed
 
 from app.composition import create_app
-from app.core.http_client import Outside
+from app.core.http_client import HttpClient
 from app.core.settings import Settings
 from app.models import Order, OrderEvent
 from app.orders.views.schemas import NewOrder
@@ -69,14 +69,14 @@ class Service:
         """Place an order of the sender to the recipient."""
         state = self.app.state.parts
         async with state.database.transaction() as session:
-            sender = await state.sign_in_desk.person(session, "sender@campus.example", state.clock.utc())
-            wish = NewOrder(from_post=from_post, to_post=to_post, recipient="recipient@campus.example")
-            return await placed(state.orders, session, sender, wish)
+            sender = await state.sign_in_service.person(session, "sender@campus.example", state.clock.utc())
+            request = NewOrder(from_post=from_post, to_post=to_post, recipient="recipient@campus.example")
+            return await placed(state.orders, session, sender, request)
 
     async def cancel(self, order_id: str) -> None:
         state = self.app.state.parts
         async with state.database.transaction() as session:
-            sender = await state.sign_in_desk.person(session, "sender@campus.example", state.clock.utc())
+            sender = await state.sign_in_service.person(session, "sender@campus.example", state.clock.utc())
             await state.orders.cancelling.cancel(session, sender, order_id, "")
 
     async def rows(self, table: type[SQLModel], **wanted: object) -> list[Any]:
@@ -101,11 +101,11 @@ class Service:
 
 @asynccontextmanager
 async def serving(
-    settings: Settings, clock: Clock, ping_s: float = 10.0, outside: Outside | None = None
+    settings: Settings, clock: Clock, ping_s: float = 10.0, http_client: HttpClient | None = None
 ) -> AsyncIterator[Service]:
     """The service from start to stop; again with the same settings, it is a restart."""
     listening = socket.create_server(("127.0.0.1", 0))
-    app = create_app(settings, clock, outside)
+    app = create_app(settings, clock, http_client)
     config = uvicorn.Config(
         app,
         log_config=None,

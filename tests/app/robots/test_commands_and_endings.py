@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import pytest
 from websockets.asyncio.client import connect
 
-from app.models import Alarm, Handover, MessageToRobot, Notice, Order
+from app.models import Alarm, Handover, MessageToRobot, Notification, Order
 from app.robots.service import new_token
 from protocol.clock import SteppedClock
 from protocol.parts import Leg, Stop, StopAction
@@ -131,7 +131,7 @@ async def test_who_was_told_that_mail_was_not_taken_is_not_told_so_again_when_it
 
 
 async def told(service: Service, order_id: str) -> Counter[str]:
-    return Counter(str(one.kind) for one in await service.rows(Notice, order_id=order_id))
+    return Counter(str(one.kind) for one in await service.rows(Notification, order_id=order_id))
 
 
 async def test_mail_that_is_called_back_turns_round_when_the_robot_says_so(

@@ -9,12 +9,12 @@ from fastapi import FastAPI
 
 from app.accounts.sign_in.service import set_roles
 from app.models import Alarm, BatterySample, Person, RobotRow, Role
-from app.realtime.feed import WHISPERED, Happening, LocalFeed
+from app.realtime.feed import WHISPERED, FeedEvent, LocalFeed
 from app.robots.battery import SHOWN, samples_since
-from app.robots.diagnostics import HOLDS_S, Watching
+from app.robots.diagnostics import HOLDS_S, LiveDiagnostics
 from app.robots.service import enrol
 from protocol.clock import SteppedClock
-from protocol.insight import Insight
+from protocol.insight import Diagnostics
 from protocol.parts import Activity, Battery, Position
 from protocol.to_robot import Watch
 from protocol.to_server import Snapshot
@@ -23,7 +23,7 @@ from tests.app.conftest import SENDER, Browser, Mailroom
 from tests.app.robots.playing import PlayedRobot, Service, until
 
 EXAMPLE = Path(__file__).parents[3] / "protocol/examples/insight.json"
-INSIGHT = Insight.model_validate_json(json.dumps(json.loads(EXAMPLE.read_text())["body"]))
+INSIGHT = Diagnostics.model_validate_json(json.dumps(json.loads(EXAMPLE.read_text())["body"]))
 MIRA = Person(id="mira", email="mira@campus.example", name="Mira", roles=["maintainer", "member"])
 DAN = Person(id="dan", email="dan@campus.example", name="Dan", roles=["dispatcher", "member"])
 
@@ -79,7 +79,7 @@ def test_who_says_no_more_that_they_watch_is_forgotten() -> None:
             asked.append(watch)
             return True
 
-    watching = Watching(Seats(), LocalFeed(), lambda: now_s[0])
+    watching = LiveDiagnostics(Seats(), LocalFeed(), lambda: now_s[0])
     watching.watch("r1", "mira")
     now_s[0] = 10.0
     watching.watch("r1", "mira")
@@ -94,11 +94,11 @@ def test_who_says_no_more_that_they_watch_is_forgotten() -> None:
 def test_what_is_of_the_moment_pushes_nothing_out_and_is_left_out_first() -> None:
     feed = LocalFeed()
     with feed.listening(MIRA) as mira:
-        feed.publish(Happening("robot", {"name": "r1"}))
+        feed.publish(FeedEvent("robot", {"name": "r1"}))
         before = feed.last_id
         for _ in range(3 * WHISPERED):
-            feed.whisper(Happening("insight", {}, role=Role.MAINTAINER), {"mira"})
-        feed.publish(Happening("robot", {"name": "r2"}))
+            feed.whisper(FeedEvent("insight", {}, role=Role.MAINTAINER), {"mira"})
+        feed.publish(FeedEvent("robot", {"name": "r2"}))
         assert mira.qsize() == WHISPERED + 1
         missed = feed.missed(MIRA, before)
     assert missed is not None
@@ -157,7 +157,7 @@ def test_maintainers_see_one_robots_faults_and_charge_and_are_told_whether_it_te
 
     async def begin() -> None:
         async with app.state.parts.database.transaction() as session:
-            set_roles(await app.state.parts.sign_in_desk.person(session, SENDER, now), {Role.MAINTAINER}, set())
+            set_roles(await app.state.parts.sign_in_service.person(session, SENDER, now), {Role.MAINTAINER}, set())
             for name in ("r1", "r2"):
                 if name == "r2":
                     await enrol(session, clock, name)

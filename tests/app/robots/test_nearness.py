@@ -3,7 +3,7 @@
 import pytest
 
 from app.core.settings import Settings, open_map
-from app.models import Notice
+from app.models import Notification
 from app.orders.nearness import is_near
 from maps.ways import Ways
 from protocol.clock import SteppedClock
@@ -19,7 +19,7 @@ def settings(settings: Settings) -> Settings:
 
 
 async def kinds(service: Service) -> list[str]:
-    return [str(one.kind) for one in await service.rows(Notice)]
+    return [str(one.kind) for one in await service.rows(Notification)]
 
 
 async def test_the_sender_hears_once_that_the_robot_is_near_when_it_has_one_corridor_left(
@@ -54,7 +54,7 @@ async def test_what_is_told_on_the_way_is_told_at_the_time_at_which_it_is(
         await robot.ends(await robot.report(mission, Step.DEPARTED, load, post=FAR))
         clock.advance(1800.0)
         await robot.ends(await robot.report(mission, Step.PASSED, load, post=NEXT_TO_IT))
-    near = (await service.rows(Notice))[-1]
+    near = (await service.rows(Notification))[-1]
     assert (near.kind, near.at) == ("robot_near", clock.utc())
 
 

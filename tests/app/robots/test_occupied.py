@@ -5,7 +5,7 @@ from collections.abc import AsyncIterator
 import pytest
 
 from app.models import Person, Role
-from app.realtime.feed import Happening
+from app.realtime.feed import FeedEvent
 from app.robots.corridors.occupied import traffic_for
 from protocol.parts import Leg
 from protocol.to_server import Claim, Clear, Step
@@ -59,7 +59,7 @@ async def test_pages_hear_of_it_as_soon_as_a_corridor_is_taken_or_left(
 ) -> None:
     feed = service.app.state.parts.feed
     people = [await party(service, "sender@campus.example"), STRANGER, DISPATCHER, MAINTAINER]
-    heard: dict[str, list[Happening]] = {}
+    heard: dict[str, list[FeedEvent]] = {}
     for person in people:
         with feed.listening(person) as queue:
             claim = Claim(claim_id=f"c-{person.name}", legs=(FIRST, FIRST))

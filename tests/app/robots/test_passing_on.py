@@ -7,7 +7,7 @@ import pytest
 
 from app.accounts.sign_in.service import set_roles
 from app.core.errors import ServiceError
-from app.models import Notice, Order, OrderState, Person, Role
+from app.models import Notification, Order, OrderState, Person, Role
 from app.orders.custody.codes import Holder, codes_of
 from app.orders.service import Actor
 from app.orders.transitions import By
@@ -44,7 +44,7 @@ class Mailroom:
 
     async def person(self, session: object) -> Person:
         state = self.service.app.state.parts
-        person: Person = await state.sign_in_desk.person(session, "mailroom@campus.example", state.clock.utc())
+        person: Person = await state.sign_in_service.person(session, "mailroom@campus.example", state.clock.utc())
         set_roles(person, {Role.DISPATCHER}, set())
         return person
 
@@ -117,7 +117,7 @@ async def test_what_one_robot_cannot_carry_on_another_does_and_the_chain_has_no_
     links = [("sender", None), ("robot", "r1"), ("mailroom", None), ("robot", "r2"), ("recipient", None)]
     assert await mailroom.links(order_id) == links
     sender = (await service.row(Order, id=order_id)).sender_id
-    told = [one.kind for one in await service.rows(Notice, order_id=order_id, person_id=sender)]
+    told = [one.kind for one in await service.rows(Notification, order_id=order_id, person_id=sender)]
     assert told.count("robot_here") == 1, "the second robot does not come to the sender"
 
 

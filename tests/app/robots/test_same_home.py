@@ -21,7 +21,7 @@ REFUSAL = "its home uc is that of r1, too: give it another in its settings, or t
 LEG = Leg(from_post="uc", to_post="azrieli")
 
 
-@pytest.fixture(params=["timetable", "at_once"])
+@pytest.fixture(params=["schedule", "at_once"])
 async def service(request: pytest.FixtureRequest, settings: Settings, clock: SteppedClock) -> AsyncIterator[Service]:
     """In the tunnels, which have several docks, with either rule of who fetches what."""
     more = {"map": "carleton", "traffic": request.param}

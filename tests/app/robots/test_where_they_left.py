@@ -1,4 +1,4 @@
-"""Where a robot stands that has left a corridor since it was last seen, for a timetable that is made anew."""
+"""Where a robot stands that has left a corridor since it was last seen, for a schedule that is made anew."""
 
 from dataclasses import replace
 from datetime import timedelta

@@ -15,7 +15,7 @@ import pytest
 
 from app.composition import create_app
 from app.core.errors import StartError
-from app.core.http_client import Outside, Resolve, TargetRefused
+from app.core.http_client import HttpClient, Resolve, TargetRefused
 from app.core.settings import load_settings
 from app.core.special_networks import SPECIAL_IPV4, SPECIAL_IPV6, Network, is_public
 from protocol.clock import SteppedClock
@@ -118,12 +118,12 @@ def always(*addresses: str) -> Resolve:
     "url", ["https://hooks.example:22/", "https://hooks.example:8443/", "https://hooks.example:0/"]
 )
 async def test_443_is_asked_alone_unless_the_operator_allows_another_port(url: str) -> None:
-    outside = Outside(resolve=always("93.184.216.34"))
-    assert (await outside.checked_target("https://hooks.example/")).port == 443
-    assert (await outside.checked_target("https://hooks.example:443/")).port == 443
+    http_client = HttpClient(resolve=always("93.184.216.34"))
+    assert (await http_client.checked_target("https://hooks.example/")).port == 443
+    assert (await http_client.checked_target("https://hooks.example:443/")).port == 443
     with pytest.raises(TargetRefused, match="among those that may be asked: 443"):
-        await outside.checked_target(url)
-    more = Outside((443, 8443), resolve=always("93.184.216.34"))
+        await http_client.checked_target(url)
+    more = HttpClient((443, 8443), resolve=always("93.184.216.34"))
     assert (await more.checked_target("https://hooks.example:8443/")).port == 8443
 
 
@@ -133,10 +133,10 @@ async def test_the_settings_open_ports_and_refuse_networks(
     monkeypatch.setenv("CAMPUS_MAIL_DATA", str(tmp_path))
     monkeypatch.setenv("CAMPUS_MAIL_OUTSIDE_PORTS", "[443, 8443]")
     monkeypatch.setenv("CAMPUS_MAIL_OUTSIDE_REFUSED_NETWORKS", '["93.184.0.0/16"]')
-    outside: Outside = create_app(load_settings(), clock).state.parts.outside
-    assert (await outside.checked_target("https://9.9.9.9:8443/")).address == "9.9.9.9"
+    http_client: HttpClient = create_app(load_settings(), clock).state.parts.http_client
+    assert (await http_client.checked_target("https://9.9.9.9:8443/")).address == "9.9.9.9"
     with pytest.raises(TargetRefused, match="not on the public network"):
-        await outside.checked_target("https://93.184.216.34/")
+        await http_client.checked_target("https://93.184.216.34/")
 
 
 @pytest.mark.parametrize(("name", "value"), [("PORTS", "[0]"), ("PORTS", "[]"), ("REFUSED_NETWORKS", '["10.0.0.1/8"]')])
@@ -156,7 +156,7 @@ async def test_a_name_is_looked_up_as_it_travels() -> None:
         asked.append(host)
         return ["93.184.216.34"]
 
-    target = await Outside(resolve=resolve).checked_target("https://straße.example./")
+    target = await HttpClient(resolve=resolve).checked_target("https://straße.example./")
     assert asked == ["xn--strae-oqa.example."]
     assert target.host == "xn--strae-oqa.example"
 
@@ -186,7 +186,7 @@ async def test_a_name_is_looked_up_as_it_travels() -> None:
 )
 async def test_an_address_that_leads_inside_or_nowhere_is_refused(url: str) -> None:
     with pytest.raises(TargetRefused):
-        await Outside().checked_target(url)
+        await HttpClient().checked_target(url)
 
 
 async def test_one_address_inside_among_many_is_enough_to_refuse_a_name() -> None:
@@ -194,7 +194,7 @@ async def test_one_address_inside_among_many_is_enough_to_refuse_a_name() -> Non
         return ["93.184.216.34", "10.0.0.1"]
 
     with pytest.raises(TargetRefused, match="not on the public network"):
-        await Outside(resolve=mixed).checked_target("https://hooks.example/")
+        await HttpClient(resolve=mixed).checked_target("https://hooks.example/")
 
 
 async def test_a_name_that_was_outside_yesterday_is_refused_when_it_leads_inside_today() -> None:
@@ -203,9 +203,9 @@ async def test_a_name_that_was_outside_yesterday_is_refused_when_it_leads_inside
     async def changing(host: str, port: int) -> list[str]:
         return answers.pop(0)
 
-    outside = Outside(resolve=changing)
-    assert (await outside.checked_target("https://hooks.example/")).address == "93.184.216.34"
-    async with outside.client() as client:
+    http_client = HttpClient(resolve=changing)
+    assert (await http_client.checked_target("https://hooks.example/")).address == "93.184.216.34"
+    async with http_client.client() as client:
         with pytest.raises(TargetRefused):
             await client.post("https://hooks.example/")
 
@@ -244,7 +244,7 @@ async def test_the_connection_goes_to_the_address_that_was_checked(hook: int) ->
         asked.append(host)
         return ["127.0.0.1"]
 
-    async with Outside(allow_private=True, resolve=once).client() as client:
+    async with HttpClient(allow_private=True, resolve=once).client() as client:
         answer = await client.post(f"http://hooks.example:{hook}/here")
     assert answer.status_code == 204
     assert asked == ["hooks.example"], "no name server was asked a second time"
@@ -257,7 +257,7 @@ async def test_a_redirect_is_checked_like_any_request(hook: int) -> None:
             raise OSError("there is no such name")
         return ["127.0.0.1"]
 
-    async with Outside(allow_private=True, resolve=only_the_hook).client() as client:
+    async with HttpClient(allow_private=True, resolve=only_the_hook).client() as client:
         with pytest.raises(TargetRefused, match=r"metadata\.example"):
             await client.post(f"http://hooks.example:{hook}/away", follow_redirects=True)
         assert (await client.post(f"http://hooks.example:{hook}/away")).status_code == 307, "not followed unasked"
@@ -287,7 +287,7 @@ async def test_tls_is_for_the_name_and_not_for_the_address(anothers_certificate:
         server.socket = context.wrap_socket(server.socket, server_side=True)
         thread = threading.Thread(target=server.serve_forever)
         thread.start()
-        async with Outside(allow_private=True, resolve=here).client() as client:
+        async with HttpClient(allow_private=True, resolve=here).client() as client:
             with pytest.raises(httpx.ConnectError, match="CERTIFICATE_VERIFY_FAILED"):
                 await client.post(f"https://hooks.example:{server.server_port}/")
         server.shutdown()

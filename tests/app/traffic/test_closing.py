@@ -4,7 +4,7 @@ import pytest
 
 from app.core.settings import Settings
 from app.models import Person, RobotRow
-from app.realtime.feed import Happening
+from app.realtime.feed import FeedEvent
 from app.robots.corridors.closures import all_closed
 from app.robots.errors import NoSuchCorridor
 from app.traffic.closing import close, open_again
@@ -22,7 +22,7 @@ NAME = "post2-post3"
 async def the_dispatcher(service: Service) -> Person:
     state = service.app.state.parts
     async with state.database.transaction() as session:
-        person: Person = await state.sign_in_desk.person(session, "dan@campus.example", state.clock.utc())
+        person: Person = await state.sign_in_service.person(session, "dan@campus.example", state.clock.utc())
     return person
 
 
@@ -107,7 +107,7 @@ async def test_everybody_hears_of_it_and_a_corridor_that_is_not_there_is_named(s
         await close_it(service)
         await open_it(service)
         await open_it(service)
-        news: list[Happening] = [queue.get_nowait().happening for _ in range(queue.qsize())]
+        news: list[FeedEvent] = [queue.get_nowait().happening for _ in range(queue.qsize())]
     assert [len(one.data.closed) for one in news if one.event == "closed"] == [1, 1, 0, 0]  # type: ignore[union-attr]
     with pytest.raises(NoSuchCorridor, match="post1-post9"):
         await close_it(service, "post1-post9")

@@ -31,7 +31,7 @@ async def taken_out(service: Service, name: str = "r1") -> str:
     """Take a robot out of service as a dispatcher and return the command's id."""
     state = service.app.state.parts
     async with state.database.transaction() as session:
-        by = await state.sign_in_desk.person(session, "dan@campus.example", state.clock.utc())
+        by = await state.sign_in_service.person(session, "dan@campus.example", state.clock.utc())
         robot = await known_robot(session, name, to_change=True)
         return (await take_out(session, state.fleet, robot, "Carried into the workshop.", by)).command_id
 

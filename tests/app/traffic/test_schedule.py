@@ -93,8 +93,8 @@ async def test_who_takes_back_what_it_waits_for_is_in_no_robots_way(
 
     async def goes_somewhere() -> bool | None:
         """None for a moment, where what was taken back had just been decided: all is planned anew then."""
-        timetable = service.app.state.parts.traffic_desk.timetable
-        return None if timetable is None else bool(timetable.controller.goals("r2"))
+        schedule = service.app.state.parts.traffic_service.schedule
+        return None if schedule is None else bool(schedule.controller.goals("r2"))
 
     async def goes_nowhere() -> bool:
         return not await waits() and await goes_somewhere() is False
@@ -138,8 +138,8 @@ async def test_after_a_restart_of_the_service_a_robot_stands_where_it_left_its_l
     async with serving(settings, clock) as service:
 
         async def stands_at() -> str | None:
-            timetable = service.app.state.parts.traffic_desk.timetable
-            return timetable.known["r2"].post if timetable else None
+            schedule = service.app.state.parts.traffic_service.schedule
+            return schedule.known["r2"].post if schedule else None
 
         assert await until(stands_at) == "post3"
 

@@ -1,4 +1,4 @@
-"""`Timetable` itself, driven at random: restarts, deaths, stops, withdrawals, closed corridors and messages that come
+"""`Schedule` itself, driven at random: restarts, deaths, stops, withdrawals, closed corridors and messages that come
 late. No two robots meet, nothing raises, and when all is well again each does its work and comes home.
 """
 

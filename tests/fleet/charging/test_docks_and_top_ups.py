@@ -13,7 +13,7 @@ from fleet.charging.demand import Demand
 from fleet.charging.docks import DockPlan, Need, due_s, plan_docks, robots_carried, standing_per_s
 from fleet.charging.energy import Use, assumed_rates
 from fleet.charging.levels import Thresholds
-from fleet.charging.top_ups import Move, Wish, top_ups
+from fleet.charging.top_ups import Move, TopUpPolicy, top_ups
 
 RATES = replace(assumed_rates(7200.0, 19_000.0, 0.2), driving_var=0.003, standing_var=0.003)
 CURVE, THRESHOLDS = ChargeCurve(10_800.0), Thresholds()
@@ -35,8 +35,8 @@ def planned(*needs: Need, docks: tuple[str, ...] = ("a", "b")) -> DockPlan:
 
 def moves(*needs: Need, free: str = "ab", is_quiet: bool = False, wanted: int = 0) -> dict[str, str]:
     taken = {dock: next((one.robot for one in needs if one.dock == dock), None) for dock in "ab" if dock not in free}
-    wish = Wish(is_quiet, wanted)
-    return {move.robot: move.dock for move in top_ups(needs, planned(*needs), taken, THRESHOLDS, wish, 0.0)}
+    policy = TopUpPolicy(is_quiet, wanted)
+    return {move.robot: move.dock for move in top_ups(needs, planned(*needs), taken, THRESHOLDS, policy, 0.0)}
 
 
 def test_who_is_lower_comes_first_and_the_other_in_time() -> None:
@@ -124,9 +124,9 @@ def test_who_must_charge_soon_sets_out_even_to_a_dock_that_is_taken() -> None:
 
 def test_no_robot_sets_out_that_would_not_arrive() -> None:
     assert moves(need("r1", 0.45, a=Use(900.0, 4500.0))) != {"r1": "b"}
-    assert top_ups([need("r1", 0.3, c=NEAR)], planned(need("r1", 0.3, c=NEAR)), {}, THRESHOLDS, Wish(True), 0.0) == [
-        Move("r1", "c")
-    ]
+    assert top_ups(
+        [need("r1", 0.3, c=NEAR)], planned(need("r1", 0.3, c=NEAR)), {}, THRESHOLDS, TopUpPolicy(True), 0.0
+    ) == [Move("r1", "c")]
 
 
 def test_quiet_hours_are_learned_and_nothing_is_quiet_that_was_not_learned() -> None:

@@ -1,4 +1,4 @@
-"""A small world that carries timetables out: no robot keeps to the times, all keep to the order of entry."""
+"""A small world that carries schedules out: no robot keeps to the times, all keep to the order of entry."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace

@@ -11,9 +11,9 @@ import pytest
 from fleet.schedule.controller import Denied, Granted, TrafficController, Waits
 from fleet.schedule.journey import Goal
 from fleet.schedule.network import Lane, Network
-from fleet.schedule.planning import Timetable
+from fleet.schedule.planning import Schedule
 from fleet.schedule.validation import problems
-from tests.fleet.schedule.test_timetables import random_network
+from tests.fleet.schedule.test_schedules import random_network
 
 
 def line(posts: int, bays: int = 1) -> Network:
@@ -147,7 +147,7 @@ def test_of_what_a_robot_has_begun_only_the_rest_is_counted() -> None:
 
     assert controller.give("r1", goals, 10.0)
     assert done_s(10.0) == done_s(50.0) == 10.0 + 120.0 + 200.0 + 60.0
-    assert controller.adopt({"r1": controller.tasks(50.0)["r1"].goals}, Timetable(controller.journeys(50.0), 0.0), 50.0)
+    assert controller.adopt({"r1": controller.tasks(50.0)["r1"].goals}, Schedule(controller.journeys(50.0), 0.0), 50.0)
     assert controller.goals("r1") == tuple(goals), "as it was told"
     assert done_s(60.0) == 390.0
     assert done_s(100.0) == 100.0 + 5.0 + 60.0 + 200.0 + 60.0, "any moment now"
@@ -167,16 +167,16 @@ def test_a_robot_that_goes_for_reasons_of_its_own_is_let_in() -> None:
     assert isinstance(controller.claims("r1", "b", "c", 101.0), Granted)
 
 
-def test_a_timetable_worked_out_meanwhile_is_taken_if_no_robot_went_elsewhere() -> None:
+def test_a_schedule_worked_out_meanwhile_is_taken_if_no_robot_went_elsewhere() -> None:
     controller = two_at_the_ends()
     assert controller.give("r1", [Goal(1, 10.0, key="one")], 0.0)
     tasks, journeys = controller.tasks(0.0), controller.journeys(0.0)
     assert isinstance(controller.claims("r1", "a", "b", 1.0), Granted)
-    assert controller.adopt({"r1": tasks["r1"].goals}, Timetable(journeys, 0.0), 2.0)
+    assert controller.adopt({"r1": tasks["r1"].goals}, Schedule(journeys, 0.0), 2.0)
     controller.cleared("r1", "a", "b", 101.0)
     controller.served("r1", "one", 111.0)
     assert isinstance(controller.claims("r1", "b", "c", 112.0), Denied | Granted)
-    assert not controller.adopt({"r1": tasks["r1"].goals}, Timetable({"r1": journeys["r1"]}, 0.0), 113.0)
+    assert not controller.adopt({"r1": tasks["r1"].goals}, Schedule({"r1": journeys["r1"]}, 0.0), 113.0)
 
 
 @dataclass

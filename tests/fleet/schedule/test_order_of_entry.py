@@ -1,4 +1,4 @@
-"""The order of a timetable is kept whatever the clock says, and what is near enough to a mistake is seen as one."""
+"""The order of a schedule is kept whatever the clock says, and what is near enough to a mistake is seen as one."""
 
 from dataclasses import replace
 from random import Random
@@ -10,13 +10,13 @@ from hypothesis import strategies as st
 from fleet.schedule.execution import may_enter, retimed
 from fleet.schedule.journey import Goal, Journey, Leg, Start, Task, standing
 from fleet.schedule.network import Network
-from fleet.schedule.planning import Timetable, improve, plan
+from fleet.schedule.planning import Schedule, improve, plan
 from fleet.schedule.validation import problems
 from tests.app.dispatch.test_fleet_plan import street
-from tests.fleet.schedule.test_timetables import planned, random_network, random_tasks, two_posts
+from tests.fleet.schedule.test_schedules import planned, random_network, random_tasks, two_posts
 
 
-def two_that_swap(network: Network) -> tuple[dict[str, Task], Timetable]:
+def two_that_swap(network: Network) -> tuple[dict[str, Task], Schedule]:
     tasks = {
         "r1": Task(Start(0, True, 50.0, 0.0), (Goal(1, 10.0),), 0),
         "r2": Task(Start(1, True, 0.0, 0.0), (Goal(0, 10.0, 300.0),), 1),
@@ -26,7 +26,7 @@ def two_that_swap(network: Network) -> tuple[dict[str, Task], Timetable]:
     return tasks, found
 
 
-def test_a_robot_that_is_ready_early_waits_for_the_one_the_timetable_lets_go_first() -> None:
+def test_a_robot_that_is_ready_early_waits_for_the_one_the_schedule_lets_go_first() -> None:
     network = two_posts(bays=2)
     tasks, found = two_that_swap(network)
     entries_s = {robot: journey.legs[1].enter_s for robot, journey in found.journeys.items()}

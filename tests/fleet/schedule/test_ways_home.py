@@ -10,7 +10,7 @@ from fleet.schedule.journey import Goal, Journey, Start, Task
 from fleet.schedule.planning import Journeys, plan
 from fleet.schedule.validation import problems
 from tests.app.dispatch.test_fleet_plan import street
-from tests.fleet.schedule.test_timetables import planned, random_network, random_tasks
+from tests.fleet.schedule.test_schedules import planned, random_network, random_tasks
 
 
 def later(journey: Journey, by_s: float) -> Journey:
@@ -56,7 +56,7 @@ def test_a_way_home_past_a_robot_is_no_matter_where_there_is_a_bay_for_both() ->
 
 @settings(max_examples=100)
 @given(st.randoms(use_true_random=False), st.integers(2, 6), st.booleans())
-def test_new_work_beside_what_is_kept_makes_a_whole_timetable(rng: Random, robots: int, following: bool) -> None:
+def test_new_work_beside_what_is_kept_makes_a_whole_schedule(rng: Random, robots: int, following: bool) -> None:
     network = random_network(rng, following=following)
     tasks = random_tasks(rng, network, robots)
     kept = planned(rng, network, tasks).journeys

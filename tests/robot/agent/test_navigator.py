@@ -16,7 +16,7 @@ from robot.drivers.interfaces import Sighting
 from robot.localization.closed import CLOSED_S
 from robot.localization.directions import kept_from
 from robot.mission.memory import Memory
-from robot.mission.mission import Duties
+from robot.mission.mission import MissionManager
 from robot.mission.outbox import Outbox
 from robot.mission.store import Store
 from tests.robot.fake_body import FakeBody
@@ -35,9 +35,9 @@ class Walk:
         campus: CampusMap = CAMPUS,
     ) -> None:
         utc = datetime(2026, 1, 5, tzinfo=UTC) + timedelta(seconds=since_midnight_s)
-        self.duties = Duties(store, Memory(store), Outbox(store), lambda: utc)
+        self.missions = MissionManager(store, Memory(store), Outbox(store), lambda: utc)
         self.now = 0.0
-        self.navigator = Navigator(campus, home, self.duties, self.now)
+        self.navigator = Navigator(campus, home, self.missions, self.now)
         self.body = FakeBody()
 
     def look(self) -> None:
@@ -113,11 +113,11 @@ def test_who_is_sent_aside_to_where_it_goes_anyway_takes_the_corridor_that_it_wa
     assert walk.navigator.way() == "forward", "by the junction it is as far, and no turn"
     straight = Leg(from_post="azrieli", to_post="library")
     sent = Detour(claim_id="c", legs=(straight,), reason="Others have to pass.")
-    walk.duties.memory.resume("j", 1)
-    walk.duties.memory.receive(
+    walk.missions.memory.resume("j", 1)
+    walk.missions.memory.receive(
         Envelope(type="detour", robot="r1", journal="j", seq=1, at=datetime(2026, 1, 5, tzinfo=UTC), body=sent)
     )
-    walk.duties.seen("azrieli")
+    walk.missions.seen("azrieli")
     assert walk.navigator.way() == "right"
     walk.turns("right")
     walk.navigator.leave()
@@ -151,20 +151,20 @@ def test_a_post_is_perceived_until_the_robot_rolls_on(walk: Walk) -> None:
 
 def test_a_corridor_is_given_back_when_its_far_end_is_reached(walk: Walk) -> None:
     leg = Leg(from_post="post2", to_post="post3")
-    walk.duties.memory.grant([leg])
-    walk.duties.seen("post2")
+    walk.missions.memory.grant([leg])
+    walk.missions.seen("post2")
     walk.navigator.place("post2", "post3")
     walk.drives_to("post3")
-    assert walk.duties.held.grants == ()
+    assert walk.missions.held.grants == ()
 
 
 def test_the_other_ways_out_of_the_post_before_are_given_back_with_it_and_what_lies_ahead_is_kept(walk: Walk) -> None:
     legs = [Leg(from_post=a, to_post=b) for a, b in (("post2", "post3"), ("post2", "post1"), ("post3", "post4"))]
-    walk.duties.memory.grant(legs)
-    walk.duties.seen("post2")
+    walk.missions.memory.grant(legs)
+    walk.missions.seen("post2")
     walk.navigator.place("post2", "post3")
     walk.drives_to("post3")
-    assert walk.duties.held.grants == (legs[2],)
+    assert walk.missions.held.grants == (legs[2],)
 
 
 def test_the_nearest_dock_is_by_the_map_and_its_own_while_it_is_lost(store: Store) -> None:
@@ -237,8 +237,8 @@ def test_a_corridor_that_was_opened_again_is_not_closed_by_a_restart(walk: Walk,
 
 def test_a_robot_that_turns_round_between_posts_comes_back_to_where_it_was(walk: Walk) -> None:
     leg = Leg(from_post="post2", to_post="post3")
-    walk.duties.memory.grant([leg])
-    walk.duties.seen("post2")
+    walk.missions.memory.grant([leg])
+    walk.missions.seen("post2")
     walk.navigator.place("post2", "post3")
     walk.navigator.leave()
     walk.body.rolls(700.0)
@@ -248,11 +248,11 @@ def test_a_robot_that_turns_round_between_posts_comes_back_to_where_it_was(walk:
     walk.look()
     walk.navigator.turned()
     assert (walk.navigator.towards, walk.navigator.came_from, walk.navigator.corridor) == ("post2", "post3", leg)
-    assert walk.duties.held.grants == (leg,), "it is still in there"
+    assert walk.missions.held.grants == (leg,), "it is still in there"
     walk.body.rolls(690.0)
     walk.look()
     assert (walk.navigator.at, walk.navigator.corridor) == ("post2", None)
-    assert walk.duties.held.grants == (leg,), "it may wish to go in again, perhaps where no service can grant it"
+    assert walk.missions.held.grants == (leg,), "it may wish to go in again, perhaps where no service can grant it"
     walk.navigator.destination = "post3"
     assert walk.navigator.way() == "behind"
 

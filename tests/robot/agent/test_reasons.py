@@ -15,7 +15,7 @@ from robot.agent.reasons import reason
 from robot.drivers.interfaces import BaseState
 from robot.mission.custody import Waiting
 from robot.mission.memory import Incoming, Memory
-from robot.mission.mission import Duties
+from robot.mission.mission import MissionManager
 from robot.mission.outbox import Outbox
 from robot.mission.store import Store
 from robot.skills.interfaces import View
@@ -25,21 +25,21 @@ MISSION = Mission(id="m1", update=1, stops=(Stop(id="s1", post="post1", action=S
 
 @dataclass
 class Robot:
-    duties: Duties
+    missions: MissionManager
     navigator: Navigator
 
     def why(self, *under_way: str, view: View | None = None, charging: bool = False) -> tuple[str, str | None]:
-        said = reason(under_way, view or View(), self.navigator, self.duties, charging)
+        said = reason(under_way, view or View(), self.navigator, self.missions, charging)
         return said.sentence, said.waiting_for
 
 
 @pytest.fixture
 def robot(tmp_path: Path) -> Iterator[Robot]:
     store = Store(tmp_path / "robot.db")
-    duties = Duties(store, Memory(store), Outbox(store), lambda: datetime(2026, 1, 5, tzinfo=UTC))
-    navigator = Navigator(builtin_map("test_track"), "post5", duties, now=0.0)
+    missions = MissionManager(store, Memory(store), Outbox(store), lambda: datetime(2026, 1, 5, tzinfo=UTC))
+    navigator = Navigator(builtin_map("test_track"), "post5", missions, now=0.0)
     navigator.place("post3", "post4")
-    yield Robot(duties, navigator)
+    yield Robot(missions, navigator)
     store.close()
 
 
@@ -55,7 +55,7 @@ def test_a_pause_is_said_to_be_for_what_it_is_for(robot: Robot) -> None:
 
 
 def test_hands_in_its_box_are_named_before_what_it_waited_for(robot: Robot) -> None:
-    robot.duties.custody.wait(Waiting((MISSION, MISSION.stops[0]), Purpose.LOAD, "post3", handed_over=True))
+    robot.missions.custody.wait(Waiting((MISSION, MISSION.stops[0]), Purpose.LOAD, "post3", handed_over=True))
     action = 'wait_handover(load,"o1","s1",600)'
     assert robot.why(action) == ("Giving people at post3 a moment to step back", None)
 
@@ -70,7 +70,7 @@ def test_out_of_network_it_says_that_it_waits_for_the_network(robot: Robot) -> N
         def wake(self) -> None:
             pass
 
-    robot.duties.join(Unreachable())
+    robot.missions.join(Unreachable())
     assert robot.why("claim(post4)") == ("Waiting at post3 for the network", "the network")
 
 
@@ -92,9 +92,9 @@ def test_a_fault_comes_before_everything_else(robot: Robot) -> None:
 def test_a_robot_that_charges_with_a_mission_says_what_for(robot: Robot) -> None:
     docked = View(base=BaseState(at_s=0.0, home_base=True))
     assert robot.why(view=docked) == ("In its dock at post3", None)
-    robot.duties.give(MISSION)
+    robot.missions.give(MISSION)
     assert robot.why(view=docked, charging=True) == ("Charging at post3", "a full battery")
-    assert reason((), docked, robot.navigator, robot.duties, True).goal == "to collect mail at post1"
+    assert reason((), docked, robot.navigator, robot.missions, True).goal == "to collect mail at post1"
 
 
 def test_an_action_nobody_has_words_for_is_not_named(robot: Robot) -> None:

@@ -6,14 +6,14 @@ from protocol.parts import Leg, Part
 from protocol.to_robot import Grant, Mission
 from protocol.to_server import Claim, Clear, Withdraw
 from robot.mission.memory import Incoming
-from robot.mission.mission import Duties
+from robot.mission.mission import MissionManager
 
 
 @dataclass
 class PlayedService:
     """`held` are the corridors that it believes to be the robot's, `unanswered` the claims that it lets wait."""
 
-    duties: Duties
+    missions: MissionManager
     online: bool = True
     lets_wait: bool = False
     held: list[Leg] = field(default_factory=list)
@@ -25,16 +25,16 @@ class PlayedService:
     def says(self, message: Part) -> None:
         self._said += 1
         if isinstance(message, Mission):
-            self.duties.memory.hold(message)
+            self.missions.memory.hold(message)
         if isinstance(message, Grant):
-            self.duties.memory.grant(message.legs)
+            self.missions.memory.grant(message.legs)
         self._waiting.append(Incoming(message, "service", self._said))
 
     def incoming(self) -> list[Incoming]:
         """Called in every tick of the mind: that is when the robot is heard, too."""
         if not self.online:
             return []
-        for kept in self.duties.outbox.pending(after=self._heard, limit=1000):
+        for kept in self.missions.outbox.pending(after=self._heard, limit=1000):
             self._heard = kept.seq
             self._hear(kept.message)
         taken, self._waiting = self._waiting, []

@@ -38,7 +38,7 @@ class SimulatedRun:
         self.parts: Parts = assemble(self.settings, self.clock, Simulation(start, battery, in_memory=True))
         assert self.parts.robot is not None
         self.robot = self.parts.robot
-        self.mind, self.duties = self.parts.mind, self.parts.mind.hands.duties
+        self.mind, self.missions = self.parts.mind, self.parts.mind.hands.missions
         self.did: list[str] = []
         self.printed: list[str] = []
         self.mind.hands.noted = self.printed.append
@@ -80,8 +80,8 @@ class SimulatedRun:
             )
             for purpose, text in CODES.items()
         )
-        self.duties.memory.keep_verifiers(Verifiers(verifiers=verifiers), self.clock.utc())
-        self.duties.give(LETTER)
+        self.missions.memory.keep_verifiers(Verifiers(verifiers=verifiers), self.clock.utc())
+        self.missions.give(LETTER)
 
     def shows(self, purpose: Purpose) -> None:
         self.robot.show_code(CODES[purpose])
@@ -103,7 +103,7 @@ class SimulatedRun:
 
     def told(self) -> list[str]:
         """Return what the server would hear: `progress arrived`, `handover load`, `charge low` …"""
-        return [_short(kept.message) for kept in self.duties.outbox.pending(limit=1000)]
+        return [_short(kept.message) for kept in self.missions.outbox.pending(limit=1000)]
 
     def kill(self) -> None:
         """As SIGKILL does: nothing is tidied up but what the system does by itself (files and locks are let go)."""

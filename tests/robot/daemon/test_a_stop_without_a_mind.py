@@ -44,7 +44,7 @@ def test_it_wakes_up_stopped_and_goes_on_when_somebody_rearms_it(tmp_path: Path)
     first.robot.press("clean")
     let_pass(first, clock, 1.0, mind=False)
     assert json.loads((tmp_path / "stops.json").read_text()) == ["emergency_stop"]
-    assert first.mind.hands.duties.held.faults == frozenset(), "no mind has heard of it"
+    assert first.mind.hands.missions.held.faults == frozenset(), "no mind has heard of it"
     first.daemon.close_devices()  # the plug is pulled
 
     second = put_together(tmp_path, clock)

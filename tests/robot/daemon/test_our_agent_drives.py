@@ -29,12 +29,12 @@ def test_a_letter_is_fetched_delivered_and_the_robot_goes_home(run: SimulatedRun
     assert run.waits_for("wait_handover(load"), "no code has been shown yet"
     run.shows(Purpose.RECEIVE)
     run.passes(5)
-    assert run.duties.held.cargo == (), "the wrong code opens nothing"
+    assert run.missions.held.cargo == (), "the wrong code opens nothing"
     run.shows(Purpose.LOAD)
-    run.until(lambda: run.duties.held.cargo == ("o1",), 10)
+    run.until(lambda: run.missions.held.cargo == ("o1",), 10)
     run.until(lambda: run.waits_for("wait_handover(receive"))
     run.shows(Purpose.RECEIVE)
-    run.until(lambda: run.duties.held.mission is None, 10)
+    run.until(lambda: run.missions.held.mission is None, 10)
     run.until(lambda: run.is_home)
     assert run.visited[3:] == ["post1", "post2", "post3", "post4", "post3", "post5"]
     assert run.told() == PROGRESS
@@ -60,7 +60,7 @@ def test_a_change_of_mind_just_before_a_post_does_not_drive_it_past_the_post(run
     run.given_a_letter()
     run.until(lambda: run.waits_for("wait_handover(load"))
     run.shows(Purpose.LOAD)
-    run.until(lambda: run.duties.held.cargo and (run.parts.navigator.sighted or ("",))[0] == "post2")
+    run.until(lambda: run.missions.held.cargo and (run.parts.navigator.sighted or ("",))[0] == "post2")
     run.until(lambda: run.robot.pose.y_m < 2.12)
     run.robot.sag(0.2)
     run.until(lambda: run.robot.docked, 90)
@@ -74,7 +74,7 @@ def test_a_recipient_who_never_comes_does_not_keep_the_robot(run: SimulatedRun) 
     run.until(lambda: run.waits_for("wait_handover(receive"))
     run.until(lambda: run.is_home, 900)
     assert run.visited.count("post1") == 2, "it tried to give the mail back to its sender"
-    assert run.duties.held.cargo == ("o1",), "the mail stays aboard and is known to be"
+    assert run.missions.held.cargo == ("o1",), "the mail stays aboard and is known to be"
     assert run.told()[-3:] == ["progress gave_up", "progress done", "fault mail_aboard"]
 
 
@@ -90,10 +90,10 @@ def test_killed_on_the_way_with_mail_it_wakes_up_knowing_and_delivers(tmp_path: 
 
     second = SimulatedRun(tmp_path)
     assert abs(second.robot.pose.x_m - pose.x_m) < 0.15, "the robot stands where it stood"
-    assert second.duties.held.cargo == ("o1",)
+    assert second.missions.held.cargo == ("o1",)
     second.until(lambda: second.waits_for("wait_handover(receive"))
     second.shows(Purpose.RECEIVE)
-    second.until(lambda: second.duties.held.mission is None, 10)
+    second.until(lambda: second.missions.held.mission is None, 10)
     told = second.told()
     second.close()
     assert told == PROGRESS
@@ -134,7 +134,7 @@ def test_a_lifted_robot_stands_until_it_is_put_down_and_let_go_and_then_goes_on(
     run.robot.lift(False)
     run.passes(5)
     assert run.mind.hands.view.sent.still, "no person has let it go yet"
-    run.duties.rearm_asked = True
+    run.missions.rearm_asked = True
     run.until(lambda: run.is_at("post4"))
 
 
@@ -151,6 +151,6 @@ def test_an_emergency_stop_outlives_a_restart(tmp_path: Path) -> None:
     second.passes(5)
     assert second.robot.driven_mm < 5
     assert second.mind.activity() == "stopped"
-    second.duties.rearm_asked = True
+    second.missions.rearm_asked = True
     second.until(lambda: second.is_at("post4"))
     second.close()

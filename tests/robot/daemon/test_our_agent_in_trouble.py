@@ -15,8 +15,8 @@ SQUARE = Path(__file__).parents[3] / "examples" / "maps" / "square.toml"
 
 
 def with_service(run: SimulatedRun) -> PlayedService:
-    service = PlayedService(run.duties)
-    run.duties.join(service)
+    service = PlayedService(run.missions)
+    run.missions.join(service)
     return service
 
 
@@ -24,7 +24,7 @@ def loaded_and_at_post2(run: SimulatedRun) -> None:
     run.given_a_letter()
     run.until(lambda: run.waits_for("wait_handover(load"))
     run.shows(Purpose.LOAD)
-    run.until(lambda: run.is_at("post2") and run.duties.held.cargo)
+    run.until(lambda: run.is_at("post2") and run.missions.held.cargo)
 
 
 def test_mail_that_nobody_took_is_given_back_to_who_loaded_it(run: SimulatedRun) -> None:
@@ -34,7 +34,7 @@ def test_mail_that_nobody_took_is_given_back_to_who_loaded_it(run: SimulatedRun)
     assert run.mind.why is not None
     assert run.mind.why.sentence == "Waiting at post1 for somebody to take mail back"
     run.shows(Purpose.LOAD)
-    run.until(lambda: not run.duties.held.cargo, 10)
+    run.until(lambda: not run.missions.held.cargo, 10)
     run.until(lambda: run.is_home)
     told = run.told()
     assert (told.count("handover load"), told.count("handover receive"), told.count("handover return")) == (1, 0, 1)
@@ -49,13 +49,13 @@ def test_a_recalled_robot_turns_round_on_its_way_and_brings_the_mail_back(run: S
     assert run.is_at("post1")
     run.shows(Purpose.LOAD)
     run.until(lambda: run.is_home)
-    assert (run.duties.held.cargo, service.held) == ((), [])
+    assert (run.missions.held.cargo, service.held) == ((), [])
 
 
 def test_a_stop_to_charge_keeps_it_in_the_dock_through_a_kill_until_it_has_what_was_asked_for(tmp_path: Path) -> None:
     stop = Stop(id="c1", post="post5", action=StopAction.DOCK, until_ratio=0.7)
     first = SimulatedRun(tmp_path, battery_ratio=0.6)
-    first.duties.give(Mission(id="m2", update=1, stops=(stop,)))
+    first.missions.give(Mission(id="m2", update=1, stops=(stop,)))
     first.until(lambda: "progress arrived" in first.told() and first.robot.docked)
     first.kill()
 
@@ -68,7 +68,7 @@ def test_a_stop_to_charge_keeps_it_in_the_dock_through_a_kill_until_it_has_what_
 
 def test_a_robot_that_is_killed_in_its_dock_goes_on_charging_until_it_is_full(tmp_path: Path) -> None:
     first = SimulatedRun(tmp_path, battery_ratio=0.2)
-    first.until(lambda: first.duties.held.recharging and first.robot.docked, 60)
+    first.until(lambda: first.missions.held.recharging and first.robot.docked, 60)
     first.until(lambda: str(first.mind.battery.word) == "ok")
     first.kill()
 
@@ -121,7 +121,7 @@ def test_whose_order_is_cancelled_while_it_waits_for_a_corridor_asks_for_none_an
     run.until(lambda: not service.unanswered, 10)
     service.grant(claim)  # it was let in before the service heard that
     run.passes(2)
-    assert (run.duties.held.grants, service.held) == ((), [])
+    assert (run.missions.held.grants, service.held) == ((), [])
     assert run.robot.docked
 
 
@@ -142,11 +142,11 @@ def test_out_of_network_it_goes_as_far_as_it_may_waits_says_so_and_then_leaves_b
     service = with_service(run)
     run.given_a_letter()
     run.until(lambda: run.waits_for("wait_handover(load"))
-    run.duties.claims.clear([leg for leg in service.held if leg.to_post == "post4"])
+    run.missions.claims.clear([leg for leg in service.held if leg.to_post == "post4"])
     run.passes(1)
     service.online = False
     run.shows(Purpose.LOAD)
-    run.until(lambda: run.duties.held.cargo, 10)
+    run.until(lambda: run.missions.held.cargo, 10)
     run.until(lambda: run.is_at("post3") and run.waits_for("claim"))
     run.passes(20)
     assert run.mind.why is not None
@@ -159,7 +159,7 @@ def test_out_of_network_it_goes_as_far_as_it_may_waits_says_so_and_then_leaves_b
     run.until(lambda: run.waits_for("wait_handover(receive"), 200)
     service.online = False
     run.shows(Purpose.RECEIVE)
-    run.until(lambda: not run.duties.held.cargo, 10)
+    run.until(lambda: not run.missions.held.cargo, 10)
 
 
 def test_somebody_who_does_not_make_way_closes_the_corridor(run: SimulatedRun) -> None:
@@ -205,7 +205,7 @@ def test_where_there_is_another_way_it_goes_round_a_closed_corridor(tmp_path: Pa
     run.robot.world.obstacles.remove(Person(2.0, 1.0) if first == "d" else Person(1.0, 2.0))
     run.until(lambda: run.is_at("c"))
     assert run.visited == ["a", first, "a", {"d": "b", "b": "d"}[first], "c"]
-    assert all(leg in service.held for leg in run.duties.held.grants)
+    assert all(leg in service.held for leg in run.missions.held.grants)
     run.close()
 
     again = SimulatedRun(tmp_path, map=str(SQUARE))
@@ -225,7 +225,7 @@ def test_a_stop_from_the_service_holds_until_resume_and_the_mission_goes_on(run:
     assert run.mind.activity() == "stopped"
     service.says(Resume(command_id="c2"))
     run.until(lambda: run.waits_for("wait_handover(load"))
-    assert run.duties.held.mission == LETTER
+    assert run.missions.held.mission == LETTER
     assert run.told().count("answer ") == 2
 
 
@@ -251,7 +251,7 @@ def test_a_robot_whose_corridors_others_have_got_stands_until_a_marker_tells_it_
     run.passes(1)
     service.says(Resume(command_id="c3"))
     run.until(lambda: run.waits_for("wait_handover(load"))
-    assert (run.told().count("fault revoked"), run.duties.held.revoked) == (2, False)
+    assert (run.told().count("fault revoked"), run.missions.held.revoked) == (2, False)
 
 
 def test_switched_on_after_a_long_time_it_hears_first_whose_its_corridors_are(tmp_path: Path) -> None:
@@ -278,11 +278,11 @@ def test_pressing_spot_twice_loads_but_never_hands_out(run: SimulatedRun) -> Non
     run.given_a_letter()
     run.until(lambda: run.waits_for("wait_handover(load"))
     press_twice(run)
-    run.until(lambda: run.duties.held.cargo == ("o1",), 10)
+    run.until(lambda: run.missions.held.cargo == ("o1",), 10)
     run.until(lambda: run.waits_for("wait_handover(receive"))
     press_twice(run)
     run.passes(5)
-    assert run.duties.held.cargo == ("o1",)
+    assert run.missions.held.cargo == ("o1",)
 
 
 def press_twice(run: SimulatedRun) -> None:
@@ -298,7 +298,7 @@ def test_a_camera_that_stays_away_ends_in_waiting_for_a_person(run: SimulatedRun
     run.given_a_letter()
     run.until(lambda: run.waits_for("wait_handover(load"))
     run.shows(Purpose.LOAD)
-    run.until(lambda: bool(run.duties.held.cargo) and run.waits_for("follow_line"))
+    run.until(lambda: bool(run.missions.held.cargo) and run.waits_for("follow_line"))
     run.robot.set_fault(switch, True)
     run.passes(70)
     assert "fault camera_lost" in run.told()
@@ -311,4 +311,4 @@ def test_a_camera_that_stays_away_ends_in_waiting_for_a_person(run: SimulatedRun
     run.until(lambda: run.waits_for("wait_handover(receive"))
     run.shows(Purpose.RECEIVE)
     run.until(lambda: run.is_home)
-    assert not run.duties.held.cargo
+    assert not run.missions.held.cargo

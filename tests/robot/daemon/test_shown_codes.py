@@ -20,7 +20,7 @@ def test_receipts_are_proved_by_what_was_shown_and_nothing_of_it_is_written_down
         run.until(lambda: run.waits_for(f"wait_handover({purpose}"))  # noqa: B023  # looked at before the next
         run.shows(purpose)
         run.until(lambda: not run.waits_for(f"wait_handover({purpose}"), 10)  # noqa: B023
-    messages = [kept.message for kept in run.duties.outbox.pending(limit=1000)]
+    messages = [kept.message for kept in run.missions.outbox.pending(limit=1000)]
     happened = [one.happened for one in messages if isinstance(one, Event)]
     receipts = [one for one in happened if isinstance(one, HandoverReceipt)]
     assert [one.number for one in receipts] == [1, 2]

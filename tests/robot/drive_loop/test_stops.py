@@ -9,7 +9,7 @@ import pytest
 
 from robot.drive_loop import DriveLoop
 from robot.drivers.interfaces import Mode
-from robot.mission.latched_stop import StopMemory
+from robot.mission.latched_stop import LatchedStop
 from robot.simulated import Pose
 from robot.skills.dock import Dock
 from robot.skills.interfaces import Failed
@@ -121,9 +121,9 @@ def test_a_stop_outlives_the_program_even_if_no_mind_has_heard_of_it(moving: Mov
     moving.sets_off()
     moving.loop.emergency_stop()
     moving.steps(0.1)
-    StopMemory(tmp_path / "stops.json").keep(moving.faults)
+    LatchedStop(tmp_path / "stops.json").keep(moving.faults)
     moving.loop = DriveLoop(
-        moving.base, moving.sensor, moving.shape, moving.now, StopMemory(tmp_path / "stops.json").read()
+        moving.base, moving.sensor, moving.shape, moving.now, LatchedStop(tmp_path / "stops.json").read()
     )
     moving.steps(0.2)
     assert moving.faults == {"emergency_stop"}
@@ -133,21 +133,21 @@ def test_a_stop_outlives_the_program_even_if_no_mind_has_heard_of_it(moving: Mov
 
 
 def test_what_is_not_latched_is_not_kept_and_what_is_over_is_forgotten(tmp_path: Path) -> None:
-    memory = StopMemory(tmp_path / "stops.json")
+    memory = LatchedStop(tmp_path / "stops.json")
     memory.keep({"bump", "cliff"})
-    assert StopMemory(tmp_path / "stops.json").read() == {"cliff"}
+    assert LatchedStop(tmp_path / "stops.json").read() == {"cliff"}
     memory.keep(frozenset())
-    assert StopMemory(tmp_path / "stops.json").read() == frozenset()
+    assert LatchedStop(tmp_path / "stops.json").read() == frozenset()
 
 
 @pytest.mark.parametrize("text", ["", "7", "{", '"cliff', '"cliff"', "{}"])
 def test_a_memory_of_stops_that_nobody_understands_is_a_stop(tmp_path: Path, text: str) -> None:
     (tmp_path / "stops.json").write_text(text)
-    assert StopMemory(tmp_path / "stops.json").read() == {"emergency_stop"}
+    assert LatchedStop(tmp_path / "stops.json").read() == {"emergency_stop"}
 
 
 def test_a_disk_that_cannot_be_written_ends_nothing(tmp_path: Path) -> None:
-    memory = StopMemory(tmp_path / "gone" / "stops.json")
+    memory = LatchedStop(tmp_path / "gone" / "stops.json")
     memory.keep({"cliff"})
     (tmp_path / "gone").mkdir()
     memory.keep({"cliff"})

@@ -71,7 +71,7 @@ def test_the_marker_of_the_granted_corridor_says_that_the_compass_was_wrong(walk
     walk.body.sees("post2")
     walk.look()
     assert (walk.navigator.astray, walk.navigator.towards) == (None, "post2")
-    assert "foreign_marker" not in walk.duties.held.faults
+    assert "foreign_marker" not in walk.missions.held.faults
 
 
 def test_no_other_marker_of_the_crossing_is_believed_when_astray(walk: Walk) -> None:
@@ -166,7 +166,7 @@ def test_whoever_looks_around_a_post_is_still_there(walk: Walk, skill: str) -> N
     assert walk.navigator.at == "post3"
     walk.body.sees("post3")
     walk.look()
-    assert "foreign_marker" not in walk.duties.held.faults
+    assert "foreign_marker" not in walk.missions.held.faults
 
 
 @pytest.mark.parametrize("skill", ["dock", "find_line", "turn"])

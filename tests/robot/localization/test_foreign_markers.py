@@ -20,7 +20,7 @@ def walk(tmp_path: Path) -> Iterator[Walk]:
     with Store(tmp_path / "robot.db") as store:
         walk = Walk(store)
         walk.look()
-        walk.duties.memory.grant([LEG])
+        walk.missions.memory.grant([LEG])
         walk.navigator.place("post2", "post3")
         yield walk
 
@@ -31,7 +31,7 @@ def shown(walk: Walk, post: str) -> None:
 
 
 def is_on_its_way(walk: Walk) -> bool:
-    where = walk.navigator.at, walk.navigator.corridor, walk.navigator.towards, walk.duties.held.grants
+    where = walk.navigator.at, walk.navigator.corridor, walk.navigator.towards, walk.missions.held.grants
     return where == (None, LEG, "post3", (LEG,))
 
 
@@ -43,13 +43,13 @@ def test_in_the_middle_of_a_corridor_no_code_is_believed_and_people_are_told(wal
     walk.body.rolls(300.0)
     walk.look()
     assert is_on_its_way(walk)
-    assert "foreign_marker" in walk.duties.held.faults
+    assert "foreign_marker" in walk.missions.held.faults
     walk.body.rolls(500.0)
     shown(walk, "post3")
     walk.body.rolls(300.0)
     walk.look()
     assert walk.navigator.at == "post3"
-    assert "foreign_marker" not in walk.duties.held.faults, "the marker that was expected says that all is well"
+    assert "foreign_marker" not in walk.missions.held.faults, "the marker that was expected says that all is well"
 
 
 @pytest.mark.parametrize("post", ["post1", "post3", "post4", "post5"])
@@ -95,7 +95,7 @@ def test_the_dock_agrees_with_a_marker_that_was_not_believed(walk: Walk) -> None
     walk.body.battery(0.5, docked=True)
     walk.look()
     assert walk.navigator.at == "post5"
-    assert "foreign_marker" not in walk.duties.held.faults
+    assert "foreign_marker" not in walk.missions.held.faults
 
 
 def test_a_robot_that_drives_stops_at_no_code_of_a_stranger(run: SimulatedRun) -> None:

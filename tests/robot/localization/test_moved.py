@@ -25,8 +25,8 @@ def walk(tmp_path: Path) -> Iterator[Walk]:
     walk = Walk(store)
     walk.look()
     walk.navigator.place("post1", "post2")
-    walk.duties.memory.grant([LEG])
-    walk.duties.seen("post1")
+    walk.missions.memory.grant([LEG])
+    walk.missions.seen("post1")
     yield walk
     store.close()
 
@@ -55,13 +55,13 @@ def test_two_markers_that_agree_say_that_it_was_moved(walk: Walk) -> None:
     walk.look()
     sees_and_rolls(walk, "post3")
     assert (walk.navigator.moved, walk.navigator.at) == (None, None), "one alone may be a stranger's"
-    assert walk.duties.held.grants == (LEG,)
+    assert walk.missions.held.grants == (LEG,)
     walk.body.rolls(1700.0)
     walk.look()
     sees_and_rolls(walk, "post4")
     assert (walk.navigator.moved, walk.navigator.at) == ("post4", "post4")
-    assert walk.duties.held.grants == (), "it is not in that corridor any more"
-    assert "foreign_marker" not in walk.duties.held.faults
+    assert walk.missions.held.grants == (), "it is not in that corridor any more"
+    assert "foreign_marker" not in walk.missions.held.faults
     walk.navigator.destination = "post3"
     assert walk.navigator.way() == "behind", "post4 has one way in, so its marker says where the robot looks"
     walk.navigator.noted_move()
@@ -71,12 +71,12 @@ def test_two_markers_that_agree_say_that_it_was_moved(walk: Walk) -> None:
 def test_after_a_lift_the_next_marker_tells_where_it_was_put_down(walk: Walk) -> None:
     leave_and_lift(walk)
     sees_and_rolls(walk, "post5")
-    assert (walk.navigator.moved, walk.navigator.at, walk.duties.held.grants) == ("post5", "post5", ())
+    assert (walk.navigator.moved, walk.navigator.at, walk.missions.held.grants) == ("post5", "post5", ())
 
 
 def test_lifted_and_put_back_onto_its_way_it_just_goes_on(walk: Walk) -> None:
     leave_and_lift(walk)
-    assert walk.duties.held.grants == (LEG,), "until a marker tells it may still be there"
+    assert walk.missions.held.grants == (LEG,), "until a marker tells it may still be there"
     sees_and_rolls(walk, "post2")
     assert (walk.navigator.moved, walk.navigator.at) == (None, "post2")
     walk.navigator.destination = "post4"
@@ -111,7 +111,7 @@ def test_what_the_post_itself_says_when_the_body_stands_there_counts(walk: Walk)
     walk.look()
     assert walk.navigator.at is None, "by its own sighting there are 50 mm left"
     walk.navigator.reached("post2")
-    assert (walk.navigator.at, walk.duties.held.grants) == ("post2", ())
+    assert (walk.navigator.at, walk.missions.held.grants) == ("post2", ())
     walk.look()
     assert walk.navigator.at == "post2"
 

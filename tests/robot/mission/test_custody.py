@@ -17,7 +17,7 @@ from protocol.to_server import HandoverReceipt, Step
 from robot.core.config import ConfigError
 from robot.mission.custody import Waiting
 from robot.mission.memory import Incoming, Memory
-from robot.mission.mission import Duties
+from robot.mission.mission import MissionManager
 from robot.mission.outbox import Outbox
 from robot.mission.signatures import new_key, signer
 from robot.mission.store import Store
@@ -44,21 +44,21 @@ class Desk:
     """A robot with a letter to load, played by its duties alone."""
 
     store: Store
-    duties: Duties
+    missions: MissionManager
 
     def hears(self, *messages: Part) -> list[dict[str, Any]]:
         before = len(self.told())
-        self.duties.join(_Saying(messages))
-        self.duties.take_messages()
+        self.missions.join(_Saying(messages))
+        self.missions.take_messages()
         return self.told()[before:]
 
     def told(self) -> list[dict[str, Any]]:
-        messages = [kept.message for kept in self.duties.outbox.pending()]
+        messages = [kept.message for kept in self.missions.outbox.pending()]
         return [getattr(message, "happened", message).model_dump(mode="json") for message in messages]
 
     def waits_at(self, stop: Stop = LOAD) -> Waiting:
         waiting = Waiting((LETTER, stop), Purpose(stop.action), stop.post)
-        self.duties.custody.wait(waiting)
+        self.missions.custody.wait(waiting)
         return waiting
 
 
@@ -75,16 +75,16 @@ class _Saying:
 
 
 def started(store: Store) -> Desk:
-    return Desk(store, Duties(store, Memory(store), Outbox(store), lambda: NOW))
+    return Desk(store, MissionManager(store, Memory(store), Outbox(store), lambda: NOW))
 
 
 @pytest.fixture
 def desk(store: Store) -> Desk:
     desk = started(store)
-    desk.duties.memory.keep_verifiers(
+    desk.missions.memory.keep_verifiers(
         codes((Purpose.LOAD, SENDERS), (Purpose.LOAD, DELEGATES), (Purpose.RECEIVE, RECIPIENTS)), NOW
     )
-    desk.duties.give(LETTER)
+    desk.missions.give(LETTER)
     return desk
 
 
@@ -98,9 +98,9 @@ def test_a_robot_that_waits_there_hands_over_and_its_receipt_says_how_and_why(de
         "c1",
         by,
     )
-    assert (desk.duties.held.cargo, desk.duties.held.stop, waiting.handed_over) == (("o1",), RECEIVE, True)
-    assert desk.duties.codes("o1", Purpose.LOAD) == (), "used up, the delegate's too"
-    assert desk.duties.codes("o1", Purpose.RECEIVE) == (RECIPIENTS,)
+    assert (desk.missions.held.cargo, desk.missions.held.stop, waiting.handed_over) == (("o1",), RECEIVE, True)
+    assert desk.missions.codes("o1", Purpose.LOAD) == (), "used up, the delegate's too"
+    assert desk.missions.codes("o1", Purpose.RECEIVE) == (RECIPIENTS,)
 
 
 @pytest.mark.parametrize(
@@ -118,11 +118,11 @@ def test_what_does_not_fit_is_refused_with_a_reason(desk: Desk, wish: Confirm, r
     (answer,) = desk.hears(wish)
     assert (answer["kind"], answer["command_id"], answer["accepted"]) == ("answer", "c1", False)
     assert reason in answer["reason"]
-    assert desk.duties.held.cargo == ()
+    assert desk.missions.held.cargo == ()
 
 
 def test_a_robot_that_has_left_or_was_started_anew_refuses(desk: Desk) -> None:
-    desk.duties.custody.leave(desk.waits_at())
+    desk.missions.custody.leave(desk.waits_at())
     (answer,) = desk.hears(tap())
     assert (answer["accepted"], "does not wait" in answer["reason"]) == (False, True)
     desk.waits_at()
@@ -136,11 +136,11 @@ def test_a_command_that_comes_again_changes_nothing_through_a_restart(desk: Desk
     again = started(desk.store)
     again.waits_at(RECEIVE)
     assert again.hears(tap()) == []
-    assert again.duties.held.cargo == ("o1",)
+    assert again.missions.held.cargo == ("o1",)
 
 
 def test_verifiers_take_the_place_of_all_codes_of_the_orders_that_they_name(desk: Desk) -> None:
-    memory = desk.duties.memory
+    memory = desk.missions.memory
     others = Verifier(order_id="o2", purpose=Purpose.LOAD, sha256="f" * 64, expires_at=SOON)
     memory.keep_verifiers(Verifiers(verifiers=(others,)), NOW)
     memory.keep_verifiers(codes((Purpose.LOAD, SENDERS)), NOW)
@@ -151,10 +151,10 @@ def test_a_robot_with_a_key_signs_each_receipt_and_nobody_can_change_it(store: S
     pem, public = new_key()
     (tmp_path / "r1.key").touch(mode=0o600)
     (tmp_path / "r1.key").write_text(pem)
-    duties = Duties(store, Memory(store), Outbox(store), lambda: NOW, sign=signer(tmp_path / "r1.key", "r1"))
-    duties.give(LETTER)
-    duties.handed_over((LETTER, LOAD), Purpose.LOAD, "post1", ShownCode(SENDERS, b"key"))
-    receipt: HandoverReceipt = duties.outbox.pending()[-1].message.happened  # type: ignore[attr-defined]
+    missions = MissionManager(store, Memory(store), Outbox(store), lambda: NOW, sign=signer(tmp_path / "r1.key", "r1"))
+    missions.give(LETTER)
+    missions.handed_over((LETTER, LOAD), Purpose.LOAD, "post1", ShownCode(SENDERS, b"key"))
+    receipt: HandoverReceipt = missions.outbox.pending()[-1].message.happened  # type: ignore[attr-defined]
     key = Ed25519PublicKey.from_public_bytes(base64.b64decode(public))
     key.verify(base64.b64decode(receipt.signature or ""), receipt.signed_by("r1"))
     for signed in (receipt.signed_by("r2"), receipt.model_copy(update={"code_sha256": None}).signed_by("r1")):
@@ -176,33 +176,33 @@ def test_a_key_that_others_may_read_or_that_is_none_is_named(tmp_path: Path) -> 
 
 
 def test_mail_that_a_person_has_taken_out_by_hand_is_forgotten(desk: Desk) -> None:
-    desk.duties.handed_over((LETTER, LOAD), Purpose.LOAD, "post1", ShownCode(SENDERS, b"key"))
+    desk.missions.handed_over((LETTER, LOAD), Purpose.LOAD, "post1", ShownCode(SENDERS, b"key"))
     (refused,) = desk.hears(Cancel(command_id="c1", order_id="o1"))
-    assert (refused["accepted"], desk.duties.held.cargo) == (False, ("o1",))
+    assert (refused["accepted"], desk.missions.held.cargo) == (False, ("o1",))
     (done,) = desk.hears(Cancel(command_id="c2", order_id="o1", by_hand=True))
-    assert (done["accepted"], desk.duties.held.cargo, desk.duties.held.mission) == (True, (), None)
+    assert (done["accepted"], desk.missions.held.cargo, desk.missions.held.mission) == (True, (), None)
 
 
 def test_mail_loaded_while_its_mission_was_dropped_is_given_back_where_it_stands(desk: Desk) -> None:
     desk.hears(Cancel(command_id="c1", order_id="o1"))
-    desk.duties.handed_over((LETTER, LOAD), Purpose.LOAD, "post1", ShownCode(SENDERS, b"key"))
-    mission = desk.duties.held.mission
+    desk.missions.handed_over((LETTER, LOAD), Purpose.LOAD, "post1", ShownCode(SENDERS, b"key"))
+    mission = desk.missions.held.mission
     assert mission
     assert [(stop.action, stop.post, stop.order_id) for stop in mission.stops] == [(StopAction.RETURN, "post1", "o1")]
-    assert desk.duties.codes("o1", Purpose.RETURN) == (SENDERS,)
+    assert desk.missions.codes("o1", Purpose.RETURN) == (SENDERS,)
 
 
 def test_each_update_of_a_mission_is_accepted_once_and_each_report_says_which_it_was_of(desk: Desk) -> None:
     back = Stop(id="s3", post="post1", action=StopAction.RETURN, order_id="o1")
     for _ in range(2):
-        desk.duties.give(LETTER.model_copy(update={"update": 2, "stops": (LOAD, back)}))
-    desk.duties.report(Step.DEPARTED, "s1", "post5")
+        desk.missions.give(LETTER.model_copy(update={"update": 2, "stops": (LOAD, back)}))
+    desk.missions.report(Step.DEPARTED, "s1", "post5")
     assert [(one["step"], one["update"]) for one in desk.told()] == [("accepted", 1), ("accepted", 2), ("departed", 2)]
 
 
 def test_a_mission_that_came_after_a_recall_is_held_though_both_are_taken_in_one_go(desk: Desk) -> None:
     later = LETTER.model_copy(update={"id": "m2"})
-    desk.duties.memory.hold(later)  # as the link does when it comes
+    desk.missions.memory.hold(later)  # as the link does when it comes
     desk.hears(Recall(command_id="c1", reason="closing early"), later)
-    assert desk.duties.held.mission == later
+    assert desk.missions.held.mission == later
     assert (desk.told()[-1]["step"], desk.told()[-1]["mission_id"]) == ("accepted", "m2")

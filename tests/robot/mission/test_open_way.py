@@ -16,7 +16,7 @@ from robot.agent.actions.corridors import WAY_BLOCKED, tried_again
 from robot.agent.navigator import Navigator
 from robot.localization.closed import CLOSED_S
 from robot.mission.memory import Incoming, Memory
-from robot.mission.mission import Duties
+from robot.mission.mission import MissionManager
 from robot.mission.outbox import Outbox
 from robot.mission.store import Store
 
@@ -36,8 +36,8 @@ class Robot:
     _said: int = 0
 
     def __post_init__(self) -> None:
-        self.duties = Duties(self.store, Memory(self.store), Outbox(self.store), self._utc, self)
-        self.navigator = Navigator(CAMPUS, "post5", self.duties, self.now_s)
+        self.missions = MissionManager(self.store, Memory(self.store), Outbox(self.store), self._utc, self)
+        self.navigator = Navigator(CAMPUS, "post5", self.missions, self.now_s)
 
     def _utc(self) -> datetime:
         return STARTED_AT + timedelta(seconds=self.now_s)
@@ -62,12 +62,12 @@ class Robot:
         wish = OpenWay(command_id=command_id, ends=(a, b), looked_at=STARTED_AT + timedelta(seconds=looked_s))
         self._waiting.append(Incoming(wish, "service", self._said))
         before = len(self.answers)
-        self.duties.take_messages()
+        self.missions.take_messages()
         return (self.answers[before:] or [None])[0]
 
     @property
     def answers(self) -> list[CommandAnswer]:
-        told = [one.message for one in self.duties.outbox.pending(limit=100)]
+        told = [one.message for one in self.missions.outbox.pending(limit=100)]
         return [one.happened for one in told if isinstance(one, Event) and isinstance(one.happened, CommandAnswer)]
 
     @property
@@ -140,11 +140,11 @@ def test_each_corridor_is_over_by_itself(store: Store) -> None:
 
 
 def test_of_several_faults_under_one_name_each_is_told(store: Store) -> None:
-    duties = Robot(store).duties
+    missions = Robot(store).missions
     for reason, cleared, lasts in (("a", False, True), ("b", False, True), ("a", True, True), ("b", True, False)):
-        duties.report_one_fault(WAY_BLOCKED, reason, "post2", cleared, lasts)
-        assert (WAY_BLOCKED in duties.held.faults) == lasts
-    told = [one.message.happened for one in duties.outbox.pending() if isinstance(one.message, Event)]
+        missions.report_one_fault(WAY_BLOCKED, reason, "post2", cleared, lasts)
+        assert (WAY_BLOCKED in missions.held.faults) == lasts
+    told = [one.message.happened for one in missions.outbox.pending() if isinstance(one.message, Event)]
     assert [(one.reason, one.cleared) for one in told if isinstance(one, Fault)] == [
         *(("a", False), ("b", False)),
         *(("a", True), ("b", True)),

@@ -12,7 +12,7 @@ from protocol.proofs import ShownCode
 from protocol.to_robot import Grant
 from protocol.to_server import Claim
 from robot.mission.memory import Memory
-from robot.mission.mission import Duties
+from robot.mission.mission import MissionManager
 from robot.mission.outbox import Outbox
 from robot.mission.store import Store
 from tests.robot.mission.test_mission import LETTER, LOAD, NOW, RECEIVE, TO_POST3, TO_POST4, FakeServer
@@ -27,9 +27,9 @@ def content(store: Store) -> list[str]:
         return list(database.iterdump())
 
 
-def steps(duties: Duties, server: FakeServer) -> Iterator[Callable[[], object]]:
+def steps(missions: MissionManager, server: FakeServer) -> Iterator[Callable[[], object]]:
     """Letters one after the other. Each step is on the disk as a whole or not at all."""
-    memory, outbox = duties.memory, duties.outbox
+    memory, outbox = missions.memory, missions.outbox
     yield partial(memory.resume, "server", 1)
 
     def hears(seq: int, message: Part) -> Callable[[], object]:
@@ -39,18 +39,18 @@ def steps(duties: Duties, server: FakeServer) -> Iterator[Callable[[], object]]:
     for number in range(3):
         letter = LETTER.model_copy(update={"id": f"m{number}"})
         yield hears(2 * number + 1, letter)
-        yield partial(duties.claims.ask, (TO_POST3, TO_POST4))
+        yield partial(missions.claims.ask, (TO_POST3, TO_POST4))
         claim = outbox.pending()[-1].message
         assert isinstance(claim, Claim)
         yield hears(2 * number + 2, Grant(claim_id=claim.claim_id, legs=(TO_POST3, TO_POST4)))
         for incoming in memory.unhandled():
             server.waiting = [incoming]
-            yield duties.take_messages
-        yield partial(duties.handed_over, (letter, LOAD), Purpose.LOAD, "post1", ShownCode("a" * 64, b"key"))
-        yield partial(duties.claims.clear, [TO_POST3, TO_POST4])
+            yield missions.take_messages
+        yield partial(missions.handed_over, (letter, LOAD), Purpose.LOAD, "post1", ShownCode("a" * 64, b"key"))
+        yield partial(missions.claims.clear, [TO_POST3, TO_POST4])
         yield lambda: outbox.acknowledged(outbox.last_seq())
-        yield partial(duties.handed_over, (letter, RECEIVE), Purpose.RECEIVE, "post4", ShownCode("b" * 64, b"key"))
-        yield partial(duties.finish_mission, letter.id, "post4")
+        yield partial(missions.handed_over, (letter, RECEIVE), Purpose.RECEIVE, "post4", ShownCode("b" * 64, b"key"))
+        yield partial(missions.finish_mission, letter.id, "post4")
 
 
 def torn(old: bytes, new: bytes, chance: Random) -> bytes:
@@ -82,9 +82,9 @@ def test_whenever_the_power_fails_a_step_is_on_the_disk_as_a_whole_or_not_at_all
             return (path.read_bytes(), path.with_name("robot.db-wal").read_bytes()), content(store)
 
         server = FakeServer(Memory(store))
-        duties = Duties(store, server.memory, Outbox(store), lambda: NOW, server)
+        missions = MissionManager(store, server.memory, Outbox(store), lambda: NOW, server)
         looks = [look()]
-        for step in steps(duties, server):
+        for step in steps(missions, server):
             step()
             looks.append(look())
     found = {"before": 0, "after": 0}

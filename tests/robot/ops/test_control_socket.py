@@ -14,7 +14,7 @@ import pytest
 
 from protocol.clock import RealClock
 from robot.core.config import load_settings
-from robot.core.json_socket import LONGEST_LINE, MAX_VISITORS, JsonSocket, NobodyAnswers, ask
+from robot.core.json_socket import LONGEST_LINE, MAX_VISITORS, JsonSocket, NoAnswer, ask
 from robot.ops.assembly import Parts, Simulation, assemble
 from robot.ops.control import SOCKET_NAME, Control
 from robot.ops.runners import Loop, ThreadedRunner
@@ -205,5 +205,5 @@ def test_a_path_longer_than_an_address_of_a_socket_works_too(tmp_path: Path) -> 
 
 
 def test_nobody_at_home_is_told(tmp_path: Path) -> None:
-    with pytest.raises(NobodyAnswers, match="No robot answers"):
+    with pytest.raises(NoAnswer, match="No robot answers"):
         ask(tmp_path / "control", {"do": "status"})

@@ -9,7 +9,7 @@ import pytest
 
 from benchmarks.body.played_server import playing
 from protocol.clock import SteppedClock
-from protocol.insight import MAX_INSIGHT_BYTES, Insight, LeftOut, TraceLine
+from protocol.insight import MAX_INSIGHT_BYTES, Diagnostics, LeftOut, TraceLine
 from protocol.parts import Stop, StopAction
 from protocol.to_robot import Mission, Watch
 from robot.core.config import load_settings
@@ -29,13 +29,13 @@ LETTER = Mission(id="m1", update=1, stops=(Stop(id="s1", post="post4", action=St
 class Shown:
     """A link that keeps what it is given to send; `has_room` false is a network that takes nothing."""
 
-    told: list[Insight] = field(default_factory=list)
+    told: list[Diagnostics] = field(default_factory=list)
     has_room: bool = True
 
     def has_room_for_insight(self) -> bool:
         return self.has_room
 
-    def tell_insight(self, insight: Callable[[], Insight]) -> None:
+    def tell_insight(self, insight: Callable[[], Diagnostics]) -> None:
         self.told.append(insight())
 
 
@@ -56,7 +56,7 @@ class WatchedRobot:
         if now >= self._until_s:
             self.runner.stop()
 
-    def lives(self, for_s: float) -> list[Insight]:
+    def lives(self, for_s: float) -> list[Diagnostics]:
         """Let time pass; what was told in it."""
         before, self._until_s = len(self.shown.told), self.clock.now() + for_s
         self.runner.restart()
@@ -79,7 +79,7 @@ def test_nobody_watches_nothing_is_told_and_nobody_listens_to_the_agent(watched:
 def test_who_watches_sees_what_it_intends_by_which_plan_and_why(watched: WatchedRobot) -> None:
     watched.insights.watch(30.0, whole=True)
     watched.lives(1.0)
-    watched.parts.mind.hands.duties.give(LETTER)
+    watched.parts.mind.hands.missions.give(LETTER)
     told = watched.lives(9.0)
     assert 15 <= len(told) <= 19, "twice a second"
     (driving,) = told[-1].intentions
@@ -102,7 +102,7 @@ def test_beliefs_are_told_once_and_then_only_what_came_and_went(watched: Watched
     assert (first.number, first.whole) == (1, True)
     assert [one.number for one in later] == list(range(2, len(later) + 2))
     believed = set(first.came)
-    watched.parts.mind.hands.duties.give(LETTER)
+    watched.parts.mind.hands.missions.give(LETTER)
     for one in (*later, *watched.lives(8.0)):
         assert not one.whole
         assert set(one.went) <= believed
@@ -126,7 +126,7 @@ def test_a_slow_network_makes_it_rarer_and_what_was_dropped_is_counted(watched: 
     watched.insights.watch(60.0, whole=True)
     watched.lives(1.0)
     watched.shown.has_room = False
-    watched.parts.mind.hands.duties.give(LETTER)
+    watched.parts.mind.hands.missions.give(LETTER)
     assert watched.lives(30.0) == []
     watched.shown.has_room = True
     (next_one, *_) = watched.lives(1.0)
@@ -163,7 +163,7 @@ async def test_the_link_hears_of_a_watch_and_sends_one_insight_after_the_other(
             made_in: list[str] = []
             looked = threading.Event()
 
-            def make() -> Insight:
+            def make() -> Diagnostics:
                 assert looked.wait(5)
                 made_in.append(threading.current_thread().name)
                 return insight

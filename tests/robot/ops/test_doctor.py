@@ -22,7 +22,7 @@ from robot.core.config import load_settings
 from robot.drivers.create2.serial_port import open_serial
 from robot.drivers.create2.wake_up import NoWakeUpLine, SerialRts
 from robot.ops.doctor import cable, computer, senses, service
-from robot.ops.doctor.findings import Finding, Grade, Patient
+from robot.ops.doctor.findings import Finding, Grade, Subjects
 from robot.ops.doctor.table import CHECKS, examine
 from robot.ops.equipment import Equipment
 from robot.ops.hardware import pin_factory
@@ -64,9 +64,9 @@ def nothing() -> Any:
 NO_EQUIPMENT = Equipment(nothing, NoWakeUpLine(), nothing, nothing)
 
 
-def patient(root: Path, equipment: Equipment = NO_EQUIPMENT, **settings: object) -> Patient:
+def patient(root: Path, equipment: Equipment = NO_EQUIPMENT, **settings: object) -> Subjects:
     dotted = {name.replace("__", "."): value for name, value in settings.items()}
-    return Patient(load_settings(None, {"data": root / "data", **dotted}), None, equipment, root, patience=0.2)
+    return Subjects(load_settings(None, {"data": root / "data", **dotted}), None, equipment, root, patience=0.2)
 
 
 def write(file: Path, text: str) -> Path:
@@ -321,7 +321,7 @@ def test_a_computer_that_tells_nothing_is_no_fault(tmp_path: Path) -> None:
 # The service
 
 
-def with_token(root: Path, link: str, secret: str, **settings: object) -> Patient:
+def with_token(root: Path, link: str, secret: str, **settings: object) -> Subjects:
     token = write(root / "token", secret)
     token.chmod(0o600)
     return patient(root, server=link, token_file=token, **settings)

@@ -9,7 +9,7 @@ from sqlalchemy import update
 from sqlmodel import col
 
 from app.accounts.sign_in.service import find_person, set_roles
-from app.models import BatterySample, GrantRow, Notice, OrderState, RobotRow, Role
+from app.models import BatterySample, GrantRow, Notification, OrderState, RobotRow, Role
 from app.orders.service import Actor
 from app.orders.transitions import By
 from app.orders.views.schemas import NewOrder
@@ -80,7 +80,7 @@ class CampusDay(Scene):
 
     async def has_roles(self, email: str, roles: set[Role]) -> None:
         async with self.state.database.transaction() as session:
-            set_roles(await self.state.sign_in_desk.person(session, email, MOMENT), roles, set())
+            set_roles(await self.state.sign_in_service.person(session, email, MOMENT), roles, set())
 
     async def _happens(self, name: str, state: str) -> None:
         """One step of one letter; its first one is that it is ordered."""
@@ -101,7 +101,7 @@ class CampusDay(Scene):
             not_before=MOMENT + timedelta(hours=2) if what == "Books" else None,
         )
         async with self.state.database.transaction() as session:
-            person = await self.state.sign_in_desk.person(session, f"{sender}@campus.example", MOMENT)
+            person = await self.state.sign_in_service.person(session, f"{sender}@campus.example", MOMENT)
             draft = await self.state.orders.placing.draft(session, person, wish, {person.email: person})
             await self.state.orders.placing.write(session, [draft])
         return str(draft.facts.order.id)
@@ -132,7 +132,7 @@ class CampusDay(Scene):
     async def _old_notices_are_read(self) -> None:
         """And of today's all but the last minutes'."""
         async with self.state.database.transaction() as session:
-            old = update(Notice).where(col(Notice.at) < MOMENT - timedelta(minutes=3))
+            old = update(Notification).where(col(Notification.at) < MOMENT - timedelta(minutes=3))
             await session.exec(old.values(read_at=MOMENT, routed_at=MOMENT))
 
     async def trouble(self) -> None:

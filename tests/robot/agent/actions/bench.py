@@ -12,7 +12,7 @@ from robot.agent.actions.hands import Hands
 from robot.agent.navigator import Navigator
 from robot.core.config import PerceptMode
 from robot.mission.memory import Incoming, Memory
-from robot.mission.mission import Duties
+from robot.mission.mission import MissionManager
 from robot.mission.outbox import Outbox
 from robot.mission.store import Store
 from tests.robot.fake_body import FakeBody
@@ -55,9 +55,9 @@ class Bench:
     noted: list[str] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        self.duties = Duties(self.store, Memory(self.store), Outbox(self.store), lambda: NOW)
-        self.navigator = Navigator(builtin_map("test_track"), "post5", self.duties, now=0.0)
-        self.hands = Hands(self.body, self.navigator, self.duties, noted=self.noted.append)
+        self.missions = MissionManager(self.store, Memory(self.store), Outbox(self.store), lambda: NOW)
+        self.navigator = Navigator(builtin_map("test_track"), "post5", self.missions, now=0.0)
+        self.hands = Hands(self.body, self.navigator, self.missions, noted=self.noted.append)
         self.actions = Actions(self.hands, table_for(self.mode))
         self._next = 0
 
@@ -72,13 +72,13 @@ class Bench:
         return dict(self.actions.finished(now))[id_]
 
     def told(self) -> list[str]:
-        return [kept.message.model_dump_json() for kept in self.duties.outbox.pending()]
+        return [kept.message.model_dump_json() for kept in self.missions.outbox.pending()]
 
 
 def with_server(bench: Bench, *granted: Leg, online: bool = True) -> SilentServer:
     server = SilentServer(online)
-    bench.duties.join(server)
-    bench.duties.memory.grant(granted)
-    bench.duties.seen("post2")
+    bench.missions.join(server)
+    bench.missions.memory.grant(granted)
+    bench.missions.seen("post2")
     bench.navigator.place("post2", "post3")
     return server

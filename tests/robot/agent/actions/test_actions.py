@@ -98,11 +98,11 @@ def test_a_dropped_intention_cancels_its_skill_before_the_next_one_starts(bench:
 
 
 def test_mail_is_written_down_before_the_tune_promises_it(bench: Bench) -> None:
-    bench.duties.give(MISSION)
+    bench.missions.give(MISSION)
     bench.ask("wait_handover(load,o1,s1,600)")
     bench.body.end("wait_handover", Done(shown=ShownCode("ab" * 32, b"key")))
     assert "say" not in bench.body.started
-    bench.body.at_start = lambda skill: cargo.append((skill.name, bench.duties.held.cargo))
+    bench.body.at_start = lambda skill: cargo.append((skill.name, bench.missions.held.cargo))
     cargo: list[tuple[str, tuple[str, ...]]] = []
     bench.actions.finished(1.0)
     assert cargo == [("say", ("o1",))]
@@ -120,37 +120,37 @@ def test_without_a_server_the_robot_may_drive_where_it_likes(bench: Bench) -> No
 
 
 def test_a_confirmed_handover_is_kept_and_told_in_one_go(bench: Bench) -> None:
-    bench.duties.give(MISSION)
+    bench.missions.give(MISSION)
     bench.navigator.place("post1", "post2")
     id_ = bench.ask("wait_handover(load,o1,s1,600)")
     bench.body.end("wait_handover", Done(shown=ShownCode("ab" * 32, b"key")))
     assert bench.actions.finished(1.0) == []
-    assert (bench.duties.held.cargo, bench.duties.held.next_stop) == (("o1",), 1)
+    assert (bench.missions.held.cargo, bench.missions.held.next_stop) == (("o1",), 1)
     assert [text for text in bench.told() if '"handover"' in text and "ab" * 32 in text]
-    assert bench.duties.custody.handing_over
+    assert bench.missions.custody.handing_over
     assert bench.actions.finished(1.0 + STANDS_FOR_HANDS_S - 0.1) == [], "a hand may be in the box"
     assert bench.actions.finished(1.0 + STANDS_FOR_HANDS_S) == [(id_, None)]
-    assert not bench.duties.custody.handing_over
+    assert not bench.missions.custody.handing_over
 
 
 def test_a_dropped_plan_does_not_wait_for_hands(bench: Bench) -> None:
-    bench.duties.give(MISSION)
+    bench.missions.give(MISSION)
     id_ = bench.ask("wait_handover(load,o1,s1,600)")
     bench.body.end("wait_handover", Done(shown=ShownCode("ab" * 32, b"key")))
     bench.actions.finished(1.0)
     bench.actions.cancel([id_])
-    assert not bench.duties.custody.handing_over
+    assert not bench.missions.custody.handing_over
     assert bench.actions.finished(1.1) == []
     assert bench.actions.under_way == ()
 
 
 def test_mail_handed_over_in_the_moment_its_plan_is_dropped_is_in_custody_all_the_same(bench: Bench) -> None:
-    bench.duties.give(MISSION)
+    bench.missions.give(MISSION)
     id_ = bench.ask("wait_handover(load,o1,s1,600)")
     bench.body.end("wait_handover", Done(shown=ShownCode("ab" * 32, b"key")))
     bench.actions.cancel([id_])
     assert bench.actions.finished(1.0) == [], "the agent does not hear of it"
-    assert bench.duties.held.cargo == ("o1",)
+    assert bench.missions.held.cargo == ("o1",)
 
 
 def test_a_step_of_a_mission_that_was_taken_back_fails_by_name(bench: Bench) -> None:
@@ -159,15 +159,15 @@ def test_a_step_of_a_mission_that_was_taken_back_fails_by_name(bench: Bench) -> 
 
 
 def test_nobody_coming_changes_no_custody(bench: Bench) -> None:
-    bench.duties.give(MISSION)
+    bench.missions.give(MISSION)
     id_ = bench.ask("wait_handover(load,o1,s1,600)")
     bench.body.end("wait_handover", Failed("no_one_came"))
     assert bench.actions.finished(1.0) == [(id_, "no_one_came")]
-    assert (bench.duties.held.cargo, bench.duties.held.next_stop) == ((), 0)
+    assert (bench.missions.held.cargo, bench.missions.held.next_stop) == ((), 0)
 
 
 def test_a_report_is_told_once_however_often_it_is_made(bench: Bench) -> None:
-    bench.duties.give(MISSION)
+    bench.missions.give(MISSION)
     for _ in range(3):
         assert bench.result("report(departed,s1)") is None
     assert len([text for text in bench.told() if '"departed"' in text]) == 1

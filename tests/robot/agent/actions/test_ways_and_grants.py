@@ -14,7 +14,7 @@ from tests.robot.agent.actions.bench import MISSION, NOW, TO_POST1, TO_POST3, TO
 
 def test_a_way_that_is_closed_for_now_is_told_from_one_that_is_not_there(bench: Bench) -> None:
     bench.navigator.place("post1", "post2")
-    bench.duties.claims.avoid = frozenset({TO_POST3})
+    bench.missions.claims.avoid = frozenset({TO_POST3})
     assert bench.result("set_destination(post4)") is None, "it will be open again"
     assert bench.result("claim(post4)") == "way_closed"
     assert bench.result("claim(post4)") is None, "what was denied is asked for again"
@@ -27,16 +27,16 @@ def test_while_something_stands_in_its_way_it_keeps_what_it_was_granted(bench: B
     with_server(bench, TO_POST3, TO_POST4)
     bench.navigator.closed.close(TO_POST3, now=0.0)
     assert bench.result("claim(post4)") == "way_closed"
-    assert bench.duties.held.grants == (TO_POST3, TO_POST4)
+    assert bench.missions.held.grants == (TO_POST3, TO_POST4)
     bench.result("reopen")
     assert bench.result("claim(post4)") is None, "it may go in again with no service to ask"
 
 
 def test_while_another_robot_is_in_its_way_it_lets_go_of_everything(bench: Bench) -> None:
     with_server(bench, TO_POST3, TO_POST4)
-    bench.duties.claims.avoid = frozenset({TO_POST3})
+    bench.missions.claims.avoid = frozenset({TO_POST3})
     assert bench.result("claim(post4)") == "way_closed"
-    assert bench.duties.held.grants == ()
+    assert bench.missions.held.grants == ()
 
 
 def test_a_corridor_in_which_it_turned_back_is_told_by_name_and_closed_for_ten_minutes(bench: Bench) -> None:
@@ -63,7 +63,7 @@ def test_the_first_corridor_is_enough_to_go_on_and_the_rest_is_waited_for_at_the
 def test_a_detour_gives_back_what_it_does_not_need_and_keeps_what_it_does(bench: Bench) -> None:
     with_server(bench, TO_POST3, TO_POST4)
     assert bench.result("claim(post5)") is None
-    assert bench.duties.held.grants == (TO_POST3,)
+    assert bench.missions.held.grants == (TO_POST3,)
 
 
 def test_a_corridor_to_which_it_comes_only_later_is_given_back_though_it_is_on_the_way_home(bench: Bench) -> None:
@@ -71,13 +71,13 @@ def test_a_corridor_to_which_it_comes_only_later_is_given_back_though_it_is_on_t
     bench.ask("claim(post1)")
     claimed = next(told for told in bench.told() if '"goal":"post1"' in told)
     assert '{"from_post":"post2","to_post":"post3"}' in claimed, "it asks for the way back to its dock as well"
-    assert bench.duties.held.grants == ()
+    assert bench.missions.held.grants == ()
 
 
 def test_a_corridor_that_it_has_been_through_is_given_back_though_it_comes_there_again(bench: Bench) -> None:
     with_server(bench, Leg(from_post="post1", to_post="post2"))
     bench.ask("claim(post1)")
-    assert bench.duties.held.grants == ()
+    assert bench.missions.held.grants == ()
 
 
 def test_a_claim_that_is_answered_by_a_way_aside_ends_and_what_was_granted_with_it_is_kept(bench: Bench) -> None:
@@ -87,11 +87,11 @@ def test_a_claim_that_is_answered_by_a_way_aside_ends_and_what_was_granted_with_
     sent(bench, TO_POST1)
     assert bench.actions.finished(0.1) == [(waiting, None)]
     assert bench.result("claim(post4)") is None, "asked again it is sent there again, and claims nothing meanwhile"
-    assert bench.duties.held.grants == (TO_POST1,)
+    assert bench.missions.held.grants == (TO_POST1,)
     assert [told for told in bench.told() if '"goal"' in told] == [bench.told()[0]]
     bench.navigator.place("post1", "post2")
     bench.ask("claim(post4)")
-    assert bench.duties.held.grants == () and '"goal":"post4"' in bench.told()[-1], "from there it goes its own way"
+    assert bench.missions.held.grants == () and '"goal":"post4"' in bench.told()[-1], "from there it goes its own way"
 
 
 def test_it_is_not_sent_into_a_corridor_in_which_it_has_turned_back(bench: Bench) -> None:
@@ -100,7 +100,7 @@ def test_it_is_not_sent_into_a_corridor_in_which_it_has_turned_back(bench: Bench
     sent(bench, TO_POST1)
     bench.ask("claim(post4)")
     assert bench.actions.finished(0.0) == []
-    assert bench.duties.held.grants == (), "it gives back what was granted with it"
+    assert bench.missions.held.grants == (), "it gives back what was granted with it"
 
 
 def out_of_network(bench: Bench, at_s: float) -> None:
@@ -112,7 +112,7 @@ def test_out_of_network_it_keeps_what_it_was_granted_and_leaves_by_it(bench: Ben
     waiting = bench.ask("claim(post1)")
     out_of_network(bench, AWAITS_NETWORK_S - 1)
     assert bench.actions.finished(0.0) == [], "the network may come back at once"
-    assert bench.duties.held.grants == (TO_POST3, TO_POST4)
+    assert bench.missions.held.grants == (TO_POST3, TO_POST4)
     out_of_network(bench, AWAITS_NETWORK_S)
     assert bench.actions.finished(0.1) == [(waiting, None)]
     assert detour(bench.hands) == TO_POST3
@@ -154,7 +154,7 @@ def test_out_of_network_it_may_go_again_where_it_has_been(bench: Bench) -> None:
     with_server(bench, TO_POST2, TO_POST3, TO_POST4, online=False)
     crosses(bench, "post3", "post2")
     crosses(bench, "post2", "post3")
-    assert bench.duties.held.grants == (TO_POST2, TO_POST3, TO_POST4), "no one would hear of it"
+    assert bench.missions.held.grants == (TO_POST2, TO_POST3, TO_POST4), "no one would hear of it"
     assert bench.result("claim(post2)") is None
     assert bench.result("claim(post4)") is None
 
@@ -175,11 +175,11 @@ def test_out_of_network_it_does_not_drive_to_and_fro(bench: Bench) -> None:
 
 def test_what_it_was_to_take_first_is_forgotten_once_it_has_come_through(bench: Bench) -> None:
     server = with_server(bench, TO_POST3, online=False)
-    bench.duties.memory.turn_aside(TO_POST3)
+    bench.missions.memory.turn_aside(TO_POST3)
     crosses(bench, "post2", "post3")
     server.online = True
     bench.navigator.give_back_crossed()
-    assert (bench.duties.held.grants, bench.duties.held.detour) == ((), None)
+    assert (bench.missions.held.grants, bench.missions.held.detour) == ((), None)
     bench.navigator.place("post2", "post1")
     bench.ask("claim(post1)")
     assert bench.actions.finished(0.0) == [], "it has to be granted"
@@ -191,7 +191,7 @@ def test_what_it_has_crossed_out_of_network_it_gives_back_at_the_next_post_with_
     crosses(bench, "post4", "post3")
     server.online = True
     crosses(bench, "post3", "post2")
-    assert bench.duties.held.grants == (TO_POST1,)
+    assert bench.missions.held.grants == (TO_POST1,)
     assert len(bench.told()) == 2 and all('"leg"' in told for told in bench.told()), "each once"
 
 
@@ -202,9 +202,9 @@ def test_network_that_comes_back_after_a_claim_takes_nothing_from_under_its_whee
     assert bench.result("claim(post2)") is None
     server.online = True
     bench.navigator.look(bench.body.view)
-    assert TO_POST2 in bench.duties.held.grants
+    assert TO_POST2 in bench.missions.held.grants
     crosses(bench, "post3", "post2")
-    assert bench.duties.held.grants == ()
+    assert bench.missions.held.grants == ()
 
 
 @pytest.mark.parametrize("started_anew", [False, True])
@@ -212,15 +212,15 @@ def test_network_that_comes_back_while_it_waits_for_a_person_lets_others_in_behi
     bench: Bench, started_anew: bool
 ) -> None:
     server = with_server(bench, TO_POST2, online=False)
-    bench.duties.give(MISSION)
+    bench.missions.give(MISSION)
     crosses(bench, "post3", "post2")
     bench.navigator.crossed = () if started_anew else bench.navigator.crossed
     bench.ask("wait_handover(load, o1, s1, 90)")
     assert bench.actions.finished(0.0) == []
-    assert bench.duties.held.grants == (TO_POST2,)
+    assert bench.missions.held.grants == (TO_POST2,)
     server.online = True
     assert bench.actions.finished(0.1) == []
-    assert bench.duties.held.grants == ()
+    assert bench.missions.held.grants == ()
 
 
 def test_on_its_way_back_it_does_not_release_the_corridor_that_it_is_in(bench: Bench) -> None:
@@ -228,7 +228,7 @@ def test_on_its_way_back_it_does_not_release_the_corridor_that_it_is_in(bench: B
     bench.navigator.place("post3", "post2")
     bench.navigator.leave()
     bench.result("release")
-    assert bench.duties.held.grants == (TO_POST3,)
+    assert bench.missions.held.grants == (TO_POST3,)
 
 
 def pushed_away(bench: Bench, *granted: Leg) -> None:
@@ -259,13 +259,13 @@ def test_in_a_corridor_that_it_was_granted_either_way_it_goes_on(bench: Bench, g
 def sent(bench: Bench, leg: Leg) -> None:
     """The service has answered with another corridor than the one asked for."""
     detour = Detour(claim_id="c", legs=(leg,), reason="Robot r2 has to pass.")
-    bench.duties.memory.resume("j", 1)
-    bench.duties.memory.receive(Envelope(type="detour", robot="r1", journal="j", seq=1, at=NOW, body=detour))
-    bench.duties.seen("post2")
+    bench.missions.memory.resume("j", 1)
+    bench.missions.memory.receive(Envelope(type="detour", robot="r1", journal="j", seq=1, at=NOW, body=detour))
+    bench.missions.seen("post2")
 
 
 def test_the_corridor_that_it_is_in_is_never_given_back(bench: Bench) -> None:
     with_server(bench, TO_POST3, TO_POST4)
     bench.navigator.leave()
     assert bench.result("release") is None
-    assert bench.duties.held.grants == (TO_POST3,)
+    assert bench.missions.held.grants == (TO_POST3,)

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from robot.agent.perception.battery import BatterySense, BatteryWord
+from robot.agent.perception.battery import BatteryLevel, BatterySense
 from robot.core.config import BatterySettings
 from robot.drivers.interfaces import BaseState, ChargingState
 
@@ -33,9 +33,9 @@ def test_a_worn_pack_is_full_when_the_charger_has_said_so_for_a_minute() -> None
     sense = BatterySense()
     for second in range(0, 59):
         sense = sense.seen(frame(0.8, home_base=True, charging_state=ChargingState.TRICKLE), SETTINGS, float(second))
-        assert sense.word is BatteryWord.OK
+        assert sense.word is BatteryLevel.OK
     sense = sense.seen(frame(0.8, home_base=True, charging_state=ChargingState.WAITING), SETTINGS, 60.0)
-    assert sense.word is BatteryWord.FULL
+    assert sense.word is BatteryLevel.FULL
 
 
 def test_a_charger_that_is_interrupted_counts_its_minute_anew() -> None:
@@ -43,12 +43,12 @@ def test_a_charger_that_is_interrupted_counts_its_minute_anew() -> None:
     for second, docked in [(0.0, True), (30.0, False), (40.0, True), (70.0, True)]:
         state = ChargingState.TRICKLE if docked else ChargingState.NOT_CHARGING
         sense = sense.seen(frame(0.8, home_base=docked, charging_state=state), SETTINGS, second)
-    assert sense.word is BatteryWord.OK
+    assert sense.word is BatteryLevel.OK
 
 
 def test_a_base_that_does_not_know_its_capacity_yet_changes_nothing() -> None:
     low = BatterySense().seen(frame(0.2), SETTINGS, 0.0)
-    assert low.seen(BaseState(at_s=1.0, capacity_mah=0), SETTINGS, 1.0).word is BatteryWord.LOW
+    assert low.seen(BaseState(at_s=1.0, capacity_mah=0), SETTINGS, 1.0).word is BatteryLevel.LOW
 
 
 def test_too_weak_to_begin_work_ends_a_little_above_where_it_began() -> None:

@@ -6,7 +6,7 @@ import pytest
 
 from protocol.parts import Stop, StopAction
 from protocol.to_robot import Mission
-from robot.agent.perception.battery import BatterySense, BatteryWord
+from robot.agent.perception.battery import BatteryLevel, BatterySense
 from robot.agent.perception.percepts import PERCEPTS, atom_or_text, perceive
 from robot.agent.perception.seen import Seen, Whereabouts
 from robot.core.config import PerceptMode
@@ -28,7 +28,7 @@ MISSION = Mission(
 
 def seen(now: float = 10.0, *, base_at_s: float = 10.0, **more: object) -> Seen:
     view = View(at_s=now, base=BaseState(at_s=base_at_s), line=LineSymbol.CENTER)
-    battery = BatterySense(BatteryWord.OK, 0.5)
+    battery = BatterySense(BatteryLevel.OK, 0.5)
     return replace(Seen(now, view, battery, Whereabouts("post2", "post1", "post4", "left", "post2")), **more)
 
 
@@ -87,7 +87,7 @@ def test_what_only_our_program_needs_is_shown_to_it_alone() -> None:
     carried_off = seen(
         where=Whereabouts(moved="post3"),
         held=Held(recharging=True),
-        battery=BatterySense(BatteryWord.OK, 0.4, weak=True),
+        battery=BatterySense(BatteryLevel.OK, 0.4, weak=True),
     )
     ours = {"moved(post3)", "recharging", "weak"}
     assert ours <= perceive(carried_off, LATEST, 2.0)

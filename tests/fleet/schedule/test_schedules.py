@@ -1,4 +1,4 @@
-"""Every robot that is sent out comes home: timetables on random maps, checked independently and carried out by
+"""Every robot that is sent out comes home: schedules on random maps, checked independently and carried out by
 robots that are late."""
 
 from dataclasses import replace
@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from fleet.schedule.execution import retimed
 from fleet.schedule.journey import Goal, Start, Task
 from fleet.schedule.network import Lane, Network
-from fleet.schedule.planning import Timetable, first_plan, improve, insert, plan
+from fleet.schedule.planning import Schedule, first_plan, improve, insert, plan
 from fleet.schedule.validation import problems
 from tests.fleet.schedule.carried_out import World
 
@@ -44,14 +44,14 @@ def random_tasks(rng: Random, network: Network, robots: int) -> dict[str, Task]:
     return tasks
 
 
-def planned(rng: Random, network: Network, tasks: dict[str, Task]) -> Timetable:
+def planned(rng: Random, network: Network, tasks: dict[str, Task]) -> Schedule:
     found = first_plan(network, tasks, rng)
     assert found is not None, "from home everybody can serve and come home"
     return found
 
 
 @given(st.randoms(use_true_random=False), st.integers(1, 6), st.booleans())
-def test_every_timetable_stands_up_to_a_check_that_knows_nothing_of_the_search(
+def test_every_schedule_passes_a_check_that_knows_nothing_of_the_search(
     rng: Random, robots: int, following: bool
 ) -> None:
     network = random_network(rng, following=following)
