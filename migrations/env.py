@@ -10,7 +10,7 @@ from sqlmodel import AutoString
 from app.core.database.database import Database
 from app.core.settings import load_settings, make_data_folder
 from app.models import metadata
-from app.models.columns import UtcTime, WordOf
+from app.models.columns import EnumColumn, UtcTime
 
 
 def plain_type(kind: str, item: Any, autogen_context: Any) -> str | Literal[False]:
@@ -19,7 +19,7 @@ def plain_type(kind: str, item: Any, autogen_context: Any) -> str | Literal[Fals
         return False
     if isinstance(item, UtcTime):
         return "sa.DateTime()"
-    if isinstance(item, WordOf):
+    if isinstance(item, EnumColumn):
         return f"sa.String({item.impl.length})"
     return f"sa.String({item.length})" if isinstance(item, AutoString) else False
 
