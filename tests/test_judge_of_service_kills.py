@@ -65,7 +65,7 @@ Damage = Callable[[dict[str, Any]], object]
     [
         (lambda f: f["acknowledged"].update(k2="o2"), "order o2 was acknowledged to k2 and is lost"),
         (lambda f: f["acknowledged"].update(k2="o1"), "order o1 was the answer to 2 keys"),
-        (lambda f: f["acknowledged"].clear(), "order o1 is there, and nobody was told: a double"),
+        (lambda f: f["acknowledged"].clear(), "order o1 is there, and it was not reported: a double"),
         (lambda f: f["tables"]["order_events"].pop(0), "its life does not begin with the queue"),
         (lambda f: f["tables"]["order_events"].pop(), "its last event says at_recipient"),
         (lambda f: f["tables"]["order_events"].pop(3), "carrying followed to_sender on the word of robot"),
@@ -85,7 +85,7 @@ Damage = Callable[[dict[str, Any]], object]
             "a receipt of order o1 was refused",
         ),
         (lambda f: f["tables"]["notices"].append(f["tables"]["notices"][0]), "the sender was told accepted 2 times"),
-        (lambda f: f["tables"]["notices"].pop(), "nobody told recipient delivered"),
+        (lambda f: f["tables"]["notices"].pop(), "recipient delivered was not told"),
         (lambda f: f["tables"]["notices"][0].update(person_id="eve"), "the stranger was told accepted"),
         (lambda f: f["tables"]["notices"][0].update(routed_at=None), "notice 0 was given to no channel"),
         (lambda f: f["tables"]["outbox"][0].update(sent_at=None), "mail mail.0 was never sent"),

@@ -11,7 +11,7 @@ from app.dispatch.open_work import HeldUp, RobotNow, look_at_held_up
 from app.robots.service import Fleet
 
 SENTENCES: Final = {
-    HeldUp.STUCK_MAIL: "No robot is free: somebody has to see to mail that is stuck first.",
+    HeldUp.STUCK_MAIL: "No robot is free: the mailroom has to see to stuck mail first.",
     HeldUp.STOPPED: "Every robot that could fetch it has stopped and needs help.",
     HeldUp.PAUSED: "The robots that may fetch it take no orders at the moment.",
 }

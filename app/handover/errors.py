@@ -35,7 +35,7 @@ class WrongDigits(Unprocessable):
 
 
 class NotYourTurn(Conflict):
-    """It is somebody else's turn to hand over, or nobody's."""
+    """It is another person's turn to hand over, or no one's."""
 
     code = "not_your_turn"
 

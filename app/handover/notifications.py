@@ -24,7 +24,7 @@ async def notify_delegate(
     email = row.email or ""
     if await find_person(session, email) is None and not may_be_sent_mail(email, ledger.settings):
         domains = ", ".join(ledger.settings.allowed_domains)
-        raise AddressNotAllowed(f"Nobody here has the address {email}. New addresses are those of {domains}.")
+        raise AddressNotAllowed(f"No account here has the address {email}. New addresses are those of {domains}.")
     person = await sign_in.person(session, email, row.named_at)
     code = {"delegate_id": row.id, "purpose": row.purpose, "named_by": named_by.name}
     await _tell(session, ledger, order, row, person, NotificationKind.DELEGATED, code)

@@ -115,7 +115,7 @@ async def linked_hand_over(
 
 @router.post("/not-now", responses=problems(NotRecallable, UnknownOrder))
 async def linked_not_now(link: Link, links: LinksDep, orders: OrdersDep, session: SessionDep) -> OrderView:
-    """Say that nobody can take the mail now: the robot brings it back."""
+    """Decline the mail for now: the robot brings it back."""
     guest = await links.open(session, link.token)
     return await orders.returning.not_now(session, guest.person, guest.order_id)
 
@@ -130,7 +130,7 @@ async def linked_delegate(
     session: SessionDep,
     response: Response,
 ) -> LinkedDelegateView:
-    """Name somebody who takes the mail instead, with a code of their own, which is shown here once."""
+    """Name a delegate who takes the mail instead, with a code of their own, which is shown here once."""
     guest = await links.open(session, request.token)
     named = NewDelegate(name=request.name, email=request.email, purpose=request.purpose)
     row = await delegating.name(session, guest.person, guest.order_id, named)

@@ -49,7 +49,7 @@ def purpose_to_delegate(order: Order, role: MyRole, requested: Purpose | None) -
         raise errors.NotYoursToDelegate("The sender names who loads or takes back, the recipient who receives.")
     loading_is_over = order.state not in NOTHING_ABOARD or order.is_passed_on
     if order.state in ENDED or (purpose is Purpose.LOAD and loading_is_over):
-        raise errors.TooLateToDelegate("This hand-over is over: there is nothing left to be done by somebody else.")
+        raise errors.TooLateToDelegate("This hand-over is over: there is nothing left that a delegate could do.")
     return purpose
 
 

@@ -64,7 +64,7 @@ DelegatingDep = Annotated[Delegating, part(Delegating)]
 async def my_code(
     order_id: OrderId, user: CurrentUser, hand_overs: HandOversDep, session: ReadingDep, response: Response
 ) -> CodeView:
-    """The hand-over code of whoever's turn it is, as a QR text and six digits."""
+    """The hand-over code of the person whose turn it is, as a QR text and six digits."""
     code = await hand_overs.my_code(session, user, order_id)
     response.headers.update(NOT_KEPT)
     svg_url = f"/api/v1/orders/{order_id}/code.svg"
@@ -87,7 +87,7 @@ async def my_code_picture(
 async def hand_over(
     order_id: OrderId, request: HandoverRequest, user: CurrentUser, hand_overs: HandOversDep, database: DatabaseDep
 ) -> HandoverAsked:
-    """Ask the robot that waits to hand over: by a tap of whoever's turn it is, or by the digits of a code.
+    """Ask the robot that waits to hand over: by a tap of the person whose turn it is, or by the digits of a code.
 
     202: the robot is asked. Mail has changed hands when its receipt has come; the order moves then, and its
     `handover_requested` is null again.
@@ -137,7 +137,7 @@ async def name_delegate(
     session: SessionDep,
     response: Response,
 ) -> DelegateView:
-    """Name somebody who hands over instead, with a code of their own."""
+    """Name a delegate who hands over instead, with a code of their own."""
     row = await delegating.name(session, user, order_id, request)
     response.headers["Location"] = f"/api/v1/orders/{order_id}/delegates/{row.id}/code"
     return DelegateView.of(row)

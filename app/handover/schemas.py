@@ -13,7 +13,7 @@ from app.handover.my_delegations import NamedDelegate
 from app.handover.notifications import post_of
 from app.models import Delegate, OrderState
 from app.orders.custody.codes import HandoverCode
-from app.orders.views.schemas import PersonView
+from app.orders.views.schemas import PartyView
 from app.orders.views.views import MyRole, person_view
 from protocol.parts import Purpose
 
@@ -105,8 +105,8 @@ class MyDelegateView(BaseModel):
     order_id: str
     state: OrderState
     description: str | None
-    sender: PersonView
-    recipient: PersonView
+    sender: PartyView
+    recipient: PartyView
     my_role: MyRole
 
     @classmethod

@@ -47,13 +47,13 @@ class NoWay(Unprocessable):
 
 
 class UnknownSender(Unprocessable):
-    """Nobody with the address of `on_behalf_of` is known, and its domain is not the campus's."""
+    """No person with the address of `on_behalf_of` is known, and its domain is not the campus's."""
 
     code = "unknown_sender"
 
 
 class ForDispatchers(Forbidden):
-    """A member ordered for somebody else, or with high priority."""
+    """A member ordered for another person, or with high priority."""
 
     code = "for_dispatchers"
 
@@ -83,7 +83,7 @@ class UnknownRobotWanted(Unprocessable):
 
 
 class UnknownRecipient(Unprocessable):
-    """Nobody with this address is known, and its domain is not the campus's."""
+    """No person with this address is known, and its domain is not the campus's."""
 
     code = "unknown_recipient"
 

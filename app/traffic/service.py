@@ -124,7 +124,7 @@ class TrafficService:
             one = picture.robots[name]
             hold = one.holds[0] if one.holds else None
             where = f"between {hold.from_post} and {hold.to_post}" if hold else f"at {one.post}"
-            others = "nobody is let in there" if hold else "others go round it"
+            others = "no robot is let in there" if hold else "others go round it"
             reason = f"nothing has been heard of the robot since it was {where}: {others} until it is found"
             await raise_alarm(session, name, VANISHED, reason, now=now, post=one.post)
         for name in sorted(before - now_gone):

@@ -23,7 +23,7 @@ PARTS = {
     "near_posts": "kills in the last 300 mm before a post: where the restarted robot drives",
     "foreign_codes": "plain codes of posts that a stranger shows at random places: none believed",
     "hour": "a simulated hour: time on the wall, processor, memory and lag of the loops",
-    "watched": "what it costs the mind that somebody watches it, and that nobody does",
+    "watched": "what it costs the mind to be watched, and not to be watched",
 }
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)

@@ -19,7 +19,7 @@ PARTS = {
     "never_stuck": "five kinds of map, late and dead robots, closed corridors: no deadlock, and nothing waits for ever",
     "baselines": "other ways to assign orders and to lock corridors, with the same orders",
     "estimates": "arrivals that people are told, with rush hours, failures and charging: how many come inside",
-    "charging": "worn packs, and fewer docks than robots: nobody strands, hardly an order waits for a charge",
+    "charging": "worn packs, and fewer docks than robots: no robot strands, hardly an order waits for a charge",
     "campus": "weeks of everything together, with all messages between robots and service, and what goes wrong",
     "decisions": "how long a decision takes with 20 robots and 200 orders, at first and improved; growth with orders",
 }

@@ -54,7 +54,7 @@ def _orders(facts: Facts) -> Iterator[str]:
         if order_id not in stored:
             yield f"order {order_id} was acknowledged to {key} and is lost"
     yield from (f"order {order_id} was the answer to {count} keys" for order_id, count in promised.items() if count > 1)
-    yield from (f"order {order_id} is there, and nobody was told: a double" for order_id in stored - set(promised))
+    yield from (f"order {order_id} is there, and it was not reported: a double" for order_id in stored - set(promised))
 
 
 def _lives(facts: Facts) -> Iterator[str]:
@@ -105,7 +105,7 @@ def _notices(facts: Facts) -> Iterator[str]:
                 yield f"order {order['id']}: the {who} was told {kind} {count} times"
         if order["state"] == OrderState.DELIVERED:
             missing = sorted(f"{who} {kind}" for who, kind in ALWAYS_TOLD - set(kinds))
-            yield from (f"order {order['id']}: nobody told {one}" for one in missing)
+            yield from (f"order {order['id']}: {one} was not told" for one in missing)
 
 
 def _sendings(facts: Facts) -> Iterator[str]:

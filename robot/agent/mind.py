@@ -123,7 +123,7 @@ class Mind:
         for message in outcome.messages:
             # A robot's agent has no other agent to write to: people are told by actions (decision 0016).
             told = f"{message.performative} {message.content} to {message.receiver}"
-            self.hands.noted(f"{told} reaches nobody: a robot's agent tells people by actions (report, raise_fault)")
+            self.hands.noted(f"{told} reaches no agent: a robot's agent tells people by actions (report, raise_fault)")
             log.warning(
                 "agent_message_undelivered",
                 receiver=message.receiver,

@@ -42,7 +42,7 @@ _WAITS: Final[dict[str, Callable[[Navigator], tuple[str, str | None]]]] = {
     "undock": lambda n: (f"Leaving the dock at {n.here}", None),
     "claim": lambda n: (f"Waiting at {n.here} for permission to drive on", "permission from the server"),
     "wait_handover(load": lambda n: (f"Waiting for the sender at {n.here}", "the sender's code"),
-    "wait_handover(return": lambda n: (f"Waiting at {n.here} for somebody to take mail back", "a code"),
+    "wait_handover(return": lambda n: (f"Waiting at {n.here} for the mail to be taken back", "a code"),
     "wait_handover(receive": lambda n: (f"Waiting for the recipient at {n.here}", "the recipient's code"),
     "rest": lambda _: ("Waiting a moment before trying again", None),
     "drive": lambda n: (_driving(n), None),

@@ -177,7 +177,7 @@ class Settings(Section):
     map: str = Field(default="test_track", description="a built-in map by name, or a map file")
     home: str | None = Field(default=None, description="post of its own dock; without it, the first dock of the map")
     mailroom: str | None = Field(
-        default=None, description="post that takes back mail which nobody took; without it, its sender's post"
+        default=None, description="post that takes back mail that was not taken; without it, its sender's post"
     )
     server: Annotated[str | None, AfterValidator(_loopback_or_encrypted)] = Field(
         default=None, description="address of the service's robot link (wss, or ws to this machine); none: alone"

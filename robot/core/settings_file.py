@@ -107,7 +107,7 @@ def write_settings(path: Path, values: Mapping[str, Any]) -> None:
     except TOMLKitError as error:
         raise ConfigError(str(path), "file", f"is not TOML: {error}") from None
     except OSError as error:
-        way_out = "Run the command as whoever owns the file (sudo)."
+        way_out = "Run the command as the owner of the file (sudo)."
         raise ConfigError(str(path), "file", f"cannot be written: {error.strerror}", way_out) from None
     try:
         load_settings(temporary, {})

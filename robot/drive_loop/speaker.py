@@ -1,7 +1,7 @@
 """The base's speaker: one tune after another.
 
-A base that plays ignores the command to play another tune [Open Interface, Play]. A "yes, put it in" that nobody hears
-because a "no" was just being played is mail that the robot believes aboard and is not.
+A base that plays ignores the command to play another tune [Open Interface, Play]. An unheard "yes, put it in",
+lost because a "no" was just being played, is mail that the robot believes aboard and is not.
 """
 
 from collections import deque

@@ -46,7 +46,7 @@ class SavedWorld:
     def step_until(self, now: float) -> None:
         """See daemon.World.
 
-        A robot that has moved is written down before anybody hears of it: one that had ended a turn and was killed
+        A robot that has moved is written down before it is reported: one that had ended a turn and was killed
         came back in the middle of it, sure that it had turned.
         """
         self._robot.step_until(now)

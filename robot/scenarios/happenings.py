@@ -51,7 +51,7 @@ class Happenings:
                     self._over.append((now + row.for_s, actor, row))
             case Deed():
                 _DEEDS[row.do](actor, row, self.campus)
-                self.note(actor.name, f"somebody: {row.do.replace('_', ' ')}{f' to {row.to}' if row.to else ''}")
+                self.note(actor.name, f"a person: {row.do.replace('_', ' ')}{f' to {row.to}' if row.to else ''}")
             case MessageRow():
                 self._say(actor.name, row)
                 self.note(actor.name, f"service: {row.say}{f' {row.order}' if row.order else ''}")

@@ -61,7 +61,9 @@ def verdict(letter: Letter, service: StandIn) -> Verdict:
     match letter.place:
         case place if place == WITH_RECIPIENT:
             fate = Fate.DELIVERED if said_received else Fate.LOST
-            return Verdict(letter.order.id, fate, "" if said_received else "the recipient has it, but nobody was told")
+            return Verdict(
+                letter.order.id, fate, "" if said_received else "the recipient has it, but it was not reported"
+            )
         case place if place == WITH_SENDER:
             return _with_sender(letter, service, said_received)
     return _aboard(letter, service)
@@ -71,7 +73,7 @@ def _with_sender(letter: Letter, service: StandIn, said_received: bool) -> Verdi
     if letter.moved:
         fate = Fate.HANDED_OVER if said_received else Fate.LOST
         return Verdict(
-            letter.order.id, fate, "returned to the sender" + ("" if said_received else ", but nobody was told")
+            letter.order.id, fate, "returned to the sender" + ("" if said_received else ", but it was not reported")
         )
     if letter.gave_up:
         return Verdict(letter.order.id, Fate.HANDED_OVER, f"never loaded: {letter.gave_up[0]}")
@@ -94,7 +96,7 @@ def _told_of_trouble(letter: Letter, service: StandIn, robot: str | None, where:
     faults = service.sessions[robot].faults.keys() - NOTICES if robot else set()
     if faults:
         return Verdict(letter.order.id, Fate.HANDED_OVER, f"{where}; told: {', '.join(sorted(faults))}")
-    return Verdict(letter.order.id, Fate.LOST, f"{where}, and nobody was told")
+    return Verdict(letter.order.id, Fate.LOST, f"{where}, and it was not reported")
 
 
 def false_claims(letter: Letter) -> list[str]:
@@ -103,9 +105,9 @@ def false_claims(letter: Letter) -> list[str]:
     for receipt in letter.receipts:
         before = {place for at_s, place in letter.moved if at_s <= receipt.at_s + SETTLES_S}
         if receipt.purpose is Purpose.LOAD and receipt.robot not in before:
-            found.append(f"{receipt.robot} said loaded at {receipt.at_s:.1f} s, and nobody had put it in")
+            found.append(f"{receipt.robot} said loaded at {receipt.at_s:.1f} s, and no mail had been put in")
         if receipt.purpose is not Purpose.LOAD and not before & {WITH_RECIPIENT, WITH_SENDER}:
-            found.append(f"{receipt.robot} said received at {receipt.at_s:.1f} s, and nobody had taken it")
+            found.append(f"{receipt.robot} said received at {receipt.at_s:.1f} s, and no mail had been taken")
     return found
 
 
@@ -136,7 +138,7 @@ def _of_driving(ending: Ending, expected: Expectation) -> Iterable[str]:
         yield "not every robot is in a dock"
     for wanted in expected.told:
         if not any(one.text.startswith(wanted) for one in ending.told):
-            yield f"nobody was told {wanted!r}"
+            yield f"{wanted!r} was not reported"
     if expected.posts is not None and not _in_order(expected.posts, ending.posts):
         yield f"the way went over {', '.join(ending.posts)}, not {', '.join(expected.posts)}"
 

@@ -131,7 +131,7 @@ def _places(scenario: Scenario, campus: CampusMap) -> Iterator[Complaint]:
         if row.corridor is not None:
             yield from _one_of(f"{key}.corridor", row.corridor, corridors)
         if isinstance(row, Stander) and row.at is None and row.corridor is None:
-            yield key, "nobody says where", "Give at or corridor."
+            yield key, "the place is missing", "Give at or corridor."
     for post in scenario.dirt:
         yield from _post("dirt", post, campus)
 

@@ -62,14 +62,14 @@ ENDS: Final = (
         600.0,
         "no_one_came",
         "the code that was shown, none for Spot pressed twice",
-        {"no_one_came": "nobody showed a valid code in time"},
+        {"no_one_came": "no valid code was shown in time"},
     ),
     Ends("say", 5.0, "timeout", "at once", {"timeout": "never: the base plays by itself"}),
 )
 
 OF_ANY: Final = {
     "busy": "another motion has the wheels",
-    "cancelled": "whoever started it took it back",
+    "cancelled": "the action was withdrawn",
     "broken": "a mistake in the skill; the log has it",
 }
 """Any of them may also end so, and a motion by the name of the fault that took the wheels from the firmware."""

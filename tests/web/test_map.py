@@ -252,7 +252,7 @@ async def test_two_fingers_bring_it_closer_and_one_moves_it_only_then(visit):
 
 FOUR = [
     {"name": "r1", "seen": "post3", "to": "post4", "online": False, "why": "Driving towards post4"},
-    {"name": "r2", "seen": "post3", "activity": "stopped", "why": "Somebody stopped the robot."},
+    {"name": "r2", "seen": "post3", "activity": "stopped", "why": "A person stopped the robot."},
     {
         "name": "r3",
         "seen": "post5",
@@ -324,7 +324,7 @@ async def test_several_robots_do_not_hide_each_other_and_drawing_and_list_say_th
         assert ("Expected at" in text) == (name in {"r1", "r4"})
         held = [f"corridor from {title[a]} to {title[b]}, since " for robot, a, b in TAKEN if robot == name]
         assert text.count("May be in the corridor") == len(held) == sum(one in text for one in held)
-    assert "Somebody stopped the robot." in lists["r2"], "why"
+    assert "A person stopped the robot." in lists["r2"], "why"
     assert told["silent"] == ["post3-post4"]
     assert "No network between Post 3 and Post 4" in told["places"]
     assert told["places"][0] == "Post 1: 2 m to Post 2"

@@ -149,7 +149,7 @@ async def test_who_orders_while_the_only_robot_has_mail_that_was_not_taken_reads
     await is_seen(played, "post5", None, why="In its dock at post5")
 
     carl = await visit("carl", on="phone", at=campus)
-    stuck = "No robot is free: somebody has to see to mail that is stuck first."
+    stuck = "No robot is free: the mailroom has to see to stuck mail first."
     async with asyncio.timeout(30):
         while (await carl.api("/estimate?from_post=post2&to_post=post3"))["reason"] != stuck:  # noqa: ASYNC110
             await asyncio.sleep(0.1)

@@ -10,13 +10,13 @@ export type About = Schemas["About"];
 export type Person = Schemas["PersonView"];
 /** The signed-in person. */
 export type Me = Schemas["MyView"];
-export type Party = Schemas["Somebody"];
+export type Party = Schemas["PartyView"];
 
 export type CampusMap = Schemas["MapView"];
 export type MapPost = Schemas["PostView"];
 export type MapCorridor = Schemas["CorridorView"];
 export type Traffic = Schemas["Traffic"];
-export type OccupiedCorridor = Schemas["TakenCorridor"];
+export type OccupiedCorridor = Schemas["OccupiedCorridor"];
 /** The corridors that this robot holds now. */
 export type RobotTraffic = Schemas["RobotTraffic"];
 
@@ -55,12 +55,12 @@ export interface NewDelegate { name: string; email?: string }
 
 export type AboutMe = Schemas["AboutMe"];
 export type Contact = Schemas["ContactView"];
-export type NotificationPreferences = Schemas["WishesView"];
+export type NotificationPreferences = Schemas["PreferencesView"];
 export type NewWebhook = Schemas["NewWebhookView"];
 export type Trial = Schemas["TrialView"];
 export type OpenSession = Schemas["SessionView"];
 export type Token = Schemas["TokenView"];
-export type NewToken = Schemas["TokenWish"];
+export type NewToken = Schemas["TokenRequest"];
 export type MadeToken = Schemas["NewTokenView"];
 
 /** An order that a dispatcher places for a visitor at their desk. */
@@ -83,10 +83,10 @@ export type Because = IntentionView["because"];
 export type Means = IntentionView["stack"][number];
 export type NotChosen = Means["passed_over"][number];
 export type TraceLine = Diagnostics["trace"][number];
-export type Sending = Schemas["SendingView"];
+export type Sending = Schemas["DeliveryView"];
 export type SpooledMail = Schemas["SpooledMail"];
 export type SpooledText = Schemas["SpooledText"];
 
-export type NotificationView = Schemas["NoticeView"];
+export type NotificationView = Schemas["NotificationView"];
 export type Inbox = Schemas["Inbox"];
 export interface Page<Item> { items: Item[]; next: string | null }

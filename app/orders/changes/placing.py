@@ -86,7 +86,7 @@ class Placing:
         self, session: AsyncSession, person: Person, request: OrderRequest, known: dict[str, Person]
     ) -> Parties:
         if (request.on_behalf_of or request.priority is Priority.HIGH) and not person.has_role(Role.DISPATCHER):
-            raise errors.ForDispatchers("Only a dispatcher orders for somebody else, or with high priority.")
+            raise errors.ForDispatchers("Only a dispatcher orders for another person, or with high priority.")
         self._check_known(request.recipient, known, errors.UnknownRecipient)
         if not request.on_behalf_of or request.on_behalf_of == person.email:
             return Parties(person, await self._person(session, request.recipient, known))
@@ -173,7 +173,7 @@ class Placing:
     def _check_known(self, email: str, known: Mapping[str, Person], unknown: type[Unprocessable]) -> None:
         if email not in known and not may_be_sent_mail(email, self.ledger.settings):
             domains = ", ".join(self.ledger.settings.allowed_domains)
-            raise unknown(f"Nobody here has the address {email}. New addresses are those of {domains}.")
+            raise unknown(f"No account here has the address {email}. New addresses are those of {domains}.")
 
     async def _person(self, session: AsyncSession, email: str, known: dict[str, Person]) -> Person:
         if email not in known:

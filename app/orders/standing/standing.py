@@ -19,7 +19,7 @@ from app.models import Order, Person, Role, StandingOrder
 from app.orders import errors
 from app.orders.changes.placing import Parties, Placing
 from app.orders.standing.recurrence import Recurrence, day_of, next_after
-from app.orders.views.schemas import NewStandingOrder, OrderRequest, PersonView, StandingOrderView
+from app.orders.views.schemas import NewStandingOrder, OrderRequest, PartyView, StandingOrderView
 from protocol.clock import Clock
 from protocol.ids import new_id
 
@@ -165,7 +165,7 @@ def _plan(row: StandingOrder, after: datetime) -> None:
 
 
 def _view(row: StandingOrder, parties: Parties) -> StandingOrderView:
-    sender, recipient = [PersonView(email=one.email, name=one.name) for one in (parties.sender, parties.recipient)]
+    sender, recipient = [PartyView(email=one.email, name=one.name) for one in (parties.sender, parties.recipient)]
     return StandingOrderView(
         id=row.id,
         from_post=row.from_post,

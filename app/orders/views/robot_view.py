@@ -89,7 +89,7 @@ def why_of_robot(robot: RobotRow) -> str | None:
         return "Its corridors were given to others; it takes part again when it stands at a post"
     waits = WaitsFor.model_validate(robot.waits_for) if robot.waits_for else None
     if waits and waits.closed:
-        return f"Waiting at {waits.from_post}: somebody has closed the corridor to {waits.to_post}"
+        return f"Waiting at {waits.from_post}: the mailroom closed the corridor to {waits.to_post}"
     if waits and waits.robots:
         return f"Waiting at {waits.from_post} for the corridor to {waits.to_post}, after {', '.join(waits.robots)}"
     return robot.why

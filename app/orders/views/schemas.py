@@ -20,7 +20,8 @@ PostName = Annotated[str, StringConstraints(pattern=r"^[A-Za-z][A-Za-z0-9_]*$", 
 
 
 EmailOfSomebody = Annotated[
-    Email | None, Field(description="For dispatchers: whose order this is, if somebody else's (a walk-up order).")
+    Email | None,
+    Field(description="For dispatchers: whose order this is, if not the dispatcher's own (a walk-up order)."),
 ]
 LaterMoment = Annotated[AwareDatetime, Field(ge=datetime(2020, 1, 1, tzinfo=UTC), lt=datetime(2100, 1, 1, tzinfo=UTC))]
 
@@ -71,8 +72,8 @@ class StandingOrderView(BaseModel):
     id: str
     from_post: str
     to_post: str
-    sender: "PersonView"
-    recipient: "PersonView"
+    sender: "PartyView"
+    recipient: "PartyView"
     description: str | None
     priority: Literal["low", "normal", "high"]
     weekdays: list[int]
@@ -121,7 +122,7 @@ class Estimate(BaseModel):
     reason_words: Words | None = None
 
 
-class PersonView(BaseModel):
+class PartyView(BaseModel):
     """The other person of an order."""
 
     email: str
@@ -156,7 +157,7 @@ class CustodyView(BaseModel):
     delegate of the other side is a delegate without a name.
 
     `evidence` says what the link goes by: `proof` (only the code that was shown gives it), `tap`, `digits`,
-    `dispatcher`, `digest` (weaker: an older robot), `button`, `claimed` (nothing but the robot's report, so that nobody
+    `dispatcher`, `digest` (weaker: an older robot), `button`, `claimed` (nothing but the robot's report, so that no one
     has confirmed it) or `settled` (claimed, and found true since); null for the sender's own. Who is said to have mail
     that is claimed to be out stands last, while the robot answers for it still.
     """
@@ -201,7 +202,7 @@ class OrderView(BaseModel):
 
     `estimate`: when the robot should be at the recipient's, or why that is not known; null once it is there, or the
     mail goes elsewhere. `window` has the same times, or null. `why`: what the order waits for, never another order's
-    stop. `passed_on_at_post`: where somebody of the mailroom has taken the mail out of one robot for another to carry
+    stop. `passed_on_at_post`: where the mailroom has taken the mail out of one robot for another to carry
     it on.
     """
 
@@ -210,8 +211,8 @@ class OrderView(BaseModel):
     version: int
     from_post: str
     to_post: str
-    sender: PersonView
-    recipient: PersonView
+    sender: PartyView
+    recipient: PartyView
     description: str | None
     created_at: datetime
     updated_at: datetime
@@ -232,7 +233,7 @@ class OrderView(BaseModel):
     return_post: str | None
     passed_on_at_post: str | None
     standing_order_id: str | None
-    placed_by: PersonView | None
+    placed_by: PartyView | None
     custody: list[CustodyView]
     events: list[EventView]
 

@@ -21,7 +21,7 @@ from app.orders.transitions import CARRIED, ENDED, LOADED, ROBOT_COMING, By
 from app.orders.views.estimate import estimate_view
 from app.orders.views.reasons import as_of_order, why_it_waits
 from app.orders.views.robot_view import robot_view
-from app.orders.views.schemas import CustodyView, EventView, HandoverRequested, OrderView, PersonView, WindowView
+from app.orders.views.schemas import CustodyView, EventView, HandoverRequested, OrderView, PartyView, WindowView
 from maps import CampusMap
 from protocol.parts import Purpose
 
@@ -199,8 +199,8 @@ def delegates_view(
     return OrderView(
         **{name: getattr(whole, name) for name in SHOWN_TO_DELEGATES if name != "estimate"},
         estimate=whole.estimate and whole.estimate.without_own_words(),
-        sender=PersonView(email="", name=facts.sender.name),
-        recipient=PersonView(email="", name=facts.recipient.name),
+        sender=PartyView(email="", name=facts.sender.name),
+        recipient=PartyView(email="", name=facts.recipient.name),
         robot=whole.robot and whole.robot.model_copy(update=UNSAID_TO_DELEGATES),
         my_role="delegate",
         my_code=turn and turn.value,
@@ -261,8 +261,8 @@ def _handover_requested(events: Sequence[OrderEvent], settings: Settings) -> Han
     return HandoverRequested(how=last.reason or "tap", at=last.at, expires_at=expires_at)
 
 
-def person_view(person: Person) -> PersonView:
-    return PersonView(email=person.email, name=person.name)
+def person_view(person: Person) -> PartyView:
+    return PartyView(email=person.email, name=person.name)
 
 
 def _is_typed(event: OrderEvent) -> bool:

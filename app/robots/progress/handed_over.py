@@ -39,9 +39,7 @@ TAKEN_BACK_BY: Final[Mapping[Holder, OrderState]] = {
 }
 
 
-NOT_PROVED: Final = (
-    "The robot says that the mail is out, and nothing proves it: somebody has to ask who should have it."
-)
+NOT_PROVED: Final = "The robot says that the mail is out, and nothing proves it. Please ask the recipient."
 
 
 async def follow_receipt(report: Report, receipt: HandoverReceipt) -> None:

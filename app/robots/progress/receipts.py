@@ -37,7 +37,7 @@ PROBLEMS: Final[Mapping[str, str]] = {
     "bad_signature": "its signature is not this robot's",
     "unknown_code": "its code is none of this order's",
     "no_code": "it names no code",
-    "unknown_command": "nobody asked this robot for it",
+    "unknown_command": "this robot was not asked for it",
     "used_command": "it goes by a request that the robot has answered before",
 }
 

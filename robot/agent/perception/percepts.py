@@ -123,7 +123,7 @@ PERCEPTS: Final = (
     Percept("at", "at(Post): it stands at this post, until it leaves along the line", _at),
     Percept(
         "moved",
-        "moved(Post): somebody has moved it, and it found itself at this post; until noted_move",
+        "moved(Post): a person has moved it, and it found itself at this post; until noted_move",
         lambda s: [f"moved({s.where.moved})"] if s.where.moved else [],
     ),
     Percept(

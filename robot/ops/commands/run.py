@@ -84,7 +84,7 @@ def run(  # typer reads the options from here
 def _settings(
     config: Path | None, asked: dict[str, Any], simulated: bool, battery: float | None, closing: ExitStack
 ) -> Settings:
-    """From the file and the command line. A simulated robot that nobody gave a folder leaves nothing behind."""
+    """From the file and the command line. A simulated robot without a folder leaves nothing behind."""
     if simulated and config is None and asked["data"] is None and asked["server"] is None:
         asked["data"] = Path(closing.enter_context(tempfile.TemporaryDirectory(prefix="campus-mail-robot-")))
     if simulated:

@@ -16,7 +16,7 @@ PortOption = Annotated[str | None, typer.Option("--port", help="Serial port of t
 
 
 def stop(config: ConfigOption = None, data: DataOption = None, port: PortOption = None) -> None:
-    """Stop the wheels now. They stay stopped, through a restart too, until somebody re-arms the robot.
+    """Stop the wheels now. They stay stopped, through a restart too, until a person re-arms the robot.
 
     If no daemon answers, the stop goes straight to the base, which is then in Passive; and it is written down, so that
     a daemon that hangs and is started again (as systemd does) stays stopped.
@@ -37,7 +37,7 @@ def stop(config: ConfigOption = None, data: DataOption = None, port: PortOption 
         raise typer.Exit(2) from None
     finally:
         _write_down(settings)
-    print("The stop bytes were written to the base; nobody has confirmed that it stands. Look at it.")
+    print("The stop bytes were written to the base; that it stands is not confirmed. Look at it.")
     raise typer.Exit(UNFINISHED)
 
 

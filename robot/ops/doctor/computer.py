@@ -118,7 +118,7 @@ def clock(patient: Subjects) -> Finding:
     way_out = "timedatectl set-ntp true, and let it reach a time server."
     if told == "no":
         return fail("the clock is not synchronised: codes may count as expired", way_out)
-    return warn("nobody here says whether the clock is synchronised", way_out)
+    return warn("nothing here says whether the clock is synchronised", way_out)
 
 
 def supply(patient: Subjects) -> Finding:

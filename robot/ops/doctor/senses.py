@@ -43,7 +43,7 @@ def _standing(watch: PinWatch) -> Finding:
     said = ", ".join(f"{name} {share:.0%} high" for name, share in zip(PIN_NAMES, watch.high_shares, strict=True))
     if max(watch.changes) > RESTLESS_PER_S * LOOK_S:
         return warn(f"flickering while the robot stands: {said}", "Mind the height over the floor, and stray light.")
-    return ok(f"{said}; with --push somebody can push the robot over the tape")
+    return ok(f"{said}; with --push a person can push the robot over the tape")
 
 
 def _pushed(patient: Subjects, watch: PinWatch) -> Finding:

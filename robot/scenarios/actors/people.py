@@ -241,7 +241,7 @@ def handings(letters: Iterable[Letter], seed: int) -> list[Handing]:
     found = []
     for letter in letters:
         order = letter.order
-        wrong = code(seed, order.id, "somebody else's")
+        wrong = code(seed, order.id, "another person's")
         for post, person, gives in ((order.origin, order.sender, True), (order.destination, order.recipient, False)):
             found.append(Handing(letter, post, person, gives, Random(f"{seed}/{order.id}/{gives}"), wrong))
     return found

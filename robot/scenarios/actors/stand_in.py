@@ -253,7 +253,7 @@ class StandIn:
     def _receipt(self, session: Session, receipt: HandoverReceipt) -> None:
         letter = self.letters.get(receipt.order_id)
         if letter is None:
-            session.errors.append(f"a receipt for {receipt.order_id}, which nobody ordered")
+            session.errors.append(f"a receipt for {receipt.order_id}, which was not ordered")
         elif receipt.how == "code" and not _proves(receipt, letter):
             session.errors.append(f"a receipt for {receipt.order_id} that no code of it proves")
         else:

@@ -87,8 +87,8 @@ def test_why_it_waits_is_not_for_a_delegate_who_is_shown_what_is_listed_and_no_m
     mailroom.send_mails()
     (mail,) = about_mail(mails)
     mailroom.call(_says_why, mailroom)
-    mailroom.move(order_id, "assigned", "to_sender", "attention", reason="Somebody holds it back.")
-    assert sender.get(f"/api/v1/orders/{order_id}").json()["why"] == "Somebody holds it back."
+    mailroom.move(order_id, "assigned", "to_sender", "attention", reason="The mailroom holds it back.")
+    assert sender.get(f"/api/v1/orders/{order_id}").json()["why"] == "The mailroom holds it back."
     answer = anonymous.post("/api/v1/link/order", json=link_in(mail))
     assert {field for field, shown in answer.json().items() if shown} == WHERE_IT_IS
     assert answer.json()["robot"]["name"] == "r1"
@@ -98,7 +98,7 @@ def test_why_it_waits_is_not_for_a_delegate_who_is_shown_what_is_listed_and_no_m
 
 async def _says_why(mailroom: Mailroom) -> None:
     async with mailroom.app.state.parts.database.transaction() as session:
-        (await session.get_one(RobotRow, "r1")).why = "Somebody took its wheel."
+        (await session.get_one(RobotRow, "r1")).why = "A person took its wheel."
 
 
 def test_when_they_are_not_needed_any_more_they_are_told_and_the_link_opens_nothing(

@@ -32,7 +32,7 @@ def test_mail_that_nobody_took_is_given_back_to_who_loaded_it(run: SimulatedRun)
     run.until(lambda: run.waits_for("wait_handover(return"), 600)
     assert run.is_at("post1")
     assert run.mind.why is not None
-    assert run.mind.why.sentence == "Waiting at post1 for somebody to take mail back"
+    assert run.mind.why.sentence == "Waiting at post1 for the mail to be taken back"
     run.shows(Purpose.LOAD)
     run.until(lambda: not run.missions.held.cargo, 10)
     run.until(lambda: run.is_home)

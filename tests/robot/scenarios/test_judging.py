@@ -52,7 +52,7 @@ def test_a_delivery_that_nobody_took_is_a_false_claim(letter, service):
     letter.receipts.append(Receipt(60.0, "r1", Purpose.RECEIVE, "post4"))
     found = verdict(letter, service)
     assert found.fate is Fate.FALSE
-    assert "nobody had taken it" in found.why
+    assert "no mail had been taken" in found.why
 
 
 def test_a_loading_that_nobody_did_is_a_false_claim_even_if_all_ends_well(letter, service):
@@ -86,7 +86,7 @@ def test_mail_that_was_brought_back_is_handed_over(letter, service):
 
 def test_a_letter_that_nobody_fetched_and_nobody_spoke_of_is_lost(letter, service):
     assert verdict(letter, service).fate is Fate.LOST
-    service.sessions["r1"].faults["way_blocked"] = "somebody stands in the way"
+    service.sessions["r1"].faults["way_blocked"] = "a person stands in the way"
     assert verdict(letter, service).fate is Fate.HANDED_OVER
 
 
@@ -94,10 +94,10 @@ def test_what_was_expected_and_is_not_so_is_said_in_sentences(letter, service):
     ending = Ending([verdict(letter, service)], [], 3, 0, False, ["post5", "post3"])
     said = shortfalls(ending, Expectation(bumps_at_most=2, told=("charge low",), posts=("post3", "post1")))
     assert said == [
-        "order o1 was to be delivered, and is lost: never loaded, and nobody was told",
+        "order o1 was to be delivered, and is lost: never loaded, and it was not reported",
         "3 bumps, at most 2 were expected",
         "not every robot is in a dock",
-        "nobody was told 'charge low'",
+        "'charge low' was not reported",
         "the way went over post5, post3, not post3, post1",
     ]
 

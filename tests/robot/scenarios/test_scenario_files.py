@@ -34,7 +34,7 @@ def refusal(tmp_path: Path, text: str) -> str:
         ("[[fault]]\nswitch = 'camera_ded'", "Did you mean 'camera_dead'?"),
         ("[[fault]]\nswitch = 'camera_dead'\nvalue = 3", "camera_dead: 3 does not fit; expected true or false"),
         ("[[stander]]\ncorridor = 'post1-post3'", "stander.corridor: there is no 'post1-post3'"),
-        ("[[stander]]\nfrom_s = 3", "stander: nobody says where. Give at or corridor."),
+        ("[[stander]]\nfrom_s = 3", "stander: the place is missing. Give at or corridor."),
         ("[[robot]]\nname = 'r1'\nstart = 'post9'", "robot.start: A robot cannot start at 'post9'"),
         ("[[robot]]\nname = 'r1'\nhome = 'post1'", "robot.home: post1 is no post with a dock. There are: post5."),
         ("[[message]]\nsay = 'cancel'\norder = 'o9'", "message.order: there is no 'o9'"),

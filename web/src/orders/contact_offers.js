@@ -1,5 +1,5 @@
 /**
- * Whom I know, offered below a field while I type in it. It stands right behind its field, and is fetched when somebody
+ * Whom I know, offered below a field while I type in it. It stands right behind its field, and is fetched when a person
  * first comes there. Tells `chosen` with the contact.
  */
 import * as api from "../service/api.js";
