@@ -8,7 +8,7 @@ ARGS ?=
 ALONE_IN = tests/robot tests/system
 
 .DEFAULT_GOAL := help
-.PHONY: help setup setup-develop setup-robot test test-all check licences sbom format demo fleet-demo serve robot bench bench-mind bench-body bench-service bench-paper bench-pages bench-service-kills bench-fleet fuzz-mind client pages icons screenshots fuzz-api docs pin clean
+.PHONY: help setup setup-develop setup-robot test test-all check licences sbom format demo fleet-demo serve robot bench bench-mind bench-body bench-service bench-paper bench-pages bench-service-kills bench-fleet fuzz-mind client pages icons android screenshots fuzz-api docs pin clean
 # A recipe that fails must not leave its stamp behind.
 .DELETE_ON_ERROR:
 
@@ -108,6 +108,9 @@ pages: setup-develop ## Write what follows from other files into web/: lists of 
 
 icons: setup-develop ## Draw the app's icons from our SVG
 	@$(BIN)/python web/make_icons.py
+
+android: .venv/.python-ready ## Build a signed Android package of the pages: HOST=mail.campus.example PACKAGE=example.campus.mail
+	@$(BIN)/python deploy/android/build.py '$(HOST)' '$(PACKAGE)' $(ARGS)
 
 screenshots: setup-develop ## Take pictures of every page into docs/pictures/pages (ARGS="--only follow" takes one)
 	@$(BIN)/python -m tests.web.pictures $(ARGS)
