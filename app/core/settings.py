@@ -16,8 +16,8 @@ from pydantic_settings import BaseSettings, SettingsConfigDict
 from app.core.errors import StartError
 from app.core.parts import part
 from app.core.setting_kinds import (
-    AndroidPackage,
     THIS_MACHINE,
+    AndroidPackage,
     Authorities,
     Contact,
     Domains,

@@ -1,6 +1,6 @@
 # Opens the pages as a Trusted Web Activity: full screen, in a browser that offers a Custom Tabs session for them.
 # Assembler, since Debian has one for Android's byte code (smali) but neither a dexer nor android.jar.
-# ${host} is filled in by build.py. "p0" is this activity.
+# ${host} is filled in by __main__.py. "p0" is this activity.
 .class public Lcampus/mail/Launcher;
 .super Landroid/app/Activity;
 .implements Landroid/content/ServiceConnection;

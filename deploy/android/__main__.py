@@ -1,7 +1,7 @@
-"""`make android` builds a signed package for Android phones: the pages of one host, full screen (a Trusted Web Activity).
+"""`make android` builds a signed package for Android phones that shows the pages of one host full screen.
 
-It is built with Debian's tools alone. Launcher.smali opens the pages; it is assembler for Android's byte code, since Debian
-has neither the Java classes of Android nor a compiler to its byte code.
+It is a Trusted Web Activity, built with Debian's tools alone. Launcher.smali opens the pages; it is assembler for
+Android's byte code, since Debian has neither the Java classes of Android nor a compiler to its byte code.
 """
 
 import argparse
@@ -20,14 +20,12 @@ from pathlib import Path
 from string import Template
 from typing import Final
 
+from app.core.setting_kinds import android_package
+from app.http.asset_links import statements
+from protocol.software import version
+
 HERE: Final = Path(__file__).parent
 CHECKOUT: Final = HERE.parents[1]
-sys.path.insert(0, str(CHECKOUT))
-
-from app.core.setting_kinds import android_package  # noqa: E402 (a script has only its own folder on the path)
-from app.http.asset_links import statements  # noqa: E402
-from protocol.software import version  # noqa: E402
-
 PAGES: Final = CHECKOUT / "web/public"
 FRAMEWORK: Final = Path("/usr/share/android-framework-res/framework-res.apk")
 DEBIAN_PACKAGES: Final[Mapping[str, str]] = {
@@ -68,7 +66,9 @@ def main() -> None:
 def checked(host: str, package: str) -> tuple[str, str]:
     """Return host and package, or raise BuildError that names the one which is wrong."""
     if not HOST.fullmatch(host):
-        raise BuildError(f"HOST={host!r} is no host name; one looks like mail.campus.example (no https://, port or path)")
+        raise BuildError(
+            f"HOST={host!r} is no host name; one looks like mail.campus.example (no https://, port or path)"
+        )
     try:
         if android_package(package):
             return host, package
@@ -100,15 +100,39 @@ def key_in(folder: Path) -> Key:
         return key
     if key.store.exists() or key.password.exists():
         there, gone = (key.store, key.password) if key.store.exists() else (key.password, key.store)
-        raise BuildError(f"{there} is there, but not {gone}; put it back, or move both away for a new key (and a new app)")
+        raise BuildError(
+            f"{there} is there, but not {gone}; put it back, or move both away for a new key (and a new app)"
+        )
     folder.mkdir(mode=0o700, parents=True, exist_ok=True)
     # Made aside and put in place whole: a password without its key would stop every later build.
     with tempfile.TemporaryDirectory(dir=folder) as aside:
         new = Key(Path(aside) / "key.p12", Path(aside) / "password")
         new.password.touch(mode=0o600)
         new.password.write_text(secrets.token_urlsafe(32))
-        run("keytool", "-genkeypair", "-keystore", new.store, "-storetype", "PKCS12", "-storepass:file", new.password,
-            "-alias", ALIAS, "-keyalg", "EC", "-groupname", "secp256r1", "-validity", 36500, "-dname", "CN=Campus Mail")  # fmt: skip
+        run(
+            *(
+                "keytool",
+                "-genkeypair",
+                "-keystore",
+                new.store,
+                "-storetype",
+                "PKCS12",
+                "-storepass:file",
+                new.password,
+            ),
+            *(
+                "-alias",
+                ALIAS,
+                "-keyalg",
+                "EC",
+                "-groupname",
+                "secp256r1",
+                "-validity",
+                36500,
+                "-dname",
+                "CN=Campus Mail",
+            ),
+        )
         new.store.chmod(0o600)
         new.password.rename(key.password)
         new.store.rename(key.store)
@@ -120,16 +144,25 @@ def build(host: str, package: str, key: Key, built: Path) -> None:
     with tempfile.TemporaryDirectory() as folder:
         work = Path(folder)
         fill_in(work, values_for(host, package))
-        run("smali", "assemble", "--api", 26, "--output", work / "classes.dex",
-            work / "Launcher.smali", work / "SessionCallback.smali")  # fmt: skip
+        code = sorted(work.glob("*.smali"))
+        run("smali", "assemble", "--api", 26, "--output", work / "classes.dex", *code)
         # Android 11 and later read the table of resources as it lies in the file: not compressed, and aligned.
-        run("aapt", "package", "-M", work / "AndroidManifest.xml", "-S", work / "res", "-I", FRAMEWORK,
-            "-0", "arsc", "-F", work / "plain.apk")  # fmt: skip
+        sources = ("-M", work / "AndroidManifest.xml", "-S", work / "res", "-I", FRAMEWORK)
+        run("aapt", "package", *sources, "-0", "arsc", "-F", work / "plain.apk")
         with zipfile.ZipFile(work / "plain.apk", "a", zipfile.ZIP_DEFLATED) as archive:
             archive.write(work / "classes.dex", "classes.dex")
         run("zipalign", 4, work / "plain.apk", work / "aligned.apk")
-        run("apksigner", "sign", "--ks", key.store, "--ks-key-alias", ALIAS, "--ks-pass", f"file:{key.password}",
-            "--out", work / "signed.apk", work / "aligned.apk")  # fmt: skip
+        signing = ("--ks", key.store, "--ks-key-alias", ALIAS, "--ks-pass", f"file:{key.password}")
+        run(
+            "apksigner",
+            "sign",
+            *signing,
+            "--v1-signing-enabled",
+            "false",
+            "--out",
+            work / "signed.apk",
+            work / "aligned.apk",
+        )
         shutil.move(work / "signed.apk", built)
 
 
