@@ -38,6 +38,7 @@ DEBIAN_PACKAGES: Final[Mapping[str, str]] = {
 }
 """What the build calls or reads, and the package of Debian that brings it."""
 ALIAS: Final = "campus-mail"
+KIND_OF_KEY: Final = "-keyalg EC -groupname secp256r1 -validity 36500"
 HOST: Final = re.compile(r"(?=.{4,253}$)([a-z0-9]([a-z0-9-]{0,61}[a-z0-9])?\.)+[a-z]([a-z0-9-]{0,61}[a-z0-9])?")
 
 
@@ -94,45 +95,21 @@ class Key:
 
 
 def key_in(folder: Path) -> Key:
-    """Return the folder's key; the first time it is made. Phones take an update only with the same key."""
+    """Return the folder's key, made the first time. Phones take an update only with the same key."""
     key = Key(folder / "key.p12", folder / "password")
     if key.store.exists() and key.password.exists():
         return key
     if key.store.exists() or key.password.exists():
         there, gone = (key.store, key.password) if key.store.exists() else (key.password, key.store)
-        raise BuildError(
-            f"{there} is there, but not {gone}; put it back, or move both away for a new key (and a new app)"
-        )
+        raise BuildError(f"{there} is there, but not {gone}: put it back, or move it away for a new key and a new app")
     folder.mkdir(mode=0o700, parents=True, exist_ok=True)
     # Made aside and put in place whole: a password without its key would stop every later build.
     with tempfile.TemporaryDirectory(dir=folder) as aside:
         new = Key(Path(aside) / "key.p12", Path(aside) / "password")
         new.password.touch(mode=0o600)
         new.password.write_text(secrets.token_urlsafe(32))
-        run(
-            *(
-                "keytool",
-                "-genkeypair",
-                "-keystore",
-                new.store,
-                "-storetype",
-                "PKCS12",
-                "-storepass:file",
-                new.password,
-            ),
-            *(
-                "-alias",
-                ALIAS,
-                "-keyalg",
-                "EC",
-                "-groupname",
-                "secp256r1",
-                "-validity",
-                36500,
-                "-dname",
-                "CN=Campus Mail",
-            ),
-        )
+        store = ("-keystore", new.store, "-storepass:file", new.password, "-alias", ALIAS)
+        run(f"keytool -genkeypair -storetype PKCS12 {KIND_OF_KEY} -dname CN={ALIAS}", *store)
         new.store.chmod(0o600)
         new.password.rename(key.password)
         new.store.rename(key.store)
@@ -144,25 +121,15 @@ def build(host: str, package: str, key: Key, built: Path) -> None:
     with tempfile.TemporaryDirectory() as folder:
         work = Path(folder)
         fill_in(work, values_for(host, package))
-        code = sorted(work.glob("*.smali"))
-        run("smali", "assemble", "--api", 26, "--output", work / "classes.dex", *code)
+        run("smali assemble --api 26 --output", work / "classes.dex", *sorted(work.glob("*.smali")))
         # Android 11 and later read the table of resources as it lies in the file: not compressed, and aligned.
         sources = ("-M", work / "AndroidManifest.xml", "-S", work / "res", "-I", FRAMEWORK)
-        run("aapt", "package", *sources, "-0", "arsc", "-F", work / "plain.apk")
+        run("aapt package -0 arsc", *sources, "-F", work / "plain.apk")
         with zipfile.ZipFile(work / "plain.apk", "a", zipfile.ZIP_DEFLATED) as archive:
             archive.write(work / "classes.dex", "classes.dex")
-        run("zipalign", 4, work / "plain.apk", work / "aligned.apk")
-        signing = ("--ks", key.store, "--ks-key-alias", ALIAS, "--ks-pass", f"file:{key.password}")
-        run(
-            "apksigner",
-            "sign",
-            *signing,
-            "--v1-signing-enabled",
-            "false",
-            "--out",
-            work / "signed.apk",
-            work / "aligned.apk",
-        )
+        run("zipalign 4", work / "plain.apk", work / "aligned.apk")
+        signer = ("--ks", key.store, "--ks-key-alias", ALIAS, "--ks-pass", f"file:{key.password}")
+        run("apksigner sign --v1-signing-enabled false", *signer, "--out", work / "signed.apk", work / "aligned.apk")
         shutil.move(work / "signed.apk", built)
 
 
@@ -193,7 +160,7 @@ def fill_in(work: Path, values: Mapping[str, str]) -> None:
 
 def fingerprint(built: Path) -> str:
     """Return the SHA-256 fingerprint of the certificate that a package is signed with; its signature is verified."""
-    said = run("apksigner", "verify", "--print-certs", built)
+    said = run("apksigner verify --print-certs", built)
     found = re.search(r"certificate SHA-256 digest: ([0-9a-f]{64})", said)
     if not found:
         raise BuildError(f"apksigner names no certificate: {said}")
@@ -214,9 +181,9 @@ It then answers https://{host}/.well-known/assetlinks.json:
 {json.dumps(statements(package, [signed_with]), indent=2)}"""
 
 
-def run(*command: object) -> str:
-    """Run a tool and return its output, or raise BuildError with it."""
-    words = [str(word) for word in command]
+def run(command: str, *arguments: object) -> str:
+    """Run a tool, with arguments beside the words of the command; return its output, or raise BuildError with it."""
+    words = [*command.split(), *(str(argument) for argument in arguments)]
     finished = subprocess.run(words, capture_output=True, text=True, env=os.environ | {"LC_ALL": "C"}, check=False)
     if finished.returncode:
         raise BuildError(f"{words[0]} failed:\n{finished.stdout}{finished.stderr}".rstrip())
