@@ -8,7 +8,7 @@ ARGS ?=
 ALONE_IN = tests/robot tests/system
 
 .DEFAULT_GOAL := help
-.PHONY: help setup setup-develop setup-robot test test-all check licences sbom format demo fleet-demo serve robot bench bench-mind bench-body bench-service bench-paper bench-pages bench-service-kills bench-fleet fuzz-mind client pages icons screenshots fuzz-api docs pin clean
+.PHONY: help setup setup-develop setup-robot test test-all check licences sbom format demo fleet-demo serve robot bench bench-mind bench-body bench-service bench-paper bench-pages bench-service-kills bench-fleet fuzz-mind client pages icons android screenshots fuzz-api docs pin clean
 # A recipe that fails must not leave its stamp behind.
 .DELETE_ON_ERROR:
 
@@ -109,6 +109,9 @@ pages: setup-develop ## Write what follows from other files into web/: lists of 
 icons: setup-develop ## Draw the app's icons from our SVG
 	@$(BIN)/python web/make_icons.py
 
+android: .venv/.python-ready ## Build a signed Android package of the pages: HOST=mail.campus.example PACKAGE=example.campus.mail
+	@$(BIN)/python -m deploy.android '$(HOST)' '$(PACKAGE)' $(ARGS)
+
 screenshots: setup-develop ## Take pictures of every page into docs/pictures/pages (ARGS="--only follow" takes one)
 	@$(BIN)/python -m tests.web.pictures $(ARGS)
 
@@ -124,8 +127,9 @@ pin: .venv/.python-ready ## Write constraints.txt anew from pyproject.toml
 	  --no-emit-index-url --output-file constraints.txt --upgrade --quiet pyproject.toml
 	git diff --stat constraints.txt
 
-clean: ## Remove what setup, tests and runs have made
-	rm -rf .venv web/node_modules var test-results web/types/openapi_types.d.ts $(MADE)
+clean: ## Remove what setup, tests and runs have made; the key of the Android package stays
+	test ! -d var || find var -mindepth 1 -maxdepth 1 -not -name android -exec rm -rf {} +
+	rm -rf .venv web/node_modules test-results web/types/openapi_types.d.ts $(MADE)
 	rm -rf .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis .schemathesis .ci/lint/node_modules
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 

@@ -110,6 +110,13 @@ def _whole_fingerprints(fingerprints: tuple[str, ...]) -> tuple[str, ...]:
     return fingerprints
 
 
+def android_package(name: str) -> str:
+    """Return the name of an Android app, or raise ValueError where Android would refuse it; empty is none."""
+    if name and not re.fullmatch(r"[A-Za-z]\w*(\.[A-Za-z]\w*)+", name, re.ASCII):
+        raise ValueError(f"{name!r} is no name of an Android app; one looks like example.campus.mail")
+    return name
+
+
 Ports = Annotated[tuple[Annotated[int, Field(ge=1, le=65535)], ...], Field(min_length=1)]
 Networks = tuple[IPvAnyNetwork, ...]
 SmtpTls = Literal["starttls", "tls", "none"]
@@ -119,6 +126,7 @@ RateLimitsByDoor = Annotated[dict[str, str], AfterValidator(_with_usual_limits)]
 Zone = Annotated[str, AfterValidator(_known_zone)]
 OfficeHours = Annotated[str, AfterValidator(_office_hours)]
 Domains = Annotated[tuple[str, ...], AfterValidator(_lower_case)]
+AndroidPackage = Annotated[str, AfterValidator(android_package)]
 Fingerprints = Annotated[tuple[str, ...], AfterValidator(_whole_fingerprints)]
 WholeAddress = Annotated[str, AfterValidator(_whole_address)]
 Issuer = Annotated[str, AfterValidator(_https_elsewhere)]

@@ -17,6 +17,7 @@ from app.core.errors import StartError
 from app.core.parts import part
 from app.core.setting_kinds import (
     THIS_MACHINE,
+    AndroidPackage,
     Authorities,
     Contact,
     Domains,
@@ -75,7 +76,9 @@ class Settings(BaseSettings):
         description="File with the key that hand-over codes derive from; default: `server.key` in the data folder.",
     )
     pages: Path = Field(ROOT / "web", description="Folder of the pages.")
-    android_package: str = Field("", description="Name of an Android app that opens these pages as its own.")
+    android_package: AndroidPackage = Field(
+        "", description="Name of an Android app that opens these pages as its own, as `make android` builds it."
+    )
     android_fingerprints: Fingerprints = Field(
         (), description="SHA-256 fingerprints of the certificates that sign it (JSON list), as AB:CD:…"
     )

@@ -38,6 +38,8 @@ def test_settings_come_from_the_environment_and_secrets_from_files(
         ("OIDC_ISSUER", "https://login.campus.example", "oidc_client_id"),
         ("RATE_LIMITS", '{"orders_per_person": "lots"}', "10 per 15 minutes"),
         ("RATE_LIMITS", '{"orders_per_hour": "1 per hour"}', "there is no rate limit 'orders_per_hour'"),
+        ("ANDROID_PACKAGE", "mail", "one looks like example.campus.mail"),
+        ("ANDROID_FINGERPRINTS", '["AB:CD"]', "32 pairs of hex digits"),
         ("WEBHOOK_SECRET", "short", ""),
     ],
 )
