@@ -20,7 +20,7 @@ from app.core.polling import PollingLoop
 from app.models import PersonSession, PersonToken
 
 WRITE_EVERY_S: Final = 1.0
-LOOK_AGAIN_S: Final = 60.0
+POLL_AGAIN_S: Final = 60.0
 WAIT_S: Final = 1.0
 """Real seconds that it waits for the holder of the database: others want to write more urgently."""
 
@@ -37,7 +37,7 @@ class LastSeen:
     database: Database
     _sessions: dict[int, datetime] = field(default_factory=dict)
     _tokens: dict[str, datetime] = field(default_factory=dict)
-    _polling: PollingLoop = field(default_factory=lambda: PollingLoop(LOOK_AGAIN_S, WRITE_EVERY_S))
+    _polling: PollingLoop = field(default_factory=lambda: PollingLoop(POLL_AGAIN_S, WRITE_EVERY_S))
 
     def note_session(self, session_id: int, now: datetime) -> None:
         """Record that a browser has used this session."""

@@ -14,7 +14,7 @@ from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.charging.free_docks import UNTIL_RATIO, free_docks
 from app.dispatch.charge_limits import LEAVES_DOCK, Charges
-from app.dispatch.open_work import look_at_work
+from app.dispatch.open_work import read_open_work
 from app.models import ClaimRow, MissionRow, MissionState, RobotRow, StopRow
 from app.orders.stops import stops_left
 from app.robots.mission_updates import tell_mission
@@ -43,7 +43,7 @@ class ChargeFirst:
         left = await stops_left(session, mission.id) if mission is not None else ()
         if mission is None or not await _breaks_off(session, left, claim):
             return False
-        work = await look_at_work(session, self.fleet.clock.utc())
+        work = await read_open_work(session, self.fleet.clock.utc())
         dock = charges.nearest_dock(robot, free_docks(self.fleet.campus, work, robot.name))
         if dock is None:
             return False  # its own battery plan has the last word

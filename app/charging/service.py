@@ -19,7 +19,7 @@ from app.charging.dock_room import driving_there, leaving, parking
 from app.charging.free_docks import UNTIL_RATIO, docks_of, taken_docks
 from app.core.polling import PollingLoop
 from app.dispatch.charge_limits import THRESHOLDS, Charges
-from app.dispatch.open_work import OpenWork, RobotNow, StopNow, look_at_work
+from app.dispatch.open_work import OpenWork, RobotNow, StopNow, read_open_work
 from app.models import MissionRow, Order, RobotRow, StopRow
 from app.robots.energy_use import usual_rates
 from app.robots.mission_updates import tell_mission
@@ -33,7 +33,7 @@ from fleet.charging.top_ups import Move, TopUpPolicy, top_ups
 from protocol.ids import new_id
 from protocol.parts import StopAction
 
-LOOK_EVERY_S: Final = 5.0
+POLL_EVERY_S: Final = 5.0
 """Real seconds: charges change slowly."""
 REST_S: Final = 0.5
 """Real seconds, between two polls: a robot that is called away has a way to drive."""
@@ -50,7 +50,7 @@ class ChargingService:
     fleet: Fleet
     _demand: Demand = field(default_factory=Demand)
     _learned_at: datetime | None = None
-    _polling: PollingLoop = field(default_factory=lambda: PollingLoop(LOOK_EVERY_S, REST_S))
+    _polling: PollingLoop = field(default_factory=lambda: PollingLoop(POLL_EVERY_S, REST_S))
 
     def wake(self, _changed: str = "") -> None:
         """Poll soon: an order has changed, so that a robot may be needed elsewhere."""
@@ -63,14 +63,14 @@ class ChargingService:
     async def run(self) -> None:
         """Until stopped or cancelled."""
         async for _ in self._polling.until_stopped():
-            await self.look_round()
+            await self.poll()
 
-    async def look_round(self) -> None:
+    async def poll(self) -> None:
         """Call away who is wanted, and send who has nothing to do."""
         now = self.fleet.clock.utc()
         async with self.fleet.database.reading() as session:
             await self._learn(session, now)
-            work = await look_at_work(session, now)
+            work = await read_open_work(session, now)
         for stop in self._in_the_way(work):
             await self._call_away(stop)
         moves, leave = self._moves(work, now)
@@ -143,7 +143,7 @@ class ChargingService:
         until = THRESHOLDS.full if self._demand.is_quiet(self._local(now)) else THRESHOLDS.sufficient
         async with self.fleet.database.transaction() as session:
             robot = await known_robot(session, move.robot, to_change=True)
-            work = await look_at_work(session, now)
+            work = await read_open_work(session, now)
             if self._may_be_sent(work.robots[move.robot], work) and move.dock not in taken_docks(work):
                 stop = StopRow(id=new_id(), mission_id=new_id(), position=0, post=move.dock, action=StopAction.DOCK)
                 stop.until_ratio = until
@@ -153,7 +153,7 @@ class ChargingService:
     async def _park(self, name: str, now: datetime) -> None:
         async with self.fleet.database.transaction() as session:
             robot = await known_robot(session, name, to_change=True)
-            work = await look_at_work(session, now)
+            work = await read_open_work(session, now)
             post = parking(self.fleet.campus, work, work.robots[name], self.fleet.orders.ledger.ways)
             if post is not None and self._may_be_sent(work.robots[name], work) and robot.docked:
                 stop = StopRow(id=new_id(), mission_id=new_id(), position=0, post=post, action=StopAction.PARK)
@@ -175,7 +175,7 @@ class ChargingService:
             robot = await known_robot(session, stop.robot, to_change=True)
             row = await session.get_one(StopRow, stop.id, with_for_update=True)
             mission = await session.get_one(MissionRow, stop.mission_id, with_for_update=True)
-            still = list(self._in_the_way(await look_at_work(session, self.fleet.clock.utc())))
+            still = list(self._in_the_way(await read_open_work(session, self.fleet.clock.utc())))
             if all(one.id != stop.id for one in still):
                 return
             row.dropped_at = self.fleet.clock.utc()

@@ -173,7 +173,7 @@ class Parts:
         if self.traffic_service is not None and self.planner is not None and self.charging_service is not None:
             self.orders.ledger.on_change.extend([self.traffic_service.wake, self.charging_service.wake])
             self.fleet.on_change.extend([self.traffic_service.wake])
-            self.traffic_service.on_look.extend(
+            self.traffic_service.on_poll.extend(
                 [self.planner.notice, self.dispatcher.wake_for_robot, self.eta_updates.wake]
             )
         self.orders.ledger.on_change.extend([self.dispatcher.wake, self.eta_updates.wake])

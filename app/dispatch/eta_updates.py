@@ -32,7 +32,7 @@ from fleet.eta.calibration import Basis
 from fleet.eta.intervals import Interval
 from protocol.parts import StopAction
 
-LOOK_AGAIN_S: Final = 5.0
+POLL_AGAIN_S: Final = 5.0
 """Real seconds. Time alone makes a robot late."""
 REST: Final = 40
 """After each piece of a look so many times as long as it has taken: forecasting is the least of what the service has to
@@ -81,7 +81,7 @@ class EtaUpdates:
     _kept: set[tuple[str, bool]] = field(default_factory=set)
     """Of which stages it is kept what was told."""
     _polling: PollingLoop = field(
-        default_factory=lambda: PollingLoop(LOOK_AGAIN_S, LEAST_REST_S, rest=REST, longest_rest_s=LONGEST_REST_S)
+        default_factory=lambda: PollingLoop(POLL_AGAIN_S, LEAST_REST_S, rest=REST, longest_rest_s=LONGEST_REST_S)
     )
 
     def wake(self, _changed: str = "") -> None:
@@ -95,9 +95,9 @@ class EtaUpdates:
     async def run(self) -> None:
         """Until stopped or cancelled."""
         async for _ in self._polling.until_stopped():
-            await self.look()
+            await self.poll()
 
-    async def look(self) -> None:
+    async def poll(self) -> None:
         """Foresee all stops, and write down and tell what has changed."""
         async with self.fleet.database.reading() as session:
             pairs = (await session.exec(_UNDER_WAY)).all()

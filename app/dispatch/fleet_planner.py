@@ -10,11 +10,11 @@ from typing import Final
 
 import structlog
 
+from app.dispatch.assignment_problem import ProblemOfWork
 from app.dispatch.charge_limits import Charges
 from app.dispatch.given_out import Changes, changes_of, give_out
-from app.dispatch.open_work import OpenWork, look_at_work
+from app.dispatch.open_work import OpenWork, read_open_work
 from app.dispatch.planner_process import PlannerProcess
-from app.dispatch.scene_of_work import SceneOfWork
 from app.dispatch.why_orders_wait import NOT_PLANNED_FOR, answers
 from app.dispatch.why_recorded import explain
 from app.robots.service import Fleet
@@ -40,7 +40,7 @@ class FleetPlanner:
 
     def __init__(self, fleet: Fleet, desk: TrafficService, process: PlannerProcess | None = None) -> None:
         self._fleet, self._desk = fleet, desk
-        self._scenes = SceneOfWork(
+        self._scenes = ProblemOfWork(
             fleet.settings, Charges(fleet.orders.ledger.ways, fleet.settings, fleet.spending.rates)
         )
         self._process = process or PlannerProcess()
@@ -72,7 +72,7 @@ class FleetPlanner:
 
     async def _look(self) -> OpenWork:
         async with self._fleet.database.reading() as session:
-            return await look_at_work(session, self._fleet.clock.utc())
+            return await read_open_work(session, self._fleet.clock.utc())
 
     def _decide(self, work: OpenWork, schedule: TrafficSchedule) -> Decision | None:
         clock = self._fleet.clock

@@ -10,7 +10,7 @@ from typing import Final
 import structlog
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.dispatch.open_work import OpenWork, OrderNow, StopNow, look_at_work
+from app.dispatch.open_work import OpenWork, OrderNow, StopNow, read_open_work
 from app.models import MissionRow, OrderState, RobotRow, StopRow
 from app.orders.changes.intervening import REASSIGNED
 from app.orders.service import Actor
@@ -110,7 +110,7 @@ async def give_out(session: AsyncSession, fleet: Fleet, changes: Changes, own: s
     """Write it down, and tell robots; False if it does not hold any more. `own`: orders that are given here."""
     # Locked before the read: no other writer gives them a mission between the two.
     robots = [await known_robot(session, name, to_change=True) for name in sorted(changes.routes)]
-    if not changes.still_hold(await look_at_work(session, fleet.clock.utc())):
+    if not changes.still_hold(await read_open_work(session, fleet.clock.utc())):
         return False
     by_robot = _by_robot(changes.given)
     for robot in robots:

@@ -7,7 +7,7 @@ from typing import Final
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.dispatch.choice import NONE_CONNECTED
-from app.dispatch.open_work import HeldUp, RobotNow, look_at_held_up
+from app.dispatch.open_work import HeldUp, RobotNow, read_held_up
 from app.robots.service import Fleet
 
 SENTENCES: Final = {
@@ -36,5 +36,5 @@ class NoRobotComes:
 
     async def why(self, session: AsyncSession) -> str | None:
         """The reason for which no robot would come for an order of this moment; None if one would."""
-        reasons = await look_at_held_up(session)
+        reasons = await read_held_up(session)
         return _first_of(reasons) if reasons else NONE_CONNECTED

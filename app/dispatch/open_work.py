@@ -12,7 +12,7 @@ from sqlmodel import col
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.core.database.database import connection_of
-from app.dispatch.situation import LOAD_POST, WAITING_AT_A_STOP, is_aboard, is_waiting
+from app.dispatch.waiting_work import LOAD_POST, WAITING_AT_A_STOP, is_aboard, is_waiting
 from app.models import MissionRow, MissionState, Order, OrderState, Priority, RobotCommand, RobotRow, StopRow
 from app.orders.stops import is_own
 from app.orders.transitions import MAIL_ABOARD, ROBOT_COMING
@@ -94,7 +94,7 @@ class OpenWork:
         return [order for order in self.orders.values() if order.state is OrderState.QUEUED]
 
 
-async def look_at_work(session: AsyncSession, now: datetime) -> OpenWork:
+async def read_open_work(session: AsyncSession, now: datetime) -> OpenWork:
     """Five questions, whatever the number of robots and orders."""
     connection = await connection_of(session)
     waiting = (await connection.execute(_WAITING, {"now": now})).all()
@@ -108,7 +108,7 @@ async def look_at_work(session: AsyncSession, now: datetime) -> OpenWork:
     return _put_together(rows, robots, stops, missions, commands)
 
 
-async def look_at_held_up(session: AsyncSession) -> set[HeldUp | None]:
+async def read_held_up(session: AsyncSession) -> set[HeldUp | None]:
     """Why connected robots wait for a person, None for those that do not; three short questions."""
     connection = await connection_of(session)
     stuck = set((await connection.execute(_STUCK)).scalars())

@@ -10,7 +10,7 @@ from contextlib import suppress
 from typing import Final, Protocol
 
 from app.core.polling import LONGEST_REST_S, REST
-from app.dispatch.situation import Todo, look_for_work
+from app.dispatch.waiting_work import PendingWork, read_pending_work
 from app.models import MissionRow, RobotRow
 from app.orders.custody.by_hand import is_taken_out_by_hand
 from app.robots.commands import ask, new_command_id, unanswered
@@ -18,7 +18,7 @@ from app.robots.mission_updates import tell_mission
 from app.robots.service import Fleet
 from protocol.to_robot import Cancel
 
-LOOK_AGAIN_S: Final = 30.0
+POLL_AGAIN_S: Final = 30.0
 """Real seconds. Nothing should be missed between two wakes; if it is after all, it does not wait for ever."""
 NOBODY_FREE_S: Final = 0.1
 """Real seconds. While orders wait for robots, looking more often finds nothing new and takes time from what is."""
@@ -67,35 +67,35 @@ class Dispatcher:
             self._woken.clear()
             self._needs_robots = True  # what changes from here on may come too late for this look
             begun_s = asyncio.get_running_loop().time()
-            self._needs_robots = await self.look_round()
+            self._needs_robots = await self.poll()
             if self._needs_robots and not self._stopped.is_set():
                 took_s = asyncio.get_running_loop().time() - begun_s
                 with suppress(TimeoutError):
                     async with asyncio.timeout(min(max(NOBODY_FREE_S, REST * took_s), LONGEST_REST_S)):
                         await self._stopped.wait()
             try:
-                async with asyncio.timeout(LOOK_AGAIN_S):
+                async with asyncio.timeout(POLL_AGAIN_S):
                     await self._woken.wait()
             except TimeoutError:
                 pass
 
-    async def look_round(self) -> bool:
+    async def poll(self) -> bool:
         """Do what there is to do; whether anything is left that waits for a robot."""
         async with self._fleet.database.asking() as connection:
-            todo = await look_for_work(connection, self._fleet.clock.utc())
-        await self._pass_on(todo)
-        if todo.waits:
+            pending = await read_pending_work(connection, self._fleet.clock.utc())
+        await self._pass_on(pending)
+        if pending.waits:
             while await self._assigning.assign():
                 pass
-        return (todo.waits and self._assigning.left > 0) or bool(todo.changed)
+        return (pending.waits and self._assigning.left > 0) or bool(pending.changed)
 
     # What has changed for robots.
 
-    async def _pass_on(self, todo: Todo) -> None:
+    async def _pass_on(self, pending: PendingWork) -> None:
         """Tell robots what to drop, and missions that have changed; each is told once, in a transaction of its own."""
-        for order_id in todo.dropped:
+        for order_id in pending.dropped:
             await self._tell_to_drop(order_id)
-        for mission_id in todo.changed:
+        for mission_id in pending.changed:
             await self._tell_change(mission_id)
 
     async def _tell_to_drop(self, order_id: str) -> None:

@@ -38,7 +38,7 @@ def answers(work: OpenWork, decision: Decision | None, orders: Sequence[str]) ->
     for order in orders:
         why, has_time = _said(work, whys.get(order))
         at_s = given.get(order) if has_time else None
-        yield Answer(order, why, has_time, None if at_s is None or decision is None else at_s - decision.scene.now_s)
+        yield Answer(order, why, has_time, None if at_s is None or decision is None else at_s - decision.problem.now_s)
 
 
 def _said(work: OpenWork, why: Why | None) -> tuple[str, bool]:

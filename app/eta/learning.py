@@ -26,7 +26,7 @@ from protocol.parts import Leg, Part, Purpose, StopAction
 from protocol.to_server import HandoverReceipt, Progress, Step
 
 REMEMBERED_DURATIONS: Final = 3000
-LOOK_EVERY_S: Final = 30.0
+POLL_EVERY_S: Final = 30.0
 """Real seconds; sooner when an order has changed."""
 REST_S: Final = 2.0
 REST: Final = 100
@@ -77,7 +77,7 @@ class Learning:
     _let_in: dict[tuple[str, str, str], datetime] = field(default_factory=dict)
     _polling: PollingLoop = field(
         default_factory=lambda: PollingLoop(
-            LOOK_EVERY_S, REST_S, rest=REST, longest_rest_s=LOOK_EVERY_S, waits_first=True
+            POLL_EVERY_S, REST_S, rest=REST, longest_rest_s=POLL_EVERY_S, waits_first=True
         )
     )
 
@@ -95,7 +95,7 @@ class Learning:
             self._arrived(Basis.PLACED, intervals_of(row), row.begins_at, row.arrived_at)
         for row in reversed(under_way):
             self._arrived(Basis.UNDER_WAY, intervals_of(row), row.told_at, row.arrived_at)
-        await self.look()
+        await self.poll()
 
     def wake(self, _changed: str = "") -> None:
         """An order or a robot has changed."""
@@ -108,9 +108,9 @@ class Learning:
     async def run(self) -> None:
         """Until stopped or cancelled."""
         async for _ in self._polling.until_stopped():
-            await self.look()
+            await self.poll()
 
-    async def look(self) -> None:
+    async def poll(self) -> None:
         """Count the orders that wait and the robots they wait for, and find out if one of these could come."""
         async with self.database.reading() as session:
             connection = await connection_of(session)

@@ -22,7 +22,7 @@ from app.retention.database_checks import problems_of
 SQLITE_COPY: Final = "campus-mail.sqlite"
 POSTGRESQL_COPY: Final = "campus-mail.dump"
 COUNTED: Final = ("people", "orders", "order_events", "notices", "robots")
-LOOK_EVERY_S: Final = 0.2
+POLL_EVERY_S: Final = 0.2
 
 
 class CopyUnsound(StartError):
@@ -94,7 +94,7 @@ def _watched(copy: Path, size: int, progress: Callable[[float], None]) -> Iterat
     done = threading.Event()
 
     def watch() -> None:
-        while not done.wait(LOOK_EVERY_S):
+        while not done.wait(POLL_EVERY_S):
             progress(min(copy.stat().st_size / max(size, 1), 1.0))
 
     watcher = threading.Thread(target=watch)

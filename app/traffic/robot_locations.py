@@ -81,14 +81,14 @@ class TrafficSnapshot:
     closed: frozenset[str]
 
 
-async def look_at_all(session: AsyncSession, campus: CampusMap) -> TrafficSnapshot:
+async def read_traffic(session: AsyncSession, campus: CampusMap) -> TrafficSnapshot:
     """Four questions, whatever the number of robots."""
     placed = select(RobotRow).where(col(RobotRow.post).is_not(None), col(RobotRow.taken_out_at).is_(None))
     rows = (await session.exec(placed.order_by(RobotRow.name))).all()
     holds, wishes, goals = await _holds(session), await _requests(session), await _goals(session)
     closed = await closed_names(session)
     robots = {
-        row.name: _whereabouts(
+        row.name: _robot_location(
             campus, row, tuple(holds.get(row.name, ())), wishes.get(row.name), tuple(goals.get(row.name, ()))
         )
         for row in rows
@@ -97,12 +97,12 @@ async def look_at_all(session: AsyncSession, campus: CampusMap) -> TrafficSnapsh
     return TrafficSnapshot(robots, closed)
 
 
-async def where_they_left(session: AsyncSession, picture: TrafficSnapshot) -> TrafficSnapshot:
+async def where_they_left(session: AsyncSession, snapshot: TrafficSnapshot) -> TrafficSnapshot:
     """Robots that have left a corridor since they were last seen stand where they left it. For a schedule that is made
     anew: one that was there at the time has heard of it."""
     left = {row.robot: row for row in (await session.exec(_LAST_LEFT)).all()}
-    robots = {name: _where_it_left(one, left.get(name)) for name, one in picture.robots.items()}
-    return replace(picture, robots=robots)
+    robots = {name: _where_it_left(one, left.get(name)) for name, one in snapshot.robots.items()}
+    return replace(snapshot, robots=robots)
 
 
 def _where_it_left(one: RobotLocation, last: GrantRow | None) -> RobotLocation:
@@ -118,7 +118,7 @@ async def left_at(session: AsyncSession, grant_ids: Sequence[int]) -> dict[int, 
     return {row.id or 0: row.left_at or row.to_post for row in rows}
 
 
-def _whereabouts(
+def _robot_location(
     campus: CampusMap,
     row: RobotRow,
     holds: tuple[Hold, ...],

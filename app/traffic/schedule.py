@@ -78,14 +78,14 @@ class TrafficSchedule:
 
     # What has happened.
 
-    def follow(self, picture: TrafficSnapshot, left_at: Mapping[int, str], now_s: float) -> None:
+    def follow(self, snapshot: TrafficSnapshot, left_at: Mapping[int, str], now_s: float) -> None:
         """Take over everything that has changed since the last picture."""
-        self._follow_closed(picture, now_s)
-        for name in self._known.keys() - picture.robots.keys():
+        self._follow_closed(snapshot, now_s)
+        for name in self._known.keys() - snapshot.robots.keys():
             self.controller.leaves(name, now_s)
             self._frozen.discard(name)
             del self._known[name]
-        for name, one in picture.robots.items():
+        for name, one in snapshot.robots.items():
             before = self._known.get(name)
             now = _on_its_way(before, self._placed(before, one, left_at))
             self._known[name] = now
@@ -96,10 +96,10 @@ class TrafficSchedule:
             self._follow_standing(now, now_s)
             self._follow_goals(now, now_s)
 
-    def _follow_closed(self, picture: TrafficSnapshot, now_s: float) -> None:
+    def _follow_closed(self, snapshot: TrafficSnapshot, now_s: float) -> None:
         """Take over what people have closed, and what a robot may enter besides the corridor that it is thought to be
         in."""
-        self._close_and_open(picture.closed.union(*map(_spare, picture.robots.values())), now_s)
+        self._close_and_open(snapshot.closed.union(*map(_spare, snapshot.robots.values())), now_s)
 
     def _close_and_open(self, closed: frozenset[str], now_s: float) -> None:
         for corridor in sorted(closed - self._closed):

@@ -16,14 +16,14 @@ from app.models import ClaimRow, GrantRow, RobotRow
 from app.robots.alarms import VANISHED, clear_alarms, raise_alarm
 from app.robots.corridors.occupied import tell_of_traffic
 from app.robots.service import Fleet, known_robot
-from app.traffic.robot_locations import RobotLocation, TrafficSnapshot, left_at, look_at_all, where_they_left
+from app.traffic.robot_locations import RobotLocation, TrafficSnapshot, left_at, read_traffic, where_they_left
 from app.traffic.schedule import Elsewhere, HasToWait, MayEnter, TrafficSchedule, Verdict
 from maps import corridor_name
 from protocol.parts import Leg
 from protocol.to_robot import Deny, Detour, Grant
 
 DETOUR: Final = "detour"
-LOOK_AGAIN_S: Final = 5.0
+POLL_AGAIN_S: Final = 5.0
 """Real seconds. Where robots follow each other, time alone lets the next one in."""
 REST_S: Final = 0.03
 """Real seconds: what is said in one moment is looked at once."""
@@ -45,9 +45,9 @@ class TrafficService:
 
     def __init__(self, fleet: Fleet, charges_first: ChargesFirst = _never) -> None:
         self._fleet = fleet
-        self._polling = PollingLoop(LOOK_AGAIN_S, REST_S)
+        self._polling = PollingLoop(POLL_AGAIN_S, REST_S)
         self._schedule: TrafficSchedule | None = None
-        self.on_look: list[Callable[[], None]] = []
+        self.on_poll: list[Callable[[], None]] = []
         """Called after each look: what has changed is in the schedule."""
         self._charges_first = charges_first
 
@@ -67,61 +67,61 @@ class TrafficService:
         """Until stopped or cancelled."""
         async for _ in self._polling.until_stopped():
             try:
-                await self.look_round()
+                await self.poll()
             except BaseException:
                 self._schedule = None
                 raise
 
-    async def look_round(self) -> None:
+    async def poll(self) -> None:
         """Take over what has changed, and answer who can be answered."""
         now, now_s = self._fleet.clock.utc(), self._fleet.clock.now()
         schedule = self._schedule or self._new_schedule()
         async with self._fleet.database.reading() as session:
-            picture = await look_at_all(session, self._fleet.campus)
+            snapshot = await read_traffic(session, self._fleet.campus)
             if self._schedule is None:
-                picture = await where_they_left(session, picture)
+                snapshot = await where_they_left(session, snapshot)
             held = [hold.grant_id for one in schedule.known.values() for hold in one.holds]
             left = await left_at(session, held)
-        before, schedule.vanished = schedule.vanished, self._vanished(picture, now)
-        schedule.follow(picture, left, now_s)
-        understood = {name: self._fleet.connections.understands(name, DETOUR) for name in picture.robots}
+        before, schedule.vanished = schedule.vanished, self._vanished(snapshot, now)
+        schedule.follow(snapshot, left, now_s)
+        understood = {name: self._fleet.connections.understands(name, DETOUR) for name in snapshot.robots}
         verdicts, said = list(schedule.verdicts(understood, now_s)), [True]
         if verdicts or before != schedule.vanished:
             async with self._fleet.database.transaction() as session:
-                await self._tell_of_vanished(session, picture, before, schedule.vanished, now)
+                await self._tell_of_vanished(session, snapshot, before, schedule.vanished, now)
                 names = sorted(verdict.robot for verdict in verdicts)  # locked in one order, as all others do
                 rows = {name: await known_robot(session, name, to_change=True) for name in names}
                 said = [
-                    await self._say(session, rows[verdict.robot], picture.robots[verdict.robot], verdict, now)
+                    await self._say(session, rows[verdict.robot], snapshot.robots[verdict.robot], verdict, now)
                     for verdict in verdicts
                 ]
         # What was decided on a claim that is another by now was not said: the schedule must not believe it was.
         self._schedule = schedule if all(said) else None
-        for call in self.on_look:
+        for call in self.on_poll:
             call()
 
     def _new_schedule(self) -> TrafficSchedule:
         return TrafficSchedule(self._fleet.campus, self._fleet.settings, estimates=self._fleet.orders.ledger.estimates)
 
-    def _vanished(self, picture: TrafficSnapshot, now: datetime) -> frozenset[str]:
+    def _vanished(self, snapshot: TrafficSnapshot, now: datetime) -> frozenset[str]:
         """Silent for long, and not at home: without network robots are for minutes, with a flat battery for good."""
         since = now - timedelta(seconds=self._fleet.settings.vanished_after_s)
         return frozenset(
             name
-            for name, one in picture.robots.items()
+            for name, one in snapshot.robots.items()
             if not one.online and (one.holds or not one.at_home) and (one.heard_at is None or one.heard_at < since)
         )
 
     async def _tell_of_vanished(
         self,
         session: AsyncSession,
-        picture: TrafficSnapshot,
+        snapshot: TrafficSnapshot,
         before: frozenset[str],
         now_gone: frozenset[str],
         now: datetime,
     ) -> None:
         for name in sorted(now_gone - before):
-            one = picture.robots[name]
+            one = snapshot.robots[name]
             hold = one.holds[0] if one.holds else None
             where = f"between {hold.from_post} and {hold.to_post}" if hold else f"at {one.post}"
             others = "no robot is let in there" if hold else "others go round it"

@@ -14,7 +14,7 @@ from robot.simulated import SimulatedRobot
 from robot.simulated.base.serial_line import PtyLine
 
 STOP = bytes((145, 0, 0, 0, 0))
-LOOK_EVERY_S = 0.001
+POLL_EVERY_S = 0.001
 STANDING_MM_S = 1.0
 BUMP_S = 0.1
 
@@ -42,7 +42,7 @@ class StampedLine:
 
     def look(self, baud: int) -> None:
         """Wait a moment for bytes, and note when they came."""
-        self._line.wait(LOOK_EVERY_S)
+        self._line.wait(POLL_EVERY_S)
         data = self._line.receive(baud)
         self._waiting += data
         text = self._tail + data

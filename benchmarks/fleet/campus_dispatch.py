@@ -11,10 +11,10 @@ from benchmarks.fleet.campus_ground import ASSUMED_HANDOVER_S, Ground
 from benchmarks.fleet.campus_known import Known
 from benchmarks.fleet.campus_told import Told
 from benchmarks.fleet.planned import so_many
-from fleet.assignment.adopting import Able, adopt, scene_of
+from fleet.assignment.adopting import Able, adopt, problem_of
 from fleet.assignment.deciding import decide
 from fleet.assignment.improving import improved
-from fleet.assignment.scene import OpenOrder, Rules, Scene
+from fleet.assignment.problem import AssignmentProblem, OpenOrder, Rules
 from fleet.charging.acceptance import Answer
 from fleet.eta.arrivals import Ahead
 from fleet.schedule.controller import TrafficController
@@ -87,8 +87,8 @@ class Dispatch:
     def decide(self) -> None:
         if not self.open:
             return
-        scene = self.scene()
-        decision = decide(scene)
+        problem = self.problem()
+        decision = decide(problem)
         if decision is not None:
             decision = improved(decision, self.rng, so_many(ROUNDS)())
         self.counts["decisions"] += 1
@@ -109,11 +109,11 @@ class Dispatch:
         """Record what is told first after the mail is aboard."""
         self.told.under_way([order], self.controller, self.robots.values(), is_aboard=True)
 
-    def scene(self) -> Scene:
+    def problem(self) -> AssignmentProblem:
         able = {name: self._able(known) for name, known in self.robots.items()}
         kept_for = self._kept_for_long_waiting()
         orders = {one.id: self._with_avoided(one, kept_for) for one in self.open.values()}
-        return scene_of(self.controller, able, orders, self.now_s, Rules(age_limit_s=AGE_LIMIT_S))
+        return problem_of(self.controller, able, orders, self.now_s, Rules(age_limit_s=AGE_LIMIT_S))
 
     def _ahead(self) -> Ahead:
         """Orders not fetched yet, but for the one just placed, for how many robots."""

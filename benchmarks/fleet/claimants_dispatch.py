@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 
 from benchmarks.fleet.demand import HANDLING_S, Order
 from benchmarks.fleet.planned import so_many
-from fleet.assignment.adopting import Able, adopt, scene_of
+from fleet.assignment.adopting import Able, adopt, problem_of
 from fleet.assignment.deciding import decide
 from fleet.assignment.improving import improved
-from fleet.assignment.scene import OpenOrder, Rules
+from fleet.assignment.problem import OpenOrder, Rules
 from fleet.schedule.journey import Goal
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ class Planner:
         taken_away = {number_of(goal) for one in campus.robots.values() if one.off for goal in one.goals}
         orders = {order.id: order for number, order in self.open.items() if number not in taken_away}
         rules = Rules(age_limit_s=campus.age_limit_s)
-        decision = decide(scene_of(campus.controller, able, orders, campus.now_s, rules))
+        decision = decide(problem_of(campus.controller, able, orders, campus.now_s, rules))
         if decision is not None:
             decision = improved(decision, self.rng, so_many(self.rounds)())
         if decision is None or not adopt(campus.controller, decision, able, campus.now_s):

@@ -20,7 +20,7 @@ from benchmarks.fleet.samples import Samples
 from benchmarks.fleet.world import World
 from fleet.assignment.deciding import Decision, decide
 from fleet.assignment.improving import improved, within
-from fleet.assignment.scene import Scene
+from fleet.assignment.problem import AssignmentProblem
 
 ROBOTS, ORDERS, BAYS = 20, 200, 3
 CAPACITIES = (1, 2, 4)
@@ -100,8 +100,8 @@ def _growth(seed: int) -> dict[str, Any]:
     """The same robots at the same moments, with more and more orders that wait: how much longer a decision takes, from
     the fewest to the most, as a share of what n log n would be."""
     at_work = [_at_work(seed, MOMENTS_EVERY * number, max(MORE_ORDERS)) for number in range(1, MOMENTS + 1)]
-    scenes = [planning.scene(world) for planning, world in at_work]
-    took_ms = {count: mean(_decision_ms(_with_waiting(scene, count)) for scene in scenes) for count in MORE_ORDERS}
+    scenes = [planning.problem(world) for planning, world in at_work]
+    took_ms = {count: mean(_decision_ms(_with_waiting(problem, count)) for problem in scenes) for count in MORE_ORDERS}
     fewest, most = MORE_ORDERS[0], MORE_ORDERS[-1]
     allowed = most * log(most) / (fewest * log(fewest))
     figures = {
@@ -126,17 +126,17 @@ def _at_work(
     return planning, world
 
 
-def _with_waiting(scene: Scene, count: int) -> Scene:
-    placed = {stop.order for robot in scene.robots.values() for stop in robot.route}
-    waiting = islice((name for name in scene.orders if name not in placed), count)
-    return replace(scene, orders={name: scene.orders[name] for name in (*placed, *waiting)})
+def _with_waiting(problem: AssignmentProblem, count: int) -> AssignmentProblem:
+    placed = {stop.order for robot in problem.robots.values() for stop in robot.route}
+    waiting = islice((name for name in problem.orders if name not in placed), count)
+    return replace(problem, orders={name: problem.orders[name] for name in (*placed, *waiting)})
 
 
-def _decision_ms(scene: Scene) -> float:
+def _decision_ms(problem: AssignmentProblem) -> float:
     took_ms = []
     for _ in range(REPEATS):
         begun_s = perf_counter()
-        decide(scene)
+        decide(problem)
         took_ms.append(1e3 * (perf_counter() - begun_s))
     return median(took_ms)
 

@@ -10,7 +10,7 @@ from benchmarks.fleet.demand import HANDLING_S, Demand, Order, Saturated
 from benchmarks.fleet.world import World
 from fleet.assignment.deciding import Decision, decide
 from fleet.assignment.improving import improved
-from fleet.assignment.scene import Kept, OpenOrder, RobotAtWork, Route, Routes, Rules, Scene
+from fleet.assignment.problem import AssignmentProblem, Kept, OpenOrder, RobotAtWork, Route, Routes, Rules
 from fleet.schedule.journey import Goal, Task
 from fleet.schedule.planning import Schedule
 
@@ -53,7 +53,7 @@ class Planning:
 
     def decide(self, world: World) -> None:
         begun_s = perf_counter()
-        first = decide(self.scene(world))
+        first = decide(self.problem(world))
         first_s = perf_counter() - begun_s
         if first is None:
             self.refused += 1
@@ -66,7 +66,7 @@ class Planning:
     def improved(self, first: Decision) -> Decision:
         return improved(first, self.rng, self.budget())
 
-    def scene(self, world: World) -> Scene:
+    def problem(self, world: World) -> AssignmentProblem:
         tasks, journeys = world.known()
         self._note_served(world)
         cost_s = sum(journeys[name].done_s for name, task in tasks.items() if task.goals)
@@ -75,7 +75,7 @@ class Planning:
             name: RobotAtWork(task.start, task.home, self.capacity, self._route(name, task))
             for name, task in tasks.items()
         }
-        return Scene(world.now_s, world.network, robots, dict(self.open), kept, self.rules)
+        return AssignmentProblem(world.now_s, world.network, robots, dict(self.open), kept, self.rules)
 
     def _carry_out(self, world: World, decision: Decision) -> None:
         self.refused += len(decision.timed.refused)

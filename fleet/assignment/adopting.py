@@ -1,11 +1,11 @@
-"""Between the planner and the traffic: what the traffic knows as a scene, and a decision as what the traffic does."""
+"""Between planner and traffic: the traffic as an assignment problem, and a decision as what the traffic does."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from math import inf
 
 from fleet.assignment.deciding import Decision
-from fleet.assignment.scene import Kept, OpenOrder, RobotAtWork, Route, Rules, Scene, Stop
+from fleet.assignment.problem import AssignmentProblem, Kept, OpenOrder, RobotAtWork, Route, Rules, Stop
 from fleet.schedule.controller import TrafficController
 from fleet.schedule.journey import Goal
 from fleet.schedule.planning import Schedule
@@ -22,13 +22,13 @@ class Able:
     goes_beyond: bool = False
 
 
-def scene_of(
+def problem_of(
     traffic: TrafficController,
     robots: Mapping[str, Able],
     orders: Mapping[str, OpenOrder],
     now_s: float,
     rules: Rules | None = None,
-) -> Scene:
+) -> AssignmentProblem:
     """Every robot that can be planned for; those that `robots` does not name get nothing new. The goals of the traffic
     are stops of orders by their keys; any other is what the robot does for reasons of its own."""
     tasks, journeys = traffic.tasks(now_s), traffic.journeys(now_s)
@@ -44,7 +44,7 @@ def scene_of(
     cost_s = sum(journeys[name].done_s for name, task in tasks.items() if task.goals)
     first_done = tuple(sorted(tasks, key=lambda name: journeys[name].done_s))
     kept = Kept({name: task.goals for name, task in tasks.items()}, Schedule(journeys, cost_s, first_done))
-    return Scene(now_s, traffic.network, at_work, orders, kept, rules or Rules())
+    return AssignmentProblem(now_s, traffic.network, at_work, orders, kept, rules or Rules())
 
 
 def adopt(traffic: TrafficController, decision: Decision, robots: Iterable[str], now_s: float) -> bool:
@@ -58,7 +58,7 @@ def adopt(traffic: TrafficController, decision: Decision, robots: Iterable[str],
     # What it is to do and cannot be planned for at the moment: it keeps it, the other half of an order too.
     stays |= {stop.goal.key for route in decision.routes.values() for stop in route} - given
     # What is aboard and has no place in the schedule now is not lost either.
-    stays |= {order.give.key for order in decision.scene.orders.values() if order.loaded} - given
+    stays |= {order.give.key for order in decision.problem.orders.values() if order.loaded} - given
     goals = {
         name: (*task.goals, *(goal for goal in traffic.goals(name) if goal.key in stays))
         for name, task in timed.tasks.items()
@@ -70,8 +70,8 @@ def adopt(traffic: TrafficController, decision: Decision, robots: Iterable[str],
 
 def _served_since(traffic: TrafficController, decision: Decision) -> set[str]:
     """Goals that robots had when the decision was begun and have no more: they are behind them, or were given up."""
-    had = {stop.goal.key for robot in decision.scene.robots.values() for stop in robot.route}
-    return had - {goal.key for name in decision.scene.robots for goal in traffic.goals(name)}
+    had = {stop.goal.key for robot in decision.problem.robots.values() for stop in robot.route}
+    return had - {goal.key for name in decision.problem.robots for goal in traffic.goals(name)}
 
 
 def _route(goals: Iterable[Goal], stops: Mapping[str, Stop]) -> Route:

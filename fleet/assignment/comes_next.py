@@ -13,10 +13,10 @@ from fleet.assignment.timing import served_s
 
 
 def given_at_s(decision: Decision, robots: Iterable[str]) -> dict[str, float]:
-    """The time of the scene at which the robot comes to the recipient's, by order; `robots`: those that may come."""
-    scene, free = decision.scene, _free_from(decision, robots)
-    shortest_s, given = scene.network.shortest_s, dict[str, float]()
-    for order in waiting_orders(scene, decision.routes):
+    """The time of the problem at which the robot comes to the recipient's, by order; `robots`: those that may come."""
+    problem, free = decision.problem, _free_from(decision, robots)
+    shortest_s, given = problem.network.shortest_s, dict[str, float]()
+    for order in waiting_orders(problem, decision.routes):
         comes = {
             name: max(at_s + shortest_s[post][order.load.post], order.load.not_before_s)
             for name, (at_s, post) in free.items()
@@ -34,12 +34,12 @@ def given_at_s(decision: Decision, robots: Iterable[str]) -> dict[str, float]:
 
 def _free_from(decision: Decision, robots: Iterable[str]) -> dict[str, tuple[float, int]]:
     """When each robot has done what it has, and where."""
-    scene, timed = decision.scene, decision.timed
+    problem, timed = decision.problem, decision.timed
     served = served_s(timed.tasks, timed.schedule)
     free = {}
     for name in robots:
-        if name in scene.robots:
+        if name in problem.robots:
             goals, start = timed.tasks[name].goals, timed.tasks[name].start
-            ready_s = max([start.ready_s, scene.now_s, *(served[goal.key] for goal in goals)])
+            ready_s = max([start.ready_s, problem.now_s, *(served[goal.key] for goal in goals)])
             free[name] = ready_s, goals[-1].post if goals else start.post
     return free

@@ -7,21 +7,21 @@ from math import inf
 
 from fleet.assignment.candidates import candidates, waiting_orders
 from fleet.assignment.cost import plan_cost_s
+from fleet.assignment.problem import AssignmentProblem, RobotAtWork, Route, Routes
 from fleet.assignment.regret import Choice, choices_left, give_orders, give_overdue
 from fleet.assignment.routes import movable
-from fleet.assignment.scene import RobotAtWork, Route, Routes, Scene
 from fleet.assignment.timing import Timed, time_first
 
 
 @dataclass(frozen=True, slots=True)
 class Decision:
-    """An assignment for all robots, in the `scene` without what is no longer right in it.
+    """An assignment for all robots, in the `problem` without what is no longer right in it.
 
     `choices`: why orders that are new to their robots went to them. `cut_off`: stops that no way leads to, by robot;
     they are in no route and in no schedule.
     """
 
-    scene: Scene
+    problem: AssignmentProblem
     timed: Timed
     cost_s: float
     choices: tuple[Choice, ...] = ()
@@ -36,10 +36,10 @@ class Decision:
         return {stop.order: name for name, route in self.routes.items() for stop in route if stop.order}
 
 
-def decide(scene: Scene) -> Decision | None:
+def decide(problem: AssignmentProblem) -> Decision | None:
     """The first answer that holds. None only where nothing is kept that holds, and not everybody can come home: robots
-    that cannot be planned for must not be in the scene, nor corridors that they block."""
-    tidy = tidied(scene)
+    that cannot be planned for must not be in the problem, nor corridors that they block."""
+    tidy = tidied(problem)
     before = {name: robot.route for name, robot in tidy.robots.items()}
     waiting = waiting_orders(tidy, before)
     first = give_overdue(tidy, before, [order for order in waiting if tidy.is_overdue(order.id)])
@@ -50,39 +50,39 @@ def decide(scene: Scene) -> Decision | None:
         return None
     choices = choices_left((*first.choices, *given.choices), timed.routes)
     cost_s = plan_cost_s(tidy, timed.routes, timed.tasks, timed.schedule)
-    cut_off = {name: cut for name, robot in scene.robots.items() if (cut := _cut_off(scene, name, robot))}
+    cut_off = {name: cut for name, robot in problem.robots.items() if (cut := _cut_off(problem, name, robot))}
     return Decision(tidy, timed, cost_s, choices, cut_off)
 
 
-def tidied(scene: Scene) -> Scene:
+def tidied(problem: AssignmentProblem) -> AssignmentProblem:
     """Robots with those of their stops that are still right: of orders that there are, that they may fetch, and that a
     way leads to."""
-    return replace(scene, robots={name: _tidied(scene, name, robot) for name, robot in scene.robots.items()})
+    return replace(problem, robots={name: _tidied(problem, name, robot) for name, robot in problem.robots.items()})
 
 
-def _tidied(scene: Scene, name: str, robot: RobotAtWork) -> RobotAtWork:
-    gone, unreached = _gone(scene, name, robot), _cut_off(scene, name, robot)
+def _tidied(problem: AssignmentProblem, name: str, robot: RobotAtWork) -> RobotAtWork:
+    gone, unreached = _gone(problem, name, robot), _cut_off(problem, name, robot)
     stays = [stop.order not in gone and stop not in unreached for stop in robot.route]
     if all(stays):
         return robot
     return replace(robot, route=tuple(compress(robot.route, stays)), begun=sum(stays[: robot.begun]))
 
 
-def _gone(scene: Scene, name: str, robot: RobotAtWork) -> set[str]:
+def _gone(problem: AssignmentProblem, name: str, robot: RobotAtWork) -> set[str]:
     """Orders of its route that it is not to do any more."""
-    ended = {stop.order for stop in robot.route if stop.order and stop.order not in scene.orders}
-    return ended | {order for order in movable(robot, robot.route) if _is_lost(scene, name, robot, order)}
+    ended = {stop.order for stop in robot.route if stop.order and stop.order not in problem.orders}
+    return ended | {order for order in movable(robot, robot.route) if _is_lost(problem, name, robot, order)}
 
 
-def _is_lost(scene: Scene, name: str, robot: RobotAtWork, order: str) -> bool:
-    known = scene.orders.get(order)
+def _is_lost(problem: AssignmentProblem, name: str, robot: RobotAtWork, order: str) -> bool:
+    known = problem.orders.get(order)
     if known is None or not robot.accepts or not known.may_go_with(name):
         return True
-    seconds = scene.network.shortest_s[robot.start.post]
+    seconds = problem.network.shortest_s[robot.start.post]
     return inf in (seconds[known.load.post], seconds[known.give.post])
 
 
-def _cut_off(scene: Scene, name: str, robot: RobotAtWork) -> Route:
+def _cut_off(problem: AssignmentProblem, name: str, robot: RobotAtWork) -> Route:
     """Stops that it would have to make, and cannot."""
-    seconds, gone = scene.network.shortest_s[robot.start.post], _gone(scene, name, robot)
+    seconds, gone = problem.network.shortest_s[robot.start.post], _gone(problem, name, robot)
     return tuple(stop for stop in robot.route if seconds[stop.goal.post] == inf and stop.order not in gone)

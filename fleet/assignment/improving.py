@@ -13,9 +13,9 @@ from typing import Final
 from fleet.assignment.candidates import candidates, waiting_orders
 from fleet.assignment.cost import at_work, beside_s, plan_cost_s
 from fleet.assignment.deciding import Decision
+from fleet.assignment.problem import AssignmentProblem, Route
 from fleet.assignment.regret import Choice, choices_left, give_orders
 from fleet.assignment.routes import movable, without
-from fleet.assignment.scene import Route, Scene
 from fleet.assignment.timing import SLACK_S, Timed, in_order, keeps_promises, overdue_s, sound, tasks_of
 from fleet.schedule.planning import Schedule, improve, plan
 
@@ -52,8 +52,10 @@ def improved(decision: Decision, rng: Random, go_on: GoOn, in_time: GoOn = lambd
 class _Search:
     def __init__(self, decision: Decision, rng: Random, go_on: GoOn, in_time: GoOn) -> None:
         self._best, self._rng, self._go_on, self._in_time = decision, rng, go_on, in_time
-        self._scene = decision.scene
-        self._had = {order: name for name, robot in self._scene.robots.items() for order in movable(robot, robot.route)}
+        self._problem = decision.problem
+        self._had = {
+            order: name for name, robot in self._problem.robots.items() for order in movable(robot, robot.route)
+        }
         self._tried: set[tuple[Route, ...]] = set()
 
     def run(self) -> Decision:
@@ -76,7 +78,7 @@ class _Search:
     def _reshuffle(self) -> None:
         """The same stops with another schedule."""
         timed, pause = self._best.timed, self._look_at_the_time
-        network, rounds = self._scene.network, self._some_rounds()
+        network, rounds = self._problem.network, self._some_rounds()
         better = improve(network, timed.tasks, timed.schedule, self._rng, rounds, pause=pause)
         if better is not timed.schedule:
             self._take_if_better(replace(timed, schedule=better), self._best.choices, 0.0)
@@ -89,14 +91,14 @@ class _Search:
         """Some orders are taken back, and given anew with costs that are not quite right."""
         self._look_at_the_time()
         routes = self._with_some_taken_back()
-        waiting = waiting_orders(self._scene, routes)
-        given = give_orders(self._scene, routes, candidates(self._scene, routes, waiting), self._rng)
+        waiting = waiting_orders(self._problem, routes)
+        given = give_orders(self._problem, routes, candidates(self._problem, routes, waiting), self._rng)
         key = tuple(given.routes[name] for name in sorted(given.routes))
         if key in self._tried or given.routes == self._best.routes:
             return
         self._tried.add(key)
         choices = choices_left((*self._best.choices, *given.choices), given.routes)
-        worth_s = self._scene.rules.worth_s if self._moves(given.routes) else 0.0
+        worth_s = self._problem.rules.worth_s if self._moves(given.routes) else 0.0
         found = self._timed(given.routes, worth_s)
         if found is not None:
             self._take_if_better(found, _latest(choices), worth_s)
@@ -107,8 +109,8 @@ class _Search:
         free = [
             (order, name)
             for name, route in routes.items()
-            for order in movable(self._scene.robots[name], route)
-            if not self._scene.is_overdue(order)
+            for order in movable(self._problem.robots[name], route)
+            if not self._problem.is_overdue(order)
         ]
         for order, name in self._rng.sample(free, min(len(free), self._rng.randint(1, MOST_TAKEN_BACK))):
             routes[name] = without(routes[name], (order,))
@@ -122,13 +124,13 @@ class _Search:
 
     def _timed(self, routes: dict[str, Route], worth_s: float) -> Timed | None:
         """The best schedule for these routes, if it makes the whole cheaper."""
-        scene, tasks, kept = self._scene, tasks_of(self._scene, routes), self._best.timed
-        within_s = self._best.cost_s - worth_s - SLACK_S - beside_s(scene, routes) + scene.now_s * at_work(tasks)
+        problem, tasks, kept = self._problem, tasks_of(self._problem, routes), self._best.timed
+        within_s = self._best.cost_s - worth_s - SLACK_S - beside_s(problem, routes) + problem.now_s * at_work(tasks)
         found: Schedule | None = None
         for order in self._orders([name for name in sorted(tasks) if tasks[name].goals != kept.tasks[name].goals]):
             if not self._go_on():
                 break
-            schedule = plan(scene.network, tasks, order, kept.schedule.journeys, within_s, self._look_at_the_time)
+            schedule = plan(problem.network, tasks, order, kept.schedule.journeys, within_s, self._look_at_the_time)
             if schedule is not None:
                 within_s = schedule.cost_s - SLACK_S
                 names = in_order(kept.schedule.order, tasks, order)
@@ -145,17 +147,17 @@ class _Search:
             yield together
 
     def _take_if_better(self, timed: Timed, choices: tuple[Choice, ...], worth_s: float) -> None:
-        best, scene = self._best, self._scene
-        cost_s = plan_cost_s(scene, timed.routes, timed.tasks, timed.schedule)
-        if cost_s > best.cost_s - worth_s - SLACK_S or not _keeps_promises(scene, best.timed, timed):
+        best, problem = self._best, self._problem
+        cost_s = plan_cost_s(problem, timed.routes, timed.tasks, timed.schedule)
+        if cost_s > best.cost_s - worth_s - SLACK_S or not _keeps_promises(problem, best.timed, timed):
             return
-        if sound(scene, timed.tasks, timed.schedule) is not None:
+        if sound(problem, timed.tasks, timed.schedule) is not None:
             self._best = replace(best, timed=timed, cost_s=cost_s, choices=choices)
 
 
-def _keeps_promises(scene: Scene, before: Timed, after: Timed) -> bool:
-    promised_s = overdue_s(scene, before.tasks, before.schedule)
-    now_s = overdue_s(scene, after.tasks, after.schedule)
+def _keeps_promises(problem: AssignmentProblem, before: Timed, after: Timed) -> bool:
+    promised_s = overdue_s(problem, before.tasks, before.schedule)
+    now_s = overdue_s(problem, after.tasks, after.schedule)
     return promised_s.keys() <= now_s.keys() and keeps_promises(promised_s, now_s)
 
 

@@ -7,8 +7,8 @@ from random import Random
 from typing import Final, NamedTuple
 
 from fleet.assignment.cost import order_worth_s
+from fleet.assignment.problem import AssignmentProblem, OpenOrder, Route, Routes
 from fleet.assignment.routes import NO_FIT, Fit, line, movable, room, with_order, without
-from fleet.assignment.scene import OpenOrder, Route, Routes, Scene
 
 MOST_REGRET_S: Final = 600.0
 """An order that only one robot can have does not come before everything else."""
@@ -29,10 +29,12 @@ class Given(NamedTuple):
     choices: tuple[Choice, ...]
 
 
-def give_orders(scene: Scene, routes: Routes, orders: Sequence[OpenOrder], noise: Random | None = None) -> Given:
+def give_orders(
+    problem: AssignmentProblem, routes: Routes, orders: Sequence[OpenOrder], noise: Random | None = None
+) -> Given:
     """As many of these orders as there is room for. With `noise` the costs are taken not quite as they are, so that
     another answer comes out."""
-    table = _Table(scene, dict(routes), orders, noise)
+    table = _Table(problem, dict(routes), orders, noise)
     choices = []
     while (choice := table.next()) is not None:
         table.give(choice)
@@ -44,12 +46,12 @@ class _Table:
     """The cost of each order with each robot that has room."""
 
     def __init__(
-        self, scene: Scene, routes: dict[str, Route], orders: Sequence[OpenOrder], noise: Random | None
+        self, problem: AssignmentProblem, routes: dict[str, Route], orders: Sequence[OpenOrder], noise: Random | None
     ) -> None:
         self.routes = routes
-        self._scene, self._noise = scene, noise
+        self._problem, self._noise = problem, noise
         self._left = {order.id: order for order in orders}
-        self._worth_s = {order.id: order_worth_s(scene, order) for order in orders}
+        self._worth_s = {order.id: order_worth_s(problem, order) for order in orders}
         self._fits: dict[str, dict[str, Fit]] = {order.id: {} for order in orders}
         for robot in routes:
             self._look_at(robot)
@@ -66,11 +68,11 @@ class _Table:
         self._look_at(choice.robot)
 
     def _look_at(self, robot: str) -> None:
-        if room(self._scene, robot, self.routes[robot]) < 1:
+        if room(self._problem, robot, self.routes[robot]) < 1:
             for fits in self._fits.values():
                 fits.pop(robot, None)
             return
-        ready = line(self._scene, robot, self.routes[robot])
+        ready = line(self._problem, robot, self.routes[robot])
         for order in self._left.values():
             if order.may_go_with(robot):
                 fit = ready.best_fit(order)
@@ -96,16 +98,16 @@ class _Table:
         return choice.cost_s - self._worth_s[choice.order] - regret_s, choice.order
 
 
-def give_overdue(scene: Scene, routes: Routes, orders: Iterable[OpenOrder]) -> Given:
+def give_overdue(problem: AssignmentProblem, routes: Routes, orders: Iterable[OpenOrder]) -> Given:
     """Orders that have waited too long, the oldest first: behind nothing but what has begun, is aboard, or is overdue
     as well. What the robot that gets one was to fetch otherwise waits again."""
     given, choices = dict(routes), []
-    cleared = {robot: _cleared(scene, robot, route) for robot, route in given.items()}
+    cleared = {robot: _cleared(problem, robot, route) for robot, route in given.items()}
     for order in orders:
-        cleared = {robot: route for robot, route in cleared.items() if room(scene, robot, route) > 0}
+        cleared = {robot: route for robot, route in cleared.items() if room(problem, robot, route) > 0}
         if not cleared:
             break
-        table = _Table(scene, cleared, [order], None)
+        table = _Table(problem, cleared, [order], None)
         choice = table.next()
         if choice is not None:
             table.give(choice)
@@ -114,8 +116,8 @@ def give_overdue(scene: Scene, routes: Routes, orders: Iterable[OpenOrder]) -> G
     return Given(given, tuple(choices))
 
 
-def _cleared(scene: Scene, robot: str, route: Route) -> Route:
-    return without(route, {order for order in movable(scene.robots[robot], route) if not scene.is_overdue(order)})
+def _cleared(problem: AssignmentProblem, robot: str, route: Route) -> Route:
+    return without(route, {order for order in movable(problem.robots[robot], route) if not problem.is_overdue(order)})
 
 
 def choices_left(choices: Iterable[Choice], routes: Mapping[str, Route]) -> tuple[Choice, ...]:

@@ -9,7 +9,7 @@ from itertools import accumulate
 from math import inf
 from typing import Final, NamedTuple
 
-from fleet.assignment.scene import OpenOrder, RobotAtWork, Route, Rules, Scene
+from fleet.assignment.problem import AssignmentProblem, OpenOrder, RobotAtWork, Route, Rules
 
 _Seconds = tuple[tuple[float, ...], ...]
 
@@ -43,10 +43,10 @@ def orders_of(route: Route) -> set[str]:
     return {stop.order for stop in route if stop.order}
 
 
-def room(scene: Scene, name: str, route: Route) -> int:
+def room(problem: AssignmentProblem, name: str, route: Route) -> int:
     """Return the number of orders that a robot may still be given."""
-    robot = scene.robots[name]
-    return robot.capacity + scene.rules.ahead - len(orders_of(route)) if robot.accepts else 0
+    robot = problem.robots[name]
+    return robot.capacity + problem.rules.ahead - len(orders_of(route)) if robot.accepts else 0
 
 
 @dataclass(slots=True)
@@ -120,47 +120,47 @@ class Line:
         return (self.weights[load_at] - self.weights[give_at]) * delay_s + self.weights[give_at] * longer_s
 
 
-def line(scene: Scene, name: str, route: Route) -> Line:
+def line(problem: AssignmentProblem, name: str, route: Route) -> Line:
     """Nothing is put before stops that have begun, nor before those of an order that is overdue."""
-    robot = scene.robots[name]
+    robot = problem.robots[name]
     posts = [robot.start.post, *(stop.goal.post for stop in route)]
     items = sum(1 for order in orders_of(route) if not any(stop.order == order and stop.change > 0 for stop in route))
-    overdue = [at + 1 for at, stop in enumerate(route) if stop.order and scene.is_overdue(stop.order)]
-    home_s = 0.0 if robot.home is None else scene.network.shortest_s[posts[-1]][robot.home]
+    overdue = [at + 1 for at, stop in enumerate(route) if stop.order and problem.is_overdue(stop.order)]
+    home_s = 0.0 if robot.home is None else problem.network.shortest_s[posts[-1]][robot.home]
     drives_s = inf if robot.goes_beyond and not orders_of(route) else robot.drives_s
     return Line(
-        scene.network.shortest_s,
-        scene.rules,
-        scene.now_s,
+        problem.network.shortest_s,
+        problem.rules,
+        problem.now_s,
         posts,
-        leaves_s(scene, name, route),
+        leaves_s(problem, name, route),
         list(accumulate((stop.change for stop in route), initial=items)),
-        _weights(scene, route),
+        _weights(problem, route),
         max(robot.begun, *overdue, 0),
         robot.capacity,
         robot.home,
-        drives_s - scene.drive_s(posts[0], route) - home_s if drives_s < inf else inf,
+        drives_s - problem.drive_s(posts[0], route) - home_s if drives_s < inf else inf,
     )
 
 
-def leaves_s(scene: Scene, name: str, route: Route) -> list[float]:
+def leaves_s(problem: AssignmentProblem, name: str, route: Route) -> list[float]:
     """Return the seconds until the robot has done with its place, and with each stop, on empty corridors."""
-    start = scene.robots[name].start
-    at_s, post = max(0.0, start.ready_s - scene.now_s), start.post
+    start = problem.robots[name].start
+    at_s, post = max(0.0, start.ready_s - problem.now_s), start.post
     leaves = [at_s]
     for stop in route:
-        at_s = max(at_s + scene.network.shortest_s[post][stop.goal.post], stop.goal.not_before_s - scene.now_s)
+        at_s = max(at_s + problem.network.shortest_s[post][stop.goal.post], stop.goal.not_before_s - problem.now_s)
         at_s, post = at_s + stop.goal.handling_s, stop.goal.post
         leaves.append(at_s)
     return leaves
 
 
-def _weights(scene: Scene, route: Route) -> list[float]:
+def _weights(problem: AssignmentProblem, route: Route) -> list[float]:
     """Of the mail that is given from each stop on; nothing behind the last."""
-    given = [weight_of(scene, stop.order) if stop.change < 0 else 0.0 for stop in route]
+    given = [weight_of(problem, stop.order) if stop.change < 0 else 0.0 for stop in route]
     return [*list(accumulate(reversed(given), initial=0.0))[::-1]]
 
 
-def weight_of(scene: Scene, order: str) -> float:
-    known = scene.orders.get(order)
+def weight_of(problem: AssignmentProblem, order: str) -> float:
+    known = problem.orders.get(order)
     return 1.0 if known is None else known.weight

@@ -6,7 +6,7 @@ from itertools import islice
 from random import Random
 from typing import Final
 
-from fleet.assignment.scene import Kept, Routes, Scene
+from fleet.assignment.problem import AssignmentProblem, Kept, Routes
 from fleet.schedule.journey import Journey, Task
 from fleet.schedule.planning import Schedule, Tasks, first_plan, insert, plan
 from fleet.schedule.validation import problems
@@ -26,8 +26,8 @@ class Timed:
     refused: frozenset[str] = frozenset()
 
 
-def tasks_of(scene: Scene, routes: Routes) -> dict[str, Task]:
-    return {name: robot.task(routes[name]) for name, robot in scene.robots.items()}
+def tasks_of(problem: AssignmentProblem, routes: Routes) -> dict[str, Task]:
+    return {name: robot.task(routes[name]) for name, robot in problem.robots.items()}
 
 
 def changed(tasks: Tasks, kept: Kept) -> list[str]:
@@ -36,40 +36,40 @@ def changed(tasks: Tasks, kept: Kept) -> list[str]:
     return sorted(name for name, task in tasks.items() if name not in there or kept.goals.get(name) != task.goals)
 
 
-def time_first(scene: Scene, routes: Routes) -> Timed | None:
+def time_first(problem: AssignmentProblem, routes: Routes) -> Timed | None:
     """The first schedule for these routes that is found: what is kept stays, and new work is planned round it.
 
     None only if nothing is kept, or if that is void, and not everybody can come home either.
     """
-    tasks = tasks_of(scene, routes)
-    if scene.kept is not None:
-        schedule = _round_what_is_kept(scene, tasks, scene.kept)
+    tasks = tasks_of(problem, routes)
+    if problem.kept is not None:
+        schedule = _round_what_is_kept(problem, tasks, problem.kept)
         if schedule is not None:
             return Timed(routes, tasks, schedule)
-        timed = _one_by_one(scene, routes, scene.kept)
+        timed = _one_by_one(problem, routes, problem.kept)
         if timed is not None:
             return timed
-    anew = sound(scene, tasks, first_plan(scene.network, tasks, Random(0)))
+    anew = sound(problem, tasks, first_plan(problem.network, tasks, Random(0)))
     return None if anew is None else Timed(routes, tasks, anew)
 
 
-def _round_what_is_kept(scene: Scene, tasks: Tasks, kept: Kept) -> Schedule | None:
+def _round_what_is_kept(problem: AssignmentProblem, tasks: Tasks, kept: Kept) -> Schedule | None:
     new = changed(tasks, kept)
     if not new:
-        return sound(scene, tasks, of_robots(kept.schedule, tasks))
+        return sound(problem, tasks, of_robots(kept.schedule, tasks))
     # Where there is no room beside what is kept, planning all of it anew hardly ever finds any: in 2 of 674 decisions.
-    found = plan(scene.network, tasks, new, kept.schedule.journeys)
-    if found is None or not keeps_promises(_promised_s(scene, tasks, kept), overdue_s(scene, tasks, found)):
+    found = plan(problem.network, tasks, new, kept.schedule.journeys)
+    if found is None or not keeps_promises(_promised_s(problem, tasks, kept), overdue_s(problem, tasks, found)):
         return None
     order = in_order(kept.schedule.order, tasks, last=new)
-    return sound(scene, tasks, Schedule(found.journeys, found.cost_s, order))
+    return sound(problem, tasks, Schedule(found.journeys, found.cost_s, order))
 
 
-def _promised_s(scene: Scene, tasks: Tasks, kept: Kept) -> Mapping[str, float]:
+def _promised_s(problem: AssignmentProblem, tasks: Tasks, kept: Kept) -> Mapping[str, float]:
     """Return the times that the kept schedule promises to overdue orders."""
     there = tasks.keys() & kept.schedule.journeys.keys()
     served = {name: Task(tasks[name].start, kept.goals.get(name, ()), tasks[name].home) for name in there}
-    return overdue_s(scene, served, kept.schedule)
+    return overdue_s(problem, served, kept.schedule)
 
 
 def keeps_promises(promised_s: Mapping[str, float], now_s: Mapping[str, float]) -> bool:
@@ -77,28 +77,28 @@ def keeps_promises(promised_s: Mapping[str, float], now_s: Mapping[str, float]) 
     return all(now_s[order] <= at_s + SLACK_S for order, at_s in promised_s.items() if order in now_s)
 
 
-def _one_by_one(scene: Scene, routes: Routes, kept: Kept) -> Timed | None:
+def _one_by_one(problem: AssignmentProblem, routes: Routes, kept: Kept) -> Timed | None:
     """Each robot's new work behind everything else, where it can always be put, unless what it has before it is overdue
     and would come later by that."""
-    new = tasks_of(scene, routes)
+    new = tasks_of(problem, routes)
     tasks = {name: Task(task.start, kept.goals.get(name, ()), task.home) for name, task in new.items()}
-    schedule = sound(scene, tasks, of_robots(kept.schedule, tasks))
+    schedule = sound(problem, tasks, of_robots(kept.schedule, tasks))
     if schedule is None:
         return None
-    refused, promised_s = set(), _promised_s(scene, tasks, kept)
+    refused, promised_s = set(), _promised_s(problem, tasks, kept)
     for name in changed(new, kept):
         more = {**tasks, name: new[name]}
-        found = sound(scene, more, insert(scene.network, more, schedule.journeys, name))
-        if found is None or not keeps_promises(promised_s, overdue_s(scene, more, found)):
+        found = sound(problem, more, insert(problem.network, more, schedule.journeys, name))
+        if found is None or not keeps_promises(promised_s, overdue_s(problem, more, found)):
             refused.add(name)
         else:
             tasks, schedule = more, found
     return Timed(routes, tasks, schedule, frozenset(refused))
 
 
-def sound(scene: Scene, tasks: Tasks, schedule: Schedule | None) -> Schedule | None:
+def sound(problem: AssignmentProblem, tasks: Tasks, schedule: Schedule | None) -> Schedule | None:
     """The schedule, if there is nothing wrong with it."""
-    if schedule is None or problems(scene.network, tasks, schedule.journeys):
+    if schedule is None or problems(problem.network, tasks, schedule.journeys):
         return None
     return schedule
 
@@ -133,9 +133,9 @@ def _served(task: Task, journey: Journey) -> Iterable[tuple[str, float]]:
             yield goal.key, now_s
 
 
-def overdue_s(scene: Scene, tasks: Tasks, schedule: Schedule) -> Mapping[str, float]:
+def overdue_s(problem: AssignmentProblem, tasks: Tasks, schedule: Schedule) -> Mapping[str, float]:
     """When the mail of each order that has waited too long is given, by order."""
-    late = {order.give.key: order.id for order in scene.orders.values() if scene.is_overdue(order.id)}
+    late = {order.give.key: order.id for order in problem.orders.values() if problem.is_overdue(order.id)}
     if not late:
         return {}
     return {late[key]: at_s for key, at_s in served_s(tasks, schedule).items() if key in late}

@@ -7,12 +7,12 @@ from typing import Final
 
 from fleet.assignment.candidates import waiting_orders
 from fleet.assignment.deciding import Decision
+from fleet.assignment.problem import AssignmentProblem, OpenOrder
 from fleet.assignment.routes import room
-from fleet.assignment.scene import OpenOrder, Scene
 from fleet.assignment.timing import served_s
 
 Clock = Callable[[float], str]
-"""Puts a time of the scene into words."""
+"""Puts a time of the problem into words."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +54,7 @@ SENTENCES: Final[Mapping[str, str]] = {
 class _Looked:
     """The facts that each order is asked for, worked out once."""
 
-    scene: Scene
+    problem: AssignmentProblem
     decision: Decision
     served_s: Mapping[str, float]
     rooms: Mapping[str, int]
@@ -64,35 +64,35 @@ class _Looked:
 
 def why_orders_wait(decision: Decision) -> dict[str, Why]:
     """Of every order that is not aboard."""
-    scene, timed = decision.scene, decision.timed
+    problem, timed = decision.problem, decision.timed
     looked = _Looked(
-        scene,
+        problem,
         decision,
         served_s(timed.tasks, timed.schedule),
-        {name: room(scene, name, route) for name, route in timed.routes.items()},
+        {name: room(problem, name, route) for name, route in timed.routes.items()},
         decision.robot_of(),
-        {order.id: before for before, order in enumerate(waiting_orders(scene, timed.routes))},
+        {order.id: before for before, order in enumerate(waiting_orders(problem, timed.routes))},
     )
-    return {order.id: _why(looked, order) for order in scene.orders.values() if not order.loaded}
+    return {order.id: _why(looked, order) for order in problem.orders.values() if not order.loaded}
 
 
 def _why(looked: _Looked, order: OpenOrder) -> Why:
-    scene = looked.scene
+    problem = looked.problem
     robot = looked.robot_of.get(order.id)
     if robot is not None:
         return _fetched(looked, order, robot)
-    if not scene.is_due(order):
+    if not problem.is_due(order):
         return Why("later", at_s=order.load.not_before_s)
-    able = [name for name in scene.robots if order.may_go_with(name)]
+    able = [name for name in problem.robots if order.may_go_with(name)]
     if not able:
         return Why("robot_absent", tuple(sorted(order.wanted))) if order.wanted else Why("no_robot")
-    if not any(scene.robots[name].accepts for name in able):
+    if not any(problem.robots[name].accepts for name in able):
         return Why("robot_paused", tuple(sorted(able)))
-    if not _is_reached(scene, order, able):
+    if not _is_reached(problem, order, able):
         return Why("no_way")
     if any(looked.rooms[name] > 0 for name in able):
         return Why("charging", tuple(sorted(name for name in able if looked.rooms[name] > 0)))
-    if scene.is_overdue(order.id):
+    if problem.is_overdue(order.id):
         return Why("overdue")
     before = looked.places[order.id]
     return Why("turn", tuple(sorted(able)), before=before) if before else Why("next", tuple(sorted(able)))
@@ -106,9 +106,9 @@ def _fetched(looked: _Looked, order: OpenOrder, robot: str) -> Why:
     return Why("fetched_after" if before else "fetched", (robot,), begins_s, before)
 
 
-def _is_reached(scene: Scene, order: OpenOrder, robots: Iterable[str]) -> bool:
-    shortest_s = scene.network.shortest_s
-    starts = {scene.robots[name].start.post for name in robots}
+def _is_reached(problem: AssignmentProblem, order: OpenOrder, robots: Iterable[str]) -> bool:
+    shortest_s = problem.network.shortest_s
+    starts = {problem.robots[name].start.post for name in robots}
     return any(shortest_s[start][order.load.post] < inf for start in starts) and (
         shortest_s[order.load.post][order.give.post] < inf
     )

@@ -215,7 +215,7 @@ class Mailroom:
             (await session.get_one(RobotRow, "r1")).online = online
             if await session.get(MissionRow, "m1") is None:
                 session.add(MissionRow(id="m1", robot="r1", created_at=state.clock.utc()))
-        await state.fleet.learning.look()
+        await state.fleet.learning.poll()
 
     def move(self, order_id: str, *states: str, by: By = By.ROBOT, **known: Any) -> list[bool]:
         return [self._portal.call(self._move, order_id, OrderState(state), by, known) for state in states]

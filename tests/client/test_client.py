@@ -50,7 +50,7 @@ async def lost_at_first(number: int, answer: httpx.Response) -> httpx.Response:
 async def test_an_order_is_placed_read_changed_and_cancelled(campus: Campus, mail: AsyncCampusMail) -> None:
     await campus.enrol()
     await campus.announce("r1", online=True)
-    await campus.service.app.state.parts.fleet.learning.look()
+    await campus.service.app.state.parts.fleet.learning.poll()
     order = await mail.place("post1", "post4", RECIPIENT, "A letter")
     assert (order.state, order.sender.email, order.description) == ("queued", SENDER, "A letter")
     assert order.window is not None

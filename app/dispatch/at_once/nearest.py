@@ -23,7 +23,7 @@ from app.dispatch.choice import (
     why_nobody_comes,
 )
 from app.dispatch.held_up import NoRobotComes
-from app.dispatch.situation import connected_robots, idle_robots, look, tours
+from app.dispatch.waiting_work import connected_robots, idle_robots, look, tours
 from app.dispatch.why_orders_wait import Answer
 from app.dispatch.why_recorded import explain
 from app.models import MissionRow, Order, OrderState, RobotRow

@@ -23,7 +23,7 @@ from app.notifications.delivery.due import NOT_ROUTED, Due
 from app.realtime.feed import Feed
 from protocol.clock import Clock
 
-LOOK_EVERY_S: Final = 1.0
+POLL_EVERY_S: Final = 1.0
 GATHER_S: Final = 0.1
 """What comes within this time is routed and noted down together."""
 LONGEST_REST_S: Final = 0.5
@@ -99,7 +99,7 @@ class OutboxWorker:
     async def _wait_for_bell(self) -> None:
         # Not `wait_for`: before Python 3.12 it loses a cancellation that comes just as the bell rings.
         with suppress(TimeoutError):
-            async with asyncio.timeout(LOOK_EVERY_S):
+            async with asyncio.timeout(POLL_EVERY_S):
                 await self._bell.wait()
 
     async def _finish(self) -> None:

@@ -21,7 +21,7 @@ from app.core.database.database import connection_of, savepoint
 from app.core.errors import ServiceError
 from app.models import RobotRow
 from app.robots.alarms import raise_alarm
-from app.robots.conversation.prefetch import look_ahead
+from app.robots.conversation.prefetch import prefetch
 from app.robots.errors import FleetError, MessageGap
 from app.robots.link import inbox, outbox
 from app.robots.link.clocks import compare_again, has_been_set
@@ -163,7 +163,7 @@ class Intake:
         for one, verdict in zip(durable, verdicts, strict=True):
             one.failure = verdict if isinstance(verdict, MessageGap) else None
         # Kept until the end: the session forgets rows without a reference.
-        ahead = await look_ahead(session, [one.envelope.body for one in durable if id(one) in new])
+        ahead = await prefetch(session, [one.envelope.body for one in durable if id(one) in new])
         for one in said:
             if one.envelope.seq is None or id(one) in new:
                 robot = robots[one.speaker.robot]

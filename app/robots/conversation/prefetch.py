@@ -12,7 +12,7 @@ from protocol.parts import Part
 from protocol.to_server import Event
 
 
-async def look_ahead(session: AsyncSession, messages: Sequence[Part]) -> Sequence[SQLModel]:
+async def prefetch(session: AsyncSession, messages: Sequence[Part]) -> Sequence[SQLModel]:
     """Fetch them into the session, which gives them to later readers, as long as the answer is held."""
     happened = [message.happened for message in messages if isinstance(message, Event)]
     if len(happened) < 2:  # one message asks for itself

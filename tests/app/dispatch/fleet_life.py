@@ -6,7 +6,7 @@ from random import Random
 
 from fleet.assignment.deciding import Decision, decide
 from fleet.assignment.improving import improved
-from fleet.assignment.scene import Kept, OpenOrder, RobotAtWork, Route, Rules, Scene
+from fleet.assignment.problem import AssignmentProblem, Kept, OpenOrder, RobotAtWork, Route, Rules
 from fleet.schedule.execution import retimed
 from fleet.schedule.journey import Goal, Start, Task
 from fleet.schedule.network import Network
@@ -53,7 +53,7 @@ class Life:
         self.world = World(self.network, tasks, dict(found.journeys), self.rng, slowness=1.5)
         self.routes = dict.fromkeys(tasks, ())
 
-    def scene(self) -> Scene:
+    def problem(self) -> AssignmentProblem:
         now_s = self.world.now_s
         tasks = {
             name: replace(task, start=replace(task.start, ready_s=max(task.start.ready_s, now_s)))
@@ -67,11 +67,11 @@ class Life:
         }
         schedule = Schedule(kept, cost_s, self.schedule.order)
         goals = {name: task.goals for name, task in tasks.items()}
-        return Scene(now_s, self.network, robots, dict(self.waiting), Kept(goals, schedule), self.rules)
+        return AssignmentProblem(now_s, self.network, robots, dict(self.waiting), Kept(goals, schedule), self.rules)
 
     def decide(self) -> Decision:
-        scene = self.scene()
-        first = decide(scene)
+        problem = self.problem()
+        first = decide(problem)
         assert first is not None
         best = improved(first, self.rng, rounds(self.improvement))
         for one in (first, best):

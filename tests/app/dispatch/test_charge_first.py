@@ -66,7 +66,7 @@ async def test_who_has_less_than_was_foreseen_goes_to_a_dock_before_its_next_leg
     assert (dock.post, dock.until_ratio) == ("post5", 0.53)
     (claim,) = await service.rows(ClaimRow)
     assert (claim.granted, claim.reason) == (False, REASON)
-    await service.app.state.parts.charging_service.look_round()
+    await service.app.state.parts.charging_service.poll()
     (row,) = await service.rows(StopRow, action=StopAction.DOCK)
     assert row.dropped_at is None, "work does not call it away: it has not the charge for it"
 

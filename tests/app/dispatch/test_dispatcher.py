@@ -71,7 +71,7 @@ async def test_many_orders_of_one_moment_all_get_a_robot_and_no_sender_is_told_t
                 row = RobotRow(name=f"r{name}", enrolled_at=clock.utc(), server_journal="j", post="post5")
                 row.online, row.battery_ratio = True, 0.9
                 session.add(row)
-        await state.fleet.learning.look()
+        await state.fleet.learning.poll()
         async with state.database.transaction() as session:
             sender = await state.sign_in_service.person(session, "sender@campus.example", clock.utc())
             for _ in range(number):

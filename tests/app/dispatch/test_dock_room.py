@@ -34,7 +34,7 @@ async def robot(
 
 
 async def look(service: Service) -> None:
-    await service.app.state.parts.charging_service.look_round()
+    await service.app.state.parts.charging_service.poll()
 
 
 async def test_it_is_sent_to_park_and_the_other_to_the_dock_once_it_is_free(

@@ -58,7 +58,7 @@ async def robot(service: Service, clock: SteppedClock) -> AsyncIterator[PlayedRo
 
 async def can_come(service: Service) -> bool:
     """Return whether promises are based on the durations learned."""
-    await service.app.state.parts.fleet.learning.look()
+    await service.app.state.parts.fleet.learning.poll()
     return service.app.state.parts.estimates.ahead.reason is None
 
 

@@ -3,18 +3,18 @@
 from dataclasses import replace
 
 from fleet.assignment.candidates import LONGEST, candidates, waiting_orders
-from fleet.assignment.scene import OpenOrder, RobotAtWork
+from fleet.assignment.problem import OpenOrder, RobotAtWork
 from tests.app.dispatch.fleet_life import order
-from tests.app.dispatch.test_fleet_plan import decided, robot, scene_of, street
+from tests.app.dispatch.test_fleet_plan import decided, problem_of, robot, street
 
 FAR = [order(number, 20, 21, since_s=-1000.0 - number) for number in range(50)]
 NEAR = order(100, 1, 2)
 
 
 def looked_at(robots: dict[str, RobotAtWork], orders: list[OpenOrder]) -> list[str]:
-    scene = scene_of(street(22), robots, orders)
+    problem = problem_of(street(22), robots, orders)
     routes = {name: one.route for name, one in robots.items()}
-    return [one.id for one in candidates(scene, routes, waiting_orders(scene, routes))]
+    return [one.id for one in candidates(problem, routes, waiting_orders(problem, routes))]
 
 
 def test_those_that_have_waited_longest_are_looked_at_and_those_near_a_robot_with_room() -> None:
@@ -47,5 +47,5 @@ def test_what_does_not_fit_any_more_once_a_robot_has_something_else_is_left() ->
     """One to the left and one to the right: there is charge for either, not for both."""
     left, right = order(0, 3, 1), order(1, 3, 6)
     for drives_s, orders in ((500.0, 1), (900.0, 1), (1000.0, 2)):
-        scene = scene_of(street(8), {"r0": robot(3, capacity=2, drives_s=drives_s)}, [left, right])
-        assert len(decided(scene).robot_of()) == orders
+        problem = problem_of(street(8), {"r0": robot(3, capacity=2, drives_s=drives_s)}, [left, right])
+        assert len(decided(problem).robot_of()) == orders

@@ -3,8 +3,8 @@
 from dataclasses import replace
 from random import Random
 
-from fleet.assignment.adopting import Able, adopt, scene_of
-from fleet.assignment.scene import OpenOrder
+from fleet.assignment.adopting import Able, adopt, problem_of
+from fleet.assignment.problem import OpenOrder
 from fleet.schedule.controller import Denied, Granted, TrafficController
 from fleet.schedule.journey import Goal
 from fleet.schedule.planning import Schedule, first_plan
@@ -25,7 +25,7 @@ def traffic_on(posts: int) -> TrafficController:
 
 def dispatch(traffic: TrafficController, orders: list[OpenOrder], now_s: float) -> dict[str, str]:
     """Which robot has which order, once the traffic has taken it over."""
-    decision = decided(scene_of(traffic, ABLE, {one.id: one for one in orders}, now_s))
+    decision = decided(problem_of(traffic, ABLE, {one.id: one for one in orders}, now_s))
     assert adopt(traffic, decision, ABLE, now_s)
     return decision.robot_of()
 
@@ -48,7 +48,7 @@ def test_a_frozen_robot_keeps_what_it_has_aboard_and_another_fetches_the_rest() 
     traffic.give("r0", (aboard.give, other.load, other.give), 0.0)
     traffic.freeze("r0", 1.0)
     orders = {aboard.id: replace(aboard, loaded=True), other.id: other}
-    decision = decided(scene_of(traffic, able, orders, 2.0))
+    decision = decided(problem_of(traffic, able, orders, 2.0))
     assert decision.robot_of() == {other.id: "r1"}
     assert adopt(traffic, decision, able, 2.0)
     assert traffic.goals("r0") == (aboard.give,)
@@ -59,7 +59,7 @@ def test_what_a_robot_does_for_reasons_of_its_own_stays_and_so_does_what_no_way_
     traffic, aboard, own = traffic_on(4), replace(order(0, 0, 3), loaded=True), Goal(0, 30.0, key="its own")
     traffic.give("r0", (own, aboard.give), 0.0)
     traffic.close("p3", 1.0)
-    decision = decided(scene_of(traffic, ABLE, {aboard.id: aboard}, 2.0))
+    decision = decided(problem_of(traffic, ABLE, {aboard.id: aboard}, 2.0))
     assert adopt(traffic, decision, ABLE, 2.0)
     assert traffic.goals("r0") == (own, aboard.give)
 
@@ -72,7 +72,7 @@ def test_an_order_that_cannot_be_given_at_the_moment_is_kept_whole() -> None:
     traffic.joins("dead", post="p2", home="p3", at_home=False, now_s=1.0)
     traffic.freeze("dead", 2.0)
     assert traffic.tasks(3.0)["r0"].goals == (one.load,)
-    decision = decided(scene_of(traffic, able, {one.id: one}, 3.0))
+    decision = decided(problem_of(traffic, able, {one.id: one}, 3.0))
     assert adopt(traffic, decision, able, 3.0)
     assert traffic.goals("r0") == (one.load, one.give)
     traffic.unfreeze("dead", 4.0)
@@ -81,7 +81,7 @@ def test_an_order_that_cannot_be_given_at_the_moment_is_kept_whole() -> None:
 
 def test_a_decision_that_has_come_too_late_changes_nothing() -> None:
     traffic, one = traffic_on(4), order(0, 1, 2)
-    decision = decided(scene_of(traffic, ABLE, {one.id: one}, 0.0))
+    decision = decided(problem_of(traffic, ABLE, {one.id: one}, 0.0))
     traffic.stands("r0", "p2", 5.0)  # a person has carried it there
     assert not adopt(traffic, decision, ABLE, 6.0)
     assert traffic.goals("r0") == ()
@@ -90,7 +90,7 @@ def test_a_decision_that_has_come_too_late_changes_nothing() -> None:
 def test_a_schedule_is_checked_again_before_it_counts() -> None:
     """Between the decision and its coming true a way has been closed, so that it would lead through it."""
     traffic, one = traffic_on(4), order(0, 1, 2)
-    decision = decided(scene_of(traffic, ABLE, {one.id: one}, 0.0))
+    decision = decided(problem_of(traffic, ABLE, {one.id: one}, 0.0))
     before = traffic.journeys(5.0)
     traffic.close("p2", 5.0)
     assert not adopt(traffic, decision, ABLE, 6.0)

@@ -6,9 +6,9 @@ from random import Random
 
 import pytest
 
-from fleet.assignment.adopting import Able, adopt, scene_of
+from fleet.assignment.adopting import Able, adopt, problem_of
 from fleet.assignment.deciding import decide
-from fleet.assignment.scene import OpenOrder
+from fleet.assignment.problem import OpenOrder
 from fleet.schedule.controller import TrafficController
 from fleet.schedule.validation import problems
 from tests.app.dispatch.fleet_life import order
@@ -39,7 +39,7 @@ class Campus:
         one = order(self.placed, *self.rng.sample(range(len(self.network.posts)), 2), since_s=self.now_s)
         self.orders[one.id], self.placed = one, self.placed + 1
         able = dict.fromkeys(self.robots, Able(capacity=2))
-        decision = decide(scene_of(self.traffic, able, dict(self.orders), self.now_s))
+        decision = decide(problem_of(self.traffic, able, dict(self.orders), self.now_s))
         for _ in range(self.rng.randint(0, 4)):
             self.goes_on()
         if decision is not None:

@@ -7,12 +7,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fleet.assignment.improving import improved
-from fleet.assignment.scene import Kept, Rules, Scene
+from fleet.assignment.problem import AssignmentProblem, Kept, Rules
 from fleet.assignment.timing import overdue_s
 from fleet.schedule.network import Lane, Network
 from fleet.schedule.validation import problems
 from tests.app.dispatch.fleet_life import order, rounds
-from tests.app.dispatch.test_fleet_plan import decided, robot, scene_of, street
+from tests.app.dispatch.test_fleet_plan import decided, problem_of, robot, street
 from tests.fleet.schedule.test_schedules import random_network
 
 
@@ -30,9 +30,9 @@ def test_a_kept_schedule_through_a_closed_corridor_is_not_carried_out() -> None:
     had, new = order(0, 1, 2), order(1, 4, 5)
     robots = {"r0": robot(0, route=had.stops), "r1": robot(4)}
     for orders in ([had], [had, new]):
-        scene = scene_of(ring(7), robots, orders)
-        closed = replace(scene, network=scene.network.without({"p1"}))
-        kept = scene.kept
+        problem = problem_of(ring(7), robots, orders)
+        closed = replace(problem, network=problem.network.without({"p1"}))
+        kept = problem.kept
         assert kept is not None
         assert problems(closed.network, {"r0": robots["r0"].task(had.stops)}, {"r0": kept.schedule.journeys["r0"]})
         for after in (decided(closed), improved(decided(closed), Random(1), rounds(5))):
@@ -47,13 +47,13 @@ def test_what_is_overdue_is_given_no_later_because_of_what_is_new(rng: Random, r
     network = replace(network, bays=(1,) * len(network.posts))
     posts = range(len(network.posts))
     first = [order(n, *rng.sample(posts, 2), since_s=-7 * 3600.0 if n % 2 else 0.0) for n in range(robots)]
-    scene = scene_of(network, {f"r{n}": robot(rng.choice(posts), capacity=capacity) for n in range(robots)}, first)
-    before = decided(scene)
-    promised_s = overdue_s(scene, before.timed.tasks, before.timed.schedule)
+    problem = problem_of(network, {f"r{n}": robot(rng.choice(posts), capacity=capacity) for n in range(robots)}, first)
+    before = decided(problem)
+    promised_s = overdue_s(problem, before.timed.tasks, before.timed.schedule)
     kept = Kept({name: task.goals for name, task in before.timed.tasks.items()}, before.timed.schedule)
-    there = {name: replace(one, route=before.routes[name]) for name, one in scene.robots.items()}
+    there = {name: replace(one, route=before.routes[name]) for name, one in problem.robots.items()}
     more = [*first, *(order(number, *rng.sample(posts, 2)) for number in range(10, 10 + robots * capacity))]
-    again = Scene(0.0, network, there, {one.id: one for one in more}, kept)
+    again = AssignmentProblem(0.0, network, there, {one.id: one for one in more}, kept)
     after = decided(again)
     now_s = overdue_s(again, after.timed.tasks, after.timed.schedule)
     assert promised_s.keys() <= now_s.keys()
@@ -64,7 +64,7 @@ def test_an_order_stays_with_its_robot_unless_another_is_worth_the_change() -> N
     has = order(0, 2, 4)
     late = robot(1, route=has.stops)
     robots = {"r0": replace(late, start=replace(late.start, ready_s=3.0)), "r1": robot(3)}
-    stays = scene_of(street(5), robots, [has])
+    stays = problem_of(street(5), robots, [has])
     moves = replace(stays, rules=Rules(worth_s=0.0))
     assert improved(decided(stays), Random(1), rounds(200)).robot_of() == {has.id: "r0"}
     assert improved(decided(moves), Random(1), rounds(200)).robot_of() == {has.id: "r1"}
@@ -72,7 +72,7 @@ def test_an_order_stays_with_its_robot_unless_another_is_worth_the_change() -> N
 
 def test_an_order_that_its_robot_may_not_have_any_more_goes_to_another() -> None:
     has = replace(order(0, 1, 2), avoided=frozenset({"r0"}))
-    after = decided(scene_of(street(4), {"r0": robot(0, route=has.stops), "r1": robot(3)}, [has]))
+    after = decided(problem_of(street(4), {"r0": robot(0, route=has.stops), "r1": robot(3)}, [has]))
     assert after.robot_of() == {has.id: "r1"}
 
 
@@ -80,8 +80,8 @@ def test_of_what_has_begun_only_that_counts_which_is_still_to_be_done() -> None:
     """It was on its way to give mail of an order that has been cancelled; the stop after it is not begun for that."""
     ended, has = order(0, 0, 2), order(1, 3, 4)
     its = robot(0, route=(ended.stops[1], *has.stops), begun=1, capacity=2)
-    after = decided(scene_of(street(5), {"r0": its, "r1": robot(3)}, [has]))
-    assert after.scene.robots["r0"].begun == 0
+    after = decided(problem_of(street(5), {"r0": its, "r1": robot(3)}, [has]))
+    assert after.problem.robots["r0"].begun == 0
     assert improved(after, Random(1), rounds(200)).robot_of() == {has.id: "r1"}
 
 
@@ -91,6 +91,6 @@ def test_an_idle_robot_takes_over_one_of_two_orders_whatever_time_it_is() -> Non
     robots = {
         name: replace(its, start=replace(its.start, ready_s=now_s)) for name, its in (("r0", both), ("r1", robot(6)))
     }
-    first = decided(scene_of(street(7), robots, [one, other], now_s=now_s))
+    first = decided(problem_of(street(7), robots, [one, other], now_s=now_s))
     assert first.robot_of() == {one.id: "r0", other.id: "r0"}
     assert improved(first, Random(1), rounds(200)).robot_of() == {one.id: "r0", other.id: "r1"}

@@ -10,18 +10,18 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fleet.assignment.cost import order_worth_s, route_s
+from fleet.assignment.problem import AssignmentProblem, OpenOrder, Route, Stop
 from fleet.assignment.routes import NO_FIT, Fit, leaves_s, line, orders_of, with_order
-from fleet.assignment.scene import OpenOrder, Route, Scene, Stop
 from tests.app.dispatch.fleet_life import order
-from tests.app.dispatch.test_fleet_plan import decided, robot, scene_of, street
+from tests.app.dispatch.test_fleet_plan import decided, problem_of, robot, street
 from tests.fleet.schedule.test_schedules import random_network
 
 
 def test_the_order_that_would_lose_most_is_given_first() -> None:
     """The one nearest to a robot would be that one's, if the other did not have to wait for one from far away."""
     near, would_lose = order(0, 5, 6), order(1, 2, 1)
-    scene = scene_of(street(10), {"r0": robot(4), "r1": robot(9)}, [near, would_lose])
-    after = decided(scene)
+    problem = problem_of(street(10), {"r0": robot(4), "r1": robot(9)}, [near, would_lose])
+    after = decided(problem)
     assert after.robot_of() == {near.id: "r1", would_lose.id: "r0"}
     first = next(choice for choice in after.choices if choice.order == would_lose.id)
     assert (first.robot, first.next_best) == ("r0", "r1")
@@ -30,18 +30,18 @@ def test_the_order_that_would_lose_most_is_given_first() -> None:
 
 def test_an_order_that_only_one_robot_may_have_does_not_come_before_everything_else() -> None:
     near, wanted = order(0, 1, 2), replace(order(1, 12, 13), wanted=frozenset({"r0"}))
-    scene = scene_of(street(30), {"r0": robot(0), "r1": robot(29)}, [near, wanted])
-    assert decided(scene).robot_of()[near.id] == "r0"
+    problem = problem_of(street(30), {"r0": robot(0), "r1": robot(29)}, [near, wanted])
+    assert decided(problem).robot_of()[near.id] == "r0"
 
 
 def test_a_long_way_with_the_mail_makes_no_order_worse_than_a_short_one() -> None:
     long, short = order(0, 1, 9), order(1, 2, 3)
-    assert decided(scene_of(street(10), {"r0": robot(0)}, [long, short])).robot_of() == {long.id: "r0"}
+    assert decided(problem_of(street(10), {"r0": robot(0)}, [long, short])).robot_of() == {long.id: "r0"}
 
 
 def test_choices_are_told_only_of_orders_that_went_as_chosen() -> None:
     late, young = order(0, 2, 3, since_s=-7 * 3600.0), order(1, 0, 1)
-    after = decided(scene_of(street(4), {"r0": robot(0)}, [late, young]))
+    after = decided(problem_of(street(4), {"r0": robot(0)}, [late, young]))
     assert [choice.order for choice in after.choices] == [late.id]
 
 
@@ -62,28 +62,28 @@ def some_route(rng: Random, posts: range, capacity: int) -> tuple[Route, list[Op
     return tuple(route), orders
 
 
-def holds(scene: Scene, name: str, route: Route) -> bool:
+def holds(problem: AssignmentProblem, name: str, route: Route) -> bool:
     """Never more aboard than the robot can carry, and home again with its charge."""
-    its = scene.robots[name]
+    its = problem.robots[name]
     aboard = len(orders_of(route)) - sum(1 for stop in route if stop.change > 0)
     for stop in route:
         aboard += stop.change
         if aboard > its.capacity:
             return False
     last = route[-1].goal.post
-    return scene.drive_s(its.start.post, route) + scene.network.shortest_s[last][its.home or 0] <= its.drives_s
+    return problem.drive_s(its.start.post, route) + problem.network.shortest_s[last][its.home or 0] <= its.drives_s
 
 
-def every_fit(scene: Scene, name: str, route: Route, new: OpenOrder, first: int) -> list[Fit]:
+def every_fit(problem: AssignmentProblem, name: str, route: Route, new: OpenOrder, first: int) -> list[Fit]:
     """Each pair of places, and what the whole route costs more for it."""
-    busy_s = leaves_s(scene, name, route)[-1]
-    before_s = busy_s + (route_s(scene, name, route) if route else 0.0)
+    busy_s = leaves_s(problem, name, route)[-1]
+    before_s = busy_s + (route_s(problem, name, route) if route else 0.0)
     fits = []
     for load_at, give_at in combinations_with_replacement(range(first, len(route) + 1), 2):
         after = with_order(route, new, Fit(0.0, load_at, give_at))
-        if holds(scene, name, after):
-            after_s = leaves_s(scene, name, after)[-1] + route_s(scene, name, after)
-            fits.append(Fit(after_s + order_worth_s(scene, new) - before_s, load_at, give_at))
+        if holds(problem, name, after):
+            after_s = leaves_s(problem, name, after)[-1] + route_s(problem, name, after)
+            fits.append(Fit(after_s + order_worth_s(problem, new) - before_s, load_at, give_at))
     return fits
 
 
@@ -98,9 +98,9 @@ def test_one_more_order_is_put_where_the_whole_route_costs_least(rng: Random, ca
     begun = rng.randint(0, len(route))
     its = robot(rng.choice(posts), capacity=capacity, begun=begun, drives_s=rng.choice((inf, rng.uniform(0.0, 1000.0))))
     known = {one.id: one for one in (*orders, new)}
-    scene = Scene(0.0, network, {"r0": replace(its, route=route)}, known)
-    fits = every_fit(scene, "r0", route, new, begun)
-    found = line(scene, "r0", route).best_fit(new)
+    problem = AssignmentProblem(0.0, network, {"r0": replace(its, route=route)}, known)
+    fits = every_fit(problem, "r0", route, new, begun)
+    found = line(problem, "r0", route).best_fit(new)
     if not fits:
         assert found is NO_FIT
         return

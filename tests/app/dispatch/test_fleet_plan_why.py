@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import pytest
 
-from fleet.assignment.scene import OpenOrder, RobotAtWork
+from fleet.assignment.problem import OpenOrder, RobotAtWork
 from fleet.assignment.why import why_orders_wait
 from tests.app.dispatch.fleet_life import order
-from tests.app.dispatch.test_fleet_plan import decided, robot, scene_of, street
+from tests.app.dispatch.test_fleet_plan import decided, problem_of, robot, street
 
 OLD, WAITS, YOUNG = order(0, 1, 2, since_s=-9000.0), order(1, 1, 2, since_s=-300.0), order(2, 1, 2)
 OVERDUE = replace(WAITS, since_s=-30_000.0)
@@ -17,9 +17,9 @@ BRINGS = replace(order(3, 0, 4), loaded=True)
 
 
 def told(robots: dict[str, RobotAtWork], orders: list[OpenOrder], about: OpenOrder, closed: str = "") -> str:
-    scene = scene_of(street(5), robots, orders)
-    scene = replace(scene, network=scene.network.without({closed}))
-    return why_orders_wait(decided(scene))[about.id].sentence(lambda at_s: f"{at_s:.0f} s")
+    problem = problem_of(street(5), robots, orders)
+    problem = replace(problem, network=problem.network.without({closed}))
+    return why_orders_wait(decided(problem))[about.id].sentence(lambda at_s: f"{at_s:.0f} s")
 
 
 @pytest.mark.parametrize(

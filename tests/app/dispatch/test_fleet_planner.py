@@ -13,8 +13,8 @@ from app.dispatch.given_out import changes_of, give_out
 from app.models import MissionRow, Order, Priority, RobotRow
 from app.orders.views.schemas import NewOrder
 from fleet.assignment.deciding import Decision
+from fleet.assignment.problem import Routes
 from fleet.assignment.routes import room
-from fleet.assignment.scene import Routes
 from protocol.clock import SteppedClock
 from protocol.parts import Activity, Battery
 from protocol.to_robot import Cancel
@@ -127,9 +127,9 @@ async def test_what_is_given_and_not_in_the_schedule_yet_takes_a_place(
     assert len(await until(lambda: goals(service, "r1"))) == 2
     work, controller = await state.planner._look(), state.traffic_service.schedule.controller
     controller.give("r1", (), state.clock.now())
-    scene = state.planner._scenes.of(work, controller, state.clock.utc(), state.clock.now())
-    assert given not in scene.orders
-    assert {name: room(scene, name, one.route) for name, one in scene.robots.items()} == {"r1": 1, "r2": 2}
+    problem = state.planner._scenes.of(work, controller, state.clock.utc(), state.clock.now())
+    assert given not in problem.orders
+    assert {name: room(problem, name, one.route) for name, one in problem.robots.items()} == {"r1": 1, "r2": 2}
 
 
 async def lets_go(robot: PlayedRobot) -> None:

@@ -9,7 +9,7 @@ import pytest
 from app.dispatch.planner_process import PlannerProcess
 from fleet.assignment.deciding import Decision
 from tests.app.dispatch.fleet_life import order
-from tests.app.dispatch.test_fleet_plan import decided, robot, scene_of, street
+from tests.app.dispatch.test_fleet_plan import decided, problem_of, robot, street
 
 BUDGET_S = 0.05
 
@@ -17,7 +17,7 @@ BUDGET_S = 0.05
 @pytest.fixture
 def decision() -> Decision:
     orders = [order(0, 1, 2), order(1, 3, 2), order(2, 1, 4)]
-    return decided(scene_of(street(5), {"r0": robot(0, capacity=2), "r1": robot(4, capacity=2)}, orders))
+    return decided(problem_of(street(5), {"r0": robot(0, capacity=2), "r1": robot(4, capacity=2)}, orders))
 
 
 @pytest.fixture

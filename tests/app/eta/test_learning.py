@@ -44,7 +44,7 @@ class Carrier:
 
     async def deliver(self, service: Service) -> str:
         # The service looks now and then how many orders wait: by chance it would still count the one just delivered.
-        await service.app.state.parts.fleet.learning.look()
+        await service.app.state.parts.fleet.learning.poll()
         order_id = await service.order(FROM, TO)
         mission = await self.robot.mission()
         for stop in mission.stops:

@@ -32,7 +32,7 @@ async def kept(service: Service, number: int) -> list[ForecastUnderWayRow]:
 
 async def given(service: Service, robot: PlayedRobot) -> tuple[str, Mission]:
     async def can_come() -> bool:
-        await service.app.state.parts.fleet.learning.look()
+        await service.app.state.parts.fleet.learning.poll()
         return service.app.state.parts.estimates.ahead.reason is None
 
     await until(can_come)

@@ -195,7 +195,7 @@ class World:
         if self.desk is not None and self.planner is not None:
             self.orders.ledger.on_change.append(self.desk.wake)
             self.fleet.on_change.append(self.desk.wake)
-            self.desk.on_look.append(self.planner.notice)
+            self.desk.on_poll.append(self.planner.notice)
 
     async def restart(self) -> None:
         await self.database.close()
@@ -225,10 +225,10 @@ class World:
 
     async def dispatch(self) -> None:
         if self.desk is not None:
-            await self.desk.look_round()
-        await self.dispatcher.look_round()
+            await self.desk.poll()
+        await self.dispatcher.poll()
         if self.planner is not None and await self.planner.improve():
-            await self.dispatcher.look_round()
+            await self.dispatcher.poll()
 
     async def set_online(self, name: str, online: bool) -> None:
         self.robots[name].online = online

@@ -18,11 +18,11 @@ def tick(app: FastAPI, mailroom: Mailroom) -> Any:
     return lambda: mailroom.call(app.state.parts.timer.tick)
 
 
-def look_round(app: FastAPI, mailroom: Mailroom) -> None:
+def poll(app: FastAPI, mailroom: Mailroom) -> None:
     """Enrol a robot without waking dispatch."""
     mailroom.call(_put_online, app)
-    mailroom.call(app.state.parts.traffic_service.look_round)
-    mailroom.call(app.state.parts.dispatcher.look_round)
+    mailroom.call(app.state.parts.traffic_service.poll)
+    mailroom.call(app.state.parts.dispatcher.poll)
 
 
 async def _put_online(app: FastAPI) -> None:
@@ -36,10 +36,10 @@ def test_an_order_for_later_is_left_alone_until_then_and_has_its_window_after_it
 ) -> None:
     order = sender.order(not_before="2026-01-05T14:00:00Z").json()
     assert order["window"]["from"] > "2026-01-05T14:00:00Z"
-    look_round(app, mailroom)
+    poll(app, mailroom)
     assert seen(sender, order["id"])["state"] == "queued"
     clock.advance(5 * HOUR_S)
-    look_round(app, mailroom)
+    poll(app, mailroom)
     assert seen(sender, order["id"])["state"] == "assigned"
 
 
@@ -65,7 +65,7 @@ def test_the_important_is_fetched_first(app: FastAPI, dispatcher: Browser, sende
     raised = dispatcher.put(f"/api/v1/orders/{third}/priority", json={"priority": "high"}).json()
     assert raised["priority"] == "high"
     assert [event["kind"] for event in raised["events"]] == ["moved", "priority_changed"]
-    look_round(app, mailroom)
+    poll(app, mailroom)
     stops = {seen(sender, one)["state"] for one in (first, second, third)}
     assert seen(sender, third)["state"] == "assigned"
     assert "queued" in stops, "one robot cannot carry three"
@@ -113,7 +113,7 @@ def test_what_is_late_while_no_robot_can_come_is_told_without_a_time(
     promised_to = order["window"]["to"]
     assert order["estimate"]["promised_to"] == promised_to
     mailroom.robot_connects(online=False)
-    mailroom.call(app.state.parts.dispatcher.look_round)
+    mailroom.call(app.state.parts.dispatcher.poll)
     clock.advance(HOUR_S)
     late = seen(sender, order["id"])
     assert (late["estimate"]["late"], late["estimate"]["promised_to"]) == (True, promised_to)
@@ -138,7 +138,7 @@ def test_nothing_is_promised_while_no_robot_can_come_and_the_first_time_that_is_
     assert "between" not in accepted["body"]
     assert "not known yet" in accepted["body"]
     mailroom.robot_connects()
-    mailroom.call(app.state.parts.dispatcher.look_round)
+    mailroom.call(app.state.parts.dispatcher.poll)
     known = seen(sender, order["id"])
     assert known["estimate"]["reason"] == "Every robot is busy."
     assert known["estimate"]["promised_to"] == known["estimate"]["to"] == known["window"]["to"]

@@ -64,7 +64,7 @@ async def test_mail_that_was_not_taken_is_brought_back_by_the_robots_own_mission
         await robot.report(own, Step.DEPARTED, back)
         await robot.report(own, Step.ARRIVED, back)
         await service.reaches(order_id, "at_return")
-        await service.app.state.parts.dispatcher.look_round()
+        await service.app.state.parts.dispatcher.poll()
         assert await service.states(another) == ["queued"], "its mail comes first"
         await robot.say(robot.receipt(back))
         await robot.ends(await robot.report(own, Step.DONE))
@@ -85,7 +85,7 @@ async def test_mail_that_is_not_taken_back_either_waits_for_a_person(service: Se
         await robot.ends(await robot.report(own, Step.DONE))
         await service.reaches(order_id, "attention")
         another = await service.order("post2", "post3")
-        await service.app.state.parts.dispatcher.look_round()
+        await service.app.state.parts.dispatcher.poll()
         assert await service.states(another) == ["queued"], "the mail is still aboard"
     assert "still in robot r1" in (await service.row(Order, id=order_id)).why
 

@@ -5,7 +5,7 @@ from datetime import timedelta
 
 from app.core.settings import Settings
 from app.models import GrantRow, RobotRow
-from app.traffic.robot_locations import look_at_all, where_they_left
+from app.traffic.robot_locations import read_traffic, where_they_left
 from maps import corridor_name
 from protocol.clock import SteppedClock
 from tests.app.robots.playing import serving
@@ -38,6 +38,6 @@ async def test_a_robot_stands_where_it_cleared_last_and_not_what_it_was_granted_
                 session.add(grant)
                 await session.flush()
         async with service.app.state.parts.database.reading() as session:
-            seen = await look_at_all(session, service.app.state.parts.campus)
+            seen = await read_traffic(session, service.app.state.parts.campus)
             left = await where_they_left(session, seen)
     assert left.robots["r1"] == replace(seen.robots["r1"], post="post3")

@@ -101,7 +101,7 @@ class Rules:
 
 
 @dataclass(frozen=True, slots=True)
-class Scene:
+class AssignmentProblem:
     """Everything that a decision depends on. `orders`: all that are not delivered, those aboard included."""
 
     now_s: float

@@ -40,7 +40,7 @@ WAITING_AT_A_STOP: Final = (OrderState.AT_SENDER, OrderState.AT_RECIPIENT, Order
 
 
 @dataclass(frozen=True)
-class Situation:
+class WaitingAndIdle:
     """Longest waiting first, and of the robots that could fetch it as many at each post as could be chosen."""
 
     waiting: Sequence[WaitingOrder]
@@ -48,7 +48,7 @@ class Situation:
 
 
 @dataclass(frozen=True)
-class Todo:
+class PendingWork:
     """Work to do for dispatch: orders that a robot is to drop, missions to tell, and if orders wait."""
 
     dropped: Sequence[str]
@@ -56,20 +56,20 @@ class Todo:
     waits: bool
 
 
-async def look_for_work(connection: AsyncConnection, now: datetime) -> Todo:
+async def read_pending_work(connection: AsyncConnection, now: datetime) -> PendingWork:
     """One question, since it is asked after every change."""
-    rows = (await connection.execute(_TODO, {"now": now})).all()
-    return Todo(
+    rows = (await connection.execute(_PENDING, {"now": now})).all()
+    return PendingWork(
         [row.id for row in rows if row.what == "drop"],
         [row.id for row in rows if row.what == "tell"],
         any(row.what == "give" for row in rows),
     )
 
 
-async def look(session: AsyncSession, now: datetime) -> Situation:
+async def look(session: AsyncSession, now: datetime) -> WaitingAndIdle:
     """Everything that the choice needs, as columns."""
     waiting = await _waiting(session, now)
-    return Situation(waiting, await _nearby(session, waiting))
+    return WaitingAndIdle(waiting, await _nearby(session, waiting))
 
 
 async def _waiting(session: AsyncSession, now: datetime) -> list[WaitingOrder]:
@@ -178,7 +178,7 @@ _IMPORTANT: Final = _WAITING.where(col(Order.priority) == Priority.HIGH)
 _DROPPING: Final = select(col(RobotCommand.order_id), col(RobotCommand.robot)).where(
     col(RobotCommand.order_id).in_(bindparam("order_ids", expanding=True)), _IS_DROPPED
 )
-_TODO: Final[CompoundSelect[Any]] = union_all(
+_PENDING: Final[CompoundSelect[Any]] = union_all(
     select(literal("drop").label("what"), col(Order.id).label("id")).where(col(Order.let_go_by).is_not(None)),
     select(literal("tell"), col(MissionRow.id)).where(
         col(MissionRow.state) == MissionState.ACTIVE, col(MissionRow.told_update) < col(MissionRow.update_number)

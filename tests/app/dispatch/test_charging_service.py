@@ -36,7 +36,7 @@ async def test_one_goes_to_the_only_dock_and_no_other_robot_is_sent_there(
     service: Service, resting: tuple[PlayedRobot, PlayedRobot]
 ) -> None:
     for _ in range(2):
-        await service.app.state.parts.charging_service.look_round()
+        await service.app.state.parts.charging_service.poll()
     missions = await service.rows(MissionRow)
     assert len(missions) == 1
     robot = next(one for one in resting if one.name == missions[0].robot)
@@ -47,7 +47,7 @@ async def test_one_goes_to_the_only_dock_and_no_other_robot_is_sent_there(
 async def test_a_robot_that_charges_is_called_away_for_an_order(
     service: Service, resting: tuple[PlayedRobot, PlayedRobot]
 ) -> None:
-    await service.app.state.parts.charging_service.look_round()
+    await service.app.state.parts.charging_service.poll()
     (charging,) = await service.rows(MissionRow)
     robot = next(one for one in resting if one.name == charging.robot)
     other = next(one for one in resting if one is not robot)
@@ -70,7 +70,7 @@ async def test_who_does_not_know_of_charging_at_a_stop_is_left_to_its_own_batter
     older = PlayedRobot(clock)
     async with older.connected(service.url, await service.enrol("r1")):
         await older.greet("post1", battery=Battery(ratio=0.6, docked=False))
-        await service.app.state.parts.charging_service.look_round()
+        await service.app.state.parts.charging_service.poll()
         assert await service.rows(MissionRow) == []
 
 
@@ -85,6 +85,6 @@ async def test_hours_that_are_quiet_stay_so_when_clocks_are_put_back(settings: S
         robot = PlayedRobot(october)
         async with robot.connected(service.url, await service.enrol("r1")):
             await robot.greet("post1", battery=Battery(ratio=0.6, docked=False), understands=YOUNGER)
-            await service.app.state.parts.charging_service.look_round()
+            await service.app.state.parts.charging_service.poll()
             (stop,) = (await robot.mission()).stops
             assert stop.until_ratio == 0.95, "there is time to fill up"

@@ -1,6 +1,6 @@
-"""Open work and traffic as a scene, for the planner: orders as goals, whose keys are the ids of stops.
+"""Open work and traffic as an assignment problem, for the planner: orders as goals, whose keys are the ids of stops.
 
-What is left out of the scene stays as it is: its stops are then places that a robot goes to anyhow.
+What is left out of the problem stays as it is: its stops are then places that a robot goes to anyhow.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -14,8 +14,8 @@ from app.dispatch.choice import counts_since
 from app.dispatch.open_work import OpenWork, OrderNow, StopNow
 from app.models import OrderState, Priority
 from app.orders.transitions import MAIL_ABOARD
-from fleet.assignment.adopting import Able, scene_of
-from fleet.assignment.scene import OpenOrder, Rules, Scene
+from fleet.assignment.adopting import Able, problem_of
+from fleet.assignment.problem import AssignmentProblem, OpenOrder, Rules
 from fleet.schedule.controller import TrafficController
 from fleet.schedule.journey import Goal
 from protocol.ids import new_id
@@ -30,20 +30,20 @@ AGE_LIMIT_S: Final = 6 * 3600.0
 
 
 @dataclass(frozen=True)
-class SceneOfWork:
+class ProblemOfWork:
     """The same for each look: `charges` knows how far robots get."""
 
     settings: Settings
     charges: Charges
 
-    def of(self, work: OpenWork, traffic: TrafficController, now: datetime, now_s: float) -> Scene:
+    def of(self, work: OpenWork, traffic: TrafficController, now: datetime, now_s: float) -> AssignmentProblem:
         keys = {name: [goal.key for goal in traffic.goals(name)] for name in traffic.tasks(now_s)}
         placed = _Placed(work, traffic, {key for theirs in keys.values() for key in theirs}, self.settings, now, now_s)
         orders = {one.id: one for one in placed.orders()}
         robots = {name: self._able(work, orders, name, keys[name]) for name in keys if name in work.robots}
         # What waits for its time is not in `work` yet, so that no robot comes too early.
         rules = Rules(age_limit_s=AGE_LIMIT_S, worth_s=WORTH_S, early_s=0.0)
-        return scene_of(traffic, robots, orders, now_s, rules)
+        return problem_of(traffic, robots, orders, now_s, rules)
 
     def _able(self, work: OpenWork, orders: Mapping[str, OpenOrder], name: str, keys: Sequence[str]) -> Able:
         """One that may be given nothing keeps what it has, unless others are to fetch what it has not loaded."""
