@@ -8,7 +8,7 @@ import pytest
 import pytest_asyncio
 from playwright.async_api import expect
 
-from app.core.http_client import Outside
+from app.core.http_client import HttpClient
 from app.core.settings import Settings
 from app.notifications.channels.webhook import secret_bytes
 from protocol.clock import RealClock
@@ -144,7 +144,7 @@ async def open_service(tmp_path: Path) -> AsyncIterator[Service]:
     """One that posts to this machine too, as none does that was not made so in its code."""
     service = Service(tmp_path)
     settings = Settings(data=tmp_path, public_url=service.url)
-    async with serving(settings, RealClock(), outside=Outside(allow_private=True)) as here:
+    async with serving(settings, RealClock(), http_client=HttpClient(allow_private=True)) as here:
         service.url = f"http://127.0.0.1:{here.port}"
         yield service
 

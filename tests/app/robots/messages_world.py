@@ -11,7 +11,7 @@ from random import Random
 
 from app.core.settings import Settings
 from app.traffic.robot_locations import OF_ITS_OWN, Hold, ReservationRequest, RobotLocation, TrafficSnapshot
-from app.traffic.schedule import Elsewhere, Leg, MayEnter, Schedule, Verdict
+from app.traffic.schedule import Elsewhere, Leg, MayEnter, TrafficSchedule, Verdict
 from maps import CampusMap, NoRoute, corridor_name, shortest_route
 
 BEGIN = datetime(2026, 1, 1, tzinfo=UTC)
@@ -78,7 +78,7 @@ class World:
         self.rows = {robot.name: Row(robot.post, BEGIN, docked=True) for robot in self.robots}
         self.grants: list[Grant] = []
         self.closed: set[str] = set()
-        self.schedule: Schedule | None = None
+        self.schedule: TrafficSchedule | None = None
         self.served = self.looks = 0
         self._numbers = count(1)
         self._coming: dict[str, deque[tuple[float, Callable[[], None]]]] = {r.name: deque() for r in self.robots}
@@ -276,7 +276,7 @@ class World:
         picture = self._picture()
         schedule = self.schedule
         if schedule is None:
-            schedule = Schedule(self.campus, self.settings)
+            schedule = TrafficSchedule(self.campus, self.settings)
             picture = replace(picture, robots={name: self._where_left(one) for name, one in picture.robots.items()})
         held = {hold.grant_id for one in schedule.known.values() for hold in one.holds}
         left = {grant.number: grant.left_at or grant.leg[1] for grant in self.grants if grant.number in held}

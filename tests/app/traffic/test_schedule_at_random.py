@@ -1,5 +1,6 @@
-"""`Schedule` itself, driven at random: restarts, deaths, stops, withdrawals, closed corridors and messages that come
-late. No two robots meet, nothing raises, and when all is well again each does its work and comes home.
+"""`TrafficSchedule` itself, driven at random: restarts, deaths, stops, withdrawals, closed corridors and late messages.
+
+No two robots meet, nothing raises, and when all is well again each does its work and comes home.
 """
 
 from random import Random

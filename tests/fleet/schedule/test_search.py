@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from fleet.schedule.journey import Goal, Leg, Start, Task, stays
 from fleet.schedule.network import Lane, Network
-from fleet.schedule.occupied import Taken
+from fleet.schedule.occupied import Occupied
 from fleet.schedule.planning import first_plan
 from fleet.schedule.search import find_home, find_work
 
@@ -138,7 +138,7 @@ def test_no_way_is_quicker_than_the_one_that_is_found(rng: Random, most: int) ->
     network = whole_seconds(rng)
     others, goals = others_at_work(rng, network), some_goals(rng, network, most)
     home = rng.randrange(len(network.posts))
-    taken, start = Taken(network), Start(home, True, 0.0, 0.0)
+    taken, start = Occupied(network), Start(home, True, 0.0, 0.0)
     for number, legs in enumerate(others):
         taken.put(f"r{number}", legs)
     work = find_work(network, taken, start, goals, home)

@@ -8,7 +8,7 @@ from protocol.parts import Stop, StopAction
 from protocol.to_robot import Mission
 from robot.agent.perception.battery import BatteryLevel, BatterySense
 from robot.agent.perception.percepts import PERCEPTS, atom_or_text, perceive
-from robot.agent.perception.seen import Seen, Whereabouts
+from robot.agent.perception.seen import MapPosition, Seen
 from robot.core.config import PerceptMode
 from robot.drivers.interfaces import BaseState
 from robot.localization.line_symbol import LineSymbol
@@ -29,7 +29,7 @@ MISSION = Mission(
 def seen(now: float = 10.0, *, base_at_s: float = 10.0, **more: object) -> Seen:
     view = View(at_s=now, base=BaseState(at_s=base_at_s), line=LineSymbol.CENTER)
     battery = BatterySense(BatteryLevel.OK, 0.5)
-    return replace(Seen(now, view, battery, Whereabouts("post2", "post1", "post4", "left", "post2")), **more)
+    return replace(Seen(now, view, battery, MapPosition("post2", "post1", "post4", "left", "post2")), **more)
 
 
 def test_the_papers_words_are_shown_in_both_modes() -> None:
@@ -39,14 +39,14 @@ def test_the_papers_words_are_shown_in_both_modes() -> None:
 
 
 def test_before_anything_is_known_the_paper_says_unknown() -> None:
-    nowhere = seen(where=Whereabouts())
+    nowhere = seen(where=MapPosition())
     assert "direction(unknown,unknown)" in perceive(nowhere, DRAIN, 2.0)
-    first = seen(where=Whereabouts(at="post3", rests_at="post3"))
+    first = seen(where=MapPosition(at="post3", rests_at="post3"))
     assert "postPoint(post3,unknown)" in perceive(first, DRAIN, 2.0)
 
 
 def test_between_posts_neither_place_nor_direction_is_believed() -> None:
-    shown = perceive(seen(where=Whereabouts(None, "post1", "post4", None)), LATEST, 2.0)
+    shown = perceive(seen(where=MapPosition(None, "post1", "post4", None)), LATEST, 2.0)
     assert not [term for term in shown if term.startswith(("at(", "postPoint(", "direction("))]
 
 
@@ -85,7 +85,7 @@ def test_every_percept_says_what_it_means() -> None:
 
 def test_what_only_our_program_needs_is_shown_to_it_alone() -> None:
     carried_off = seen(
-        where=Whereabouts(moved="post3"),
+        where=MapPosition(moved="post3"),
         held=Held(recharging=True),
         battery=BatterySense(BatteryLevel.OK, 0.4, weak=True),
     )

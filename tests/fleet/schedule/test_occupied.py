@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from fleet.schedule.journey import Leg, Start
 from fleet.schedule.network import Lane, Network
-from fleet.schedule.occupied import Span, Taken
+from fleet.schedule.occupied import Occupied, Span
 
 TRAVEL_S, CLEARANCE_S, BAYS = 6.0, 0.5, 2
 MOMENTS_S = [number / 4 for number in range(-20, 200)]
@@ -52,7 +52,7 @@ def within(spans: list[Span], since_s: float, until_s: float) -> bool:
 @given(st.randoms(use_true_random=False), st.sampled_from([None, 2.0]))
 def test_what_is_free_is_what_no_robot_has(rng: Random, following_s: float | None) -> None:
     network = two_posts(following_s)
-    taken, there = Taken(network), some_passages(rng, network)
+    taken, there = Occupied(network), some_passages(rng, network)
     for robot, (leg, until_s) in there.items():
         taken.put(robot, (leg, leg._replace(lane=None, at_home=True, enter_s=until_s)))
         for lanes in network.lanes:  # asked in between, so that what has changed must be noticed
@@ -73,7 +73,7 @@ def test_what_is_free_is_what_no_robot_has(rng: Random, following_s: float | Non
 
 def test_a_robot_that_is_there_already_has_its_corridor_and_its_bay() -> None:
     network = two_posts(None)
-    taken, lane = Taken(network), network.lanes[0][0]
+    taken, lane = Occupied(network), network.lanes[0][0]
     for robot in ("r0", "r1"):
         taken.hold(robot, Start(1, False, 10.0, 0.0, lane, 10.0), 15.0)
     assert taken.entries(network.lanes[1][0])[-1] == (10.0 + CLEARANCE_S, inf)
