@@ -12,8 +12,9 @@ from math import inf
 from typing import Final, Protocol
 
 from benchmarks.fleet.campus_ground import ASSUMED_HANDOVER_S, ASSUMED_M_S, Ground
+from benchmarks.fleet.charging_rules import is_no_worse, passes_dock
 from benchmarks.fleet.charging_world import OWN_BEGIN
-from fleet.charging.acceptance import Answer, Charge, Verdict, accepts, goes_on, passes_dock
+from fleet.charging.acceptance import Answer, Charge, Verdict, accepts, goes_on
 from fleet.charging.curve import ChargeCurve
 from fleet.charging.demand import Demand
 from fleet.charging.docks import DockPlan, Need, plan_docks
@@ -117,7 +118,7 @@ class Charges:
         left = max(self.thresholds.low + self.rates[robot.name].at_most(self._to_dock(last)), verdict.left)
         charge = replace(self._charge(robot), ratio=left, docked=False)
         done = Need(robot.name, charge, self._now_s + work.time_s, self._ways(last))
-        if not self.plan(done).is_no_worse_than(self.plan()):
+        if not is_no_worse(self.plan(done), self.plan()):
             return replace(verdict, answer=Answer.CHARGE_FIRST)
         return verdict
 

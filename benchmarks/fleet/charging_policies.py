@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Final, Protocol
 
+from benchmarks.fleet.charging_rules import is_no_worse
 from benchmarks.fleet.charging_world import HANDLING_S, OWN_BEGIN, SPEED_M_S, Campus, Clockwork, Job, Robot
 from fleet.charging.acceptance import Answer, Charge, Verdict, accepts, goes_on
 from fleet.charging.curve import ChargeCurve
@@ -72,7 +73,7 @@ class Predicting:
             return verdict
         left = max(self.thresholds.low + charge.rates.at_most(nearest), verdict.left)
         done = Need(robot.name, replace(charge, ratio=left, docked=False), self.clock.now_s + work.time_s, ways)
-        if not self._plan(done).is_no_worse_than(self._plan()):
+        if not is_no_worse(self._plan(done), self._plan()):
             return replace(verdict, answer=Answer.CHARGE_FIRST)
         self._asked[robot.name] = done
         return verdict

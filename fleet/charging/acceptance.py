@@ -75,10 +75,3 @@ def goes_on(charge: Charge, leg: Use, to_dock: Use, thresholds: Thresholds) -> b
     there = leg + to_dock + Use(0.0, HELD_UP_S)
     needed = max(thresholds.low + rates.at_most(leg), thresholds.critical + rates.at_most(there))
     return charge.ratio >= needed
-
-
-def passes_dock(charge: Charge, to_next: Use, thresholds: Thresholds) -> bool:
-    """Tell if a robot whose work is more than one charge may pass a dock that is free. `to_next`: its next stop, and
-    from there to a dock. Else it charges here: later it would break off with little left, and the dock that it comes
-    to then may be another's."""
-    return charge.ratio >= min(thresholds.full - thresholds.hysteresis, thresholds.low + charge.rates.at_most(to_next))

@@ -64,10 +64,6 @@ class DockPlan:
         after = (one for one in self.stays.values() if one.dock == stay.dock and one.from_s >= stay.from_s)
         return min(one.due_s - one.from_s for one in after)
 
-    def is_no_worse_than(self, other: "DockPlan") -> bool:
-        """So that one robot's trouble, which no refusal would mend, does not keep all others from work."""
-        return self.late_s <= other.late_s + 1.0 and len(self.homeless) <= len(other.homeless)
-
 
 def plan_docks(
     needs: Sequence[Need], docks: Iterable[str], curve: ChargeCurve, thresholds: Thresholds, now_s: float
@@ -116,11 +112,6 @@ def due_s(need: Need, way: Use, thresholds: Thresholds) -> float:
 def standing_per_s(rates: Rates) -> float:
     """Return the highest cost of a second of standing."""
     return rates.at_most(Use(0.0, _HOUR_S)) / _HOUR_S
-
-
-def robots_carried(docks: int, rates: Rates, curve: ChargeCurve) -> int:
-    """Return the number of robots that so many docks keep charged if all of them only stand."""
-    return int(docks * (1 + curve.per_s / standing_per_s(rates)))
 
 
 def _arrives_s(need: Need) -> tuple[float, str]:

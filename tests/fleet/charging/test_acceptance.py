@@ -5,7 +5,8 @@ from dataclasses import replace
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fleet.charging.acceptance import HELD_UP_S, Answer, Charge, accepts, goes_on, passes_dock
+from benchmarks.fleet.charging_rules import passes_dock
+from fleet.charging.acceptance import HELD_UP_S, Answer, Charge, accepts, goes_on
 from fleet.charging.energy import Use, assumed_rates
 from fleet.charging.levels import Thresholds
 
