@@ -38,6 +38,7 @@ def test_settings_come_from_the_environment_and_secrets_from_files(
         ("OIDC_ISSUER", "https://login.campus.example", "oidc_client_id"),
         ("RATE_LIMITS", '{"orders_per_person": "lots"}', "10 per 15 minutes"),
         ("RATE_LIMITS", '{"orders_per_hour": "1 per hour"}', "there is no rate limit 'orders_per_hour'"),
+        ("TRUSTED_PROXIES", '["0.0.0.0/0"]', "every client could choose"),
         ("WEBHOOK_SECRET", "short", ""),
     ],
 )
