@@ -5,7 +5,7 @@ ARG BASE=python:3.13-slim-trixie
 FROM ${BASE} AS build
 WORKDIR /source
 COPY . .
-# pip builds the wheel, which fetches what the pages use by itself (.ci/wheel.py).
+# pip builds the wheel and installs it; the build fetches what the pages use by itself (.ci/wheel.py).
 RUN python -m venv /opt/campus-mail \
  && /opt/campus-mail/bin/pip install --no-cache-dir --constraint constraints.txt ".[service,postgres]"
 
@@ -18,10 +18,10 @@ RUN apt-get update \
  && useradd --uid 10001 --no-log-init campus-mail \
  && install --directory --mode 700 --owner campus-mail /var/lib/campus-mail
 COPY --from=build /opt/campus-mail /opt/campus-mail
-ENV PATH=/opt/campus-mail/bin:$PATH PYTHONUNBUFFERED=1 CAMPUS_MAIL_DATA=/var/lib/campus-mail
+ENV PATH=/opt/campus-mail/bin:$PATH PYTHONUNBUFFERED=1 CAMPUS_MAIL_DATA=/var/lib/campus-mail CAMPUS_MAIL_PORT=8000
 USER 10001
 WORKDIR /var/lib/campus-mail
 VOLUME /var/lib/campus-mail
 HEALTHCHECK --start-period=60s --interval=15s --timeout=5s \
-  CMD ["python", "-c", "from urllib.request import urlopen; urlopen('http://127.0.0.1:8000/healthz', timeout=4)"]
+  CMD python -c "from urllib.request import urlopen; urlopen('http://127.0.0.1:$CAMPUS_MAIL_PORT/healthz', timeout=4)"
 CMD ["campus-mail", "serve"]
