@@ -23,5 +23,6 @@ USER 10001
 WORKDIR /var/lib/campus-mail
 VOLUME /var/lib/campus-mail
 HEALTHCHECK --start-period=60s --interval=15s --timeout=5s \
-  CMD python -c "from urllib.request import urlopen; urlopen('http://127.0.0.1:$CAMPUS_MAIL_PORT/healthz', timeout=4)"
+  CMD ["python", "-c", "import os, urllib.request as http; \
+       http.urlopen(f'http://127.0.0.1:{os.environ[\"CAMPUS_MAIL_PORT\"]}/healthz', timeout=4)"]
 CMD ["campus-mail", "serve"]

@@ -70,12 +70,15 @@ def test_the_image_starts_as_another_user_and_its_health_check_tells_whether_it_
     def inside(*words: str) -> list[str]:
         return store.command("run", f"--env=CAMPUS_MAIL_PORT={port}", container, "--", *words)
 
-    def healthy() -> bool:
-        (_, check) = config["Healthcheck"]["Test"]
-        return subprocess.run(inside("sh", "-c", check), capture_output=True, check=False).returncode == 0
+    def succeeds(*words: str) -> bool:
+        """Of its output buildah loses some at times."""
+        return subprocess.run(inside(*words), capture_output=True, check=False).returncode == 0
 
-    assert _output(*inside("id", "-u")).strip() == "10001"
-    assert "pg_dump" in _output(*inside("pg_dump", "--version"))
+    def healthy() -> bool:
+        return succeeds(*config["Healthcheck"]["Test"][1:])
+
+    assert succeeds("sh", "-c", "test $(id -u) = 10001")
+    assert succeeds("pg_dump", "--version")
     assert list(config["Volumes"]) == ["/var/lib/campus-mail"]
     assert not healthy()
     with subprocess.Popen(inside(*config["Cmd"]), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as service:
