@@ -117,9 +117,9 @@ def config_of(app: FastAPI) -> uvicorn.Config:
         ws_ping_interval=LOOKS_AFTER_S,
         ws_ping_timeout=ANSWERS_WITHIN_S,
         server_header=False,
-        # A proxy on this machine ends TLS and says so in X-Forwarded-Proto; no other sender of it is believed.
+        # The proxy ends TLS and says so in X-Forwarded-Proto; no other sender of it is believed.
         proxy_headers=True,
-        forwarded_allow_ips="127.0.0.1",
+        forwarded_allow_ips=[str(network) for network in settings.trusted_proxies],
         ssl_certfile=settings.tls_cert,
         ssl_keyfile=settings.tls_key,
     )

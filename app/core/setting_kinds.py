@@ -103,6 +103,12 @@ def _readable_authorities(file: Path | None) -> Path | None:
     return file
 
 
+def _not_everyone(networks: tuple[IPvAnyNetwork, ...]) -> tuple[IPvAnyNetwork, ...]:
+    if any(network.prefixlen == 0 for network in networks):
+        raise ValueError("with all addresses in it every client could choose the address it seems to come from")
+    return networks
+
+
 def _whole_fingerprints(fingerprints: tuple[str, ...]) -> tuple[str, ...]:
     for one in fingerprints:
         if not re.fullmatch(r"[0-9A-F]{2}(:[0-9A-F]{2}){31}", one):
@@ -119,6 +125,7 @@ def android_package(name: str) -> str:
 
 Ports = Annotated[tuple[Annotated[int, Field(ge=1, le=65535)], ...], Field(min_length=1)]
 Networks = tuple[IPvAnyNetwork, ...]
+Proxies = Annotated[Networks, AfterValidator(_not_everyone)]
 SmtpTls = Literal["starttls", "tls", "none"]
 Language = Literal["en", "fr"]
 LogLevel = Annotated[Literal["DEBUG", "INFO", "WARNING", "ERROR"], BeforeValidator(_capitals)]

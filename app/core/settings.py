@@ -6,6 +6,7 @@ Secrets come from files: the server key lives in its own file, and any setting m
 
 import os
 from collections.abc import Iterable
+from ipaddress import IPv4Network
 from pathlib import Path
 from typing import Annotated, Final, Literal, Self
 from zoneinfo import ZoneInfo
@@ -29,6 +30,7 @@ from app.core.setting_kinds import (
     Networks,
     OfficeHours,
     Ports,
+    Proxies,
     RateLimitsByDoor,
     SmtpTls,
     WholeAddress,
@@ -60,6 +62,10 @@ class Settings(BaseSettings):
         None, description="Certificate chain (PEM) to serve https and wss with; with tls_key."
     )
     tls_key: Path | None = Field(None, description="Private key of the certificate (PEM).")
+    trusted_proxies: Proxies = Field(
+        (IPv4Network("127.0.0.1/32"),),
+        description="Networks of proxies whose X-Forwarded-For and X-Forwarded-Proto are believed (JSON list).",
+    )
     data: Path = Field(Path("var/service"), description="Folder for database, keys and spool; made with mode 0700.")
     database_url: str = Field("", description="SQLAlchemy URL; empty means SQLite in the data folder.")
     database_wait_s: float = Field(

@@ -92,7 +92,7 @@ def caddy(folder: Path, service: str, port: int) -> list[str]:
     own = f"tls {folder}/server.pem {folder}/server.key"
     for shipped, here in (
         ("\tgrace_period", "\tadmin off\n\tauto_https disable_redirects\n\tskip_install_trust\n\tgrace_period"),
-        ("mail.campus.example {", f"https://127.0.0.1:{port} {{\n\t{own}"),
+        ("{$CAMPUS_MAIL_PUBLIC_URL:mail.campus.example} {", f"https://127.0.0.1:{port} {{\n\t{own}"),
         ("127.0.0.1:8000", service.removeprefix("http://")),
     ):
         assert shipped in site
@@ -194,3 +194,19 @@ def knows_who_tries_too_often(front: Front) -> None:
         assert answers[-1] == 429
         assert 429 not in answers[:-1]
         assert tries(two, "192.0.2.9") != 429
+
+
+def test_another_proxy_is_believed_once_it_is_named_and_only_it(tmp_path: Path) -> None:
+    more = TIGHT | {"CAMPUS_MAIL_TRUSTED_PROXIES": '["127.0.0.8/29"]'}
+    wrong = {"name": "r2", "code": "AAAA-AAAA", "public_key": "A" * 43 + "="}
+
+    def tries_from(proxy: str, *clients: str) -> list[int]:
+        with httpx.Client(base_url=service.url, transport=httpx.HTTPTransport(local_address=proxy)) as client:
+            said = ({"X-Forwarded-For": one} for one in clients)
+            return [client.post("/api/v1/robots/enrol", json=wrong, headers=one).status_code for one in said]
+
+    clients = [f"192.0.2.{number}" for number in range(4)]
+    with Service(tmp_path, more=more) as service:
+        assert 429 not in tries_from("127.0.0.9", *clients)
+        assert tries_from("127.0.0.9", *["192.0.2.9"] * 4)[-1] == 429
+        assert tries_from("127.0.0.1", *clients)[-1] == 429

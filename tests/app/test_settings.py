@@ -40,6 +40,7 @@ def test_settings_come_from_the_environment_and_secrets_from_files(
         ("RATE_LIMITS", '{"orders_per_hour": "1 per hour"}', "there is no rate limit 'orders_per_hour'"),
         ("ANDROID_PACKAGE", "mail", "one looks like example.campus.mail"),
         ("ANDROID_FINGERPRINTS", '["AB:CD"]', "32 pairs of hex digits"),
+        ("TRUSTED_PROXIES", '["0.0.0.0/0"]', "every client could choose"),
         ("WEBHOOK_SECRET", "short", ""),
     ],
 )
