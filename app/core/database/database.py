@@ -255,7 +255,7 @@ def _begin_sqlite(connection: Connection) -> None:
     # Past SQLAlchemy, which takes longer over these words than SQLite does.
     driver: Any = connection.connection.driver_connection
     for statement in connection.get_execution_options().get("begin", ("BEGIN",)):
-        driver.remember(statement)
+        driver.defer(statement)
 
 
 def _begin_postgresql(connection: Connection) -> None:

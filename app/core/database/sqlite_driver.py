@@ -3,7 +3,7 @@
 A short statement takes SQLite some 10 µs; the way to a thread and back takes longer, and on a busy event loop it waits
 for its turn at the interpreter (decision 0034). So only what may take long goes to the connection's thread: the commit
 with its sync, and each statement that is not known to be short. On the event loop nothing waits: a statement that meets
-a lock, or a question that takes long, fails there at once and is repeated in the thread.
+a lock, or a query that takes long, fails there at once and is repeated in the thread.
 """
 
 import asyncio
@@ -19,7 +19,7 @@ from time import monotonic
 from typing import Any, Final, TypeVar
 from weakref import finalize
 
-from sqlalchemy import BinaryExpression, BooleanClauseList, Delete, Insert, SelectBase, Update
+from sqlalchemy import BinaryExpression, BooleanClauseList, Insert, SelectBase, Update
 from sqlalchemy.dialects import registry
 from sqlalchemy.dialects.sqlite.pysqlite import SQLiteDialect_pysqlite
 from sqlalchemy.sql.operators import and_, eq
@@ -32,9 +32,9 @@ T = TypeVar("T")
 
 DRIVER: Final = "sqlite+campus"
 SHORT_S: Final = 0.001
-"""Real seconds that a question may take on the event loop."""
-STEPS: Final = 2_000
-"""Steps of SQLite's machine between two looks at the time: some 50 µs."""
+"""Real seconds that a query may take on the event loop."""
+INSTRUCTIONS: Final = 2_000
+"""Instructions of SQLite's virtual machine between two looks at the time: some 50 µs."""
 SHORT_ROWS: Final = 100
 """Rows, or values of one row, that one statement writes on the event loop."""
 TURN_S: Final = 0.002
@@ -57,10 +57,10 @@ class Dialect(SQLiteDialect_pysqlite):
 
     # Past SQLAlchemy, which takes longer over these words than SQLite does.
     def do_savepoint(self, connection: Any, name: str) -> None:
-        connection.connection.driver_connection.remember(f"SAVEPOINT {name}")
+        connection.connection.driver_connection.defer(f"SAVEPOINT {name}")
 
     def do_release_savepoint(self, connection: Any, name: str) -> None:
-        connection.connection.driver_connection.remember(f"RELEASE {name}")
+        connection.connection.driver_connection.defer(f"RELEASE {name}")
 
 
 registry.register("sqlite.campus", __name__, "Dialect")
@@ -68,16 +68,17 @@ registry.register("sqlite.campus", __name__, "Dialect")
 
 @lru_cache(maxsize=1000)
 def limit_s_of(statement: object) -> float:
-    """Return the time that a statement may take on the event loop: 0 for those that have to run in the thread.
+    """Return the time that a statement may take on the event loop; 0: it has to run in the thread.
 
-    What reads is interrupted after its time. What writes cannot be: SQLite would undo the whole transaction. So it has
-    to be small for certain: one row for each set of parameters, by its values or by its key.
+    A query is interrupted after its time. A change cannot be: SQLite would undo the whole transaction. So it has to be
+    small for certain: one row for each set of parameters, by its values or by its key.
     """
     if isinstance(statement, SelectBase):
         return SHORT_S
     if isinstance(statement, Insert):
         return inf if statement.select is None else 0
-    if isinstance(statement, Update | Delete) and (where := statement.whereclause) is not None:
+    if isinstance(statement, Update) and statement.table.primary_key:
+        where = statement.whereclause
         terms = where.clauses if isinstance(where, BooleanClauseList) and where.operator is and_ else [where]
         given = {term.left for term in terms if isinstance(term, BinaryExpression) and term.operator is eq}
         return inf if given.issuperset(statement.table.primary_key) else 0
@@ -93,32 +94,33 @@ class Connection(sqlite3.Connection):
     def __init__(self, *arguments: Any, **options: Any) -> None:
         # Two threads, but never at the same time. `database.py` says how a transaction begins.
         super().__init__(*arguments, **{**options, "check_same_thread": False, "isolation_level": None, "timeout": 0})
-        self._errands: SimpleQueue[Any] = SimpleQueue()
-        finalize(self, self._errands.put, None)
-        self._remembered: deque[str] = deque()
+        self._queue: SimpleQueue[Any] = SimpleQueue()
+        finalize(self, self._queue.put, None)
+        self._deferred: deque[str] = deque()
         self._has_begun = False
         self._late_s = inf
         self._turn_ends_s = 0.0
-        self.set_progress_handler(self._is_late, STEPS)
-        Thread(target=_work, args=(self._errands,), daemon=True).start()
+        self.set_progress_handler(self._is_late, INSTRUCTIONS)
+        Thread(target=_serve, args=(self._queue,), daemon=True).start()
 
     def cursor(self, *_: Any) -> Any:
         return super().cursor(Cursor)
 
-    def remember(self, statement: str) -> None:
+    def defer(self, statement: str) -> None:
         """Run it before the next statement. An error of it is that statement's."""
-        self._remembered.append(statement)
+        self._deferred.append(statement)
 
     async def run(self, statement: str, limit_s: float, what: Callable[[], T]) -> T:
-        """Do at once what is short, all else in the thread."""
+        """Run what is short at once, all else in the thread."""
         if limit_s == 0 or statement in self._long:
-            return await self._errand(partial(self._patiently, statement, left_s(), what))
+            return await self._in_thread(partial(self._patiently, statement, left_s(), what))
         try:
             answer = self._in_turn(what, limit_s)
         except sqlite3.OperationalError as error:
-            if error.sqlite_errorcode == sqlite3.SQLITE_INTERRUPT:
+            code = getattr(error, "sqlite_errorcode", sqlite3.SQLITE_OK) & 0xFF  # none: it is an error of ours
+            if code == sqlite3.SQLITE_INTERRUPT:
                 self._long.add(statement)
-            elif error.sqlite_errorcode & 0xFF != sqlite3.SQLITE_BUSY:
+            elif code != sqlite3.SQLITE_BUSY:
                 raise
             return await self.run(statement, 0, what)
         if monotonic() > self._turn_ends_s:
@@ -126,23 +128,23 @@ class Connection(sqlite3.Connection):
             self._turn_ends_s = monotonic() + TURN_S
         return answer
 
-    async def _errand(self, what: Callable[[], T]) -> T:
-        """Do it in the connection's thread, to its end."""
+    async def _in_thread(self, what: Callable[[], T]) -> T:
+        """Run it in the connection's thread, to its end."""
         outcome: asyncio.Future[T] = asyncio.get_running_loop().create_future()
-        self._errands.put((outcome, what))
+        self._queue.put((outcome, what))
         answer = await uncancelled(outcome)
         self._turn_ends_s = monotonic() + TURN_S
         return answer
 
     def _patiently(self, statement: str, wait_s: float, what: Callable[[], T]) -> T:
         begun_s = monotonic()
-        self._say(f"PRAGMA busy_timeout={wait_s * 1e3:.0f}")
+        self._execute(f"PRAGMA busy_timeout={wait_s * 1e3:.0f}")
         self.set_progress_handler(None, 0)  # which would wait for the interpreter each time
         try:
             return self._in_turn(what)
         finally:
-            self.set_progress_handler(self._is_late, STEPS)
-            self._say("PRAGMA busy_timeout=0")
+            self.set_progress_handler(self._is_late, INSTRUCTIONS)
+            self._execute("PRAGMA busy_timeout=0")
             if monotonic() - begun_s < SHORT_S / 4:
                 self._long.discard(statement)
 
@@ -151,9 +153,9 @@ class Connection(sqlite3.Connection):
         # writers whose rows are gone would be told that they are committed.
         if self._has_begun and not self.in_transaction:
             raise sqlite3.OperationalError("the transaction has been undone")
-        while self._remembered:
-            self._say(self._remembered[0])
-            self._remembered.popleft()
+        while self._deferred:
+            self._execute(self._deferred[0])
+            self._deferred.popleft()
             self._has_begun = self.in_transaction
         self._late_s = monotonic() + limit_s
         try:
@@ -164,32 +166,32 @@ class Connection(sqlite3.Connection):
     def _is_late(self) -> bool:
         return monotonic() > self._late_s
 
-    def _say(self, statement: str) -> None:
+    def _execute(self, statement: str) -> None:
         super().cursor().execute(statement)
 
     def commit(self) -> None:
         """Raises OperationalError if there is nothing to commit any more."""
-        await_(self._errand(partial(self._in_turn, super().commit)))
+        await_(self._in_thread(partial(self._in_turn, super().commit)))
         self._has_begun = False
 
     def rollback(self) -> None:
-        self._remembered.clear()
+        self._deferred.clear()
         self._has_begun = False
         super().rollback()
 
     def close(self) -> None:
-        await_(self._errand(super().close))
+        await_(self._in_thread(super().close))
 
 
-def _work(errands: "SimpleQueue[tuple[asyncio.Future[Any], Callable[[], Any]] | None]") -> None:
-    while errand := errands.get():
-        outcome, what = errand
+def _serve(queue: "SimpleQueue[tuple[asyncio.Future[Any], Callable[[], Any]] | None]") -> None:
+    while item := queue.get():
+        outcome, what = item
         try:
             tell = partial(outcome.set_result, what())
         except BaseException as error:  # told to the caller
             tell = partial(outcome.set_exception, error)
         outcome.get_loop().call_soon_threadsafe(tell)
-        del errand, outcome, what, tell  # which would keep the connection alive, and with it this thread
+        del item, outcome, what, tell  # which would keep the connection alive, and with it this thread
 
 
 class Cursor(sqlite3.Cursor):
