@@ -3,7 +3,7 @@
 import asyncio
 import sqlite3
 import time
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
 from contextlib import closing
 from pathlib import Path
 from threading import current_thread, main_thread
@@ -41,12 +41,12 @@ def count_to(number: int) -> Select[Any]:
     return select(func.count(), func.on_loop()).select_from(numbers)
 
 
-async def longest_pause_s(until: asyncio.Task[Any]) -> float:
+async def longest_turn_s(until: asyncio.Task[Any], clock: Callable[[], float]) -> float:
     longest_s = 0.0
     while not until.done():
-        begun_s = time.monotonic()
+        begun_s = clock()
         await asyncio.sleep(0)
-        longest_s = max(longest_s, time.monotonic() - begun_s)
+        longest_s = max(longest_s, clock() - begun_s)
     return longest_s
 
 
@@ -69,10 +69,10 @@ async def test_a_query_that_takes_long_runs_in_the_thread_and_takes_no_change_wi
     async with database.writing.begin() as connection:
         await connection.execute(insert(WORDS), {"word": "before"})
         counting = asyncio.create_task(count())
-        pause_s = await longest_pause_s(counting)
+        turn_s = await longest_turn_s(counting, time.thread_time)
         assert counting.result() == (2_000_000, False)
         assert await words(connection) == ["before"]
-    assert pause_s < 0.1, "it takes several times as long"
+    assert turn_s < 0.05, "of processor time; the query takes many times as long"
     async with database.asking() as connection:
         assert await words(connection) == ["before"]
 
@@ -106,7 +106,7 @@ async def test_a_lock_is_waited_for_in_the_thread_and_no_longer_than_the_deadlin
     database: Database, tmp_path: Path
 ) -> None:
     async def write() -> None:
-        with waiting_at_most(0.3):
+        with waiting_at_most(1):
             async with database.writing.begin() as connection:
                 await connection.execute(insert(WORDS), {"word": "mine"})
 
@@ -114,9 +114,9 @@ async def test_a_lock_is_waited_for_in_the_thread_and_no_longer_than_the_deadlin
         other.execute("BEGIN IMMEDIATE")
         begun_s = time.monotonic()
         writing = asyncio.create_task(write())
-        pause_s = await longest_pause_s(writing)
-        assert 0.2 < time.monotonic() - begun_s < 3
-        assert pause_s < 0.15
+        turn_s = await longest_turn_s(writing, time.monotonic)
+        assert 0.9 < time.monotonic() - begun_s < 5
+        assert turn_s < 0.5
         with pytest.raises(OperationalError, match="locked"):
             writing.result()
         other.execute("ROLLBACK")

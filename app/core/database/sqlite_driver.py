@@ -92,15 +92,13 @@ class Connection(sqlite3.Connection):
     """Statements that took long the last time."""
 
     def __init__(self, *arguments: Any, **options: Any) -> None:
-        # Two threads, but never at the same time. `database.py` says how a transaction begins.
+        # Two threads, but never at the same time. `database.py` begins the transactions.
         super().__init__(*arguments, **{**options, "check_same_thread": False, "isolation_level": None, "timeout": 0})
         self._queue: SimpleQueue[Any] = SimpleQueue()
         finalize(self, self._queue.put, None)
         self._deferred: deque[str] = deque()
         self._has_begun = False
-        self._late_s = inf
         self._turn_ends_s = 0.0
-        self.set_progress_handler(self._is_late, INSTRUCTIONS)
         Thread(target=_serve, args=(self._queue,), daemon=True).start()
 
     def cursor(self, *_: Any) -> Any:
@@ -139,11 +137,9 @@ class Connection(sqlite3.Connection):
     def _patiently(self, statement: str, wait_s: float, what: Callable[[], T]) -> T:
         begun_s = monotonic()
         self._execute(f"PRAGMA busy_timeout={wait_s * 1e3:.0f}")
-        self.set_progress_handler(None, 0)  # which would wait for the interpreter each time
         try:
             return self._in_turn(what)
         finally:
-            self.set_progress_handler(self._is_late, INSTRUCTIONS)
             self._execute("PRAGMA busy_timeout=0")
             if monotonic() - begun_s < SHORT_S / 4:
                 self._long.discard(statement)
@@ -157,14 +153,14 @@ class Connection(sqlite3.Connection):
             self._execute(self._deferred[0])
             self._deferred.popleft()
             self._has_begun = self.in_transaction
-        self._late_s = monotonic() + limit_s
+        if limit_s == inf:
+            return what()
+        late_s = monotonic() + limit_s
+        self.set_progress_handler(lambda: monotonic() > late_s, INSTRUCTIONS)
         try:
             return what()
-        finally:
-            self._late_s = inf
-
-    def _is_late(self) -> bool:
-        return monotonic() > self._late_s
+        finally:  # in the thread it would wait for the interpreter each time
+            self.set_progress_handler(None, 0)
 
     def _execute(self, statement: str) -> None:
         super().cursor().execute(statement)
