@@ -68,5 +68,5 @@ def set_up_logs(level: str, as_json: bool | None = None) -> None:
     handler = logging.StreamHandler(sys.stderr)
     handler.setFormatter(structlog.stdlib.ProcessorFormatter(processors=last, foreign_pre_chain=shared))
     logging.basicConfig(level=level, handlers=[handler], force=True)
-    for chatty in ("aiosqlite", "sqlalchemy", "alembic", "httpcore", "httpx", "uvicorn.access"):
+    for chatty in ("sqlalchemy", "alembic", "httpcore", "httpx", "uvicorn.access"):
         logging.getLogger(chatty).setLevel(max(logging.WARNING, logging.getLevelName(level)))

@@ -218,7 +218,7 @@ class Settings(BaseSettings):
 
     @property
     def url_of_database(self) -> str:
-        return self.database_url or f"sqlite+aiosqlite:///{(self.data / 'campus-mail.sqlite').resolve()}"
+        return self.database_url or f"sqlite:///{(self.data / 'campus-mail.sqlite').resolve()}"
 
     @property
     def zone(self) -> ZoneInfo | None:

@@ -66,7 +66,7 @@ class KnownRobot:
 
 
 def url_of(data: Path) -> str:
-    return f"sqlite+aiosqlite:///{(data / 'campus-mail.sqlite').resolve()}"
+    return f"sqlite:///{(data / 'campus-mail.sqlite').resolve()}"
 
 
 @cache

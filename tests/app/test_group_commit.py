@@ -37,7 +37,7 @@ asyncio.run(main())
 
 @pytest.fixture
 async def database(tmp_path: Path) -> AsyncIterator[Database]:
-    database = Database(f"sqlite+aiosqlite:///{tmp_path}/words.sqlite")
+    database = Database(f"sqlite:///{tmp_path}/words.sqlite")
     async with database.transaction() as session:
         await do(session, "CREATE TABLE words (word TEXT PRIMARY KEY)")
     yield database
@@ -76,6 +76,7 @@ async def test_no_writer_goes_on_before_what_they_wrote_is_committed(database: D
         async with database.transaction() as session:
             await do(session, "INSERT INTO words VALUES (?)", "first")
             after_commit(session, lambda: said.append("said"))
+            await asyncio.sleep(0.01)  # so that the next one waits
         said.append("went on")
 
     goes_on = asyncio.Event()
@@ -150,7 +151,7 @@ async def test_a_kill_in_the_middle_loses_nothing_that_was_told(tmp_path: Path, 
     with sqlite3.connect(file) as connection:
         connection.execute("CREATE TABLE words (word TEXT PRIMARY KEY)")
     connection.close()
-    url = f"sqlite+aiosqlite:///{file}"
+    url = f"sqlite:///{file}"
     child = await create_subprocess_exec(sys.executable, "-c", WRITES_AND_SAYS, url, stdout=PIPE, cwd=CHECKOUT)
     assert child.stdout is not None
     told = {await child.stdout.readline()}

@@ -11,25 +11,27 @@ from typing import Annotated, Any, TypeVar
 
 from fastapi import Depends
 from pydantic_core import from_json, to_json
-from sqlalchemy import ColumnElement, Connection, Insert, event, insert, inspect, make_url
+from sqlalchemy import URL, ColumnElement, Connection, Insert, event, insert, inspect, make_url
 from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.exc import ArgumentError
 from sqlalchemy.ext.asyncio import AsyncConnection, AsyncEngine, create_async_engine
 from sqlalchemy.orm import configure_mappers
+from sqlalchemy.pool import AsyncAdaptedQueuePool, StaticPool
 from sqlmodel import SQLModel
 from sqlmodel.ext.asyncio.session import AsyncSession
 from starlette.requests import HTTPConnection
 
-from app.core.database import postgresql_driver, sqlite_driver
+from app.core.database import postgresql_driver
 from app.core.database.deadline import WAIT_S
 from app.core.database.group_commit import AFTER_COMMIT, CONNECTION, Writers
 from app.core.database.shielded import shielded
+from app.core.database.sqlite_driver import DRIVER
 from app.core.errors import StartError
 from app.core.parts import find_part, part
 
 Row = TypeVar("Row", bound=SQLModel)
 
-PRAGMAS = ("journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON", f"busy_timeout={WAIT_S * 1e3:.0f}")
+PRAGMAS = ("journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON")
 INSERTS: Mapping[str, Any] = {"sqlite": sqlite.insert, "postgresql": postgresql.insert}
 BEGIN_DURABLE = ("PRAGMA synchronous=FULL", "BEGIN IMMEDIATE")
 BEGIN_FLEETING = ("PRAGMA synchronous=NORMAL", "BEGIN IMMEDIATE")
@@ -46,12 +48,15 @@ class Database:
     def __init__(self, url: str) -> None:
         """Opens nothing yet. Raises StartError for a URL that leads nowhere."""
         try:
+            named = make_url(url)
+            address = named.set(drivername=DRIVER) if named.get_backend_name() == "sqlite" else named
             # pydantic's JSON takes a third of the time of the standard library's.
             self.engine: AsyncEngine = create_async_engine(
-                url, json_serializer=_json_text, json_deserializer=from_json, **_options(url)
+                address, json_serializer=_json_text, json_deserializer=from_json, **_options(address)
             )
         except (ArgumentError, ImportError) as error:  # not repeated: a URL may hold a password
             raise StartError(f"CAMPUS_MAIL_DATABASE_URL cannot be used: {error}.") from None
+        self.name = named.render_as_string(hide_password=True)
         self.writing = self.engine.execution_options(begin=BEGIN_DURABLE)
         if self.engine.dialect.name == "sqlite":
             event.listen(self.engine.sync_engine, "connect", _prepare_sqlite)
@@ -65,11 +70,6 @@ class Database:
             self.engine = self.engine.execution_options(isolation_level="REPEATABLE READ", postgresql_readonly=True)
 
         self._writers = Writers(self.writing, fleeting)
-
-    @property
-    def name(self) -> str:
-        """Which database it is, without its password."""
-        return self.engine.url.render_as_string(hide_password=True)
 
     @asynccontextmanager
     async def transaction(self, *, durable: bool = True) -> AsyncIterator[AsyncSession]:
@@ -220,17 +220,16 @@ def _insert(table: type[SQLModel]) -> Insert:
     return insert(table).inline()
 
 
-def _options(url: str) -> dict[str, Any]:
+def _options(url: URL) -> dict[str, Any]:
     """Return the options of the engine: how many connections are kept, and what opens them."""
-    made = make_url(url)
-    if made.get_backend_name() != "sqlite":
+    if url.get_backend_name() != "sqlite":
         of_ours = {"connect_args": {"async_creator_fn": postgresql_driver.connect}}
         return {"pool_size": 10, "max_overflow": 10, "pool_timeout": WAIT_S, **of_ours}
-    if made.database in {None, "", ":memory:"}:  # one connection is all there can be
-        return {"connect_args": {"async_creator_fn": sqlite_driver.connect}}
+    if url.database in {None, "", ":memory:"}:  # one connection is all there can be
+        return {"poolclass": StaticPool}
     # The one that was used last comes first: its thread, its statements and its pages are at hand.
     kept = {"pool_size": 20, "max_overflow": 0, "pool_use_lifo": True, "pool_timeout": WAIT_S}
-    return {**kept, "connect_args": {"async_creator_fn": sqlite_driver.connect}}
+    return {**kept, "poolclass": AsyncAdaptedQueuePool}
 
 
 def _json_text(value: Any) -> str:
@@ -238,16 +237,10 @@ def _json_text(value: Any) -> str:
 
 
 def _prepare_sqlite(connection: Any, record: Any) -> None:
-    # The driver must not begin transactions of its own: `_begin_sqlite` says which kind is wanted.
-    connection.isolation_level = None
     cursor = connection.cursor()
-    try:
-        for pragma in PRAGMAS:
-            cursor.execute(f"PRAGMA {pragma}")
-        cursor.close()
-    except BaseException:  # no database of ours; no other code knows this connection yet
-        connection.close()
-        raise
+    for pragma in PRAGMAS:
+        cursor.execute(f"PRAGMA {pragma}")
+    cursor.close()
 
 
 def _heed_foreign_keys(connection: Connection, wanted: str) -> None:
@@ -260,9 +253,9 @@ def _heed_foreign_keys(connection: Connection, wanted: str) -> None:
 
 def _begin_sqlite(connection: Connection) -> None:
     # Past SQLAlchemy, which takes longer over these words than SQLite does.
-    driver: sqlite_driver.Connection = connection.connection.driver_connection  # type: ignore[assignment]
+    driver: Any = connection.connection.driver_connection
     for statement in connection.get_execution_options().get("begin", ("BEGIN",)):
-        driver.remember(statement)
+        driver.defer(statement)
 
 
 def _begin_postgresql(connection: Connection) -> None:

@@ -1,6 +1,5 @@
 """Brings the database to the schema of this code, and refuses one that is newer."""
 
-import asyncio
 import sqlite3
 from functools import cache
 
@@ -9,7 +8,7 @@ from alembic.config import Config
 from alembic.migration import MigrationContext
 from alembic.script import ScriptDirectory
 from alembic.util import CommandError
-from sqlalchemy import URL, Connection
+from sqlalchemy import Connection
 from sqlalchemy.exc import DBAPIError
 
 from app.core.database.database import Database
@@ -39,7 +38,6 @@ async def bring_to_head(database: Database) -> None:
     Raises NewerDatabase or DatabaseUnusable, having changed nothing.
     """
     try:
-        await asyncio.to_thread(_open, database.engine.url)
         async with database.rebuilding() as connection:
             await connection.run_sync(_bring_to_head)
     except (DBAPIError, OSError, sqlite3.Error) as error:
@@ -60,15 +58,6 @@ async def is_at_head(database: Database) -> bool:
     """Tell if the schema is the one of this code."""
     async with database.engine.connect() as connection:
         return await connection.run_sync(revision_of) == _scripts().get_current_head()
-
-
-def _open(url: URL) -> None:
-    """Find out without the asynchronous driver if SQLite can open its file.
-
-    A connection of the driver that fails to open leaves a thread behind, which complains once the event loop is closed.
-    """
-    if url.get_backend_name() == "sqlite" and url.database:
-        sqlite3.connect(url.database).close()
 
 
 def _bring_to_head(connection: Connection) -> None:

@@ -1,226 +1,223 @@
-"""aiosqlite, but what is short is done at once, on the event loop.
+"""SQLAlchemy's dialect for the standard `sqlite3` on an event loop.
 
-A short statement takes SQLite some 10 µs and holds up no other work. The way to a thread and back takes longer, four
-times for each statement as aiosqlite and SQLAlchemy have it, and on a busy event loop every one of these ways waits
-for its turn
-at the interpreter (decision 0034). So only what may take long goes to the connection's thread: the wait for the write
-lock, the commit with its sync, and whatever is not known to be short. A question that turns out not to be short is
-interrupted, asked again in the thread, and goes there at once the next time.
+A short statement takes SQLite some 10 µs; the way to a thread and back takes longer, and on a busy event loop it waits
+for its turn at the interpreter (decision 0034). So only what may take long goes to the connection's thread: the commit
+with its sync, and each statement that is not known to be short. On the event loop nothing waits: a statement that meets
+a lock, or a query that takes long, fails there at once and is repeated in the thread.
 """
 
 import asyncio
-import re
 import sqlite3
-import time
-from collections.abc import Callable, Sequence
-from functools import lru_cache
-from typing import Any, Final, Self, TypeVar
+from collections import deque
+from collections.abc import Callable, Iterator
+from functools import lru_cache, partial, partialmethod
+from itertools import islice
+from math import inf
+from queue import SimpleQueue
+from threading import Thread
+from time import monotonic
+from typing import Any, Final, TypeVar
+from weakref import finalize
 
-import aiosqlite
+from sqlalchemy import BinaryExpression, BooleanClauseList, Insert, SelectBase, Update
+from sqlalchemy.dialects import registry
+from sqlalchemy.dialects.sqlite.pysqlite import SQLiteDialect_pysqlite
+from sqlalchemy.sql.operators import and_, eq
+from sqlalchemy.util import await_
 
 from app.core.database.deadline import left_s
 from app.core.database.shielded import shielded
 
 T = TypeVar("T")
 
-SHORT_STEPS: Final = 50_000
-"""Steps of SQLite's machine that a question may take on the event loop: about a millisecond."""
+DRIVER: Final = "sqlite+campus"
+SHORT_S: Final = 0.001
+"""Real seconds that a query may take on the event loop."""
+INSTRUCTIONS: Final = 2_000
+"""Instructions of SQLite's virtual machine between two looks at the time: some 50 µs."""
 SHORT_ROWS: Final = 100
-"""Rows that are written on the event loop by one statement."""
-BREATH_S: Final = 0.002
-"""Real seconds after which others get their turn, however much there is to ask."""
-
-BRACKETS: Final = ("PRAGMA synchronous=", "BEGIN", "SAVEPOINT", "RELEASE")
-LOCKS: Final = "BEGIN IMMEDIATE"
-QUESTION: Final = re.compile(r"SELECT\b")
-SMALL_CHANGE: Final = re.compile(
-    r"INSERT INTO \w+ \([^)]*\) VALUES \([^)]*\)( ON CONFLICT DO NOTHING)?( RETURNING [\w, ]+)?$"
-    r"|UPDATE \w+ SET .* WHERE \w+\.\w+ = \?( AND \w+\.\w+ = \?)*$",
-    re.DOTALL,
-)
-"""One row each: by its values, or by a key."""
+"""Rows, or values of one row, that one statement writes on the event loop."""
+TURN_S: Final = 0.002
+"""Real seconds after which other tasks get their turn, however many short statements there are to run."""
 
 
-def connect(database: str, **options: Any) -> "Connection":
-    """Open a connection for SQLAlchemy (its `async_creator_fn`)."""
-    options["check_same_thread"] = False  # two threads, but never at the same time: each errand is waited for
-    connection = Connection(lambda: sqlite3.connect(database, **options), iter_chunk_size=64)
-    connection._thread.daemon = True  # as SQLAlchemy has it: a connection that was not closed holds up no exit
-    return connection
+class Dialect(SQLiteDialect_pysqlite):
+    driver = "campus"
+    is_async = True
+    supports_statement_cache = True
+
+    def connect(self, *arguments: Any, **options: Any) -> Any:
+        return Connection(*arguments, **options)
+
+    def do_execute(self, cursor: Any, statement: str, parameters: Any, context: Any = None) -> None:
+        cursor.execute(statement, parameters, context)
+
+    def do_executemany(self, cursor: Any, statement: str, parameters: Any, context: Any = None) -> None:
+        cursor.executemany(statement, parameters, context)
+
+    # Past SQLAlchemy, which takes longer over these words than SQLite does.
+    def do_savepoint(self, connection: Any, name: str) -> None:
+        connection.connection.driver_connection.defer(f"SAVEPOINT {name}")
+
+    def do_release_savepoint(self, connection: Any, name: str) -> None:
+        connection.connection.driver_connection.defer(f"RELEASE {name}")
 
 
-@lru_cache(maxsize=2000)
-def is_question(statement: str) -> bool:
-    return QUESTION.match(statement) is not None
+registry.register("sqlite.campus", __name__, "Dialect")
 
 
-@lru_cache(maxsize=2000)
-def is_small_change(statement: str) -> bool:
-    return SMALL_CHANGE.match(statement) is not None
+@lru_cache(maxsize=1000)
+def limit_s_of(statement: object) -> float:
+    """Return the time that a statement may take on the event loop; 0: it has to run in the thread.
+
+    A query is interrupted after its time. A change cannot be: SQLite would undo the whole transaction. So it has to be
+    small for certain: one row for each set of parameters, by its values or by its key.
+    """
+    if isinstance(statement, SelectBase):
+        return SHORT_S
+    if isinstance(statement, Insert):
+        return inf if statement.select is None else 0
+    if isinstance(statement, Update) and statement.table.primary_key:
+        where = statement.whereclause
+        terms = where.clauses if isinstance(where, BooleanClauseList) and where.operator is and_ else [where]
+        given = {term.left for term in terms if isinstance(term, BinaryExpression) and term.operator is eq}
+        return inf if given.issuperset(statement.table.primary_key) else 0
+    return 0
 
 
-class Connection(aiosqlite.Connection):
-    """Statements reach SQLite in the order in which they were asked for."""
+class Connection(sqlite3.Connection):
+    """Statements reach SQLite in the order in which they were asked for, one at a time."""
 
     _long: set[str] = set()  # noqa: RUF012  # what one connection has learned is true for all
-    """Questions that have turned out not to be short."""
+    """Statements that took long the last time."""
 
     def __init__(self, *arguments: Any, **options: Any) -> None:
-        super().__init__(*arguments, **options)
-        self._brackets: list[str] = []
-        self._has_transaction = False
-        self._is_asking = False
-        self._is_guarded = False
-        self._breathed_at_s = 0.0
+        # Two threads, but never at the same time. `database.py` begins the transactions.
+        super().__init__(*arguments, **{**options, "check_same_thread": False, "isolation_level": None, "timeout": 0})
+        self._queue: SimpleQueue[Any] = SimpleQueue()
+        finalize(self, self._queue.put, None)
+        self._deferred: deque[str] = deque()
+        self._has_begun = False
+        self._turn_ends_s = 0.0
+        Thread(target=_serve, args=(self._queue,), daemon=True).start()
 
-    def cursor(self) -> "Cursor":  # type: ignore[override]  # aiosqlite's own goes to the thread first
-        return Cursor(self)
+    def cursor(self, *_: Any) -> Any:
+        return super().cursor(Cursor)
 
-    def remember(self, bracket: str) -> None:
-        """To be said before the next statement. An error of it is that statement's."""
-        self._brackets.append(bracket)
+    def defer(self, statement: str) -> None:
+        """Run it before the next statement. An error of it is that statement's."""
+        self._deferred.append(statement)
 
-    async def ask(self, statement: str, what: Callable[[sqlite3.Connection], T], rows: int = 1) -> T:
-        """Do it at once if it is short, else in the thread."""
-        if self._has_begun():
-            if is_small_change(statement) and rows <= SHORT_ROWS:
-                return await self._at_once(what)
-            if is_question(statement) and statement not in self._long:
-                try:
-                    return await self._ask_at_once(what)
-                except sqlite3.OperationalError as error:
-                    if "interrupted" not in str(error):
-                        raise
-                    self._long.add(statement)
-        return await self.errand(what)
-
-    def _has_begun(self) -> bool:
-        """Take the write lock that was asked for, if it is free: to wait for it is left to the thread."""
-        if LOCKS not in self._brackets:
-            return True
-        before = self._brackets[: self._brackets.index(LOCKS)]
-        self._conn.execute("PRAGMA busy_timeout=0")
+    async def run(self, statement: str, limit_s: float, what: Callable[[], T]) -> T:
+        """Run what is short at once, all else in the thread."""
+        if limit_s == 0 or statement in self._long:
+            return await self._in_thread(partial(self._patiently, statement, left_s(), what))
         try:
-            for bracket in [*before, LOCKS]:
-                self._open(bracket)
-        except sqlite3.OperationalError:  # if it is not for the lock, the thread finds out
-            return False
-        finally:
-            self._conn.execute(f"PRAGMA busy_timeout={left_s() * 1e3:.0f}")
-        del self._brackets[: len(before) + 1]
-        return True
-
-    async def _ask_at_once(self, what: Callable[[sqlite3.Connection], T]) -> T:
-        if not self._is_guarded:
-            self._conn.set_progress_handler(self._takes_long, SHORT_STEPS)
-            self._is_guarded = True
-        self._is_asking = True
-        try:
-            return await self._at_once(what)
-        finally:
-            self._is_asking = False
-
-    def _takes_long(self) -> bool:
-        return self._is_asking
-
-    async def _at_once(self, what: Callable[[sqlite3.Connection], T]) -> T:
-        answer = self._now(what)
-        loop = asyncio.get_running_loop()
-        if time.monotonic() - self._breathed_at_s > BREATH_S:
-            self._is_asking = False
-            breath: asyncio.Future[None] = loop.create_future()
-            loop.call_soon(breath.set_result, None)
-            await shielded(breath)
-            self._breathed_at_s = time.monotonic()
+            answer = self._in_turn(what, limit_s)
+        except sqlite3.OperationalError as error:
+            code = getattr(error, "sqlite_errorcode", sqlite3.SQLITE_OK) & 0xFF  # none: it is an error of ours
+            if code == sqlite3.SQLITE_INTERRUPT:
+                self._long.add(statement)
+            elif code != sqlite3.SQLITE_BUSY:
+                raise
+            return await self.run(statement, 0, what)
+        if monotonic() > self._turn_ends_s:
+            await shielded(asyncio.ensure_future(asyncio.sleep(0)))
+            self._turn_ends_s = monotonic() + TURN_S
         return answer
 
-    def _now(self, what: Callable[[sqlite3.Connection], T]) -> T:
-        self._refuse_if_undone()
-        brackets, self._brackets = self._brackets, []
-        for bracket in brackets:
-            self._open(bracket)
-        return what(self._conn)
-
-    def _open(self, bracket: str) -> None:
-        self._conn.execute(bracket)
-        self._has_transaction |= bracket.startswith("BEGIN")
-
-    def _refuse_if_undone(self) -> None:
-        """A full disk undoes the whole transaction. A savepoint would begin another, and its release commit that one:
-        those who wrote before would be told that what they wrote is there."""
-        if self._has_transaction and not self._conn.in_transaction:
-            raise sqlite3.OperationalError("the transaction has been undone")
-
-    async def errand(self, what: Callable[[sqlite3.Connection], T]) -> T:
-        """Do it in the connection's thread, to its end."""
+    async def _in_thread(self, what: Callable[[], T]) -> T:
+        """Run it in the connection's thread, to its end."""
         outcome: asyncio.Future[T] = asyncio.get_running_loop().create_future()
-        self._tx.put_nowait((outcome, lambda: self._now(what)))
+        self._queue.put((outcome, what))
         answer = await shielded(outcome)
-        self._breathed_at_s = time.monotonic()
+        self._turn_ends_s = monotonic() + TURN_S
         return answer
 
-    async def commit(self) -> None:
+    def _patiently(self, statement: str, wait_s: float, what: Callable[[], T]) -> T:
+        begun_s = monotonic()
+        self._execute(f"PRAGMA busy_timeout={wait_s * 1e3:.0f}")
+        try:
+            return self._in_turn(what)
+        finally:
+            self._execute("PRAGMA busy_timeout=0")
+            if monotonic() - begun_s < SHORT_S / 4:
+                self._long.discard(statement)
+
+    def _in_turn(self, what: Callable[[], T], limit_s: float = inf) -> T:
+        # A full disk undoes the whole transaction. A savepoint would begin another, and its release commit that one:
+        # writers whose rows are gone would be told that they are committed.
+        if self._has_begun and not self.in_transaction:
+            raise sqlite3.OperationalError("the transaction has been undone")
+        while self._deferred:
+            self._execute(self._deferred[0])
+            self._deferred.popleft()
+            self._has_begun = self.in_transaction
+        if limit_s == inf:
+            return what()
+        late_s = monotonic() + limit_s
+        self.set_progress_handler(lambda: monotonic() > late_s, INSTRUCTIONS)
+        try:
+            return what()
+        finally:  # in the thread it would wait for the interpreter each time
+            self.set_progress_handler(None, 0)
+
+    def _execute(self, statement: str) -> None:
+        super().cursor().execute(statement)
+
+    def commit(self) -> None:
         """Raises OperationalError if there is nothing to commit any more."""
-        await self.errand(lambda connection: connection.commit())
-        self._has_transaction = False
+        await_(self._in_thread(partial(self._in_turn, super().commit)))
+        self._has_begun = False
 
-    async def rollback(self) -> None:
-        self._brackets.clear()
-        self._has_transaction = False
-        if self._conn.in_transaction:
-            self._conn.rollback()
+    def rollback(self) -> None:
+        self._deferred.clear()
+        self._has_begun = False
+        super().rollback()
+
+    def close(self) -> None:
+        await_(self._in_thread(super().close))
 
 
-class Cursor:
+def _serve(queue: "SimpleQueue[tuple[asyncio.Future[Any], Callable[[], Any]] | None]") -> None:
+    while item := queue.get():
+        outcome, what = item
+        try:
+            tell = partial(outcome.set_result, what())
+        except BaseException as error:  # told to the caller
+            tell = partial(outcome.set_exception, error)
+        outcome.get_loop().call_soon_threadsafe(tell)
+        del item, outcome, what, tell  # which would keep the connection alive, and with it this thread
+
+
+class Cursor(sqlite3.Cursor):
     """One statement and all of its rows."""
 
-    arraysize = 1
+    connection: Connection
+    _rows: Iterator[Any] = iter(())
 
-    def __init__(self, connection: Connection) -> None:
-        self._connection = connection
-        self._rows: list[Any] = []
-        self.description: Any = None
-        self.rowcount = -1
-        self.lastrowid: int | None = None
+    def _run(self, execute: Any, statement: str, parameters: Any = (), context: Any = None) -> None:
+        limit_s = limit_s_of(context.compiled.statement) if context and context.compiled else 0
+        if limit_s == inf and len(parameters) > SHORT_ROWS:
+            limit_s = 0
+        what = partial(self._all_rows, execute, statement, parameters)
+        self._rows = iter(await_(self.connection.run(statement, limit_s, what)))
 
-    async def __aenter__(self) -> Self:
-        return self
+    execute: Any = partialmethod(_run, sqlite3.Cursor.execute)
+    executemany: Any = partialmethod(_run, sqlite3.Cursor.executemany)
 
-    async def execute(self, statement: str, parameters: Sequence[Any] = ()) -> None:
-        if statement.startswith(BRACKETS):
-            self._connection.remember(statement)
-        else:
-            what = self._errand(lambda cursor: cursor.execute(statement, parameters))
-            self._rows = await self._connection.ask(statement, what)
+    def _all_rows(self, execute: Any, statement: str, parameters: Any) -> list[Any]:
+        execute(self, statement, parameters)
+        return super().fetchall() if self.description else []
 
-    async def executemany(self, statement: str, parameters: Sequence[Sequence[Any]]) -> None:
-        what = self._errand(lambda cursor: cursor.executemany(statement, parameters))
-        self._rows = await self._connection.ask(statement, what, len(parameters))
+    def fetchone(self) -> Any:
+        return next(self._rows, None)
 
-    def _errand(self, what: Callable[[sqlite3.Cursor], object]) -> Callable[[sqlite3.Connection], list[Any]]:
-        def ask(connection: sqlite3.Connection) -> list[Any]:
-            cursor = connection.cursor()
-            try:
-                what(cursor)
-                self.description, self.lastrowid = cursor.description, cursor.lastrowid
-                rows = cursor.fetchall() if cursor.description else []
-                self.rowcount = cursor.rowcount
-                return rows
-            finally:
-                cursor.close()
+    def fetchmany(self, size: int | None = 1) -> list[Any]:
+        return list(islice(self._rows, size or 1))
 
-        return ask
+    def fetchall(self) -> list[Any]:
+        return list(self._rows)
 
-    async def fetchall(self) -> list[Any]:
-        rows, self._rows = self._rows, []
-        return rows
-
-    async def fetchmany(self, size: int | None = None) -> list[Any]:
-        some, self._rows = self._rows[: size or 1], self._rows[size or 1 :]
-        return some
-
-    async def fetchone(self) -> Any:
-        return self._rows.pop(0) if self._rows else None
-
-    async def close(self) -> None:
-        self._rows = []
+    async def _async_soft_close(self) -> None:
+        """Required by SQLAlchemy's asyncio. The rows have been read."""

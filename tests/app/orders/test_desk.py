@@ -184,7 +184,7 @@ class Disk:
         event.listen(self._engine.sync_engine, "begin", self._limit)
 
     def _limit(self, connection: Any) -> None:
-        connection.connection.driver_connection.remember(f"PRAGMA max_page_count={self.pages}")
+        connection.connection.driver_connection.defer(f"PRAGMA max_page_count={self.pages}")
 
     async def has_room_for(self, pages: int) -> None:
         async with self._engine.connect() as connection:

@@ -26,7 +26,7 @@ def message(journal: str, seq: int) -> Envelope:
 
 async def everything_taken(arriving: list[tuple[str, int]]) -> tuple[list[tuple[str, int]], list[tuple[str, int]]]:
     """Return the messages reported as new, and those in the table afterwards."""
-    database = Database("sqlite+aiosqlite://")
+    database = Database("sqlite://")
     new = []
     async with database.writing.begin() as connection:
         await connection.run_sync(SQLModel.metadata.create_all)
