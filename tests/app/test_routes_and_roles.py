@@ -263,6 +263,7 @@ def wish(route: tuple[str, str]) -> Any:
     return WISHES.get(route, {}).items()
 
 
+@pytest.mark.slow
 def test_everybody_may_do_what_is_theirs_and_nothing_else(browser: httpx.Client, everybody: Everybody) -> None:
     holes = {}
     for route, line in LINES.items():

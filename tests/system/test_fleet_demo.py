@@ -22,6 +22,7 @@ pytestmark = [pytest.mark.system, pytest.mark.timeout(500)]
 COMMAND = [sys.executable, "-m", "demo", "fleet", "--port", "0", "--robots", "2", "--scale", "0.05"]
 
 
+@pytest.mark.slow
 def test_two_robots_of_the_fleet_deliver_an_order_each_and_never_meet() -> None:
     ran = subprocess.run(
         [*COMMAND, "--once", "--json"], cwd=ROOT, capture_output=True, text=True, check=False, timeout=180

@@ -107,6 +107,7 @@ def cookies_of(client: httpx.AsyncClient) -> str:
 
 
 @pytest.mark.parametrize("how", ["stopped", "killed"])
+@pytest.mark.slow
 async def test_what_a_full_mailbox_did_not_take_goes_out_after_the_next_start(service: Service, how: str) -> None:
     service.mail_server.says = [FULL] * MANY
     async with service.running() as client:

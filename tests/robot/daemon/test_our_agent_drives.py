@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+import pytest
+
 from protocol.parts import Purpose
 from tests.robot.daemon.simulated_run import SimulatedRun
 
@@ -40,6 +42,7 @@ def test_a_letter_is_fetched_delivered_and_the_robot_goes_home(run: SimulatedRun
     assert run.told() == PROGRESS
 
 
+@pytest.mark.slow
 def test_a_battery_low_with_mail_aboard_is_charged_and_each_thing_told_once(run: SimulatedRun) -> None:
     run.given_a_letter()
     run.until(lambda: run.waits_for("wait_handover(load"))
@@ -55,6 +58,7 @@ def test_a_battery_low_with_mail_aboard_is_charged_and_each_thing_told_once(run:
     assert told.count("handover load") == 1
 
 
+@pytest.mark.slow
 def test_a_change_of_mind_just_before_a_post_does_not_drive_it_past_the_post(run: SimulatedRun) -> None:
     """So near it does not see the marker again, and the line bends there."""
     run.given_a_letter()
@@ -67,6 +71,7 @@ def test_a_change_of_mind_just_before_a_post_does_not_drive_it_past_the_post(run
     assert "find_line" not in run.did
 
 
+@pytest.mark.slow
 def test_a_recipient_who_never_comes_does_not_keep_the_robot(run: SimulatedRun) -> None:
     run.given_a_letter()
     run.until(lambda: run.waits_for("wait_handover(load"))
@@ -78,6 +83,7 @@ def test_a_recipient_who_never_comes_does_not_keep_the_robot(run: SimulatedRun) 
     assert run.told()[-3:] == ["progress gave_up", "progress done", "fault mail_aboard"]
 
 
+@pytest.mark.slow
 def test_killed_on_the_way_with_mail_it_wakes_up_knowing_and_delivers(tmp_path: Path) -> None:
     first = SimulatedRun(tmp_path)
     first.given_a_letter()

@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+import pytest
+
 from maps import find_map
 from robot.core.config import load_settings
 from tests.robot.daemon.simulated_run import SimulatedRun
@@ -15,6 +17,7 @@ def test_the_example_settings_are_accepted_and_name_a_post_with_a_dock() -> None
     assert find_map(settings.map).post(settings.home).dock is not None
 
 
+@pytest.mark.slow
 def test_the_patrol_goes_three_rounds(tmp_path: Path) -> None:
     run = SimulatedRun(tmp_path, "post2:post1", mind__program=EXAMPLES / "patrol.asl", mind__percepts="latest")
     run.asks("", "patrol")

@@ -79,6 +79,7 @@ def test_every_frame_with_a_marker_is_looked_at():
 
 
 @pytest.mark.parametrize("size_px", SIZES)
+@pytest.mark.slow
 def test_codes_shown_by_people_are_read_at_every_size_and_before_everything(size_px: tuple[int, int]):
     """On a wall, over a page of text, before bricks and clutter; half of the codes fill the picture."""
     first = 9000 + SIZES.index(size_px)

@@ -14,6 +14,7 @@ EXAMPLES = sorted((Path(__file__).parents[3] / "examples" / "scenarios").glob("*
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+@pytest.mark.slow
 def test_the_example_ends_as_expected(path, tmp_path):
     structlog.configure(wrapper_class=structlog.make_filtering_bound_logger(logging.CRITICAL))
     scenario = read_scenario(path)

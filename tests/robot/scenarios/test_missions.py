@@ -19,6 +19,7 @@ WENT_WRONG = (
     ("world", "seed"),
     [(world, FIRST_SEED + more) for world in ("track", "tunnels") for more in range(3)] + list(WENT_WRONG),
 )
+@pytest.mark.slow
 def test_every_letter_is_delivered_or_honestly_handed_to_a_person(world, seed):
     mission = fly(world, seed)
     assert isinstance(mission, Figures), mission
