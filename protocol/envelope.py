@@ -13,7 +13,7 @@ from typing import Any, Final
 from pydantic import Field, SerializeAsAny, ValidationError
 from pydantic_core import from_json
 
-from protocol import both_ways, insight, to_robot, to_server
+from protocol import both_ways, diagnostics, to_robot, to_server
 from protocol.errors import MalformedMessage, MessageTooLarge, NewerVersion, ProtocolError, UnknownMessage
 from protocol.parts import Identifier, Moment, Part, Seq
 
@@ -31,7 +31,7 @@ TO_SERVER: Final[Mapping[str, type[Part]]] = {
     "withdraw": to_server.Withdraw,
     "clear": to_server.Clear,
     "why": to_server.Why,
-    "insight": insight.Diagnostics,
+    "insight": diagnostics.Diagnostics,
     **BOTH_WAYS,
 }
 TO_ROBOT: Final[Mapping[str, type[Part]]] = {

@@ -174,8 +174,8 @@ class Revoke(Part):
 class Watch(Part):
     """Send what you sense and think in `insight` messages, for so many seconds of the machine's time.
 
-    Sent again as long as a technician watches. `whole`: a new one does, so the next insight has all beliefs. A best
-    effort like the insights themselves: not kept, and nothing else depends on it.
+    Sent again as long as a technician watches. `whole`: a new one does, so the next report has all beliefs. A best
+    effort like the reports themselves: not kept, and nothing else depends on it.
     """
 
     for_s: float = Field(ge=0.0, le=120.0)

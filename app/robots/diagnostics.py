@@ -13,7 +13,7 @@ from pydantic import BaseModel, Field
 
 from app.models import Role
 from app.realtime.feed import Feed, FeedEvent
-from protocol.insight import Diagnostics
+from protocol.diagnostics import Diagnostics
 from protocol.to_robot import Watch
 
 HOLDS_S: Final = 30.0

@@ -1,6 +1,6 @@
 """The cost of watching a robot's mind, and of not watching: processor time of the mind's thread, in simulated time.
 
-The same errands twice. What the link's thread does with an insight is measured apart: it delays no other thread.
+The same errands twice. What the link's thread does with a report is measured apart: it delays no other thread.
 """
 
 import time
@@ -13,10 +13,10 @@ from typing import Any, Final
 from benchmarks.body.errands import Errands
 from benchmarks.body.report import Samples, Wanted
 from protocol.clock import SteppedClock
-from protocol.insight import MAX_INSIGHT_BYTES, Diagnostics
+from protocol.diagnostics import MAX_DIAGNOSTICS_BYTES, Diagnostics
 from robot.core.config import load_settings
 from robot.ops.assembly import Simulation, assemble
-from robot.ops.diagnostics import Insights
+from robot.ops.diagnostics import DiagnosticsReporter
 from robot.ops.runners import LockstepRunner
 
 LONGEST_S: Final = 600.0
@@ -26,7 +26,7 @@ FOR_EVER_S: Final = 1e6
 WANTED = (
     Wanted("unwatched.look_us_p99", at_most=10.0, unit="µs a tick"),
     Wanted("watched.tell_ms_p50", at_most=1.0, unit="ms, twice a second"),
-    Wanted("watched.largest_bytes", at_most=MAX_INSIGHT_BYTES, unit="bytes"),
+    Wanted("watched.largest_bytes", at_most=MAX_DIAGNOSTICS_BYTES, unit="bytes"),
 )
 
 
@@ -37,12 +37,12 @@ class Outlet:
     sizes: list[int] = field(default_factory=list)
     making_s: float = 0.0
 
-    def has_room_for_insight(self) -> bool:
+    def has_room_for_diagnostics(self) -> bool:
         return True
 
-    def tell_insight(self, insight: Callable[[], Diagnostics]) -> None:
+    def tell_diagnostics(self, diagnostics: Callable[[], Diagnostics]) -> None:
         began_s = time.thread_time()
-        self.sizes.append(len(insight().model_dump_json().encode()))
+        self.sizes.append(len(diagnostics().model_dump_json().encode()))
         self.making_s += time.thread_time() - began_s
 
 
@@ -58,15 +58,15 @@ def lived(duration_s: float, seed: int, is_watched: bool) -> dict[str, Any]:
         settings = load_settings(None, {"data": Path(folder), "rates.line_hz": SIMULATED_LINE_HZ})
         parts = assemble(settings, clock, Simulation(seed=seed, in_memory=True))
         runner = LockstepRunner(parts.daemon.loops(), clock)
-        insights = Insights(parts.mind, outlet, runner.lags, clock.utc, clock.now)
+        reporter = DiagnosticsReporter(parts.mind, outlet, runner.lags, clock.utc, clock.now)
         if is_watched:
-            insights.watch(FOR_EVER_S, whole=True)
+            reporter.watch(FOR_EVER_S, whole=True)
         looks, tells, ticks = list[float](), list[float](), list[float]()
         parts.mind.tick = _timed(parts.mind.tick, ticks)  # type: ignore[method-assign]
 
         def look(now: float) -> None:
             told, making_s, began_s = len(outlet.sizes), outlet.making_s, time.thread_time()
-            insights.look(now)
+            reporter.look(now)
             taken_s = time.thread_time() - began_s - (outlet.making_s - making_s)
             (tells if len(outlet.sizes) > told else looks).append(taken_s)
             if now >= duration_s:

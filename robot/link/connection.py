@@ -14,9 +14,9 @@ import structlog
 
 from protocol.both_ways import Ack, Error
 from protocol.clock import Clock
+from protocol.diagnostics import Diagnostics
 from protocol.envelope import TO_ROBOT, Envelope, parse, type_of
 from protocol.errors import ProtocolError
-from protocol.insight import Diagnostics
 from protocol.parts import Part, sentence
 from protocol.sequence import Reception
 from protocol.to_robot import Watch, Welcome
@@ -69,7 +69,7 @@ class Newest:
 
     snapshot: Snapshot | None = None
     why: Why | None = None
-    insight: Callable[[], Diagnostics] | None = None
+    diagnostics: Callable[[], Diagnostics] | None = None
     """Made when its turn comes. There is room for the next once it is on its way: a slow link makes them rarer."""
 
     def take(self, news: Snapshot | Why) -> bool:
@@ -115,7 +115,7 @@ class Connection:
     async def greet(self) -> None:
         """Hello, welcome, and both sides know where the other stands."""
         ends = self._ends
-        ends.newest.insight = None  # earlier thoughts are no news to a client that watches now
+        ends.newest.diagnostics = None  # earlier thoughts are no news to a client that watches now
         received = ends.memory.received()
         facts = {"received": received, "resume_from": ends.outbox.resume_from()}
         await self._send(ends.hello_source().model_copy(update=facts))
@@ -209,7 +209,7 @@ class Connection:
             self._wake.clear()
             await self._send_newest()
             await self._send_kept()
-            await self._send_insight()
+            await self._send_diagnostics()
             try:
                 async with asyncio.timeout(self._until_snapshot_s()):
                     await self._wake.wait()
@@ -232,12 +232,12 @@ class Connection:
             await self._send_numbered(kept)
             self._sent = kept.seq
 
-    async def _send_insight(self) -> None:
+    async def _send_diagnostics(self) -> None:
         """Last of all. The socket takes no more while the network does not: then there is no room for the next one."""
-        insight = self._ends.newest.insight
-        if insight is not None:
-            await self._send(insight())
-            self._ends.newest.insight = None
+        diagnostics = self._ends.newest.diagnostics
+        if diagnostics is not None:
+            await self._send(diagnostics())
+            self._ends.newest.diagnostics = None
 
     def _snapshot_gap_s(self) -> float:
         rhythm = self._ends.rhythm

@@ -28,9 +28,9 @@ from websockets.asyncio.client import connect
 from websockets.exceptions import ConnectionClosed, InvalidStatus, WebSocketException
 
 from protocol.clock import Clock
+from protocol.diagnostics import Diagnostics
 from protocol.envelope import MAX_MESSAGE_BYTES
 from protocol.errors import ProtocolError
-from protocol.insight import Diagnostics
 from protocol.to_robot import EmergencyStop, Revoke, Watch
 from protocol.to_server import Hello, Snapshot, Why
 from robot.core.errors import RobotError
@@ -157,13 +157,13 @@ class Link:
         if self._newest.take(why):
             self.wake()
 
-    def has_room_for_insight(self) -> bool:
+    def has_room_for_diagnostics(self) -> bool:
         """Return whether the server is there and has been sent the one before."""
-        return self.online and self._newest.insight is None
+        return self.online and self._newest.diagnostics is None
 
-    def tell_insight(self, insight: Callable[[], Diagnostics]) -> None:
-        """Sent after everything else, and lost with the connection; `insight` is called in the link's thread."""
-        self._newest.insight = insight
+    def tell_diagnostics(self, diagnostics: Callable[[], Diagnostics]) -> None:
+        """Sent after everything else, and lost with the connection; `diagnostics` is called in the link's thread."""
+        self._newest.diagnostics = diagnostics
         self.wake()
 
     def incoming(self) -> list[Incoming]:

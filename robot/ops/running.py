@@ -23,7 +23,7 @@ from robot.core.service_manager import ServiceManager, SignsOfLife
 from robot.link.link import Link, LinkError
 from robot.ops.assembly import Parts, Simulation, assemble
 from robot.ops.control import SOCKET_NAME, Control
-from robot.ops.diagnostics import Insights
+from robot.ops.diagnostics import DiagnosticsReporter
 from robot.ops.report import Ending, Refusal, Reporter
 from robot.ops.runners import SWITCH_INTERVAL_S, LockstepRunner, Runner, ThreadedRunner
 from robot.ops.status import StatusBoard
@@ -100,9 +100,9 @@ def run_once(settings: Settings, clock: Clock, simulation: Simulation | None, op
 
 def _shown_to_watchers(mind: Mind, link: Link, runner: Runner, clock: Clock) -> Callable[[float], None]:
     """Return what runs after each tick of the mind for those who watch it from the service."""
-    insights = Insights(mind, link, runner.lags, clock.utc)
-    link.on_watch = lambda watch: insights.watch(watch.for_s, watch.whole)
-    return insights.look
+    reporter = DiagnosticsReporter(mind, link, runner.lags, clock.utc)
+    link.on_watch = lambda watch: reporter.watch(watch.for_s, watch.whole)
+    return reporter.look
 
 
 def _open_door(robot: SimulatedRobot, path: Path, reporter: Reporter) -> Door:

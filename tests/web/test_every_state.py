@@ -12,8 +12,8 @@ import pytest
 import pytest_asyncio
 from playwright.async_api import expect
 
+from protocol.diagnostics import Diagnostics
 from protocol.example_files import EXAMPLES
-from protocol.insight import Diagnostics
 from protocol.parts import Activity, Battery, Position
 from protocol.to_server import Snapshot, Why
 from tests.app.robots.playing import PlayedRobot

@@ -9,7 +9,7 @@ import pytest
 from playwright.async_api import BrowserContext, Page, Request, Route, expect
 
 from app.models import Role
-from protocol.insight import Diagnostics
+from protocol.diagnostics import Diagnostics
 from tests.app.robots.playing import until
 from tests.web.keyboard import press
 from tests.web.service import ROOT

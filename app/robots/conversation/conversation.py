@@ -19,9 +19,9 @@ from app.robots.link import outbox
 from app.robots.link.outbox import Waiting
 from app.robots.link.tokens import note_use
 from protocol.both_ways import Ack, Error
+from protocol.diagnostics import Diagnostics
 from protocol.envelope import TO_SERVER, Envelope, Head, parse, type_of
 from protocol.errors import ProtocolError
-from protocol.insight import Diagnostics
 from protocol.parts import Part, sentence
 from protocol.to_robot import Watch
 from protocol.to_server import Hello

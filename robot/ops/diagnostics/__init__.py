@@ -4,6 +4,6 @@ May use the mind and the drive loop.
 Start at `service.py`.
 """
 
-from robot.ops.diagnostics.service import Insights
+from robot.ops.diagnostics.service import DiagnosticsReporter
 
-__all__ = ["Insights"]
+__all__ = ["DiagnosticsReporter"]

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Final
 
-from protocol.insight import Bump, Drop, Light, LoopTiming, Sensors
+from protocol.diagnostics import Bump, Drop, Light, LoopTiming, Sensors
 from robot.drivers.interfaces import BaseState
 from robot.ops.runners import Lag
 from robot.skills.interfaces import View

@@ -1,8 +1,8 @@
 """Live diagnostics of the mind: at most twice a second, between two of its cycles, never in its way.
 
 Without a watcher, a tick of the mind costs one comparison and the agent has no listener. With one, each
-tick may add lines to a bounded list; twice a second they become one insight, which the link takes when it has sent the
-one before. A slow link makes insights rarer, and the oldest lines are dropped; what was dropped is counted.
+tick may add lines to a bounded list; twice a second they become one report, which the link takes when it has sent the
+one before. A slow link makes reports rarer, and the oldest lines are dropped; what was dropped is counted.
 """
 
 import time
@@ -13,7 +13,7 @@ from itertools import islice
 from typing import Final, Protocol
 
 from bdi import TraceEntry
-from protocol.insight import MAX_INSIGHT_BYTES, Diagnostics, IntentionReport, LeftOut, TraceLine
+from protocol.diagnostics import MAX_DIAGNOSTICS_BYTES, Diagnostics, IntentionReport, LeftOut, TraceLine
 from robot.agent.mind import Mind
 from robot.ops.diagnostics.senses import sensors, timings
 from robot.ops.diagnostics.thoughts import intention_told, line_told, short
@@ -30,18 +30,18 @@ MOST_EVENTS: Final = 20
 
 
 class Outlet(Protocol):
-    """The link, as far as insights are concerned."""
+    """The link, as far as diagnostics are concerned."""
 
-    def has_room_for_insight(self) -> bool:
+    def has_room_for_diagnostics(self) -> bool:
         """Return whether it is online and has sent the one before."""
         ...
 
-    def tell_insight(self, insight: Callable[[], Diagnostics]) -> None:
-        """Sent when its turn comes; `insight` is called in the link's thread."""
+    def tell_diagnostics(self, diagnostics: Callable[[], Diagnostics]) -> None:
+        """Sent when its turn comes; `diagnostics` is called in the link's thread."""
         ...
 
 
-class Insights:
+class DiagnosticsReporter:
     """`watch` may be called by any thread; `look` is called after each tick of the mind, by the mind's own."""
 
     def __init__(
@@ -65,7 +65,7 @@ class Insights:
         self._beliefs: dict[str, None] = {}
 
     def watch(self, for_s: float, whole: bool) -> None:
-        """Collect insights for a watcher, for so long."""
+        """Collect reports for a watcher, for so long."""
         self._whole = self._whole or whole
         self._until_s = self._stopwatch() + for_s
 
@@ -78,7 +78,7 @@ class Insights:
             self._end()
         elif not self._is_watched:
             self._begin()
-        elif now_s >= self._next_s and self._outlet.has_room_for_insight():
+        elif now_s >= self._next_s and self._outlet.has_room_for_diagnostics():
             self._next_s = now_s + EVERY_S
             self._tell()
 
@@ -102,7 +102,7 @@ class Insights:
         came, went, unseen = self._changes(whole)
         agent = self._mind.agent
         intentions = [intention_told(agent, one) for one in islice(agent.intentions.values(), MOST_INTENTIONS)]
-        insight = Diagnostics(
+        diagnostics = Diagnostics(
             number=self._number,
             at=self._utc(),
             cycle=agent.cycles,
@@ -119,16 +119,16 @@ class Insights:
         )
         self._lines.clear()
         self._dropped = 0
-        self._outlet.tell_insight(lambda: within_bounds(self._with_loops(insight)))
+        self._outlet.tell_diagnostics(lambda: within_bounds(self._with_loops(diagnostics)))
 
-    def _with_loops(self, insight: Diagnostics) -> Diagnostics:
+    def _with_loops(self, diagnostics: Diagnostics) -> Diagnostics:
         """In the link's thread, and rarely: thousands of lags are sorted for it."""
-        if insight.number % LOOPS_EVERY != 1:
-            return insight
-        return insight.model_copy(update={"loops": timings(self._lags)})
+        if diagnostics.number % LOOPS_EVERY != 1:
+            return diagnostics
+        return diagnostics.model_copy(update={"loops": timings(self._lags)})
 
     def _changes(self, whole: bool) -> tuple[tuple[str, ...], tuple[str, ...], int]:
-        """Return what has come and gone since the last insight, and how many beliefs are not looked at."""
+        """Return what has come and gone since the last report, and how many beliefs are not looked at."""
         beliefs = self._mind.agent.beliefs
         now = dict.fromkeys(short(str(one)) for one in islice(beliefs, MOST_BELIEFS))
         before, self._beliefs = ({} if whole else self._beliefs), now
@@ -137,26 +137,26 @@ class Insights:
         return tuple(came), tuple(went), max(0, unseen)
 
 
-def within_bounds(insight: Diagnostics) -> Diagnostics:
+def within_bounds(diagnostics: Diagnostics) -> Diagnostics:
     """The same with less in it, if it is too large: the oldest half of the trace, again; then of the intentions, of
     the beliefs. How much is left out is said."""
-    while len(insight.model_dump_json().encode()) > MAX_INSIGHT_BYTES:
-        insight = _with_less(insight)
-    return insight
+    while len(diagnostics.model_dump_json().encode()) > MAX_DIAGNOSTICS_BYTES:
+        diagnostics = _with_less(diagnostics)
+    return diagnostics
 
 
-def _with_less(insight: Diagnostics) -> Diagnostics:
-    left_out = insight.left_out
-    if cut := (len(insight.trace) + 1) // 2:
+def _with_less(diagnostics: Diagnostics) -> Diagnostics:
+    left_out = diagnostics.left_out
+    if cut := (len(diagnostics.trace) + 1) // 2:
         less = left_out.model_copy(update={"trace": left_out.trace + cut})
-        return insight.model_copy(update={"trace": insight.trace[cut:], "left_out": less})
-    if cut := (len(insight.intentions) + 1) // 2:
+        return diagnostics.model_copy(update={"trace": diagnostics.trace[cut:], "left_out": less})
+    if cut := (len(diagnostics.intentions) + 1) // 2:
         less = left_out.model_copy(update={"intentions": left_out.intentions + cut})
-        return insight.model_copy(update={"intentions": _first(insight.intentions, cut), "left_out": less})
-    came, went = insight.came[: len(insight.came) // 2], insight.went[: len(insight.went) // 2]
-    fewer = len(insight.came) + len(insight.went) - len(came) - len(went)
+        return diagnostics.model_copy(update={"intentions": _first(diagnostics.intentions, cut), "left_out": less})
+    came, went = diagnostics.came[: len(diagnostics.came) // 2], diagnostics.went[: len(diagnostics.went) // 2]
+    fewer = len(diagnostics.came) + len(diagnostics.went) - len(came) - len(went)
     less = left_out.model_copy(update={"beliefs": left_out.beliefs + fewer})
-    return insight.model_copy(update={"came": came, "went": went, "left_out": less})
+    return diagnostics.model_copy(update={"came": came, "went": went, "left_out": less})
 
 
 def _first(intentions: tuple[IntentionReport, ...], cut: int) -> tuple[IntentionReport, ...]:

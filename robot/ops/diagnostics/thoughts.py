@@ -10,7 +10,7 @@ from bdi.debug.trace import CHOSEN, WOULD_APPLY, brief
 from bdi.language.syntax import BELIEF_ADDED
 from bdi.model.intentions import Intention, branches_of
 from bdi.model.intentions import Means as HeldMeans
-from protocol.insight import Because, IntentionReport, Means, NotChosen, TraceLine
+from protocol.diagnostics import Because, IntentionReport, Means, NotChosen, TraceLine
 
 LONGEST: Final = 300
 LONGEST_SENTENCE: Final = 1000

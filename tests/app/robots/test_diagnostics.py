@@ -14,7 +14,7 @@ from app.robots.battery import SHOWN, samples_since
 from app.robots.diagnostics import HOLDS_S, LiveDiagnostics
 from app.robots.service import enrol
 from protocol.clock import SteppedClock
-from protocol.insight import Diagnostics
+from protocol.diagnostics import Diagnostics
 from protocol.parts import Activity, Battery, Position
 from protocol.to_robot import Watch
 from protocol.to_server import Snapshot

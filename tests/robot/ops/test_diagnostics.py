@@ -9,7 +9,7 @@ import pytest
 
 from benchmarks.body.played_server import playing
 from protocol.clock import SteppedClock
-from protocol.insight import MAX_INSIGHT_BYTES, Diagnostics, LeftOut, TraceLine
+from protocol.diagnostics import MAX_DIAGNOSTICS_BYTES, Diagnostics, LeftOut, TraceLine
 from protocol.parts import Stop, StopAction
 from protocol.to_robot import Mission, Watch
 from robot.core.config import load_settings
@@ -17,7 +17,7 @@ from robot.mission.memory import Memory
 from robot.mission.outbox import Outbox
 from robot.mission.store import Store
 from robot.ops.assembly import Parts, Simulation, assemble
-from robot.ops.diagnostics import Insights
+from robot.ops.diagnostics import DiagnosticsReporter
 from robot.ops.diagnostics.service import MOST_LINES, within_bounds
 from robot.ops.runners import LockstepRunner
 from tests.robot.linked_robot import Robot, until
@@ -32,11 +32,11 @@ class Shown:
     told: list[Diagnostics] = field(default_factory=list)
     has_room: bool = True
 
-    def has_room_for_insight(self) -> bool:
+    def has_room_for_diagnostics(self) -> bool:
         return self.has_room
 
-    def tell_insight(self, insight: Callable[[], Diagnostics]) -> None:
-        self.told.append(insight())
+    def tell_diagnostics(self, diagnostics: Callable[[], Diagnostics]) -> None:
+        self.told.append(diagnostics())
 
 
 class WatchedRobot:
@@ -48,9 +48,11 @@ class WatchedRobot:
         self.parts: Parts = assemble(settings, self.clock, Simulation(seed=1, in_memory=True))
         self.runner = LockstepRunner(self.parts.daemon.loops(), self.clock)
         self.agent = self.parts.mind.agent
-        self.insights = Insights(self.parts.mind, self.shown, self.runner.lags, self.clock.utc, self.clock.now)
+        self.reporter = DiagnosticsReporter(
+            self.parts.mind, self.shown, self.runner.lags, self.clock.utc, self.clock.now
+        )
         self._until_s = 0.0
-        self.parts.daemon.watchers = (self.insights.look, self._end)
+        self.parts.daemon.watchers = (self.reporter.look, self._end)
 
     def _end(self, now: float) -> None:
         if now >= self._until_s:
@@ -77,7 +79,7 @@ def test_nobody_watches_nothing_is_told_and_nobody_listens_to_the_agent(watched:
 
 
 def test_who_watches_sees_what_it_intends_by_which_plan_and_why(watched: WatchedRobot) -> None:
-    watched.insights.watch(30.0, whole=True)
+    watched.reporter.watch(30.0, whole=True)
     watched.lives(1.0)
     watched.parts.mind.hands.missions.give(LETTER)
     told = watched.lives(9.0)
@@ -97,7 +99,7 @@ def test_who_watches_sees_what_it_intends_by_which_plan_and_why(watched: Watched
 
 
 def test_beliefs_are_told_once_and_then_only_what_came_and_went(watched: WatchedRobot) -> None:
-    watched.insights.watch(30.0, whole=True)
+    watched.reporter.watch(30.0, whole=True)
     first, *later = watched.lives(3.0)
     assert (first.number, first.whole) == (1, True)
     assert [one.number for one in later] == list(range(2, len(later) + 2))
@@ -109,21 +111,21 @@ def test_beliefs_are_told_once_and_then_only_what_came_and_went(watched: Watched
         assert not set(one.came) & believed
         believed = believed - set(one.went) | set(one.came)
     assert believed == {str(belief) for belief in watched.agent.beliefs}
-    watched.insights.watch(30.0, whole=True)
+    watched.reporter.watch(30.0, whole=True)
     again = watched.lives(0.6)[0]
     assert (again.number, again.whole, again.went) == (1, True, ()), "for a person who has just begun to look"
     assert "mission(m1,1)[source(percept)]" in believed & set(again.came)
 
 
 def test_it_ends_by_itself_when_nobody_says_that_they_still_look(watched: WatchedRobot) -> None:
-    watched.insights.watch(2.0, whole=False)
+    watched.reporter.watch(2.0, whole=False)
     assert len(watched.lives(5.0)) == 4
     assert not watched.agent.output.listeners
     assert not watched.agent.choices
 
 
 def test_a_slow_network_makes_it_rarer_and_what_was_dropped_is_counted(watched: WatchedRobot) -> None:
-    watched.insights.watch(60.0, whole=True)
+    watched.reporter.watch(60.0, whole=True)
     watched.lives(1.0)
     watched.shown.has_room = False
     watched.parts.mind.hands.missions.give(LETTER)
@@ -135,28 +137,28 @@ def test_a_slow_network_makes_it_rarer_and_what_was_dropped_is_counted(watched: 
 
 
 def test_an_insight_is_never_larger_than_a_message_may_be(watched: WatchedRobot) -> None:
-    watched.insights.watch(5.0, whole=True)
-    insight = watched.lives(1.0)[0]
+    watched.reporter.watch(5.0, whole=True)
+    diagnostics = watched.lives(1.0)[0]
     line = TraceLine(cycle=1, kind="chose", text="ä" * 300)
-    large = insight.model_copy(update={"trace": (line,) * MOST_LINES, "came": ("ö" * 300,) * 400})
+    large = diagnostics.model_copy(update={"trace": (line,) * MOST_LINES, "came": ("ö" * 300,) * 400})
     bounded = within_bounds(large)
-    assert len(bounded.model_dump_json().encode()) <= MAX_INSIGHT_BYTES
+    assert len(bounded.model_dump_json().encode()) <= MAX_DIAGNOSTICS_BYTES
     assert len(bounded.trace) + bounded.left_out.trace == MOST_LINES
     assert len(bounded.came) + bounded.left_out.beliefs == 400
-    assert insight.left_out == LeftOut()
+    assert diagnostics.left_out == LeftOut()
 
 
 async def test_the_link_hears_of_a_watch_and_sends_one_insight_after_the_other(
     tmp_path: Path, watched: WatchedRobot
 ) -> None:
-    watched.insights.watch(5.0, whole=True)
-    insight = watched.lives(1.0)[0]
+    watched.reporter.watch(5.0, whole=True)
+    diagnostics = watched.lives(1.0)[0]
     with Store(tmp_path / "link.db") as store:
         robot = Robot(store, Outbox(store), Memory(store))
         async with playing() as server, robot.linked(server.url) as link:
             heard: list[Watch] = []
             link.on_watch = heard.append
-            assert not link.has_room_for_insight(), "no service is connected yet"
+            assert not link.has_room_for_diagnostics(), "no service is connected yet"
             await until(lambda: link.online)
             await server.send(Watch(for_s=30.0, whole=True))
             await until(lambda: heard == [Watch(for_s=30.0, whole=True)])
@@ -166,11 +168,11 @@ async def test_the_link_hears_of_a_watch_and_sends_one_insight_after_the_other(
             def make() -> Diagnostics:
                 assert looked.wait(5)
                 made_in.append(threading.current_thread().name)
-                return insight
+                return diagnostics
 
-            link.tell_insight(make)
-            assert not link.has_room_for_insight()
+            link.tell_diagnostics(make)
+            assert not link.has_room_for_diagnostics()
             looked.set()
-            await until(lambda: server.types()[-1] == "insight" and link.has_room_for_insight())
-            assert server.heard[-1].body == insight
+            await until(lambda: server.types()[-1] == "insight" and link.has_room_for_diagnostics())
+            assert server.heard[-1].body == diagnostics
             assert made_in == ["link"], "the mind does not wait until it is written down"

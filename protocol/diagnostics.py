@@ -6,7 +6,7 @@ from pydantic import Field, StringConstraints
 
 from protocol.parts import Identifier, Moment, Part, Seq
 
-MAX_INSIGHT_BYTES: Final = 48 * 1024
+MAX_DIAGNOSTICS_BYTES: Final = 48 * 1024
 """Of the body as JSON. What has no room is left out, and how much that was is said."""
 
 Text = Annotated[str, StringConstraints(max_length=300)]
