@@ -15,7 +15,7 @@ from itertools import islice
 from math import inf
 from queue import SimpleQueue
 from threading import Thread
-from time import monotonic
+from time import monotonic, thread_time
 from typing import Any, Final, TypeVar
 from weakref import finalize
 
@@ -32,7 +32,7 @@ T = TypeVar("T")
 
 DRIVER: Final = "sqlite+campus"
 SHORT_S: Final = 0.001
-"""Real seconds that a query may take on the event loop."""
+"""Seconds of processor time that a query may take on the event loop."""
 INSTRUCTIONS: Final = 2_000
 """Instructions of SQLite's virtual machine between two looks at the time: some 50 µs."""
 SHORT_ROWS: Final = 100
@@ -135,13 +135,13 @@ class Connection(sqlite3.Connection):
         return answer
 
     def _patiently(self, statement: str, wait_s: float, what: Callable[[], T]) -> T:
-        begun_s = monotonic()
+        begun_s = thread_time()
         self._execute(f"PRAGMA busy_timeout={wait_s * 1e3:.0f}")
         try:
             return self._in_turn(what)
         finally:
             self._execute("PRAGMA busy_timeout=0")
-            if monotonic() - begun_s < SHORT_S / 4:
+            if thread_time() - begun_s < SHORT_S / 4:
                 self._long.discard(statement)
 
     def _in_turn(self, what: Callable[[], T], limit_s: float = inf) -> T:
@@ -155,8 +155,8 @@ class Connection(sqlite3.Connection):
             self._has_begun = self.in_transaction
         if limit_s == inf:
             return what()
-        late_s = monotonic() + limit_s
-        self.set_progress_handler(lambda: monotonic() > late_s, INSTRUCTIONS)
+        late_s = thread_time() + limit_s
+        self.set_progress_handler(lambda: thread_time() > late_s, INSTRUCTIONS)
         try:
             return what()
         finally:  # in the thread it would wait for the interpreter each time
