@@ -14,8 +14,8 @@ def settings(settings: Settings) -> Settings:
     return Settings(**settings.model_dump() | {"android_package": "a.b_2", "android_fingerprints": FINGERPRINTS})
 
 
-def test_the_app_and_each_certificate_it_may_be_signed_with_are_named(nobody: TestClient) -> None:
-    answer = nobody.get(ASSET_LINKS)
+def test_the_app_and_each_certificate_it_may_be_signed_with_are_named(anonymous: TestClient) -> None:
+    answer = anonymous.get(ASSET_LINKS)
     assert (answer.status_code, answer.headers["content-type"]) == (200, "application/json")
     (statement,) = answer.json()
     assert statement == {

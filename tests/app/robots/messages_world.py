@@ -198,7 +198,7 @@ class World:
             first, then = (*first, *(leg for leg in others if leg != legs[0])), ()
         request = ReservationRequest(f"c{next(self._numbers)}", first, goal, then)
         robot.asked = request.claim_id
-        self._say(robot, lambda: setattr(self.rows[robot.name], "wish", request))
+        self._say(robot, lambda: setattr(self.rows[robot.name], "request", request))
 
     # What goes wrong.
 
