@@ -15,7 +15,7 @@ import pytest
 from tests.own_checkout import CHECKOUT
 from tests.system.rig import free_port, wait_for
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.timeout(400)]
 
 HARDWARE = {"opencv-python-headless", "pyserial", "gpiozero", "zxing-cpp", "numpy"}
 STYLES = "/src/styles/everywhere.css"

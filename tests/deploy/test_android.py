@@ -153,7 +153,8 @@ def test_the_package_opens_the_host_and_says_that_it_belongs_to_it(built: Built)
 @needs(*TOOLS)
 def test_what_is_printed_is_what_the_service_answers_with_the_printed_settings(built: Built) -> None:
     assert f"CAMPUS_MAIL_ANDROID_PACKAGE={PACKAGE}\n" in built.printed
-    assert json.loads(built.printed[built.printed.index("\n[") :]) == statements(PACKAGE, [built.fingerprint])
+    printed, _ = json.JSONDecoder().raw_decode(built.printed[built.printed.index("\n[") + 1 :])
+    assert printed == statements(PACKAGE, [built.fingerprint])
     assert "not been tried on a phone" in built.printed
 
 

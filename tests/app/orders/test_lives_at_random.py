@@ -27,9 +27,8 @@ from tests.app.orders.what_holds import ENDED, Record, how_it_ended
 
 POSTS = ("post1", "post2", "post3", "post4", "post5")
 ROBOTS = st.sampled_from(("r1", "r2"))
-LUCK = st.sampled_from(
-    ("sets out", "arrives", "no way", "no person comes", "sender", "sender", "recipient", "mailroom")
-)
+TURNS = ("sets out", "arrives", "no way", "no person comes", "sender", "sender", "recipient", "mailroom")
+LUCK = st.sampled_from(TURNS)
 WAY = {
     "a robot is told": (),
     "it sets out": ("sets out",),
@@ -52,7 +51,6 @@ WISH = st.sampled_from(WISHES)
 ORDERS = 5
 ORDER = st.integers(0, ORDERS - 1)
 ROUNDS_TO_THE_END = 25
-
 
 folder = tempfile.TemporaryDirectory(prefix="lives-")
 
