@@ -10,6 +10,8 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 from benchmarks.mind.figures import FIGURES
 from benchmarks.mind.ours import Ours
 from benchmarks.mind.report import figure_report
@@ -25,6 +27,7 @@ def run(*arguments: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, cwd=CHECKOUT, env=environment, capture_output=True, text=True, check=False)
 
 
+@pytest.mark.slow
 def test_a_quick_run_has_every_figure_of_ours_and_says_why_the_others_are_missing(tmp_path: Path) -> None:
     finished = run("--quick", "--alone", "--folder", str(tmp_path))
     assert finished.returncode == 0, finished.stderr

@@ -48,6 +48,7 @@ def test_every_part_can_be_loaded_and_says_what_is_wanted_of_it(name: str) -> No
 @pytest.mark.parametrize(
     ("part", "arguments"), [("vision", ("--seeds", "1")), ("stops", ("--seeds", "1")), ("hour", ("--hour-s", "60"))]
 )
+@pytest.mark.slow
 def test_a_part_measures_every_figure_that_it_is_judged_by(
     part: str, arguments: tuple[str, ...], tmp_path: Path
 ) -> None:
@@ -87,6 +88,7 @@ def test_what_was_not_measured_is_not_met() -> None:
     assert lines[2].split() == ["halves:", "speed.slowest", "1", "≥", "2", "mm/s", "MISSED"]
 
 
+@pytest.mark.slow
 def test_our_run_on_the_papers_track_is_logged_and_drawn(tmp_path: Path) -> None:
     ours = contenders(None)
     log = logged(ours[0], seed=1)
@@ -129,6 +131,7 @@ def test_the_perception_period_is_that_of_the_body_and_not_of_the_mind() -> None
 
 
 @pytest.mark.skipif(not PAPERS_PROGRAM.exists(), reason="the paper's program lies in ../shared, which is absent")
+@pytest.mark.slow
 def test_the_papers_program_is_logged_in_the_papers_words_and_a_lost_mission_is_said() -> None:
     paper = next(one for one in contenders(PAPERS_PROGRAM) if one.name == "paper_lead")
     log = logged(paper, seed=1, limit_s=75)

@@ -146,6 +146,7 @@ async def test_a_statement_that_is_cancelled_goes_to_its_end(database: Database)
 
 
 @pytest.mark.parametrize("after_s", [0.3, 0.5])
+@pytest.mark.slow
 async def test_a_kill_in_the_middle_loses_nothing_that_was_told(tmp_path: Path, after_s: float) -> None:
     file = tmp_path / "words.sqlite"
     with sqlite3.connect(file) as connection:

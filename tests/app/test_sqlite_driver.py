@@ -54,6 +54,7 @@ async def words(connection: AsyncConnection) -> list[str]:
     return list((await connection.scalars(select(WORDS.c.word).order_by(WORDS.c.id))).all())
 
 
+@pytest.mark.slow
 async def test_a_short_query_stays_on_the_event_loop_however_often_it_is_asked(database: Database) -> None:
     """SQLite counts the steps of a statement over all of its runs."""
     async with database.asking() as connection:

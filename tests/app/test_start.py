@@ -97,6 +97,7 @@ async def test_the_first_migration_can_be_undone(settings: Settings) -> None:
 
 
 @sqlite_alone
+@pytest.mark.slow
 def test_a_database_of_a_newer_version_is_refused_and_left_alone(settings: Settings) -> None:
     asyncio.run(migrate(settings))
     file = settings.data / "campus-mail.sqlite"
@@ -270,6 +271,7 @@ def test_a_command_that_the_database_fails_says_so_and_changes_nothing(settings:
 
 
 @sqlite_alone
+@pytest.mark.slow
 def test_a_first_start_on_a_full_disk_says_that_it_is_full(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("CAMPUS_MAIL_DATA", str(tmp_path / "data"))
     ran = _with_files_no_larger_than(100_000, [sys.executable, "-m", "app", "migrate"])

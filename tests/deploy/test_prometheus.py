@@ -62,6 +62,7 @@ def _expressions() -> list[str]:
     return [target["expr"] for panel in _panels() for target in panel.get("targets", ())]
 
 
+@pytest.mark.slow
 def test_each_metric_in_the_rules_and_the_dashboard_is_exported(exported: set[str]) -> None:
     for text in (RULES.read_text(), *_expressions()):
         named = set(re.findall(r"campus_mail_\w+", text))

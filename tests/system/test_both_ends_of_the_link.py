@@ -159,6 +159,7 @@ async def rows(database: Database, table: Any) -> list[Any]:
         return list((await session.exec(select(table))).all())
 
 
+@pytest.mark.slow
 async def test_over_a_wire_that_breaks_again_and_again_every_message_arrives_once_and_in_order(
     settings: Settings, store: Store
 ) -> None:

@@ -46,6 +46,7 @@ async def sign_in_there(visitor: Visitor, subject: str) -> Page:
     return page
 
 
+@pytest.mark.slow
 async def test_a_person_comes_in_by_their_campus_account(visit, campus):
     tell_of(campus.issuer, "ada", email="ada@campus.example", email_verified=True, name="Ada Lovelace")
     page = await sign_in_there(await visit("ada", at=campus.service, signed_in=False), "ada")

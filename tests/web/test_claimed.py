@@ -30,6 +30,7 @@ async def carries_and_claims(robot: PlayedRobot, ada: Visitor, order_id: str) ->
     await robot.ends(await robot.say(robot.receipt(stops[StopAction.RECEIVE], how="code")))
 
 
+@pytest.mark.slow
 async def test_a_claim_is_shown_as_one_until_a_dispatcher_has_asked(quiet_campus: Campus, visit) -> None:
     dana = await quiet_campus.dispatcher(visit)
     ada = await visit("ada.king", at=quiet_campus.service)

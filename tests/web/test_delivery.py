@@ -110,6 +110,7 @@ async def is_told(person: Visitor, titles: Sequence[str]) -> None:
     assert [n for _, n in sorted(order_of)] == list(range(len(titles)))
 
 
+@pytest.mark.slow
 async def test_two_people_and_a_robot_ordered_loaded_by_code_followed_received_by_code_and_both_told(
     demonstration, visit
 ):
@@ -312,6 +313,7 @@ async def test_a_delegate_digits_a_longer_wait_and_not_now(demonstration, visit)
     await bob.assert_accessible()
 
 
+@pytest.mark.slow
 async def test_a_recipient_without_account_takes_the_letter_by_the_link_in_the_mail(demonstration, visit):
     ada = await visit("ada.king", at=demonstration.service)
     guest = await visit("grace.hill", on="phone", at=demonstration.service, signed_in=False)

@@ -69,23 +69,27 @@ def name_of(person: Visitor) -> str:
     return person.email.partition("@")[0]
 
 
+@pytest.mark.slow
 async def test_a_person_who_is_not_signed_in(visit, campus):
     ada = await visit(at=campus.service, signed_in=False, reduced_motion="reduce")
     await look_at_all(ada, states.signing_in(ada))
 
 
 @pytest.mark.parametrize("led", [states.ordering, states.reading_mail, states.reading_notices, states.settling])
+@pytest.mark.slow
 async def test_pages_for_everybody(visit, campus, led):
     ada = await visit("ada.king", at=campus.service, reduced_motion="reduce")
     await look_at_all(ada, led(ada))
 
 
 @pytest.mark.parametrize("led", [states.following, states.at_the_robot])
+@pytest.mark.slow
 async def test_a_letter_followed(visit, campus, led):
     ada = await visit("ada.king", at=campus.service, reduced_motion="reduce")
     await look_at_all(ada, led(ada, await campus.order_of(name_of(ada), "bob.martin", "at_sender")))
 
 
+@pytest.mark.slow
 async def test_one_order_without_account(visit, campus):
     guest = await visit("grace.hopper", at=campus.service, signed_in=False, reduced_motion="reduce")
     await campus.order_of("bob.martin", name_of(guest), "at_recipient")
@@ -95,6 +99,7 @@ async def test_one_order_without_account(visit, campus):
 @pytest.mark.parametrize(
     "led", [states_of_staff.dispatching, states_of_staff.working_at_the_desk, states_of_staff.on_a_quiet_day]
 )
+@pytest.mark.slow
 async def test_the_mailroom(visit, campus, led):
     dana = await campus.staff(visit)
     await look_at_all(dana, led(dana))
@@ -105,6 +110,7 @@ async def test_what_is_printed_and_the_wall(visit, campus):
     await look_at_all(dana, states_of_staff.printing(dana, campus.orders[0]))
 
 
+@pytest.mark.slow
 async def test_the_robots(visit, campus):
     mira = await campus.staff(visit)
     async with a_robot_that_tells(campus.service):
@@ -132,6 +138,7 @@ EVERY_PAGE += (
 )
 
 
+@pytest.mark.slow
 async def test_every_page_speaks_french_stands_still_and_lets_a_keyboard_through(visit, campus):
     dana = await campus.staff(visit, locale="fr-CA")
     order_id = await campus.order_of(name_of(dana), "bob.martin", "at_sender")

@@ -76,6 +76,7 @@ async def open_all(page: Page) -> None:
     await page.evaluate("document.querySelectorAll('main details').forEach((one) => (one.open = true))")
 
 
+@pytest.mark.slow
 async def test_one_word_of_190_letters_stays_within_every_page_that_shows_it(campus, visit):
     dana = await named(await campus.dispatcher(visit, **NARROW), LONG_NAME)
     order = await dana.order(dana.email, what=LONG)

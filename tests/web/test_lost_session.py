@@ -135,6 +135,7 @@ FORMS = {
 
 
 @pytest.mark.parametrize("name", FORMS)
+@pytest.mark.slow
 async def test_what_was_refused_is_done_by_one_tap_after_signing_in_in_place(visit, name):
     ada, form = await visit("ada.king", on="phone"), FORMS[name]
     await goes_on(ada, form)
@@ -206,6 +207,7 @@ async def test_a_refused_order_waits_in_sight_and_goes_out_once_with_its_key_at_
     assert await ordered(ada) == ["Ghost"] and len(keys) == 2 and len(set(keys)) == 1
 
 
+@pytest.mark.slow
 async def test_at_the_desk_an_order_that_was_refused_goes_on_over_its_own_dialog(quiet_campus, visit):
     dana = await quiet_campus.dispatcher(visit)
     page, keys = dana.page, placings(dana.context)
@@ -244,6 +246,7 @@ async def test_a_command_to_a_robot_that_was_refused_is_given_at_one_tap(quiet_c
     assert (await robot.hear("pause")).body.reason == "A parade"
 
 
+@pytest.mark.slow
 async def test_one_sign_in_is_enough_for_all_tabs_and_each_goes_on_where_it_was(strict, visit):
     ada = await visit("ada.king", at=strict)
     first, second = ada.page, await ada.new_page()
@@ -342,6 +345,7 @@ def campus(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Service, 
             yield service, issuer
 
 
+@pytest.mark.slow
 async def test_the_campus_sign_in_opens_beside_the_form_which_goes_on(campus, visit):
     service, issuer = campus
     ada = await visit("ada.king", at=service)

@@ -169,6 +169,7 @@ async def test_an_order_for_a_person_at_the_desk_is_placed_by_keyboard_and_print
         await expect(for_phones).to_be_hidden()
 
 
+@pytest.mark.slow
 async def test_everything_that_is_wrong_has_its_next_action(busy_campus, visit, tmp_path: Path):
     dana = await busy_campus.dispatcher(visit)
     page = dana.page

@@ -63,6 +63,7 @@ class Streams:
         return [page for request in self.open if not (page := request.frame.page).is_closed()]
 
 
+@pytest.mark.slow
 async def test_twelve_tabs_share_one_stream_and_each_of_them_works(quiet_campus, robot, visit):
     dana = await quiet_campus.dispatcher(visit)
     await give_roles(quiet_campus.service, dana.email, Role.DISPATCHER, Role.MAINTAINER)

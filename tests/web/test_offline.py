@@ -99,6 +99,7 @@ async def sign_out(page: Page) -> None:
     await expect(page.get_by_label("Email address")).to_be_visible()
 
 
+@pytest.mark.slow
 async def test_in_a_tunnel_pages_open_an_order_is_kept_and_it_is_sent_once_when_there_is_a_network(visit):
     ada = await come_with_worker(visit, "ada.king")
     page = ada.page
@@ -266,6 +267,7 @@ async def the_screen_stays_on_while_it_is_seen(page: Page) -> None:
     await page.wait_for_function(held, arg=0)
 
 
+@pytest.mark.slow
 async def test_a_code_is_at_hand_in_the_tunnel_though_its_page_was_never_opened_and_gone_with_the_order(
     visit, own_service: Service
 ):
@@ -294,6 +296,7 @@ async def test_a_code_is_at_hand_in_the_tunnel_though_its_page_was_never_opened_
         assert not [address for address in await page.evaluate(KEPT_ANSWERS) if "code" in address]
 
 
+@pytest.mark.slow
 async def test_a_new_version_waits_for_a_tap_and_open_pages_go_on_with_their_own_files(
     visit, own_service: Service, own_pages: Path
 ):

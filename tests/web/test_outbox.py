@@ -48,6 +48,7 @@ async def opened_again(page: Page) -> None:
     await expect(page.get_by_role("region", name=KEPT)).to_be_visible()
 
 
+@pytest.mark.slow
 async def test_an_order_that_was_refused_for_its_lost_session_is_shown_and_waits_for_its_persons_word(visit):
     ada = await visit("ada.king", on="phone")
     page, kept = ada.page, ada.page.get_by_role("region", name=KEPT)

@@ -94,6 +94,7 @@ async def assert_fits_and_is_accessible(page: Page) -> None:
     assert await page.evaluate(SMALL_TARGETS) == []
 
 
+@pytest.mark.slow
 async def test_a_maintainer_watches_a_driving_robot_holds_the_view_filters_and_takes_the_run_away(
     tunnel, daemon, visit, tmp_path: Path
 ):

@@ -71,6 +71,7 @@ async def staff(campus: Campus, visit: Any, **options: Any) -> Visitor:
 
 
 @pytest.mark.parametrize("size", [DESK, NARROW], ids=["desk", "phone"])
+@pytest.mark.slow
 async def test_the_header_stands_at_the_same_place_on_every_page(quiet_campus, visit, size):
     dana = await staff(quiet_campus, visit, viewport=size)
     order_id = await dana.order("bob.martin@campus.example")

@@ -59,6 +59,8 @@ class Visitor:
     async def __aexit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
+        for page in self.context.pages:
+            await page.unroute_all(behavior="ignoreErrors")  # what a route still fetches is not the test's any more
         await self.context.close()
         if error is None:
             assert not self.complaints, f"the browser of {self.email} complains: {self.complaints}"

@@ -3,6 +3,7 @@
 from dataclasses import replace
 from random import Random
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -54,6 +55,7 @@ def decided(problem: AssignmentProblem) -> Decision:
 
 @settings(max_examples=60)
 @given(st.randoms(use_true_random=False), st.integers(1, 5), st.integers(1, 3), st.integers(0, 1))
+@pytest.mark.slow
 def test_every_order_is_fetched_and_given_by_one_robot_that_never_has_too_much(
     rng: Random, robots: int, capacity: int, ahead: int
 ) -> None:

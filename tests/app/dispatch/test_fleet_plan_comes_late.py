@@ -95,6 +95,7 @@ class Campus:
 
 
 @pytest.mark.parametrize("seed", range(40))
+@pytest.mark.slow
 def test_whatever_happens_meanwhile_the_traffic_stays_sound(seed: int) -> None:
     campus = Campus(Random(seed), [f"r{number}" for number in range(1 + seed % 5)])
     for _ in range(25):

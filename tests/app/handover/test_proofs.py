@@ -240,6 +240,7 @@ async def test_a_faulty_robot_two_corridors_away_is_not_believed_even_with_the_c
     assert (await campus.service.row(Alarm, name=CLAIMED)).post == "post4"
 
 
+@pytest.mark.slow
 async def test_digits_never_reach_a_robot_nor_can_be_found_from_what_does(campus: Campus) -> None:
     await begin(campus)
     await load(campus)

@@ -125,6 +125,7 @@ async def test_what_a_full_mailbox_did_not_take_goes_out_after_the_next_start(se
     assert (service.left, service.kept, len(service.mail_server.taken)) == (0, 0, 1)
 
 
+@pytest.mark.slow
 async def test_what_waits_for_its_next_try_is_tried_once_more_before_the_end(service: Service) -> None:
     service.mail_server.says = [FULL]
     async with service.running() as client:
@@ -132,6 +133,7 @@ async def test_what_waits_for_its_next_try_is_tried_once_more_before_the_end(ser
     assert (service.left, service.kept, len(service.mail_server.taken)) == (0, 0, 1)
 
 
+@pytest.mark.slow
 async def test_a_mail_server_that_hangs_holds_up_no_end_and_loses_nothing(service: Service) -> None:
     service.mail_server.hangs = True
     async with service.running() as client:
@@ -141,6 +143,7 @@ async def test_a_mail_server_that_hangs_holds_up_no_end_and_loses_nothing(servic
     assert (service.left, service.kept) == (1, 1)
 
 
+@pytest.mark.slow
 async def test_a_code_that_is_no_good_any_more_is_not_mailed(service: Service) -> None:
     service.mail_server.says = [FULL] * MANY
     async with service.running() as client:

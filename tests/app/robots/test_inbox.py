@@ -3,6 +3,7 @@
 import asyncio
 from datetime import UTC, datetime
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from sqlmodel import SQLModel, select
@@ -47,6 +48,7 @@ async def everything_taken(arriving: list[tuple[str, int]]) -> tuple[list[tuple[
 
 @settings(max_examples=40)
 @given(arrivals)
+@pytest.mark.slow
 def test_each_message_is_new_once_and_journals_do_not_mix(arriving: list[tuple[str, int]]) -> None:
     new, kept = asyncio.run(everything_taken(arriving))
     assert sorted(new) == sorted(kept)

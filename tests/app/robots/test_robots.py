@@ -108,6 +108,7 @@ async def test_the_token_of_one_robot_opens_no_other(service: Service, clock: St
         assert await token_of(session, f"Bearer {mixed}") is None
 
 
+@pytest.mark.slow
 async def test_the_command_prints_the_token_once_and_says_what_is_wrong_in_words(settings: Settings) -> None:
     env = {**environ, "CAMPUS_MAIL_DATA": str(settings.data), "PYTHONPATH": str(ROOT)}
 

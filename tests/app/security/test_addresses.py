@@ -48,6 +48,7 @@ def test_an_address_that_hides_another_is_refused_wherever_one_is_typed(
 
 @hypothesis_settings(max_examples=300, deadline=None, derandomize=True)
 @given(address=from_regex(EMAIL, fullmatch=True).filter(lambda text: len(text) <= MAX_EMAIL))
+@pytest.mark.slow
 def test_on_the_wire_and_in_the_envelope_stands_what_was_typed(address: str) -> None:
     message = message_of(
         Mail("key", address, "Subject", "Body", datetime(2026, 1, 5, tzinfo=UTC)), "mail@campus.example"

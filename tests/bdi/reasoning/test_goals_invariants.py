@@ -1,6 +1,7 @@
 """Random programs that suspend, resume, drop, succeed and fail each other's goals: every started
 action is finished or cancelled exactly once, and nothing of a goal that is over stays behind."""
 
+import pytest
 from hypothesis import HealthCheck, given, note, settings
 from hypothesis import strategies as st
 
@@ -114,6 +115,7 @@ def check(agent: Agent, body: Body) -> None:
 
 @settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(programs(), st.lists(st.tuples(st.integers(0, 5), st.integers(0, 3)), min_size=5, max_size=40))
+@pytest.mark.slow
 def test_whatever_goals_do_to_each_other_nothing_is_lost_or_left(program: str, fates: list[tuple[int, int]]) -> None:
     note(program)
     agent = Agent(parse_program(program), name="r1")

@@ -105,6 +105,7 @@ def test_killed_on_the_way_with_mail_it_wakes_up_knowing_and_delivers(tmp_path: 
     assert told == PROGRESS
 
 
+@pytest.mark.slow
 def test_killed_while_it_waits_for_the_sender_it_goes_on_waiting_there(tmp_path: Path) -> None:
     first = SimulatedRun(tmp_path, start="post2:post1")
     first.given_a_letter()

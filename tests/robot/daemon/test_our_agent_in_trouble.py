@@ -186,6 +186,7 @@ def test_somebody_who_does_not_make_way_closes_the_corridor(run: SimulatedRun) -
     assert len(told) % 2 == 0 and len(told) >= 2, "each time that it is closed is told to be over, too"
 
 
+@pytest.mark.slow
 def test_a_robot_that_waits_for_a_way_goes_at_once_when_somebody_says_that_it_is_open(run: SimulatedRun) -> None:
     service = with_service(run)
     run.robot.world.obstacles.append(Person(1.0, 2.0))
@@ -222,6 +223,7 @@ def test_where_there_is_another_way_it_goes_round_a_closed_corridor(tmp_path: Pa
     again.close()
 
 
+@pytest.mark.slow
 def test_a_stop_from_the_service_holds_until_resume_and_the_mission_goes_on(run: SimulatedRun) -> None:
     service = with_service(run)
     run.given_a_letter()
@@ -237,6 +239,7 @@ def test_a_stop_from_the_service_holds_until_resume_and_the_mission_goes_on(run:
     assert run.told().count("answer ") == 2
 
 
+@pytest.mark.slow
 def test_a_robot_whose_corridors_others_have_got_stands_until_a_marker_tells_it_where_it_is(run: SimulatedRun) -> None:
     service = with_service(run)
     run.given_a_letter()
@@ -282,6 +285,7 @@ def test_switched_on_after_a_long_time_it_hears_first_whose_its_corridors_are(tm
     second.close()
 
 
+@pytest.mark.slow
 def test_pressing_spot_twice_loads_but_never_hands_out(run: SimulatedRun) -> None:
     run.given_a_letter()
     run.until(lambda: run.waits_for("wait_handover(load"))

@@ -89,6 +89,7 @@ def test_a_sleeping_base_is_woken_by_brc(on_pty: OnPty):
     assert on_pty.base.state is not None and on_pty.now - on_pty.base.state.at_s < 0.1
 
 
+@pytest.mark.slow
 def test_kept_polled_it_does_not_fall_asleep(on_pty: OnPty):
     for _ in range(400):
         on_pty.run(TICK_S)

@@ -98,6 +98,7 @@ def test_the_dock_agrees_with_a_marker_that_was_not_believed(walk: Walk) -> None
     assert "foreign_marker" not in walk.missions.held.faults
 
 
+@pytest.mark.slow
 def test_a_robot_that_drives_stops_at_no_code_of_a_stranger(run: SimulatedRun) -> None:
     run.asks("", "visit(post2)")
     run.until(lambda: run.is_at("post3") and run.robot.pose.x_m < 1.3)

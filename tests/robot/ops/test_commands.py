@@ -155,6 +155,7 @@ def test_a_stop_without_a_daemon_goes_to_the_base_itself(tmp_path: Path) -> None
     assert "written to the base" in ran.output
 
 
+@pytest.mark.slow
 def test_a_daemon_that_is_killed_is_no_longer_there_to_be_asked(tmp_path: Path) -> None:
     daemon = Daemon(tmp_path)
     daemon.until("Driving")

@@ -71,6 +71,7 @@ def test_every_fault_of_the_table_happens_here() -> None:
 
 
 @pytest.mark.parametrize("name", STOPPING)
+@pytest.mark.slow
 def test_from_the_cause_to_wheels_that_stand_it_takes_no_longer_than_the_table_says(moving: Moving, name: str) -> None:
     row, (happens, _) = ROWS[name], CAUSES[name]
     moving.sets_off()
@@ -86,6 +87,7 @@ def test_from_the_cause_to_wheels_that_stand_it_takes_no_longer_than_the_table_s
 
 
 @pytest.mark.parametrize("name", TELLING)
+@pytest.mark.slow
 def test_what_is_only_told_leaves_the_robot_driving(moving: Moving, name: str) -> None:
     happens, is_over = CAUSES[name]
     moving.sets_off()
@@ -99,6 +101,7 @@ def test_what_is_only_told_leaves_the_robot_driving(moving: Moving, name: str) -
 
 
 @pytest.mark.parametrize("name", SELF_CLEARING)
+@pytest.mark.slow
 def test_when_the_cause_is_gone_it_drives_on_as_soon_as_the_table_says(moving: Moving, name: str) -> None:
     row, (happens, is_over) = ROWS[name], CAUSES[name]
     moving.sets_off()

@@ -36,6 +36,7 @@ def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder / "run.gz"
 
 
+@pytest.mark.slow
 def test_the_recording_has_the_truth_the_beliefs_and_the_people(recording):
     rows = read_recording(recording)
     states = [row for row in rows if row["kind"] == "state"]
@@ -86,6 +87,7 @@ def command(*arguments: str) -> subprocess.CompletedProcess[str]:
     )
 
 
+@pytest.mark.slow
 def test_the_command_says_by_its_status_whether_the_expectation_held(tmp_path):
     path = tmp_path / "short.toml"
     path.write_text('limit_s = 3\n[[order]]\nid = "o1"\nfrom = "post1"\nto = "post4"\n')

@@ -1,5 +1,6 @@
 """Whatever bytes a host sends, the byte machine neither breaks nor stays deaf for ever."""
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -17,6 +18,7 @@ chunks = st.lists(st.one_of(opcodes, st.binary(max_size=8)), max_size=30).map(b"
 
 @settings(max_examples=150, deadline=None)
 @given(st.lists(chunks, max_size=5))
+@pytest.mark.slow
 def test_after_any_bytes_the_robot_can_be_started_again(lines):
     robot = SimulatedRobot(builtin_map("test_track"), 0.0, "post1:post2", in_memory=True)
     port = robot.memory_port()

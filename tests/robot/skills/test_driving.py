@@ -24,6 +24,7 @@ def follow(drive: Drive, leaving: str | None) -> FollowLine:
 
 
 @pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.slow
 def test_it_drives_from_post1_to_post4_and_stops_at_every_post(drive: Make, seed: int):
     robot = drive("post1:post2", seed=seed)
     way = [("post1", "post2", math.pi / 2), ("post2", "post3", -math.pi / 2), ("post3", "post4", math.pi)]
@@ -39,6 +40,7 @@ def test_it_drives_from_post1_to_post4_and_stops_at_every_post(drive: Make, seed
     assert not [speeds for speeds in robot.sent if any(0 < abs(wheel) < 30 for wheel in speeds)]
 
 
+@pytest.mark.slow
 def test_it_leaves_the_dock_and_docks_again(drive: Make):
     robot = drive("dock", battery_ratio=0.5)
     assert robot.do(Undock(robot.shape)) == Done()
@@ -54,6 +56,7 @@ def test_it_leaves_the_dock_and_docks_again(drive: Make):
     assert robot.robot.docked, "and it stays in the dock"
 
 
+@pytest.mark.slow
 def test_a_dock_without_power_is_given_up_after_the_last_try(drive: Make):
     robot = drive("post5:post3")
     robot.robot.place(Pose(2.0, 4.0, math.pi / 2))
@@ -63,6 +66,7 @@ def test_a_dock_without_power_is_given_up_after_the_last_try(drive: Make):
     assert robot.loop.view.sent == STOP
 
 
+@pytest.mark.slow
 def test_a_firmware_that_sees_no_dock_roams_no_farther_than_the_room_of_the_post(drive: Make):
     robot = drive("post5:post3")
     robot.robot.set_fault("dock_beams_off", True)
@@ -87,6 +91,7 @@ def test_bouncing_contacts_are_not_a_failed_dock(drive: Make):
 
 
 @pytest.mark.parametrize("sideways_m", [0.05, -0.12])
+@pytest.mark.slow
 def test_carried_off_the_line_it_finds_it_again_and_goes_on_the_same_way(drive: Make, sideways_m: float):
     robot = drive("post1:post2")
     job = robot.loop.start(follow(robot, "post1"), robot.now)
@@ -98,6 +103,7 @@ def test_carried_off_the_line_it_finds_it_again_and_goes_on_the_same_way(drive: 
     assert robot.loop.view.find_line_episodes >= 1
 
 
+@pytest.mark.slow
 def test_where_there_is_no_line_at_all_it_says_so_and_stands(drive: Make):
     robot = drive("post1:post2")
     robot.robot.place(Pose(-3.0, -3.0, 0.0))
