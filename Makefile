@@ -8,7 +8,7 @@ ARGS ?=
 ALONE_IN = tests/robot tests/system
 
 .DEFAULT_GOAL := help
-.PHONY: help setup setup-develop setup-robot test test-all check licences sbom format demo fleet-demo serve robot bench bench-mind bench-body bench-service bench-paper bench-pages bench-service-kills bench-fleet fuzz-mind client pages icons android screenshots fuzz-api docs pin clean
+.PHONY: help setup setup-develop setup-robot test test-all test-nightly check licences sbom format demo fleet-demo serve robot bench bench-mind bench-body bench-service bench-paper bench-pages bench-service-kills bench-fleet fuzz-mind client pages icons android screenshots fuzz-api docs pin clean
 # A recipe that fails must not leave its stamp behind.
 .DELETE_ON_ERROR:
 
@@ -19,22 +19,29 @@ setup: .venv/.python-ready .venv/.pages-ready ## Make .venv and fetch what runs:
 
 setup-develop: .venv/.develop-ready .venv/.pages-develop-ready ## Fetch what tests, checks and benchmarks need, too (they do this by themselves)
 
-# Two at a time; those that measure real time come after, with nothing beside them.
-BESIDE = --numprocesses 2 --dist worksteal --durations 10
+# Each run imports the same: what was compiled for one is kept for the next, whatever the machine is used to.
+unexport PYTHONDONTWRITEBYTECODE
+# Two for each core, since many of them wait; those that measure real time come after, with nothing beside them.
+BESIDE = --numprocesses 4 --dist worksteal --durations 10
 test: setup-develop .venv/.made-ready ## Run the tests but the slow ones, a real browser among them; ARGS="…" runs what it names
 ifeq ($(ARGS),)
-	$(BIN)/python -m pytest $(BESIDE) -m "not alone and not slow"
-	$(BIN)/python -m pytest -m "alone and not slow" $(ALONE_IN)
+	$(BIN)/python -m pytest $(BESIDE) -m "not alone and not slow and not nightly"
+	$(BIN)/python -m pytest -m "alone and not slow and not nightly" $(ALONE_IN)
 else
 	$(BIN)/python -m pytest $(ARGS)
 endif
 
 ON_POSTGRESQL = tests/app/orders tests/app/dispatch tests/app/robots tests/app/traffic tests/app/cli tests/app/test_database.py \
   tests/app/test_migrations.py
-test-all: setup-develop .venv/.made-ready ## Run every test, the slow ones too, and again on PostgreSQL those that lean on the database
-	$(BIN)/python -m pytest $(BESIDE) -m "not alone"
-	CAMPUS_MAIL_TEST_DATABASE=postgresql $(BIN)/python -m pytest $(BESIDE) -m "not alone" $(ON_POSTGRESQL)
-	$(BIN)/python -m pytest -m alone $(ALONE_IN)
+test-all: setup-develop .venv/.made-ready ## Run the slow tests, too, and on PostgreSQL those that lean on the database: what CI runs
+	$(BIN)/python -m pytest $(BESIDE) -m "not alone and not nightly"
+	CAMPUS_MAIL_TEST_DATABASE=postgresql $(BIN)/python -m pytest $(BESIDE) -m "not alone and not slow and not nightly" $(ON_POSTGRESQL)
+	$(BIN)/python -m pytest -m "alone and not nightly" $(ALONE_IN)
+
+test-nightly: setup-develop .venv/.made-ready ## Run the tests that no change can wait for: whole missions, kills at any moment, every page in every state
+	$(BIN)/python -m pytest $(BESIDE) -m "not alone and nightly"
+	CAMPUS_MAIL_TEST_DATABASE=postgresql $(BIN)/python -m pytest $(BESIDE) -m "not alone and (slow or nightly)" $(ON_POSTGRESQL)
+	$(BIN)/python -m pytest -m "alone and nightly" $(ALONE_IN)
 
 check: setup-develop .venv/.lint-ready .venv/.made-ready ## Format, lint, types, import contracts, types of the pages, the API documents
 	$(BIN)/ruff format --check

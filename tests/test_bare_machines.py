@@ -96,6 +96,7 @@ def test_without_a_browser_the_last_line_counts_what_did_not_run(tmp_path, bare_
     assert last == "NOT RUN: 3 browser tests (no Chromium found: apt install chromium, or set CHROMIUM=/path)"
 
 
+@pytest.mark.slow
 def test_where_a_browser_is_required_its_absence_is_a_failure(tmp_path, bare_machine):
     finished = run_browser_tests(tmp_path, PATH=str(bare_machine), CAMPUS_MAIL_REQUIRE_BROWSER="1")
     assert finished.returncode != 0

@@ -48,7 +48,7 @@ def test_every_part_can_be_loaded_and_says_what_is_wanted_of_it(name: str) -> No
 @pytest.mark.parametrize(
     ("part", "arguments"), [("vision", ("--seeds", "1")), ("stops", ("--seeds", "1")), ("hour", ("--hour-s", "60"))]
 )
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_part_measures_every_figure_that_it_is_judged_by(
     part: str, arguments: tuple[str, ...], tmp_path: Path
 ) -> None:
@@ -88,7 +88,7 @@ def test_what_was_not_measured_is_not_met() -> None:
     assert lines[2].split() == ["halves:", "speed.slowest", "1", "≥", "2", "mm/s", "MISSED"]
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_our_run_on_the_papers_track_is_logged_and_drawn(tmp_path: Path) -> None:
     ours = contenders(None)
     log = logged(ours[0], seed=1)

@@ -44,7 +44,7 @@ def test_a_part_measures_every_figure_that_it_is_judged_by(tmp_path: Path) -> No
 @pytest.mark.parametrize(
     "case", CASES, ids=lambda case: f"{case.ground}-{case.robots}-{case.bays}{'-planner' * case.planner}"
 )
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_no_robot_is_stuck_and_no_order_forgotten_while_robots_die_and_corridors_are_closed(case: Case) -> None:
     """Twelve hours of each; a hundred thousand robot-hours in `make bench-fleet ARGS="never_stuck"`."""
     seen = look_at(Run(case, seed=3, hours=12.0, faults=FAULTS, far=True))

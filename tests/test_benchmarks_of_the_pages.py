@@ -13,7 +13,7 @@ CHECKOUT = Path(__file__).parents[1]
 BOUNDS = {"order": {"transferred_kb": 100, "calls": 5}, "mailroom": {"transferred_kb": 120, "calls": 12}}
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_first_page_transfers_little_asks_for_little_and_moves_nothing() -> None:
     command = [sys.executable, "-m", "benchmarks.pages", *BOUNDS, "--runs", "1", "--json"]
     finished = subprocess.run(command, cwd=CHECKOUT, capture_output=True, text=True, check=False)

@@ -29,7 +29,7 @@ def test_every_part_can_be_loaded_and_says_what_is_wanted_of_it(name: str) -> No
     assert [one.figure for one in part.WANTED if one.at_most is None and one.at_least is None] == []
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_part_measures_every_figure_that_it_is_judged_by() -> None:
     finished = run("followers", "--followers", "3", "--seconds", "1")
     report: dict[str, Any] = json.loads(finished.stdout)["parts"]

@@ -42,7 +42,7 @@ def test_every_command_is_listed_as_its_own_help_begins(program: str) -> None:
 
 
 @pytest.mark.parametrize("demo", ["letter", "fleet"])
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_demonstration_says_what_it_starts_before_it_loads_anything_and_ctrl_c_that_it_stops(demo: str) -> None:
     with subprocess.Popen(
         command("demo", demo, "--json", "--port", "0"), cwd=ROOT, stderr=subprocess.PIPE, text=True

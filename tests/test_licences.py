@@ -46,7 +46,7 @@ def test_every_package_of_ours_names_the_licence() -> None:
     assert "license: Apache-2.0" in (ROOT / "CITATION.cff").read_text()
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_the_bills_name_what_is_shipped_and_nothing_that_cannot_be(tmp_path: Path) -> None:
     with_npm = {**os.environ, "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"}
     subprocess.run([sys.executable, SCRIPT, tmp_path], check=True, capture_output=True, env=with_npm)

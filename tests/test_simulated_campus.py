@@ -18,7 +18,7 @@ from protocol.to_server import Clear, Hello
 
 
 @pytest.mark.parametrize("fleet", ["four_robots", "two_items_each", "long_lasting_packs"])
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_whole_campus_goes_on_for_days_with_faults(fleet: str, tmp_path: Path) -> None:
     """Three days of each; hundreds of them in `make bench-fleet ARGS="campus"`."""
     lived = look_at((fleet, 4, 3.0))
@@ -44,7 +44,7 @@ def test_the_same_seed_is_the_same_campus() -> None:
 
 
 @pytest.mark.parametrize(("seed", "days"), [(5, 0.8), (301, 12.2)])
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_who_has_made_room_in_a_dock_does_not_wait_there_until_the_pack_is_empty(seed: int, days: float) -> None:
     """It did, in these: in a bay that others had to pass, or with no controller that sent it elsewhere."""
     run = CampusRun(seed, FLEETS["two_items_each"], FAULTS)

@@ -15,7 +15,7 @@ import pytest
 from tests.own_checkout import CHECKOUT
 from tests.system.rig import free_port, wait_for
 
-pytestmark = [pytest.mark.slow, pytest.mark.timeout(400)]
+pytestmark = pytest.mark.timeout(400)
 
 HARDWARE = {"opencv-python-headless", "pyserial", "gpiozero", "zxing-cpp", "numpy"}
 STYLES = "/src/styles/everywhere.css"
@@ -74,6 +74,7 @@ class Environment:
                 process.communicate(timeout=20)
 
 
+@pytest.mark.nightly
 def test_a_server_installs_the_service_alone_and_serves_pages_and_api(wheel: Path, tmp_path: Path) -> None:
     server = Environment(tmp_path, wheel, "service")
     assert server.packages() >= OF_THE_SERVICE
@@ -88,6 +89,7 @@ def test_a_server_installs_the_service_alone_and_serves_pages_and_api(wheel: Pat
         assert httpx.get(f"{url}/api/v1/map").status_code in {200, 401}
 
 
+@pytest.mark.slow
 def test_a_robots_computer_installs_the_daemon_alone_and_both_deliver_a_letter(wheel: Path, tmp_path: Path) -> None:
     robot = Environment(tmp_path, wheel, "robot")
     assert not robot.packages() & OF_THE_SERVICE
@@ -102,6 +104,7 @@ def test_a_robots_computer_installs_the_daemon_alone_and_both_deliver_a_letter(w
     assert summary["states"][-1]["state"] == "delivered"
 
 
+@pytest.mark.slow
 def test_the_wheel_carries_the_licences_of_what_it_ships(wheel: Path) -> None:
     names = ZipFile(wheel).namelist()
     assert any(name.endswith("licenses/NOTICE") for name in names)

@@ -69,7 +69,7 @@ def headers_of(everybody: Everybody, who: str) -> dict[str, str]:
 
 # The service's thread in this process draws random numbers too, perhaps just while a case is made.
 @pytest.mark.filterwarnings("ignore:Do not use the `random` module:hypothesis.errors.HypothesisDeprecationWarning")
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_answers_are_as_documented(served: Served, everybody: Everybody, sessions_to_end: list[str]) -> None:
     document = schemathesis.openapi.from_url(f"{served.url}/api/v1/openapi.json")
     operations = [one.ok() for one in document.exclude(path=NEVER_ENDS).get_all_operations()]

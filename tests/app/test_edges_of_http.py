@@ -102,6 +102,7 @@ def test_what_is_for_those_who_work_on_the_pages_is_hidden(served: Served, pages
     assert said(httpx.get(served.url + path)) == (404, "not_found")
 
 
+@pytest.mark.slow
 def test_pages_are_compressed_and_the_api_is_not(served: Served, pages: Path, sender: Browser) -> None:
     text = "<p>Campus Mail</p>" * 100
     (pages / "public/long.html").write_text(text)

@@ -41,6 +41,7 @@ def test_what_is_not_there_is_a_problem_too(
         ("/api/v1/me", "GET, PATCH"),
     ],
 )
+@pytest.mark.slow
 def test_allow_says_what_the_document_says(anonymous: TestClient, path: str, allowed: str) -> None:
     answer = anonymous.options(path)
     assert (answer.status_code, set(answer.headers["Allow"].split(", "))) == (405, set(allowed.split(", ")))

@@ -274,6 +274,7 @@ def test_everybody_may_do_what_is_theirs_and_nothing_else(browser: httpx.Client,
     assert holes == {}
 
 
+@pytest.mark.slow
 def test_a_script_may_do_what_its_scopes_say_and_nothing_else(browser: httpx.Client, everybody: Everybody) -> None:
     """Each scope that opens a route does so alone; all the others together do not."""
     holes = {}

@@ -63,6 +63,7 @@ async def test_a_short_query_stays_on_the_event_loop_however_often_it_is_asked(d
     assert answers == [(5, True)]
 
 
+@pytest.mark.slow
 async def test_a_query_that_takes_long_runs_in_the_thread_and_takes_no_change_with_it(database: Database) -> None:
     async def count() -> Any:
         return (await connection.execute(count_to(2_000_000))).one()

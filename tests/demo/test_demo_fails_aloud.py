@@ -32,7 +32,7 @@ def child(demo: subprocess.Popen[str], package: str, limit_s: float = 60.0) -> p
 
 
 @pytest.mark.parametrize("victim", ["app", "robot"])
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_when_a_process_dies_the_demonstration_says_so_and_stops_the_other(victim: str) -> None:
     command = [sys.executable, "-m", "demo", "letter", "--once", "--json", "--port", str(free_port())]
     demo = subprocess.Popen(command, cwd=INI.parent, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)

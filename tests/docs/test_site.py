@@ -35,7 +35,7 @@ def test_links_hold_in_the_site_and_links_to_code_become_words(before, after):
     assert staging.with_links(before, CHECKOUT / "docs/how-to/drive.md", PLACES) == after
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_the_reference_lists_everything_that_the_code_has():
     pages = reference.pages()
     assert "| `CAMPUS_MAIL_PORT` | `8000` |" in pages["settings.md"]
@@ -51,7 +51,7 @@ def test_the_reference_lists_everything_that_the_code_has():
 
 @pytest.mark.browser
 @pytest.mark.timeout(300)
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_the_site_builds_without_a_warning_and_its_search_works_from_files():
     pytest.importorskip("zensical", reason="make setup-develop installs it")
     built = await asyncio.create_subprocess_exec(

@@ -16,7 +16,7 @@ LONGEST_WORDS = 1000
 @pytest.mark.system
 @pytest.mark.timeout(400)
 @pytest.mark.parametrize("tutorial", TUTORIALS, ids=lambda tutorial: tutorial.stem)
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_the_commands_of_a_tutorial_print_what_it_shows(tutorial, tmp_path):
     ran = list(run(tutorial.read_text(encoding="utf-8"), make_checkout(tmp_path)))
     assert ran

@@ -41,7 +41,7 @@ async def command(*words: str, data: Path) -> Any:
     return json.loads(ran.stdout)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_a_backup_under_load_restores_to_a_sound_database_that_a_service_starts_on(tmp_path: Path) -> None:
     victim = Victim(tmp_path)
     data, over, before = tmp_path / "data", asyncio.Event(), set[str]()

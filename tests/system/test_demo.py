@@ -29,8 +29,13 @@ def demo(*options: str) -> dict[str, Any]:
     return summary
 
 
-@pytest.mark.parametrize("options", [(), ("--low-battery",)], ids=["plain", "low battery"])
-@pytest.mark.slow
+@pytest.mark.parametrize(
+    "options",
+    [
+        pytest.param((), id="plain", marks=pytest.mark.slow),
+        pytest.param(("--low-battery",), id="low battery", marks=pytest.mark.nightly),
+    ],
+)
 def test_the_demo_ends_delivered_with_each_person_told_each_thing_once(options: tuple[str, ...]) -> None:
     summary = demo(*options)
     assert [state["state"] for state in summary["states"]] == WAY
@@ -85,6 +90,7 @@ WHAT_THEY_SEE = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.alone
 @pytest.mark.browser
 def test_a_link_opens_each_page_as_its_person_and_ctrl_c_ends_it_all_in_three_seconds_though_pages_are_open(
@@ -105,7 +111,7 @@ def test_a_link_opens_each_page_as_its_person_and_ctrl_c_ends_it_all_in_three_se
 
 @pytest.mark.skipif(not PAPERS_AGENT.exists(), reason="the paper's program lies in ../shared, which is absent here")
 @pytest.mark.parametrize("battery", [(), ("--battery", "0.26")], ids=["full battery", "low battery on the way"])
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_the_papers_own_program_delivers_on_the_simulated_robot(battery: tuple[str, ...]) -> None:
     command = [sys.executable, "-m", "robot", "--simulated", "--agent", str(PAPERS_AGENT), "--json", *battery]
     command += ["--tell", "dockStation(post5)", "--achieve", "collectAndDeliverMail(post1,post4)"]

@@ -62,7 +62,7 @@ def test_a_letter_is_ordered_loaded_carried_and_received(rig: Rig) -> None:
     letter.assert_delivered_and_each_told_once(letter.receive())
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_half_a_minute_without_network_and_the_letter_is_delivered_all_the_same(rig: Rig) -> None:
     letter = Letter(rig)
     letter.load()
@@ -81,7 +81,7 @@ def test_half_a_minute_without_network_and_the_letter_is_delivered_all_the_same(
     letter.assert_delivered_and_each_told_once(order)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_robot_killed_while_carrying_knows_what_it_carries_and_delivers(rig: Rig) -> None:
     """In the first half of a corridor. What is not mended yet: docs/explanation/driving.md, "After a power cut"."""
     letter = Letter(rig)

@@ -22,7 +22,7 @@ pytestmark = [pytest.mark.system, pytest.mark.timeout(500)]
 COMMAND = [sys.executable, "-m", "demo", "fleet", "--port", "0", "--robots", "2", "--scale", "0.05"]
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_two_robots_of_the_fleet_deliver_an_order_each_and_never_meet() -> None:
     ran = subprocess.run(
         [*COMMAND, "--once", "--json"], cwd=ROOT, capture_output=True, text=True, check=False, timeout=180
@@ -79,6 +79,7 @@ def watched() -> Iterator[Watched]:
     demo.close()
 
 
+@pytest.mark.nightly
 @pytest.mark.alone
 def test_when_a_robot_dies_it_goes_on_until_the_robot_is_back_and_it_ends_when_the_service_dies(
     watched: Watched,

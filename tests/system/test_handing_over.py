@@ -36,7 +36,7 @@ def custody(person: Person, path: str) -> list[tuple[str, str | None]]:
     return [(one["holder"], one["how"]) for one in person.get(path)["custody"]]
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_letter_goes_by_a_tap_and_six_digits_and_is_stopped_on_the_way_from_the_page(rig: Rig) -> None:
     sender, recipient = rig.sign_in(SENDER), rig.sign_in(RECIPIENT)
     desk = rig.sign_in_as(DISPATCHER, "dispatcher")
@@ -69,7 +69,7 @@ def answer_to(desk: Person, command_id: str) -> bool:
     return any(one["command_id"] == command_id and one["accepted"] for one in told)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_delegate_loads_a_revoked_one_does_not_and_what_is_recalled_goes_back_to_its_sender_by_code(rig: Rig) -> None:
     sender = rig.sign_in(SENDER)
     order_id = sender.order("post1", "post4", RECIPIENT)
@@ -98,7 +98,7 @@ def test_a_delegate_loads_a_revoked_one_does_not_and_what_is_recalled_goes_back_
     assert sender.get(path)["custody"][-1]["evidence"] == "proof"
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_robot_with_a_wrong_code_is_not_enrolled_and_is_told_so_in_words(rig: Rig, tmp_path: Path) -> None:
     settings_file = tmp_path / "r2.toml"
     ran = rig.type_code("r2", "AAAA-AAAA", settings_file)

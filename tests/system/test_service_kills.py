@@ -12,7 +12,7 @@ from benchmarks.service_kills.run import Plan, killed
 pytestmark = pytest.mark.system
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_ten_kills_lose_and_double_nothing(tmp_path: Path) -> None:
     plan = Plan(kills=10, senders=4, robots=3, order_pause_s=0.05, longest_s=0.6)
     report = await killed(plan, tmp_path)

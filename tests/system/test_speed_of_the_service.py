@@ -30,6 +30,7 @@ def measured() -> dict[str, Any]:
     return report
 
 
+@pytest.mark.nightly
 @pytest.mark.alone
 @pytest.mark.timeout(360)
 def test_the_service_is_no_slower_than_it_was() -> None:

@@ -99,6 +99,7 @@ async def test_a_page_asks_for_each_answer_once(busy_campus, visit, address):
     await expect(unread).to_have_count(0 if "wall" in address else 1)
 
 
+@pytest.mark.slow
 async def test_a_robot_is_asked_to_tell_once_there_is_a_stream_to_hear_it_by(busy_campus, visit):
     """Diagnostics arrive once: sent before the stream is open they would be lost and requested again."""
     ada = await of_all_trades(busy_campus, visit)
@@ -115,6 +116,7 @@ async def test_a_robot_is_asked_to_tell_once_there_is_a_stream_to_hear_it_by(bus
     assert (await asked.until_quiet())[f"POST {API}robots/r1/watch?anew=true"] == 1
 
 
+@pytest.mark.slow
 async def test_what_is_told_later_is_asked_for_once(busy_campus, visit):
     """The page of the notices and what stands around it show the same answer."""
     ada = await of_all_trades(busy_campus, visit)

@@ -46,13 +46,14 @@ async def sign_in_there(visitor: Visitor, subject: str) -> Page:
     return page
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_a_person_comes_in_by_their_campus_account(visit, campus):
     tell_of(campus.issuer, "ada", email="ada@campus.example", email_verified=True, name="Ada Lovelace")
     page = await sign_in_there(await visit("ada", at=campus.service, signed_in=False), "ada")
     await expect(page.get_by_role("heading", name="Send a letter")).to_be_visible()
 
 
+@pytest.mark.slow
 async def test_a_person_who_is_refused_there_reads_why_and_is_asked_for_an_address(visit, campus):
     tell_of(campus.issuer, "eve", email="eve@campus.example", email_verified=False)
     page = await sign_in_there(await visit("eve", at=campus.service, signed_in=False), "eve")

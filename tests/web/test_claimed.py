@@ -30,7 +30,7 @@ async def carries_and_claims(robot: PlayedRobot, ada: Visitor, order_id: str) ->
     await robot.ends(await robot.say(robot.receipt(stops[StopAction.RECEIVE], how="code")))
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_a_claim_is_shown_as_one_until_a_dispatcher_has_asked(quiet_campus: Campus, visit) -> None:
     dana = await quiet_campus.dispatcher(visit)
     ada = await visit("ada.king", at=quiet_campus.service)
@@ -59,6 +59,7 @@ async def test_a_claim_is_shown_as_one_until_a_dispatcher_has_asked(quiet_campus
         await expect(wrong).to_contain_text("No issues")
 
 
+@pytest.mark.slow
 async def test_what_an_older_robot_tells_is_marked_as_weaker(quiet_campus: Campus, visit) -> None:
     ada = await visit("ada.king", at=quiet_campus.service)
     async with quiet_campus.service.connected("r8", understands=("confirm",)) as robot:

@@ -54,6 +54,7 @@ async def test_a_corridor_that_a_robot_found_closed_is_open_again_when_a_dispatc
     await expect(page.get_by_role("button", name="Post 3 – Post 4 is open")).to_have_count(0)
 
 
+@pytest.mark.slow
 async def test_a_corridor_is_closed_and_opened_and_the_way_of_a_robot_that_stands_is_freed_by_keyboard_alone(
     quiet_campus, robot, visit
 ):

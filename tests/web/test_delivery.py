@@ -198,6 +198,7 @@ def name_suffix(visitor):
     return re.search(r"\.(n\d+)@", visitor.email)[1].capitalize()
 
 
+@pytest.mark.slow
 async def test_a_robot_out_of_reach_is_said_to_be_so_and_its_order_goes_on(demonstration, visit):
     robot = demonstration.title
     ada = await visit("ada.king", at=demonstration.service)
@@ -313,7 +314,7 @@ async def test_a_delegate_digits_a_longer_wait_and_not_now(demonstration, visit)
     await bob.assert_accessible()
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_a_recipient_without_account_takes_the_letter_by_the_link_in_the_mail(demonstration, visit):
     ada = await visit("ada.king", at=demonstration.service)
     guest = await visit("grace.hill", on="phone", at=demonstration.service, signed_in=False)

@@ -76,14 +76,14 @@ async def test_a_person_who_is_not_signed_in(visit, campus):
 
 
 @pytest.mark.parametrize("led", [states.ordering, states.reading_mail, states.reading_notices, states.settling])
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_pages_for_everybody(visit, campus, led):
     ada = await visit("ada.king", at=campus.service, reduced_motion="reduce")
     await look_at_all(ada, led(ada))
 
 
 @pytest.mark.parametrize("led", [states.following, states.at_the_robot])
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_a_letter_followed(visit, campus, led):
     ada = await visit("ada.king", at=campus.service, reduced_motion="reduce")
     await look_at_all(ada, led(ada, await campus.order_of(name_of(ada), "bob.martin", "at_sender")))
@@ -105,12 +105,13 @@ async def test_the_mailroom(visit, campus, led):
     await look_at_all(dana, led(dana))
 
 
+@pytest.mark.slow
 async def test_what_is_printed_and_the_wall(visit, campus):
     dana = await campus.staff(visit)
     await look_at_all(dana, states_of_staff.printing(dana, campus.orders[0]))
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_the_robots(visit, campus):
     mira = await campus.staff(visit)
     async with a_robot_that_tells(campus.service):
@@ -168,6 +169,7 @@ async def test_every_page_speaks_french_stands_still_and_lets_a_keyboard_through
     assert not looker.wrong, "\n".join(looker.wrong)
 
 
+@pytest.mark.slow
 async def test_without_that_wish_a_way_is_seen_to_move(visit, campus):
     """So that the measure of motion is one."""
     ada = await visit("ada.king", at=campus.service, reduced_motion="no-preference")

@@ -76,7 +76,7 @@ async def open_all(page: Page) -> None:
     await page.evaluate("document.querySelectorAll('main details').forEach((one) => (one.open = true))")
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_one_word_of_190_letters_stays_within_every_page_that_shows_it(campus, visit):
     dana = await named(await campus.dispatcher(visit, **NARROW), LONG_NAME)
     order = await dana.order(dana.email, what=LONG)
@@ -121,6 +121,7 @@ async def digits_stand_behind(element: Locator, words: str) -> None:
 
 
 @pytest.mark.parametrize("name", [HEBREW, ARABIC])
+@pytest.mark.slow
 async def test_digits_beside_a_name_that_runs_from_right_to_left_stay_behind_it(campus, visit, name):
     ada = await named(await visit("ada", at=campus.service), name)
     bob = await named(await visit("bob", at=campus.service), name)

@@ -100,7 +100,7 @@ async def test_a_person_signs_in_sends_a_letter_follows_it_cancels_it_and_settle
     await expect(page.get_by_role("checkbox", name="Livrée, E-mail")).not_to_be_checked()
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_a_dispatcher_orders_for_a_sender_pauses_a_robot_acts_on_an_order_and_prints_by_keys(visit, campus):
     dana = await campus.staff(visit)
     page, keys = dana.page, Keyboard(dana.page)
@@ -159,6 +159,7 @@ async def test_a_dispatcher_orders_for_a_sender_pauses_a_robot_acts_on_an_order_
     await expect(page).to_have_title("printed")
 
 
+@pytest.mark.slow
 async def test_a_person_without_account_sees_their_code_and_says_not_now_by_keys(visit, campus):
     guest = await visit("grace.hopper", at=campus.service, signed_in=False, reduced_motion="reduce")
     await campus.order_of("bob.martin", guest.email.partition("@")[0], "carrying")

@@ -135,7 +135,7 @@ FORMS = {
 
 
 @pytest.mark.parametrize("name", FORMS)
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_what_was_refused_is_done_by_one_tap_after_signing_in_in_place(visit, name):
     ada, form = await visit("ada.king", on="phone"), FORMS[name]
     await goes_on(ada, form)
@@ -170,6 +170,7 @@ async def done(person: Visitor, form: Form) -> list[Any]:
     return [one[what] for one in (await person.api(path))["items"]]
 
 
+@pytest.mark.slow
 async def test_what_saves_by_itself_can_be_saved_once_one_is_signed_in_again(visit):
     ada = await visit("ada.king")
     page = ada.page
@@ -188,6 +189,7 @@ async def test_what_saves_by_itself_can_be_saved_once_one_is_signed_in_again(vis
     assert (await ada.api("/me"))["name"] == "Augusta Ada King"
 
 
+@pytest.mark.slow
 async def test_a_refused_order_waits_in_sight_and_goes_out_once_with_its_key_at_one_tap(visit):
     ada = await visit("ada.king", on="phone")
     page, keys = ada.page, placings(ada.context)
@@ -229,6 +231,7 @@ async def test_at_the_desk_an_order_that_was_refused_goes_on_over_its_own_dialog
     assert len(keys) == 2 and len(set(keys)) == 1
 
 
+@pytest.mark.slow
 async def test_a_command_to_a_robot_that_was_refused_is_given_at_one_tap(quiet_campus, robot, visit):
     dana = await quiet_campus.dispatcher(visit)
     await give_roles(quiet_campus.service, dana.email, Role.DISPATCHER)
@@ -246,7 +249,7 @@ async def test_a_command_to_a_robot_that_was_refused_is_given_at_one_tap(quiet_c
     assert (await robot.hear("pause")).body.reason == "A parade"
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_one_sign_in_is_enough_for_all_tabs_and_each_goes_on_where_it_was(strict, visit):
     ada = await visit("ada.king", at=strict)
     first, second = ada.page, await ada.new_page()
@@ -274,6 +277,7 @@ async def test_one_sign_in_is_enough_for_all_tabs_and_each_goes_on_where_it_was(
     await expect(second.get_by_role("region", name="Address book").get_by_label("Email address")).to_have_value(BOB)
 
 
+@pytest.mark.slow
 async def test_where_another_person_signs_in_no_tab_shows_or_sends_what_was_the_first_ones(strict, visit):
     ada = await visit("ada.king", at=strict)
     eve = f"eve.{ada.email}"
@@ -292,6 +296,7 @@ async def test_where_another_person_signs_in_no_tab_shows_or_sends_what_was_the_
     assert await ordered(ada) == [], "the browser is Eve's now"
 
 
+@pytest.mark.slow
 async def test_who_leaves_on_purpose_is_not_asked_to_come_back_in_any_tab(strict, visit):
     ada = await visit("ada.king", at=strict)
     ada.loses_session = True
@@ -310,6 +315,7 @@ async def test_who_leaves_on_purpose_is_not_asked_to_come_back_in_any_tab(strict
     await expect(second.get_by_role("button", name="Send me a code")).to_be_visible()
 
 
+@pytest.mark.slow
 async def test_who_does_not_care_to_sign_in_now_reads_on_and_is_asked_when_they_do_something(strict, visit):
     ada = await visit("ada.king", at=strict, on="phone", viewport={"width": 320, "height": 640}, locale="fr-CA")
     page = ada.page
@@ -345,7 +351,7 @@ def campus(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Service, 
             yield service, issuer
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_the_campus_sign_in_opens_beside_the_form_which_goes_on(campus, visit):
     service, issuer = campus
     ada = await visit("ada.king", at=service)

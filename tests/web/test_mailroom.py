@@ -37,6 +37,7 @@ async def busy_campus(tmp_path_factory: pytest.TempPathFactory) -> AsyncIterator
         yield campus
 
 
+@pytest.mark.slow
 async def test_what_goes_wrong_appears_by_itself_and_is_mended_by_keyboard_alone(quiet_campus, robot, visit):
     dana = await quiet_campus.dispatcher(visit)
     ada = await visit("ada.king", at=quiet_campus.service)
@@ -114,6 +115,7 @@ async def test_a_robot_is_paused_let_go_on_and_stopped_by_keyboard_alone(quiet_c
     assert heard.reason == "Stopped from the mailroom"
 
 
+@pytest.mark.slow
 async def test_an_order_for_a_person_at_the_desk_is_placed_by_keyboard_and_printed(quiet_campus, visit):
     grace = await visit("grace.hill", at=quiet_campus.service)
     bob = await visit("bob.martin", at=quiet_campus.service)
@@ -227,6 +229,7 @@ async def test_everything_that_is_wrong_has_its_next_action(busy_campus, visit, 
     assert {line["id"] for line in lines} == set(busy_campus.orders)
 
 
+@pytest.mark.slow
 async def test_on_a_phone_each_part_of_the_mailroom_is_a_tap_away_however_far_one_has_come(busy_campus, visit):
     dana = await busy_campus.dispatcher(visit, on="phone")
     page = dana.page
@@ -257,6 +260,7 @@ async def test_a_wall_shows_the_campus_at_work_and_no_full_name(busy_campus, vis
     await expect(page.get_by_role("button")).to_have_count(0)
 
 
+@pytest.mark.slow
 async def test_marker_sheets_are_printed_in_their_true_size_with_nothing_around_them(busy_campus, visit):
     dana = await busy_campus.dispatcher(visit)
     page = dana.page
@@ -274,6 +278,7 @@ async def test_marker_sheets_are_printed_in_their_true_size_with_nothing_around_
         assert pdf.count(b"/Type /Page\n") == 6, paper
 
 
+@pytest.mark.slow
 async def test_others_are_told_whose_page_this_is(quiet_campus, visit):
     ada = await visit("ada.king", at=quiet_campus.service)
     for address in (MAILROOM, "/print.html"):

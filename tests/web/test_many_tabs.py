@@ -63,7 +63,7 @@ class Streams:
         return [page for request in self.open if not (page := request.frame.page).is_closed()]
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_twelve_tabs_share_one_stream_and_each_of_them_works(quiet_campus, robot, visit):
     dana = await quiet_campus.dispatcher(visit)
     await give_roles(quiet_campus.service, dana.email, Role.DISPATCHER, Role.MAINTAINER)
@@ -91,6 +91,7 @@ async def test_twelve_tabs_share_one_stream_and_each_of_them_works(quiet_campus,
     await expect(tabs[ROBOT].get_by_text("Live from the robot")).to_be_visible()
 
 
+@pytest.mark.slow
 async def test_a_tab_takes_over_from_one_that_is_hidden_or_closed_and_misses_nothing(quiet_campus, visit):
     ada = await visit("ada.king", at=quiet_campus.service)
     streams = Streams(ada.context)
@@ -123,6 +124,7 @@ async def test_a_tab_takes_over_from_one_that_is_hidden_or_closed_and_misses_not
     assert not [path for path in streams.asked if path.startswith("/orders")], "what was missed is given, not fetched"
 
 
+@pytest.mark.slow
 async def test_a_person_who_opens_a_page_while_something_happens_is_told_of_it(quiet_campus, visit):
     """Between what a page was answered and what it hears there is no gap, though nothing is asked for twice."""
     ada = await visit("ada.king", at=quiet_campus.service)

@@ -123,6 +123,7 @@ VIEWS = """async () => {
 }"""
 
 
+@pytest.mark.slow
 async def test_the_arithmetic_of_views(visit):
     ada = await visit()
     await ada.page.goto("/")

@@ -108,7 +108,7 @@ async def battery_is(page: Page, percent: int) -> None:
     await expect(page.get_by_text(f"Battery {percent}%")).to_be_visible()
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_after_hundreds_of_changes_the_page_is_as_light_as_before(visit, roads: Service, robot: PlayedRobot):
     ada = await visit(at=roads)
     page = ada.page

@@ -27,7 +27,7 @@ async def colours(mark: Locator) -> list[str]:
 
 
 @pytest.mark.parametrize(("locale", "late", "low"), [("en-CA", "Late", "Low priority"), ("fr-CA", "En retard", None)])
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_what_is_late_bears_a_mark_and_low_priority_no_warning(visit, quiet_campus, locale, late, low) -> None:
     ada = await visit("ada", on="desk", at=quiet_campus.service, locale=locale, color_scheme="light")
     desk = await quiet_campus.dispatcher(visit, on="desk", locale=locale)

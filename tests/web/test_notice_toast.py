@@ -19,6 +19,7 @@ IS_OVER_THE_KEYBOARD = """() => {
 }"""
 
 
+@pytest.mark.slow
 async def test_a_notice_lies_never_over_the_keyboard_and_waits_for_the_person_typing(visit):
     ada = await visit(viewport={"width": 320, "height": 640}, reduced_motion="reduce")
     page, keys = ada.page, Keyboard(ada.page)

@@ -125,6 +125,7 @@ async def test_in_a_tunnel_pages_open_an_order_is_kept_and_it_is_sent_once_when_
     assert [order["description"] for order in (await ada.api("/orders"))["items"]] == ["Keys"]
 
 
+@pytest.mark.slow
 async def test_a_kept_order_is_sent_once_by_the_worker_though_no_page_is_open_any_more(visit):
     ada = await come_with_worker(visit, "ada.king", permissions=["background-sync"])
     page, fire = ada.page, await worker_of(ada)
@@ -149,6 +150,7 @@ async def test_a_kept_order_is_sent_once_by_the_worker_though_no_page_is_open_an
     assert await ordered() == ["Keys"]
 
 
+@pytest.mark.slow
 async def test_an_order_whose_answers_are_lost_while_all_else_goes_well_is_sent_again_by_itself_and_is_one(visit):
     ada = await visit("ada.king", on="phone")
     page, lost = ada.page, []
@@ -170,6 +172,7 @@ async def test_an_order_whose_answers_are_lost_while_all_else_goes_well_is_sent_
     assert [order["description"] for order in (await ada.api("/orders"))["items"]] == ["Keys"]
 
 
+@pytest.mark.slow
 async def test_what_is_refused_later_is_said_and_can_be_mended_or_thrown_away(visit):
     ada = await come_with_worker(visit)
     page = ada.page
@@ -190,6 +193,7 @@ async def test_what_is_refused_later_is_said_and_can_be_mended_or_thrown_away(vi
     assert (await ada.api("/orders"))["items"] == []
 
 
+@pytest.mark.slow
 async def test_what_is_kept_is_gone_at_sign_out_and_no_order_is_sent_for_another_person(visit, service: Service):
     ada = await come_with_worker(visit, "ada.king")
     page = ada.page
@@ -221,6 +225,7 @@ async def test_what_is_kept_is_gone_at_sign_out_and_no_order_is_sent_for_another
     assert [order["description"] for order in (await ada.api("/orders"))["items"]] == ["Ada’s own", "First"]
 
 
+@pytest.mark.slow
 async def test_the_files_of_the_pages_have_a_version_that_changes_with_any_of_them(tmp_path):
     made = {"public/index.html": "<p>", "src/a.js": "1", "src/notes.md": "", "types/b.js": "", "npm_modules.json": "[]"}
     for name, text in made.items():
@@ -267,7 +272,7 @@ async def the_screen_stays_on_while_it_is_seen(page: Page) -> None:
     await page.wait_for_function(held, arg=0)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_a_code_is_at_hand_in_the_tunnel_though_its_page_was_never_opened_and_gone_with_the_order(
     visit, own_service: Service
 ):
@@ -296,7 +301,7 @@ async def test_a_code_is_at_hand_in_the_tunnel_though_its_page_was_never_opened_
         assert not [address for address in await page.evaluate(KEPT_ANSWERS) if "code" in address]
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_a_new_version_waits_for_a_tap_and_open_pages_go_on_with_their_own_files(
     visit, own_service: Service, own_pages: Path
 ):

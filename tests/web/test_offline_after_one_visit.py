@@ -89,7 +89,7 @@ async def expect_one_word(page: Page) -> None:
 
 
 @pytest.mark.parametrize("first", ["/", "/mail.html", "/follow.html?order={order}", "/settings.html"])
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_after_one_visit_of_any_page_orders_their_codes_and_the_order_form_are_there(
     visit, own_service: Service, first
 ):
@@ -116,7 +116,7 @@ async def test_after_one_visit_of_any_page_orders_their_codes_and_the_order_form
             await expect(page.get_by_role("region", name=KEPT).get_by_text("Will be sent once")).to_be_visible()
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_what_a_page_hears_while_it_is_open_is_there_as_well(visit, own_service: Service):
     """A person who reads that a robot comes goes to meet it."""
     ada = await visit("ada.king", at=own_service)
@@ -147,7 +147,7 @@ async def delegate_of(ada: Visitor, visit) -> AsyncIterator[tuple[Visitor, str, 
         yield guest, link, order
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_after_one_visit_by_a_link_its_order_and_code_are_there(visit, own_service: Service):
     ada = await visit("ada.king", at=own_service)
     async with delegate_of(ada, visit) as (guest, link, _):
@@ -168,7 +168,7 @@ async def test_after_one_visit_by_a_link_its_order_and_code_are_there(visit, own
             await guest.assert_accessible()
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_what_a_link_opened_is_forgotten_with_it(visit, own_service: Service):
     ada = await visit("ada.king", at=own_service)
     async with delegate_of(ada, visit) as (guest, _, order):
@@ -177,7 +177,7 @@ async def test_what_a_link_opened_is_forgotten_with_it(visit, own_service: Servi
         await of_links(guest.page, 0)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_what_a_link_opened_is_forgotten_when_the_order_has_ended(visit, own_service: Service):
     ada = await visit("ada.king", at=own_service)
     guest = await visit("grace.hill", at=own_service, signed_in=False, service_workers="allow")
@@ -189,7 +189,7 @@ async def test_what_a_link_opened_is_forgotten_when_the_order_has_ended(visit, o
     await of_links(guest.page, 0)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_what_a_link_opened_is_gone_when_a_person_signs_in_there(visit, own_service: Service):
     ada = await visit("ada.king", at=own_service)
     async with delegate_of(ada, visit) as (guest, *_):
@@ -203,7 +203,7 @@ async def test_what_a_link_opened_is_gone_when_a_person_signs_in_there(visit, ow
         assert await page.evaluate(KEPT_OF_LINKS) == []
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_nothing_kept_in_one_visit_is_there_for_who_signs_in_next_nor_after_signing_out(
     visit, own_service: Service
 ):
@@ -230,6 +230,7 @@ async def test_nothing_kept_in_one_visit_is_there_for_who_signs_in_next_nor_afte
         assert await page.evaluate(KEPT_ANSWERS) == EVERYBODYS
 
 
+@pytest.mark.slow
 async def test_a_session_that_has_ended_leaves_nothing(visit):
     ada = await visit("ada.king", on="phone", service_workers="allow")
     await ada.order(BOB, what="Keys")
@@ -240,6 +241,7 @@ async def test_a_session_that_has_ended_leaves_nothing(visit):
     assert await ada.page.evaluate(KEPT_ANSWERS) == EVERYBODYS
 
 
+@pytest.mark.slow
 async def test_what_is_not_kept_says_one_clear_thing(visit):
     ada = await visit("ada.king", on="phone", service_workers="allow")
     await give_roles(ada.service, ada.email, Role.DISPATCHER, Role.MAINTAINER)

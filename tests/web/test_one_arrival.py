@@ -91,7 +91,7 @@ async def said(where: Locator) -> str:
 
 
 @pytest.mark.timeout(400)
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_every_place_says_the_same_time_at_each_step_and_the_robot_comes_when_it_was_said(
     campus, played, visit
 ) -> None:

@@ -123,7 +123,7 @@ async def test_going_back_after_ordering_offers_nothing_that_one_tap_orders_twic
     assert len((await ada.api("/orders"))["items"]) == before
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_the_same_post_twice_is_refused_at_the_field(visit, there):
     ada = await visit()
     await there(ada)
@@ -225,6 +225,7 @@ async def test_an_order_without_any_answer_is_kept_and_sent_again_with_its_key_a
     assert len((await ada.api("/orders"))["items"]) == 1
 
 
+@pytest.mark.slow
 async def test_a_repeat_takes_three_taps(visit, there):
     ada = await visit()
     await there(ada)

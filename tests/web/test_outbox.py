@@ -48,7 +48,7 @@ async def opened_again(page: Page) -> None:
     await expect(page.get_by_role("region", name=KEPT)).to_be_visible()
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_an_order_that_was_refused_for_its_lost_session_is_shown_and_waits_for_its_persons_word(visit):
     ada = await visit("ada.king", on="phone")
     page, kept = ada.page, ada.page.get_by_role("region", name=KEPT)
@@ -75,6 +75,7 @@ async def test_an_order_that_was_refused_for_its_lost_session_is_shown_and_waits
 
 
 @pytest.mark.parametrize(("status", "code"), [(409, "conflict"), (429, "too_many_requests")])
+@pytest.mark.slow
 async def test_a_refused_order_is_tried_once_and_can_be_thrown_away(visit, status, code):
     ada = await visit("ada.king", on="phone")
     ada.refusals_expected.add(ORDERS)

@@ -24,7 +24,7 @@ def campus(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Campus]:
         yield Campus(service)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_a_letter_changes_robots_and_everybody_sees_who_has_it(campus, visit):
     dana = await campus.dispatcher(visit)
     ada = await visit("ada.king", at=campus.service)

@@ -60,7 +60,7 @@ async def texts(page: Page, selector: str) -> list[str]:
 
 
 @pytest.mark.parametrize(("language", "locale"), [("en", "en-CA"), ("fr", "fr-CA")])
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_every_reason_is_said_in_words_on_every_page(quiet_campus: Campus, visit, language, locale):
     reasons, scene = every_reason(), quiet_campus.scene
     of_orders = [reason for reason in reasons if not key_of(reason).startswith("alarm.")]

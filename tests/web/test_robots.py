@@ -94,7 +94,7 @@ async def assert_fits_and_is_accessible(page: Page) -> None:
     assert await page.evaluate(SMALL_TARGETS) == []
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_a_maintainer_watches_a_driving_robot_holds_the_view_filters_and_takes_the_run_away(
     tunnel, daemon, visit, tmp_path: Path
 ):
@@ -154,6 +154,7 @@ async def test_a_maintainer_watches_a_driving_robot_holds_the_view_filters_and_t
     await mira.assert_accessible()
 
 
+@pytest.mark.slow
 async def test_on_a_small_phone_in_french_and_for_a_dispatcher_without_the_mind(tunnel, daemon, visit):
     small = {"viewport": {"width": 320, "height": 640}, "locale": "fr-CA"}
     marc = await visit("marc.roy", on="phone", at=tunnel, color_scheme="dark", **small)
@@ -213,6 +214,7 @@ CHARGED = """async () => {
 }"""
 
 
+@pytest.mark.slow
 async def test_what_was_watched_is_bounded_and_what_is_missing_is_known(tunnel, visit):
     ada = await visit("ada.king", at=tunnel)
     await ada.page.goto("/robots.html")
@@ -226,6 +228,7 @@ async def test_what_was_watched_is_bounded_and_what_is_missing_is_known(tunnel, 
     assert charged == {"times": [[0.3, 0.6], [0.2, 0.3]], "pieces": 2, "some": 5}, "a silence is no line"
 
 
+@pytest.mark.slow
 async def test_a_person_who_lacks_the_role_is_told_so(tunnel, visit):
     ada = await visit("ada.king", at=tunnel)
     await ada.page.goto("/robots.html?robot=r1")

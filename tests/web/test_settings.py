@@ -75,6 +75,7 @@ async def test_the_address_book_is_kept_with_the_keyboard_alone(visit):
     await expect(book.get_by_role("listitem")).to_have_text(re.compile("Bob Martin"))
 
 
+@pytest.mark.slow
 async def test_delegates_are_in_one_list_and_taken_back_there_by_keyboard(visit):
     ada: Visitor = await visit("ada.king", locale="fr-CA")
     page, keys = ada.page, Keyboard(ada.page)
@@ -149,6 +150,7 @@ async def open_service(tmp_path: Path) -> AsyncIterator[Service]:
         yield service
 
 
+@pytest.mark.slow
 async def test_a_webhook_is_tried_at_a_tap_and_says_whether_it_hears_or_why_not(open_service, visit):
     ada: Visitor = await visit("ada.king", at=open_service, on="phone")
     page = ada.page

@@ -74,6 +74,7 @@ async def test_an_address_from_elsewhere_is_told_which_ones_there_are(visit):
     await expect(email).to_have_accessible_description(re.compile("not an email address"))
 
 
+@pytest.mark.slow
 async def test_who_signs_out_is_asked_to_sign_in_again(visit):
     ada = await visit("ada.king")
     ada.refusals_expected.add("/api/v1/orders")  # what the page asked for while its session ended

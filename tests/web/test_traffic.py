@@ -48,7 +48,7 @@ async def lets_go(robot: PlayedRobot) -> None:
     await robot.ends(await robot.say(Event(happened=answer)))
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_when_another_robot_comes_for_a_letter_its_corridors_are_shown_and_no_longer_those_of_the_first(
     roads, robots, visit
 ):

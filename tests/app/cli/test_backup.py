@@ -145,6 +145,7 @@ def test_an_archive_whose_files_were_exchanged_is_refused(archive: Path, run: Ru
         ("DELETE FROM order_events WHERE seq = 1", "events go from"),
     ],
 )
+@pytest.mark.slow
 def test_what_is_not_sound_is_not_called_a_backup(
     sender: Browser, mailroom: Mailroom, run: Run, settings: Settings, tmp_path: Path, damage: str, named: str
 ) -> None:

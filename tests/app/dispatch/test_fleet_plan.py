@@ -78,6 +78,7 @@ def test_every_order_is_fetched_and_given_by_one_robot_that_never_has_too_much(
 
 @settings(max_examples=60)
 @given(st.randoms(use_true_random=False), st.integers(1, 4), st.integers(1, 3))
+@pytest.mark.slow
 def test_no_stop_that_has_begun_is_moved_and_no_mail_changes_robots_in_a_corridor(
     rng: Random, robots: int, capacity: int
 ) -> None:

@@ -3,6 +3,7 @@
 from dataclasses import replace
 from random import Random
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -42,6 +43,7 @@ def test_a_kept_schedule_through_a_closed_corridor_is_not_carried_out() -> None:
 
 @settings(max_examples=60)
 @given(st.randoms(use_true_random=False), st.integers(2, 6), st.integers(1, 3))
+@pytest.mark.slow
 def test_what_is_overdue_is_given_no_later_because_of_what_is_new(rng: Random, robots: int, capacity: int) -> None:
     network = random_network(rng)
     network = replace(network, bays=(1,) * len(network.posts))

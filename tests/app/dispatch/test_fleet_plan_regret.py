@@ -89,6 +89,7 @@ def every_fit(problem: AssignmentProblem, name: str, route: Route, new: OpenOrde
 
 @settings(max_examples=150)
 @given(st.randoms(use_true_random=False), st.integers(1, 4))
+@pytest.mark.slow
 def test_one_more_order_is_put_where_the_whole_route_costs_least(rng: Random, capacity: int) -> None:
     network = random_network(rng)
     posts = range(len(network.posts))

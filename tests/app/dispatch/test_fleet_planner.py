@@ -101,6 +101,7 @@ async def test_an_order_more_goes_with_a_robot_under_way_and_never_before_what_i
     assert sorted(stop.order_id or "" for stop in update.stops) == sorted([first, second] * 2)
 
 
+@pytest.mark.slow
 async def test_more_than_they_can_carry_waits_and_the_important_goes_first(
     service: Service, robots: tuple[PlayedRobot, PlayedRobot], clock: SteppedClock
 ) -> None:

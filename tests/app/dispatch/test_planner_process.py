@@ -37,6 +37,7 @@ async def test_it_finds_a_plan_that_serves_the_same_orders_and_is_no_dearer(
 
 
 @pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGSTOP], ids=["dies", "hangs"])
+@pytest.mark.slow
 async def test_one_that_fails_is_ended_and_the_next_question_starts_another(
     process: PlannerProcess, decision: Decision, how: signal.Signals
 ) -> None:

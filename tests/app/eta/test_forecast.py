@@ -97,7 +97,7 @@ def test_who_is_in_a_corridor_arrives_as_is_usual_since_its_entry() -> None:
     assert forecast_of({"r1": task}, now_s=40.0)["order"] == (60.0, 60.0, 60.0)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_in_a_simulated_fleet_they_are_better_than_lengths_on_the_map() -> None:
     """A short run of the benchmark; its coverage is measured there, over weeks."""
     told = figures([run((1, 10.0))])[Basis.UNDER_WAY]["told"]

@@ -106,6 +106,7 @@ LIES: dict[str, Any] = {
 
 
 @pytest.mark.parametrize("lie", LIES)
+@pytest.mark.slow
 async def test_a_stolen_robot_that_has_all_but_the_code_confirms_nothing(campus: Campus, lie: str) -> None:
     await begin(campus)
     await load(campus)
@@ -123,6 +124,7 @@ async def test_a_stolen_robot_that_has_all_but_the_code_confirms_nothing(campus:
 
 
 @pytest.mark.parametrize("what", ["happened_at", "number", "mission_id", "post"])
+@pytest.mark.slow
 async def test_a_proof_is_of_one_hand_over_alone(campus: Campus, what: str) -> None:
     await begin(campus)
     await load(campus)
@@ -311,6 +313,7 @@ async def test_a_dispatcher_who_has_asked_says_that_it_was_handed_over(campus: C
 
 
 @pytest.mark.parametrize(("to", "state"), [("resume", "at_recipient"), ("returning", "returning"), ("held", "held")])
+@pytest.mark.slow
 async def test_a_dispatcher_who_finds_the_mail_in_the_robot_says_so(campus: Campus, to: str, state: str) -> None:
     await claim(campus)
     assert await resolved(campus, to) == 200

@@ -72,6 +72,7 @@ REFUSED: dict[str, Callable[[Event], Event]] = {
 
 
 @pytest.mark.parametrize("problem", REFUSED)
+@pytest.mark.slow
 async def test_what_proves_nothing_is_written_down_and_rings_and_moves_no_custody(campus: Campus, problem: str) -> None:
     await campus.waits_for_load()
     await give_key(campus)

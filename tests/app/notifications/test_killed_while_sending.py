@@ -91,7 +91,7 @@ def killer(process: "subprocess.Popen[bytes]", receiver: Receiver) -> None:
     receiver.then = kill
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_what_was_sent_and_not_noted_down_comes_again_under_the_same_id_and_nothing_is_lost(tmp_path: Path) -> None:
     data, port = tmp_path / "data", free_port()
     with receiving() as receiver, httpx.Client(base_url=f"http://127.0.0.1:{port}/api/v1", timeout=20) as client:

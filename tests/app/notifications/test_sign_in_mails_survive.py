@@ -107,7 +107,7 @@ def cookies_of(client: httpx.AsyncClient) -> str:
 
 
 @pytest.mark.parametrize("how", ["stopped", "killed"])
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_what_a_full_mailbox_did_not_take_goes_out_after_the_next_start(service: Service, how: str) -> None:
     service.mail_server.says = [FULL] * MANY
     async with service.running() as client:
@@ -143,7 +143,7 @@ async def test_a_mail_server_that_hangs_holds_up_no_end_and_loses_nothing(servic
     assert (service.left, service.kept) == (1, 1)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_a_code_that_is_no_good_any_more_is_not_mailed(service: Service) -> None:
     service.mail_server.says = [FULL] * MANY
     async with service.running() as client:

@@ -55,7 +55,7 @@ def left(log: Path) -> int:
     return int(count)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_what_is_due_goes_out_before_the_end_and_what_hangs_is_left_for_the_next_start(tmp_path: Path) -> None:
     data, port, log = tmp_path / "data", free_port(), tmp_path / "log"
     with receiving() as receiver, httpx.Client(base_url=f"http://127.0.0.1:{port}/api/v1", timeout=20) as client:

@@ -1,9 +1,12 @@
 """Replay of random lives: one that failed can be lived again, and examined."""
 
+import pytest
+
 from app.models import MessageToRobot, Order, OrderState, RobotMessage
 from tests.app.orders.test_lives_at_random import LivesOfOrders
 
 
+@pytest.mark.slow
 def test_a_life_is_lived_again_from_its_choices() -> None:
     """To the last id: robots and orders are found by them."""
     assert lived() == lived()

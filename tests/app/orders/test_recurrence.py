@@ -58,6 +58,7 @@ ZONES = ("America/Toronto", "Europe/Berlin", "Australia/Lord_Howe", "America/St_
     at=st.times().map(lambda one: one.replace(second=0, microsecond=0)),
     first=st.dates(date(2024, 1, 1), date(2027, 12, 31)),
 )
+@pytest.mark.slow
 def test_each_of_its_days_has_one_moment_whenever_one_asks(
     zone: str, weekdays: frozenset[int], at: time, first: date
 ) -> None:

@@ -122,6 +122,7 @@ async def test_what_one_robot_cannot_carry_on_another_does_and_the_chain_has_no_
 
 
 @pytest.mark.parametrize("ends", ["its sender cancels", "no robot fetches it", "the robot on its way lets go"])
+@pytest.mark.slow
 async def test_mail_that_waits_for_its_second_leg_ends_in_the_mailrooms_hands(
     service: Service, mailroom: Mailroom, robot: PlayedRobot, ends: str
 ) -> None:

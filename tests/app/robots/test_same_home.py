@@ -104,6 +104,7 @@ async def test_robots_without_a_dock_of_their_own_share_what_they_name(
     assert await service.rows(Alarm, name="same_home") == []
 
 
+@pytest.mark.slow
 async def test_one_with_mail_aboard_is_let_in_to_bring_it_and_gets_no_more(
     service: Service, robot: PlayedRobot, second: PlayedRobot, clock: SteppedClock
 ) -> None:

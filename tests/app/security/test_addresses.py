@@ -31,6 +31,7 @@ HIDDEN = [
 
 
 @pytest.mark.parametrize("address", HIDDEN)
+@pytest.mark.slow
 def test_an_address_that_hides_another_is_refused_wherever_one_is_typed(
     anonymous: TestClient, sender: Browser, mails: Mails, address: str
 ) -> None:

@@ -25,6 +25,7 @@ def everybody(app: FastAPI, mailroom: Mailroom) -> Everybody:
     return Everybody(app, mailroom)
 
 
+@pytest.mark.slow
 def test_no_route_that_changes_something_takes_a_request_from_elsewhere(
     app: FastAPI, served: Served, everybody: Everybody
 ) -> None:

@@ -43,6 +43,7 @@ def secure(app: FastAPI, anonymous: TestClient) -> TestClient:
 
 
 @pytest.mark.parametrize("path", ANSWERS)
+@pytest.mark.slow
 def test_every_answer_says_what_browsers_must_not_do(secure: TestClient, path: str) -> None:
     answer = secure.get(path)
     assert answer.status_code == ANSWERS[path]

@@ -78,7 +78,7 @@ def _wait_for(url: str) -> None:
 
 
 @sqlite_alone
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_no_secret_is_in_the_log(running: Running) -> None:
     mails = Mails(running.settings.spool_folder)
     with running.browser as browser:

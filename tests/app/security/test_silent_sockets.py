@@ -217,7 +217,7 @@ def robot_stays(door: Door) -> bool:
         return robot.ping().wait(10)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_who_says_half_is_cut_off_and_who_is_slow_or_stays_is_not(door: Door) -> None:
     liars_here = LIARS if door.trust else [liar for liar in LIARS if liar is not half_a_handshake]
     with ThreadPoolExecutor(len(LIARS) + 3) as threads:

@@ -19,7 +19,7 @@ COME_HOME_WITHIN = 5000
 
 @pytest.mark.parametrize("campus", ["test_track", "carleton"])
 @pytest.mark.parametrize("seed", range(LIVES))
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_no_two_robots_meet_and_all_come_home(settings: Settings, campus: str, seed: int) -> None:
     rng = Random(f"{campus} {seed}")
     world = World(builtin_map(campus), settings, rng, robots=rng.randint(2, 4))

@@ -106,6 +106,7 @@ NESTED: dict[str, Callable[[int], str]] = {
 
 
 @pytest.mark.parametrize("nest", NESTED.values(), ids=NESTED.keys())
+@pytest.mark.slow
 def test_what_is_nested_runs_or_is_refused_however_deep(nest: Callable[[int], str]) -> None:
     report = Report()
     for deep in (1, 5, 10, 15, 20, 30, 40, 50, 70, 90, 110, 130, 1000):

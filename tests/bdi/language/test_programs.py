@@ -216,6 +216,7 @@ CONTENTS = st.one_of(
 @given(
     st.sampled_from([*PERFORMATIVES, "shout"]), CONTENTS, st.sampled_from(["", "ag-1?"]), st.lists(CONTENTS, max_size=2)
 )
+@pytest.mark.slow
 def test_a_wrong_message_or_percept_is_refused_by_name_and_never_troubles_a_cycle(
     performative: str, content: str, reply_to: str, percepts: list[str]
 ) -> None:

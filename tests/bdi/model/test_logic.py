@@ -305,7 +305,7 @@ PLACES = [
     formula=wider,
     x=st.sampled_from([*VALUES, "Free", "[a|T]", "g(U)"]),
 )
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_formula_means_the_same_wherever_it_stands(
     place: str, beliefs: list[str], rules: list[str], formula: str, x: str
 ) -> None:

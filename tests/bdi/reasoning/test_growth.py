@@ -5,6 +5,8 @@ import sys
 from collections import Counter
 from collections.abc import Callable
 
+import pytest
+
 from bdi import Agent, Finished, Message, parse_program
 from bdi.model.logic.logic import REMEMBERED_FORMULAS
 from tests.own_process import in_own_process
@@ -64,6 +66,7 @@ def run_of(agent: Agent, acted: Counter[str]) -> Callable[[int], None]:
     return run
 
 
+@pytest.mark.slow
 def test_a_hundred_thousand_cycles_leave_nothing_behind() -> None:
     acted, objects, blocks = in_own_process(a_hundred_thousand_cycles)
     assert min(acted[name] for name in ("drive", "turn", "dock")) > 1000

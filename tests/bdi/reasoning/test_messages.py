@@ -198,6 +198,7 @@ CONTENTS = st.sampled_from(
     st.sampled_from(["", "ag-1?", "x"]),
     st.sampled_from(["bob", "ann", "self", "ag"]),
 )
+@pytest.mark.slow
 def test_a_message_is_refused_at_the_door_or_read_whatever_it_says(
     performative: str, content: str, reply_to: str, sender: str
 ) -> None:

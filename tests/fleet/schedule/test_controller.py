@@ -284,6 +284,7 @@ def test_robots_that_only_claim_serve_everything_without_meeting(seed: int) -> N
 
 
 @pytest.mark.parametrize("seed", range(40))
+@pytest.mark.slow
 def test_whatever_is_frozen_or_closed_meanwhile_all_is_served_in_the_end(seed: int) -> None:
     rng, robots = Random(seed), 2 + seed % 4
     network = random_network(rng)

@@ -7,7 +7,7 @@ from benchmarks.fleet.small_maps import AT_HOME, Fleet, connected_maps, network_
 
 
 @pytest.mark.parametrize(("posts", "every_goal", "places"), [(2, True, 426), (3, False, 3360), (4, False, 30418)])
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_from_everywhere_robots_come_home_and_take_on_more(posts: int, every_goal: bool, places: int) -> None:
     seen = look_at(posts, every_goal=every_goal)
     assert (seen.stuck, seen.invalid, seen.refused) == (0, 0, 0)

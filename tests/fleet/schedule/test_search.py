@@ -134,6 +134,7 @@ def others_at_work(rng: Random, network: Network) -> list[tuple[Leg, ...]]:
 
 @settings(max_examples=40)
 @given(st.randoms(use_true_random=False), st.integers(1, 3))
+@pytest.mark.slow
 def test_no_way_is_quicker_than_the_one_that_is_found(rng: Random, most: int) -> None:
     network = whole_seconds(rng)
     others, goals = others_at_work(rng, network), some_goals(rng, network, most)

@@ -12,7 +12,7 @@ KILLS = 10
 
 @pytest.mark.system
 @pytest.mark.timeout(480)
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_robot_killed_at_any_moment_knows_mission_cargo_and_grants_and_delivers_what_it_carries() -> None:
     report: dict[str, Any] = part_report(kills, Samples(kills=KILLS, first_seed=7))
     figures = report["figures"]

@@ -42,7 +42,7 @@ def test_a_letter_is_fetched_delivered_and_the_robot_goes_home(run: SimulatedRun
     assert run.told() == PROGRESS
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_battery_low_with_mail_aboard_is_charged_and_each_thing_told_once(run: SimulatedRun) -> None:
     run.given_a_letter()
     run.until(lambda: run.waits_for("wait_handover(load"))
@@ -58,7 +58,7 @@ def test_a_battery_low_with_mail_aboard_is_charged_and_each_thing_told_once(run:
     assert told.count("handover load") == 1
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_change_of_mind_just_before_a_post_does_not_drive_it_past_the_post(run: SimulatedRun) -> None:
     """So near it does not see the marker again, and the line bends there."""
     run.given_a_letter()
@@ -71,7 +71,7 @@ def test_a_change_of_mind_just_before_a_post_does_not_drive_it_past_the_post(run
     assert "find_line" not in run.did
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_recipient_who_never_comes_does_not_keep_the_robot(run: SimulatedRun) -> None:
     run.given_a_letter()
     run.until(lambda: run.waits_for("wait_handover(load"))
@@ -83,7 +83,7 @@ def test_a_recipient_who_never_comes_does_not_keep_the_robot(run: SimulatedRun) 
     assert run.told()[-3:] == ["progress gave_up", "progress done", "fault mail_aboard"]
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_killed_on_the_way_with_mail_it_wakes_up_knowing_and_delivers(tmp_path: Path) -> None:
     first = SimulatedRun(tmp_path)
     first.given_a_letter()
@@ -120,6 +120,7 @@ def test_killed_while_it_waits_for_the_sender_it_goes_on_waiting_there(tmp_path:
     second.close()
 
 
+@pytest.mark.slow
 def test_somebody_in_the_way_is_waited_for(run: SimulatedRun) -> None:
     run.asks("", "visit(post4)")
     run.until(lambda: run.is_at("post3"))
@@ -130,6 +131,7 @@ def test_somebody_in_the_way_is_waited_for(run: SimulatedRun) -> None:
     assert run.told().count("fault bump") == 2, "that it happened, and that it is over"
 
 
+@pytest.mark.slow
 def test_a_lifted_robot_stands_until_it_is_put_down_and_let_go_and_then_goes_on(run: SimulatedRun) -> None:
     run.asks("", "visit(post4)")
     run.until(lambda: run.is_at("post3"))

@@ -27,7 +27,7 @@ def loaded_and_at_post2(run: SimulatedRun) -> None:
     run.until(lambda: run.is_at("post2") and run.missions.held.cargo)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_mail_that_nobody_took_is_given_back_to_who_loaded_it(run: SimulatedRun) -> None:
     loaded_and_at_post2(run)
     run.until(lambda: run.waits_for("wait_handover(return"), 600)
@@ -42,7 +42,7 @@ def test_mail_that_nobody_took_is_given_back_to_who_loaded_it(run: SimulatedRun)
     assert "fault mail_aboard" not in told
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_recalled_robot_turns_round_on_its_way_and_brings_the_mail_back(run: SimulatedRun) -> None:
     service = with_service(run)
     loaded_and_at_post2(run)
@@ -68,7 +68,7 @@ def test_a_stop_to_charge_keeps_it_in_the_dock_through_a_kill_until_it_has_what_
     second.close()
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_robot_that_is_killed_in_its_dock_goes_on_charging_until_it_is_full(tmp_path: Path) -> None:
     first = SimulatedRun(tmp_path, battery_ratio=0.2)
     first.until(lambda: first.missions.held.recharging and first.robot.docked, 60)
@@ -90,6 +90,7 @@ def test_a_robot_that_is_killed_in_its_dock_goes_on_charging_until_it_is_full(tm
     second.close()
 
 
+@pytest.mark.slow
 def test_a_robot_with_little_charge_begins_no_work_until_it_has_enough(tmp_path: Path) -> None:
     run = SimulatedRun(tmp_path, battery_ratio=0.4)
     run.given_a_letter()
@@ -141,7 +142,7 @@ def test_a_paused_robot_gives_back_the_way_ahead(run: SimulatedRun) -> None:
     run.until(lambda: run.waits_for("wait_handover(receive"))
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_out_of_network_it_goes_as_far_as_it_may_waits_says_so_and_then_leaves_by_what_it_holds(
     run: SimulatedRun,
 ) -> None:
@@ -168,7 +169,7 @@ def test_out_of_network_it_goes_as_far_as_it_may_waits_says_so_and_then_leaves_b
     run.until(lambda: not run.missions.held.cargo, 10)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_somebody_who_does_not_make_way_closes_the_corridor(run: SimulatedRun) -> None:
     service = with_service(run)
     run.robot.world.obstacles.append(Person(1.0, 2.0))
@@ -203,7 +204,7 @@ def test_a_robot_that_waits_for_a_way_goes_at_once_when_somebody_says_that_it_is
     run.until(lambda: run.is_at("post1"), 100)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_where_there_is_another_way_it_goes_round_a_closed_corridor(tmp_path: Path) -> None:
     run = SimulatedRun(tmp_path, map=str(SQUARE))
     service = with_service(run)
@@ -265,6 +266,7 @@ def test_a_robot_whose_corridors_others_have_got_stands_until_a_marker_tells_it_
     assert (run.told().count("fault revoked"), run.missions.held.revoked) == (2, False)
 
 
+@pytest.mark.slow
 def test_switched_on_after_a_long_time_it_hears_first_whose_its_corridors_are(tmp_path: Path) -> None:
     first = SimulatedRun(tmp_path)
     with_service(first)
@@ -305,7 +307,7 @@ def press_twice(run: SimulatedRun) -> None:
 
 
 @pytest.mark.parametrize("switch", ["camera_dead", "camera_frozen"])
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_camera_that_stays_away_ends_in_waiting_for_a_person(run: SimulatedRun, switch: str) -> None:
     """It neither tries for ever nor believes a picture of long ago; seen to, it delivers after all."""
     run.given_a_letter()

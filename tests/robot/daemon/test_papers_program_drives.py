@@ -20,7 +20,7 @@ def papers_run(folder: Path, **settings: object) -> Iterator[SimulatedRun]:
     run.close()
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_it_collects_at_post1_and_reaches_post4(tmp_path: Path) -> None:
     with papers_run(tmp_path) as run:
         run.until(lambda: run.mind.is_quiet and run.mind.cycles > 10)
@@ -28,7 +28,7 @@ def test_it_collects_at_post1_and_reaches_post4(tmp_path: Path) -> None:
         assert run.mind.failures == []
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_low_battery_on_the_way_is_charged_at_the_dock_it_was_told_and_post4_is_reached(tmp_path: Path) -> None:
     with papers_run(tmp_path, battery_ratio=0.26, battery__simulated_capacity_mah=1500.0) as run:
         run.until(lambda: run.robot.docked)

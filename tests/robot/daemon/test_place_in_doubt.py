@@ -27,7 +27,7 @@ def way_left_mm(run: SimulatedRun) -> float:
 
 
 @pytest.mark.parametrize("left_mm", [45.0, 120.0, 290.0])
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_killed_just_before_a_post_it_finds_its_marker_before_it_drives_on(tmp_path: Path, left_mm: float) -> None:
     killed_before_post3(tmp_path, left_mm)
     second = SimulatedRun(tmp_path)
@@ -67,7 +67,7 @@ def test_without_its_marker_it_stands_and_says_so_until_it_is_put_down_elsewhere
     second.close()
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_an_error_of_the_map_stops_the_wheels_is_told_and_ends_no_loop(run: SimulatedRun) -> None:
     run.asks("", "visit(post1)")
     run.until(lambda: run.is_at("post3") and run.robot.pose.x_m < 1.3)

@@ -17,7 +17,7 @@ def test_the_example_settings_are_accepted_and_name_a_post_with_a_dock() -> None
     assert find_map(settings.map).post(settings.home).dock is not None
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_the_patrol_goes_three_rounds(tmp_path: Path) -> None:
     run = SimulatedRun(tmp_path, "post2:post1", mind__program=EXAMPLES / "patrol.asl", mind__percepts="latest")
     run.asks("", "patrol")
@@ -28,6 +28,7 @@ def test_the_patrol_goes_three_rounds(tmp_path: Path) -> None:
     run.close()
 
 
+@pytest.mark.slow
 def test_the_courier_fetches_and_brings(tmp_path: Path) -> None:
     run = SimulatedRun(tmp_path, mind__program=EXAMPLES / "courier.asl", mind__percepts="latest")
     run.asks("", "fetch(post3,post4)")

@@ -12,7 +12,7 @@ from robot.drive_loop.black_box import BlackBox
 from tests.robot.daemon.simulated_run import CODES, SimulatedRun
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_receipts_are_proved_by_what_was_shown_and_nothing_of_it_is_written_down(
     run: SimulatedRun, capfd: pytest.CaptureFixture[str]
 ) -> None:

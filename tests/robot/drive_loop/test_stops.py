@@ -77,6 +77,7 @@ def test_a_stop_wins_over_a_rearming_by_somebody_who_cannot_have_seen_it(
     assert moving.faults == {"emergency_stop"}
 
 
+@pytest.mark.slow
 def test_clean_pressed_in_the_dock_starts_no_cleaning_and_a_dead_mind_ends_no_charge() -> None:
     robot = Moving("dock", battery_ratio=0.5)
     try:

@@ -32,6 +32,7 @@ def read(reader: MarkerReader, name: str, seeds: range) -> int:
 
 
 @pytest.mark.parametrize("name", ["clean", "small", "motion", "tilt", "low_light", "tunnel"])
+@pytest.mark.slow
 def test_zxing_reads_small_blurred_dark_and_slanting_markers(name: str):
     assert read(BY_ZXING, name, range(9000, 9000 + EACH)) >= EACH - 1
 
@@ -80,7 +81,7 @@ def test_every_frame_with_a_marker_is_looked_at():
 
 
 @pytest.mark.parametrize("size_px", SIZES)
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_codes_shown_by_people_are_read_at_every_size_and_before_everything(size_px: tuple[int, int]):
     """On a wall, over a page of text, before bricks and clutter; half of the codes fill the picture."""
     first = 9000 + SIZES.index(size_px)

@@ -8,6 +8,7 @@ from tests.robot.drivers.against_the_byte_machine import Join
 SAFE_THEN_START = b"\x83\x80"
 
 
+@pytest.mark.slow
 def test_pulses_on_brc_keep_it_awake(join: Join) -> None:
     one = join()
     one.robot.set_fault("sleep_after_s", 70.0)

@@ -109,7 +109,7 @@ def test_a_robot_that_drives_stops_at_no_code_of_a_stranger(run: SimulatedRun) -
     assert run.told().count("fault foreign_marker") == 2, "begun and over"
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_carried_on_a_trolley_it_is_found_out_by_the_second_marker(run: SimulatedRun) -> None:
     run.asks("", "visit(post1)")
     run.until(lambda: run.is_at("post2"))

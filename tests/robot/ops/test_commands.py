@@ -142,6 +142,7 @@ def test_a_stop_beside_a_dead_daemon_holds_when_the_next_one_starts(tmp_path: Pa
     daemon.close()
 
 
+@pytest.mark.slow
 def test_a_stop_without_a_daemon_goes_to_the_base_itself(tmp_path: Path) -> None:
     port = tmp_path / "tty"
     with subprocess.Popen(

@@ -26,7 +26,7 @@ class Watched(Moving):
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_ordinary_driving_raises_no_alarm(seed: int) -> None:
     robot = Watched("post3:post2", seed=seed, options=Options(gap_m=0.02))
     robot.robot.set_fault("floor_flip", 0.01)

@@ -30,7 +30,7 @@ ON_THE_WAY: dict[str, Any] = {"after_post": "post1", "at_s": 12.0}
     ],
     ids=["unplug and plug in", "reset", "frozen picture", "slip", "code"],
 )
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_the_letter_arrives_all_the_same(tmp_path: Path, happens: dict[str, Any], told: str) -> None:
     structlog.configure(wrapper_class=structlog.make_filtering_bound_logger(logging.CRITICAL))
     wanted = {"told": [told]}

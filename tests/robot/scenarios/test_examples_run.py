@@ -5,16 +5,22 @@ from pathlib import Path
 
 import pytest
 import structlog
+from _pytest.mark import ParameterSet
 
 from robot.scenarios.judging import shortfalls
 from robot.scenarios.loading import read_scenario
 from robot.scenarios.stage import Stage
 
+WITH_EVERY_CHANGE = ("first_letter", "recall")
 EXAMPLES = sorted((Path(__file__).parents[3] / "examples" / "scenarios").glob("*.toml"))
 
 
-@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
-@pytest.mark.slow
+def _example(path: Path) -> ParameterSet:
+    mark = pytest.mark.slow if path.stem in WITH_EVERY_CHANGE else pytest.mark.nightly
+    return pytest.param(path, id=path.stem, marks=mark)
+
+
+@pytest.mark.parametrize("path", [_example(path) for path in EXAMPLES])
 def test_the_example_ends_as_expected(path, tmp_path):
     structlog.configure(wrapper_class=structlog.make_filtering_bound_logger(logging.CRITICAL))
     scenario = read_scenario(path)

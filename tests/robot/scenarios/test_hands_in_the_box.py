@@ -53,7 +53,7 @@ def pause_and_resume(stage: Stage) -> None:
     ],
     ids=["nothing", "low battery", "pause"],
 )
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_no_wheel_turns_while_a_hand_may_be_in_the_box(tmp_path: Path, disturb: Disturbs) -> None:
     with Stage(Scenario.model_validate({"order": [LETTER], "limit_s": 150}), tmp_path) as stage:
         stood_s = stood_after_each_yes(stage, disturb)
@@ -61,7 +61,7 @@ def test_no_wheel_turns_while_a_hand_may_be_in_the_box(tmp_path: Path, disturb: 
     assert min(stood_s) > SLOWEST_S, stood_s
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_slow_hands_find_the_box_where_it_was(tmp_path: Path) -> None:
     with Stage(Scenario.model_validate({"order": [LETTER], "limit_s": 600}), tmp_path) as stage:
         for person in stage.handings:
@@ -70,7 +70,7 @@ def test_slow_hands_find_the_box_where_it_was(tmp_path: Path) -> None:
     assert [one.fate for one in ending.verdicts] == [Fate.DELIVERED]
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_push_while_a_code_is_read_leaves_the_letter_with_its_robot(tmp_path: Path) -> None:
     """It goes back a hand's breadth, says yes all the same, and stands for the hand that follows."""
     pushed: list[float] = []

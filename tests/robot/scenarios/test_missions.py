@@ -13,13 +13,16 @@ WENT_WRONG = (
     ("tunnels", 20617),  # searched for the line in a turn, and took itself for one that comes back along it
     ("tunnels", 20623),  # rolled on beyond a post while its base did not answer, and backed up
 )
+MISSIONS = (*((world, FIRST_SEED + more) for world in ("track", "tunnels") for more in range(3)), *WENT_WRONG)
 
 
 @pytest.mark.parametrize(
     ("world", "seed"),
-    [(world, FIRST_SEED + more) for world in ("track", "tunnels") for more in range(3)] + list(WENT_WRONG),
+    [
+        pytest.param(*mission, marks=pytest.mark.nightly if number else pytest.mark.slow)
+        for number, mission in enumerate(MISSIONS)
+    ],
 )
-@pytest.mark.slow
 def test_every_letter_is_delivered_or_honestly_handed_to_a_person(world, seed):
     mission = fly(world, seed)
     assert isinstance(mission, Figures), mission

@@ -49,6 +49,7 @@ def test_the_recording_has_the_truth_the_beliefs_and_the_people(recording):
     assert any(stack[0].startswith("+!pursue(mission") and "+!go_to(post3)" in stack for stack in stacks)
 
 
+@pytest.mark.slow
 def test_the_page_holds_every_row_and_allows_only_its_own_script(recording):
     rows = read_recording(recording)
     html = page(rows)

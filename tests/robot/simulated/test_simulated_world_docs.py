@@ -43,6 +43,7 @@ def test_the_command_lists_its_faults():
 
 
 @pytest.mark.parametrize("ending", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.slow
 def test_the_command_opens_a_port_and_a_door_and_ends_with_ctrl_c(tmp_path, ending):
     link, door = tmp_path / "create2", tmp_path / "door"
     options = ["--link", str(link), "--door", str(door), "--start", "post1"]

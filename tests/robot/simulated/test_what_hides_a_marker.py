@@ -1,8 +1,8 @@
 """People before the lens, dirt on one sheet, tags below the codes: what the simulated camera sees of them."""
 
 import math
-import time
 from collections.abc import Iterable
+from timeit import timeit
 
 import numpy as np
 import pytest
@@ -96,11 +96,15 @@ def test_a_tag_of_no_post_of_this_map_is_foreign():
 
 @pytest.mark.alone
 def test_a_frame_without_a_marker_costs_next_to_nothing():
-    """Drawn and looked at: 0.1 ms where a search for codes took 0.8. The test allows four times that."""
+    """Drawn and looked at: a ninth of what a frame with a marker costs. The test allows twice that."""
     drawn = Renderer(MARKERS, CameraMount(colour=False), Faults(), 0)
     nowhere = View(500.0, 500.0, 0.0)
-    READER.look(drawn.frame(nowhere), 0.0)
-    began_s = time.process_time()
-    for _ in range(100):
-        assert READER.look(drawn.frame(nowhere), 0.0) == ()
-    assert (time.process_time() - began_s) * 1000 / 100 < 0.4
+    assert READER.look(drawn.frame(nowhere), 0.0) == ()
+    without_s, with_marker_s = (_look_s(drawn, where) for where in (nowhere, ABREAST))
+    assert without_s < with_marker_s / 4
+
+
+def _look_s(drawn: Renderer, where: View) -> float:
+    """The least of several: other work makes a look slower, never quicker."""
+    looks = (timeit(lambda: READER.look(drawn.frame(where), 0.0), number=20) for _ in range(5))
+    return min(looks)

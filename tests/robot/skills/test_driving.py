@@ -56,7 +56,7 @@ def test_it_leaves_the_dock_and_docks_again(drive: Make):
     assert robot.robot.docked, "and it stays in the dock"
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_dock_without_power_is_given_up_after_the_last_try(drive: Make):
     robot = drive("post5:post3")
     robot.robot.place(Pose(2.0, 4.0, math.pi / 2))

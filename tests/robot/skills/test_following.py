@@ -32,6 +32,7 @@ def test_with_the_sensor_ahead_it_follows_tight_bends_at_speed(track: str):
     assert (one.searching, one.slow_commands) == (0, 0)
 
 
+@pytest.mark.slow
 def test_on_a_straight_line_it_loses_little_time_to_corrections():
     rides = [ride("straight", lead_mm=60.0, seed=seed) for seed in (7, 8)]
     assert mean(one.speed_mm_s for one in rides) > 188
@@ -65,11 +66,13 @@ def test_a_half_turn_takes_little_longer_than_the_wheels_need():
 @pytest.mark.parametrize(
     "turn", [("canal", "uc", "azrieli"), ("azrieli", "uc", "canal"), ("nicol", "mackenzie", "nicol")]
 )
+@pytest.mark.slow
 def test_in_the_tunnels_neither(turn: tuple[str, str, str]):
     crossing = cross(small_map("carleton"), *turn, seed=7)
     assert (crossing.outcome, crossing.searches) == (ON_THE_LINE, 0)
 
 
+@pytest.mark.slow
 def test_a_post_in_sight_is_not_forgotten_when_the_line_is_lost(drive: Make):
     robot = drive("post1:post2")
     job = robot.loop.start(FollowLine(TRACK, "post1", shape=robot.shape), robot.now)
@@ -112,6 +115,7 @@ def test_turned_round_between_posts_it_comes_back_to_the_post_behind(drive: Make
     assert robot.distance_to_m("post1") < 0.03
 
 
+@pytest.mark.slow
 def test_bumped_in_the_middle_of_a_turn_it_goes_back_to_the_post_and_finds_its_line(drive: Make):
     robot = drive("post3:post4")
     job = robot.loop.start(Turn(math.pi, robot.shape), robot.now)
@@ -122,6 +126,7 @@ def test_bumped_in_the_middle_of_a_turn_it_goes_back_to_the_post_and_finds_its_l
     assert robot.do(FollowLine(TRACK, "post3", shape=robot.shape)) == Done("post5")
 
 
+@pytest.mark.slow
 def test_a_line_that_was_met_across_is_followed_the_way_it_looked_before(drive: Make):
     robot = drive("post1:post2")
     pose = robot.robot.pose
