@@ -88,6 +88,7 @@ def run_browser_tests(tmp_path: Path, **environment: str) -> subprocess.Complete
     )
 
 
+@pytest.mark.slow
 def test_without_a_browser_the_last_line_counts_what_did_not_run(tmp_path, bare_machine):
     finished = run_browser_tests(tmp_path, PATH=str(bare_machine))
     assert finished.returncode == 0
@@ -103,12 +104,14 @@ def test_where_a_browser_is_required_its_absence_is_a_failure(tmp_path, bare_mac
     assert "no Chromium found, and 3 browser tests must run" in finished.stderr
 
 
+@pytest.mark.slow
 def test_a_named_browser_that_is_not_there_is_an_error(tmp_path, bare_machine):
     finished = run_browser_tests(tmp_path, PATH=str(bare_machine), CHROMIUM="/nowhere/chromium")
     assert finished.returncode != 0
     assert "CHROMIUM=/nowhere/chromium is no program" in finished.stderr
 
 
+@pytest.mark.slow
 def test_with_a_browser_all_tests_run_and_nothing_is_counted(tmp_path, bare_machine):
     (bare_machine / "chromium").symlink_to(bare_machine / "sh")
     finished = run_browser_tests(tmp_path, PATH=str(bare_machine))

@@ -30,6 +30,7 @@ def test_every_part_can_be_loaded_and_says_what_is_wanted_of_it(name: str) -> No
     assert [one.figure for one in part.WANTED if one.at_most is None and one.at_least is None] == []
 
 
+@pytest.mark.slow
 def test_a_part_measures_every_figure_that_it_is_judged_by(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "benchmarks.fleet", "every_map", "--posts", "2", "--plots", str(tmp_path)]
     finished = subprocess.run(command, cwd=CHECKOUT, capture_output=True, text=True, check=False)
@@ -73,6 +74,7 @@ def test_robots_that_meet_or_find_no_bay_would_be_seen() -> None:
         full.look_for_others(full.robots["r1"], full.network.lane(1, 2))
 
 
+@pytest.mark.slow
 def test_in_the_tunnels_most_of_what_could_be_delivered_without_conflicts_is() -> None:
     run_ = throughput.run((throughput.Case(4, 2, Rule("quickest", orders=3, rounds=3), spread=0.2), 1, 24.0))
     assert run_.refused == 0

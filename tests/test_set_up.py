@@ -211,6 +211,7 @@ for name in ("robot.__main__", "robot.scenarios.__main__", "robot.simulated.__ma
 """
 
 
+@pytest.mark.slow
 def test_robots_programs_start_where_no_package_of_the_service_is() -> None:
     there = closure(PROJECT["dependencies"] + EXTRAS["robot"])
     absent = [name for name, homes in distributions_of().items() if there.isdisjoint(map(canonicalize_name, homes))]

@@ -97,6 +97,7 @@ def content(connection: Connection) -> dict[str, list[dict[str, Any]]]:
 
 
 @pytest.mark.parametrize("revision", RELEASED)
+@pytest.mark.slow
 async def test_nothing_that_was_stored_is_lost_on_the_way_to_head(database: Database, revision: str) -> None:
     await bring_to(database, revision)
     await on(database, fill(RELEASED[revision]))

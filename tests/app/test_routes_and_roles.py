@@ -312,6 +312,7 @@ def refusals(operation: dict[str, Any]) -> set[str]:
     return REFUSALS & set(forbidden["schema"]["allOf"][1]["properties"]["code"]["enum"] if forbidden else ())
 
 
+@pytest.mark.slow
 def test_a_script_with_every_scope_may_do_what_its_person_may(browser: httpx.Client, everybody: Everybody) -> None:
     opened = [route for route, line in LINES.items() if line.scopes not in {"", "none"}]
     answered = {route: knock(browser, everybody, " ".join(SCRIPTS), route)[0] for route in opened}
@@ -329,6 +330,7 @@ def test_a_delegate_has_their_code_and_is_else_like_anybody(browser: httpx.Clien
     assert answered == {**of_orders, **theirs}
 
 
+@pytest.mark.slow
 def test_a_robots_token_opens_no_route(browser: httpx.Client, everybody: Everybody) -> None:
     answered = {route: knock(browser, everybody, "robot", route)[0] for route in LINES}
     assert answered == {route: line.stranger for route, line in LINES.items()}

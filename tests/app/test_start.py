@@ -79,6 +79,7 @@ async def test_the_models_and_the_migrations_say_the_same(settings: Settings) ->
     await database.close()
 
 
+@pytest.mark.slow
 async def test_the_first_migration_can_be_undone(settings: Settings) -> None:
     database = Database(settings.url_of_database)
     await bring_to_head(database)

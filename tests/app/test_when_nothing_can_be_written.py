@@ -49,6 +49,7 @@ def seen_at(browser: Browser) -> str:
 
 
 @pytest.mark.parametrize("fault", ["full disk", "held lock"])
+@pytest.mark.slow
 def test_who_reads_is_answered_at_once_and_readiness_tells(
     fault: str, settings: Settings, clock: SteppedClock, sender: Browser, script: dict[str, str], anonymous: TestClient
 ) -> None:

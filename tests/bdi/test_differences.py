@@ -34,5 +34,6 @@ def test_every_row_says_what_jason_does_what_we_do_and_why() -> None:
 
 
 @pytest.mark.parametrize("row", sorted(SHOWN))
+@pytest.mark.slow
 def test_the_row_tells_the_truth_about_us(row: str) -> None:
     SHOWN[row]()

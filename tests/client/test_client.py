@@ -47,6 +47,7 @@ async def lost_at_first(number: int, answer: httpx.Response) -> httpx.Response:
     return answer
 
 
+@pytest.mark.slow
 async def test_an_order_is_placed_read_changed_and_cancelled(campus: Campus, mail: AsyncCampusMail) -> None:
     await campus.enrol()
     await campus.announce("r1", online=True)

@@ -55,6 +55,7 @@ asyncio.run(main())
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="the kernel's own way")
+@pytest.mark.slow
 async def test_a_demonstration_that_is_killed_leaves_no_children_behind(tmp_path: Path) -> None:
     parent = await asyncio.create_subprocess_exec(
         *python(PARENT), str(tmp_path / "log"), stdout=asyncio.subprocess.PIPE, cwd=ROOT

@@ -87,6 +87,7 @@ async def test_a_corridor_is_closed_and_opened_and_the_way_of_a_robot_that_stand
     await expect(page.get_by_text("Its corridors were given to others; it takes part again").first).to_be_visible()
 
 
+@pytest.mark.slow
 async def test_from_a_robots_page_too_it_is_told_that_a_corridor_is_open_and_what_cannot_be_is_said(
     quiet_campus, robot, visit
 ):

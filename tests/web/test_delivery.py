@@ -212,6 +212,7 @@ async def test_a_robot_out_of_reach_is_said_to_be_so_and_its_order_goes_on(demon
     await expect(ada.page.get_by_role("heading", level=1)).to_have_text(f"{robot} is coming to Post 1")
 
 
+@pytest.mark.slow
 async def test_why_it_waits_is_said_in_french_and_what_has_no_french_is_marked(demonstration, visit):
     ada = await visit("ada.king", at=demonstration.service, locale="fr-CA")
     order_id = await ada.order("bob.martin@campus.example")
@@ -275,6 +276,7 @@ async def test_cancelling_with_a_robot_on_its_way_waits_for_the_robots_answer(de
     await expect(ada.page.get_by_role("heading", level=1)).to_have_text("Cancelled")
 
 
+@pytest.mark.slow
 async def test_a_delegate_digits_a_longer_wait_and_not_now(demonstration, visit):
     ada = await visit("ada.king", at=demonstration.service)
     bob = await visit("bob.martin", on="phone", at=demonstration.service)
@@ -350,6 +352,7 @@ async def test_a_recipient_without_account_takes_the_letter_by_the_link_in_the_m
     await expect(standing).to_be_in_viewport(ratio=1)
 
 
+@pytest.mark.slow
 async def test_a_delegate_sees_by_the_link_in_their_mail_where_it_is_and_their_code_and_no_more(demonstration, visit):
     ada = await visit("ada.king", at=demonstration.service)
     porter = await visit("grace.hill", on="phone", at=demonstration.service, signed_in=False)

@@ -16,6 +16,7 @@ GAPS = re.compile(r"\{\w+\}|\b(state|next|badge|timeline|follow|code|stage)\.[a-
 
 
 @pytest.mark.parametrize(("role", "theme"), [("sender", "light"), ("recipient", "dark")])
+@pytest.mark.slow
 async def test_every_state_is_said_in_words_with_what_comes_next(visit, role, theme):
     """The service's own answer, as it is in each state; how an order comes there is seen in test_delivery."""
     ada: Visitor = await visit(on="phone", color_scheme=theme)

@@ -81,6 +81,7 @@ async def test_what_goes_wrong_appears_by_itself_and_is_mended_by_keyboard_alone
     await expect(queue.get_by_text("Being brought back")).to_be_visible()
 
 
+@pytest.mark.slow
 async def test_a_robot_is_paused_let_go_on_and_stopped_by_keyboard_alone(quiet_campus, robot, visit):
     dana = await quiet_campus.dispatcher(visit)
     page = dana.page
@@ -246,6 +247,7 @@ async def test_on_a_phone_each_part_of_the_mailroom_is_a_tap_away_however_far_on
     await expect(parts).to_be_hidden()
 
 
+@pytest.mark.slow
 async def test_a_wall_shows_the_campus_at_work_and_no_full_name(busy_campus, visit):
     dana = await busy_campus.dispatcher(visit, viewport={"width": 1920, "height": 1080})
     page = dana.page
@@ -288,6 +290,7 @@ async def test_others_are_told_whose_page_this_is(quiet_campus, visit):
         await expect(ada.page.get_by_role("link", name="Mailroom")).to_have_count(0)
 
 
+@pytest.mark.slow
 async def test_a_long_queue_goes_on_where_the_page_ends(quiet_campus, visit):
     ids = [order_id for _ in range(3) for order_id in await quiet_campus.scene.is_ordered_for_later(35)]
     dana = await quiet_campus.dispatcher(visit)

@@ -180,6 +180,7 @@ async def test_a_double_tap_is_one_order(visit):
     assert len((await ada.api("/orders"))["items"]) == 1
 
 
+@pytest.mark.slow
 async def test_an_answer_that_is_lost_is_asked_for_again_and_nothing_is_ordered_twice(visit):
     ada = await visit()
     ada.loses_answers = True
@@ -199,6 +200,7 @@ async def test_an_answer_that_is_lost_is_asked_for_again_and_nothing_is_ordered_
     assert len((await ada.api("/orders"))["items"]) == 1
 
 
+@pytest.mark.slow
 async def test_an_order_without_any_answer_is_kept_and_sent_again_with_its_key_after_a_reload(visit):
     ada = await visit()
     ada.loses_answers = True

@@ -99,6 +99,7 @@ async def test_a_refused_order_is_tried_once_and_can_be_thrown_away(visit, statu
     assert await ordered(ada) == ["Second"] and len(set(keys)) == len(keys) == 2
 
 
+@pytest.mark.slow
 async def test_what_the_worker_is_refused_is_shown_and_not_tried_again_by_it(visit):
     ada = await come_with_worker(visit, "ada.king", permissions=["background-sync"])
     ada.refusals_expected.add(ORDERS)

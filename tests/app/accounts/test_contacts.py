@@ -35,6 +35,7 @@ def test_whom_one_exchanged_mail_with_comes_first_and_newest_first(
 
 
 @pytest.mark.parametrize("limit", [1, 2, 3, 100])
+@pytest.mark.slow
 def test_a_long_address_book_comes_page_by_page_and_everybody_in_it_once(
     sender: Browser, clock: SteppedClock, limit: int
 ) -> None:

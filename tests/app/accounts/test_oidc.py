@@ -183,6 +183,7 @@ def test_a_code_is_good_once(anonymous: TestClient, campus: Campus) -> None:
         ({"email": "ada@elsewhere.example", "email_verified": True}, "address_not_allowed"),
     ],
 )
+@pytest.mark.slow
 def test_only_verified_addresses_of_our_domains_get_in(
     anonymous: TestClient, campus: Campus, claims: dict[str, Any], code: str
 ) -> None:
@@ -200,6 +201,7 @@ def test_a_provider_that_is_not_there_is_a_problem_and_no_crash(anonymous: TestC
     assert start(anonymous) == problem("provider_failed")
 
 
+@pytest.mark.slow
 def test_where_none_is_set_up_there_is_no_campus_sign_in(anonymous: TestClient, app: FastAPI) -> None:
     app.state.parts.provider.settings = app.state.parts.settings.model_copy(update={"oidc_issuer": ""})
     refused = anonymous.get(START)

@@ -3,6 +3,8 @@ it was placed; a restart forgets nothing of it."""
 
 from datetime import timedelta
 
+import pytest
+
 from app.core.settings import Settings
 from app.models import ForecastRow, ForecastUnderWayRow, Order
 from fleet.eta.calibration import Basis
@@ -40,6 +42,7 @@ async def given(service: Service, robot: PlayedRobot) -> tuple[str, Mission]:
     return order_id, await robot.mission()
 
 
+@pytest.mark.slow
 async def test_what_is_told_first_and_after_loading_is_kept_scored_and_learned_from(
     settings: Settings, clock: SteppedClock, robot: PlayedRobot
 ) -> None:

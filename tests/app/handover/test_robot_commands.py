@@ -15,6 +15,7 @@ KINDS = {"pause": "pause", "resume": "resume", "recall": "recall", "emergency-st
 
 
 @pytest.mark.parametrize("word", KINDS)
+@pytest.mark.slow
 async def test_a_command_reaches_the_robot_and_its_answer_is_seen(campus: Campus, word: str) -> None:
     await campus.connect()
     desk = await campus.browser("desk", Role.DISPATCHER)

@@ -166,6 +166,7 @@ async def given_to_r2(world: World, order_id: str) -> None:
 
 
 @pytest.mark.parametrize("end", ["delivered", "returned", "held", "cancelled", "expired"])
+@pytest.mark.slow
 async def test_what_has_ended_has_ended_for_everybody(world: World, end: str) -> None:
     order_id = await ended(world, end)
     assert await world.state(order_id) == end

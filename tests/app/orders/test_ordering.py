@@ -47,6 +47,7 @@ def test_an_order_is_accepted_with_a_window_and_its_place(sender: Browser, mailr
         ({"colour": "blue"}, "invalid_request"),
     ],
 )
+@pytest.mark.slow
 def test_what_cannot_be_delivered_is_refused_by_name(sender: Browser, changes: dict[str, str], code: str) -> None:
     assert refused(sender.order(**changes)) == (422, code)
     assert sender.get("/api/v1/orders").json()["items"] == []

@@ -51,12 +51,14 @@ def test_any_words_of_the_language(words: list[str]) -> None:
 
 @given(st.randoms(use_true_random=False))
 @settings(steady, max_examples=200)
+@pytest.mark.slow
 def test_real_programs_after_accidents(random: Random) -> None:
     check(mangled(random, real_programs()), Report())
 
 
 @given(st.randoms(use_true_random=False))
 @settings(steady, max_examples=200)
+@pytest.mark.slow
 def test_programs_made_up(random: Random) -> None:
     check(Author(random).program(), Report())
 

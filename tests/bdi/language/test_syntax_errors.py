@@ -111,6 +111,7 @@ HUGE = {
 
 @pytest.mark.timeout(30)
 @pytest.mark.parametrize("text", HUGE.values(), ids=HUGE.keys())
+@pytest.mark.slow
 def test_what_is_too_much_is_refused_in_time(text: str) -> None:
     for read in (parse_program, parse_term):
         try:
@@ -119,6 +120,7 @@ def test_what_is_too_much_is_refused_in_time(text: str) -> None:
             assert len(str(error)) < 2_000_100  # it may name a token that is 1 MB long
 
 
+@pytest.mark.slow
 def test_reading_takes_work_in_proportion() -> None:
     """Calls are counted, since time is not the same twice."""
 

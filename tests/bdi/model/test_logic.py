@@ -259,6 +259,7 @@ def test_a_test_goal_binds_the_first_answer(beliefs: list[str], rules: list[str]
 
 @quick
 @given(beliefs=beliefs, rules=rules, formula=formulas, x=st.sampled_from([*VALUES, "Free"]))
+@pytest.mark.slow
 def test_findall_and_for_have_every_answer(beliefs: list[str], rules: list[str], formula: str, x: str) -> None:
     body = f".findall(found(X,Y,Z),{formula},All); .length(All,N); all(N); for ({formula}) {{ act(X,Y,Z) }}; done"
     agent = Agent(parse_program(" ".join([*(f"{each}." for each in beliefs), *rules, f"+!g(X) <- {body}."])))

@@ -324,6 +324,7 @@ def test_equal_seeds_give_equal_runs() -> None:
     assert run(agent_of(program, random_seed=4)) == run(agent_of(program, random_seed=4))
 
 
+@pytest.mark.slow
 def test_nothing_grows_over_100_000_cycles() -> None:
     agent = agent_of("!g(0). n(0). +!g(N) : N < 10 <- -+n(N); !g(N+1). +!g(N) <- !g(0).")
     for _ in range(100_000):

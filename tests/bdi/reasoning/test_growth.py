@@ -85,6 +85,7 @@ def a_hundred_thousand_cycles() -> tuple[Counter[str], int, int]:
     return acted, objects, blocks
 
 
+@pytest.mark.slow
 def test_no_plan_or_question_is_remembered_that_is_gone() -> None:
     """A relation knows what was compiled with it; plans and questions that come and go leave nothing there."""
     objects, blocks = in_own_process(plans_and_questions_come_and_go)

@@ -3,6 +3,7 @@
 from math import inf
 from random import Random
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -50,6 +51,7 @@ def within(spans: list[Span], since_s: float, until_s: float) -> bool:
 
 @settings(max_examples=60)
 @given(st.randoms(use_true_random=False), st.sampled_from([None, 2.0]))
+@pytest.mark.slow
 def test_what_is_free_is_what_no_robot_has(rng: Random, following_s: float | None) -> None:
     network = two_posts(following_s)
     taken, there = Occupied(network), some_passages(rng, network)

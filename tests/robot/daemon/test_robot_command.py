@@ -117,6 +117,7 @@ def test_a_goal_that_fails_ends_with_status_1_and_the_reason(tmp_path: Path) -> 
     assert "unknown_post" in summary["reason"]
 
 
+@pytest.mark.slow
 def test_a_goal_that_takes_too_long_ends_with_status_1_and_says_what_it_was_doing(tmp_path: Path) -> None:
     ran = CliRunner().invoke(cli, ["--simulated", "--achieve", "visit(post4)", "--limit", "20", "--json"])
     assert ran.exit_code == 1

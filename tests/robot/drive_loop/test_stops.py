@@ -94,6 +94,7 @@ def test_clean_pressed_in_the_dock_starts_no_cleaning_and_a_dead_mind_ends_no_ch
 
 
 @pytest.mark.parametrize("door", DOORS)
+@pytest.mark.slow
 def test_it_takes_the_wheels_from_a_firmware_that_docks(door: str) -> None:
     robot = Moving("dock", battery_ratio=0.6)
     try:

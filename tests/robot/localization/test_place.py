@@ -66,6 +66,7 @@ POSTS = sorted(TRACK.posts)
 
 
 @pytest.mark.parametrize("seed", range(40))
+@pytest.mark.slow
 def test_whatever_it_meets_it_is_never_in_a_corridor_that_the_map_does_not_have(seed: int) -> None:
     random = Random(seed)
     with Store(None) as store:

@@ -56,6 +56,7 @@ def test_a_robot_that_stopped_leaves_a_file_that_holds_why_and_how(moving: Movin
     assert any(row.kind == "job" and row.data.endswith("rolls begins") for row in found)
 
 
+@pytest.mark.slow
 def test_the_memory_it_takes_is_bounded_however_long_the_robot_runs() -> None:
     assert in_own_process(taken_by_much) < MOST_BYTES
 
@@ -100,6 +101,7 @@ def test_the_same_fault_again_within_the_minute_is_in_the_file_of_the_first(tmp_
     assert len(files(tmp_path)) == 2
 
 
+@pytest.mark.slow
 def test_many_threads_note_while_it_is_written(tmp_path: Path) -> None:
     box, over = BlackBox(tmp_path), threading.Event()
 

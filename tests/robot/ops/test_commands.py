@@ -71,6 +71,7 @@ def test_a_maintainer_sees_what_it_does_stops_it_and_lets_it_go_again(daemon: Da
     assert daemon.types("status").exit_code == 0
 
 
+@pytest.mark.slow
 def test_the_log_is_read_from_its_file(daemon: Daemon) -> None:
     daemon.until("Driving")
     subprocess_output = subprocess.run(
@@ -134,6 +135,7 @@ def test_a_stop_that_reaches_nobody_says_so_loudly(tmp_path: Path) -> None:
     assert "The robot was NOT stopped. Press Clean on it, or lift it." in ran.output
 
 
+@pytest.mark.slow
 def test_a_stop_beside_a_dead_daemon_holds_when_the_next_one_starts(tmp_path: Path) -> None:
     CliRunner().invoke(cli, ["stop", "--data", str(tmp_path), "--port", str(tmp_path / "tty")])
     daemon = Daemon(tmp_path)

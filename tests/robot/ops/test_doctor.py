@@ -106,6 +106,7 @@ def test_the_simulated_world_pushes_its_robot_over_the_tape_itself() -> None:
     assert "reads post1" in ran.stdout, "it was put back before the marker"
 
 
+@pytest.mark.slow
 def test_only_our_own_words_come_out_where_no_camera_is(tmp_path: Path) -> None:
     config = write(tmp_path / "r.toml", f'serial_port = "{tmp_path}/tty"\ndata = "{tmp_path}"\ncamera.device = 63\n')
     command = [sys.executable, "-m", "robot", "doctor", "--config", str(config), "--root", str(tmp_path)]

@@ -61,6 +61,7 @@ def test_the_page_holds_every_row_and_allows_only_its_own_script(recording):
     assert "unsafe" not in html.partition("</head>")[0]
 
 
+@pytest.mark.slow
 def test_nothing_in_a_recording_becomes_markup_and_nothing_is_fetched(recording):
     html = page(read_recording(recording))
     assert "alert(1)</script>" not in html

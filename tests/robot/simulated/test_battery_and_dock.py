@@ -12,6 +12,7 @@ PASSIVE, SAFE, FULL = 1, 2, 3
 NOT, RECONDITION, CHARGING, TRICKLE, WAITING, FAULT = range(6)
 
 
+@pytest.mark.slow
 def test_driving_empties_the_battery_faster_than_standing(make):
     def used_mah(speed) -> float:
         bench = make(battery_ratio=0.9)
@@ -47,6 +48,7 @@ def test_a_docked_robot_charges_in_off_and_passive_until_it_is_full(make):
     assert bench.ask(25) == bench.ask(26) == 60
 
 
+@pytest.mark.slow
 def test_a_stronger_charger_fills_the_battery_sooner(make):
     options = Options(build=Build(pack=Pack(ratio=0.5, charger_ma=10_000.0)))
     bench = make("dock", options=options)

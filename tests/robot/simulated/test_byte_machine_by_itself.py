@@ -34,6 +34,7 @@ def test_a_charging_robot_prints_a_battery_line_a_second_until_it_is_started(mak
     assert bench.heard() == b""
 
 
+@pytest.mark.slow
 def test_five_idle_minutes_in_passive_send_the_robot_to_sleep_even_while_it_is_polled(make):
     bench = make()
     bench.send(128)
@@ -65,6 +66,7 @@ def test_a_low_pulse_on_brc_wakes_the_robot_into_off(make):
     assert bench.ask(35) == PASSIVE
 
 
+@pytest.mark.slow
 def test_pulses_on_brc_keep_a_passive_robot_awake(make):
     bench = make()
     bench.send(128)
@@ -76,6 +78,7 @@ def test_pulses_on_brc_keep_a_passive_robot_awake(make):
     assert bench.ask(35) == PASSIVE
 
 
+@pytest.mark.slow
 def test_a_dead_brc_wakes_nobody(make):
     bench = make()
     bench.robot.set_fault("brc_dead", True)

@@ -90,6 +90,7 @@ def test_every_marker_of_the_tunnels_can_be_read_from_the_line():
             assert texts(drawn.frame(View(x_m, y_m, heading))) == [post.name]
 
 
+@pytest.mark.slow
 def test_a_robot_that_leaves_sees_nothing_and_a_robot_that_passes_reads_in_many_frames(make):
     bench = make("post1:post2", options=Options())
     assert texts(bench.robot.camera.read()[1]) == []
@@ -145,6 +146,7 @@ def test_a_marker_is_not_seen_from_behind():
 
 
 @pytest.mark.parametrize("seed", range(10))
+@pytest.mark.slow
 def test_a_code_held_up_by_a_person_is_read(make, seed):
     bench = make("post1:post2", seed=seed)
     bench.robot.show_code(CODE)

@@ -79,6 +79,7 @@ def test_a_firmware_that_sees_no_dock_roams_no_farther_than_the_room_of_the_post
     assert robot.end_of(job) == Done(), "and docks when it is there again"
 
 
+@pytest.mark.slow
 def test_bouncing_contacts_are_not_a_failed_dock(drive: Make):
     robot = drive("post5:post3", battery_ratio=0.4)
     robot.robot.place(Pose(2.0, 4.0, math.pi / 2))
