@@ -58,7 +58,7 @@ def store() -> Iterator[Store]:
         yield store
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 @pytest.mark.timeout(1200)
 @pytest.mark.skipif(bool(MISSING), reason=f"missing Debian packages: {', '.join(MISSING)}")
 @pytest.mark.skipif(os.geteuid() != 0, reason="debootstrap and chroot need root")

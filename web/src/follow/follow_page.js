@@ -5,7 +5,7 @@ import { arrivalOf } from "../orders/arrival.js";
 import { followedOrder } from "../service/early.js";
 import { PAGES } from "../service/links.js";
 import { OnLive } from "../live/live.js";
-import { hasEnded, isAtAStop, isMyTurn, orderWhy, stateSentence } from "../orders/order_words.js";
+import { asItsRobotSays, hasEnded, isAtAStop, isMyTurn, orderWhy, stateSentence } from "../orders/order_words.js";
 import { loadMap } from "../service/posts.js";
 import { inWords } from "../service/problems.js";
 import { serverNow } from "../service/server_clock.js";
@@ -62,7 +62,7 @@ export class FollowPage extends PageElement {
     new Ticking(this);
     new OnLive(this, {
       order: (order) => order.id === this.order_id && this.#hear(() => this.#show(order)),
-      robot: (robot) => this.#concerns(robot) && this.#hear(() => (this.robot = robot)),
+      robot: (robot) => this.#concerns(robot) && this.#hear(() => this.#showRobot(robot)),
       resync: () => this.#fetch(),
     });
   }
@@ -183,6 +183,12 @@ export class FollowPage extends PageElement {
     if (this.order && order.robot?.name !== this.order.robot?.name) this.#traffic.fetch();
     this.order = order;
     this.robot = order.robot;
+  }
+
+  /** @param {Robot} robot */
+  #showRobot(robot) {
+    if (this.order) this.order = asItsRobotSays(this.order, this.robot, robot);
+    this.robot = robot;
   }
 
   /** Before the first answer any robot may be the one. @param {Robot} robot */

@@ -26,6 +26,16 @@ export function orderReason({ why, why_words, events }, map) {
 export const orderWhy = (order, map) =>
   order.robot && order.robot.why === order.why ? robotWhy(order.robot, map) : orderReason(order, map);
 
+/** Reasons that may be of another order's stop. */
+const OF_A_STOP = ["why.sender", "why.recipient", "why.to_return"];
+
+/** The order when its robot has news. The service's word about an order follows some seconds later; where that word was the
+ * robot's own, the robot's new one takes its place. @param {Order} order @param {Robot | null} before @param {Robot} robot @returns {Order} */
+export function asItsRobotSays(order, before, robot) {
+  const isElsewhere = !isAtAStop(order) && OF_A_STOP.includes(robot.why_words?.key ?? "");
+  return before && order.why === before.why && !isElsewhere ? { ...order, why: robot.why, why_words: robot.why_words } : order;
+}
+
 /** The reason of something that happened. @param {Pick<OrderEvent, "by" | "reason" | "reason_words">} event @param {CampusMap} map */
 export function eventReason({ by, reason, reason_words }, map) {
   if (!reason) return "";
