@@ -152,10 +152,11 @@ PIP = $(BIN)/python -m pip install --quiet --disable-pip-version-check -c constr
 LIST = $(BIN)/python -c 'import sys, tomllib; p = tomllib.load(open("pyproject.toml", "rb"))["project"]; \
   print(*p["dependencies"], *(one for extra in sys.argv[1:] for one in p["optional-dependencies"][extra]), sep="\n")'
 # One small package comes first and must come soon: without a network pip would try each of the others five times.
-# What is compiled makes a first start quick, also where Python is told to leave no compiled modules behind.
+# What is compiled makes a first start quick, also where Python is told to leave no compiled modules behind; tests and
+# tools compile what they import.
 define FETCH
 @$(LIST) $(1) > .venv/requirements.txt
-@{ $(PIP) --retries 0 --timeout 5 lark && $(PIP) -r .venv/requirements.txt; } >$(LOG) 2>&1 || $(NOT_FETCHED)
+@{ $(PIP) --retries 0 --timeout 5 lark && $(PIP) $(2) -r .venv/requirements.txt; } >$(LOG) 2>&1 || $(NOT_FETCHED)
 @$(BIN)/python -m compileall -q protocol maps bdi fleet robot app demo
 @touch $@
 endef
@@ -176,10 +177,11 @@ endef
 	@echo "Fetching the Python packages that run, some 120 MB …"
 	$(call FETCH,service robot)
 
-.venv/.develop-ready: .venv/.python-ready
+.venv/.develop-ready: pyproject.toml constraints.txt | .venv/bin/pip
 	@$(WRITABLE)
-	@echo "Fetching the Python packages of tests and tools, some 180 MB more …"
-	$(call FETCH,service robot develop)
+	@echo "Fetching the Python packages that run, and those of tests and tools, some 300 MB …"
+	$(call FETCH,service robot develop,--no-compile)
+	@touch .venv/.python-ready
 
 # lgpio, which reads the pins of a Raspberry Pi, is a robot's alone; it needs no pages and nothing of the service.
 CAN_HAVE_LGPIO = $(BIN)/python -c 'import sys; sys.exit(sys.version_info >= (3, 13))' || command -v swig >/dev/null || { \

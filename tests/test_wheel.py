@@ -89,7 +89,7 @@ def test_a_server_installs_the_service_alone_and_serves_pages_and_api(wheel: Pat
         assert httpx.get(f"{url}/api/v1/map").status_code in {200, 401}
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_robots_computer_installs_the_daemon_alone_and_both_deliver_a_letter(wheel: Path, tmp_path: Path) -> None:
     robot = Environment(tmp_path, wheel, "robot")
     assert not robot.packages() & OF_THE_SERVICE

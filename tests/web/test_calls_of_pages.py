@@ -84,7 +84,7 @@ async def of_all_trades(campus: Campus, visit) -> Visitor:
 
 
 @pytest.mark.parametrize("address", AT_MOST)
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_a_page_asks_for_each_answer_once(busy_campus, visit, address):
     ada = await of_all_trades(busy_campus, visit)
     order = await ada.order("bob.martin@campus.example")

@@ -89,7 +89,7 @@ async def test_a_letter_followed(visit, campus, led):
     await look_at_all(ada, led(ada, await campus.order_of(name_of(ada), "bob.martin", "at_sender")))
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_one_order_without_account(visit, campus):
     guest = await visit("grace.hopper", at=campus.service, signed_in=False, reduced_motion="reduce")
     await campus.order_of("bob.martin", name_of(guest), "at_recipient")
@@ -97,9 +97,13 @@ async def test_one_order_without_account(visit, campus):
 
 
 @pytest.mark.parametrize(
-    "led", [states_of_staff.dispatching, states_of_staff.working_at_the_desk, states_of_staff.on_a_quiet_day]
+    "led",
+    [
+        pytest.param(states_of_staff.dispatching, marks=pytest.mark.slow),
+        pytest.param(states_of_staff.working_at_the_desk, marks=pytest.mark.nightly),
+        pytest.param(states_of_staff.on_a_quiet_day, marks=pytest.mark.nightly),
+    ],
 )
-@pytest.mark.slow
 async def test_the_mailroom(visit, campus, led):
     dana = await campus.staff(visit)
     await look_at_all(dana, led(dana))
@@ -139,7 +143,7 @@ EVERY_PAGE += (
 )
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_every_page_speaks_french_stands_still_and_lets_a_keyboard_through(visit, campus):
     dana = await campus.staff(visit, locale="fr-CA")
     order_id = await campus.order_of(name_of(dana), "bob.martin", "at_sender")

@@ -19,7 +19,7 @@ LARGEST_BYTES, ALL_BYTES = 100_000, 2_500_000
 
 
 @pytest.mark.browser
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_a_picture_of_a_page_is_taken_in_both_themes(
     chromium: Browser, playwright_here: Playwright, tmp_path: Path
 ):

@@ -11,12 +11,12 @@ from robot.scenarios.judging import shortfalls
 from robot.scenarios.loading import read_scenario
 from robot.scenarios.stage import Stage
 
-WITH_EVERY_CHANGE = ("first_letter", "recall")
+WITH_EVERY_CHANGE = "first_letter"
 EXAMPLES = sorted((Path(__file__).parents[3] / "examples" / "scenarios").glob("*.toml"))
 
 
 def _example(path: Path) -> ParameterSet:
-    mark = pytest.mark.slow if path.stem in WITH_EVERY_CHANGE else pytest.mark.nightly
+    mark = pytest.mark.slow if path.stem == WITH_EVERY_CHANGE else pytest.mark.nightly
     return pytest.param(path, id=path.stem, marks=mark)
 
 
