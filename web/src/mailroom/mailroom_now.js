@@ -5,7 +5,7 @@
  */
 import * as api from "../service/api.js";
 import { OnLive } from "../live/live.js";
-import { hasEnded } from "../orders/order_words.js";
+import { asItsRobotSays, hasEnded } from "../orders/order_words.js";
 import { loadMap } from "../service/posts.js";
 import { inWords } from "../service/problems.js";
 
@@ -42,7 +42,7 @@ export class MailroomNow {
     host.addController(this);
     new OnLive(host, {
       order: (order) => this.#hear(() => (this.#heard.orders.push(order), this.take(order))),
-      robot: (robot) => this.#hear(() => (this.#heard.robots.push(robot), this.robots.set(robot.name, robot))),
+      robot: (robot) => this.#hear(() => (this.#heard.robots.push(robot), this.#takeRobot(robot))),
       notice: ({ kind }) => kind === "alarm" && this.poll(),
       resync: () => this.fetch(),
     });
@@ -70,6 +70,15 @@ export class MailroomNow {
     if (hasEnded(order)) this.orders.delete(order.id);
     else this.orders.set(order.id, order);
     this.host.requestUpdate();
+  }
+
+  /** @param {Robot} robot */
+  #takeRobot(robot) {
+    const before = this.robots.get(robot.name) ?? null;
+    for (const order of this.orders.values()) {
+      if (order.robot?.name === robot.name) this.orders.set(order.id, asItsRobotSays(order, before, robot));
+    }
+    this.robots.set(robot.name, robot);
   }
 
   /** @param {() => void} take */
