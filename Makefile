@@ -4,8 +4,8 @@ PYTHON ?= python3
 BIN := .venv/bin
 # More for the tool behind a verb: make test ARGS="tests/maps -k route", make demo ARGS="--once --json"
 ARGS ?=
-# Where tests lie that run alone (tests/conftest.py).
-ALONE_IN = tests/robot tests/system
+# The files with tests that run alone: to collect all the others takes ten seconds.
+ALONE_IN = $(shell grep -rl --include='*.py' 'mark\.alone' tests)
 
 .DEFAULT_GOAL := help
 .PHONY: help setup setup-develop setup-robot test test-all test-nightly check licences sbom format demo fleet-demo serve robot bench bench-mind bench-body bench-service bench-paper bench-pages bench-service-kills bench-fleet fuzz-mind client pages icons android screenshots fuzz-api docs pin clean

@@ -3,7 +3,6 @@
 import gc
 import os
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -21,8 +20,6 @@ PLAIN = [
     *structlog.get_config()["processors"][:-1],
     structlog.dev.ConsoleRenderer(exception_formatter=structlog.dev.plain_traceback),
 ]
-ALONE_IN = ("robot", "system")
-"""CI looks for tests that run alone in these folders only: to collect all the others takes ten seconds."""
 
 
 @pytest.fixture(autouse=True)
@@ -56,9 +53,6 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
     What joins real processes takes longest and comes first: else one of the workers would end long after the others.
     """
-    elsewhere = [item.nodeid for item in items if item.get_closest_marker("alone") and not _is_in(item, ALONE_IN)]
-    if elsewhere:
-        raise pytest.UsageError(f".ci/run would never run these alone: {', '.join(elsewhere)}")
     items.sort(key=lambda item: item.get_closest_marker("system") is None)
     browser_tests = [item for item in items if item.get_closest_marker("browser")]
     if not browser_tests or chromium():
@@ -70,13 +64,9 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     config.stash[NOT_RUN] = len(browser_tests)
 
 
-def _is_in(item: pytest.Item, folders: tuple[str, ...]) -> bool:
-    return any(Path(__file__).parent / folder in item.path.parents for folder in folders)
-
-
 @pytest.hookimpl(optionalhook=True)
 def pytest_testnodedown(node: Any, error: object) -> None:
-    """Two at a time, only the workers know what they left out; each of them has left out the same."""
+    """Beside each other, only the workers know what they left out; each of them has left out the same."""
     node.config.stash[NOT_RUN] = getattr(node, "workeroutput", {}).get("not_run", 0)
 
 

@@ -27,7 +27,7 @@ def run(*arguments: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, cwd=CHECKOUT, env=environment, capture_output=True, text=True, check=False)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_quick_run_has_every_figure_of_ours_and_says_why_the_others_are_missing(tmp_path: Path) -> None:
     finished = run("--quick", "--alone", "--folder", str(tmp_path))
     assert finished.returncode == 0, finished.stderr

@@ -87,7 +87,7 @@ def closing_index() -> Iterator[ClosingIndex]:
     index.close()
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_without_a_network_it_says_so_after_one_try(tmp_path: Path, closing_index: ClosingIndex) -> None:
     nothing_else = {"PIP_CONFIG_FILE": os.devnull, "PIP_NO_CACHE_DIR": "1", "no_proxy": "127.0.0.1"}
     finished = make(

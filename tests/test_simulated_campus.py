@@ -33,7 +33,7 @@ def test_a_whole_campus_goes_on_for_days_with_faults(fleet: str, tmp_path: Path)
     assert "messages per robot-hour" in (tmp_path / "campus.svg").read_text()
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_the_same_seed_is_the_same_campus() -> None:
     def lived() -> tuple[Counter[str], list[float | None]]:
         run = CampusRun(2, Fleet(3, 2, 0.5), FAULTS)

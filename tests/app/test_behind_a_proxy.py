@@ -197,7 +197,7 @@ def knows_who_tries_too_often(front: Front) -> None:
         assert tries(two, "192.0.2.9") != 429
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_another_proxy_is_believed_once_it_is_named_and_only_it(tmp_path: Path) -> None:
     more = TIGHT | {"CAMPUS_MAIL_TRUSTED_PROXIES": '["127.0.0.8/29"]'}
     wrong = {"name": "r2", "code": "AAAA-AAAA", "public_key": "A" * 43 + "="}

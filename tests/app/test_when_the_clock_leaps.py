@@ -202,7 +202,7 @@ async def _found(app: FastAPI) -> tuple[str, bool, int]:
 
 
 @sqlite_alone
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_service_that_starts_so_waits_by_true_time(settings: Settings, tmp_path: Path) -> None:
     settings, settles_s = settings.model_copy(update=AWAY), 4.0
     ordered(settings, datetime.now(UTC) - timedelta(days=3))

@@ -158,7 +158,7 @@ def test_what_is_printed_is_what_the_service_answers_with_the_printed_settings(b
     assert "not been tried on a phone" in built.printed
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 @needs(*TOOLS)
 def test_the_key_is_kept_and_its_password_is_on_no_command_line(built: Built, tmp_path: Path) -> None:
     folder = built.apk.parent

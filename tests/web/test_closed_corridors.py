@@ -15,7 +15,7 @@ pytestmark = pytest.mark.browser
 MAILROOM = "/mailroom.html"
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_a_corridor_that_a_robot_found_closed_is_open_again_when_a_dispatcher_who_has_looked_says_so(
     quiet_campus, robot, visit
 ):

@@ -21,7 +21,7 @@ async def campus(tmp_path_factory: pytest.TempPathFactory) -> AsyncIterator[Camp
         yield campus
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_a_person_signs_in_sends_a_letter_follows_it_cancels_it_and_settles_their_language_by_keys(
     visit, service
 ):

@@ -209,7 +209,7 @@ async def test_a_refused_order_waits_in_sight_and_goes_out_once_with_its_key_at_
     assert await ordered(ada) == ["Ghost"] and len(keys) == 2 and len(set(keys)) == 1
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_at_the_desk_an_order_that_was_refused_goes_on_over_its_own_dialog(quiet_campus, visit):
     dana = await quiet_campus.dispatcher(visit)
     page, keys = dana.page, placings(dana.context)

@@ -37,7 +37,7 @@ async def busy_campus(tmp_path_factory: pytest.TempPathFactory) -> AsyncIterator
         yield campus
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_what_goes_wrong_appears_by_itself_and_is_mended_by_keyboard_alone(quiet_campus, robot, visit):
     dana = await quiet_campus.dispatcher(visit)
     ada = await visit("ada.king", at=quiet_campus.service)

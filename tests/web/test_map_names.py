@@ -66,7 +66,7 @@ async def tell_the_time(route: Route) -> None:
 
 @pytest.mark.parametrize("size", SIZES)
 @pytest.mark.parametrize("name", ["test_track", "carleton"])
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_no_name_lies_on_a_corridor_without_robots_and_with_one_on_any_of_them(visit, name, size):
     campus = builtin_map(name)
     ways = [way for one in campus.corridors for way in ((one.a, one.b), (one.b, one.a))]

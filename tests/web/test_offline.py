@@ -150,7 +150,7 @@ async def test_a_kept_order_is_sent_once_by_the_worker_though_no_page_is_open_an
     assert await ordered() == ["Keys"]
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_an_order_whose_answers_are_lost_while_all_else_goes_well_is_sent_again_by_itself_and_is_one(visit):
     ada = await visit("ada.king", on="phone")
     page, lost = ada.page, []

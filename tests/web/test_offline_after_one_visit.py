@@ -241,7 +241,7 @@ async def test_a_session_that_has_ended_leaves_nothing(visit):
     assert await ada.page.evaluate(KEPT_ANSWERS) == EVERYBODYS
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_what_is_not_kept_says_one_clear_thing(visit):
     ada = await visit("ada.king", on="phone", service_workers="allow")
     await give_roles(ada.service, ada.email, Role.DISPATCHER, Role.MAINTAINER)

@@ -127,7 +127,7 @@ async def test_every_place_says_the_same_time_at_each_step_and_the_robot_comes_w
     assert (await ada.page.evaluate(TOLD))["hero"] is None, "what is over is not expected"
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_who_orders_while_the_only_robot_has_mail_that_was_not_taken_reads_that_and_no_time(
     campus, played, visit
 ) -> None:

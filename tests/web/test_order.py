@@ -97,7 +97,7 @@ async def test_an_ordered_letter_is_followed_at_once_and_stands_in_my_mail(visit
 
 @pytest.mark.parametrize("address", ["/", "/follow.html"], ids=["typed", "repeated by a link"])
 @pytest.mark.parametrize("is_kept", [True, False], ids=["page kept by the browser", "page opened anew"])
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_going_back_after_ordering_offers_nothing_that_one_tap_orders_twice(visit, address, is_kept):
     ada = await visit()
     page = ada.page

@@ -66,7 +66,7 @@ class Carrier:
         self.at = stop.post
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_what_robots_did_is_what_people_are_told_and_a_restart_forgets_nothing(
     settings: Settings, clock: SteppedClock, robot: PlayedRobot
 ) -> None:

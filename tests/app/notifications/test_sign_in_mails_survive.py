@@ -125,7 +125,7 @@ async def test_what_a_full_mailbox_did_not_take_goes_out_after_the_next_start(se
     assert (service.left, service.kept, len(service.mail_server.taken)) == (0, 0, 1)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_what_waits_for_its_next_try_is_tried_once_more_before_the_end(service: Service) -> None:
     service.mail_server.says = [FULL]
     async with service.running() as client:
@@ -133,7 +133,7 @@ async def test_what_waits_for_its_next_try_is_tried_once_more_before_the_end(ser
     assert (service.left, service.kept, len(service.mail_server.taken)) == (0, 0, 1)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_a_mail_server_that_hangs_holds_up_no_end_and_loses_nothing(service: Service) -> None:
     service.mail_server.hangs = True
     async with service.running() as client:

@@ -102,7 +102,7 @@ def test_a_robot_with_little_charge_begins_no_work_until_it_has_enough(tmp_path:
     run.close()
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_detour_to_the_dock_gives_back_the_corridors_of_the_mission(run: SimulatedRun) -> None:
     service = with_service(run)
     loaded_and_at_post2(run)
@@ -130,7 +130,7 @@ def test_whose_order_is_cancelled_while_it_waits_for_a_corridor_asks_for_none_an
     assert run.robot.docked
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_paused_robot_gives_back_the_way_ahead(run: SimulatedRun) -> None:
     service = with_service(run)
     loaded_and_at_post2(run)
@@ -187,7 +187,7 @@ def test_somebody_who_does_not_make_way_closes_the_corridor(run: SimulatedRun) -
     assert len(told) % 2 == 0 and len(told) >= 2, "each time that it is closed is told to be over, too"
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_robot_that_waits_for_a_way_goes_at_once_when_somebody_says_that_it_is_open(run: SimulatedRun) -> None:
     service = with_service(run)
     run.robot.world.obstacles.append(Person(1.0, 2.0))
@@ -240,7 +240,7 @@ def test_a_stop_from_the_service_holds_until_resume_and_the_mission_goes_on(run:
     assert run.told().count("answer ") == 2
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_robot_whose_corridors_others_have_got_stands_until_a_marker_tells_it_where_it_is(run: SimulatedRun) -> None:
     service = with_service(run)
     run.given_a_letter()

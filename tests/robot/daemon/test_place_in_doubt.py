@@ -45,7 +45,7 @@ def corridor_of(run: SimulatedRun) -> str | None:
     return corridor_at(run.parts.navigator.campus, run.robot.pose.x_m, run.robot.pose.y_m)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_without_its_marker_it_stands_and_says_so_until_it_is_put_down_elsewhere(tmp_path: Path) -> None:
     killed_before_post3(tmp_path, 60.0)
     second = SimulatedRun(tmp_path)

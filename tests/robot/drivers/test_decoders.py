@@ -49,7 +49,7 @@ def test_a_code_that_is_partly_outside_the_picture_is_read_as_nothing_or_as_itse
 
 
 @pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_nothing_comes_out_of_what_is_not_ours(kind: str):
     place = list(KINDS).index(kind)
     for round_number in range(5000, 5024):

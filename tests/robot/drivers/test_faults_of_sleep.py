@@ -33,7 +33,7 @@ def test_a_base_that_sleeps_all_the_same_is_noticed(join: Join, switch: str) -> 
         assert one.base.health.down, "nothing wakes it but a hand"
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_without_brc_it_is_stirred_every_four_minutes(join: Join) -> None:
     one = join(brc=False)
     one.run(1.0)
@@ -45,7 +45,7 @@ def test_without_brc_it_is_stirred_every_four_minutes(join: Join) -> None:
     assert not one.robot.state()["asleep"] and one.base.health.starts == 1
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_without_brc_nothing_is_sent_in_the_dock(join: Join) -> None:
     one = join("dock", brc=False, battery_ratio=0.5)
     one.run(1.0)

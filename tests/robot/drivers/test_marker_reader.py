@@ -92,7 +92,7 @@ def test_a_decoder_that_fails_does_not_take_the_robot_down():
 
 @settings(max_examples=40)
 @given(seed=st.integers(0, 2**32 - 1), text=st.text(min_size=1, max_size=30))
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_no_foreign_code_crashes_the_ladder_or_is_taken_for_a_post(seed: int, text: str):
     frame = frame_of(text, 4, (60, 40), "l")
     noise = np.random.default_rng(seed)

@@ -67,7 +67,7 @@ def test_a_metre_that_is_measured_gives_the_way_per_count_within_half_a_percent(
 
 
 @pytest.mark.parametrize("wheels", [(1.0, 1.0), (1.03, 1.03), (1.03, 1.01), (0.96, 0.97)])
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_turns_over_the_line_give_the_wheel_base_within_half_a_percent(wheels: tuple[float, float]) -> None:
     bench = Bench(wheels)
     devices = open_pins(LineSettings(), bench.robot.pin_factory)

@@ -109,7 +109,7 @@ def test_a_robot_cannot_drive_through_the_dock(make):
 @pytest.mark.parametrize("left_m", [-0.15, 0.0, 0.15])
 @pytest.mark.parametrize("turned_deg", [-25, 0, 25])
 @pytest.mark.parametrize("before_m", [0.4, 0.8, 1.4])
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_seek_dock_finds_a_dock_in_front_of_it(make, left_m, turned_deg, before_m):
     bench = make("dock", options=Options(), battery_ratio=0.5)
     heading = math.pi / 2 + math.radians(turned_deg)

@@ -39,7 +39,7 @@ def test_on_a_straight_line_it_loses_little_time_to_corrections():
 
 
 @pytest.mark.parametrize("track", ["straight", "s_600_400"])
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_with_the_sensor_on_the_axle_it_follows_slowly(track: str):
     one = ride(track, lead_mm=0.0, seed=7)
     assert one.completed, one.outcome
@@ -49,7 +49,7 @@ def test_with_the_sensor_on_the_axle_it_follows_slowly(track: str):
 
 @pytest.mark.parametrize("came_from", ["post2", "post4", "post5"])
 @pytest.mark.parametrize("towards", ["post2", "post4", "post5"])
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_at_a_t_junction_no_turn_slips_onto_a_branch(came_from: str, towards: str):
     crossing = cross(TRACK, came_from, "post3", towards, seed=7)
     assert (crossing.outcome, crossing.searches) == (ON_THE_LINE, 0)

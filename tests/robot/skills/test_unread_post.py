@@ -84,7 +84,7 @@ def test_wheels_that_err_by_three_per_cent_do_not_miss_it(
 
 @pytest.mark.parametrize("slip", [0.1, 0.25])
 @pytest.mark.parametrize(("leaving", "post"), [("post3", "post4"), ("post1", "post2"), ("post2", "post3")])
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_wheels_that_slip_do_not_stop_short_of_a_post_where_the_line_ends(
     drive: Callable[..., Drive], slip: float, leaving: str, post: str
 ):
