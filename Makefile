@@ -32,7 +32,7 @@ else
 endif
 
 ON_POSTGRESQL = tests/app/orders tests/app/dispatch tests/app/robots tests/app/traffic tests/app/cli tests/app/test_database.py \
-  tests/app/test_migrations.py
+  tests/app/test_migrations.py tests/app/test_postgresql_away.py
 test-all: setup-develop .venv/.made-ready ## Run the slow tests, too, and on PostgreSQL those that lean on the database: what CI runs
 	$(BIN)/python -m pytest $(BESIDE) -m "not alone and not nightly"
 	CAMPUS_MAIL_TEST_DATABASE=postgresql $(BIN)/python -m pytest $(BESIDE) -m "not alone and not slow and not nightly" $(ON_POSTGRESQL)
