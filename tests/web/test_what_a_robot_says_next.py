@@ -1,10 +1,15 @@
-"""Between two answers of the service a page takes its order's reason from the robot, by the service's own rule."""
+"""Until the service says more about an order, a page takes its reason from the robot, by the service's own rule."""
+
+import re
 
 import pytest
+from playwright.async_api import expect
 
 from app.core.texts.reasons import words_of
 from app.models import Order, OrderState, RobotRow
 from app.orders.views.reasons import OTHER_STOP_FIRST, why_it_waits
+from protocol.parts import Activity, Battery, Position, StopAction
+from protocol.to_server import Snapshot, Step, Why
 
 pytestmark = pytest.mark.browser
 
@@ -15,6 +20,40 @@ SAY = """async (said) => {
   const { asItsRobotSays } = await import("/src/orders/order_words.js");
   return said.map(({ order, before, robot }) => asItsRobotSays(order, before, robot).why);
 }"""
+
+THE_SERVICE_IS_LATE = """
+  const listen = EventSource.prototype.addEventListener;
+  EventSource.prototype.addEventListener = function (kind, hear) {
+    return listen.call(this, kind, kind === "order" ? (event) => window.isLate || hear(event) : hear);
+  };
+"""
+
+
+async def test_what_the_robot_says_is_shown_though_the_service_is_late(quiet_campus, robot, visit):
+    ada = await visit("ada.king", at=quiet_campus.service)
+    dana = await quiet_campus.dispatcher(visit)
+    order_id = await ada.order("bob.martin@campus.example")
+    mission = await robot.mission()
+    (load,) = [stop for stop in mission.stops if stop.action is StopAction.LOAD]
+    for step, stop in ((Step.ACCEPTED, None), (Step.DEPARTED, load), (Step.ARRIVED, load)):
+        await robot.ends(await robot.report(mission, step, stop))
+    here = Position(post=load.post, seen_at=robot.clock.utc())
+    await robot.say(Snapshot(position=here, activity=Activity.WAITING, battery=Battery(ratio=0.9)))
+    await robot.say(Why(sentence=BEFORE))
+
+    reasons = []
+    for person, address, region in (
+        (ada, f"/follow.html?order={order_id}", "Why it is waiting"),
+        (dana, "/mailroom.html", re.compile("^In progress")),
+    ):
+        await person.page.add_init_script(THE_SERVICE_IS_LATE)
+        await person.page.goto(address)
+        reasons.append(person.page.get_by_role("region", name=region))
+        await expect(reasons[-1]).to_contain_text("Driving towards Post 2")
+        await person.page.evaluate("window.isLate = true")
+    await robot.say(Why(sentence=f"Waiting for the sender at {load.post}"))
+    for reason in reasons:
+        await expect(reason).to_contain_text(re.compile(r"Waiting for the sender at Post \d"))
 
 
 async def test_a_page_says_what_the_service_would_say(visit):
