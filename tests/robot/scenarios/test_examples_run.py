@@ -5,7 +5,6 @@ from pathlib import Path
 
 import pytest
 import structlog
-from _pytest.mark import ParameterSet
 
 from robot.scenarios.judging import shortfalls
 from robot.scenarios.loading import read_scenario
@@ -15,12 +14,15 @@ WITH_EVERY_CHANGE = "first_letter"
 EXAMPLES = sorted((Path(__file__).parents[3] / "examples" / "scenarios").glob("*.toml"))
 
 
-def _example(path: Path) -> ParameterSet:
-    mark = pytest.mark.slow if path.stem == WITH_EVERY_CHANGE else pytest.mark.nightly
-    return pytest.param(path, id=path.stem, marks=mark)
-
-
-@pytest.mark.parametrize("path", [_example(path) for path in EXAMPLES])
+@pytest.mark.parametrize(
+    "path",
+    [
+        pytest.param(
+            path, id=path.stem, marks=pytest.mark.slow if path.stem == WITH_EVERY_CHANGE else pytest.mark.nightly
+        )
+        for path in EXAMPLES
+    ],
+)
 def test_the_example_ends_as_expected(path, tmp_path):
     structlog.configure(wrapper_class=structlog.make_filtering_bound_logger(logging.CRITICAL))
     scenario = read_scenario(path)
