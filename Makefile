@@ -8,12 +8,12 @@ ARGS ?=
 ALONE_IN = $(shell grep -rl --include='*.py' 'mark\.alone' tests)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup setup-develop setup-robot test test-all test-nightly check licences sbom format demo fleet-demo serve robot bench bench-mind bench-body bench-service bench-paper bench-pages bench-service-kills bench-fleet fuzz-mind client pages icons android screenshots fuzz-api docs pin clean
+.PHONY: help setup setup-develop setup-robot test test-all test-beside test-on-postgresql test-alone test-nightly check licences sbom format demo fleet-demo serve robot bench bench-mind bench-body bench-service bench-paper bench-pages bench-service-kills bench-fleet fuzz-mind client pages icons android screenshots fuzz-api docs pin clean
 # A recipe that fails must not leave its stamp behind.
 .DELETE_ON_ERROR:
 
 help: ## List the verbs
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-13s %s\n", $$1, $$2 }' Makefile
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-18s %s\n", $$1, $$2 }' Makefile
 
 setup: .venv/.python-ready .venv/.pages-ready ## Make .venv and fetch what runs: service, pages, robot (verbs that run them do this by themselves)
 
@@ -31,17 +31,27 @@ else
 	$(BIN)/python -m pytest $(ARGS)
 endif
 
-ON_POSTGRESQL = tests/app/orders tests/app/dispatch tests/app/robots tests/app/traffic tests/app/cli tests/app/test_database.py \
-  tests/app/test_migrations.py tests/app/test_postgresql_away.py
-test-all: setup-develop .venv/.made-ready ## Run the slow tests, too, and on PostgreSQL those that lean on the database: what CI runs
+test-all: test-beside test-on-postgresql test-alone ## Run the slow tests, too, and on PostgreSQL those that lean on the database: what CI runs
+
+# Its stages, which CI runs one by one.
+test-beside: setup-develop .venv/.made-ready ## Its first stage: what may run beside each other
 	$(BIN)/python -m pytest $(BESIDE) -m "not alone and not nightly"
-	CAMPUS_MAIL_TEST_DATABASE=postgresql $(BIN)/python -m pytest $(BESIDE) -m "not alone and not slow and not nightly" $(ON_POSTGRESQL)
+
+# All of tests/app runs on it by the same variable; the rest is left out here for the time it takes.
+ON_POSTGRESQL = CAMPUS_MAIL_TEST_DATABASE=postgresql $(BIN)/python -m pytest $(BESIDE) tests/app/orders tests/app/dispatch \
+  tests/app/robots tests/app/traffic tests/app/cli tests/app/test_database.py tests/app/test_migrations.py tests/app/test_postgresql_away.py
+test-on-postgresql: setup-develop .venv/.made-ready ## Its second: on PostgreSQL what leans on the database
+	$(ON_POSTGRESQL) -m "not alone and not slow and not nightly"
+
+test-alone: setup-develop .venv/.made-ready ## Its third: what measures real time, with nothing beside it
 	$(BIN)/python -m pytest -m "alone and not nightly" $(ALONE_IN)
 
 test-nightly: setup-develop .venv/.made-ready ## Run the tests that no change can wait for: whole missions, kills at any moment, every page in every state
-	$(BIN)/python -m pytest $(BESIDE) -m "not alone and nightly"
-	CAMPUS_MAIL_TEST_DATABASE=postgresql $(BIN)/python -m pytest $(BESIDE) -m "not alone and (slow or nightly)" $(ON_POSTGRESQL)
-	$(BIN)/python -m pytest -m "alone and nightly" $(ALONE_IN)
+	@failed=0; \
+	$(BIN)/python -m pytest $(BESIDE) -m "not alone and nightly" || failed=1; \
+	$(ON_POSTGRESQL) -m "not alone and (slow or nightly)" || failed=1; \
+	$(BIN)/python -m pytest -m "alone and nightly" $(ALONE_IN) || failed=1; \
+	exit $$failed
 
 check: setup-develop .venv/.lint-ready .venv/.made-ready ## Format, lint, types, import contracts, types of the pages, the API documents
 	$(BIN)/ruff format --check
