@@ -10,6 +10,7 @@ import os
 import pty
 import select
 import termios
+import threading
 import tty
 from pathlib import Path
 from random import Random
@@ -54,11 +55,17 @@ class PtyLine:
         self._random = random
         self._link = link
         self._open = False
+        # Others pull the cable while the world's thread talks: it must not write to a descriptor that is closed by
+        # then, or is another file's.
+        self._in_use = threading.Lock()
         self.plug_in()
 
     def plug_in(self) -> None:
-        if self._open:
-            return
+        with self._in_use:
+            if not self._open:
+                self._plug_in()
+
+    def _plug_in(self) -> None:
         self._open = True
         self._master, self._slave = pty.openpty()
         tty.setraw(self._slave)
@@ -76,26 +83,26 @@ class PtyLine:
             select.select([self._master], [], [], at_most_s)
 
     def receive(self, baud: int) -> bytes:
-        if not self._open:
-            return b""
-        try:
-            data = os.read(self._master, CHUNK)
-        except BlockingIOError:
-            return b""
-        return data if self._same_speed(baud) else garbled(data, self._random)
+        with self._in_use, contextlib.suppress(BlockingIOError):
+            if self._open:
+                data = os.read(self._master, CHUNK)
+                return data if self._same_speed(baud) else garbled(data, self._random)
+        return b""
 
     def send(self, data: bytes, baud: int) -> None:
-        if not self._open:
-            return
-        with contextlib.suppress(BlockingIOError):
-            os.write(self._master, data if self._same_speed(baud) else garbled(data, self._random))
+        with self._in_use, contextlib.suppress(BlockingIOError):
+            if self._open:
+                os.write(self._master, data if self._same_speed(baud) else garbled(data, self._random))
 
     def _same_speed(self, baud: int) -> bool:
         return SPEEDS.get(termios.tcgetattr(self._master)[TERMIOS_SPEED]) == baud
 
     def close(self) -> None:
-        if not self._open:
-            return
+        with self._in_use:
+            if self._open:
+                self._close()
+
+    def _close(self) -> None:
         self._open = False
         os.close(self._master)
         os.close(self._slave)

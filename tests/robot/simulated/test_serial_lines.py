@@ -2,7 +2,10 @@
 
 import errno
 import os
+import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
+from random import Random
 from struct import unpack
 
 import pytest
@@ -10,6 +13,7 @@ import serial
 
 from maps import builtin_map
 from robot.simulated import SimulatedRobot, WrongValue
+from robot.simulated.base.serial_line import PtyLine
 
 SAFE = 2
 
@@ -125,3 +129,22 @@ def test_the_streamed_numbers_are_big_endian(make):
     bench.run(0.03)
     frame = bench.heard()[-6:]
     assert unpack(">BBBHB", frame)[3] == 2696
+
+
+def test_a_cable_can_be_pulled_while_the_world_goes_on():
+    """The world runs on a thread of its own: its bytes go down no cable that is closed by then."""
+    line, is_over = PtyLine(Random(0)), threading.Event()
+
+    def talk() -> None:
+        while not is_over.is_set():
+            line.send(b"x", 115200)
+            line.receive(115200)
+
+    with ThreadPoolExecutor() as world:
+        talking = world.submit(talk)
+        for _ in range(300):
+            line.close()
+            line.plug_in()
+        is_over.set()
+        talking.result()
+    line.close()
