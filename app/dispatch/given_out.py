@@ -5,12 +5,13 @@ It was made by a look that is past. What it changes must still be as it was then
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from datetime import datetime
 from typing import Final
 
 import structlog
 from sqlmodel.ext.asyncio.session import AsyncSession
 
-from app.dispatch.open_work import OpenWork, OrderNow, StopNow, read_open_work
+from app.dispatch.open_work import OpenWork, OrderNow, StopNow, read_part
 from app.models import MissionRow, OrderState, RobotRow, StopRow
 from app.orders.changes.intervening import REASSIGNED
 from app.orders.service import Actor
@@ -53,12 +54,14 @@ class Changes:
     def __bool__(self) -> bool:
         return bool(self.routes or self.taken)
 
-    def still_hold(self, now: OpenWork) -> bool:
+    async def still_hold(self, session: AsyncSession, now: datetime) -> bool:
         """Tell if all that they begin with is as it was."""
         then = self.work
         names = {*self.routes, *(then.orders[order].robot or "" for order in self.taken)}
-        are_there = all(now.orders.get(order) == then.orders[order] for order in self.given)
-        return are_there and all(_before(now, name) == _before(then, name) for name in names)
+        theirs = (order.id for order in then.orders.values() if order.robot in names)
+        work = await read_part(session, now, names, {*self.given, *theirs})
+        are_there = all(work.orders.get(order) == then.orders[order] for order in self.given)
+        return are_there and all(_before(work, name) == _before(then, name) for name in names)
 
 
 def _before(work: OpenWork, name: str) -> tuple[object, ...]:
@@ -110,7 +113,7 @@ async def give_out(session: AsyncSession, fleet: Fleet, changes: Changes, own: s
     """Write it down, and tell robots; False if it does not hold any more. `own`: orders that are given here."""
     # Locked before the read: no other writer gives them a mission between the two.
     robots = [await known_robot(session, name, to_change=True) for name in sorted(changes.routes)]
-    if not changes.still_hold(await read_open_work(session, fleet.clock.utc())):
+    if not await changes.still_hold(session, fleet.clock.utc()):
         return False
     by_robot = _by_robot(changes.given)
     for robot in robots:

@@ -7,7 +7,7 @@ from datetime import datetime
 from enum import StrEnum
 from typing import Any, Final, NamedTuple
 
-from sqlalchemy import func, or_, select
+from sqlalchemy import bindparam, func, or_, select
 from sqlmodel import col
 from sqlmodel.ext.asyncio.session import AsyncSession
 
@@ -96,16 +96,29 @@ class OpenWork:
 
 async def read_open_work(session: AsyncSession, now: datetime) -> OpenWork:
     """Five questions, whatever the number of robots and orders."""
+    return await _asked(session, _ALL, {"now": now})
+
+
+async def read_part(session: AsyncSession, now: datetime, robots: Iterable[str], orders: Iterable[str]) -> OpenWork:
+    """Read these robots, what each of them has before it, and these of the waiting orders: the same questions of less.
+
+    The stops of `orders` are read whatever robot has them, so that these orders read as they do among all.
+    """
+    return await _asked(session, _PART, {"now": now, "robots": [*robots], "orders": [*orders]})
+
+
+async def _asked(session: AsyncSession, questions: "_Questions", named: Mapping[str, Any]) -> OpenWork:
     connection = await connection_of(session)
-    waiting = (await connection.execute(_WAITING, {"now": now})).all()
+
+    async def rows(question: Any) -> Sequence[Any]:
+        return (await connection.execute(question, named)).all()
+
+    waiting = await rows(questions.waiting)
     if len(waiting) == LOOKED_AT:  # the important ones behind these must not be overlooked
-        waiting = [*waiting, *(await connection.execute(_IMPORTANT, {"now": now})).all()]
-    rows = [*waiting, *(await connection.execute(_WITH_A_ROBOT)).all()]
-    robots = (await connection.execute(_ROBOTS)).all()
-    stops = [StopNow(*row) for row in (await connection.execute(_STOPS)).all()]
-    missions = (await connection.execute(_MISSIONS)).all()
-    commands = (await connection.execute(_COMMANDS)).all()
-    return _put_together(rows, robots, stops, missions, commands)
+        waiting = [*waiting, *await rows(_IMPORTANT)]
+    orders = [*waiting, *await rows(questions.with_a_robot)]
+    robots, stops = await rows(questions.robots), [StopNow(*row) for row in await rows(questions.stops)]
+    return _put_together(orders, robots, stops, await rows(questions.missions), await rows(questions.commands))
 
 
 async def read_held_up(session: AsyncSession) -> set[HeldUp | None]:
@@ -214,8 +227,8 @@ def _orders() -> Any:
 
 # Put together once: that takes several times as long as asking.
 _WITH_A_ROBOT: Final = _orders().where(col(Order.state).in_((*ROBOT_COMING, *MAIL_ABOARD, OrderState.ATTENTION)))
-_WAITING: Final = _orders().where(is_waiting()).order_by(col(Order.created_at), col(Order.id)).limit(LOOKED_AT)
-_IMPORTANT: Final = _WAITING.where(col(Order.priority) == Priority.HIGH)
+_WAITING: Final = _orders().where(is_waiting()).order_by(col(Order.created_at), col(Order.id))
+_IMPORTANT: Final = _WAITING.where(col(Order.priority) == Priority.HIGH).limit(LOOKED_AT)
 _ROBOTS: Final = select(
     *(col(RobotRow.name), col(RobotRow.post), col(RobotRow.battery_ratio), col(RobotRow.charging)),
     *(col(RobotRow.docked), col(RobotRow.home)),
@@ -263,3 +276,27 @@ def _commands() -> Any:
 
 
 _COMMANDS: Final = _commands()
+
+
+class _Questions(NamedTuple):
+    waiting: Any
+    with_a_robot: Any
+    robots: Any
+    stops: Any
+    missions: Any
+    commands: Any
+
+
+def _named(column: Any, names: str) -> Any:
+    return col(column).in_(bindparam(names, expanding=True))
+
+
+_ALL: Final = _Questions(_WAITING.limit(LOOKED_AT), _WITH_A_ROBOT, _ROBOTS, _STOPS, _MISSIONS, _COMMANDS)
+_PART: Final = _Questions(
+    _WAITING.where(_named(Order.id, "orders")),
+    _WITH_A_ROBOT.where(_named(Order.robot, "robots")),
+    _ROBOTS.where(_named(RobotRow.name, "robots")),
+    _STOPS.where(or_(_named(MissionRow.robot, "robots"), _named(StopRow.order_id, "orders"))),
+    _MISSIONS.where(_named(MissionRow.robot, "robots")),
+    _COMMANDS.where(_named(RobotCommand.robot, "robots")),
+)
