@@ -8,9 +8,11 @@ A gap may hold a code, such as an order's state or the reason for which an actio
 it in words. A reason may also be such a code alone.
 """
 
+import json
 import re
 from collections.abc import Iterator, Mapping
 from functools import cache, lru_cache
+from pathlib import Path
 from string import Formatter
 from typing import Final
 
@@ -26,6 +28,8 @@ CODE: Final = re.compile(r"[a-z][a-zA-Z0-9]*(?:_\w+|\(.*\)|_\w+\(.*\))")
 """An atom of a program, of several words, or a structure. A single word may be anybody's."""
 REASON: Final = "reason"
 """The gap in which another sentence may stand."""
+EARLIER: Final = Path(__file__).with_name("earlier_sentences.json")
+"""Sentences as they were once: robots with earlier software say them, and orders and alarms of that time keep them."""
 
 
 class Words(BaseModel):
@@ -81,8 +85,10 @@ def _filling(language: str, gap: str, fact: str) -> str:
 @cache
 def _patterns() -> tuple[tuple[str, re.Pattern[str]], ...]:
     """Sentences without gaps first: they are the surer find."""
-    texts = {key: said for key, said in catalogue("en").items() if key.startswith(PREFIXES) and key != NOT_RECOGNISED}
-    return tuple((key, _pattern(said)) for key, said in sorted(texts.items(), key=lambda one: "{" in one[1]))
+    now = ((key, said) for key, said in catalogue("en").items() if key.startswith(PREFIXES) and key != NOT_RECOGNISED)
+    earlier: dict[str, str] = json.loads(EARLIER.read_text(encoding="utf-8"))
+    texts = sorted((*now, *earlier.items()), key=lambda one: "{" in one[1])
+    return tuple((key, _pattern(said)) for key, said in texts)
 
 
 def _pattern(said: str) -> re.Pattern[str]:

@@ -1,6 +1,7 @@
 """Why something waits is said in the reader's language, whichever part said it first."""
 
 import ast
+import json
 import string
 from collections.abc import Iterator
 from pathlib import Path
@@ -11,7 +12,7 @@ from hypothesis import strategies as st
 
 from app.core.settings import ROOT
 from app.core.texts import LANGUAGES, catalogue
-from app.core.texts.reasons import PREFIXES, in_language, in_words, words_of
+from app.core.texts.reasons import EARLIER, PREFIXES, in_language, in_words, words_of
 from app.dispatch.choice import IdleRobot, why_nobody_comes
 from app.orders.timer import NOT_FETCHED_IN_TIME
 from app.robots.progress.answers import RECALLED
@@ -96,6 +97,15 @@ def test_an_unknown_reason_is_shown_as_it_was_said_and_marked() -> None:
     assert in_language("en", "Juggling at post3") == "Juggling at post3"
     assert in_words("fr", {"robot": "r1", "reason": "Paused"}) == {"robot": "r1", "reason": "En pause"}
     assert in_words("fr", {"robot": "r1"}) == {"robot": "r1"}
+
+
+@pytest.mark.parametrize(("key", "sentence"), json.loads(EARLIER.read_text(encoding="utf-8")).items())
+def test_what_a_robot_with_earlier_software_says_is_translated(key: str, sentence: str) -> None:
+    assert sentence != catalogue("en")[key]
+    gaps = {name: f"{name}1" for _, name, _, _ in string.Formatter().parse(sentence) if name}
+    said = sentence.format_map(gaps)
+    assert in_language("en", said) == catalogue("en")[key].format_map(gaps)
+    assert in_language("fr", said) == catalogue("fr")[key].format_map(gaps)
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
