@@ -1,4 +1,4 @@
-"""The client follows the service: what is made of its document is what is committed, and nothing is left out."""
+"""The client follows the service: it is what its document makes, and nothing is left out."""
 
 import ast
 import importlib.util
@@ -33,7 +33,7 @@ def openapi(maker: ModuleType) -> Any:
     return maker.document()
 
 
-def test_what_is_committed_is_what_the_document_makes(maker: ModuleType, openapi: Any) -> None:
+def test_the_client_is_what_the_document_makes(maker: ModuleType, openapi: Any) -> None:
     for name, text in maker.made_files(openapi).items():
         assert (maker.PACKAGE / name).read_text() == text, f"{name}: run make client"
 
