@@ -1,8 +1,10 @@
 """Files shipped to run the service: units that systemd takes, proxies that pass on what they must."""
 
+import os
 import shutil
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -41,3 +43,17 @@ def test_no_proxy_shows_the_figures_or_holds_back_an_event() -> None:
     server, _, locations = nginx.partition("location =")
     assert {"X-Forwarded-For", "X-Forwarded-Proto", "Upgrade", "Host"} <= set(server.split())
     assert "proxy_set_header" not in locations
+
+
+def test_backups_are_kept_for_thirty_nights(tmp_path: Path) -> None:
+    """By the unit's own command, in a folder of the test."""
+    unit = (DEPLOY / "campus-mail-backup.service").read_text()
+    [command] = [line.partition("=")[2] for line in unit.splitlines() if line.startswith("ExecStartPost=")]
+    names = {"mail-old.tar.gz": 32, "mail-young.tar.gz": 29, "of-another.tar.gz": 400}
+    for name, age_days in names.items():
+        (tmp_path / name).touch()
+        os.utime(tmp_path / name, (time.time() - age_days * 86_400,) * 2)
+    words = [str(tmp_path) if word == "/var/lib/campus-mail-backups" else word for word in command.split()]
+    assert str(tmp_path) in words
+    subprocess.run(words, check=True, timeout=10)
+    assert {path.name for path in tmp_path.iterdir()} == names.keys() - {"mail-old.tar.gz"}

@@ -38,7 +38,7 @@ from app.robots.service import Fleet, enrol
 from app.traffic.service import TrafficService
 from fleet.assignment.deciding import Decision
 from fleet.assignment.improving import improved
-from maps import builtin_map
+from maps import CampusMap, builtin_map
 from maps.ways import Ways
 from protocol.both_ways import Error
 from protocol.clock import SteppedClock
@@ -144,8 +144,8 @@ class PlansHere(PlannerProcess):
 class World:
     """A campus in which nothing happens by itself."""
 
-    def __init__(self, template: Path, folder: Path, **settings: Any) -> None:
-        self.folder = folder
+    def __init__(self, template: Path, folder: Path, campus: CampusMap = TRACK, **settings: Any) -> None:
+        self.folder, self.campus = folder, campus
         folder.mkdir(parents=True)
         shutil.copy(template, folder / "campus-mail.sqlite")
         self.settings = Settings(data=folder, time_zone="UTC", **settings)
@@ -183,8 +183,8 @@ class World:
         self.database = Database(self.settings.url_of_database)
         feed = LocalFeed()
         self.sign_in = SignInService(self.settings, key, open_mailer(self.settings))
-        self.orders = Orders.of(Ledger(TRACK, self.settings, self.clock, feed), key, self.sign_in)
-        self.fleet = Fleet(self.database, TRACK, self.settings, self.clock, feed, self.orders)
+        self.orders = Orders.of(Ledger(self.campus, self.settings, self.clock, feed), key, self.sign_in)
+        self.fleet = Fleet(self.database, self.campus, self.settings, self.clock, feed, self.orders)
         self.intake = Intake(self.fleet)
         self.desk = TrafficService(self.fleet) if self.settings.traffic == "schedule" else None
         self.planner = FleetPlanner(self.fleet, self.desk, PlansHere()) if self.desk is not None else None

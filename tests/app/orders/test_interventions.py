@@ -118,7 +118,8 @@ def test_the_person_that_the_robot_waits_for_may_ask_for_more_time_but_not_for_e
     assert does(sender, order_id, "wait") == "not_waiting", "not for the sender"
     assert does(recipient, order_id, "wait", extend_s=301) == "waited_long_enough"
     assert [does(recipient, order_id, "wait") for _ in range(3)] == ["at_recipient"] * 2 + ["waited_long_enough"]
-    assert does(dispatcher, order_id, "wait", extend_s=3600) == "at_recipient"
+    assert does(dispatcher, order_id, "wait", extend_s=7201) == "invalid_request", "two hours at a time"
+    assert does(dispatcher, order_id, "wait", extend_s=7200) == "at_recipient"
     order = seen(recipient, order_id)
     assert order["wait_until"] > first
     assert [event["kind"] for event in order["events"]].count("wait_extended") == 3

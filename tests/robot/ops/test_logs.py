@@ -2,6 +2,8 @@
 
 import logging
 import shutil
+import subprocess
+import sys
 import threading
 from pathlib import Path
 
@@ -13,6 +15,8 @@ from typer.testing import CliRunner
 from robot.__main__ import cli
 from robot.core.logs import WAITING_LINES, WrittenElsewhere, configure_logs
 from robot.ops.commands.logs import journal_of
+
+ROOT = Path(__file__).parents[3]
 
 
 class Card(logging.Handler):
@@ -54,6 +58,38 @@ def test_a_log_file_that_is_not_there_yet_is_named(tmp_path: Path) -> None:
     (tmp_path / "robot.toml").write_text(f'log_file = "{tmp_path / "robot.log"}"\n')
     shown = CliRunner().invoke(cli, ["logs", "--config", str(tmp_path / "robot.toml"), "--data", str(tmp_path)])
     assert (shown.exit_code, f"{tmp_path / 'robot.log'} (the setting log_file)" in shown.stderr) == (2, True)
+
+
+def test_a_log_file_is_five_of_a_megabyte_at_most_and_the_command_shows_the_newest_lines(tmp_path: Path) -> None:
+    log = tmp_path / "robot.log"
+    configure_logs(log)
+    try:
+        for number in range(7_000):  # one at a time, so that none is lost for want of room
+            logging.getLogger("robot").info("%d %s", number, "x" * 1_000)
+            if number % (WAITING_LINES // 2) == 0:
+                while not _is_written(log, f"{number} x"):
+                    threading.Event().wait(0.005)
+    finally:
+        for handler in tuple(logging.getLogger("robot").handlers):
+            logging.getLogger("robot").removeHandler(handler)
+            handler.close()
+        structlog.reset_defaults()
+    sizes = [path.stat().st_size for path in tmp_path.glob("robot.log*")]
+    assert len(sizes) == 5
+    assert max(sizes) <= 1_000_000
+    assert sum(sizes) > 4_000_000, "the newest are there"
+    (tmp_path / "robot.toml").write_text(f'log_file = "{log}"\n')
+    newest = _shown(tmp_path, "--lines", "2")
+    assert [line.split()[0] for line in newest.splitlines()] == ["6998", "6999"]
+
+
+def _is_written(log: Path, line: str) -> bool:
+    return any(line in path.read_text() for path in log.parent.glob("robot.log*"))
+
+
+def _shown(folder: Path, *options: str) -> str:
+    words = (sys.executable, "-m", "robot", "logs", "--config", folder / "robot.toml", "--data", folder, *options)
+    return subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=True, timeout=60).stdout
 
 
 def test_a_traceback_in_the_terminal_shows_no_local_variable(capsys: pytest.CaptureFixture[str]) -> None:
