@@ -46,7 +46,12 @@ def test_every_part_can_be_loaded_and_says_what_is_wanted_of_it(name: str) -> No
 
 
 @pytest.mark.parametrize(
-    ("part", "arguments"), [("vision", ("--seeds", "1")), ("stops", ("--seeds", "1")), ("hour", ("--hour-s", "60"))]
+    ("part", "arguments"),
+    [
+        ("vision", ("--seeds", "1")),
+        pytest.param("stops", ("--seeds", "1"), marks=pytest.mark.alone),  # wheels at real time
+        ("hour", ("--hour-s", "60")),
+    ],
 )
 @pytest.mark.nightly
 def test_a_part_measures_every_figure_that_it_is_judged_by(

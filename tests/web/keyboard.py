@@ -64,7 +64,18 @@ class Keyboard:
         return str(here["name"])
 
     async def walk(self) -> list[str]:
-        """From the beginning of the page, or of an open dialog, to its end: every stop on the way."""
+        """From the beginning of the page, or of an open dialog, to its end: every stop on the way.
+
+        What has appeared behind the keyboard meanwhile, such as a new alarm, is come to on a second way.
+        """
+        stops = await self._round()
+        if await self._ask("missed"):
+            await self._round()
+        missed = await self._ask("missed")
+        assert not missed, f"the keyboard never comes to {missed}, only to {stops}"
+        return stops
+
+    async def _round(self) -> list[str]:
         stops, _ = list[str](), await self.here()
         while len(stops) < MOST_STOPS:
             await self.press("Tab")
@@ -72,8 +83,6 @@ class Keyboard:
             if not here or (stops and here == stops[0] and not await self._ask("missed")):
                 break
             stops.append(here)
-        missed = await self._ask("missed")
-        assert not missed, f"the keyboard never comes to {missed}, only to {stops}"
         return stops
 
     async def _ask(self, what: str) -> Any:
