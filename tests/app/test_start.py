@@ -123,7 +123,7 @@ def test_a_database_of_a_newer_version_is_refused_and_left_alone(settings: Setti
     ("url", "named"),
     [
         ("nonsense", "CAMPUS_MAIL_DATABASE_URL"),
-        ("foo://somebody:secret@here", "CAMPUS_MAIL_DATABASE_URL"),
+        ("foo://ada:secret@here", "CAMPUS_MAIL_DATABASE_URL"),
         ("sqlite+aiosqlite:////nowhere/at/all.sqlite", "unable to open database file"),
     ],
 )

@@ -157,7 +157,7 @@ def test_a_token_with_another_nonce_is_refused(anonymous: TestClient, campus: Ca
 
 
 def test_a_code_of_another_client_or_none_at_all_is_refused(anonymous: TestClient, campus: Campus) -> None:
-    back = campus.sign_in(changed(start(anonymous), client_id="somebody-else"), "ada")
+    back = campus.sign_in(changed(start(anonymous), client_id="another-program"), "ada")
     assert come_back(anonymous, back) == problem("oidc_refused")
     back = campus.sign_in(start(anonymous), "ada")
     assert come_back(anonymous, changed(back, code="")) == problem("oidc_refused")

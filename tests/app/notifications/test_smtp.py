@@ -176,14 +176,14 @@ async def test_a_sign_in_code_goes_by_the_server_too_and_no_request_waits_for_it
 
 
 def test_a_password_does_not_travel_in_the_open(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    (tmp_path / "campus_mail_smtp_password").write_text("tell nobody")
+    (tmp_path / "campus_mail_smtp_password").write_text("keep it quiet")
     monkeypatch.setenv("CAMPUS_MAIL_SECRETS_DIR", str(tmp_path))
     monkeypatch.setenv("CAMPUS_MAIL_SMTP_HOST", "mail.campus.example")
     monkeypatch.setenv("CAMPUS_MAIL_SMTP_TLS", "none")
     with pytest.raises(StartError, match="another machine") as refused:
         load_settings()
-    assert "tell nobody" not in str(refused.value)
+    assert "keep it quiet" not in str(refused.value)
     monkeypatch.setenv("CAMPUS_MAIL_SMTP_TLS", "tls")
     settings = load_settings()
-    assert settings.smtp_password.get_secret_value() == "tell nobody"
-    assert "tell nobody" not in repr(settings)
+    assert settings.smtp_password.get_secret_value() == "keep it quiet"
+    assert "keep it quiet" not in repr(settings)

@@ -92,7 +92,7 @@ def test_what_a_kill_left_half_written_is_gone_after_the_next_start_and_nothing_
     folder.mkdir(parents=True)
     names = ("mail.o1.accepted.p1.eml.tmp", "mail.o1.accepted.p1.eml", "notes.tmp", "a b.eml.tmp", "young.eml.tmp")
     for name in names:
-        (folder / name).write_text("To: somebody")
+        (folder / name).write_text("To: ada")
         hours = 0.5 if name.startswith("young") else 2.0
         os.utime(folder / name, (0, time.time() - hours * 3600))
     (folder / "folder.eml.tmp").mkdir()

@@ -258,7 +258,7 @@ def test_mails_in_the_spool_go_by_the_files_age(kept: Kept, sender: Browser, mai
     folder = mailroom.app.state.parts.settings.spool_folder
     (old, *_) = folder.glob("*.eml")
     new = folder / "new.eml"
-    new.write_text("To: somebody\n\n")
+    new.write_text("To: ada\n\n")
     os.utime(old, (0, time.time() - 31 * DAY_S))
     assert kept.retain_after(0)["mails in the spool"] == 1
     assert (old.exists(), new.exists()) == (False, True)

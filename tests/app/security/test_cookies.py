@@ -75,10 +75,10 @@ def test_each_sign_in_has_a_cookie_of_its_own_whatever_was_brought(
     app: FastAPI, anonymous: TestClient, mails: Mails
 ) -> None:
     browser = browser_at(HERE, app, anonymous)
-    browser.cookies.set("session", "chosen-by-somebody-else")
+    browser.cookies.set("session", "chosen-by-a-stranger")
     first = cookie_of_sign_in(browser, mails).value
     again = cookie_of_sign_in(browser, mails).value
-    assert len({"chosen-by-somebody-else", first, again}) == 3
+    assert len({"chosen-by-a-stranger", first, again}) == 3
 
 
 def test_signing_out_takes_the_cookie_away_and_its_value_is_worthless(

@@ -168,7 +168,7 @@ async def test_a_name_is_looked_up_as_it_travels() -> None:
         "ftp://hooks.example/",
         "file:///etc/passwd",
         "https://",
-        "https://somebody:secret@hooks.example/",
+        "https://ada:secret@hooks.example/",
         "https://[::1/",
         "https://127.0.0.1/",
         "https://2130706433/",  # 127.0.0.1 as one number

@@ -312,7 +312,7 @@ def test_mail_that_is_not_taken_back_either_is_told_once_and_the_robot_is_free(d
     assert (desk.missions.held.mission, desk.missions.held.cargo) == (None, ("o1",))
     (fault,) = [one for one in desk.told() if one["kind"] == "fault"]
     assert (fault["name"], "o1" in fault["reason"]) == ("mail_aboard", True)
-    desk.hears(Recall(command_id="c3", reason="somebody waits now"))
+    desk.hears(Recall(command_id="c3", reason="a person waits now"))
     desk.missions.handed_over(way_back(desk), Purpose.RETURN, "post1", shown("a" * 64))
     assert [one["cleared"] for one in desk.told() if one["kind"] == "fault"] == [False, True]
 
