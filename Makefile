@@ -153,7 +153,7 @@ clean: ## Remove what setup, tests and runs have made; the key of the Android pa
 # Set-up. Our own packages are not built or installed: everything runs from the checkout.
 
 # What is said when something is missing is one sentence; what pip and npm said is kept.
-LOG = .venv/fetching.log
+LOG = .venv/fetching$(@F).log
 WRITABLE = for folder in . .venv web; do test ! -e "$$folder" || test -w "$$folder" || { \
   echo "$(CURDIR) cannot be written to, and set-up puts the packages there: copy the checkout to where you may write." >&2; exit 1; }; done
 NOT_FETCHED = { echo "The packages could not be fetched: is this machine online? What was said: $(LOG)" >&2; exit 1; }
@@ -223,7 +223,8 @@ PAGES_PACKAGES = $(wildcard web/package.json web/package-lock.json)
 	@rm -rf .venv/node $(BIN)/node $(BIN)/npm
 	@touch $@
 
-.venv/.pages-develop-ready: $(PAGES_PACKAGES) | .venv/.develop-ready
+# It waits for no Python package, so that `make -j2 setup-develop` fetches both at the same time.
+.venv/.pages-develop-ready: $(PAGES_PACKAGES) | .venv/bin/pip
 	@$(WRITABLE)
 	@$(NPM_THERE)
 	@echo "Fetching what the pages are checked with …"
@@ -241,7 +242,7 @@ SPECTRAL = .ci/lint/node_modules/.bin/spectral lint --fail-severity=warn --quiet
 # What follows from the API document is made, not kept: the Python client and the types of the pages.
 API_DOCUMENT_FROM = $(shell find app fleet protocol maps client -name '*.py' 2>/dev/null) web/make_pages.py
 MADE = $(patsubst %,client/campus_mail_client/%.py,async_operations client models operations problems)
-.venv/.made-ready: $(filter-out $(MADE),$(API_DOCUMENT_FROM)) | .venv/.pages-develop-ready
+.venv/.made-ready: $(filter-out $(MADE),$(API_DOCUMENT_FROM)) | .venv/.develop-ready .venv/.pages-develop-ready
 	@$(BIN)/python client/make_client.py
 	@$(BIN)/python web/make_pages.py
 	@touch $@
