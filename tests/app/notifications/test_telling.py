@@ -15,7 +15,13 @@ from app.core.texts import LANGUAGES, catalogue
 from app.models import Notification, NotificationKind, OutgoingNotification
 from app.notifications.delivery.attempts import LONGEST_PAUSE_S, pause_s
 from protocol.clock import SteppedClock
-from tests.app.conftest import SENDER, Browser, Mailroom, Mails
+from tests.app.conftest import SENDER, Browser, Mailroom, Mails, SignedIn
+
+
+@pytest.fixture
+def signed_in(signed_in_by_mail: SignedIn) -> SignedIn:
+    """Their mails and codes count here, too."""
+    return signed_in_by_mail
 
 
 def about_the_order(mails: Mails) -> list[EmailMessage]:

@@ -16,6 +16,12 @@ WAY = ("assigned", "to_sender", "at_sender", "carrying", "at_recipient", "delive
 
 
 @pytest.fixture
+def signed_in(signed_in_by_mail: SignedIn) -> SignedIn:
+    """Their mails and codes count here, too."""
+    return signed_in_by_mail
+
+
+@pytest.fixture
 def order_id(sender: Browser) -> str:
     return str(sender.order().json()["id"])
 
