@@ -136,7 +136,7 @@ def test_the_perception_period_is_that_of_the_body_and_not_of_the_mind() -> None
 
 
 @pytest.mark.skipif(not PAPERS_PROGRAM.exists(), reason="the paper's program lies in ../shared, which is absent")
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_the_papers_program_is_logged_in_the_papers_words_and_a_lost_mission_is_said() -> None:
     paper = next(one for one in contenders(PAPERS_PROGRAM) if one.name == "paper_lead")
     log = logged(paper, seed=1, limit_s=75)

@@ -109,7 +109,7 @@ async def test_the_mailroom(visit, campus, led):
     await look_at_all(dana, led(dana))
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_what_is_printed_and_the_wall(visit, campus):
     dana = await campus.staff(visit)
     await look_at_all(dana, states_of_staff.printing(dana, campus.orders[0]))

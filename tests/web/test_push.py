@@ -82,7 +82,7 @@ async def push_to(ada: Visitor) -> Callable[[str], Awaitable[object]]:
     return push
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_a_pushed_notice_is_shown_once_and_leads_to_its_letter_and_an_unreadable_one_to_the_notices(visit):
     ada = await visit(on="phone", service_workers="allow", permissions=["notifications"])
     page = ada.page
@@ -131,7 +131,7 @@ async def tap(ada: Visitor, title: str) -> dict[str, Any]:
     return await worker.evaluate(TAP, title)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_a_tap_on_a_notice_leads_to_its_letter_in_the_window_that_shows_it_or_in_a_new_one(visit):
     ada = await visit(on="phone", service_workers="allow", permissions=["notifications"])
     page, url = ada.page, ada.service.url
@@ -176,7 +176,7 @@ async def installed(
     assert not ada.complaints
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_the_installed_apps_icon_counts_what_is_unread_until_it_is_read(installed: Visitor):
     ada = installed
     browser = await ada.context.new_cdp_session(await ada.context.new_page())

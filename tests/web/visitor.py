@@ -120,7 +120,7 @@ class Visitor:
 
     async def api(self, path: str) -> Any:
         """The answer of the service to this person."""
-        answer = await self.context.request.get(f"/api/v1{path}", max_retries=1)  # an idle connection may just have ended
+        answer = await self.context.request.get(f"/api/v1{path}", max_retries=1)  # an idle one may just have ended
         assert answer.ok, await answer.text()
         return await answer.json()
 

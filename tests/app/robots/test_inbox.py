@@ -48,7 +48,7 @@ async def everything_taken(arriving: list[tuple[str, int]]) -> tuple[list[tuple[
 
 @settings(max_examples=40)
 @given(arrivals)
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_each_message_is_new_once_and_journals_do_not_mix(arriving: list[tuple[str, int]]) -> None:
     new, kept = asyncio.run(everything_taken(arriving))
     assert sorted(new) == sorted(kept)

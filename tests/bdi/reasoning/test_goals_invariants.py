@@ -115,7 +115,7 @@ def check(agent: Agent, body: Body) -> None:
 
 @settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(programs(), st.lists(st.tuples(st.integers(0, 5), st.integers(0, 3)), min_size=5, max_size=40))
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_whatever_goals_do_to_each_other_nothing_is_lost_or_left(program: str, fates: list[tuple[int, int]]) -> None:
     note(program)
     agent = Agent(parse_program(program), name="r1")

@@ -90,7 +90,7 @@ def test_a_robot_that_is_killed_in_its_dock_goes_on_charging_until_it_is_full(tm
     second.close()
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_robot_with_little_charge_begins_no_work_until_it_has_enough(tmp_path: Path) -> None:
     run = SimulatedRun(tmp_path, battery_ratio=0.4)
     run.given_a_letter()
@@ -266,7 +266,7 @@ def test_a_robot_whose_corridors_others_have_got_stands_until_a_marker_tells_it_
     assert (run.told().count("fault revoked"), run.missions.held.revoked) == (2, False)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_switched_on_after_a_long_time_it_hears_first_whose_its_corridors_are(tmp_path: Path) -> None:
     first = SimulatedRun(tmp_path)
     with_service(first)

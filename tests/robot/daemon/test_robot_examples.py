@@ -28,7 +28,7 @@ def test_the_patrol_goes_three_rounds(tmp_path: Path) -> None:
     run.close()
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_the_courier_fetches_and_brings(tmp_path: Path) -> None:
     run = SimulatedRun(tmp_path, mind__program=EXAMPLES / "courier.asl", mind__percepts="latest")
     run.asks("", "fetch(post3,post4)")

@@ -80,7 +80,7 @@ def test_a_second_program_cannot_take_the_port(on_pty: OnPty):
         open_serial(on_pty.robot.port_path)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_sleeping_base_is_woken_by_brc(on_pty: OnPty):
     on_pty.run(0.3)
     for _ in range(400):

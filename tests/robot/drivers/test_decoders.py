@@ -32,7 +32,7 @@ def read(reader: MarkerReader, name: str, seeds: range) -> int:
 
 
 @pytest.mark.parametrize("name", ["clean", "small", "motion", "tilt", "low_light", "tunnel"])
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_zxing_reads_small_blurred_dark_and_slanting_markers(name: str):
     assert read(BY_ZXING, name, range(9000, 9000 + EACH)) >= EACH - 1
 

@@ -8,7 +8,7 @@ from tests.robot.drivers.against_the_byte_machine import Join
 SAFE_THEN_START = b"\x83\x80"
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_pulses_on_brc_keep_it_awake(join: Join) -> None:
     one = join()
     one.robot.set_fault("sleep_after_s", 70.0)
@@ -63,7 +63,7 @@ def test_a_base_in_use_never_sleeps(join: Join) -> None:
     assert one.base.health.starts == 1
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_never_sleeping_is_no_harm(join: Join) -> None:
     one = join(brc=False)
     one.robot.set_fault("never_sleeps", True)

@@ -56,7 +56,7 @@ def test_a_robot_that_stopped_leaves_a_file_that_holds_why_and_how(moving: Movin
     assert any(row.kind == "job" and row.data.endswith("rolls begins") for row in found)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_the_memory_it_takes_is_bounded_however_long_the_robot_runs() -> None:
     assert in_own_process(taken_by_much) < MOST_BYTES
 

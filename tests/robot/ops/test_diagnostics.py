@@ -124,7 +124,7 @@ def test_it_ends_by_itself_when_nobody_says_that_they_still_look(watched: Watche
     assert not watched.agent.choices
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_slow_network_makes_it_rarer_and_what_was_dropped_is_counted(watched: WatchedRobot) -> None:
     watched.reporter.watch(60.0, whole=True)
     watched.lives(1.0)

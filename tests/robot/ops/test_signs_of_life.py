@@ -147,7 +147,7 @@ def test_a_watchdog_that_is_not_meant_for_us_is_not_fed(environment: dict[str, s
 
 
 @pytest.mark.system
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_whole_daemon_says_that_it_is_ready_alive_and_ending(tmp_path: Path, systemd: Systemd) -> None:
     environment = {**os.environ, "NOTIFY_SOCKET": systemd.address, "WATCHDOG_USEC": "1000000"}
     command = [sys.executable, "-m", "robot", "--simulated", "--data", str(tmp_path)]

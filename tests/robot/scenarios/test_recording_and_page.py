@@ -36,7 +36,7 @@ def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder / "run.gz"
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_the_recording_has_the_truth_the_beliefs_and_the_people(recording):
     rows = read_recording(recording)
     states = [row for row in rows if row["kind"] == "state"]

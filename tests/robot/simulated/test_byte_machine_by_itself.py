@@ -91,7 +91,7 @@ def test_a_dead_brc_wakes_nobody(make):
 
 
 @pytest.mark.parametrize("mode", [131, 132])
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_safe_and_full_never_sleep(make, mode):
     bench = make()
     bench.send(128, mode)

@@ -108,7 +108,7 @@ def test_a_robot_that_leaves_sees_nothing_and_a_robot_that_passes_reads_in_many_
 @pytest.mark.parametrize("left_mm", [-60, -30, 0, 30, 60])
 @pytest.mark.parametrize("turned_deg", [-15, -7, 0, 7, 15])
 @pytest.mark.parametrize("seed", range(3))
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_marker_is_read_from_all_poses_of_a_robot_that_wobbles_on_its_line(left_mm, turned_deg, seed):
     drawn = renderer(seed=seed)
     view = View(-left_mm / 1000, 3.7, math.pi / 2 + math.radians(turned_deg))

@@ -65,11 +65,11 @@ def follow(campus, lead_mm, seed, speed=100.0):
     return lost / samples if arrived else 1.0
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_diodes_60_mm_ahead_keep_the_line(bends):
     assert [follow(bends, 60.0, seed) < 0.02 for seed in range(5)] == [True] * 5
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_diodes_on_the_axle_lose_the_line(bends):
     assert sum(follow(bends, 0.0, seed) > 0.5 for seed in range(5)) >= 4

@@ -40,7 +40,7 @@ def test_it_drives_from_post1_to_post4_and_stops_at_every_post(drive: Make, seed
     assert not [speeds for speeds in robot.sent if any(0 < abs(wheel) < 30 for wheel in speeds)]
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_it_leaves_the_dock_and_docks_again(drive: Make):
     robot = drive("dock", battery_ratio=0.5)
     assert robot.do(Undock(robot.shape)) == Done()
@@ -66,7 +66,7 @@ def test_a_dock_without_power_is_given_up_after_the_last_try(drive: Make):
     assert robot.loop.view.sent == STOP
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_firmware_that_sees_no_dock_roams_no_farther_than_the_room_of_the_post(drive: Make):
     robot = drive("post5:post3")
     robot.robot.set_fault("dock_beams_off", True)
@@ -92,7 +92,7 @@ def test_bouncing_contacts_are_not_a_failed_dock(drive: Make):
 
 
 @pytest.mark.parametrize("sideways_m", [0.05, -0.12])
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_carried_off_the_line_it_finds_it_again_and_goes_on_the_same_way(drive: Make, sideways_m: float):
     robot = drive("post1:post2")
     job = robot.loop.start(follow(robot, "post1"), robot.now)
@@ -104,7 +104,7 @@ def test_carried_off_the_line_it_finds_it_again_and_goes_on_the_same_way(drive: 
     assert robot.loop.view.find_line_episodes >= 1
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_where_there_is_no_line_at_all_it_says_so_and_stands(drive: Make):
     robot = drive("post1:post2")
     robot.robot.place(Pose(-3.0, -3.0, 0.0))

@@ -23,7 +23,7 @@ def without_marker(post: str) -> CampusMap:
 
 
 @pytest.mark.parametrize("track", ["straight", "s_600_400", "s_250_200"])
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_with_the_sensor_ahead_it_follows_tight_bends_at_speed(track: str):
     one = ride(track, lead_mm=60.0, seed=7)
     assert one.completed, one.outcome
@@ -32,7 +32,7 @@ def test_with_the_sensor_ahead_it_follows_tight_bends_at_speed(track: str):
     assert (one.searching, one.slow_commands) == (0, 0)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_on_a_straight_line_it_loses_little_time_to_corrections():
     rides = [ride("straight", lead_mm=60.0, seed=seed) for seed in (7, 8)]
     assert mean(one.speed_mm_s for one in rides) > 188
@@ -66,13 +66,13 @@ def test_a_half_turn_takes_little_longer_than_the_wheels_need():
 @pytest.mark.parametrize(
     "turn", [("canal", "uc", "azrieli"), ("azrieli", "uc", "canal"), ("nicol", "mackenzie", "nicol")]
 )
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_in_the_tunnels_neither(turn: tuple[str, str, str]):
     crossing = cross(small_map("carleton"), *turn, seed=7)
     assert (crossing.outcome, crossing.searches) == (ON_THE_LINE, 0)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_post_in_sight_is_not_forgotten_when_the_line_is_lost(drive: Make):
     robot = drive("post1:post2")
     job = robot.loop.start(FollowLine(TRACK, "post1", shape=robot.shape), robot.now)

@@ -14,7 +14,7 @@ Make = Callable[..., Drive]
 
 
 @pytest.mark.parametrize("seed", [3, 4])
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_from_a_dock_at_the_end_of_the_line_it_comes_onto_the_line(drive: Make, seed: int):
     robot = drive("dock", campus=builtin_map("test_track"), seed=seed)
     began = robot.now
@@ -32,7 +32,7 @@ def test_straight_out_of_a_dock_it_is_on_the_line_within_six_seconds(drive: Make
 
 
 @pytest.mark.parametrize(("turn_rad", "towards"), [(-math.pi / 2, "nicol"), (math.pi / 2, "uc")])
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_from_a_dock_beside_the_line_it_comes_to_the_post_and_can_turn_there(
     drive: Make, turn_rad: float, towards: str
 ):

@@ -68,7 +68,7 @@ def test_where_it_is_not_known_which_post_comes_there_is_no_place():
 
 @pytest.mark.parametrize("error", [-0.03, 0.03])
 @pytest.mark.parametrize(("leaving", "post", "towards"), [("post5", "post3", "post2"), ("post3", "post2", "post1")])
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_wheels_that_err_by_three_per_cent_do_not_miss_it(
     drive: Callable[..., Drive], error: float, leaving: str, post: str, towards: str
 ):
