@@ -2,6 +2,7 @@
 
 import json
 import logging
+import sys
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -16,7 +17,8 @@ from app.core.settings import Settings
 
 @pytest.fixture(autouse=True)
 def _logs_as_before() -> Iterator[None]:
-    """Commands that run in this process set logging up for themselves."""
+    """Commands that run in this process set up logging for themselves; the service beside them logs elsewhere."""
+    structlog.configure(logger_factory=structlog.PrintLoggerFactory(sys.stderr))
     root = logging.getLogger()
     handlers, level = root.handlers[:], root.level
     yield
