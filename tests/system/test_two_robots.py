@@ -93,7 +93,7 @@ def track(tmp_path: Path) -> Iterator[SharedTrack]:
         yield track
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_two_robots_that_swap_places_pass_each_other_and_come_home(track: SharedTrack) -> None:
     for name in ERRANDS:
         track.enrol_one(name)
