@@ -18,6 +18,8 @@ from tests.web.visitor import Visitor
 MOMENT: Final = datetime(2026, 10, 14, 14, 24, tzinfo=UTC)
 ZONE: Final = "America/Toronto"
 CAMPUS: Final = "carleton"
+HOME: Final = "commons"
+"""Of the robot that drives; without one it would have the first dock, which is another robot's."""
 STANDS_STILL: Final = 1e-6
 DRIVES: Final = 3.0
 """Simulated seconds in one of ours, while a robot is to be seen driving."""
@@ -64,7 +66,10 @@ class Stage:
         token_file = self.service.folder / f"{name}.token"
         token_file.write_text(token)
         token_file.chmod(0o600)
-        command = [sys.executable, "-m", "robot", "run", "--simulated", "--name", name, "--map", CAMPUS]
+        settings = self.service.folder / f"{name}.toml"
+        settings.write_text(f'home = "{HOME}"\n')
+        command = [sys.executable, "-m", "robot", "run", "--config", str(settings), "--simulated"]
+        command += ["--name", name, "--map", CAMPUS]
         command += ["--server", self.service.link, "--token-file", str(token_file)]
         command += ["--data", str(self.service.folder / name), "--clock", str(self.service.folder / "clock")]
         self.clock.set_speed(DRIVES)
