@@ -36,6 +36,8 @@ async def come_to_the_mind(page: Page) -> None:
     """Down to where the robot tells what it intends; it drives by then."""
     follows = page.locator(".intends").get_by_text(re.compile("follow_line")).first
     await expect(follows).to_be_visible(timeout=40_000)
+    await expect(page.locator(".believes .count")).not_to_have_text("0")  # who comes second asks for all of them anew
+    await expect(page.locator(".senses details")).to_be_visible()  # with every tenth report
     await page.locator("robot-diagnostics").evaluate("(watch) => watch.scrollIntoView({block: 'start'})")
 
 
