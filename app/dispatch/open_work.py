@@ -95,7 +95,7 @@ class OpenWork:
 
 
 async def read_open_work(session: AsyncSession, now: datetime) -> OpenWork:
-    """Five questions, whatever the number of robots and orders."""
+    """Six questions, whatever the number of robots and orders."""
     return await _asked(session, _ALL, {"now": now})
 
 

@@ -48,8 +48,8 @@ async def something_happens(world: World, rng: Random, orders: list[str]) -> Non
             await world.dispatch()
         case 2:
             cancels, reassigns = world.orders.cancelling.cancel, world.orders.intervening.reassign
-            wish = rng.choice(((cancels, "sender", ""), (reassigns, "dispatcher", None)))
-            await world.change(wish[0], wish[1], rng.choice(orders), wish[2])
+            what, who, how = rng.choice(((cancels, "sender", ""), (reassigns, "dispatcher", None)))
+            await world.change(what, who, rng.choice(orders), how)
         case 3 if rng.random() < 0.1:  # it answers at once only if it has nothing aboard
             await world.recall(robot)
         case 4:
@@ -62,7 +62,7 @@ async def something_happens(world: World, rng: Random, orders: list[str]) -> Non
 async def test_a_robot_read_alone_is_what_it_is_among_all(world: World, seed: int) -> None:
     rng, orders, busy = Random(seed), list[str](), 0
     for _ in range(STEPS):
-        with suppress(ServiceError):  # not every wish can be granted
+        with suppress(ServiceError):  # not every request can be granted
             await something_happens(world, rng, orders)
         now = world.clock.utc()
         async with world.database.reading() as session:
