@@ -1,7 +1,7 @@
 """People before the lens, dirt on one sheet, tags below the codes: what the simulated camera sees of them."""
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from timeit import timeit
 
 import numpy as np
@@ -95,19 +95,19 @@ def test_a_tag_of_no_post_of_this_map_is_foreign():
     assert reader.look(drawn.frame(ABREAST), 0.0) == ()
 
 
+QR_CODE = zxingcpp.BarcodeFormat.QRCode
+
+
 @pytest.mark.alone
 def test_a_frame_without_a_marker_costs_next_to_nothing():
-    """Drawn and looked at: a tenth to a fifth of one search for QR codes by the library, and twice one without the gate
-    before it."""
+    """Drawn and looked at: a tenth of one search for QR codes by the library, and twice one without the gate before it.
+    The test allows a fifth. In turns, since the machine is slower at times."""
     drawn = Renderer(MARKERS, CameraMount(colour=False), Faults(), 0)
     nowhere = View(500.0, 500.0, 0.0)
     empty = drawn.frame(nowhere)
     assert READER.look(empty, 0.0) == ()
-    look_s = _least_s(lambda: READER.look(drawn.frame(nowhere), 0.0))
-    search_s = _least_s(lambda: zxingcpp.read_barcodes(empty, formats=zxingcpp.BarcodeFormat.QRCode))
-    assert look_s < search_s / 2
-
-
-def _least_s(work: Callable[[], object]) -> float:
-    """The least of several: other work makes it slower, never quicker."""
-    return min(timeit(work, number=20) for _ in range(5))
+    looks_s, searches_s = list[float](), list[float]()
+    for _ in range(15):
+        looks_s.append(timeit(lambda: READER.look(drawn.frame(nowhere), 0.0), number=20))
+        searches_s.append(timeit(lambda: zxingcpp.read_barcodes(empty, formats=QR_CODE), number=20))
+    assert min(looks_s) < min(searches_s) / 5, "the least of several: other work makes it slower, never quicker"
