@@ -68,10 +68,12 @@ class Keyboard:
 
         What has appeared behind the keyboard meanwhile, such as a new alarm, is come to on a second way.
         """
+        there = set(await self._ask("all"))
         stops = await self._round()
-        if await self._ask("missed"):
-            await self._round()
         missed = await self._ask("missed")
+        if missed and not there.intersection(missed):
+            await self._round()
+            missed = await self._ask("missed")
         assert not missed, f"the keyboard never comes to {missed}, only to {stops}"
         return stops
 

@@ -47,12 +47,13 @@
     return { name, wrong };
   };
 
+  const stops = () => [...root().querySelectorAll(STOPS)].filter((one) => one.checkVisibility({ visibilityProperty: true }) && !one.disabled);
   const group = (element) => element.type === "radio" && element.closest("fieldset, form, dialog, main");
   /** Controls that the keyboard never reached; of a group of radios one is enough. */
   const missed = () => {
-    const stops = [...root().querySelectorAll(STOPS)].filter((one) => one.checkVisibility({ visibilityProperty: true }) && !one.disabled);
-    const groups = new Set(stops.filter((one) => visited.has(one)).map(group));
-    return stops.filter((one) => !visited.has(one) && !(group(one) && groups.has(group(one)))).map(nameOf);
+    const all = stops();
+    const groups = new Set(all.filter((one) => visited.has(one)).map(group));
+    return all.filter((one) => !visited.has(one) && !(group(one) && groups.has(group(one)))).map(nameOf);
   };
-  window.keys = { here, missed };
+  window.keys = { here, missed, all: () => stops().map(nameOf) };
 })()
