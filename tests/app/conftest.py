@@ -168,8 +168,11 @@ SignedIn = Callable[[str], Browser]
 
 
 @pytest.fixture
-def signed_in(app: FastAPI, anonymous: TestClient) -> SignedIn:
-    """Sign a person in without mail and code, which have tests of their own: they take a fifth of the time of most."""
+def signed_in(request: pytest.FixtureRequest, app: FastAPI, anonymous: TestClient) -> SignedIn:
+    """Sign a person in without mail and code, which take a fifth of the time of most tests, unless they are marked."""
+    if request.node.get_closest_marker("mailed_codes"):
+        by_mail: SignedIn = request.getfixturevalue("signed_in_by_mail")
+        return by_mail
     portal = anonymous.portal
     assert portal is not None
 

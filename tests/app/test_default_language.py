@@ -4,13 +4,9 @@ import pytest
 
 from app.core.settings import Settings
 from app.core.texts import text
-from tests.app.conftest import RECIPIENT, SENDER, Browser, Mailroom, Mails, SignedIn
+from tests.app.conftest import RECIPIENT, SENDER, Browser, Mailroom, Mails
 
-
-@pytest.fixture
-def signed_in(signed_in_by_mail: SignedIn) -> SignedIn:
-    """Their mails and codes count here, too."""
-    return signed_in_by_mail
+pytestmark = pytest.mark.mailed_codes
 
 
 @pytest.fixture

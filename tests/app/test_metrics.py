@@ -14,15 +14,11 @@ from app.composition import create_app
 from app.core.logs import set_up_logs
 from app.core.settings import Settings
 from protocol.clock import SteppedClock
-from tests.app.conftest import HERE, Browser, Mailroom, SignedIn
+from tests.app.conftest import HERE, Browser, Mailroom
 
 TOKEN = "a-token-of-the-operator"
 
-
-@pytest.fixture
-def signed_in(signed_in_by_mail: SignedIn) -> SignedIn:
-    """Their mails and codes count here, too."""
-    return signed_in_by_mail
+pytestmark = pytest.mark.mailed_codes
 
 
 class Watcher(TestClient):

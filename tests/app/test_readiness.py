@@ -7,13 +7,9 @@ from fastapi.testclient import TestClient
 
 from app.core.settings import Settings
 from protocol.clock import SteppedClock
-from tests.app.conftest import Browser, Mailroom, SignedIn
+from tests.app.conftest import Browser, Mailroom
 
-
-@pytest.fixture
-def signed_in(signed_in_by_mail: SignedIn) -> SignedIn:
-    """Their mails and codes count here, too."""
-    return signed_in_by_mail
+pytestmark = pytest.mark.mailed_codes
 
 
 def test_it_is_not_ready_while_a_channel_has_owed_a_notice_for_ten_minutes(

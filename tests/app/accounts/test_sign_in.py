@@ -12,11 +12,7 @@ from tests.app.conftest import HERE, SENDER, Browser, Mailroom, Mails, SignedIn,
 
 CODES, SIGN_IN = "/api/v1/sign-in/codes", "/api/v1/sign-in"
 
-
-@pytest.fixture
-def signed_in(signed_in_by_mail: SignedIn) -> SignedIn:
-    """Their mails and codes count here, too."""
-    return signed_in_by_mail
+pytestmark = pytest.mark.mailed_codes
 
 
 def code_of(answer: object) -> str:

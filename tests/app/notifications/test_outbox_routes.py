@@ -10,11 +10,7 @@ from app.models import Role
 from protocol.clock import SteppedClock
 from tests.app.conftest import SENDER, Browser, Mailroom, SignedIn
 
-
-@pytest.fixture
-def signed_in(signed_in_by_mail: SignedIn) -> SignedIn:
-    """Their mails and codes count here, too."""
-    return signed_in_by_mail
+pytestmark = pytest.mark.mailed_codes
 
 
 @pytest.fixture

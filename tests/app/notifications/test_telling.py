@@ -15,13 +15,9 @@ from app.core.texts import LANGUAGES, catalogue
 from app.models import Notification, NotificationKind, OutgoingNotification
 from app.notifications.delivery.attempts import LONGEST_PAUSE_S, pause_s
 from protocol.clock import SteppedClock
-from tests.app.conftest import SENDER, Browser, Mailroom, Mails, SignedIn
+from tests.app.conftest import SENDER, Browser, Mailroom, Mails
 
-
-@pytest.fixture
-def signed_in(signed_in_by_mail: SignedIn) -> SignedIn:
-    """Their mails and codes count here, too."""
-    return signed_in_by_mail
+pytestmark = pytest.mark.mailed_codes
 
 
 def about_the_order(mails: Mails) -> list[EmailMessage]:

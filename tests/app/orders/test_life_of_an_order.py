@@ -14,11 +14,7 @@ from tests.app.orders.conftest import make_dispatcher
 
 WAY = ("assigned", "to_sender", "at_sender", "carrying", "at_recipient", "delivered")
 
-
-@pytest.fixture
-def signed_in(signed_in_by_mail: SignedIn) -> SignedIn:
-    """Their mails and codes count here, too."""
-    return signed_in_by_mail
+pytestmark = pytest.mark.mailed_codes
 
 
 @pytest.fixture

@@ -42,16 +42,12 @@ from app.retention.database_checks import problems_of
 from app.retention.retention import RULES, retain
 from app.retention.retention_job import RetentionJob
 from protocol.clock import SteppedClock
-from tests.app.conftest import RECIPIENT, SENDER, Browser, Mailroom, SignedIn
+from tests.app.conftest import RECIPIENT, SENDER, Browser, Mailroom
 
 DAY_S = 86400.0
 NO_TIME = {f"{whose}_{share}_s": 0.0 for whose in ("raw", "told", "map") for share in ("p10", "p50", "p90")}
 
-
-@pytest.fixture
-def signed_in(signed_in_by_mail: SignedIn) -> SignedIn:
-    """Their mails and codes count here, too."""
-    return signed_in_by_mail
+pytestmark = pytest.mark.mailed_codes
 
 
 class Kept:

@@ -13,7 +13,7 @@ from hypothesis.strategies import from_regex
 
 from app.accounts.schemas import EMAIL, MAX_EMAIL
 from app.core.mail.message import Mail, message_of
-from tests.app.conftest import Browser, Mails, SignedIn
+from tests.app.conftest import Browser, Mails
 
 HIDDEN = [
     "=?utf-8?q?eve=40evil.example=2C?=@campus.example",
@@ -29,11 +29,7 @@ HIDDEN = [
     "ada@campus.example\n",
 ]
 
-
-@pytest.fixture
-def signed_in(signed_in_by_mail: SignedIn) -> SignedIn:
-    """Their mails and codes count here, too."""
-    return signed_in_by_mail
+pytestmark = pytest.mark.mailed_codes
 
 
 @pytest.mark.parametrize("address", HIDDEN)
