@@ -110,6 +110,17 @@ def test_every_package_has_its_layers_written_down():
     assert set(config["root_packages"]) <= layered
 
 
+def test_each_package_says_to_start_at_a_file_that_is_there():
+    starts = {
+        package.parent / name
+        for package in tracked("*/__init__.py")
+        for line in re.findall(r"^Start at .*$", package.read_text(encoding="utf-8"), re.MULTILINE)
+        for name in re.findall(r"`([\w/]+\.py)`", line)
+    }
+    assert len(starts) > 30
+    assert [str(path) for path in starts if not path.is_file()] == []
+
+
 def test_the_glossary_defines_no_word_twice():
     glossary = (CHECKOUT / "docs/reference/glossary.md").read_text(encoding="utf-8")
     words = [word for word in re.findall(r"^\| ([^|]+?) \|", glossary, re.MULTILINE) if word not in ("word", "---")]

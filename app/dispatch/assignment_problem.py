@@ -10,8 +10,8 @@ from typing import Final
 
 from app.core.settings import Settings
 from app.dispatch.charge_limits import Charges
-from app.dispatch.choice import counts_since
 from app.dispatch.open_work import OpenWork, OrderNow, StopNow
+from app.dispatch.waiting_work import counts_since
 from app.models import OrderState, Priority
 from app.orders.transitions import MAIL_ABOARD
 from fleet.assignment.adopting import Able, problem_of

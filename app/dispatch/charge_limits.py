@@ -1,7 +1,7 @@
 """Charge limits of robots for their work: the map and the settings, put to `fleet.charging`.
 
 What a robot is refused for must be something that will change by itself: those with a home charge there whenever they
-have nothing to do, others are sent to a dock (`charging_service`).
+have nothing to do, others are sent to a dock (`app.charging`).
 """
 
 from collections.abc import Iterable, Mapping, Sequence

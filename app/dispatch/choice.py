@@ -1,25 +1,20 @@
 """Which robot fetches which order: a pure function of what waits, who is free, and the map.
 
 Thin: who has waited longest first (priority counts like waiting), the nearest idle robot that has the charge for it
-(`charge.py`). Schedules come later behind the same function; what is taken along on the way is `insertion.py`.
+(`charge_limits.py`). What is taken along on the way: `insertion.py`.
 """
 
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from datetime import datetime, timedelta
 from heapq import merge
 from typing import Final
 
-from app.models import Priority
 from maps.ways import Ways
 
 ENOUGH_CHARGE: Final = 0.30
 """Not for any order: above the ratio at which a robot's own battery plan would take it back to the dock at once (0.25
-and hysteresis). What an order needs beyond that: `charge.py`."""
-HEAD_START_S: Final = 1800.0
-"""High priority counts like so much longer waiting, low like so much less."""
-HEAD_STARTS: Final = {Priority.LOW: -1, Priority.NORMAL: 0, Priority.HIGH: 1}
+and hysteresis). What an order needs beyond that: `charge_limits.py`."""
 
 
 @dataclass(frozen=True)
@@ -59,11 +54,6 @@ class Assignment:
 
     order_id: str
     robot: str
-
-
-def counts_since(created_at: datetime, priority: Priority) -> datetime:
-    """Since when an order counts as waiting: so the important go first, and none waits for ever."""
-    return created_at - timedelta(seconds=HEAD_STARTS[priority] * HEAD_START_S)
 
 
 MayTake = Callable[[IdleRobot, WaitingOrder], bool]

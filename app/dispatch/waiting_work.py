@@ -3,7 +3,7 @@ along."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from datetime import datetime
+from datetime import datetime, timedelta
 from typing import Any, Final
 
 from sqlalchemy import (
@@ -25,7 +25,7 @@ from sqlmodel import col
 from sqlmodel.ext.asyncio.session import AsyncSession
 
 from app.core.database.database import connection_of
-from app.dispatch.choice import ENOUGH_CHARGE, IdleRobot, WaitingOrder, counts_since
+from app.dispatch.choice import ENOUGH_CHARGE, IdleRobot, WaitingOrder
 from app.dispatch.insertion import Tour, Visit
 from app.models import MissionRow, MissionState, Order, OrderState, Priority, RobotCommand, RobotRow, StopRow
 from app.orders.stops import stops_left
@@ -36,6 +36,9 @@ from protocol.parts import Activity, StopAction
 LOOKED_AT: Final = 50
 """So many of the longest waiting, and so many of the important ones, are looked at at once."""
 TOURS: Final = 20
+HEAD_START_S: Final = 1800.0
+"""High priority counts like so much longer waiting, low like so much less."""
+HEAD_STARTS: Final = {Priority.LOW: -1, Priority.NORMAL: 0, Priority.HIGH: 1}
 WAITING_AT_A_STOP: Final = (OrderState.AT_SENDER, OrderState.AT_RECIPIENT, OrderState.AT_RETURN)
 
 
@@ -54,6 +57,11 @@ class PendingWork:
     dropped: Sequence[str]
     changed: Sequence[str]
     waits: bool
+
+
+def counts_since(created_at: datetime, priority: Priority) -> datetime:
+    """Since when an order counts as waiting: so the important go first, and none waits for ever."""
+    return created_at - timedelta(seconds=HEAD_STARTS[priority] * HEAD_START_S)
 
 
 async def read_pending_work(connection: AsyncConnection, now: datetime) -> PendingWork:

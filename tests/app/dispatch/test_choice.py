@@ -13,10 +13,10 @@ from app.dispatch.choice import (
     IdleRobot,
     WaitingOrder,
     choose_robots,
-    counts_since,
     has_enough_charge,
     why_nobody_comes,
 )
+from app.dispatch.waiting_work import counts_since
 from app.models import Priority
 from maps import builtin_map, shortest_route
 from maps.ways import Ways
