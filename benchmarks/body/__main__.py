@@ -20,7 +20,7 @@ PARTS = {
     "stops": "from the first frame that shows a fault to the stop bytes on the wire",
     "missions": "seeded missions with faults: delivered or handed to a person, none lost, none claimed falsely",
     "kills": "SIGKILL of the daemon at random moments of missions: what the restarted one knows",
-    "near_posts": "kills in the last 300 mm before a post: where the restarted robot drives",
+    "near_posts": "kills in the last 600 mm before a post: where the restarted robot drives",
     "foreign_codes": "plain codes of posts that a stranger shows at random places: none believed",
     "hour": "a simulated hour: time on the wall, processor, memory and lag of the loops",
     "watched": "what it costs the mind to be watched, and not to be watched",

@@ -1,4 +1,4 @@
-"""Kills in the last 300 mm before a post: nothing tells the restarted robot how far it came, and a branch lies ahead.
+"""Kills in the last 600 mm before a post: nothing tells the restarted robot how far it came, and a branch lies ahead.
 
 In stepped time: what a kill leaves on the disk is judged by `kills`; here it is where the robot drives afterwards. The
 simulated base stands at once when its computer dies, as with `ExecStopPost`; a real one may roll on.
@@ -19,7 +19,7 @@ from benchmarks.body.report import Samples, Wanted, quietly, say
 from robot.localization.steps import REACHED_MM
 from robot.scenarios.replay.drawing import WORLDS
 
-LAST_MM = 300.0
+LAST_MM = 600.0
 KILLS_OF_A_LETTER = 4
 
 WANTED = (

@@ -11,7 +11,7 @@ from itertools import pairwise
 from maps import CampusMap, NoRoute, corridor_name, shortest_route
 from maps.geometry import wrapped
 from protocol.parts import Leg
-from robot.agent.tracking import NEARING_MM, Tracker
+from robot.agent.tracking import LOOKS_BACK_MM, Tracker
 from robot.localization.closed import Closed, open_way
 from robot.localization.directions import PLAIN_TURNS, Way, kept_from, next_post, sector
 from robot.localization.docks import nearest_dock, way_out
@@ -75,8 +75,8 @@ class Navigator(Tracker):
     @property
     def look_back_mm(self) -> float:
         """Return how far it may go back in search of a marker: half of the corridor that it holds at most."""
-        length_mm = 1000 * self._place.corridor.length_m if isinstance(self._place, Between) else NEARING_MM
-        return min(NEARING_MM, length_mm / 2)
+        length_mm = 1000 * self._place.corridor.length_m if isinstance(self._place, Between) else LOOKS_BACK_MM
+        return min(LOOKS_BACK_MM, length_mm / 2)
 
     def reached_after(self, arrivals: int) -> list[str]:
         """The posts reached after so many others; of very many the newest."""

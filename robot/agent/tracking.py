@@ -39,9 +39,12 @@ SAME_WAY_RAD = math.radians(60)
 FOREIGN_MARKER = "foreign_marker"
 KEPT_POSTS = 500
 """More than a run with a summary visits; a robot runs for months."""
-NEARING_MM = 600.0
-"""So near to the post ahead a robot that is switched off may roll on beyond it: 100 mm before its marker comes into
-sight, and as far as a base at 200 mm/s rolls in half a second after that."""
+LOOKS_BACK_MM = 600.0
+"""So far back a marker that it has rolled past comes into sight again: it is seen from 500 to 100 mm before its post,
+and a base at 200 mm/s rolls on for half a second."""
+UNREAD_MM = 300.0
+"""So near to the post ahead, abreast of its marker, that should have been read. Where it was not, it cannot be counted
+on."""
 
 
 class Tracker:
@@ -258,11 +261,12 @@ class Tracker:
         self._note_nearing()
 
     def _note_nearing(self) -> None:
-        """Written down before it comes near the post ahead: a base that is left alone rolls on."""
+        """Written down once the marker ahead is read, or should have been: a base that is left alone rolls on. Before
+        that the marker is still to come, and a robot that starts again may drive on to it."""
         place = self._place
         if not isinstance(place, Between) or self._moment is Moment.NEARING:
             return
-        if place.by_marker or (place.ahead_mm is not None and place.ahead_mm - self._odometry.ahead_mm < NEARING_MM):
+        if place.by_marker or (place.ahead_mm is not None and place.ahead_mm - self._odometry.ahead_mm < UNREAD_MM):
             self._note_moment(Moment.NEARING)
 
     def _note_moment(self, moment: Moment) -> None:

@@ -195,6 +195,24 @@ def test_a_robot_that_was_on_its_way_is_nowhere_until_the_next_marker(walk: Walk
     assert (again.navigator.at, again.navigator.way()) == ("post3", "left")
 
 
+@pytest.mark.parametrize(
+    ("left_mm", "has_read", "doubted"),
+    [(310.0, False, None), (500.0, True, "post4"), (290.0, False, "post4")],
+)
+def test_a_power_cut_before_a_post_leaves_doubt_from_its_marker_on_or_from_where_that_should_have_been_read(
+    walk: Walk, store: Store, left_mm: float, has_read: bool, doubted: str | None
+) -> None:
+    walk.navigator.place("post3", "post4")
+    walk.navigator.leave()
+    walk.body.rolls(1000 * walk.navigator.ahead_m - left_mm)
+    if has_read:
+        walk.body.sees("post4")
+    walk.look()
+    again = Walk(store)
+    again.look()
+    assert again.navigator.doubted == doubted
+
+
 def test_a_power_cut_in_the_middle_of_a_turn_leaves_open_which_way_it_looks(walk: Walk, store: Store) -> None:
     walk.navigator.place("post1", "post2")
     walk.drives_to("post2")
