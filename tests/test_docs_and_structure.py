@@ -121,6 +121,13 @@ def test_each_package_says_to_start_at_a_file_that_is_there():
     assert [str(path) for path in starts if not path.is_file()] == []
 
 
+def test_no_two_pictures_of_pages_are_the_same():
+    """One that shows what another does has missed what it was taken for."""
+    pictures = {path.name: path.read_bytes() for path in tracked("docs/pictures/pages/*.webp")}
+    assert len(pictures) > 50
+    assert len(set(pictures.values())) == len(pictures)
+
+
 def test_the_glossary_defines_no_word_twice():
     glossary = (CHECKOUT / "docs/reference/glossary.md").read_text(encoding="utf-8")
     words = [word for word in re.findall(r"^\| ([^|]+?) \|", glossary, re.MULTILINE) if word not in ("word", "---")]

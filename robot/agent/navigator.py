@@ -11,7 +11,7 @@ from itertools import pairwise
 from maps import CampusMap, NoRoute, corridor_name, shortest_route
 from maps.geometry import wrapped
 from protocol.parts import Leg
-from robot.agent.tracking import LOOKS_BACK_MM, Tracker
+from robot.agent.tracking import Tracker
 from robot.localization.closed import Closed, open_way
 from robot.localization.directions import PLAIN_TURNS, Way, kept_from, next_post, sector
 from robot.localization.docks import nearest_dock, way_out
@@ -26,6 +26,9 @@ RESTS_MM = 25.0
 """A pulse or two of the paper's `drive`. Its program does not look at the line as long as it perceives a post."""
 STRAIGHT_RAD = math.radians(12)
 """Within this the line is under the diodes, and following it straightens the robot up."""
+LOOKS_BACK_MM = 600.0
+"""So far back a marker that it has rolled past comes into sight again: it is seen from 500 to 100 mm before its post,
+and a base at 200 mm/s rolls on for half a second."""
 MARKER_UNREAD = "marker_unread"
 SURELY_PAST_M = 0.3
 

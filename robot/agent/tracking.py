@@ -39,9 +39,6 @@ SAME_WAY_RAD = math.radians(60)
 FOREIGN_MARKER = "foreign_marker"
 KEPT_POSTS = 500
 """More than a run with a summary visits; a robot runs for months."""
-LOOKS_BACK_MM = 600.0
-"""So far back a marker that it has rolled past comes into sight again: it is seen from 500 to 100 mm before its post,
-and a base at 200 mm/s rolls on for half a second."""
 UNREAD_MM = 300.0
 """So near to the post ahead, abreast of its marker, that should have been read. Where it was not, it cannot be counted
 on."""

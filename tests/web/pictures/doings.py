@@ -32,6 +32,11 @@ async def open_the_desk(page: Page) -> None:
     await page.locator(".people li").first.wait_for()
 
 
+async def come_to_the_faults(page: Page) -> None:
+    """Down to them: on both screens they lie below what the picture of the charge shows."""
+    await page.locator("robot-faults").evaluate("(faults) => faults.scrollIntoView({block: 'start'})")
+
+
 async def come_to_the_mind(page: Page) -> None:
     """Down to where the robot tells what it intends; it drives by then."""
     follows = page.locator(".intends").get_by_text(re.compile("follow_line")).first

@@ -55,6 +55,6 @@ PICTURES: Final = (
     Picture("order-offline", ADA, "/", "[name=from_post]", doings.order_without_network),
     Picture("mailroom-trouble", DANA, "/mailroom.html", ".issues li:nth-child(5)", scene=Scene.TROUBLE),
     Picture("wall", DANA, "/mailroom.html?wall", ".issues li:nth-child(5)", scene=Scene.TROUBLE),
-    Picture("robot-faults", MIRA, "/robots.html?robot=r1", "robot-faults li", scene=Scene.TROUBLE),
+    Picture("robot-faults", MIRA, "/robots.html?robot=r1", "robot-faults li", doings.come_to_the_faults, Scene.TROUBLE),
     Picture("robot-mind", MIRA, "/robots.html?robot=r5", "robot-diagnostics", doings.come_to_the_mind, Scene.MIND),
 )
