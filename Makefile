@@ -141,7 +141,7 @@ docs: setup-develop ## Build the documentation site into var/site; warnings are 
 pin: .venv/.python-ready ## Write constraints.txt anew from pyproject.toml
 	$(BIN)/pip install --quiet uv
 	$(BIN)/uv pip compile --universal --python-version 3.11 --all-extras --no-header --no-annotate \
-	  --no-emit-index-url --output-file constraints.txt --upgrade --quiet pyproject.toml
+	  --output-file constraints.txt --upgrade --quiet pyproject.toml
 	git diff --stat constraints.txt
 
 clean: ## Remove what setup, tests and runs have made; the key of the Android package stays
