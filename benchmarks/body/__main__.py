@@ -21,6 +21,7 @@ PARTS = {
     "missions": "seeded missions with faults: delivered or handed to a person, none lost, none claimed falsely",
     "kills": "SIGKILL of the daemon at random moments of missions: what the restarted one knows",
     "near_posts": "kills in the last 600 mm before a post: where the restarted robot drives",
+    "any_moment": "kills at any moment of a letter: where the restarted robot believes to be",
     "foreign_codes": "plain codes of posts that a stranger shows at random places: none believed",
     "hour": "a simulated hour: time on the wall, processor, memory and lag of the loops",
     "watched": "what it costs the mind to be watched, and not to be watched",

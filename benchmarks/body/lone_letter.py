@@ -72,12 +72,21 @@ class Service:
 class LetterRun:
     """`run` until `stop` says so, the letter is delivered and the robot at home, or the time is over.
 
-    `motion`: how well its wheels do what they are told; `slip`: the share of it that is lost on the floor.
+    `motion`: how well its wheels do what they are told; `slip`: the share of it that is lost on the floor. `drains_to`:
+    what its battery holds as soon as the mail is aboard; None: it loses nothing at once.
     """
 
-    def __init__(self, folder: Path, world: str, seed: int, motion: Motion | None = None, slip: float = 0.0) -> None:
+    def __init__(
+        self,
+        folder: Path,
+        world: str,
+        seed: int,
+        motion: Motion | None = None,
+        slip: float = 0.0,
+        drains_to: float | None = None,
+    ) -> None:
         self.random, self._world, self._seed = Random(f"{world}/{seed}/letter"), world, seed
-        self._motion, self._slip = motion or Motion(), slip
+        self._motion, self._slip, self._drains_to = motion or Motion(), slip, drains_to
         self._folder, self.clock, self.campus = folder, SteppedClock(), campus_of(WORLDS[world])
         self._home = self.random.choice(self.campus.docks()).name
         self._codes = {purpose: f"CM1:{self.random.randbytes(16).hex()}" for purpose in STOPS}
@@ -126,6 +135,9 @@ class LetterRun:
         if waited_for and not handing_over and self.robot.camera.shown is None:
             purpose = Purpose(waited_for.removeprefix("wait_handover(").split(",")[0])
             self.robot.show_code(self._codes.get(purpose, self._codes[Purpose.LOAD]), SHOWN_FOR_S)
+        if self._drains_to is not None and self._handed_over:
+            self.robot.sag(self._drains_to)
+            self._drains_to = None
         if self._wanted() or self.is_over or now > LIMIT_S:
             self._runner.stop()
 
@@ -149,9 +161,13 @@ class LetterRun:
             self.problems.append(f"{problem} at {self.clock.now():.1f} s")
 
     @property
-    def delivered(self) -> bool:
+    def _handed_over(self) -> list[Purpose]:
         happened = [message.happened for message in self.told if isinstance(message, Event)]
-        return [one.purpose for one in happened if isinstance(one, HandoverReceipt)] == list(STOPS)
+        return [one.purpose for one in happened if isinstance(one, HandoverReceipt)]
+
+    @property
+    def delivered(self) -> bool:
+        return self._handed_over == list(STOPS)
 
     @property
     def is_over(self) -> bool:

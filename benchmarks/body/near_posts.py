@@ -4,9 +4,10 @@ In stepped time: what a kill leaves on the disk is judged by `kills`; here it is
 simulated base stands at once when its computer dies, as with `ExecStopPost`; a real one may roll on.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
+from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
 from random import Random
@@ -39,36 +40,58 @@ class Outcome:
     delivered: bool
     problems: tuple[str, ...]
     asked_person: int
-    """So often it could not tell where it was, and a person was told."""
+    """So often it could not tell where it was or found no line, and a person was told."""
+
+
+Moment = Callable[[], bool]
+Play = Callable[[str, int], Outcome]
 
 
 def measure(samples: Samples) -> dict[str, Any]:
     """`samples.kills` of them, a few for each letter, on both maps in turn."""
-    worlds, letters = list(WORLDS), -(-samples.kills // KILLS_OF_A_LETTER)
-    tasks = [(worlds[number % len(worlds)], samples.first_seed + number) for number in range(letters)]
+    return on_both_maps(letter, samples.first_seed, -(-samples.kills // KILLS_OF_A_LETTER))
+
+
+def on_both_maps(play: Play, first_seed: int, letters: int) -> dict[str, Any]:
+    """So many letters, on one map after the other."""
+    worlds = list(WORLDS)
+    tasks = [(worlds[number % len(worlds)], first_seed + number) for number in range(letters)]
     with ProcessPoolExecutor(PROCESSES, mp_context=get_context("spawn")) as pool:
-        return summary(list(pool.map(told_letter, *zip(*tasks, strict=True))))
+        return summary(list(pool.map(partial(_told, play), *zip(*tasks, strict=True))))
 
 
-def told_letter(world: str, seed: int) -> Outcome:
-    outcome = letter(world, seed)
-    say(f"  {world} {seed}: {outcome.kills} kills; {'; '.join(outcome.problems) or 'as wanted'}")
+def _told(play: Play, world: str, seed: int) -> Outcome:
+    outcome = play(world, seed)
+    found = [*outcome.problems, *([] if outcome.delivered else ["not delivered"])]
+    say(f"  {world} {seed}: {outcome.kills} kills; {'; '.join(found) or 'as wanted'}")
     return outcome
 
 
 def letter(world: str, seed: int, kills: int = KILLS_OF_A_LETTER) -> Outcome:
-    """One letter, whose robot is killed so often at most."""
+    """One letter, whose robot is killed near posts, so often at most."""
+    return killed_letter(world, seed, kills, _Nears)
+
+
+def killed_letter(
+    world: str,
+    seed: int,
+    kills: int,
+    moment: Callable[[LetterRun, Random], Moment],
+    drains_to: float | None = None,
+) -> Outcome:
+    """One letter, whose robot is killed whenever the `moment` drawn anew after each start has come."""
     quietly()
     random = Random(f"{world}/{seed}/kills")
-    with TemporaryDirectory(prefix="near-", dir=MEMORY if MEMORY.is_dir() else None) as folder:
-        run = LetterRun(Path(folder), world, seed)
+    with TemporaryDirectory(prefix="letter-", dir=MEMORY if MEMORY.is_dir() else None) as folder:
+        run = LetterRun(Path(folder), world, seed, drains_to=drains_to)
         killed = 0
-        while killed < kills and run.run(_Nears(run, random)):
+        while killed < kills and run.run(moment(run, random)):
             killed += 1
             run.kill()
             run.start()
         run.run()
-        outcome = Outcome(world, seed, killed, run.delivered, tuple(run.problems), run.faults("place_unknown"))
+        asked = run.faults("place_unknown") + run.faults("stuck")
+        outcome = Outcome(world, seed, killed, run.delivered, tuple(run.problems), asked)
         run.close()
     return outcome
 

@@ -149,6 +149,7 @@ class Mind:
             navigator.moved,
             navigator.astray,
             navigator.doubted,
+            navigator.beside_dock,
             navigator.closed.names,
             aside.to_post if (aside := detour(hands)) else None,
         )

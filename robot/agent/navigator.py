@@ -76,6 +76,21 @@ class Navigator(Tracker):
         return None
 
     @property
+    def looks_anywhere(self) -> bool:
+        """Return whether it may look any way: it was switched off at a post in a turn, or in a search for the line."""
+        place = self._place
+        if isinstance(place, Between):
+            return place.begin_mm is None and place.ahead_mm is None
+        return self._facing is None and isinstance(place, AtPost | Leaving)
+
+    @property
+    def beside_dock(self) -> bool:
+        """Return whether it was switched off on its way into a dock or out of it, and has not left its post since."""
+        place = self._place
+        interrupted = self._moment is Moment.DOCKING and self._facing is None
+        return interrupted and isinstance(place, AtPost) and not place.docked
+
+    @property
     def look_back_mm(self) -> float:
         """Return how far it may go back in search of a marker: half of the corridor that it holds at most."""
         length_mm = 1000 * self._place.corridor.length_m if isinstance(self._place, Between) else LOOKS_BACK_MM
@@ -209,6 +224,11 @@ class Navigator(Tracker):
             self._head_for(self._next_post())
             self._note_moment(Moment.TURNING)
 
+    def begin_docking(self) -> None:
+        """Into the dock or out of it: in between it stands beside the line, and looks anywhere."""
+        if isinstance(self._place, AtPost):
+            self._note_moment(Moment.DOCKING)
+
     def turned(self) -> None:
         """A turn has ended on the line: what was left of odometry's error is forgotten."""
         place = self._place
@@ -273,6 +293,7 @@ class Navigator(Tracker):
             if looks_rad is None or abs(wrapped(looks_rad - away_rad)) < STRAIGHT_RAD:
                 self._look_along(away_rad)
             self._place = AtPost(self.here, now_mm, now_mm)
+            self._note_moment(Moment.TURNING)
 
     def place(self, post: str, towards: str | None) -> None:
         """A person has put the robot down at a post, looking along a corridor. Raises UnknownPost, UnknownCorridor."""

@@ -1,5 +1,5 @@
-"""Keeping track of the place: every sighting, every bit of way and every turn is fed to `navigation/place.py`, and what
-must survive a power cut is written down."""
+"""Keeping track of the place: every sighting, every bit of way and every turn is fed to `localization/place.py`, and
+what must survive a power cut is written down."""
 
 import math
 from dataclasses import replace
@@ -25,10 +25,9 @@ from robot.skills.interfaces import View
 
 TURNING = frozenset({"turn", "undock", "find_line"})
 """Skills during which a marker is seen from aslant: it says nothing about the way that is left to its post."""
-AT_THE_POST = frozenset({"turn", "find_line", "dock"})
-"""Skills that look for the line or the dock around a post: they leave it by some steps without being on their way."""
-CURVING = AT_THE_POST | {"undock"}
-"""Skills that drive curves which are no bends of a corridor."""
+AT_THE_POST = frozenset({"turn", "find_line", "dock", "undock"})
+"""Skills that look for the line or the dock around a post: they leave it by some steps without being on their way, and
+drive curves which are no bends of a corridor."""
 FOLLOWING = "follow_line"
 LIFTED = "wheel_drop"
 """The fault during which a person holds the robot in their hands, perhaps to put it down elsewhere."""
@@ -100,11 +99,11 @@ class Tracker:
         """Take in what the body sees now."""
         before, self._odometry = self._odometry, view.odometry
         self._disturbed = view.find_line_episodes + view.bumps
-        if view.motion in CURVING and isinstance(self._place, AtPost | Leaving) and self._facing:
+        if view.motion in AT_THE_POST and isinstance(self._place, AtPost | Leaving) and self._facing:
             self._facing = self._facing.curved(before, self._odometry)
         post = self._new_marker(view)
         if view.base and view.base.docked:
-            self._stand_in_dock()
+            self._stand_in_dock(view)
         elif LIFTED in view.faults:
             self._lift(view)
         else:
@@ -137,7 +136,7 @@ class Tracker:
         if view.motion == FOLLOWING and not view.searching:
             self._check_way()
 
-    def _stand_in_dock(self) -> None:
+    def _stand_in_dock(self, view: View) -> None:
         """In a dock the robot knows its place, whatever it believed."""
         if isinstance(self._place, AtPost) and self._place.docked:
             return
@@ -150,6 +149,8 @@ class Tracker:
         if isinstance(self._place, AtPost) and self._place.here == post.name:
             self._place = replace(self._place, at_mm=now_mm, docked=True)
             self._compass.set(post.dock.heading_rad, self._odometry)
+            if view.motion != "undock":  # contacts may bounce on the way out
+                self._forget_moment()
         else:
             self._arrive(AtPost(post.name, now_mm, now_mm, docked=True))
 
@@ -187,6 +188,8 @@ class Tracker:
         elif self.expected().allows(post.text, at_mm, self._disturbed):
             before = self._place
             self._place = marked(self.campus, before, post.text, at_mm, view.post_odometry.ahead_mm)
+            if isinstance(before, Leaving | Between) and self._place.towards != before.towards:
+                self._head_for(self._place.towards)
             if not isinstance(self._place, AtPost):
                 self._forget_foreign()
             if isinstance(before, Between) and before.meant == post.text:
@@ -270,6 +273,12 @@ class Tracker:
         self._moment = moment
         self._duties.note_moment(moment)
 
+    def _forget_moment(self) -> None:
+        """What was under way has ended where it should."""
+        if self._moment and self._place.here:
+            self._moment = None
+            self._duties.seen(self._place.here)
+
     def _check_way(self) -> None:
         """Check that it follows the line that it was going to."""
         place, looks_rad = self._place, self._compass.looks_rad(self._odometry)
@@ -349,6 +358,8 @@ class Tracker:
         corridor = corridor_between(self.campus, place.here, ahead.name) if ahead else None
         self._place = set_out(place, corridor, self._counted_m(corridor.length_m) if corridor else 0.0)
         self._head_for(self._place.towards)
+        if corridor is None:
+            self._note_moment(Moment.LEAVING)
 
     def _head_for(self, towards: str | None) -> None:
         self._moment = None

@@ -7,6 +7,7 @@
      !permission(Post);
      !come_out;
      !go_to(Post).
++!go_to(Post) : beside_dock & not no_way_in <- !go_back_in; !go_to(Post).
 +!go_to(Post) : not at(_)
   <- !reach_a_post;
      !tell_passed(Post);
@@ -18,6 +19,12 @@
      !follow;
      !tell_passed(Post);
      !go_to(Post).
+
+// Switched off between its dock and its post, it stands beside the line. The dock's own signals lead it in; without them it
+// looks for the line.
++!go_back_in <- dock.
+-!go_back_in <- +no_way_in.
++docked <- .abolish(no_way_in).
 
 // Nothing enters a corridor ungranted, the way to a dock included. The robot waits for that at a post, where others can
 // pass it. Where no way is open it tells people, and tries again after half a minute, then ever more rarely: a corridor in

@@ -14,6 +14,10 @@ class Moment(StrEnum):
 
     TURNING = "turning"
     """At a post: it may look anywhere."""
+    DOCKING = "docking"
+    """Into its dock or out of it: it stands beside the end of the line, and may look anywhere."""
+    LEAVING = "leaving"
+    """On one of the lines of its post; which one is not known."""
     NEARING = "nearing"
     """Before the post ahead: its base may have rolled on, beyond the post and what it was granted."""
     LIFTED = "lifted"
@@ -28,8 +32,10 @@ def remembered(campus: CampusMap, position: parts.Position, moment: Moment | Non
         return Unknown(lifted=moment is Moment.LIFTED), None
     if moment is Moment.LIFTED:
         return Unknown(post, frozenset(one for one in (post, towards) if one), lifted=True), None
+    if moment is Moment.LEAVING:
+        return Leaving(post), None
     came_by = corridor_between(campus, post, previous) if previous else None
-    if moment is Moment.TURNING:
+    if moment in (Moment.TURNING, Moment.DOCKING):
         return AtPost(post, 0.0, 0.0, came_by), None
     if towards:
         return _on_its_way(campus, post, towards, doubted=moment is Moment.NEARING)

@@ -310,7 +310,7 @@ class Memory:
             return position
 
     def moment(self) -> str | None:
-        """The action that leaves doubt of its place after a power cut (`navigation.remembering.Moment`)."""
+        """The action that leaves doubt of its place after a power cut (`localization.remembering.Moment`)."""
         return self._read("moment", _WORD, None)
 
     def note_moment(self, moment: str) -> None:

@@ -41,19 +41,24 @@ class FindLine(Scripted):
         side: float = 0.0,
         heading_rad: float | None = None,
         limit_s: float = 180.0,
+        looks_anywhere: bool = False,
     ) -> None:
-        """`side`: where the line was seen last (left positive); `heading_rad`: its heading then, by odometry."""
+        """`side`: where the line was seen last (left positive); `heading_rad`: its heading then, by odometry.
+        `looks_anywhere`: the way it looks is not known. It looks round where it stands first, and any line will do."""
         self._shape = shape or BodyShape()
         self._side = math.copysign(1.0, side) if side else 1.0
         self._heading_rad = heading_rad
+        self._looks_anywhere = looks_anywhere
         self.limit_s = limit_s
 
     def script(self, view: View) -> Script:
         """The ladder, rung by rung; the line is straightened up to on whichever rung it is found."""
         along_rad = view.odometry.heading_rad if self._heading_rad is None else self._heading_rad
-        for rung in (self._stay, self._coast, self._arc, self._back, self._sweep, self._spiral):
+        first = self._look_round if self._looks_anywhere else self._stay
+        for rung in (first, self._coast, self._arc, self._back, self._sweep, self._spiral):
             view = yield from searching(rung(view))
             if over_line(view):
+                along_rad = view.odometry.heading_rad if self._looks_anywhere else along_rad
                 view = yield from searching(self._align(view, along_rad))
             if over_line(view):
                 return Done()
@@ -62,6 +67,9 @@ class FindLine(Scripted):
     def _stay(self, view: View) -> Part:
         """Perhaps it is there already."""
         return stand(view, 0.0)
+
+    def _look_round(self, view: View) -> Part:
+        return turn_by(view, self._side * math.tau, SWEEP_MM_S, self._shape, over_line)
 
     def _coast(self, view: View) -> Part:
         return roll(view, COAST_MM, WheelSpeeds(SEARCH_MM_S, SEARCH_MM_S), over_line)

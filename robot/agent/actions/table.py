@@ -56,7 +56,8 @@ FOLLOW_LEAST_S, FOLLOW_TIMES = 180.0, 3.0
 
 
 def _follow_line(hands: Hands, _: Sequence[Value], now: float) -> Run:
-    """Along the line; a robot that looks aslant (its turn was interrupted) straightens up first."""
+    """Along the line; a robot that looks aslant (its turn was interrupted) straightens up first, and one that does not
+    know which way it looks turns until it sees a line."""
     navigator = hands.navigator
     if navigator.doubted:
         return AtOnce(Ended(PLACE_UNKNOWN))
@@ -66,8 +67,10 @@ def _follow_line(hands: Hands, _: Sequence[Value], now: float) -> Run:
 
     def straighten() -> Skill | None:
         on_the_line = abs(aslant_rad) < WIDEST_RAD and over_line(hands.view)
-        if not aslant_rad or on_the_line:
+        if on_the_line or not (aslant_rad or navigator.looks_anywhere):
             return None
+        if not aslant_rad:
+            return FindLine(hands.shape, looks_anywhere=True)
         navigator.begin_turn()
         return Turn(aslant_rad, hands.shape, hands.turn_mm_s)
 
@@ -119,6 +122,7 @@ def _find_line(hands: Hands, _: Sequence[Value], now: float) -> Run:
 
 
 def _dock(hands: Hands, _: Sequence[Value], now: float) -> Run:
+    hands.navigator.begin_docking()
     return _one(hands, Dock(), now)
 
 
@@ -126,6 +130,7 @@ def _undock(hands: Hands, _: Sequence[Value], now: float) -> Run:
     """A dock stands beside the tape's end: with a wheel worn, the robot comes out a hand's breadth beside the line."""
     look_about = {"line_lost": lambda: FindLine(hands.shape)}
     undock = Undock(hands.shape, *hands.navigator.undock_way())
+    hands.navigator.begin_docking()
     return _one(hands, undock, now, lambda _: hands.navigator.undocked(), look_about)
 
 

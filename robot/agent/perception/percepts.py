@@ -138,6 +138,11 @@ PERCEPTS: Final = (
         lambda s: [f"doubted({s.where.doubted})"] if s.where.doubted else [],
     ),
     Percept(
+        "beside_dock",
+        "it was switched off on its way into a dock or out of it, and stands beside the line",
+        lambda s: ["beside_dock"] if s.where.beside_dock else [],
+    ),
+    Percept(
         "closed",
         "closed(Corridor): it turned back in there; no way leads through it for a while",
         lambda s: (f"closed({atom_or_text(name)})" for name in sorted(s.where.closed)),

@@ -24,6 +24,8 @@ class MapPosition:
     """The post that it drives towards by mistake, until it has turned round."""
     doubted: str | None = None
     """The post just before which it was switched off, while it cannot tell whether it has passed it."""
+    beside_dock: bool = False
+    """It was switched off on its way into a dock or out of it, and stands beside the line."""
     closed: frozenset[str] = frozenset()
     """Corridors, by name, in which it turned back a short while ago."""
     detour: str | None = None

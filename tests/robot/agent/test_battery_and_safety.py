@@ -83,6 +83,27 @@ def test_a_dock_that_cannot_be_found_is_told_and_tried_again() -> None:
     stage.expect("dock")
 
 
+def test_switched_off_half_way_out_of_its_dock_it_goes_back_in_and_comes_out_again() -> None:
+    stage = Stage(*HOME, *MISSION, "next_stop(0)", "at(post5)", "beside_dock")
+    stage.does("report(departed,s1)")
+    stage.expect("dock")
+    stage.perceives("docked", without=("beside_dock",))
+    stage.succeeds("dock")
+    stage.does("set_destination(post1)", "claim(post1)")
+    stage.expect("undock")
+    assert stage.failures == []
+
+
+def test_beside_a_dock_that_gives_no_signal_it_looks_for_the_line() -> None:
+    stage = Stage(*HOME, *MISSION, "next_stop(0)", "at(post5)", "beside_dock")
+    stage.does("report(departed,s1)")
+    stage.expect("dock")
+    stage.fails("dock", "no_dock")
+    stage.does("set_destination(post1)", "claim(post1)")
+    stage.expect("follow_line")
+    assert stage.failures == []
+
+
 def test_a_line_that_is_lost_is_searched_with_growing_patience_then_people_are_told() -> None:
     stage = on_its_way_with_mail()
     for patience in (3, 6, 9):

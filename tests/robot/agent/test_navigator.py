@@ -225,6 +225,60 @@ def test_a_power_cut_in_the_middle_of_a_turn_leaves_open_which_way_it_looks(walk
     assert set(again.navigator.first_legs("post4")) == ways, "it may look anywhere: each corridor is asked for"
 
 
+def test_a_power_cut_on_a_line_that_it_does_not_know_leaves_it_on_one_of_its_posts_lines(
+    walk: Walk, store: Store
+) -> None:
+    walk.navigator.place("post1", "post2")
+    walk.drives_to("post2")
+    walk.navigator.begin_turn()
+    again = Walk(store)
+    again.look()
+    again.navigator.leave()
+    again.body.rolls(700.0)
+    again.look()
+    for _ in range(2):  # however often it is killed there
+        again = Walk(store)
+        again.look()
+        navigator = again.navigator
+        assert (navigator.here, navigator.at, navigator.towards) == ("post2", None, None)
+        assert navigator.looks_anywhere
+    again.body.sees("post3")
+    again.look()
+    again = Walk(store)
+    assert (again.navigator.here, again.navigator.doubted) == ("post2", "post3"), "its marker told which line it is on"
+
+
+def test_a_power_cut_between_dock_and_post_leaves_it_beside_the_line_until_it_is_in_the_dock_or_away(
+    walk: Walk, store: Store
+) -> None:
+    walk.navigator.place("post5", None)
+    walk.navigator.begin_docking()
+    again = Walk(store)
+    again.look()
+    assert (again.navigator.at, again.navigator.beside_dock, again.navigator.looks_anywhere) == ("post5", True, True)
+    again.body.does("undock")
+    again.body.battery(0.5, docked=True)
+    again.look()
+    assert Walk(store).navigator.beside_dock, "contacts bounce on the way out"
+    again = Walk(store)
+    again.look()
+    again.body.battery(0.5, docked=True)
+    again.look()
+    assert not again.navigator.beside_dock
+    assert not Walk(store).navigator.beside_dock
+
+
+def test_a_robot_that_came_out_of_its_dock_and_lost_power_at_the_post_may_look_anywhere(
+    walk: Walk, store: Store
+) -> None:
+    walk.navigator.place("post3", "post5")
+    walk.drives_to("post5")
+    walk.navigator.begin_docking()
+    walk.navigator.undocked()
+    again = Walk(store)
+    assert (again.navigator.at, again.navigator.beside_dock, again.navigator.looks_anywhere) == ("post5", False, True)
+
+
 def test_a_blocked_corridor_is_avoided_until_its_time_is_over(walk: Walk) -> None:
     walk.navigator.place("post2", "post3")
     walk.navigator.destination = "post5"

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks.body import foreign_codes, near_posts
+from benchmarks.body import any_moment, foreign_codes, near_posts
 from benchmarks.body.lone_letter import LetterRun
 from robot.simulated import Motion
 
@@ -13,6 +13,13 @@ from robot.simulated import Motion
 def test_a_robot_killed_just_before_posts_enters_nothing_ungranted_and_delivers():
     outcome = near_posts.letter("track", 9001, kills=3)
     assert (outcome.kills, outcome.delivered, outcome.problems, outcome.asked_person) == (3, True, (), 0)
+
+
+@pytest.mark.parametrize("seed", [9001, 9002])
+@pytest.mark.nightly
+def test_a_robot_killed_at_any_moment_believes_nothing_false_and_delivers(seed: int) -> None:
+    outcome = any_moment.letter("track", seed)
+    assert (outcome.kills, outcome.delivered, outcome.problems, outcome.asked_person) == (6, True, (), 0)
 
 
 @pytest.mark.parametrize("seed", [9001, 9002])

@@ -126,6 +126,19 @@ def test_bumped_in_the_middle_of_a_turn_it_goes_back_to_the_post_and_finds_its_l
     assert robot.do(FollowLine(TRACK, "post3", shape=robot.shape)) == Done("post5")
 
 
+@pytest.mark.parametrize("turned_deg", [-160, -100, 60, 150])
+def test_who_does_not_know_which_way_it_looks_finds_the_line_without_leaving_its_post(drive: Make, turned_deg: int):
+    robot = drive("post1:post2")
+    pose = robot.robot.pose
+    robot.robot.place(replace(pose, heading_rad=pose.heading_rad + math.radians(turned_deg)))
+    robot.steps(0.1)
+    began = robot.now
+    assert robot.do(FindLine(robot.shape, looks_anywhere=True)) == Done()
+    assert robot.now - began < 12
+    assert robot.distance_to_m("post1") < 0.03
+    assert math.cos(robot.robot.pose.heading_rad - pose.heading_rad) > 0.9
+
+
 @pytest.mark.slow
 def test_a_line_that_was_met_across_is_followed_the_way_it_looked_before(drive: Make):
     robot = drive("post1:post2")

@@ -9,6 +9,7 @@ from protocol.envelope import Envelope
 from protocol.parts import Leg
 from protocol.to_robot import Detour
 from robot.agent.actions.corridors import AWAITS_NETWORK_S, detour
+from robot.drivers.interfaces import LineReading
 from tests.robot.agent.actions.bench import MISSION, NOW, TO_POST1, TO_POST3, TO_POST4, Bench, with_server
 
 
@@ -30,6 +31,17 @@ def test_while_something_stands_in_its_way_it_keeps_what_it_was_granted(bench: B
     assert bench.missions.held.grants == (TO_POST3, TO_POST4)
     bench.result("reopen")
     assert bench.result("claim(post4)") is None, "it may go in again with no service to ask"
+
+
+@pytest.mark.parametrize(("line", "first"), [(False, "find_line"), (True, "follow_line")])
+def test_a_robot_that_may_look_anywhere_looks_round_for_the_line_unless_it_is_on_one(
+    bench: Bench, line: bool, first: str
+) -> None:
+    bench.navigator.place("post2", None)
+    bench.body.view = replace(bench.body.view, reading=LineReading(left=False, centre=line, right=False))
+    bench.hands.view = bench.body.view
+    bench.ask("follow_line")
+    assert bench.body.started == [first]
 
 
 def test_while_another_robot_is_in_its_way_it_lets_go_of_everything(bench: Bench) -> None:
