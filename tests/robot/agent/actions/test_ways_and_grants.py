@@ -44,6 +44,15 @@ def test_a_robot_that_may_look_anywhere_looks_round_for_the_line_unless_it_is_on
     assert bench.body.started == [first]
 
 
+@pytest.mark.parametrize("action", ["dock", "undock", "turn(left)"])
+def test_what_would_leave_doubt_of_its_place_is_written_down_before_it_begins(bench: Bench, action: str) -> None:
+    bench.navigator.place("post5", "post3")
+    kept: list[str | None] = []
+    bench.body.at_start = lambda _: kept.append(bench.missions.memory.moment())
+    bench.ask(action)
+    assert kept == ["turning" if action == "turn(left)" else "docking"]
+
+
 def test_while_another_robot_is_in_its_way_it_lets_go_of_everything(bench: Bench) -> None:
     with_server(bench, TO_POST3, TO_POST4)
     bench.missions.claims.avoid = frozenset({TO_POST3})
