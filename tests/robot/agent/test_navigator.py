@@ -251,7 +251,8 @@ def test_a_power_cut_on_a_line_that_it_does_not_know_leaves_it_on_one_of_its_pos
 def test_a_power_cut_between_dock_and_post_leaves_it_beside_the_line_until_it_is_in_the_dock_or_away(
     walk: Walk, store: Store
 ) -> None:
-    walk.navigator.place("post5", None)
+    walk.navigator.place("post3", "post5")
+    walk.drives_to("post5")
     walk.navigator.begin_docking()
     again = Walk(store)
     again.look()
