@@ -5,7 +5,9 @@ import re
 import signal
 import subprocess
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -23,6 +25,18 @@ def heavy(said: Iterable[str]) -> set[str]:
     """The packages among HEAVY that Python says it has imported."""
     names = (found[1].partition(".")[0] for line in said if (found := IMPORTED.match(line)))
     return HEAVY.intersection(names)
+
+
+@contextmanager
+def at_a_terminal(words: list[str], stderr: int, stdout: int | None = None) -> Iterator[subprocess.Popen[str]]:
+    """Run a command that Ctrl-C reaches, though the tests run where it is ignored: in the background of a shell."""
+    heed = partial(signal.signal, signal.SIGINT, signal.SIG_DFL)
+    pipes = {"stdout": stdout, "stderr": stderr}
+    with subprocess.Popen(words, cwd=ROOT, text=True, preexec_fn=heed, **pipes) as run:  # noqa: PLW1509
+        try:
+            yield run
+        finally:
+            run.terminate()
 
 
 @pytest.mark.parametrize("program", ["app", "robot", "demo"])
@@ -44,9 +58,7 @@ def test_every_command_is_listed_as_its_own_help_begins(program: str) -> None:
 @pytest.mark.parametrize("demo", ["letter", "fleet"])
 @pytest.mark.nightly
 def test_a_demonstration_says_what_it_starts_before_it_loads_anything_and_ctrl_c_that_it_stops(demo: str) -> None:
-    with subprocess.Popen(
-        command("demo", demo, "--json", "--port", "0"), cwd=ROOT, stderr=subprocess.PIPE, text=True
-    ) as run:
+    with at_a_terminal(command("demo", demo, "--json", "--port", "0"), stderr=subprocess.PIPE) as run:
         assert run.stderr is not None
         before = []
         for line in run.stderr:
@@ -64,7 +76,7 @@ def test_a_demonstration_says_what_it_starts_before_it_loads_anything_and_ctrl_c
 @pytest.mark.parametrize(("options", "code"), [((), 0), (("--once",), 130)], ids=["that goes on", "that would end"])
 def test_a_demonstration_that_is_stopped_while_it_loads_says_so(options: tuple[str, ...], code: int) -> None:
     words = [sys.executable, "-m", "demo", "letter", "--port", "0", *options]
-    with subprocess.Popen(words, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as run:
+    with at_a_terminal(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT) as run:
         assert run.stdout is not None
         run.stdout.readline()
         run.send_signal(signal.SIGINT)
