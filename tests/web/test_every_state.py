@@ -97,13 +97,9 @@ async def test_one_order_without_account(visit, campus):
 
 
 @pytest.mark.parametrize(
-    "led",
-    [
-        pytest.param(states_of_staff.dispatching, marks=pytest.mark.slow),
-        pytest.param(states_of_staff.working_at_the_desk, marks=pytest.mark.nightly),
-        pytest.param(states_of_staff.on_a_quiet_day, marks=pytest.mark.nightly),
-    ],
+    "led", [states_of_staff.dispatching, states_of_staff.working_at_the_desk, states_of_staff.on_a_quiet_day]
 )
+@pytest.mark.nightly
 async def test_the_mailroom(visit, campus, led):
     dana = await campus.staff(visit)
     await look_at_all(dana, led(dana))
