@@ -76,7 +76,7 @@ async def test_no_writer_goes_on_before_what_they_wrote_is_committed(database: D
         async with database.transaction() as session:
             await do(session, "INSERT INTO words VALUES (?)", "first")
             after_commit(session, lambda: said.append("said"))
-            await asyncio.sleep(0.01)  # so that the next one waits
+            await asyncio.sleep(0)  # the next one waits from now on
         said.append("went on")
 
     goes_on = asyncio.Event()
@@ -106,7 +106,7 @@ async def test_no_writer_is_told_of_what_a_full_disk_undid(database: Database) -
                 await do(session, f"PRAGMA max_page_count={pages + 10}")
             await do(session, "INSERT INTO words (word) VALUES (?)", word)
             after_commit(session, lambda: said.append(word))
-            await asyncio.sleep(0.02)  # so that the next one waits
+            await asyncio.sleep(0)  # the next one waits from now on
 
     writing = [write_and_say(word) for word in ("first", "much" * 50_000, "third")]
     assert all(isinstance(end, OperationalError) for end in await asyncio.gather(*writing, return_exceptions=True))
@@ -178,7 +178,7 @@ async def test_what_must_last_does_not_share_a_commit_that_waits_for_no_disk(dat
     async def one(word: str, *, durable: bool) -> None:
         async with database.transaction(durable=durable) as session:
             await do(session, "INSERT INTO words VALUES (?)", word)
-            await asyncio.sleep(0.01)  # so that the next one waits
+            await asyncio.sleep(0)  # the next one waits from now on
             synced[word] = await sync_of(session)
 
     await asyncio.gather(one("a", durable=False), one("b", durable=True))
