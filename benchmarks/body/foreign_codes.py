@@ -5,18 +5,16 @@ or while the robot stands at a post.
 """
 
 from collections.abc import Sequence
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
-from multiprocessing import get_context
 from pathlib import Path
 from random import Random
 from tempfile import TemporaryDirectory
 from typing import Any
 
+from benchmarks.body.killed_letters import on_both_maps
 from benchmarks.body.lone_letter import LetterRun
-from benchmarks.body.missions import MEMORY, PROCESSES
+from benchmarks.body.missions import MEMORY
 from benchmarks.body.report import Samples, Wanted, quietly, say
-from robot.scenarios.replay.drawing import WORLDS
 
 SHOWN_FOR_S = 3.0
 SHARE = (0.05, 0.6)
@@ -44,16 +42,7 @@ class Showing:
 
 def measure(samples: Samples) -> dict[str, Any]:
     """`samples.seeds` of them, on both maps in turn."""
-    worlds = list(WORLDS)
-    tasks = [(worlds[number % len(worlds)], seed) for number, seed in enumerate(samples.some_seeds())]
-    with ProcessPoolExecutor(PROCESSES, mp_context=get_context("spawn")) as pool:
-        return summary(list(pool.map(told_showing, *zip(*tasks, strict=True))))
-
-
-def told_showing(world: str, seed: int) -> Showing:
-    one = showing(world, seed)
-    say(f"  {world} {seed}: {one.shown}; told {one.told} times; {'; '.join(one.problems) or 'not believed'}")
-    return one
+    return summary(on_both_maps(showing, samples.first_seed, samples.seeds))
 
 
 def showing(world: str, seed: int) -> Showing:
@@ -69,6 +58,7 @@ def showing(world: str, seed: int) -> Showing:
         told = run.faults("foreign_marker")
         result = Showing(world, seed, shown, told, run.delivered, tuple(run.problems))
         run.close()
+    say(f"  {world} {seed}: {shown}; told {told} times; {'; '.join(result.problems) or 'not believed'}")
     return result
 
 

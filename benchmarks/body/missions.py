@@ -2,8 +2,7 @@
 
 Each mission is a scenario drawn by its seed (`robot/scenarios/replay/drawing.py`): flickering diodes, worn tape, dirty
 and dark markers, patches without network, people in the way, low batteries, people who come late or never, now and
-then an
-injected fault. The judge knows where the mail really is, and compares it with what the robot told.
+then an injected fault. The judge knows where the mail really is, and compares it with what the robot told.
 
 `robot.scenarios.figures` defines what a stop is and how the time of a mission is compared. One mission again, with a
 replay page: the command that each failure is listed with.

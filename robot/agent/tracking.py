@@ -149,8 +149,8 @@ class Tracker:
         if isinstance(self._place, AtPost) and self._place.here == post.name:
             self._place = replace(self._place, at_mm=now_mm, docked=True)
             self._compass.set(post.dock.heading_rad, self._odometry)
-            if view.motion != "undock":  # contacts may bounce on the way out
-                self._forget_moment()
+            if self._moment and view.motion != "undock":  # contacts may bounce on the way out
+                self._note_seen(post.name)
         else:
             self._arrive(AtPost(post.name, now_mm, now_mm, docked=True))
 
@@ -273,11 +273,10 @@ class Tracker:
         self._moment = moment
         self._duties.note_moment(moment)
 
-    def _forget_moment(self) -> None:
-        """What was under way has ended where it should."""
-        if self._moment and self._place.here:
-            self._moment = None
-            self._duties.seen(self._place.here)
+    def _note_seen(self, post: str) -> None:
+        """It stands at this post; what was under way, if anything, has ended where it should."""
+        self._moment = None
+        self._duties.seen(post)
 
     def _check_way(self) -> None:
         """Check that it follows the line that it was going to."""
@@ -321,8 +320,7 @@ class Tracker:
         self._compass.set(self._looks_rad(self._odometry), self._odometry)
         if self._foreign:
             self._forget_foreign()
-        self._moment = None
-        self._duties.seen(post)
+        self._note_seen(post)
         # Where it turned back is not given back here: it may want to go in again (decision 0022).
         if before.here is not None and before.here != post:
             self.crossed += (Leg(from_post=before.here, to_post=post),)
