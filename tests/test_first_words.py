@@ -1,5 +1,6 @@
 """Commands answer at once: what takes long to import is imported when it is needed, and said before."""
 
+import gc
 import importlib
 import re
 import signal
@@ -82,3 +83,9 @@ def test_a_demonstration_that_is_stopped_while_it_loads_says_so(options: tuple[s
         run.send_signal(signal.SIGINT)
         assert run.stdout.read().splitlines() == ["Stopping: nothing has been started yet."]
         assert run.wait(20) == code
+
+
+@pytest.mark.parametrize(("program", "command"), [("app", "people"), ("robot", "settings")])
+def test_garbage_is_collected_again_once_a_command_is_imported(program: str, command: str) -> None:
+    importlib.import_module(f"{program}.__main__").loaded(command)
+    assert gc.isenabled()
