@@ -23,6 +23,8 @@ OWNER = "postgres"
 TEMPLATE = "at_head"
 # Tests kill processes, never the machine: without waiting for the disk they are three times as fast.
 FASTER = ("fsync=off", "full_page_writes=off", "synchronous_commit=off", "max_connections=200", "shared_buffers=32MB")
+# Each test copies a database of 300 files: five times as fast in memory, where there is enough of it.
+MEMORY, ROOM_BYTES = Path("/dev/shm"), 2**30
 FAST_SHUTDOWN = signal.SIGINT
 """Sessions are cut off."""
 PR_SET_PDEATHSIG = 1
@@ -32,7 +34,8 @@ class PostgreSQL:
     """One server for a whole run of tests; each test gets a database of its own, copied from a template."""
 
     def __init__(self) -> None:
-        self.folder = Path(tempfile.mkdtemp(prefix="cm-pg-"))
+        in_memory = MEMORY.is_dir() and shutil.disk_usage(MEMORY).free > ROOM_BYTES
+        self.folder = Path(tempfile.mkdtemp(prefix="cm-pg-", dir=MEMORY if in_memory else None))
         self._data = self.folder / "data"
         self._count = 0
         if os.geteuid() == 0:
