@@ -8,7 +8,7 @@ ARGS ?=
 ALONE_IN = $(shell grep -rl --include='*.py' 'mark\.alone' tests)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup setup-develop setup-robot test test-all test-beside test-on-postgresql test-alone test-nightly check licences sbom format demo fleet-demo serve robot bench bench-mind bench-body bench-service bench-paper bench-pages bench-service-kills bench-fleet fuzz-mind client pages icons android screenshots fuzz-api docs pin clean
+.PHONY: help setup setup-develop setup-robot test test-all test-beside test-on-postgresql test-alone test-nightly nightly-beside nightly-on-postgresql nightly-alone check licences sbom format demo fleet-demo serve robot bench bench-mind bench-body bench-service bench-paper bench-pages bench-service-kills bench-fleet fuzz-mind client pages icons android screenshots fuzz-api docs pin clean
 # A recipe that fails must not leave its stamp behind.
 .DELETE_ON_ERROR:
 
@@ -46,12 +46,18 @@ test-on-postgresql: setup-develop .venv/.made-ready ## Its second: on PostgreSQL
 test-alone: setup-develop .venv/.made-ready ## Its third: what measures real time, with nothing beside it
 	$(BIN)/python -m pytest -m "alone and not nightly" $(ALONE_IN)
 
-test-nightly: setup-develop .venv/.made-ready ## Run the tests that no change can wait for: whole missions, kills at any moment, every page in every state
-	@failed=0; \
-	$(BIN)/python -m pytest $(BESIDE) -m "not alone and nightly" || failed=1; \
-	$(ON_POSTGRESQL) -m "not alone and (slow or nightly)" || failed=1; \
-	$(BIN)/python -m pytest -m "alone and nightly" $(ALONE_IN) || failed=1; \
-	exit $$failed
+test-nightly: nightly-beside nightly-on-postgresql nightly-alone ## Run the tests that no change can wait for: whole missions, kills at any moment, every page in every state
+
+# Its stages. Whole missions of four at a time may take minutes each, so that it takes longer until one is said to hang.
+NIGHTLY_LIMIT = --timeout 600
+nightly-beside: setup-develop .venv/.made-ready ## Its first stage, as of test-all
+	$(BIN)/python -m pytest $(BESIDE) $(NIGHTLY_LIMIT) -m "not alone and nightly"
+
+nightly-on-postgresql: setup-develop .venv/.made-ready ## Its second
+	$(ON_POSTGRESQL) $(NIGHTLY_LIMIT) -m "not alone and (slow or nightly)"
+
+nightly-alone: setup-develop .venv/.made-ready ## Its third
+	$(BIN)/python -m pytest $(NIGHTLY_LIMIT) -m "alone and nightly" $(ALONE_IN)
 
 check: setup-develop .venv/.lint-ready .venv/.made-ready ## Format, lint, types, import contracts, types of the pages, the API documents
 	$(BIN)/ruff format --check

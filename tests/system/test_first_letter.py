@@ -83,7 +83,7 @@ def test_half_a_minute_without_network_and_the_letter_is_delivered_all_the_same(
 
 @pytest.mark.nightly
 def test_a_robot_killed_while_carrying_knows_what_it_carries_and_delivers(rig: Rig) -> None:
-    """In the first half of a corridor. What is not mended yet: docs/explanation/driving.md, "After a power cut"."""
+    """In the first half of a corridor; near a post it would have doubts: docs/explanation/driving.md."""
     letter = Letter(rig)
     letter.load()
     wait_for("the corridor from post2", lambda: "follow_line" in rig.log("robot").partition("turn(left)")[2] or None)
@@ -92,7 +92,7 @@ def test_a_robot_killed_while_carrying_knows_what_it_carries_and_delivers(rig: R
     letter.assert_delivered_and_each_told_once(letter.receive())
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_service_killed_on_the_way_comes_back_and_nothing_is_lost(rig: Rig) -> None:
     letter = Letter(rig)
     letter.load()

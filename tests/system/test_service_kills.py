@@ -9,7 +9,8 @@ import pytest
 
 from benchmarks.service_kills.run import Plan, killed
 
-pytestmark = pytest.mark.system
+# Alone: beside whole missions nothing was done for the minute after which it counts as stuck.
+pytestmark = [pytest.mark.system, pytest.mark.alone]
 
 
 @pytest.mark.nightly

@@ -16,13 +16,8 @@ WENT_WRONG = (
 MISSIONS = (*((world, FIRST_SEED + more) for world in ("track", "tunnels") for more in range(3)), *WENT_WRONG)
 
 
-@pytest.mark.parametrize(
-    ("world", "seed"),
-    [
-        pytest.param(*mission, marks=pytest.mark.nightly if number else pytest.mark.slow)
-        for number, mission in enumerate(MISSIONS)
-    ],
-)
+@pytest.mark.nightly
+@pytest.mark.parametrize(("world", "seed"), MISSIONS)
 def test_every_letter_is_delivered_or_honestly_handed_to_a_person(world, seed):
     mission = fly(world, seed)
     assert isinstance(mission, Figures), mission
