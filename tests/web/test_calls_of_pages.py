@@ -99,7 +99,7 @@ async def test_a_page_asks_for_each_answer_once(busy_campus, visit, address):
     await expect(unread).to_have_count(0 if "wall" in address else 1)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_a_robot_is_asked_to_tell_once_there_is_a_stream_to_hear_it_by(busy_campus, visit):
     """Diagnostics arrive once: sent before the stream is open they would be lost and requested again."""
     ada = await of_all_trades(busy_campus, visit)

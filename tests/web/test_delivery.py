@@ -212,7 +212,7 @@ async def test_a_robot_out_of_reach_is_said_to_be_so_and_its_order_goes_on(demon
     await expect(ada.page.get_by_role("heading", level=1)).to_have_text(f"{robot} is coming to Post 1")
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_why_it_waits_is_said_in_french_and_what_has_no_french_is_marked(demonstration, visit):
     ada = await visit("ada.king", at=demonstration.service, locale="fr-CA")
     order_id = await ada.order("bob.martin@campus.example")

@@ -169,7 +169,7 @@ async def test_every_page_speaks_french_stands_still_and_lets_a_keyboard_through
     assert not looker.wrong, "\n".join(looker.wrong)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_without_that_wish_a_way_is_seen_to_move(visit, campus):
     """So that the measure of motion is one."""
     ada = await visit("ada.king", at=campus.service, reduced_motion="no-preference")

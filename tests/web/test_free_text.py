@@ -121,7 +121,7 @@ async def digits_stand_behind(element: Locator, words: str) -> None:
 
 
 @pytest.mark.parametrize("name", [HEBREW, ARABIC])
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_digits_beside_a_name_that_runs_from_right_to_left_stay_behind_it(campus, visit, name):
     ada = await named(await visit("ada", at=campus.service), name)
     bob = await named(await visit("bob", at=campus.service), name)

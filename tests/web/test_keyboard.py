@@ -160,7 +160,7 @@ async def test_a_dispatcher_orders_for_a_sender_pauses_a_robot_acts_on_an_order_
     await expect(page).to_have_title("printed")
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_a_person_without_account_sees_their_code_and_says_not_now_by_keys(visit, campus):
     guest = await visit("grace.hopper", at=campus.service, signed_in=False, reduced_motion="reduce")
     await campus.order_of("bob.martin", guest.email.partition("@")[0], "carrying")

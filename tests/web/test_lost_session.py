@@ -170,7 +170,7 @@ async def done(person: Visitor, form: Form) -> list[Any]:
     return [one[what] for one in (await person.api(path))["items"]]
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_what_saves_by_itself_can_be_saved_once_one_is_signed_in_again(visit):
     ada = await visit("ada.king")
     page = ada.page
@@ -231,7 +231,7 @@ async def test_at_the_desk_an_order_that_was_refused_goes_on_over_its_own_dialog
     assert len(keys) == 2 and len(set(keys)) == 1
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_a_command_to_a_robot_that_was_refused_is_given_at_one_tap(quiet_campus, robot, visit):
     dana = await quiet_campus.dispatcher(visit)
     await give_roles(quiet_campus.service, dana.email, Role.DISPATCHER)
@@ -315,7 +315,7 @@ async def test_who_leaves_on_purpose_is_not_asked_to_come_back_in_any_tab(strict
     await expect(second.get_by_role("button", name="Send me a code")).to_be_visible()
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_who_does_not_care_to_sign_in_now_reads_on_and_is_asked_when_they_do_something(strict, visit):
     ada = await visit("ada.king", at=strict, on="phone", viewport={"width": 320, "height": 640}, locale="fr-CA")
     page = ada.page

@@ -230,7 +230,7 @@ async def test_everything_that_is_wrong_has_its_next_action(busy_campus, visit, 
     assert {line["id"] for line in lines} == set(busy_campus.orders)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_on_a_phone_each_part_of_the_mailroom_is_a_tap_away_however_far_one_has_come(busy_campus, visit):
     dana = await busy_campus.dispatcher(visit, on="phone")
     page = dana.page
@@ -262,7 +262,7 @@ async def test_a_wall_shows_the_campus_at_work_and_no_full_name(busy_campus, vis
     await expect(page.get_by_role("button")).to_have_count(0)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_marker_sheets_are_printed_in_their_true_size_with_nothing_around_them(busy_campus, visit):
     dana = await busy_campus.dispatcher(visit)
     page = dana.page
@@ -280,7 +280,7 @@ async def test_marker_sheets_are_printed_in_their_true_size_with_nothing_around_
         assert pdf.count(b"/Type /Page\n") == 6, paper
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_others_are_told_whose_page_this_is(quiet_campus, visit):
     ada = await visit("ada.king", at=quiet_campus.service)
     for address in (MAILROOM, "/print.html"):
@@ -290,7 +290,7 @@ async def test_others_are_told_whose_page_this_is(quiet_campus, visit):
         await expect(ada.page.get_by_role("link", name="Mailroom")).to_have_count(0)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_a_long_queue_goes_on_where_the_page_ends(quiet_campus, visit):
     ids = [order_id for _ in range(3) for order_id in await quiet_campus.scene.is_ordered_for_later(35)]
     dana = await quiet_campus.dispatcher(visit)

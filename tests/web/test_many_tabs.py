@@ -124,7 +124,7 @@ async def test_a_tab_takes_over_from_one_that_is_hidden_or_closed_and_misses_not
     assert not [path for path in streams.asked if path.startswith("/orders")], "what was missed is given, not fetched"
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_a_person_who_opens_a_page_while_something_happens_is_told_of_it(quiet_campus, visit):
     """Between what a page was answered and what it hears there is no gap, though nothing is asked for twice."""
     ada = await visit("ada.king", at=quiet_campus.service)

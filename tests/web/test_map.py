@@ -284,7 +284,7 @@ TOLD = """(map) => {
 
 
 @pytest.mark.parametrize(("device", "theme"), [("phone", "dark"), ("desk", "light")])
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_several_robots_do_not_hide_each_other_and_drawing_and_list_say_the_same(visit, device, theme):
     ada = await visit(on=device, color_scheme=theme)
     page = ada.page

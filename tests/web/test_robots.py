@@ -154,7 +154,7 @@ async def test_a_maintainer_watches_a_driving_robot_holds_the_view_filters_and_t
     await mira.assert_accessible()
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_on_a_small_phone_in_french_and_for_a_dispatcher_without_the_mind(tunnel, daemon, visit):
     small = {"viewport": {"width": 320, "height": 640}, "locale": "fr-CA"}
     marc = await visit("marc.roy", on="phone", at=tunnel, color_scheme="dark", **small)

@@ -75,7 +75,7 @@ async def test_the_address_book_is_kept_with_the_keyboard_alone(visit):
     await expect(book.get_by_role("listitem")).to_have_text(re.compile("Bob Martin"))
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_delegates_are_in_one_list_and_taken_back_there_by_keyboard(visit):
     ada: Visitor = await visit("ada.king", locale="fr-CA")
     page, keys = ada.page, Keyboard(ada.page)

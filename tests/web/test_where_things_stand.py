@@ -90,7 +90,7 @@ async def test_the_header_stands_at_the_same_place_on_every_page(quiet_campus, v
 @pytest.mark.parametrize(
     ("told_for", "shown"), [(45 * MINUTE, 45 * MINUTE), (26 * HOUR, 24 * HOUR)], ids=["new", "old"]
 )
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_the_axis_of_a_robots_charge_begins_where_there_is_something_to_draw(
     quiet_campus, visit, told_for, shown
 ):
@@ -124,7 +124,7 @@ async def breaks_well(where: Locator, email: str) -> None:
     assert await where.evaluate(COPIED) == email
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 async def test_an_address_breaks_at_its_signs_wherever_it_stands_and_is_copied_whole(quiet_campus, visit):
     ada = await visit(LONG, at=quiet_campus.service, on="phone", viewport=NARROW)
     bob = await visit("bob.martin", at=quiet_campus.service)
