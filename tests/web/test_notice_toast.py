@@ -46,6 +46,11 @@ async def test_a_notice_lies_never_over_the_keyboard_and_waits_for_the_person_ty
     await send.evaluate("(button) => button.scrollIntoView({ block: 'end' })")
     await expect(page.locator(".toast.high")).to_be_visible()
     assert not await page.evaluate(IS_OVER_THE_KEYBOARD)
+    # Nor where nothing scrolls.
+    await page.get_by_role("link", name="Campus Mail").evaluate("(link) => link.focus({ preventScroll: true })")
+    await expect(page.locator(".toast:not(.high)")).to_be_visible()
+    await send.evaluate("(button) => button.focus({ preventScroll: true })")
+    await expect(page.locator(".toast.high")).to_be_visible()
     await page.get_by_role("link", name="Campus Mail").focus()
     await expect(page.locator(".toast:not(.high)")).to_be_visible()
     assert not await page.evaluate(IS_OVER_THE_KEYBOARD)
