@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from robot.drivers.interfaces import STOP, BaseState, HostReport, WheelSpeeds
-from robot.reflexes import BACK_OFF, FAULTS, LATCHED, ReflexState, Response, Senses, decide
+from robot.drivers.interfaces import STOP, BaseState, HostReport, LineReading, WheelSpeeds
+from robot.reflexes import BACK_OFF, FAULTS, LATCHED, Lasting, ReflexState, Response, Senses, decide
 
 WANTED = WheelSpeeds(150, 150)
 FINE = Senses(base=BaseState(at_s=0.0), base_age_s=0.01, mind_age_s=0.1)
@@ -183,3 +183,15 @@ def test_a_sensor_that_cannot_be_read_or_says_what_cannot_be_stops_the_robot(sen
 def test_each_fault_has_a_sentence_for_people_and_a_time_within_which_the_wheels_stand():
     assert all(fault.told.endswith(".") for fault in FAULTS)
     assert all((fault.stands_within_s is None) == (fault.response is Response.NOTHING) for fault in FAULTS)
+
+
+def test_slipping_counts_from_the_last_change_of_what_it_saw() -> None:
+    lasting = Lasting()
+    turning = [BaseState(at_s=at_s, left_count=100 * at_s, right_count=100 * at_s) for at_s in range(4)]
+    lasting.feel(turning[0], replace(turning[1], stasis=0b01), WANTED)
+    lasting.feel(turning[1], turning[2], WANTED)
+    assert lasting.slipping_s == 1.0
+    lasting.look(LineReading(left=False, centre=True, right=False), 150.0, None)
+    assert lasting.slipping_s == 0.0
+    lasting.feel(turning[2], turning[3], WANTED)
+    assert lasting.slipping_s == 1.0
